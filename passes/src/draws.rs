@@ -60,6 +60,21 @@ impl ViewDraws {
         }
     }
 
+    /// Of some of these draws those parts whose instances are wanted.
+    pub(crate) fn only(&self, batches: &[Batch], wanted: impl Fn(u32) -> bool) -> Vec<Batch> {
+        let mut parts: Vec<Batch> = Vec::new();
+        for batch in batches {
+            let start = parts.len();
+            for first in batch.range().filter(|at| wanted(self.numbers[*at as usize])) {
+                match parts[start..].last_mut() {
+                    Some(part) if part.range().end == first => part.count += 1,
+                    _ => parts.push(Batch { instance: self.numbers[first as usize], first, count: 1 }),
+                }
+            }
+        }
+        parts
+    }
+
     /// How many draws these are.
     #[must_use]
     pub fn count(&self) -> usize {

@@ -11,7 +11,7 @@
 //! | `effect.rs`, `fact.rs` | the effects; a row: kept or dropped, the class of its proof, the reason |
 //! | `survey.rs` | what is known of meshes and materials whatever the camera is |
 //! | `seen.rs`, `cover.rs` | what cameras may see; what covers the whole picture |
-//! | `shadows.rs`, `shading.rs`, `screen.rs`, `picture.rs` | the rules |
+//! | `shadows.rs`, `shading.rs`, `screen.rs`, `picture.rs`, `lens.rs` | the rules |
 //! | `memory.rs` | effects do not flicker at thresholds |
 //! | `apply.rs` | facts into settings |
 //! | `savings.rs`, `told.rs` | what each drop saves; text and JSON |
@@ -24,6 +24,7 @@ mod apply;
 mod cover;
 mod effect;
 mod fact;
+mod lens;
 mod memory;
 mod picture;
 mod savings;
@@ -141,6 +142,7 @@ pub fn decide(input: &FactInput<'_>, memory: &mut FactMemory) -> Facts {
     screen::rules(&case, &mut facts);
     shading::rules(&case, &mut facts);
     picture::rules(&case, &mut facts);
+    lens::rules(&case, &mut facts);
     facts.rows.sort_by_key(|row| row.effect);
     let unneeded = facts.dropped();
     for row in &mut facts.rows {

@@ -8,7 +8,7 @@
 //! | `shadow` | `shadow`, or a pass a layer of maps; `structure` for contact shadows | | shadow maps, structure |
 //! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
 //! | `reflection` | `structure`, `reflection_depth`, `reflection`, `reflection_level`… | the radiance of the frame before | structure, reflections, where radiance goes |
-//! | `prepass` | `prepass` | | depth |
+//! | `prepass` | `prepass`, `velocity` | | depth, velocity |
 //! | `color` | `color` | depth, shadow maps, structure, ambient occlusion, reflections | radiance |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
@@ -23,6 +23,7 @@
 
 mod lens;
 mod picture;
+mod shadows;
 
 use crate::bloom::BloomSettings;
 use crate::color::Color;
@@ -37,20 +38,22 @@ use crate::prepass::Prepass;
 use crate::program::Programs;
 use crate::reflection::{ReflectionSettings, reflections};
 use crate::shading::{Quality, Shading};
-use crate::shadow::{ShadowSettings, maps_slot, shadow_maps};
+use crate::shadow::ShadowSettings;
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
-use crate::structure::{Resolution, structure, structure_levels};
+use crate::structure::{Resolution, structure_levels};
 use crate::surface::HDR_FORMAT;
 use crate::taa::{TaaSettings, temporal};
 use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
 use crate::upscale::{Upscale, enlarge};
+use crate::velocity::Velocity;
 use crate::view::{ViewId, Views};
 use framegraph::{AccessKind, Extent, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
 use framegraph_wgpu::{Frame, StoreRounding};
-use lens::{bloom, dof};
-use picture::{fxaa, post};
+use lens::{bloom, dof, mix_of};
+use picture::{PostWay, fxaa};
+use shadows::{maps_of, shadow};
 
 /// What the passes of the standard frame need of the world that they are recorded with.
 pub trait StandardWorld:
@@ -115,9 +118,12 @@ pub struct Settings {
     pub glass_layers: u8,
     /// Draw what stands behind everything; without it, what no surface covers is black.
     pub sky: bool,
-    /// Frames are added up, each seen through other places of its pixels; off as in Filament. The view is jittered by who makes
-    /// it ([`TaaSettings::jitter_px`]). Views of one graph that have it are declared in scopes of their own.
+    /// Frames are added up; who makes the view jitters it ([`TaaSettings::jitter_px`]). Off as in Filament. Views of one graph
+    /// that have it are declared in scopes of their own.
     pub taa: Option<TaaSettings>,
+    /// Something moves: where it was is drawn for what adds frames up.
+    #[cfg_attr(feature = "files", serde(skip))]
+    pub moving: bool,
     /// Soften edges of the finished picture.
     pub fxaa: bool,
     /// Draw less than is shown, and make the picture larger. The view is then one of [`Upscale::extent`].
@@ -159,6 +165,7 @@ impl Settings {
         blended: false,
         scene_levels: 0,
         glass_layers: 1,
+        moving: false,
         sky: true,
         taa: None,
         fxaa: true,
@@ -225,7 +232,7 @@ pub fn standard<W: StandardWorld + ?Sized>(
 pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     let s = *settings;
     let fxaa = match s.fxaa {
-        true => Stage::picture("fxaa", move |frame, handles| fxaa(frame, handles, &s)),
+        true => Stage::picture("fxaa", move |frame, handles| fxaa(frame, handles, s.upscale)),
         false => Stage::new("fxaa", |_, _| Ok(())),
     };
     let upscale = match s.upscale {
@@ -233,7 +240,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         None => Stage::new("upscale", |_, _| Ok(())),
     };
     Stages::of([
-        Stage::new("shadow", move |frame, handles| shadow(frame, handles, &s)),
+        Stage::new("shadow", move |frame, handles| shadow(frame, handles, s.shadows, s.structure())),
         // Before the prepass, so that nothing comes between that and the color pass: they share a step.
         Stage::new("occlusion", move |frame, handles| occlusion(frame, handles, &s)),
         Stage::new("reflection", move |frame, handles| reflection(frame, handles, &s)),
@@ -241,9 +248,9 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
         Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
-        Stage::new("taa", move |frame, handles| taa(frame, handles, &s)),
-        Stage::new("dof", move |frame, handles| dof(frame, handles, &s)),
-        Stage::new("bloom", move |frame, handles| bloom(frame, handles, &s)),
+        Stage::new("taa", move |frame, handles| s.taa.as_ref().map_or(Ok(()), |own| temporal(frame, handles, own))),
+        Stage::new("dof", move |frame, handles| dof(frame, handles, s.dof, s.size_texels)),
+        Stage::new("bloom", move |frame, handles| bloom(frame, handles, s.bloom, (s.size_texels, s.taa.is_some()))),
         Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
         fxaa,
         upscale,
@@ -252,27 +259,13 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
 
 type Declared = Result<(), StageError>;
 
-fn shadow<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    let Some(shadows) = settings.shadows.filter(|_| maps_of(handles).is_none()) else { return Ok(()) };
-    if let Some(maps) = shadow_maps(frame, handles.view(), &shadows)? {
-        handles.set(maps_slot(&shadows), maps);
-    }
-    // Before the prepass, so that nothing comes between that and the color pass.
-    if shadows.contact.is_some() {
-        let (resolution, levels) = settings.structure();
-        structure(frame, handles, resolution, levels)?;
-    }
-    Ok(())
-}
-
-/// The shadow maps, depth or moments.
-fn maps_of(handles: &Handles) -> Option<Texture> {
-    handles.find(Slot::SHADOW_MAP).or_else(|| handles.find(Slot::SHADOW_MOMENTS))
-}
-
 fn prepass<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     let pass = Prepass { view: handles.view(), extent: handles.extent(), samples: settings.samples };
-    handles.set(Slot::DEPTH, frame.add("prepass", pass)?);
+    let depth = frame.add("prepass", pass)?;
+    handles.set(Slot::DEPTH, depth);
+    if settings.moving && settings.taa.is_some() {
+        handles.set(Slot::VELOCITY, frame.add("velocity", Velocity { view: handles.view(), depth })?);
+    }
     Ok(())
 }
 
@@ -391,6 +384,9 @@ fn transparent<W: StandardWorld + ?Sized>(
     Ok(())
 }
 
-fn taa<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    settings.taa.as_ref().map_or(Ok(()), |taa| temporal(frame, handles, taa))
+fn post<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
+    let bloom = mix_of(handles, settings.bloom, settings.size_texels);
+    let Settings { fxaa, stored, split_post: split, upscale, .. } = *settings;
+    let way = PostWay { fxaa, stored, split, upscale };
+    picture::post(frame, handles, (settings.post, bloom), way)
 }

@@ -69,6 +69,7 @@ pub mod taa;
 pub mod transmission;
 pub mod upload;
 pub mod upscale;
+pub mod velocity;
 pub mod view;
 pub mod world;
 

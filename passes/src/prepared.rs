@@ -1,8 +1,9 @@
 //! What of a scene's instances stays from view to view: made once, updated where something moves.
 
 use crate::upload::pack::object_uniforms;
-use framegraph_scene::{Renderables, Scene};
+use framegraph_scene::{Instance, Renderables, Scene};
 use framegraph_shaders::layout::ObjectUniforms;
+use glam::DMat4;
 use std::sync::Arc;
 
 /// Instances whose placement is uploaded together: a hundred kilobytes.
@@ -54,7 +55,8 @@ impl PreparedScene {
         self.renderables.update(scene, moved);
         for &number in moved {
             let chunk = Arc::make_mut(&mut self.placements.0[number / CHUNK]);
-            chunk[number % CHUNK] = object_uniforms(&scene.instances[number]);
+            chunk.objects[number % CHUNK] = object_uniforms(&scene.instances[number]);
+            chunk.world_from_model[number % CHUNK] = scene.instances[number].world_from_model;
         }
     }
 
@@ -71,28 +73,48 @@ impl PreparedScene {
     }
 }
 
+/// Some instances that follow each other.
+#[derive(Clone, Debug, Default)]
+struct Piece {
+    objects: Vec<ObjectUniforms>,
+    world_from_model: Vec<DMat4>,
+}
+
 /// The part of instances' placement that does not depend on the eye, in pieces that are shared until they change. A buffer that was filled
 /// with a piece need not be filled with the same again.
 #[derive(Clone, Debug, Default)]
-pub struct Placements(Vec<Arc<Vec<ObjectUniforms>>>);
+pub struct Placements(Vec<Arc<Piece>>);
 
 impl Placements {
     fn new(scene: &Scene) -> Self {
-        let chunk = |chunk: &[_]| Arc::new(chunk.iter().map(object_uniforms).collect());
+        let chunk = |chunk: &[Instance]| {
+            let world_from_model = chunk.iter().map(|instance| instance.world_from_model).collect();
+            Arc::new(Piece { objects: chunk.iter().map(object_uniforms).collect(), world_from_model })
+        };
         Self(scene.instances.chunks(CHUNK).map(chunk).collect())
     }
 
     /// How many instances there are.
     #[must_use]
     pub fn count(&self) -> usize {
-        self.0.iter().map(|chunk| chunk.len()).sum()
+        self.0.iter().map(|chunk| chunk.objects.len()).sum()
     }
 
     /// The pieces that are others than those of `before`, each with the number of its first instance.
     pub(crate) fn changed_since<'a>(&'a self, before: &'a Self) -> impl Iterator<Item = (usize, &'a [ObjectUniforms])> {
         let same = |number: usize, own| before.0.get(number).is_some_and(|other| Arc::ptr_eq(own, other));
         let others = self.0.iter().enumerate().filter(move |(number, own)| !same(*number, own));
-        others.map(|(number, own)| (number * CHUNK, own.as_slice()))
+        others.map(|(number, own)| (number * CHUNK, own.objects.as_slice()))
+    }
+
+    /// The instances that are elsewhere than in `before`: number, model to world space now and then.
+    pub(crate) fn moved_since<'a>(&'a self, before: &'a Self) -> impl Iterator<Item = (usize, &'a DMat4, &'a DMat4)> {
+        let pieces = self.0.iter().zip(&before.0).enumerate().filter(|(_, (own, other))| !Arc::ptr_eq(own, other));
+        let pairs = pieces.flat_map(|(piece, (own, other))| {
+            let pairs = own.world_from_model.iter().zip(&other.world_from_model).enumerate();
+            pairs.map(move |(at, (here, there))| (piece * CHUNK + at, here, there))
+        });
+        pairs.filter(|(_, here, there)| here != there)
     }
 }
 
@@ -115,7 +137,7 @@ mod tests {
         let now = prepared.placements();
         let changed: Vec<_> = now.changed_since(&before).map(|(first, piece)| (first, piece.len())).collect();
         assert_eq!(changed, [(CHUNK, CHUNK)]);
-        assert_ne!(now.0[1][3], before.0[1][3]);
+        assert_ne!(now.0[1].objects[3], before.0[1].objects[3]);
         assert_eq!(now.changed_since(&Placements::default()).count(), 3);
         assert_eq!(now.count(), scene.instances.len());
     }

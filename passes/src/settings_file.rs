@@ -2,6 +2,7 @@
 
 mod lens;
 
+use crate::occlusion::Method;
 use crate::preset::FrameSettings;
 use framegraph::Format;
 use framegraph::file::{FileErrors, document, to_document};
@@ -79,6 +80,19 @@ impl FrameSettings {
         if !matches!(settings.samples, 1 | 4) {
             return refuse("settings.samples", settings.samples.to_string(), "1 or 4".into());
         }
+        if !matches!(settings.shadows.map_or(1, |shadows| shadows.moments.samples), 1 | 4) {
+            let samples = settings.shadows.map_or(0, |shadows| shadows.moments.samples).to_string();
+            return refuse("settings.shadows.moments.samples", samples, "1 or 4".into());
+        }
+        for (field, value) in [
+            ("settings.post.look", format!("{:?}", settings.post.look)),
+            ("settings.post.edge_fade", format!("{:?}", settings.post.edge_fade)),
+            ("settings.occlusion", format!("{:?}", settings.occlusion)),
+        ] {
+            if ["NaN", "inf"].iter().any(|word| value.contains(word)) {
+                return refuse(field, "not finite".into(), "a finite number in each field".into());
+            }
+        }
         if !matches!(settings.hdr_format, Format::Rgba16Float | Format::Rg11b10Ufloat) {
             let takes = "Rgba16Float or Rg11b10Ufloat".into();
             return refuse("settings.hdr_format", format!("{:?}", settings.hdr_format), takes);
@@ -134,6 +148,25 @@ impl FrameSettings {
                 ("settings.occlusion.intensity", occlusion.intensity.into(), 0.0, 16.0),
                 ("settings.occlusion.power", occlusion.power.into(), 0.0, 16.0),
             ]);
+            match occlusion.method {
+                Method::Sao { taps, turns } => all.extend([
+                    ("settings.occlusion.method.taps", taps.into(), 1.0, 64.0),
+                    ("settings.occlusion.method.turns", turns.into(), 1.0, 64.0),
+                ]),
+                Method::Gtao(gtao) => all.extend([
+                    ("settings.occlusion.method.slices", gtao.slices.into(), 1.0, 16.0),
+                    ("settings.occlusion.method.steps", gtao.steps.into(), 1.0, 32.0),
+                    ("settings.occlusion.method.step_power", gtao.step_power.into(), 0.1, 10.0),
+                ]),
+            }
+            if let Some(blur) = occlusion.blur {
+                all.extend([
+                    ("settings.occlusion.blur.reach", blur.reach.into(), 1.0, 12.0),
+                    ("settings.occlusion.blur.stride", blur.stride.into(), 1.0, 16.0),
+                    ("settings.occlusion.blur.sigma", blur.sigma.into(), 0.1, 100.0),
+                    ("settings.occlusion.blur.threshold_m", blur.threshold_m.into(), 1e-6, 1e4),
+                ]);
+            }
         }
         if let Some(upscale) = &s.upscale {
             all.push(("settings.upscale.percent", upscale.percent.into(), 25.0, 100.0));
@@ -190,6 +223,11 @@ mod tests {
             (
                 "(version: 1, frame: (settings: (post: (dither: NaN))))",
                 "settings.post.dither is NaN; a number from 0 to 1",
+            ),
+            ("(version: 1, frame: (settings: (occlusion: (method: Sao(taps: 0, turns: 1)))))", "method.taps is 0"),
+            (
+                "(version: 1, frame: (settings: (post: (look: (grading: (contrast: NaN))))))",
+                "settings.post.look is not finite",
             ),
             ("(version: 1, frame: (settings: (hdr_format: R8Unorm)))", "Rgba16Float or Rg11b10Ufloat"),
             ("(version: 1, frame: (settings: (blended: true)))", "no field `blended`"),

@@ -39,7 +39,8 @@ where
     let hdr = handles.get(Slot::HDR)?;
     let sum = frame.graph_mut().history("taa", TextureDesc::new(handles.extent(), pass::SUM_FORMAT), 1);
     let earlier = frame.graph_mut().previous(sum, 1)?;
-    let pass = Taa { view: handles.view(), hdr, depth, earlier, into: sum, settings: *settings };
+    let velocity = handles.find(Slot::VELOCITY);
+    let pass = Taa { view: handles.view(), hdr, depth, velocity, earlier, into: sum, settings: *settings };
     let mut hdr = frame.add("taa", pass)?.sum;
     if settings.sharpness > 0.0 {
         let pass = Sharpen { picture: hdr, into: Target::New, sharpness: settings.sharpness };

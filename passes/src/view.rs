@@ -20,7 +20,7 @@ use crate::sun::{angular_radius_rad, illuminance_lux, sun_of};
 use crate::upload::pack::light_uniforms;
 use framegraph_scene::camera::exposure_from_ev100;
 use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene};
-use framegraph_shaders::layout::{FrameUniforms, LightUniforms, SkyUniforms};
+use framegraph_shaders::layout::{FrameUniforms, LightUniforms, MotionUniforms, SkyUniforms};
 use framegraph_shaders::reference::sky::Preetham;
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec2, Vec3, Vec4};
 
@@ -99,6 +99,8 @@ pub struct CameraView {
     pub origins: Vec<Vec4>,
     /// How each instance is turned and scaled.
     pub placements: Placements,
+    /// Where instances are and were in clip space, where any has moved since the frame before; of others it is zeros.
+    pub motions: Vec<MotionUniforms>,
     /// Shadow maps, relative to this view's eye; none for a frame without.
     pub shadows: Option<ViewShadows>,
     /// Where the eye is, in m, world space.
@@ -223,7 +225,13 @@ impl CameraView {
     /// it. Without this, the frame before was seen from where this one is, which is so as long as nothing moves.
     #[must_use]
     pub fn after(self, before: &Self) -> Self {
-        Self { earlier: Some(before.stand()), still_frames: 0, ..self }
+        let motions = motions(&self, before);
+        Self { earlier: Some(before.stand()), still_frames: 0, motions, ..self }
+    }
+
+    /// Whether an instance has moved since the frame before.
+    pub fn moves(&self, instance: usize) -> bool {
+        self.motions.get(instance).is_some_and(|motion| *motion != MotionUniforms::default())
     }
 
     /// From where it is seen.
@@ -271,6 +279,7 @@ impl CameraView {
             draws: ViewDraws::default(),
             origins: Vec::new(),
             placements: Placements::default(),
+            motions: Vec::new(),
             shadows: None,
             eye: camera.eye,
             clip_from_world,
@@ -296,6 +305,20 @@ fn eye_or_direction(camera: &Camera) -> Vec4 {
         Projection::Perspective { .. } => Vec4::W,
         Projection::Orthographic { .. } => (-camera.forward()).as_vec3().extend(0.0),
     }
+}
+
+/// Where instances of `now` are and were in clip space, joined in f64; empty where none has moved.
+fn motions(now: &CameraView, before: &CameraView) -> Vec<MotionUniforms> {
+    let mut motions = Vec::new();
+    for (number, here, there) in now.placements.moved_since(&before.placements) {
+        motions.resize(now.placements.count(), MotionUniforms::default());
+        let clip = |view: &CameraView, placed: &DMat4| {
+            (view.clip_from_world * DMat4::from_translation(-view.eye) * *placed).as_mat4()
+        };
+        motions[number] =
+            MotionUniforms { clip_from_model: clip(now, here), earlier_clip_from_model: clip(before, there) };
+    }
+    motions
 }
 
 /// What moves a picture of this size by so many pixels to the right and up, in clip space.

@@ -29,6 +29,7 @@ mod node;
 mod object;
 mod primitive;
 mod source;
+mod stream;
 mod texture;
 mod topology;
 mod uri;

@@ -37,6 +37,7 @@ pub mod memory;
 pub mod mesh;
 pub mod mips;
 pub mod motion;
+mod moves;
 mod open;
 mod options;
 mod overlap;

@@ -4,7 +4,9 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::bounds::Aabb;
 use super::id::Id;
-use crate::motion::Moves;
+use crate::moves::Moves;
+#[cfg(feature = "gltf")]
+use crate::moves::gather;
 
 /// A mesh of a scene.
 pub type MeshId = Id<Mesh>;
@@ -37,14 +39,6 @@ pub struct Mesh {
     pub bounds: Aabb,
     /// What moves the vertices, until a [`Body`](crate::motion::Body) is made of it.
     pub moves: Option<Box<Moves>>,
-}
-
-/// Copies of `source[i]`, of a stream that there is.
-#[cfg(feature = "gltf")]
-pub(crate) fn gather<T: Copy>(stream: &mut Vec<T>, source: &[u32]) {
-    if !stream.is_empty() {
-        *stream = source.iter().map(|&s| stream[s as usize]).collect();
-    }
 }
 
 impl Mesh {

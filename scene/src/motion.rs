@@ -12,7 +12,8 @@ mod body;
 mod pose;
 mod sample;
 
-pub use body::{Body, MorphTarget, Moves, Shape, Skin};
+pub use crate::moves::{MorphTarget, Moves};
+pub use body::{Body, Shape, Skin};
 pub use pose::PoseError;
 pub use sample::{Curve, Interpolation};
 

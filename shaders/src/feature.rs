@@ -28,6 +28,8 @@ impl Feature {
     pub const REFLECTIONS: Self = Self("REFLECTIONS");
     /// What is seen through fog.
     pub const FOG: Self = Self("FOG");
+    /// Where what moves was in the frame before is read.
+    pub const VELOCITY: Self = Self("VELOCITY");
     /// The environment's prefiltered specular cube is read; without it lobes see three bands of spherical harmonics.
     pub const ENVIRONMENT_MAP: Self = Self("ENVIRONMENT_MAP");
     /// Clear coat (KHR_materials_clearcoat).
@@ -56,6 +58,7 @@ impl Feature {
         Self::FROXELS,
         Self::REFLECTIONS,
         Self::FOG,
+        Self::VELOCITY,
         Self::ENVIRONMENT_MAP,
         Self::HALF,
     ];

@@ -4,9 +4,11 @@
 //! written a second time by hand, so they cannot drift from the WGSL.
 
 mod interface;
+mod operations;
 mod read;
 
 pub use interface::{
     Attribute, Binding, BindingKind, Dimension, EntryPoint, Member, Override, Reflection, Sample, Scalar, Slot, Stage,
     StructLayout,
 };
+pub use operations::Operations;

@@ -5,6 +5,7 @@ pub mod cube_file;
 pub mod files;
 pub mod fuzz;
 pub mod hard;
+pub mod lab;
 pub mod lookup;
 pub mod measure;
 pub mod mirror;

@@ -50,7 +50,12 @@ pub fn quartiles(sorted: &[f64]) -> Option<[f64; 3]> {
 impl TraceData {
     /// The step that runs these passes.
     pub fn step(&self, passes: &[String]) -> Option<&TracedStep> {
-        let name = passes.join(" + ");
+        // Plans number passes of one name, traces do not.
+        let plain = |name: &String| match name.rsplit_once('#') {
+            Some((plain, number)) if number.parse::<u32>().is_ok() => plain.to_owned(),
+            _ => name.clone(),
+        };
+        let name = passes.iter().map(plain).collect::<Vec<_>>().join(" + ");
         self.steps.iter().find(|step| step.name == name)
     }
 

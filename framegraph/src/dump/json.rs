@@ -4,17 +4,20 @@
 //! Names stand in the place of ids: the plan's own arrays are free to change, the fields are not, short of a new
 //! [`JSON_VERSION`].
 
+mod names;
 mod resources;
 mod steps;
 mod value;
 
 pub(crate) use value::{Json, field, object};
 
+use names::Names;
+
 use super::flow::{Flow, data_flow};
 use super::reasons::Reasons;
 use super::words;
 use crate::barrier::{Barrier, Stages};
-use crate::decision::{Decision, MemoryNeed, Names, Refusal, Subject};
+use crate::decision::{self, Decision, MemoryNeed, Refusal, Subject};
 use crate::id::{PassId, ResourceId, StepId};
 use crate::plan::Plan;
 use crate::warning::Warning;
@@ -25,7 +28,7 @@ pub const JSON_VERSION: u32 = 1;
 /// The plan as JSON text, indented, ending in a line feed; `name` is what the frame is called.
 pub fn json(plan: &Plan, name: &str) -> String {
     let graph = plan.graph();
-    let reasons = Reasons::new(plan);
+    let (reasons, names) = (Reasons::new(plan), Names::new(graph));
     // The totals are numbers, but for one truth value.
     let total = |(name, value): (&'static str, u64)| match name {
         "optimal" => field(name, value != 0),
@@ -41,16 +44,16 @@ pub fn json(plan: &Plan, name: &str) -> String {
         field("alias", plan.options().alias.word()),
         field("warnings", Json::list(plan.warnings().map(warning))),
         field("totals", object(totals(plan).map(total))),
-        field("peak", peak(plan)),
-        field("passes", Json::list(graph.pass_ids().map(|p| steps::pass(plan, &reasons, p)))),
-        field("flows", Json::list(data_flow(graph).iter().map(|f| flow(plan, f)))),
-        field("steps", Json::list(plan.step_ids().map(|s| steps::step(plan, &reasons, s)))),
-        field("resources", resources::resources(plan)),
-        field("histories", resources::histories(plan)),
-        field("slots", resources::slots(plan)),
-        field("barriers", Json::list(plan.barriers().iter().map(|b| barrier(plan, b)))),
+        field("peak", peak(plan, &names)),
+        field("passes", Json::list(graph.pass_ids().map(|p| steps::pass(plan, &names, &reasons, p)))),
+        field("flows", Json::list(data_flow(graph).iter().map(|f| flow(&names, f)))),
+        field("steps", Json::list(plan.step_ids().map(|s| steps::step(plan, &names, &reasons, s)))),
+        field("resources", resources::resources(plan, &names)),
+        field("histories", resources::histories(plan, &names)),
+        field("slots", resources::slots(plan, &names)),
+        field("barriers", Json::list(plan.barriers().iter().map(|b| barrier(&names, b)))),
         field("notes", Json::list(graph.notes().map(note))),
-        field("decisions", Json::list(plan.decisions().iter().map(|d| decision(plan, *d)))),
+        field("decisions", Json::list(plan.decisions().iter().map(|d| decision(plan, &names, *d)))),
     ]);
     document.text()
 }
@@ -85,24 +88,23 @@ pub fn totals(plan: &Plan) -> [(&'static str, u64); 21] {
 }
 
 /// The step at which the most bytes are live, with what is live then; none where no memory is shared.
-fn peak(plan: &Plan) -> Option<Json> {
+fn peak(plan: &Plan, names: &Names) -> Option<Json> {
     let step = plan.memory().peak.some()?;
     let live = |r: &ResourceId| words::held(plan, *r).is_some_and(|(first, last)| first <= step && step <= last);
     let live = plan.graph().resource_ids().filter(live);
     Some(object([
         field("step", step.index()),
-        field("passes", steps::passes(plan, step)),
-        field("resources", Json::list(live.map(|r| plan.graph().resource_name(r)))),
+        field("passes", steps::passes(plan, names, step)),
+        field("resources", Json::list(live.map(|r| names.resource(r)))),
     ]))
 }
 
 /// What one pass needs of another.
-fn flow(plan: &Plan, flow: &Flow) -> Json {
-    let graph = plan.graph();
+fn flow(names: &Names, flow: &Flow) -> Json {
     object([
-        field("from", graph.pass_name(flow.from)),
-        field("to", graph.pass_name(flow.to)),
-        field("resources", Json::list(flow.resources.iter().map(|r| graph.resource_name(*r)))),
+        field("from", names.pass(flow.from)),
+        field("to", names.pass(flow.to)),
+        field("resources", Json::list(flow.resources.iter().map(|r| names.resource(*r)))),
     ])
 }
 
@@ -115,8 +117,8 @@ fn note((about, sentence): (&str, &str)) -> Json {
 }
 
 /// A transition or a hand-over of memory in front of a step.
-fn barrier(plan: &Plan, barrier: &Barrier) -> Json {
-    let name = |r| plan.graph().resource_name(r);
+fn barrier(names: &Names, barrier: &Barrier) -> Json {
+    let name = |r| names.resource(r);
     let stages = |s: Stages| Json::list(s.names());
     object([
         field("before_step", barrier.before.index()),
@@ -132,7 +134,7 @@ fn barrier(plan: &Plan, barrier: &Barrier) -> Json {
     ])
 }
 
-fn decision(plan: &Plan, decision: Decision) -> Json {
+fn decision(plan: &Plan, names: &Names, decision: Decision) -> Json {
     let graph = plan.graph();
     let (about, pass, resource, step) = match decision.subject {
         Subject::Pass(p) => ("pass", Some(p), None, None),
@@ -140,9 +142,9 @@ fn decision(plan: &Plan, decision: Decision) -> Json {
         Subject::Store(s, r) => ("store", None, Some(r), Some(s)),
         Subject::Resource(r) => ("resource", None, Some(r), None),
     };
-    let Names { pass: other_pass, resource: other_resource, refusal, need, .. } = decision.reason.names();
-    let pass_name = |p: PassId| graph.pass_name(p);
-    let resource_name = |r: ResourceId| graph.resource_name(r);
+    let decision::Names { pass: other_pass, resource: other_resource, refusal, need, .. } = decision.reason.names();
+    let pass_name = |p: PassId| names.pass(p);
+    let resource_name = |r: ResourceId| names.resource(r);
     object([
         field("about", about),
         field("pass", pass.map(pass_name)),

@@ -3,6 +3,9 @@
 use super::effect::{Effect, EffectSet};
 use super::fact::Decision;
 use super::{Amounts, Facts};
+use crate::bloom::BloomSettings;
+use crate::dof::DofSettings;
+use crate::fog::FogSettings;
 use crate::frame::Settings;
 use crate::occlusion::OcclusionSettings;
 use crate::reflection::ReflectionSettings;
@@ -84,6 +87,9 @@ impl Settings {
             Effect::Fxaa => s.fxaa = true,
             Effect::Msaa => s.samples = 4,
             Effect::Taa => s.taa = Some(TaaSettings::DEFAULT),
+            Effect::Fog => s.fog = Some(FogSettings::DEFAULT),
+            Effect::DepthOfField => s.dof = Some(DofSettings::DEFAULT),
+            Effect::Bloom => s.bloom = Some(BloomSettings::DEFAULT),
             Effect::Transmission | Effect::Blending | Effect::Grading => {}
         }
         s
@@ -126,6 +132,9 @@ fn less(settings: Settings, effect: Effect, amounts: &Amounts) -> Settings {
         Effect::Fxaa => s.fxaa = false,
         Effect::Msaa => s.samples = 1,
         Effect::Taa => s.taa = None,
+        Effect::Fog => s.fog = None,
+        Effect::DepthOfField => s.dof = None,
+        Effect::Bloom => s.bloom = None,
     }
     s
 }
@@ -153,6 +162,9 @@ mod tests {
             occlusion: Some(OcclusionSettings::SAO),
             reflections: Some(ReflectionSettings::DEFAULT),
             taa: Some(TaaSettings::DEFAULT),
+            fog: Some(FogSettings::DEFAULT),
+            dof: Some(DofSettings::DEFAULT),
+            bloom: Some(BloomSettings::DEFAULT),
             scene_levels: 4,
             glass_layers: 3,
             blended: true,

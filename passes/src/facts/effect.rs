@@ -50,11 +50,17 @@ pub enum Effect {
     Msaa,
     /// Frames added up over time.
     Taa,
+    /// Air that hides what is far away.
+    Fog,
+    /// What is out of focus is blurred.
+    DepthOfField,
+    /// What is bright glows.
+    Bloom,
 }
 
 impl Effect {
     /// All of them, in their order.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 26] = [
         Self::SunShadows,
         Self::LampShadows,
         Self::Cascades,
@@ -78,6 +84,9 @@ impl Effect {
         Self::Fxaa,
         Self::Msaa,
         Self::Taa,
+        Self::Fog,
+        Self::DepthOfField,
+        Self::Bloom,
     ];
 
     /// As it is asked for.
@@ -106,6 +115,9 @@ impl Effect {
             Self::Fxaa => "fxaa",
             Self::Msaa => "msaa",
             Self::Taa => "taa",
+            Self::Fog => "fog",
+            Self::DepthOfField => "dof",
+            Self::Bloom => "bloom",
         }
     }
 

@@ -56,7 +56,8 @@ pub(super) fn rules(case: &Case<'_>, facts: &mut Facts) {
 fn is_even(case: &Case<'_>, empty: bool) -> bool {
     let post = &case.settings.post;
     let constant = matches!(case.input.background, Background::None | Background::Constant(_)) || !case.settings.sky;
-    empty && constant && post.vignette_ev <= 0.0 && post.edge_fade.is_none()
+    let lens = case.settings.fog.is_some() || case.settings.bloom.is_some();
+    empty && constant && !lens && post.vignette_ev <= 0.0 && post.edge_fade.is_none()
 }
 
 fn dither(case: &Case<'_>, empty: bool) -> Fact {
@@ -65,9 +66,9 @@ fn dither(case: &Case<'_>, empty: bool) -> Fact {
     Fact::decide(Effect::Dither, proof, is_even(case, empty), why, "the picture may have gradients")
 }
 
-/// Radiance that is at most 1 and only cut off at 1 loses nothing in a target of the picture's own codes.
-fn hdr_target(case: &Case<'_>) -> Fact {
-    let (settings, post) = (case.settings, &case.settings.post);
+/// The most pre-exposed light of the picture; infinite where something in view is lit, fogged, or a picture itself.
+pub(super) fn most_light(case: &Case<'_>) -> f32 {
+    let settings = case.settings;
     let exposed = |nits: f32| {
         let most = case.input.views.iter().map(|view| exposure_from_ev100(view.ev100)).fold(0.0, f32::max);
         nits * most
@@ -78,20 +79,29 @@ fn hdr_target(case: &Case<'_>) -> Fact {
         _ if !settings.sky => 0.0,
         _ => f32::INFINITY,
     };
+    let known =
+        case.surfaces.lit == 0 && !case.surfaces.colored && settings.fog.is_none() && settings.scene_levels == 0;
+    if known { behind.max(1.0) } else { f32::INFINITY }
+}
+
+/// Radiance that is at most 1 and only cut off at 1 loses nothing in a target of the picture's own codes.
+fn hdr_target(case: &Case<'_>) -> Fact {
+    let (settings, post) = (case.settings, &case.settings.post);
     let linear = post.look.tone_map == ToneMap::Linear
         && !post.look.luminance_scaling
         && !post.look.gamut_mapping
         && post.look.grading == Grading::NEUTRAL
         && post.compensation_ev == 0.0
         && post.by == crate::grading::GradeBy::Direct;
-    let within = case.surfaces.lit == 0 && !case.surfaces.colored && behind <= 1.0;
+    let within = most_light(case) <= 1.0;
     let blended = case.seen.most(|lists| lists.blend.len());
     // Each surface that blends is rounded to a code, and dither sees the rounded color.
     let proof = Proof::Codes(0.5 * blended as f32 + 1.0);
     let plain = linear && within && post.vignette_ev <= 0.0 && post.edge_fade.is_none() && settings.scene_levels == 0;
     let why = "all that is seen is unlit and at most 1, and the tone curve is linear: eight bits of codes hold it";
     let kept = if linear { "light may be beyond 1" } else { "the tone curve or grading is not linear" };
-    let history = settings.reflections.is_some() || settings.taa.is_some() || settings.stored.is_some();
+    let lens = settings.dof.is_some() || settings.bloom.is_some();
+    let history = lens || settings.reflections.is_some() || settings.taa.is_some() || settings.stored.is_some();
     Fact::decide(Effect::HdrTarget, proof, plain && !history, why, kept)
 }
 

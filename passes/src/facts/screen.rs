@@ -5,7 +5,7 @@ use super::fact::{Fact, Proof};
 use super::{Case, Facts};
 
 /// Of what keeps post-processing out of the color pass.
-fn apart(case: &Case<'_>) -> Proof {
+pub(super) fn apart(case: &Case<'_>) -> Proof {
     if case.settings.samples > 1 { Proof::Edges } else { Proof::Variant }
 }
 

@@ -1,43 +1,46 @@
 //! Stages of what a lens does to the radiance.
 
-use super::{Declared, Settings, StandardWorld};
-use crate::bloom::{BloomChain, BloomMix, BloomSettings};
+use crate::bloom::{self, BloomChain, BloomMix, BloomSettings};
 use crate::dof::{DofSettings, depth_of_field};
-use crate::stages::{Handles, Slot};
+use crate::program::Programs;
+use crate::stages::{Handles, Slot, StageError};
+use crate::view::Views;
 use framegraph_wgpu::Frame;
 
-pub(super) fn dof<W: StandardWorld + ?Sized>(
+pub(super) fn dof<W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
-    settings: &Settings,
-) -> Declared {
-    match settings.dof.filter(DofSettings::is_seen) {
-        Some(own) => depth_of_field(frame, handles, &own, settings.size_texels),
+    settings: Option<DofSettings>,
+    size_texels: [u32; 2],
+) -> Result<(), StageError> {
+    match settings.filter(DofSettings::is_seen) {
+        Some(own) => depth_of_field(frame, handles, &own, size_texels),
         None => Ok(()),
     }
 }
 
-/// A stage may have handed on what glows of its own.
-pub(super) fn bloom<W: StandardWorld + ?Sized>(
+/// A stage may have handed on what glows of its own. Where frames are added up over time, nothing flickers that had to count less.
+pub(super) fn bloom<W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
-    settings: &Settings,
-) -> Declared {
-    match settings.bloom.filter(BloomSettings::is_seen) {
+    settings: Option<BloomSettings>,
+    (size_texels, over_time): ([u32; 2], bool),
+) -> Result<(), StageError> {
+    match settings.filter(BloomSettings::is_seen) {
         Some(own) if handles.find(Slot::BLOOM).is_none() => {
-            let own = BloomSettings { fireflies: own.fireflies && settings.taa.is_none(), ..own };
-            crate::bloom::bloom(frame, handles, &own, settings.size_texels)
+            let own = BloomSettings { fireflies: own.fireflies && !over_time, ..own };
+            bloom::bloom(frame, handles, &own, size_texels)
         }
         _ => Ok(()),
     }
 }
 
 /// What glows as post-processing takes it.
-pub(super) fn mix_of(handles: &Handles, settings: &Settings) -> Option<BloomMix> {
-    let own = settings.bloom.filter(BloomSettings::is_seen)?;
+pub(super) fn mix_of(handles: &Handles, settings: Option<BloomSettings>, size_texels: [u32; 2]) -> Option<BloomMix> {
+    let own = settings.filter(BloomSettings::is_seen)?;
     Some(BloomMix {
         glow: handles.find(Slot::BLOOM)?,
-        levels: BloomChain::new(&own, settings.size_texels).levels,
+        levels: BloomChain::new(&own, size_texels).levels,
         flare: handles.find(Slot::FLARE),
         dirt: handles.find(Slot::LENS_DIRT),
         settings: own,

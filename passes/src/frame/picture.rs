@@ -1,27 +1,41 @@
 //! Stages that make the picture for the display.
 
-use super::lens::mix_of;
-use super::{Declared, Settings, StandardWorld};
+use crate::bloom::BloomMix;
+use crate::frame_index::FrameIndex;
 use crate::fxaa::Fxaa;
-use crate::post::{Post, PostEffect};
+use crate::grading::GradingTables;
+use crate::post::{Post, PostEffect, PostSettings};
+use crate::program::Programs;
 use crate::stages::{Handles, Slot, StageError};
-use crate::upscale::encoded_target;
+use crate::upscale::{Upscale, encoded_target};
 use framegraph::{Target, Texture};
 use framegraph_shaders::layout::FxaaUniforms;
-use framegraph_wgpu::Frame;
+use framegraph_wgpu::{Frame, StoreRounding};
+
+/// How post-processing is declared.
+#[derive(Clone, Copy)]
+pub(super) struct PostWay {
+    /// An edge filter follows.
+    pub fxaa: bool,
+    /// See [`Post::stored`].
+    pub stored: Option<StoreRounding>,
+    /// A pass an effect.
+    pub split: bool,
+    /// The picture is made larger afterwards.
+    pub upscale: Option<Upscale>,
+}
 
 /// The point-wise effects, in one pass or one pass each.
-pub(super) fn post<W: StandardWorld + ?Sized>(
+pub(super) fn post<W: AsRef<Programs> + AsRef<FrameIndex> + AsRef<GradingTables> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
-    settings: &Settings,
-) -> Declared {
-    let bloom = mix_of(handles, settings);
-    let into = if settings.fxaa { handles.target() } else { encoded_target(frame, handles, settings.upscale) };
-    let Settings { fxaa, stored, split_post, post: settings, .. } = *settings;
+    (settings, bloom): (PostSettings, Option<BloomMix>),
+    way: PostWay,
+) -> Result<(), StageError> {
+    let into = if way.fxaa { handles.target() } else { encoded_target(frame, handles, way.upscale) };
     let hdr = handles.get(Slot::HDR)?;
-    let whole = Post { hdr, bloom, into, settings, only: None, for_fxaa: fxaa, stored };
-    let picture = if split_post {
+    let whole = Post { hdr, bloom, into, settings, only: None, for_fxaa: way.fxaa, stored: way.stored };
+    let picture = if way.split {
         frame.scope("post", |frame| {
             let mut color = hdr;
             for effect in settings.effects(bloom.is_some()) {
@@ -38,12 +52,12 @@ pub(super) fn post<W: StandardWorld + ?Sized>(
 }
 
 /// Softens edges.
-pub(super) fn fxaa<W: StandardWorld + ?Sized>(
+pub(super) fn fxaa<W: AsRef<Programs> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
-    settings: &Settings,
-) -> Declared {
-    let into = encoded_target(frame, handles, settings.upscale);
+    upscale: Option<Upscale>,
+) -> Result<(), StageError> {
+    let into = encoded_target(frame, handles, upscale);
     let pass = Fxaa { ldr: handles.get(Slot::PICTURE)?, into, settings: FxaaUniforms::default() };
     handles.set(Slot::PICTURE, frame.add("fxaa", pass)?.output);
     Ok(())

@@ -48,6 +48,9 @@ impl Slot {
     /// The texture that the radiance is to be drawn into, where the next frame reads it; nothing is in it before. The radiance
     /// itself is [`Slot::HDR`].
     pub const HDR_HISTORY: Self = Self::new("hdr_history", Holds::Color);
+    /// Way from a pixel to where its surface was in the frame before, in texture coordinates, times a count, and that count in
+    /// alpha: 0 where nothing moves; only where something may.
+    pub const VELOCITY: Self = Self::new("velocity", Holds::Color);
     /// Scene-referred radiance times exposure, linear Rec.709.
     pub const HDR: Self = Self::new("hdr", Holds::Color);
     /// The same, of each sample, where the frame has several per texel. The stage `transparent` draws into these and

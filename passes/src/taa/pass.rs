@@ -7,7 +7,7 @@ use crate::program::{Interface, ProgramDesc, Programs};
 use crate::view::{CameraView, ViewId, Views};
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Previous, Texture, View};
 use framegraph_shaders::layout::TaaUniforms;
-use framegraph_shaders::{Module, library};
+use framegraph_shaders::{Feature, Features, Module, library};
 use framegraph_wgpu::{Cx, Record, RecordError, SamplerDesc};
 
 /// Format of the sum: half floats, whatever the frame's radiance has, since sums in fewer bits stop short of what is added.
@@ -16,7 +16,7 @@ pub(super) const SUM_FORMAT: Format = Format::Rgba16Float;
 static SHADER: Module<'static> = library::pass("pass/taa.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface {
-    groups: &[&["settings", "hdr", "depth", "earlier", "earlier_sampler"]],
+    groups: &[&["settings", "hdr", "depth", "earlier", "earlier_sampler", "velocity"]],
     constants: &[
         "BOX",
         "CLIPPING",
@@ -39,6 +39,8 @@ pub struct Taa {
     pub hdr: Texture,
     /// Reversed depth of one sample per texel, of the same size.
     pub depth: Texture,
+    /// Where what moves was, from the pass [`Velocity`](crate::velocity::Velocity); none where nothing moves.
+    pub velocity: Option<Texture>,
     /// The sum of the frames before.
     pub earlier: Previous,
     /// Where the sum goes.
@@ -52,6 +54,7 @@ pub struct Taa {
 pub struct TaaIo {
     hdr: View,
     depth: View,
+    velocity: Option<View>,
     earlier: View,
     /// The sum. In a frame without an earlier one it is this frame alone.
     pub sum: Texture,
@@ -62,7 +65,8 @@ impl Pass for Taa {
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<TaaIo, DeclareError> {
         let [hdr, depth, earlier] = [pass.sampled(self.hdr)?, pass.sampled(self.depth)?, pass.sampled(self.earlier)?];
-        Ok(TaaIo { hdr, depth, earlier, sum: pass.color(self.into, Intent::Overwrite)? })
+        let velocity = self.velocity.map(|velocity| pass.sampled(velocity)).transpose()?;
+        Ok(TaaIo { hdr, depth, velocity, earlier, sum: pass.color(self.into, Intent::Overwrite)? })
     }
 }
 
@@ -70,6 +74,7 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for Taa {
     fn record(&self, io: &TaaIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let views: &Views = world.as_ref();
         let view = &views.get(self.view)?.view;
+        let velocity = io.velocity.map(|velocity| cx.view(velocity)).transpose()?;
         let provided = [
             cx.uniform(&self.uniforms(view, cx.is_valid(self.earlier)?)),
             cx.view(io.hdr)?.into(),
@@ -78,6 +83,9 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for Taa {
             cx.sampler(SamplerDesc::LINEAR).into(),
         ]
         .map(Some);
+        let [settings, hdr, depth, earlier, sampler] = provided;
+        let provided = [settings, hdr, depth, earlier, sampler, velocity.map(Into::into)];
+        let features = Features::NONE.with_if(Feature::VELOCITY, io.velocity.is_some());
         let TaaSettings { filter_history, filter_input, ycocg, prevent_flickering, reproject, .. } = self.settings;
         let color_box = match self.settings.color_box {
             ColorBox::Bounds => 0.0,
@@ -93,7 +101,8 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for Taa {
         let switches = [ycocg, filter_history, filter_input, prevent_flickering, reproject, !self.rests(view)];
         let [ycocg, history, input, steady, reproject, compress] = switches.map(f64::from);
         let constants = [color_box, clipping, ycocg, history, input, steady, reproject, compress];
-        let draw = FullScreen::new(ProgramDesc::new(&SHADER, &INTERFACE), &[]);
+        let program = ProgramDesc { features: &features, ..ProgramDesc::new(&SHADER, &INTERFACE) };
+        let draw = FullScreen::new(program, &[]);
         FullScreen { constants: &constants, groups: &[&provided], ..draw }.draw(world.as_ref(), cx)
     }
 }

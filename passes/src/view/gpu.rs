@@ -29,6 +29,8 @@ impl ViewId {
 pub struct GpuView {
     /// The view.
     pub view: CameraView,
+    /// `layout::MotionUniforms` of each instance, where any moves.
+    pub motions: Buffer,
     /// `layout::LightUniforms` of the punctual lights.
     pub lights: Buffer,
     /// The words of the lists of lights.
@@ -51,6 +53,7 @@ impl GpuView {
         let mut own = Self {
             objects: storage("objects"),
             uploaded: Placements::default(),
+            motions: storage("motions"),
             origins: storage("origins"),
             numbers: buffer(gpu, "instances", BufferUsages::VERTEX, 0),
             lights: storage("lights"),
@@ -79,6 +82,7 @@ impl GpuView {
         let light_words = view.light_lists.as_ref().map_or(&[][..], |lists| &lists.words);
         let maps = view.shadows.as_ref().map(ViewShadows::map_uniforms).unwrap_or_default();
         let storage = BufferUsages::STORAGE;
+        refill(gpu, &mut self.motions, "motions", storage, cast_slice(&view.motions));
         refill(gpu, &mut self.origins, "origins", storage, cast_slice(&view.origins));
         refill(gpu, &mut self.numbers, "instances", BufferUsages::VERTEX, cast_slice(&view.draws.numbers));
         refill(gpu, &mut self.lights, "lights", storage, cast_slice(&view.lights));
@@ -140,6 +144,7 @@ impl Views {
         let count = self.0.len();
         let own = self.0.get_mut(id.0 as usize).ok_or(PassError::NoView { view: id.0, count })?;
         own.view.earlier = Some(own.view.stand());
+        own.view.motions.clear();
         own.view.still_frames = own.view.still_frames.saturating_add(1);
         own.view.jitter(jitter_px);
         Ok(())

@@ -4,8 +4,8 @@ use glam::{Vec3, Vec4};
 use gltf_json::mesh::{Primitive, Semantic};
 use gltf_json::validation::Checked;
 
-use super::primitive::{finite, stream};
 use super::source::Source;
+use super::stream::{finite, stream};
 use crate::error::SceneError;
 use crate::motion::{MorphTarget, Moves};
 

@@ -1,6 +1,7 @@
 //! Meshes whose vertices follow joints and morph targets.
 
 use crate::mesh::{Mesh, MeshId};
+use crate::moves::{MorphTarget, Moves};
 use glam::{DMat3, DMat4, DVec3, Vec3, Vec4};
 
 /// Joints that vertices follow.
@@ -29,32 +30,6 @@ pub struct Body {
     pub moves: Moves,
 }
 
-/// What moves the vertices of a mesh.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Moves {
-    /// The joints of each vertex, places in [`Skin::joints`]; none without a skin.
-    pub joints: Vec<[u16; 4]>,
-    /// How much it follows each; their sum is 1.
-    pub weights: Vec<[f32; 4]>,
-    /// What is added by each weight of the node.
-    pub targets: Vec<MorphTarget>,
-}
-
-impl Moves {
-    /// Replaces vertices by copies of `source[i]`, as [`Mesh::gather_vertices`] does.
-    #[cfg(feature = "gltf")]
-    pub(crate) fn gather_vertices(&mut self, source: &[u32]) {
-        use crate::mesh::gather;
-        gather(&mut self.joints, source);
-        gather(&mut self.weights, source);
-        for target in &mut self.targets {
-            gather(&mut target.positions, source);
-            gather(&mut target.normals, source);
-            gather(&mut target.tangents, source);
-        }
-    }
-}
-
 /// Streams that move.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shape {
@@ -64,17 +39,6 @@ pub struct Shape {
     pub normals: Vec<Vec3>,
     /// Of unit length; w is the side of the bitangent. May be empty.
     pub tangents: Vec<Vec4>,
-}
-
-/// What a morph target adds to each vertex.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct MorphTarget {
-    /// In meters; empty for nothing.
-    pub positions: Vec<Vec3>,
-    /// Empty for nothing.
-    pub normals: Vec<Vec3>,
-    /// Empty for nothing.
-    pub tangents: Vec<Vec3>,
 }
 
 impl Body {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{
-    LightUniforms, Punctual, ToneMap, frame, froxel, grading, ibl, light, material, object, occlusion, post,
+    LightUniforms, Punctual, ToneMap, frame, froxel, grading, ibl, light, material, motion, object, occlusion, post,
     reflection, shadow, sharpen, sky, taa,
 };
 use crate::reflect::StructLayout;
@@ -16,7 +16,7 @@ fn rust_structs() -> Vec<StructLayout> {
     files
         .into_iter()
         .chain(of_passes)
-        .chain([reflection::layouts(), taa::layouts(), sharpen::layouts()])
+        .chain([reflection::layouts(), taa::layouts(), sharpen::layouts(), motion::layouts()])
         .chain([super::fog::layouts(), super::bloom::layouts(), super::dof::layouts()])
         .flatten()
         .collect()

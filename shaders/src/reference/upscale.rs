@@ -73,7 +73,7 @@ mod tests {
         assert_eq!(edge_of(0.5, 0.5, 0.0, 1.0, 0.5), DVec3::new(1.0, 0.0, 1.0));
         let step = |x: i64, _: i64| DVec3::splat(if x < 4 { 0.1 } else { 0.9 });
         let quarter = upscaled(step, DVec2::new(3.75, 2.5)).x;
-        assert!(quarter < 0.3 && quarter >= 0.1, "a line has 0.3: {quarter}");
+        assert!((0.1..0.3).contains(&quarter), "a line has 0.3: {quarter}");
         assert_eq!(upscaled(step, DVec2::new(2.5, 2.5)).x, 0.1);
     }
 

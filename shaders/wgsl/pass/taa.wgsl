@@ -54,6 +54,9 @@ override COMPRESS: bool = true;
 @group(0) @binding(0) var<uniform> settings: TaaUniforms;
 @group(0) @binding(1) var hdr: texture_2d<f32>;
 @group(0) @binding(2) var depth: texture_depth_2d;
+/// Way to the place before, in texture coordinates, of what moves, times a count, and that count.
+@if(VELOCITY)
+@group(0) @binding(5) var velocity: texture_2d<f32>;
 /// What the frames before have come to.
 @group(0) @binding(3) var earlier: texture_2d<f32>;
 /// Linear filter, clamp to edge.
@@ -72,8 +75,43 @@ fn earlier_place(texel: vec2<i32>, size: vec2<f32>) -> vec3<f32> {
     let clip = settings.earlier_clip_from_clip * vec4<f32>(ndc, textureLoad(depth, texel, 0), 1.0);
     let before = clip.xy / max(clip.w, 1e-9);
     let place = vec2<f32>(0.5 + 0.5 * before.x, 0.5 - 0.5 * before.y);
-    let shown = clip.w > 1e-9 && all(place >= vec2<f32>(0.0)) && all(place <= vec2<f32>(1.0));
+    return shown_place(uv, place, clip.w > 1e-9);
+}
+
+/// A place in the picture of the frame before; z is 0 where that does not show it.
+fn shown_place(uv: vec2<f32>, place: vec2<f32>, ahead: bool) -> vec3<f32> {
+    let shown = ahead && all(place >= vec2<f32>(0.0)) && all(place <= vec2<f32>(1.0));
     return select(vec3<f32>(uv, 1.0), vec3<f32>(place, f32(shown)), REPROJECT);
+}
+
+/// The same where something may move. Behind an edge, where the nearest surface around a texel is
+/// nearer by a quarter, that one says by how much, so that the edge goes with it. Not everywhere:
+/// what is nearer on a round body moves more, and its outline would run ahead.
+@if(VELOCITY)
+fn moved_place(texel: vec2<i32>, last: vec2<i32>) -> vec3<f32> {
+    let own = textureLoad(depth, texel, 0);
+    var nearest = own;
+    var at = texel;
+    for (var i = 0; i < 9; i++) {
+        let other = clamp(texel + vec2<i32>(i % 3, i / 3) - 1, vec2<i32>(0), last);
+        let around = textureLoad(depth, other, 0);
+        at = select(at, other, around > nearest && around > 1.25 * own);
+        nearest = max(nearest, around);
+    }
+    let size = vec2<f32>(last + 1);
+    let aside = vec2<f32>(texel - at) / size;
+    let still = earlier_place(at, size);
+    let told = textureLoad(velocity, at, 0);
+    let uv = (vec2<f32>(texel) + 0.5) / size;
+    let way = uv + told.xy / max(told.w, 1e-3);
+    let moves = told.w > 0.0;
+    return shown_place(uv, select(still.xy + aside, way, moves), moves || still.z > 0.0);
+}
+
+/// The same where nothing moves.
+@else
+fn moved_place(texel: vec2<i32>, last: vec2<i32>) -> vec3<f32> {
+    return earlier_place(texel, vec2<f32>(last + 1));
 }
 
 /// The earlier picture at a place, times this frame's exposure over that one's. Of the sixteen
@@ -153,7 +191,7 @@ fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         filtered += near[i] * settings.weights[i / 4][i % 4];
     }
     filtered = select(near[4], filtered, FILTER_INPUT);
-    let place = earlier_place(texel, vec2<f32>(last + 1));
+    let place = moved_place(texel, last);
     let before = earlier_color(place.xy);
     // What is broken in the sum does not stay there.
     let usable = all_finite3(before) && place.z > 0.0;

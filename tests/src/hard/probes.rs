@@ -1,6 +1,7 @@
 //! The probes, by what their functions are about.
 
 mod color;
+mod lens;
 mod lobes;
 mod picture;
 mod screen;
@@ -11,8 +12,8 @@ use super::probe::{Build, Probe};
 use framegraph_shaders::reference::cases::Domain;
 use framegraph_shaders::reference::cases::Domain::Values;
 
-pub(super) const ALL: [&[Probe]; 6] =
-    [shading::PROBES, lobes::PROBES, screen::PROBES, shadow::PROBES, picture::PROBES, color::PROBES];
+pub(super) const ALL: [&[Probe]; 7] =
+    [shading::PROBES, lobes::PROBES, lens::PROBES, screen::PROBES, shadow::PROBES, picture::PROBES, color::PROBES];
 
 /// The largest half float.
 const MOST: f32 = 65504.0;

@@ -128,7 +128,9 @@ impl<'g> Stage<'g> {
         )?;
         let into = frame.graph_mut().history("taa", TextureDesc::new(Extent::FRAME, Format::Rgba16Float), 1);
         let earlier = frame.graph_mut().previous(into, 1)?;
-        let sum = frame.add("taa", Taa { view: ViewId::MAIN, hdr, depth, earlier, into, settings: *settings })?.sum;
+        let sum = frame
+            .add("taa", Taa { view: ViewId::MAIN, hdr, depth, velocity: None, earlier, into, settings: *settings })?
+            .sum;
         frame.graph_mut().readback(hdr)?;
         self.run(frame, [hdr, sum], size_px)
     }

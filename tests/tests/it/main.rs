@@ -1,5 +1,6 @@
 //! Tests across crates, one binary.
 
+mod accuracy;
 mod bisect;
 mod bloom;
 mod cases;
@@ -52,4 +53,5 @@ mod supply;
 mod taa;
 mod transmission;
 mod upscale;
+mod velocity;
 mod views;

@@ -11,7 +11,7 @@ pub const COMMAND: Command = Command {
     summary: "print every table of docs/ anew, the long runs too, and compare",
     details: "\
 Runs the programs that print the tables of docs/proofs.md, docs/image-light.md,
-docs/half-floats.md, docs/occlusion.md, docs/reflections.md, docs/taa.md, docs/lights.md and
+docs/half-floats.md, docs/hard-cases.md, docs/occlusion.md, docs/reflections.md, docs/taa.md, docs/lights.md and
 docs/references.md, in release and in full, and says which printed rows the document does not have.
 Columns of times are left out.
 It takes about a quarter of an hour. Figures that depend on how a device rounds
@@ -33,7 +33,7 @@ struct Printed {
 
 const FRAMES: &str = "tests/references/filament_frame";
 
-const PRINTED: [Printed; 11] = [
+const PRINTED: [Printed; 12] = [
     Printed {
         document: "docs/proofs.md",
         program: &["prove", "--dsa", "tests/offset_assignment"],
@@ -45,6 +45,7 @@ const PRINTED: [Printed; 11] = [
     Printed { document: "docs/reflections.md", program: &["reflections"], mark: None, may_fail: false },
     Printed { document: "docs/taa.md", program: &["taa"], mark: None, may_fail: false },
     Printed { document: "docs/lights.md", program: &["lights"], mark: None, may_fail: false },
+    Printed { document: "docs/hard-cases.md", program: &["hard_cases"], mark: None, may_fail: false },
     Printed { document: "docs/half-floats.md", program: &["shading_errors"], mark: None, may_fail: false },
     Printed { document: "docs/references.md", program: &["reference"], mark: Some("reference"), may_fail: false },
     Printed {

@@ -31,7 +31,7 @@ const MOST_BYTES: u64 = 60_000;
 const HELMET: &str = "tests/assets/models/FlightHelmet/FlightHelmet.gltf";
 
 /// The pictures: a name, what is rendered, and under which light.
-const PICTURES: [(&str, Model, &str); 24] = [
+const PICTURES: [(&str, Model, &str); 21] = [
     ("balls-studio", Model::Balls, "--environment tests/assets/hdri/studio.hdr"),
     ("balls-sunset", Model::Balls, "--environment tests/assets/hdri/sunset.hdr"),
     ("balls-aces", Model::Balls, "--environment tests/assets/hdri/sunset.hdr --tone-map aces"),
@@ -51,9 +51,6 @@ const PICTURES: [(&str, Model, &str); 24] = [
     ("columns-occlusion", Model::Columns, "--environment uniform:1000,1000,1000 --sun off --ao gtao"),
     ("spheres-environment", Model::Spheres, "--ssr off"),
     ("spheres-reflections", Model::Spheres, "--ssr on"),
-    ("spheres-fog", Model::Spheres, "--fog on:density=0.4,falloff=1.5,glow=8"),
-    ("spheres-bloom", Model::Spheres, "--bloom on:strength=0.6,at=0.6,flare=on,ghost-at=0.5,halo-at=0.5"),
-    ("spheres-dof", Model::Spheres, "--dof on:focus=6.2,aperture=0.12,resolution=full"),
     ("glass-one-layer", Model::Glass, "--glass-layers 1"),
     ("glass-layers", Model::Glass, "--glass-layers 3"),
     ("helmet-studio", Model::Helmet, "--environment tests/assets/hdri/studio.hdr"),

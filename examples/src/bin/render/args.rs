@@ -10,13 +10,12 @@ use crate::look::{number, precision, quality, shading, switch};
 use crate::moment::{self, Moment};
 use crate::name::{plan_files, with_ending};
 use crate::shadows::{self, Shadows};
+use crate::values::{camera, frames, memory, samples, size};
 use framegraph_passes::PostSettings;
 use framegraph_passes::{Precision, Quality, Settings, Shading};
 use framegraph_scene::{CameraChoice, LoadOptions, Memory};
-use program::bytes;
 use std::ffi::OsString;
 use std::path::PathBuf;
-use std::str::FromStr;
 
 /// What `render --help` prints.
 pub fn help() -> String {
@@ -292,40 +291,6 @@ fn text(parser: &mut lexopt::Parser, option: &str) -> Result<String, String> {
 
 fn path(parser: &mut lexopt::Parser, option: &str) -> Result<PathBuf, String> {
     parser.value().map(PathBuf::from).map_err(|_| format!("{option}: a file is missing"))
-}
-
-fn size(text: &str) -> Result<[u32; 2], String> {
-    let wrong = || format!("--size {text}: two whole numbers are needed, such as 1280x720");
-    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
-    let size = [width, height].map(|side| side.parse::<u32>());
-    let [Ok(width), Ok(height)] = size else { return Err(wrong()) };
-    if width == 0 || height == 0 {
-        return Err(format!("--size {text}: both sides must be at least 1"));
-    }
-    Ok([width, height])
-}
-
-fn samples(text: &str) -> Result<u8, String> {
-    match text {
-        "1" => Ok(1),
-        "4" => Ok(4),
-        _ => Err(format!("--msaa {text}: 1 or 4 samples are offered")),
-    }
-}
-
-fn memory(text: &str) -> Result<u64, String> {
-    bytes(text).filter(|bytes| *bytes > 0).ok_or_else(|| format!("--memory {text}: bytes are needed, such as 512MiB"))
-}
-
-fn camera(text: &str) -> Result<CameraChoice, String> {
-    CameraChoice::from_str(text).map_err(|error| format!("--camera: {error}"))
-}
-
-fn frames(text: &str) -> Result<u32, String> {
-    match text.parse::<u32>() {
-        Ok(frames @ 1..=10_000) => Ok(frames),
-        _ => Err(format!("--frames {text}: a number from 1 to 10000 is needed")),
-    }
 }
 
 #[cfg(test)]

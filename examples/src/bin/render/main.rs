@@ -19,6 +19,7 @@ mod run;
 mod sequence;
 mod shadows;
 mod table;
+mod values;
 mod what_if;
 
 use args::Command;

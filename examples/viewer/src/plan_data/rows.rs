@@ -14,6 +14,8 @@ pub struct Form {
     pub order: String,
     pub alias: String,
     pub warnings: Vec<Warning>,
+    #[serde(default)]
+    pub notes: Vec<Note>,
     pub totals: Totals,
     pub peak: Option<Peak>,
     pub passes: Vec<Pass>,
@@ -31,6 +33,13 @@ pub struct Form {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Warning {
     pub warning: String,
+    pub sentence: String,
+}
+
+/// Why an effect is in the frame, or is not.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+pub struct Note {
+    pub about: String,
     pub sentence: String,
 }
 

@@ -47,7 +47,9 @@ fn frame(plan: &PlanData) -> Vec<Section> {
     for (index, pass) in form.passes.iter().enumerate().filter(|(_, pass)| pass.culled) {
         culled.link(Item::Pass(index), format!("{}: {}", pass.name, pass.reason));
     }
-    vec![head, totals, culled]
+    let mut effects = Section::new("effects");
+    form.notes.iter().for_each(|note| effects.say(format!("{}: {}", note.about, note.sentence)));
+    vec![head, effects, totals, culled]
 }
 
 /// What one pass needs of another.

@@ -88,6 +88,15 @@ fn presets_and_files_of_settings_are_planned() {
         let plan = frame.plan(&WhatIf::on(Caps::wgpu())).expect("it can be planned");
         assert!(plan.pass("color").is_some() && plan.declared_at[0].contains(".rs:"), "{which}");
     }
+    // Its shadow maps are drawn by passes of one name, which are told apart.
+    let ultra = StandardFrame::open("ultra").and_then(|frame| frame.plan(&WhatIf::on(Caps::tiler()))).expect("a plan");
+    let map = ultra.resource("shadow/shadow_map").expect("a resource");
+    let lit = viewer::view::graph::lit(&ultra, Item::Resource(map));
+    let drawn = ultra.form.passes.iter().filter(|pass| pass.name.starts_with("shadow/")).count();
+    assert!(drawn > 20 && lit.len() == 1 + drawn + 1, "{drawn} passes draw, the color pass reads: {lit:?}");
+    assert!(ultra.pass("shadow/local#2") > ultra.pass("shadow/local"));
+    let alone = |drawing: &viewer::drawing::Drawing| drawing.marks.iter().filter(|m| m.1 == lit[0]).count();
+    assert_eq!(alone(&viewer::view::graph::drawing(&ultra, None)), drawn, "a line from each to the color pass");
     let error = StandardFrame::open("best").expect_err("there is no such preset");
     assert!(error.contains("`best`") && error.contains("ultra"), "{error}");
     let path = folder("settings").join("bad.ron");

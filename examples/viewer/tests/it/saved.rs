@@ -66,6 +66,11 @@ fn fields_that_are_not_known_are_named_and_left_out() {
     let plan = read(text.as_bytes()).expect("more fields do no harm");
     assert_eq!(plan.notes.len(), 1);
     assert!(plan.notes[0].contains("passes.*.queue") && plan.notes[0].contains("steps.*.queue"), "{:?}", plan.notes);
+    let noted =
+        text.replace("\"notes\": []", "\"notes\": [{\"about\": \"ao\", \"sentence\": \"nothing stands near\"}]");
+    let plan = read(noted.as_bytes()).expect("notes are read");
+    let words = viewer::view::facts::text(&viewer::view::facts::sections(&plan, None));
+    assert!(words.contains("effects\n  ao: nothing stands near"), "{words}");
     let older = text.replace("\"flows\"", "\"flow\"");
     let plan = read(older.as_bytes()).expect("an older file is read");
     assert!(plan.notes.iter().any(|note| note.contains("no edges")), "{:?}", plan.notes);

@@ -118,6 +118,10 @@ fn bytes_by_step_are_those_of_the_plan() {
     let grade = &plan.form.passes[plan.pass("grade").expect("a pass")];
     let step = &plan.form.steps[grade.step.expect("it runs")];
     assert_eq!(bandwidth::of_step(&plan, step).fetched, 1920 * 1080 * 8);
+    // The filter behind it samples one of eight.
+    let fxaa = &plan.form.passes[plan.pass("fxaa").expect("a pass")];
+    let step = &plan.form.steps[fxaa.step.expect("it runs")];
+    assert_eq!(bandwidth::of_step(&plan, step).fetched, 1920 * 1080 * 4);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Resources and the memory they have, with names.
 
+use super::names::Names;
 use super::value::{Json, field, object};
 use crate::access::Usage;
 use crate::barrier::{Stages, State};
@@ -9,12 +10,12 @@ use crate::plan::{Placement, Plan, Planned};
 use crate::resource::{Desc, Entry, Exit, Kind};
 
 /// The declared resources.
-pub(super) fn resources(plan: &Plan) -> Json {
+pub(super) fn resources(plan: &Plan, names: &Names) -> Json {
     let offsets = offsets(plan);
-    Json::list(plan.graph().resource_ids().map(|r| resource(plan, r, offsets[r.index()])))
+    Json::list(plan.graph().resource_ids().map(|r| resource(plan, names, r, offsets[r.index()])))
 }
 
-fn resource(plan: &Plan, resource: ResourceId, offset: Option<u64>) -> Json {
+fn resource(plan: &Plan, names: &Names, resource: ResourceId, offset: Option<u64>) -> Json {
     let graph = plan.graph();
     let declared = &graph.resources()[resource.index()];
     let row = &plan.resources()[resource.index()];
@@ -28,7 +29,7 @@ fn resource(plan: &Plan, resource: ResourceId, offset: Option<u64>) -> Json {
         _ => (None, None),
     };
     object([
-        field("name", graph.resource_name(resource)),
+        field("name", names.resource(resource)),
         field("kind", declared.kind.word()),
         field("entry", entry),
         field("exit", exit.map(|e| if e == Exit::Keep { "keep" } else { "discard" })),
@@ -38,7 +39,7 @@ fn resource(plan: &Plan, resource: ResourceId, offset: Option<u64>) -> Json {
         field("mips", texture.map(|t| t.mip_count(plan.frame()))),
         field("layers", texture.map(|t| t.layers)),
         field("samples", texture.map(|t| t.samples)),
-        field("usage", names(row.usage)),
+        field("usage", uses(row.usage)),
         field("first_step", row.first.some().map(StepId::index)),
         field("last_step", row.last.some().map(StepId::index)),
         field("held_steps", held(plan, resource).map(|(first, last)| vec![first.index(), last.index()])),
@@ -65,14 +66,14 @@ fn entry_of(entry: Entry) -> Json {
 }
 
 /// The histories, each with the images of earlier frames that this frame reads.
-pub(super) fn histories(plan: &Plan) -> Json {
+pub(super) fn histories(plan: &Plan, names: &Names) -> Json {
     let graph = plan.graph();
     let rows = || graph.resource_ids().zip(graph.resources());
     Json::list(rows().filter_map(|(history, row)| {
         let Kind::HistoryCurrent { frames } = row.kind else { return None };
         let previous = rows().filter_map(|(image, row)| match row.kind {
             Kind::HistoryPrevious { current, age } if current == history => {
-                Some(object([field("resource", graph.resource_name(image)), field("age", age)]))
+                Some(object([field("resource", names.resource(image)), field("age", age)]))
             }
             _ => None,
         });
@@ -85,7 +86,7 @@ pub(super) fn histories(plan: &Plan) -> Json {
         };
         let offsets = first.into_iter().flat_map(|first| (0..images).map(move |age| first + stride * u64::from(age)));
         Some(object([
-            field("name", graph.resource_name(history)),
+            field("name", names.resource(history)),
             field("images", images),
             field("image_bytes", bytes),
             field("offsets", Json::list(offsets)),
@@ -95,7 +96,7 @@ pub(super) fn histories(plan: &Plan) -> Json {
 }
 
 /// The physical textures and buffers of the pool, with their tenants in order of time.
-pub(super) fn slots(plan: &Plan) -> Json {
+pub(super) fn slots(plan: &Plan, names: &Names) -> Json {
     let mut tenants = vec![Vec::new(); plan.slots().len()];
     for resource in plan.graph().resource_ids() {
         if let Placement::Slot(slot) = plan.resources()[resource.index()].placement {
@@ -115,14 +116,14 @@ pub(super) fn slots(plan: &Plan) -> Json {
         object([
             field("index", index),
             field("shape", shape(plan, &slot.desc, format)),
-            field("usage", names(slot.usage)),
+            field("usage", uses(slot.usage)),
             field("bytes", slot.bytes),
             field("offset", offset),
-            field("tenants", Json::list(tenants.iter().map(|r| plan.graph().resource_name(*r)))),
+            field("tenants", Json::list(tenants.iter().map(|r| names.resource(*r)))),
         ])
     }))
 }
 
-fn names(usage: Usage) -> Json {
+fn uses(usage: Usage) -> Json {
     Json::list(usage.names())
 }

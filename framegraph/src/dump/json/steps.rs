@@ -1,5 +1,6 @@
 //! Passes, steps and attachments, with names.
 
+use super::names::Names;
 use super::value::{Json, field, object};
 use crate::decision::Subject;
 use crate::dump::reasons::Reasons;
@@ -9,25 +10,25 @@ use crate::id::{PassId, StepId};
 use crate::plan::{Attachment, Join, Plan, Role};
 
 /// The names of the passes of a step, in order.
-pub(super) fn passes(plan: &Plan, step: StepId) -> Json {
-    Json::list(plan.passes_of(step).iter().map(|m| plan.graph().pass_name(m.pass)))
+pub(super) fn passes(plan: &Plan, names: &Names, step: StepId) -> Json {
+    Json::list(plan.passes_of(step).iter().map(|m| names.pass(m.pass)))
 }
 
 /// A declared pass.
-pub(super) fn pass(plan: &Plan, reasons: &Reasons, pass: PassId) -> Json {
+pub(super) fn pass(plan: &Plan, names: &Names, reasons: &Reasons, pass: PassId) -> Json {
     let graph = plan.graph();
     let step = plan.pass_steps()[pass.index()].some();
     let member = step.and_then(|s| plan.passes_of(s).iter().find(|m| m.pass == pass));
     let accesses = graph.accesses_of(pass).iter().map(|a| {
         object([
-            field("resource", graph.resource_name(a.resource)),
+            field("resource", names.resource(a.resource)),
             field("kind", a.kind.word()),
             field("mode", a.mode.word()),
             field("part", Some(part(&a.range, graph.bytes_of(a)).trim_start()).filter(|p| !p.is_empty())),
         ])
     });
     object([
-        field("name", graph.pass_name(pass)),
+        field("name", names.pass(pass)),
         field("kind", graph.passes()[pass.index()].kind.word()),
         field("culled", plan.is_culled(pass)),
         field("reason", reasons.sentence(plan, Subject::Pass(pass))),
@@ -38,16 +39,16 @@ pub(super) fn pass(plan: &Plan, reasons: &Reasons, pass: PassId) -> Json {
 }
 
 /// A step.
-pub(super) fn step(plan: &Plan, reasons: &Reasons, step: StepId) -> Json {
+pub(super) fn step(plan: &Plan, names: &Names, reasons: &Reasons, step: StepId) -> Json {
     let row = &plan.steps()[step.index()];
     let counts = plan.step_counts(step);
     let traffic = plan.step_traffic(step, plan.frame());
-    let attachments = plan.attachments_of(step).iter().map(|a| attachment(plan, reasons, step, a));
+    let attachments = plan.attachments_of(step).iter().map(|a| attachment(plan, names, reasons, step, a));
     let full_screen = plan.passes_of(step).iter().any(|m| m.join == Join::Resolve);
     object([
         field("index", step.index()),
         field("kind", row.kind.word()),
-        field("passes", passes(plan, step)),
+        field("passes", passes(plan, names, step)),
         field("full_screen_resolve", full_screen),
         field("extent", row.extent.to_vec()),
         field("layers", row.layers),
@@ -61,7 +62,7 @@ pub(super) fn step(plan: &Plan, reasons: &Reasons, step: StepId) -> Json {
 }
 
 /// One attachment of a step.
-fn attachment(plan: &Plan, reasons: &Reasons, step: StepId, attachment: &Attachment) -> Json {
+fn attachment(plan: &Plan, names: &Names, reasons: &Reasons, step: StepId, attachment: &Attachment) -> Json {
     let Attachment { resource, mip, layer, layers, view, role, load, store, .. } = *attachment;
     let (role, slot, mode) = match role {
         Role::Color(slot) => ("color", Some(slot), None),
@@ -73,7 +74,7 @@ fn attachment(plan: &Plan, reasons: &Reasons, step: StepId, attachment: &Attachm
     let stencil = plan.format(resource).and_then(|f| attachment.ops(f, Aspect::Stencil));
     let (unresolve_bytes, resolve_bytes) = plan.attachment_bytes(attachment, plan.frame());
     object([
-        field("resource", plan.graph().resource_name(resource)),
+        field("resource", names.resource(resource)),
         field("role", role),
         field("slot", slot),
         field("resolve_mode", mode),

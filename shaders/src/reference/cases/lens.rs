@@ -140,8 +140,14 @@ pub(super) const CASES: &[Case] = &[
     ),
     case(
         ["dof", "coc_radius"],
-        // Away from the radius that is in focus, where it jumps.
-        &[Log(0.01, 0.2), Values(&[1.0, 2.0]), Values(&[0.0, 30.0, 1e6]), Values(&[16.0, 32.0]), Values(&[8.0, 32.0])],
+        // In focus, and far from where it jumps.
+        &[
+            Log(0.01, 0.2),
+            Values(&[1.0, 2.0]),
+            Values(&[0.0, 1.5, 30.0, 1e6]),
+            Values(&[16.0, 32.0]),
+            Values(&[8.0, 32.0]),
+        ],
         "coc_radius(x[0], x[1], x[2], v2(3u))",
         SCALAR,
         |x| vec![dof::coc_radius(x[0], x[1], x[2], v2(x, 3))],

@@ -5,7 +5,7 @@ use framegraph_passes::facts::{
 };
 use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{OcclusionSettings, ReflectionSettings};
+use framegraph_passes::{BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings};
 use framegraph_scene::environment::ShBands;
 use framegraph_scene::geometry::{cuboid, sphere};
 use framegraph_scene::{AlphaMode, Light, LightKind, Material, TextureId, TextureSlot, Transmission, UvTransform};
@@ -264,6 +264,34 @@ fn the_whole_picture_is_looked_at() {
     assert!(!cards.drops(Effect::HdrTarget));
 }
 
+#[test]
+fn air_and_lens_are_left_out_where_they_do_nothing() {
+    let fog = |fog: FogSettings, sky| {
+        let mut floor = Stage::of("floor");
+        (floor.case.asked.fog, floor.case.asked.sky) = (Some(fog), sky);
+        floor.drops(Effect::Fog)
+    };
+    let thin = |density| FogSettings { density, falloff: 0.0, ..FogSettings::DEFAULT };
+    // The floor's farthest corner is some 7 m away: 1/512 is hidden at a density of 0.00028.
+    assert!(fog(thin(0.0), true) && fog(thin(0.0002), false));
+    assert!(!fog(thin(0.0004), false) && !fog(thin(0.0002), true), "the sky has no end");
+    assert!(fog(FogSettings { cut_off_m: 5.0, ..thin(0.0002) }, true));
+    let focus = |f_number| {
+        let mut floor = Stage::of("floor");
+        floor.case.asked.dof = Some(DofSettings { focus_m: 2.0, f_number, ..DofSettings::DEFAULT });
+        floor.drops(Effect::DepthOfField)
+    };
+    assert!(focus(64.0) && !focus(0.5), "a small and a large aperture");
+    let glow = |bloom: BloomSettings, name| {
+        let mut cards = Stage::of(name);
+        cards.case.asked.bloom = Some(bloom);
+        cards.drops(Effect::Bloom)
+    };
+    let at = |threshold_at| BloomSettings { threshold_at, ..BloomSettings::DEFAULT };
+    assert!(glow(at(1.1), "cards") && !glow(at(0.9), "cards") && !glow(at(1.1), "full"));
+    assert!(glow(BloomSettings { strength: 0.0, ..BloomSettings::DEFAULT }, "full"));
+}
+
 /// What is forced stays, and a drop that is bounded by more than the tolerance is not made.
 #[test]
 fn forced_effects_stay() {
@@ -319,5 +347,7 @@ fn a_slow_crossing_does_not_flicker() {
 fn the_cases_ask_for_every_effect() {
     let asked = every_effect();
     let others: Vec<Effect> = Effect::ALL.into_iter().filter(|effect| !asked.has(*effect)).collect();
-    assert_eq!(others, [Effect::Transmission, Effect::EdgeFade, Effect::Taa], "the first is the scene's");
+    let beside =
+        [Effect::Transmission, Effect::EdgeFade, Effect::Taa, Effect::Fog, Effect::DepthOfField, Effect::Bloom];
+    assert_eq!(others, beside, "the first is the scene's, the tests above ask for the others");
 }

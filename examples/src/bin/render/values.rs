@@ -1,0 +1,59 @@
+//! Values of options that stand alone.
+
+use framegraph_scene::CameraChoice;
+use program::bytes;
+use std::str::FromStr;
+
+/// Width and height of a picture, both at least 1.
+///
+/// # Errors
+/// One line that names the option.
+pub fn size(text: &str) -> Result<[u32; 2], String> {
+    let wrong = || format!("--size {text}: two whole numbers are needed, such as 1280x720");
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
+    let size = [width, height].map(|side| side.parse::<u32>());
+    let [Ok(width), Ok(height)] = size else { return Err(wrong()) };
+    if width == 0 || height == 0 {
+        return Err(format!("--size {text}: both sides must be at least 1"));
+    }
+    Ok([width, height])
+}
+
+/// Samples a pixel.
+///
+/// # Errors
+/// One line that names the option.
+pub fn samples(text: &str) -> Result<u8, String> {
+    match text {
+        "1" => Ok(1),
+        "4" => Ok(4),
+        _ => Err(format!("--msaa {text}: 1 or 4 samples are offered")),
+    }
+}
+
+/// Bytes, at least 1.
+///
+/// # Errors
+/// One line that names the option.
+pub fn memory(text: &str) -> Result<u64, String> {
+    bytes(text).filter(|bytes| *bytes > 0).ok_or_else(|| format!("--memory {text}: bytes are needed, such as 512MiB"))
+}
+
+/// A camera by name or place.
+///
+/// # Errors
+/// One line that names the option.
+pub fn camera(text: &str) -> Result<CameraChoice, String> {
+    CameraChoice::from_str(text).map_err(|error| format!("--camera: {error}"))
+}
+
+/// Frames that are measured.
+///
+/// # Errors
+/// One line that names the option.
+pub fn frames(text: &str) -> Result<u32, String> {
+    match text.parse::<u32>() {
+        Ok(frames @ 1..=10_000) => Ok(frames),
+        _ => Err(format!("--frames {text}: a number from 1 to 10000 is needed")),
+    }
+}

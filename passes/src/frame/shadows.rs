@@ -1,0 +1,33 @@
+//! The stage that draws shadow maps.
+
+use crate::program::Programs;
+use crate::shadow::{ShadowSettings, maps_slot, shadow_maps};
+use crate::stages::{Handles, Slot, StageError};
+use crate::structure::{Resolution, structure};
+use crate::upload::GpuScene;
+use crate::view::Views;
+use framegraph::Texture;
+use framegraph_wgpu::Frame;
+
+/// Shadow maps, unless they were handed on; and the structure, of that size and so many levels, for contact shadows.
+pub(super) fn shadow<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
+    frame: &mut Frame<W>,
+    handles: &mut Handles,
+    settings: Option<ShadowSettings>,
+    (resolution, levels): (Resolution, u8),
+) -> Result<(), StageError> {
+    let Some(shadows) = settings.filter(|_| maps_of(handles).is_none()) else { return Ok(()) };
+    if let Some(maps) = shadow_maps(frame, handles.view(), &shadows)? {
+        handles.set(maps_slot(&shadows), maps);
+    }
+    // Before the prepass, so that nothing comes between that and the color pass.
+    if shadows.contact.is_some() {
+        structure(frame, handles, resolution, levels)?;
+    }
+    Ok(())
+}
+
+/// The shadow maps, depth or moments.
+pub(super) fn maps_of(handles: &Handles) -> Option<Texture> {
+    handles.find(Slot::SHADOW_MAP).or_else(|| handles.find(Slot::SHADOW_MOMENTS))
+}

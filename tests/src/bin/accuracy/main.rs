@@ -1,0 +1,141 @@
+//! `accuracy`: what each approximation of the frame errs by and costs on this adapter, as JSON, as a document and as a page.
+
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
+mod args;
+
+use args::{Args, Wanted};
+use framegraph_wgpu::{AdapterRequest, Gpu};
+use program::outputs::Outputs;
+use program::progress::Shown;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+use tests::lab::record::{Record, SCHEMA, VERSION};
+use tests::lab::run::{Repeats, measure};
+use tests::lab::select::{groups, offers, within_budget, within_error};
+use tests::lab::studio::Studio;
+use tests::lab::technique::Outcome;
+use tests::lab::{html, markdown, techniques};
+
+fn main() -> ExitCode {
+    let args = match Args::parse() {
+        Ok(args) => args,
+        Err(reason) => {
+            program::error(format_args!("{reason}"));
+            return program::exit(2);
+        }
+    };
+    match run(&args) {
+        Ok(()) => program::exit(0),
+        Err(reason) => {
+            program::error(format_args!("{reason}"));
+            program::exit(1)
+        }
+    }
+}
+
+fn run(args: &Args) -> Outcome<()> {
+    let file = args.out.join("accuracy.json");
+    match args.wanted {
+        Wanted::Help => {
+            program::print(args::HELP);
+            Ok(())
+        }
+        Wanted::Measure => measured(args, &file),
+        Wanted::Document => {
+            program::print(markdown::document(&Record::read(&file)?));
+            Ok(())
+        }
+        Wanted::Budget(ms) => chosen(&Record::read(&file)?, |offers| within_budget(offers, ms), "no set is as fast"),
+        Wanted::MostError(error) => {
+            chosen(&Record::read(&file)?, |offers| within_error(offers, error), "no set is as accurate")
+        }
+    }
+}
+
+/// Measures what the record does not have yet, and writes it after each technique.
+fn measured(args: &Args, file: &Path) -> Outcome<()> {
+    program::interrupt::watch();
+    let gpu = Gpu::open(&AdapterRequest::from_env())?;
+    let pictures = args.out.join("pictures");
+    std::fs::create_dir_all(&pictures).map_err(|e| format!("{}: {e}", pictures.display()))?;
+    let repeats = if args.quick { Repeats::QUICK } else { Repeats::FULL };
+    let size_px = if args.quick { [96, 64] } else { [192, 128] };
+    let processors = std::thread::available_parallelism().map_or(1.0, |n| n.get() as f64);
+    let fresh = Record {
+        schema: SCHEMA.to_owned(),
+        version: VERSION,
+        adapter: gpu.describe(),
+        size_px,
+        load: [processors, load()],
+        warm_up: repeats.warm_up,
+        repeats: repeats.timed,
+        quick: args.quick,
+        optimized: !cfg!(debug_assertions),
+        techniques: Vec::new(),
+    };
+    // A run that was interrupted goes on, where it was of the same kind.
+    let mut record = match Record::read(file) {
+        Ok(found) if !args.again && Record { load: fresh.load, techniques: Vec::new(), ..found.clone() } == fresh => {
+            found
+        }
+        _ => fresh,
+    };
+    let studio = Studio { gpu: &gpu, size_px, light: args.out.join("light") };
+    let all = techniques::all(&gpu);
+    if let Some(unknown) = args.techniques.iter().find(|name| !all.iter().any(|t| t.name == **name)) {
+        let names: Vec<_> = all.iter().map(|t| t.name.as_str()).collect();
+        return Err(format!("there is no technique {unknown}; there are {}", names.join(", ")).into());
+    }
+    let wanted = |name: &str| args.techniques.is_empty() || args.techniques.iter().any(|own| own == name);
+    let mut progress = Shown::default();
+    let start = Instant::now();
+    let left: Vec<_> = all
+        .iter()
+        .filter(|t| wanted(&t.name))
+        .filter(|t| !args.techniques.is_empty() || !record.techniques.iter().any(|found| found.name == t.name))
+        .collect();
+    for (done, technique) in left.iter().enumerate() {
+        let each = start.elapsed().as_secs_f64() / done.max(1) as f64;
+        let rest = if done > 0 { format!(", {:.0} s left", each * (left.len() - done) as f64) } else { String::new() };
+        progress.step("measuring", done, left.len(), &format!("{}{rest}", technique.name));
+        let found = measure(&studio, technique, repeats, &pictures)?;
+        record.techniques.retain(|old| old.name != technique.name);
+        record.techniques.push(found);
+        let place = |name: &str| all.iter().position(|t| t.name == name);
+        record.techniques.sort_by_key(|t| place(&t.name));
+        Outputs::one(file, record.json()?.as_bytes())?;
+    }
+    progress.clear();
+    Outputs::one(&args.out.join("accuracy.md"), markdown::document(&record).as_bytes())?;
+    Outputs::one(&args.out.join("accuracy.html"), html::page(&record, &pictures).as_bytes())?;
+    program::line(format_args!("{} techniques in {}", record.techniques.len(), args.out.display()));
+    Ok(())
+}
+
+/// Tasks that wanted a processor, a mean over a minute; 0 where the system does not say.
+fn load() -> f64 {
+    let text = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    text.split(' ').next().and_then(|word| word.parse().ok()).unwrap_or(0.0)
+}
+
+fn chosen(
+    record: &Record,
+    choose: impl Fn(&[Vec<tests::lab::select::Offer>]) -> Option<tests::lab::select::Chosen>,
+    none: &str,
+) -> Outcome<()> {
+    let groups = groups(record);
+    let offers: Vec<_> = groups.iter().map(|(_, choices)| offers(choices)).collect();
+    let set = choose(&offers).ok_or(none)?;
+    for ((name, choices), index) in groups.iter().zip(&set.options) {
+        program::line(format_args!("{name}: {}", choices[*index].name));
+    }
+    program::line(format_args!(
+        "{} ms beyond the fastest set, errors that add up to {} codes, on {}",
+        markdown::number(set.ms),
+        markdown::number(set.error),
+        record.adapter
+    ));
+    Ok(())
+}

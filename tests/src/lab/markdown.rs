@@ -1,0 +1,124 @@
+//! A record as a document: `accuracy.md`, which `docs/accuracy.md` is of a committed record.
+
+use super::record::{ChoiceRecord, Record, TechniqueRecord};
+use super::statistics::Times;
+use std::fmt::Write as _;
+
+/// The document.
+pub fn document(record: &Record) -> String {
+    let Record { adapter, size_px, load, warm_up, repeats, quick, optimized, .. } = record;
+    let mut text = format!(
+        "# What accuracy costs\n\n\
+        Printed by `cargo run {}-p tests --bin accuracy{}`; the numbers are those of the `accuracy.json` beside it. \
+        Each table is a choice of the frame: its options, what each errs by against a truth that is stated, and what a \
+        whole frame with it takes. Adapter: {adapter}. Frames of {} × {} pixels, {repeats} times after {warm_up} that do not \
+        count, the options of a table in turn and in random order; {} processors, {:.1} tasks that wanted one. Times are \
+        of this adapter: a software driver's say nothing about a GPU's, and here only ratios within a table count.\n\n\
+        *Best* marks options that no other beats in both error and time (in operations where no frame is timed). Times are \
+        medians with the interval that holds them in 95 of 100 resamplings; `≈` marks options whose interval overlaps \
+        that of the fastest, which are not distinguishable from it. An error below three standard errors of the truth is not \
+        printed. Operations are those of the shader's function: arithmetic + transcendental + texture + conversion.\n\n",
+        if *optimized { "--release " } else { "" },
+        if *quick { " -- --quick" } else { "" },
+        size_px[0],
+        size_px[1],
+        load[0],
+        load[1],
+    );
+    text.push_str("| choice | options | smallest to largest error | unit | fastest to slowest |\n| --- | --- | --- | --- | --- |\n");
+    record.techniques.iter().for_each(|technique| text.push_str(&overview(technique)));
+    record.techniques.iter().for_each(|technique| text.push_str(&section(technique)));
+    text
+}
+
+fn overview(technique: &TechniqueRecord) -> String {
+    let span = |values: &[f64]| {
+        let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().reduce(pick).unwrap_or(0.0));
+        format!("{} … {}", number(low), number(high))
+    };
+    let errors: Vec<f64> = technique.choices.iter().map(|choice| choice.error).collect();
+    let times: Vec<f64> = technique.choices.iter().filter_map(|choice| Some(choice.ms?.median)).collect();
+    let times = if times.is_empty() { "–".to_owned() } else { span(&times) + " ms" };
+    let TechniqueRecord { name, unit, choices, .. } = technique;
+    format!("| [{name}](#{name}) | {} | {} | {unit} | {times} |\n", choices.len(), span(&errors))
+}
+
+fn section(technique: &TechniqueRecord) -> String {
+    let TechniqueRecord { name, what, truth, unit, choices } = technique;
+    let mut text = format!("\n## {name}\n\n{what} Truth: {truth}\n\n");
+    let any = |has: fn(&ChoiceRecord) -> bool| choices.iter().any(has);
+    let columns: [(&str, bool); 9] = [
+        ("option", true),
+        ("", true),
+        (unit, true),
+        ("bias", any(|c| c.bias.is_some())),
+        ("noise", any(|c| c.noise.is_some())),
+        ("worst, 99.9 %, PSNR, FLIP, relative MSE", any(|c| c.picture.is_some())),
+        ("ms", any(|c| c.ms.is_some())),
+        ("operations", any(|c| c.operations.is_some())),
+        ("presets", any(|c| !c.presets.is_empty())),
+    ];
+    let shown = |cells: [String; 9]| {
+        let kept = cells.into_iter().zip(columns).filter(|(_, (_, shown))| *shown).map(|(cell, _)| cell);
+        format!("| {} |\n", kept.collect::<Vec<_>>().join(" | "))
+    };
+    text.push_str(&shown(columns.map(|(head, _)| head.to_owned())));
+    text.push_str(&shown(columns.map(|_| "---".to_owned())));
+    let fastest = choices.iter().filter_map(|choice| choice.ms).min_by(|a, b| a.median.total_cmp(&b.median));
+    for (choice, best) in choices.iter().zip(technique.front()) {
+        text.push_str(&shown(cells(choice, best, fastest)));
+    }
+    text
+}
+
+fn cells(choice: &ChoiceRecord, best: bool, fastest: Option<Times>) -> [String; 9] {
+    let optional = |value: Option<f64>| value.map_or_else(String::new, number);
+    let picture = choice.picture.map_or_else(String::new, |p| {
+        let psnr = p.psnr_db.map_or_else(|| "∞".to_owned(), |db| format!("{db:.1} dB"));
+        format!("{:.0}, {}, {psnr}, {:.4}, {:.1e}", p.worst, number(p.p999), p.flip, p.relative_mse)
+    });
+    let ms = choice.ms.map_or_else(String::new, |t| {
+        let same = fastest.is_some_and(|fastest| fastest.median < t.median && !fastest.differs_from(&t));
+        let mark = if same { "≈ " } else { "" };
+        format!(
+            "{mark}{} ({}…{}; min {}, p25 {})",
+            number(t.median),
+            number(t.low),
+            number(t.high),
+            number(t.min),
+            number(t.p25)
+        )
+    });
+    let operations = choice.operations.map_or_else(String::new, |parts| parts.map(|n| n.to_string()).join(" + "));
+    let error = if choice.is_void() {
+        format!("below {}, the truth's own", number(3.0 * choice.truth_error))
+    } else {
+        number(choice.error)
+    };
+    [
+        choice.name.clone(),
+        if best { "best".to_owned() } else { String::new() },
+        error,
+        optional(choice.bias),
+        optional(choice.noise),
+        picture,
+        ms,
+        operations,
+        choice.presets.join(", "),
+    ]
+}
+
+/// Three digits.
+pub fn number(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    let digits = (2 - x.abs().log10().floor() as i32).clamp(0, 9) as usize;
+    let mut text = String::new();
+    if x.abs() < 1e-4 {
+        let _ = write!(text, "{x:.2e}");
+    } else {
+        let _ = write!(text, "{x:.digits$}");
+    }
+    text
+}

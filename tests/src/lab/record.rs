@@ -1,0 +1,140 @@
+//! What was measured, as a file: `accuracy.json`.
+
+use super::statistics::{Times, undominated};
+use serde::{Deserialize, Serialize};
+use std::error::Error;
+use std::path::Path;
+
+/// The file's `schema`.
+pub const SCHEMA: &str = "framegraph-accuracy";
+/// Its `version`: another one is not read.
+pub const VERSION: u32 = 1;
+
+/// All that was measured in one place.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Record {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// [`VERSION`].
+    pub version: u32,
+    /// Adapter, driver and interface.
+    pub adapter: String,
+    /// Pictures whose frames are timed, in pixels.
+    pub size_px: [u32; 2],
+    /// Processors, and how many tasks wanted one when the measuring began, over a minute.
+    pub load: [f64; 2],
+    /// Frames that are drawn before any is timed.
+    pub warm_up: u32,
+    /// Timed frames of each choice, interleaved with those of the others in random order.
+    pub repeats: u32,
+    /// Whether it is the short run.
+    pub quick: bool,
+    /// Whether the program was optimized; one that is not takes longer about every frame.
+    pub optimized: bool,
+    /// In the order of their list.
+    pub techniques: Vec<TechniqueRecord>,
+}
+
+/// A choice of the frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TechniqueRecord {
+    /// Its name.
+    pub name: String,
+    /// What is approximated.
+    pub what: String,
+    /// What is taken for the truth.
+    pub truth: String,
+    /// Unit of errors.
+    pub unit: String,
+    /// In the order of their list.
+    pub choices: Vec<ChoiceRecord>,
+}
+
+/// An option.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ChoiceRecord {
+    /// Its name.
+    pub name: String,
+    /// The error, in the technique's unit.
+    pub error: f64,
+    /// Mean of the signed error.
+    pub bias: Option<f64>,
+    /// Deviation of what should be the same.
+    pub noise: Option<f64>,
+    /// Standard error of the truth.
+    pub truth_error: f64,
+    /// What else a picture's difference comes to.
+    pub picture: Option<PictureRecord>,
+    /// Time of a whole frame.
+    pub ms: Option<Times>,
+    /// Arithmetic, transcendental, texture and conversion operations of the shader's function.
+    pub operations: Option<[u32; 4]>,
+    /// Presets that have it.
+    pub presets: Vec<String>,
+}
+
+/// A picture against the truth.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PictureRecord {
+    /// The largest difference of a channel, in codes.
+    pub worst: f64,
+    /// What a thousandth of the channels exceeds, in codes.
+    pub p999: f64,
+    /// Peak signal-to-noise ratio in dB; none for equal pictures.
+    pub psnr_db: Option<f64>,
+    /// Mean FLIP.
+    pub flip: f64,
+    /// Mean of squares over (truth² + 0.01), of linear light.
+    pub relative_mse: f64,
+}
+
+impl ChoiceRecord {
+    /// Whether the truth is not known well enough to say so: the error is below three of its standard errors.
+    pub fn is_void(&self) -> bool {
+        self.truth_error > 0.0 && self.error < 3.0 * self.truth_error
+    }
+}
+
+impl TechniqueRecord {
+    /// For each choice whether no other beats it: in time where all are timed, else in operations, else by error alone.
+    pub fn front(&self) -> Vec<bool> {
+        let timed = self.choices.iter().all(|choice| choice.ms.is_some());
+        let point = |choice: &ChoiceRecord| {
+            let operations = choice.operations.map_or(0.0, |parts| f64::from(parts.iter().sum::<u32>()));
+            [choice.ms.filter(|_| timed).map_or(operations, |ms| ms.median), choice.error]
+        };
+        undominated(&self.choices.iter().map(point).collect::<Vec<_>>())
+    }
+}
+
+impl Record {
+    /// Reads one.
+    ///
+    /// # Errors
+    /// With the file's name, when it is missing, no such record, or of another version.
+    pub fn read(path: &Path) -> Result<Self, Box<dyn Error>> {
+        let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let record: Self = serde_json::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
+        if record.schema != SCHEMA || record.version != VERSION {
+            let Self { schema, version, .. } = &record;
+            return Err(format!(
+                "{}: it is {schema} of version {version}, and {SCHEMA} of version {VERSION} is read; measure anew",
+                path.display()
+            )
+            .into());
+        }
+        Ok(record)
+    }
+
+    /// As a file, a line each number of lines long that a person can read.
+    ///
+    /// # Errors
+    /// When a number is none, which JSON has no word for.
+    pub fn json(&self) -> Result<String, serde_json::Error> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+}

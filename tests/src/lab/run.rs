@@ -1,0 +1,101 @@
+//! Measuring techniques into a record.
+
+use super::html::strip;
+use super::record::{ChoiceRecord, TechniqueRecord};
+use super::studio::{Ready, Studio, compared, times};
+use super::technique::{Choice, Measured, Outcome, Subject, Technique};
+use crate::reference::picture::Picture;
+use framegraph_passes::Preset;
+use framegraph_shaders::reference::cases;
+use framegraph_shaders::reflect::Operations;
+use std::path::Path;
+
+/// Frames that are drawn of each choice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Repeats {
+    /// Before any is timed.
+    pub warm_up: u32,
+    /// Timed.
+    pub timed: u32,
+}
+
+impl Repeats {
+    /// The short run's.
+    pub const QUICK: Self = Self { warm_up: 2, timed: 9 };
+    /// The long run's.
+    pub const FULL: Self = Self { warm_up: 10, timed: 31 };
+}
+
+/// Measures a technique; pictures go into `pictures`, a file a choice.
+///
+/// # Errors
+/// What the device refuses, in its words; that a picture cannot be written.
+pub fn measure(
+    studio: &Studio<'_>,
+    technique: &Technique,
+    repeats: Repeats,
+    pictures: &Path,
+) -> Outcome<TechniqueRecord> {
+    let truth = technique.picture.as_ref().map(|truth| studio.truth(truth)).transpose()?;
+    let mut choices = Vec::new();
+    let (mut timed, mut ready) = (Vec::new(), Vec::new());
+    for (index, choice) in technique.choices.iter().enumerate() {
+        if let Some(setup) = &choice.setup {
+            timed.push(index);
+            ready.push(studio.prepare(setup, studio.size_px)?);
+        }
+        let drawn = ready.last_mut().filter(|_| choice.setup.is_some());
+        let mut record = judged(studio, technique, choice, drawn, truth.as_ref(), pictures)?;
+        record.operations = operations(choice);
+        let presets = Preset::ALL.into_iter().filter(|preset| (choice.is_in)(&preset.frame()));
+        record.presets = presets.map(|preset| preset.name().to_owned()).collect();
+        choices.push(record);
+        program::interrupt::check()?;
+    }
+    for (index, times) in timed.into_iter().zip(times(studio.gpu, &mut ready, repeats.warm_up, repeats.timed)?) {
+        choices[index].ms = Some(times);
+    }
+    let Technique { name, what, truth, unit, .. } = technique;
+    Ok(TechniqueRecord { name: name.clone(), what: what.clone(), truth: truth.clone(), unit: unit.clone(), choices })
+}
+
+fn judged(
+    studio: &Studio<'_>,
+    technique: &Technique,
+    choice: &Choice,
+    drawn: Option<&mut Ready>,
+    truth: Option<&(Picture, f64)>,
+    pictures: &Path,
+) -> Outcome<ChoiceRecord> {
+    let (measured, picture) = match &choice.subject {
+        Subject::Formula(measure) => (measure(studio.gpu)?, None),
+        Subject::Picture => {
+            let (truth, truth_error) = truth.ok_or("a picture with nothing to compare it with")?;
+            let ours = drawn.ok_or("a picture of no frame")?.picture(studio.gpu)?;
+            let (error, bias, picture) = compared(&ours, truth)?;
+            let file = pictures.join(format!("{}.{}.png", technique.name, file_name(&choice.name)));
+            std::fs::write(&file, strip(&ours, truth)?).map_err(|e| format!("{}: {e}", file.display()))?;
+            let truth_error = *truth_error;
+            (Measured { error, bias: Some(bias), noise: None, truth_error }, Some(picture))
+        }
+    };
+    let Measured { error, bias, noise, truth_error } = measured;
+    if !error.is_finite() {
+        return Err(format!("{}, {}: the error is {error}", technique.name, choice.name).into());
+    }
+    let name = choice.name.clone();
+    Ok(ChoiceRecord { name, error, bias, noise, truth_error, picture, ms: None, operations: None, presets: Vec::new() })
+}
+
+/// A choice's name as a part of a file's.
+pub fn file_name(choice: &str) -> String {
+    choice.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect()
+}
+
+fn operations(choice: &Choice) -> Option<[u32; 4]> {
+    let (function, in_half) = choice.function?;
+    let known = |case: &cases::Case| case.function == function;
+    let case = if in_half { cases::half().find(known)? } else { *cases::all().find(|case| known(case))? };
+    let found = Operations::of(&case.shader().ok()?.wgsl, function)?;
+    Some([found.arithmetic, found.transcendental, found.texture, found.conversion])
+}

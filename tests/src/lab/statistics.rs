@@ -1,0 +1,94 @@
+//! Times as numbers that say how sure they are, and which choices nothing beats.
+
+use serde::{Deserialize, Serialize};
+
+/// A frame's time over interleaved repeats, in ms.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Times {
+    /// The least.
+    pub min: f64,
+    /// A quarter is below.
+    pub p25: f64,
+    /// Half is below.
+    pub median: f64,
+    /// Where the median lies in 95 of 100 samples drawn from the repeats: low end.
+    pub low: f64,
+    /// And high end.
+    pub high: f64,
+}
+
+/// Samples drawn for an interval.
+const DRAWS: usize = 1000;
+
+impl Times {
+    /// Of at least one measurement.
+    pub fn of(measured: &[f64]) -> Self {
+        let sorted = sorted(measured.to_vec());
+        let mut state = 0x2545_f491_4f6c_dd1d_u64;
+        let mut index = |count: usize| {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state % count as u64) as usize
+        };
+        let mut draw = || {
+            let sample = (0..sorted.len()).map(|_| sorted[index(sorted.len())]).collect();
+            quantile(&self::sorted(sample), 0.5)
+        };
+        let medians = self::sorted((0..DRAWS).map(|_| draw()).collect());
+        Self {
+            min: sorted[0],
+            p25: quantile(&sorted, 0.25),
+            median: quantile(&sorted, 0.5),
+            low: quantile(&medians, 0.025),
+            high: quantile(&medians, 0.975),
+        }
+    }
+
+    /// Whether the intervals are apart; where they are not, neither is known to be the faster.
+    pub fn differs_from(&self, other: &Self) -> bool {
+        self.low > other.high || other.low > self.high
+    }
+}
+
+fn sorted(mut values: Vec<f64>) -> Vec<f64> {
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+/// Of sorted values, by the nearest rank.
+pub fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let at = (share * sorted.len() as f64).ceil() as usize;
+    sorted[at.clamp(1, sorted.len()) - 1]
+}
+
+/// Which of these (cost, error) no other beats in one without losing in the other.
+pub fn undominated(points: &[[f64; 2]]) -> Vec<bool> {
+    let beats = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
+    points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_hold_the_median_and_tell_times_apart() {
+        let slow: Vec<f64> = (0..31).map(|i| 10.0 + f64::from(i % 7) * 0.1).collect();
+        let fast: Vec<f64> = slow.iter().map(|t| t - 1.0).collect();
+        let [slow, fast] = [slow, fast].map(|times| Times::of(&times));
+        assert!(slow.min <= slow.p25 && slow.low <= slow.median && slow.median <= slow.high);
+        assert!(slow.differs_from(&fast) && !slow.differs_from(&slow));
+        let noisy = Times::of(&(0..31).map(|i| 5.0 + f64::from(i * 11 % 31)).collect::<Vec<_>>());
+        assert!(!slow.differs_from(&noisy), "{noisy:?}");
+        assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.25), 1.0);
+    }
+
+    #[test]
+    fn what_is_beaten_is_dominated_and_equals_are_not() {
+        assert_eq!(
+            undominated(&[[1.0, 5.0], [2.0, 3.0], [2.5, 4.0], [3.0, 3.0], [2.0, 3.0]]),
+            [true, true, false, false, true]
+        );
+    }
+}

@@ -1,0 +1,244 @@
+//! Frames of built-in scenes: their pictures, the pictures they should be, and their times.
+
+use super::statistics::Times;
+use super::technique::Outcome;
+use crate::reference::metrics::Metrics;
+use crate::reference::picture::Picture;
+use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::shading::LightSettings;
+use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::{CameraView, LightSearch, Lighting, Settings, World, standard};
+use framegraph_scene::environment::Sky;
+use framegraph_scene::{Light, Scene, progress};
+use framegraph_shaders::reference::srgb::{linear_from_srgb_channel, srgb_from_linear_channel};
+use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use glam::Vec3;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use super::record::PictureRecord;
+
+/// A frame to be drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setup {
+    /// A built-in scene.
+    pub scene: &'static str,
+    /// Exposure value at ISO 100.
+    pub ev100: f32,
+    /// The frame.
+    pub settings: Settings,
+    /// What light from all around is made with.
+    pub light: LightSettings,
+    /// How shading finds lights.
+    pub lights: LightSearch,
+    /// A sun in place of the scene's lights: where it stands, and its angular radius in radians.
+    pub sun: Option<(Vec3, f32)>,
+}
+
+/// What a picture is compared with.
+#[derive(Clone, Copy, Debug)]
+pub enum Truth {
+    /// Another frame.
+    Frame(Setup),
+    /// The frame at so many times the width and height, averaged as light after its tone curve.
+    Supersampled(Setup, u32),
+    /// The mean of so many frames, each with a sharp sun at another place of the disc.
+    Suns(Setup, u32),
+}
+
+/// What frames are drawn with.
+#[derive(Debug)]
+pub struct Studio<'a> {
+    /// The device.
+    pub gpu: &'a Gpu,
+    /// Of pictures, in pixels.
+    pub size_px: [u32; 2],
+    /// Where light that was made is kept.
+    pub light: PathBuf,
+}
+
+/// A frame that is ready to be drawn again and again.
+#[derive(Debug)]
+pub struct Ready {
+    world: World,
+    frame: Frame<World>,
+    plan: Plan,
+    executor: Executor,
+    output: framegraph::Texture,
+    size_px: [u32; 2],
+}
+
+impl Studio<'_> {
+    /// Makes everything that a setup needs.
+    ///
+    /// # Errors
+    /// When the scene is none, or the device refuses.
+    pub fn prepare(&self, setup: &Setup, size_px: [u32; 2]) -> Outcome<Ready> {
+        let mut scene = Scene::open(setup.scene, &mut progress::silent)?;
+        if let Some((toward, _)) = setup.sun {
+            scene.lights = vec![Light::directional("sun", -toward, 60_000.0)];
+        }
+        let environment = Sky::default().environment(128)?;
+        let cache = Cache::at(self.light.clone());
+        let lighting = Lighting::new(self.gpu, &environment, &setup.light, &cache, &mut progress::silent)?;
+        let moment = ViewSettings {
+            camera: scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
+            size_px,
+            ev100: setup.ev100,
+            environment_intensity: if setup.sun.is_some() { 0.3 } else { 1.0 },
+            shadows: setup.settings.shadows,
+            lights: setup.lights,
+        };
+        let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
+        let world = World::new(self.gpu, &scene, lighting, [view], &mut progress::silent)?;
+        let mut frame = Frame::new();
+        let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
+        let io = standard(&mut frame, &setup.settings.for_scene(&scene, size_px), Target::from(output))?;
+        frame.graph_mut().readback(io.output)?;
+        let mut plan = Plan::new();
+        let options = Options::for_frame(size_px[0], size_px[1]);
+        compile(frame.graph(), &self.gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
+        Ok(Ready { world, frame, plan, executor: Executor::new(self.gpu), output: io.output, size_px })
+    }
+
+    /// The picture of a setup.
+    ///
+    /// # Errors
+    /// As [`Self::prepare`].
+    pub fn picture(&self, setup: &Setup) -> Outcome<Picture> {
+        self.prepare(setup, self.size_px)?.picture(self.gpu)
+    }
+
+    /// The picture that others are compared with, and its standard error in codes: the difference of its two halves over two.
+    ///
+    /// # Errors
+    /// As [`Self::prepare`].
+    pub fn truth(&self, truth: &Truth) -> Outcome<(Picture, f64)> {
+        let [width, height] = self.size_px;
+        match truth {
+            Truth::Frame(setup) => Ok((self.picture(setup)?, 0.0)),
+            Truth::Supersampled(setup, times) => {
+                let large = self.prepare(setup, [width * times, height * times])?.picture(self.gpu)?;
+                let mean = |own: fn(u32, u32) -> bool| {
+                    let of = |i: u32| {
+                        let (x0, y0) = (i % width * times, i / width * times);
+                        let places = (0..times * times).map(|k| (k % times, k / times)).filter(|(x, y)| own(*x, *y));
+                        mean_of(places.map(|(x, y)| large.linear[((y0 + y) * width * times + x0 + x) as usize]))
+                    };
+                    (0..width * height).map(of).collect::<Vec<_>>()
+                };
+                let halves = [mean(|x, y| (x + y) % 2 == 0), mean(|x, y| (x + y) % 2 == 1)];
+                Ok(self.of_halves(halves))
+            }
+            Truth::Suns(setup, count) => {
+                let (toward, radius) = setup.sun.ok_or("a sun to stand for many")?;
+                let (right, up) = toward.any_orthonormal_pair();
+                let mut halves = [const { Vec::new() }; 2];
+                for index in 0..*count {
+                    let (share, turn) = ((index as f32 + 0.5) / *count as f32, index as f32 * 2.399_963_2);
+                    let aside = (right * turn.cos() + up * turn.sin()) * (radius.tan() * share.sqrt());
+                    let sharp = Setup { sun: Some(((toward + aside).normalize(), 0.0)), ..*setup };
+                    halves[index as usize % 2].push(self.picture(&sharp)?.linear);
+                }
+                let mean = |pictures: Vec<Vec<[f32; 3]>>| {
+                    (0..(width * height) as usize).map(|i| mean_of(pictures.iter().map(|p| p[i]))).collect::<Vec<_>>()
+                };
+                Ok(self.of_halves(halves.map(mean)))
+            }
+        }
+    }
+
+    fn of_halves(&self, [a, b]: [Vec<[f32; 3]>; 2]) -> (Picture, f64) {
+        let whole = a.iter().zip(&b).map(|(a, b)| mean_of([*a, *b].into_iter())).collect();
+        let [a, b, whole] = [a, b, whole].map(|linear| encoded(self.size_px, linear));
+        let apart = codes(&a, &b);
+        (whole, 0.5 * (apart.iter().map(|d| d * d).sum::<f64>() / apart.len() as f64).sqrt())
+    }
+}
+
+/// Times of frames, interleaved: each round draws all of them in another order.
+///
+/// # Errors
+/// What the device refuses.
+pub fn times(gpu: &Gpu, ready: &mut [Ready], warm_up: u32, repeats: u32) -> Outcome<Vec<Times>> {
+    let mut measured = vec![Vec::new(); ready.len()];
+    let mut order: Vec<usize> = (0..ready.len()).collect();
+    let mut state = 0x9e37_79b9_u32;
+    for round in 0..warm_up + repeats {
+        for at in (1..order.len()).rev() {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            order.swap(at, (state >> 8) as usize % (at + 1));
+        }
+        for index in &order {
+            let ms = ready[*index].draw(gpu)?;
+            if round >= warm_up {
+                measured[*index].push(ms);
+            }
+        }
+        program::interrupt::check()?;
+    }
+    Ok(measured.iter().map(|ms| Times::of(ms)).collect())
+}
+
+impl Ready {
+    /// Draws it; how long that took from the call to the device's last step, in ms.
+    fn draw(&mut self, gpu: &Gpu) -> Outcome<f64> {
+        let start = Instant::now();
+        self.executor.execute(&self.plan, &self.frame, &self.world, &Imports::new())?;
+        gpu.wait()?;
+        Ok(1e3 * start.elapsed().as_secs_f64())
+    }
+
+    /// Its picture.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn picture(&mut self, gpu: &Gpu) -> Outcome<Picture> {
+        self.draw(gpu)?;
+        let texture = self.executor.texture(&self.plan, self.output).ok_or("the frame left no picture")?;
+        let codes = read_texture(gpu, texture)?.rgba8();
+        let linear =
+            |pixel: &[u8]| [0, 1, 2].map(|c: usize| linear_from_srgb_channel(f64::from(pixel[c]) / 255.0) as f32);
+        Ok(encoded(self.size_px, codes.chunks_exact(4).map(linear).collect()))
+    }
+}
+
+/// A picture of linear light of a display.
+fn encoded(size_px: [u32; 2], linear: Vec<[f32; 3]>) -> Picture {
+    let encode = |pixel: &[f32; 3]| pixel.map(|c| srgb_from_linear_channel(c.into()) as f32);
+    Picture { size_px, encoded: linear.iter().map(encode).collect(), linear }
+}
+
+fn mean_of(pixels: impl Iterator<Item = [f32; 3]>) -> [f32; 3] {
+    let (sum, count) = pixels.fold(([0.0; 3], 0.0), |(sum, n), p| ([0, 1, 2].map(|c| sum[c] + p[c]), n + 1.0));
+    sum.map(|c| c / count)
+}
+
+/// Differences of all channels, in codes of 255.
+pub fn codes(ours: &Picture, truth: &Picture) -> Vec<f64> {
+    let pixels = ours.encoded.iter().zip(&truth.encoded);
+    pixels.flat_map(|(a, b)| [0, 1, 2].map(|c| 255.0 * (f64::from(a[c]) - f64::from(b[c])))).collect()
+}
+
+/// Root mean square in codes, signed mean in codes, and what else a picture's difference comes to.
+///
+/// # Errors
+/// When the pictures' sizes differ.
+pub fn compared(ours: &Picture, truth: &Picture) -> Outcome<(f64, f64, PictureRecord)> {
+    let metrics = Metrics::of(ours, truth).ok_or("pictures of one size")?;
+    let codes = codes(ours, truth);
+    let count = codes.len() as f64;
+    let mut sizes: Vec<f64> = codes.iter().map(|d| d.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let light = ours.linear.iter().flatten().zip(truth.linear.iter().flatten());
+    let relative = light.map(|(a, b)| f64::from((a - b).powi(2) / (b * b + 0.01))).sum::<f64>() / count;
+    let picture = PictureRecord {
+        worst: sizes[sizes.len() - 1],
+        p999: super::statistics::quantile(&sizes, 0.999),
+        psnr_db: metrics.psnr_db.is_finite().then_some(metrics.psnr_db),
+        flip: metrics.flip,
+        relative_mse: relative,
+    };
+    Ok(((codes.iter().map(|d| d * d).sum::<f64>() / count).sqrt(), codes.iter().sum::<f64>() / count, picture))
+}

@@ -1,0 +1,152 @@
+//! Terms that are formulas against what they stand for.
+
+use super::{Choice, Technique, formula, number};
+use crate::lab::technique::Measured;
+use framegraph_shaders::reference::clear_coat::{f0_under_clear_coat, f0_under_clear_coat_fast, v_kelemen};
+use framegraph_shaders::reference::fresnel::f_schlick_scalar;
+use framegraph_shaders::reference::ggx::{v_smith_ggx_correlated, v_smith_ggx_correlated_fast};
+use framegraph_wgpu::Gpu;
+use glam::DVec3;
+
+pub(super) fn techniques() -> Vec<Technique> {
+    vec![visibility_term(), fresnel(), coat_visibility(), coat_base(), depth_format()]
+}
+
+/// Root mean square, signed mean and so on of numbers.
+fn rms(name: &str, apart: impl Fn() -> Vec<f64> + 'static) -> Choice {
+    number(name, move |_: &Gpu| {
+        let apart = apart();
+        let count = apart.len() as f64;
+        let error = (apart.iter().map(|d| d * d).sum::<f64>() / count).sqrt();
+        Ok(Measured { bias: Some(apart.iter().sum::<f64>() / count), ..Measured::exact(error) })
+    })
+}
+
+/// Cosines toward viewer and light, and alpha: 0.02 … 1 and roughness 0.089 … 1.
+fn angles() -> impl Iterator<Item = [f64; 3]> {
+    let cosine = |i: u32| 0.02 + 0.98 * f64::from(i) / 19.0;
+    let alpha = |i: u32| (0.089 + 0.911 * f64::from(i) / 14.0_f64).powi(2);
+    (0..20 * 20 * 15).map(move |i| [cosine(i % 20), cosine(i / 20 % 20), alpha(i / 400)])
+}
+
+fn visibility_term() -> Technique {
+    let against = |other: fn(f64, f64, f64) -> f64| {
+        move || angles().map(|[v, l, a]| other(v, l, a) / v_smith_ggx_correlated(v, l, a) - 1.0).collect()
+    };
+    fn separable(v: f64, l: f64, a: f64) -> f64 {
+        let g1 = |c: f64| 1.0 / (c + (a * a + (1.0 - a * a) * c * c).sqrt());
+        g1(v) * g1(l)
+    }
+    fn schlick(v: f64, l: f64, a: f64) -> f64 {
+        let g1 = |c: f64| 1.0 / (c * (1.0 - 0.5 * a) + 0.5 * a);
+        0.25 * g1(v) * g1(l)
+    }
+    let choices = vec![
+        rms("height-correlated Smith", against(v_smith_ggx_correlated))
+            .counted("v_smith_ggx_correlated", false)
+            .found_in(|f| f.settings.shading.visibility == framegraph_shaders::reference::dfg::Visibility::Exact),
+        rms("Hammon", against(v_smith_ggx_correlated_fast))
+            .counted("v_smith_ggx_correlated_fast", false)
+            .found_in(|f| f.settings.shading.visibility == framegraph_shaders::reference::dfg::Visibility::Fast),
+        rms("separable Smith", against(separable)),
+        rms("Schlick, k = α/2", against(schlick)),
+    ];
+    let what = "The visibility term as a formula, over cosines 0.02 … 1 and roughness 0.089 … 1: relative error.";
+    formula("visibility-term", what, "the height-correlated Smith term in f64.", "share, RMS", choices)
+}
+
+/// Fresnel's reflectance of a dielectric, unpolarised.
+fn dielectric(cosine: f64, ior: f64) -> f64 {
+    let g = (ior * ior - 1.0 + cosine * cosine).sqrt();
+    let a = ((g - cosine) / (g + cosine)).powi(2);
+    let b = ((cosine * (g + cosine) - 1.0) / (cosine * (g - cosine) + 1.0)).powi(2);
+    0.5 * a * (1.0 + b)
+}
+
+fn fresnel() -> Technique {
+    let over = |reflectance: fn(f64, f64) -> f64| {
+        move || {
+            let pairs = [1.333, 1.5, 1.77, 2.42]
+                .into_iter()
+                .flat_map(|ior| (1..=100).map(move |i| (ior, f64::from(i) / 100.0)));
+            pairs.map(|(ior, cosine)| reflectance(cosine, ior) - dielectric(cosine, ior)).collect()
+        }
+    };
+    let choices = vec![
+        rms("Schlick", over(|cosine, ior| f_schlick_scalar(((ior - 1.0) / (ior + 1.0)).powi(2), 1.0, cosine)))
+            .counted("f_schlick_scalar", false)
+            .found_in(|_| true),
+        rms("none: f0", over(|_, ior| ((ior - 1.0) / (ior + 1.0)).powi(2))),
+    ];
+    let what = "Reflectance by angle, of water, glass, sapphire and diamond.";
+    formula("fresnel", what, "Fresnel's equations for unpolarised light.", "reflectance, RMS", choices)
+}
+
+fn coat_visibility() -> Technique {
+    // At the mirrored direction, where a coat's lobe is: l·h is the cosine of both.
+    let over = |most_roughness: f64| {
+        move || {
+            let grid = (0..20).flat_map(move |r| (1..=20).map(move |c| (r, f64::from(c) / 20.0)));
+            let apart = grid.map(move |(r, cosine)| {
+                let roughness: f64 = 0.089 + (most_roughness - 0.089) * f64::from(r) / 19.0;
+                v_kelemen(cosine) / v_smith_ggx_correlated(cosine, cosine, roughness * roughness) - 1.0
+            });
+            apart.collect()
+        }
+    };
+    let choices = vec![
+        rms("Kelemen, roughness to 0.1", over(0.1)).counted("v_kelemen", false).found_in(|_| true),
+        rms("Kelemen, roughness to 0.3", over(0.3)),
+        rms("Kelemen, roughness to 0.6", over(0.6)),
+    ];
+    let what = "Kelemen's visibility of a clear coat, in the mirrored direction: relative error, for glossy and for rough coats.";
+    formula("coat-visibility", what, "the height-correlated Smith term.", "share, RMS", choices)
+}
+
+fn coat_base() -> Technique {
+    let exact = |f0: f64| {
+        let n = (1.0 + f0.sqrt()) / (1.0 - f0.sqrt());
+        ((n - 1.5) / (n + 1.5)).powi(2)
+    };
+    let over = move |shown: fn(DVec3) -> DVec3| {
+        move || {
+            (0..=95).map(|i| f64::from(i) / 100.0).map(|f0| shown(DVec3::splat(f0)).x - exact(f0)).collect::<Vec<_>>()
+        }
+    };
+    let choices = vec![
+        rms("exact", over(f0_under_clear_coat))
+            .counted("f0_under_clear_coat", false)
+            .found_in(|f| !f.settings.shading.fast_coat),
+        rms("polynomial", over(f0_under_clear_coat_fast))
+            .counted("f0_under_clear_coat_fast", false)
+            .found_in(|f| f.settings.shading.fast_coat),
+        rms("left as in air", over(|f0| f0)),
+    ];
+    let what = "Reflectance of a base under a clear coat of index 1.5, for f0 of 0 … 0.95.";
+    formula("coat-base", what, "Fresnel at the inner face, by indices.", "reflectance, RMS", choices)
+}
+
+fn depth_format() -> Technique {
+    const NEAR_M: f64 = 0.1;
+    const FAR_M: f64 = 1000.0;
+    let over = |stored: fn(f64) -> f64| {
+        move || {
+            let at = (0..400).map(|i| 10.0 + 0.001 * f64::from(i));
+            at.map(|z| stored(z) - z).collect::<Vec<_>>()
+        }
+    };
+    fn standard(z: f64) -> f64 {
+        FAR_M / (FAR_M - NEAR_M) * (1.0 - NEAR_M / z)
+    }
+    fn back(depth: f64) -> f64 {
+        NEAR_M / (1.0 - depth * (FAR_M - NEAR_M) / FAR_M)
+    }
+    let choices = vec![
+        rms("reversed, f32", over(|z| NEAR_M / f64::from((NEAR_M / z) as f32))).found_in(|_| true),
+        rms("standard, f32", over(|z| back(f64::from(standard(z) as f32)))),
+        rms("standard, 24 bits", over(|z| back((standard(z) * 16_777_215.0).round() / 16_777_215.0))),
+        rms("standard, 16 bits", over(|z| back((standard(z) * 65_535.0).round() / 65_535.0))),
+    ];
+    let what = "What depth is stored as: distances about 10 m away, read back, with a near plane of 0.1 m and a far one of 1 km.";
+    formula("depth-format", what, "the distance.", "m, RMS", choices)
+}

@@ -1,0 +1,151 @@
+//! What becomes of radiance: formats, tone curves in tables, codes.
+
+use super::{Technique, base, formula, nowhere, number, pictures};
+use crate::lab::studio::Truth;
+use crate::lab::technique::Measured;
+use crate::measure::grading;
+use framegraph::Format;
+use framegraph_passes::grading::{GradeBy, TableDesc, TableFormat};
+use framegraph_shaders::reference::dither::dither_offset;
+use framegraph_shaders::reference::quantize::{quantize_rg11b10ufloat, quantize_rgba16float};
+use framegraph_shaders::reference::srgb::srgb_from_linear_channel;
+use framegraph_wgpu::Gpu;
+use glam::{DVec2, DVec3};
+
+pub(super) fn techniques(_: &Gpu) -> Vec<Technique> {
+    vec![format(), tone_table(), oetf(), dither(), post_passes()]
+}
+
+/// Colors from nine stops below grey to seven above, each channel by itself.
+fn colors() -> Vec<DVec3> {
+    let golden = |i: u32, by: f64| 0.18 * (16.0 * (f64::from(i) * by).fract() - 9.0).exp2();
+    (0..4096).map(|i| DVec3::new(golden(i, 0.819_172_5), golden(i, 0.671_043_6), golden(i, 0.549_700_5))).collect()
+}
+
+fn format() -> Technique {
+    let choice = |name: &str, format: Format, kept: fn(DVec3) -> DVec3| {
+        let measure = move |_: &Gpu| {
+            let luminance = |c: DVec3| c.dot(DVec3::new(0.2126, 0.7152, 0.0722));
+            let apart: Vec<f64> = colors().iter().map(|c| luminance(kept(*c)) / luminance(*c) - 1.0).collect();
+            let count = apart.len() as f64;
+            let error = (apart.iter().map(|d| d * d).sum::<f64>() / count).sqrt();
+            Ok(Measured { bias: Some(apart.iter().sum::<f64>() / count), ..Measured::exact(error) })
+        };
+        let mut setup = base("spheres");
+        setup.settings.hdr_format = format;
+        // A pass of its own reads what was stored.
+        setup.settings.split_post = true;
+        number(name, measure).timed(setup)
+    };
+    let choices = vec![
+        choice("Rgba16Float", Format::Rgba16Float, |c| quantize_rgba16float(c.extend(1.0), false).truncate())
+            .found_in(|f| f.settings.hdr_format == Format::Rgba16Float),
+        choice("Rg11b10Ufloat, rounded", Format::Rg11b10Ufloat, |c| quantize_rg11b10ufloat(c, false).truncate())
+            .found_in(|f| f.settings.hdr_format == Format::Rg11b10Ufloat),
+        choice("Rg11b10Ufloat, truncated", Format::Rg11b10Ufloat, |c| quantize_rg11b10ufloat(c, true).truncate()),
+    ];
+    let what =
+        "What radiance is stored in between shading and grading: relative error of luminance, over sixteen stops.";
+    formula("radiance-format", what, "the number that is stored.", "share, RMS", choices)
+}
+
+fn tone_table() -> Technique {
+    let aces = grading::looks()[1].1;
+    let mut direct = base("spheres");
+    direct.settings.post.look = aces;
+    let of = move |name: &str, desc: TableDesc| {
+        let mut setup = direct;
+        setup.settings.post.by = GradeBy::Table(desc);
+        number(name, move |_: &Gpu| Ok(Measured::exact(grading::error("aces", &aces, desc)?.rms))).timed(setup)
+    };
+    let half = |entries| TableDesc { entries, format: TableFormat::Half };
+    let choices = vec![
+        number("computed", |_: &Gpu| Ok(Measured::exact(0.0)))
+            .timed(direct)
+            .found_in(|f| f.settings.post.by == GradeBy::Direct),
+        of("16³, half floats", half(16)),
+        of("32³, half floats", half(32)),
+        of("64³, half floats", half(64)),
+    ];
+    let what = "The ACES curve in a table over logarithmic coordinates: root mean square over random colors.";
+    formula("tone-table", what, "the curve itself.", "codes, RMS", choices)
+}
+
+fn oetf() -> Technique {
+    let choice = |name: &str, curve: fn(f64) -> f64| {
+        number(name, move |_: &Gpu| {
+            let apart =
+                (0..=4096).map(|i| f64::from(i) / 4096.0).map(|x| 255.0 * (curve(x) - srgb_from_linear_channel(x)));
+            Ok(Measured::exact(apart.map(f64::abs).fold(0.0, f64::max)))
+        })
+    };
+    let three_roots = |x: f64| {
+        let s1 = x.sqrt();
+        let s2 = s1.sqrt();
+        0.585_122_381 * s1 + 0.783_140_355 * s2 - 0.368_262_736 * s2.sqrt()
+    };
+    let choices = vec![
+        choice("piecewise", srgb_from_linear_channel).counted("srgb_from_linear_channel", false),
+        choice("three roots", three_roots),
+        choice("x^(1/2.2)", |x| x.powf(1.0 / 2.2)),
+        choice("√x", f64::sqrt),
+    ];
+    formula(
+        "transfer",
+        "The display's transfer function: its largest error.",
+        "sRGB, IEC 61966-2-1.",
+        "codes, largest",
+        choices,
+    )
+}
+
+fn dither() -> Technique {
+    const SIDE: usize = 128;
+    let choice = |name: &str, offset: fn(usize, usize) -> f64| {
+        number(name, move |_: &Gpu| {
+            // A ramp of four codes, rounded, and what is left of the difference after a blur.
+            let ramp = |x: usize| 100.0 + 4.0 * (x as f64 + 0.5) / SIDE as f64;
+            let apart = |x: usize, y: usize| (ramp(x) + offset(x, y)).round() - ramp(x);
+            let weight = |d: i32| (-f64::from(d * d) / 8.0).exp();
+            let total: f64 = (-6..=6).map(weight).sum::<f64>().powi(2);
+            let mut squares = 0.0;
+            let inner = 6..SIDE - 6;
+            for y in inner.clone() {
+                for x in inner.clone() {
+                    let taps = (0..169).map(|i| (i % 13 - 6, i / 13 - 6));
+                    let at = |a: usize, d: i32| (a as i32 + d) as usize;
+                    let sum: f64 = taps.map(|(dx, dy)| weight(dx) * weight(dy) * apart(at(x, dx), at(y, dy))).sum();
+                    squares += (sum / total).powi(2);
+                }
+            }
+            Ok(Measured::exact((squares / (inner.len() * inner.len()) as f64).sqrt()))
+        })
+    };
+    let [mut on, off] = [base("spheres"); 2];
+    on.settings.post.dither = 1.0;
+    let choices = vec![
+        choice("none", |_, _| 0.0).timed(off).found_in(|f| f.settings.post.dither == 0.0),
+        choice("interleaved gradient noise", |x, y| {
+            255.0 * dither_offset(DVec2::new(x as f64, y as f64) + 0.5, 0, 255.0)
+        })
+        .timed(on)
+        .counted("dither_offset", false)
+        .found_in(|f| f.settings.post.dither > 0.0),
+    ];
+    let what = "Noise against bands: a ramp of four codes, rounded and blurred by σ = 2 pixels, root mean square.";
+    formula("dither", what, "the ramp.", "codes, RMS", choices)
+}
+
+fn post_passes() -> Technique {
+    let one = base("spheres");
+    pictures(
+        "post-passes",
+        "Post-processing in the color pass's shader, or a pass an effect with radiance stored in between.",
+        ("all of it in the color pass, which stores no radiance.", Truth::Frame(one)),
+        one,
+        &[
+            ("in the color pass", |_| (), |f| !f.settings.split_post),
+            ("a pass an effect", |s| s.settings.split_post = true, nowhere),
+        ],
+    )
+}

@@ -1,0 +1,279 @@
+//! What is made of the picture's depth, and shadows.
+
+use super::{Choice, Technique, base, formula, nowhere, number, pictures};
+use crate::lab::studio::{Setup, Truth};
+use crate::lab::technique::Measured;
+use crate::measure::occlusion::{column, corner_columns, corner_error, corner_stage, mean_and_deviation};
+use crate::truth::occlusion as truth;
+use framegraph_passes::occlusion::{Gtao, Method, OcclusionSettings};
+use framegraph_passes::punctual::FroxelSettings;
+use framegraph_passes::shadow::{ShadowFilter, ShadowSettings, Splits};
+use framegraph_passes::structure::Resolution;
+use framegraph_passes::{FrameSettings, LightSearch, Precision};
+use framegraph_wgpu::Gpu;
+use glam::Vec3;
+
+/// How far occluders count, in m.
+const RADIUS_M: f64 = 0.3;
+
+pub(super) fn techniques() -> Vec<Technique> {
+    vec![
+        taps(),
+        method(),
+        resolution(),
+        bounces(),
+        glass_layers(),
+        shadow_filter(),
+        shadow_cascades(),
+        shadow_size(),
+        antialiasing(),
+        light_search(),
+    ]
+}
+
+fn taps_of(f: &FrameSettings) -> Option<u32> {
+    match f.settings.occlusion?.method {
+        Method::Sao { taps, .. } => Some(taps),
+        Method::Gtao(_) => None,
+    }
+}
+
+/// Visibility of a corner, against its formula: root mean square, signed mean, and deviation along the edge.
+fn corner(name: &str, settings: OcclusionSettings) -> Choice {
+    let measure = move |gpu: &Gpu| {
+        let stage = corner_stage(128)?;
+        let seen = stage.visibility(gpu, &settings, Precision::Full)?;
+        let columns = corner_columns(&stage, RADIUS_M);
+        let of = |x: u32| mean_and_deviation(&column(&stage, &seen, x));
+        let count = columns.len() as f64;
+        let bias = columns.iter().map(|(x, d)| of(*x)[0] - truth::corner(*d, RADIUS_M)).sum::<f64>() / count;
+        let noise = (columns.iter().map(|(x, _)| of(*x)[1].powi(2)).sum::<f64>() / count).sqrt();
+        let error = corner_error(&stage, &seen, RADIUS_M);
+        Ok(Measured { error, bias: Some(bias), noise: Some(noise), truth_error: 0.0 })
+    };
+    let mut setup = base("columns");
+    setup.settings.occlusion = Some(settings);
+    number(name, measure).timed(setup)
+}
+
+fn taps() -> Technique {
+    let choice = |taps, turns| {
+        let settings = OcclusionSettings { method: Method::Sao { taps, turns }, blur: None, ..OcclusionSettings::SAO };
+        corner(&format!("{taps} taps, {turns} turns"), settings)
+    };
+    let choices = vec![
+        choice(3, 1),
+        choice(5, 2),
+        choice(7, 5).found_in(|f| taps_of(f) == Some(7)),
+        choice(11, 6).found_in(|f| taps_of(f) == Some(11)),
+        choice(16, 7).found_in(|f| taps_of(f) == Some(16)),
+        choice(32, 13),
+    ];
+    let what = "Taps of scalable ambient obscurance, before any blur, in the corner of two walls: root mean square of \
+                visibility; its bias is the method's, its noise the taps'.";
+    formula("ao-taps", what, "the corner's closed form, for rays of 0.3 m.", "visibility, RMS", choices)
+}
+
+fn method() -> Technique {
+    let gtao = |slices, steps| {
+        let gtao = Gtao { slices, steps, ..Gtao::DEFAULT };
+        OcclusionSettings { method: Method::Gtao(gtao), ..OcclusionSettings::GTAO }
+    };
+    let mut off = base("columns");
+    off.settings.occlusion = None;
+    let none = number("none", |_: &Gpu| {
+        let stage = corner_stage(128)?;
+        let open = vec![1.0; (stage.size_px[0] * stage.size_px[1]) as usize];
+        Ok(Measured::exact(corner_error(&stage, &open, RADIUS_M)))
+    });
+    let choices = vec![
+        none.timed(off).found_in(|f| f.settings.occlusion.is_none()),
+        corner("SAO", OcclusionSettings::SAO)
+            .found_in(|f| f.settings.occlusion.is_some_and(|o| o.method == OcclusionSettings::SAO.method)),
+        corner("GTAO, 2 slices of 6 steps", gtao(2, 6))
+            .found_in(|f| f.settings.occlusion.is_some_and(|o| o.method == OcclusionSettings::GTAO.method)),
+        corner("GTAO, 4 slices of 8 steps", gtao(4, 8)),
+    ];
+    let what = "How ambient occlusion is estimated, each with its blur, in the corner of two walls: root mean square of \
+                visibility.";
+    formula("ao-method", what, "the corner's closed form, for rays of 0.3 m.", "visibility, RMS", choices)
+}
+
+fn resolution() -> Technique {
+    let mut full = base("columns");
+    full.settings.occlusion = Some(OcclusionSettings::SAO);
+    pictures(
+        "ao-resolution",
+        "The size of ambient occlusion against the picture's.",
+        ("the same ambient occlusion at full size.", Truth::Frame(full)),
+        full,
+        &[
+            ("full", |_| (), |f| f.settings.occlusion.is_some_and(|o| o.resolution == Resolution::Full)),
+            (
+                "half",
+                |s| {
+                    let half = OcclusionSettings { resolution: Resolution::Half, ..OcclusionSettings::SAO };
+                    s.settings.occlusion = Some(half);
+                },
+                |f| f.settings.occlusion.is_some_and(|o| o.resolution == Resolution::Half),
+            ),
+        ],
+    )
+}
+
+fn bounces() -> Technique {
+    use framegraph_shaders::reference::occlusion::gtao_multi_bounce;
+    let choice = |name: &str, shown: fn(f64, f64) -> f64| {
+        number(name, move |_: &Gpu| {
+            let grid = (1..=20).flat_map(|v| (0..=18).map(move |p| (f64::from(v) / 20.0, f64::from(p) / 20.0)));
+            let apart: Vec<f64> = grid.map(|(v, p)| shown(v, p) - v / (1.0 - p * (1.0 - v))).collect();
+            let count = apart.len() as f64;
+            let error = (apart.iter().map(|d| d * d).sum::<f64>() / count).sqrt();
+            Ok(Measured { bias: Some(apart.iter().sum::<f64>() / count), ..Measured::exact(error) })
+        })
+    };
+    let choices = vec![
+        choice("none", |v, _| v).found_in(|f| !f.settings.shading.multi_bounce),
+        choice("polynomial", |v, p| gtao_multi_bounce(v, glam::DVec3::splat(p)).x)
+            .counted("gtao_multi_bounce", false)
+            .found_in(|f| f.settings.shading.multi_bounce),
+    ];
+    let what =
+        "Light that reaches an occluded place after several bounces, over visibility 0.05 … 1 and albedo 0 … 0.9.";
+    formula("ao-bounces", what, "a spherical cavity, V / (1 − ρ (1 − V)).", "visibility, RMS", choices)
+}
+
+fn glass_layers() -> Technique {
+    let mut truth = base("glass");
+    truth.settings.glass_layers = 4;
+    pictures(
+        "glass-layers",
+        "Layers of glass that is seen through glass.",
+        ("four layers, the most that the frame takes.", Truth::Frame(truth)),
+        truth,
+        &[
+            ("1", |s| s.settings.glass_layers = 1, |f| f.settings.glass_layers == 1),
+            ("2", |s| s.settings.glass_layers = 2, nowhere),
+            ("3", |s| s.settings.glass_layers = 3, |f| f.settings.glass_layers == 3),
+        ],
+    )
+}
+
+/// Columns under a sun of 2° across, in one map.
+fn sunlit() -> Setup {
+    let mut setup = base("columns");
+    setup.sun = Some((Vec3::new(0.5, 0.7, 0.5).normalize(), 0.0175));
+    setup.settings.shadows =
+        Some(ShadowSettings { cascades: 2, splits: Splits::Practical(0.8), ..ShadowSettings::texels(1024) });
+    setup.settings.shading.micro_shadows = false;
+    setup
+}
+
+fn shadows(setup: &mut Setup) -> &mut ShadowSettings {
+    setup.settings.shadows.get_or_insert(ShadowSettings::DEFAULT)
+}
+
+/// Sharp shadows of a fine map, of many suns.
+fn suns() -> (&'static str, Truth) {
+    let mut setup = sunlit();
+    *shadows(&mut setup) =
+        ShadowSettings { cascades: 4, splits: Splits::Practical(0.8), ..ShadowSettings::texels(2048) };
+    (
+        "the mean of 32 frames, each with a sharp sun elsewhere on the disc, in four maps of 2048² texels.",
+        Truth::Suns(setup, 32),
+    )
+}
+
+fn shadow_filter() -> Technique {
+    pictures(
+        "shadow-filter",
+        "How the sun's shadow map is read, under a sun of 2° across.",
+        suns(),
+        sunlit(),
+        &[
+            ("no shadows", |s| s.settings.shadows = None, |f| f.settings.shadows.is_none()),
+            (
+                "PCF",
+                |s| shadows(s).filter = ShadowFilter::Pcf,
+                |f| f.settings.shadows.is_some_and(|s| s.filter == ShadowFilter::Pcf),
+            ),
+            ("DPCF", |s| shadows(s).filter = ShadowFilter::Dpcf, nowhere),
+            (
+                "PCSS",
+                |s| shadows(s).filter = ShadowFilter::Pcss,
+                |f| f.settings.shadows.is_some_and(|s| s.filter == ShadowFilter::Pcss),
+            ),
+            ("VSM", |s| shadows(s).filter = ShadowFilter::Vsm, nowhere),
+            ("EVSM", |s| shadows(s).filter = ShadowFilter::Evsm, nowhere),
+        ],
+    )
+}
+
+fn shadow_cascades() -> Technique {
+    pictures(
+        "shadow-cascades",
+        "Maps that the sun's shadows are divided among by distance, of 512² texels, PCF.",
+        suns(),
+        sunlit(),
+        &[
+            ("1", |s| (shadows(s).cascades, shadows(s).map_texels) = (1, 512), |f| cascades(f) == Some(1)),
+            ("2", |s| (shadows(s).cascades, shadows(s).map_texels) = (2, 512), |f| cascades(f) == Some(2)),
+            ("3", |s| (shadows(s).cascades, shadows(s).map_texels) = (3, 512), |f| cascades(f) == Some(3)),
+            ("4", |s| (shadows(s).cascades, shadows(s).map_texels) = (4, 512), |f| cascades(f) == Some(4)),
+        ],
+    )
+}
+
+fn cascades(f: &FrameSettings) -> Option<u8> {
+    f.settings.shadows.map(|s| s.cascades)
+}
+
+fn shadow_size() -> Technique {
+    pictures(
+        "shadow-size",
+        "Texels of each of two maps of the sun, PCF.",
+        suns(),
+        sunlit(),
+        &[
+            ("256²", |s| shadows(s).map_texels = 256, nowhere),
+            ("512²", |s| shadows(s).map_texels = 512, nowhere),
+            ("1024²", |s| shadows(s).map_texels = 1024, |f| f.settings.shadows.is_some_and(|s| s.map_texels == 1024)),
+            ("2048²", |s| shadows(s).map_texels = 2048, |f| f.settings.shadows.is_some_and(|s| s.map_texels == 2048)),
+        ],
+    )
+}
+
+fn antialiasing() -> Technique {
+    let one = base("columns");
+    pictures(
+        "antialiasing",
+        "Edges: samples a pixel, the edge filter, both.",
+        ("eight by eight times the pixels, averaged as light of the display.", Truth::Supersampled(one, 8)),
+        one,
+        &[
+            ("none", |_| (), |f| f.settings.samples == 1 && !f.settings.fxaa),
+            ("FXAA", |s| s.settings.fxaa = true, |f| f.settings.samples == 1 && f.settings.fxaa),
+            ("4 samples", |s| s.settings.samples = 4, |f| f.settings.samples == 4),
+            ("4 samples, FXAA", |s| (s.settings.samples, s.settings.fxaa) = (4, true), nowhere),
+        ],
+    )
+}
+
+fn light_search() -> Technique {
+    let mut all = base("lamps");
+    (all.lights, all.ev100) = (LightSearch::All, 8.0);
+    pictures(
+        "light-search",
+        "How shading finds the lamps that reach a place.",
+        ("every lamp looked at everywhere.", Truth::Frame(all)),
+        all,
+        &[
+            ("all", |_| (), |f| f.lights == LightSearch::All),
+            (
+                "by froxels",
+                |s| s.lights = LightSearch::Froxels(FroxelSettings::DEFAULT),
+                |f| f.lights != LightSearch::All,
+            ),
+        ],
+    )
+}

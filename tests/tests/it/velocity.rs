@@ -1,0 +1,208 @@
+//! Velocity of what moves: what it costs, where it says that surfaces were, and what sums over time gain by it.
+
+use crate::stage::{self, gpu, lighting};
+use framegraph::{Caps, Counts, Options, Plan, Scratch, Target, Texture, compile};
+use framegraph_passes::stages::{Handles, Slot};
+use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::{CameraView, LightSearch, Settings, Shading, TaaSettings, ViewId, World, stages};
+use framegraph_scene::geometry::{plane, sphere};
+use framegraph_scene::{Camera, Environment, Material, Projection, Scene, progress};
+use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
+use std::error::Error;
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+const MOVING: Settings =
+    Settings { taa: Some(TaaSettings::DEFAULT), moving: true, shadows: None, fxaa: false, ..Settings::DEFAULT };
+
+/// Between prepass and color pass, velocity shares their step: one clear and one store more, no load and no step; of four samples
+/// each is cleared and thrown away after the average, which is stored. A frame in which nothing moves has none of it.
+#[test]
+fn velocity_costs_one_store() {
+    let counts = |settings: Settings| stage::plan(&settings, &Caps::wgpu(), &Options::for_frame(1280, 720)).counts();
+    for samples in [1, 4] {
+        let still = counts(Settings { samples, moving: false, ..MOVING });
+        let more = u32::from(samples > 1);
+        let expected = Counts {
+            resolves: still.resolves + 1,
+            clears: still.clears + 1,
+            discards: still.discards + more,
+            multisample_resolves: still.multisample_resolves + more,
+            memoryless: still.memoryless + more,
+            passes: still.passes + 1,
+            ..still
+        };
+        assert_eq!(counts(Settings { samples, ..MOVING }), expected, "{samples} samples");
+    }
+    let without = Settings { taa: None, ..MOVING };
+    assert_eq!(counts(without), counts(Settings { moving: false, ..without }), "nothing reads it");
+}
+
+const RADIUS_M: f64 = 0.6;
+
+/// A ball over a floor, and where the ball and the eye are in a frame.
+fn moment(frame: f64) -> (DVec3, DVec3) {
+    (DVec3::new(-0.9 + 0.12 * frame, 0.7, 0.1 * frame), DVec3::new(0.02 * frame, 1.0, 4.0))
+}
+
+fn camera(frame: f64) -> Result<Camera, Box<dyn Error>> {
+    let eye = moment(frame).1;
+    Ok(Camera::look_at(eye, eye - DVec3::new(0.0, 0.1, 1.0), DVec3::Y, Projection::perspective(0.8, 0.1))?)
+}
+
+/// Frames of the moving ball, one after another.
+struct Film<'g> {
+    gpu: &'g Gpu,
+    scene: Scene,
+    world: Option<World>,
+    executor: Executor,
+    size_px: [u32; 2],
+}
+
+impl<'g> Film<'g> {
+    fn new(gpu: &'g Gpu, size_px: [u32; 2]) -> Self {
+        let mut scene = Scene::default();
+        let red = scene.add_material(Material::dielectric("red", Vec3::new(0.7, 0.1, 0.05), 1.0));
+        let grey = scene.add_material(Material::dielectric("grey", Vec3::splat(0.3), 1.0));
+        let ball = scene.add_mesh(sphere(RADIUS_M as f32, 128, 64));
+        let floor = scene.add_mesh(plane(Vec2::splat(4.0), 1, Vec2::ONE));
+        scene.add_instance("ball", ball, red, DMat4::IDENTITY);
+        scene.add_instance("floor", floor, grey, DMat4::IDENTITY);
+        Self { gpu, scene, world: None, executor: Executor::new(gpu), size_px }
+    }
+
+    /// One more frame; what is in the texture that is `wanted`.
+    fn shoot(
+        &mut self,
+        settings: Settings,
+        number: u32,
+        wanted: fn(&Handles) -> Option<Texture>,
+    ) -> Result<Vec<[f32; 4]>, Box<dyn Error>> {
+        let placed = DMat4::from_translation(moment(number.into()).0);
+        self.scene.instances[0].world_from_model = placed;
+        self.scene.instances[0].bounds = self.scene.meshes[0].bounds.transformed(&placed);
+        let seen = ViewSettings {
+            camera: camera(number.into())?,
+            size_px: self.size_px,
+            ev100: 0.0,
+            environment_intensity: 1.0,
+            shadows: None,
+            lights: LightSearch::default(),
+        };
+        let light = lighting(self.gpu, &Environment::uniform(DVec3::ONE)?, &settings.shading)?;
+        let background = Background::Constant(Vec3::splat(0.02));
+        let mut view = CameraView::new(&self.scene, &light.image, &background, &seen);
+        match &mut self.world {
+            Some(world) => {
+                let before = world.views.get(ViewId::MAIN)?.view.clone();
+                view = view.after(&before);
+                view.jitter(settings.taa.map_or(DVec2::ZERO, |taa| taa.jitter_px(number)));
+                world.set_view(self.gpu, ViewId::MAIN, view)?;
+            }
+            none => *none = Some(World::new(self.gpu, &self.scene, light, [view], &mut progress::silent)?),
+        }
+        let world = self.world.as_ref().ok_or("it was made above")?;
+        let mut frame = Frame::<World>::new();
+        let handles = stages(&settings).declare(&mut frame, Handles::default(), Target::New)?;
+        let wanted = wanted(&handles).ok_or("there is no such texture")?;
+        frame.graph_mut().readback(wanted)?;
+        let mut plan = Plan::new();
+        let options = Options::for_frame(self.size_px[0], self.size_px[1]);
+        compile(frame.graph(), &self.gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
+        self.executor.execute(&plan, &frame, world, &Imports::new())?;
+        Ok(read_texture(self.gpu, self.executor.texture(&plan, wanted).ok_or("there is no picture")?)?.rgba())
+    }
+}
+
+/// Where a pixel's ray meets the ball of a frame, and where in the picture of the frame before that was; both in 0 to 1 from the
+/// top left.
+fn truth(frame: f64, uv: DVec2, aspect: f64) -> Result<Option<DVec2>, Box<dyn Error>> {
+    let [(ball, _), (earlier_ball, _)] = [moment(frame), moment(frame - 1.0)];
+    let clip = |frame: f64| -> Result<DMat4, Box<dyn Error>> {
+        let camera = camera(frame)?;
+        Ok(camera.clip_from_view(aspect) * camera.view_from_world())
+    };
+    let eye = camera(frame)?.eye;
+    let ndc = DVec3::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y, 0.5);
+    let way = (clip(frame)?.inverse().project_point3(ndc) - eye).normalize();
+    let (along, apart) = (way.dot(ball - eye), (ball - eye).length_squared());
+    let inside = RADIUS_M * RADIUS_M - (apart - along * along);
+    if inside <= 0.0 {
+        return Ok(None);
+    }
+    let place = eye + (along - inside.sqrt()) * way;
+    let before = clip(frame - 1.0)?.project_point3(place - ball + earlier_ball);
+    Ok(Some(DVec2::new(0.5 + 0.5 * before.x, 0.5 - 0.5 * before.y)))
+}
+
+/// Velocity is the way of each place on the ball, of the eye's movement too, and nothing elsewhere.
+#[test]
+fn velocity_says_where_surfaces_were() -> TestResult {
+    let Some(gpu) = gpu("velocity_says_where_surfaces_were") else { return Ok(()) };
+    for samples in [1, 4] {
+        let size = [96_u32, 64];
+        let mut film = Film::new(&gpu, size);
+        let frame = Settings { samples, ..MOVING };
+        let first = film.shoot(frame, 0, |handles| handles.find(Slot::VELOCITY))?;
+        assert!(first.iter().all(|texel| *texel == [0.0; 4]), "no frame was before");
+        let found = film.shoot(frame, 1, |handles| handles.find(Slot::VELOCITY))?;
+        let (mut on, mut worst) = (0, 0.0_f64);
+        for (i, texel) in found.iter().enumerate() {
+            let uv = DVec2::new(f64::from(i as u32 % size[0]) + 0.5, f64::from(i as u32 / size[0]) + 0.5)
+                / DVec2::new(size[0].into(), size[1].into());
+            // The picture was moved by the jitter, so that uv shows what is aside.
+            let jitter = TaaSettings::DEFAULT.jitter_px(1) / DVec2::new(size[0].into(), size[1].into());
+            let seen = uv - DVec2::new(jitter.x, -jitter.y);
+            let Some(before) = truth(1.0, seen, 1.5)? else { continue };
+            if texel[3] == 1.0 {
+                let way = DVec2::new(texel[0].into(), texel[1].into());
+                // Near the outline a mesh's flat sides are off by more than its middle.
+                on += 1;
+                worst = worst.max((way - (before - seen)).length() * f64::from(size[0]));
+            }
+        }
+        assert!(on > 300, "{samples} samples: the ball is seen in {on} pixels");
+        assert!(worst < 0.1, "{samples} samples: off by {worst} pixels");
+        let floor = found[(size[0] * (size[1] - 1)) as usize];
+        assert_eq!(floor, [0.0; 4], "the floor stands still");
+    }
+    Ok(())
+}
+
+/// Where the ball and the eye move, the sum is about twice as near to 64 places of each pixel with velocity as without, and
+/// nearer than a frame alone.
+#[test]
+fn sums_follow_what_moves() -> TestResult {
+    let Some(gpu) = gpu("sums_follow_what_moves") else { return Ok(()) };
+    let shading = Shading { specular_aa: None, ..MOVING.shading };
+    let taa = TaaSettings::from_text("on:filter-input=off")?;
+    let moving = Settings { taa, shading, ..MOVING };
+    let ([width, height], n, last) = ([72_u32, 48_u32], 8, 15);
+    let hdr = |handles: &Handles| handles.find(Slot::HDR);
+    let alone = Settings { taa: None, moving: false, ..moving };
+    let fine = Film::new(&gpu, [width * n, height * n]).shoot(alone, last, hdr)?;
+    // Sums hold bright colors back, which is no matter of motion: so are those that they are compared with.
+    let held = |texel: &[f32; 4]| {
+        let [r, g, b] = [0, 1, 2].map(|c| f64::from(texel[c]));
+        [r, g, b].map(|light| light / (1.0 + r.max(g).max(b)))
+    };
+    let mut truth = vec![[0.0_f64; 3]; (width * height) as usize];
+    for (i, texel) in fine.iter().enumerate() {
+        let (x, y) = (i as u32 % (width * n), i as u32 / (width * n));
+        let block = &mut truth[(y / n * width + x / n) as usize];
+        (0..3).for_each(|c| block[c] += held(texel)[c] / f64::from(n * n));
+    }
+    let off = |settings: Settings| -> Result<f64, Box<dyn Error>> {
+        let (mut film, mut sum) = (Film::new(&gpu, [width, height]), Vec::new());
+        let first = if settings.taa.is_some() { 0 } else { last };
+        for frame in first..=last {
+            sum = film.shoot(settings, frame, hdr)?;
+        }
+        let squared = |(a, b): (&[f32; 4], &[f64; 3])| (0..3).map(|c| (held(a)[c] - b[c]).powi(2)).sum::<f64>();
+        Ok((sum.iter().zip(&truth).map(squared).sum::<f64>() / truth.len() as f64).sqrt())
+    };
+    let [told, untold, once] = [off(moving)?, off(Settings { moving: false, ..moving })?, off(alone)?];
+    assert!(told < 0.5 * untold && told < 0.9 * once, "{told} with velocity, {untold} without, {once} of one frame");
+    Ok(())
+}
