@@ -4,7 +4,7 @@
 //! the radiance is never written.
 
 use crate::background::draw_background;
-use crate::draw::{DrawOrder, SurfaceDraw};
+use crate::draw::SurfaceDraw;
 use crate::error::PassError;
 use crate::fog::FogSettings;
 use crate::lighting::Lighting;
@@ -172,10 +172,9 @@ impl Color {
             constants: &bindings.constants(AlphaUse::None),
             depth: Depth::EQUAL,
             colors: &[],
-            order: DrawOrder::ByPipeline,
         };
-        for list in [&visible.opaque, &visible.mask] {
-            opaque.draw(list, world.instances(), cx)?;
+        for batches in &world.view.view.draws.surfaces {
+            opaque.draw(batches, world.instances(), cx)?;
         }
         if self.sky {
             draw_background(world, &bindings, cx)?;

@@ -1,13 +1,14 @@
-//! Drawing lists of instances: one pipeline for each kind of surface, one bind group for each material.
+//! Drawing batches of instances: one pipeline for each kind of surface, one bind group for each material, one draw for each
+//! batch.
 //!
 //! A surface is of the kind of its lobes: each set of lobes has a shader of its own, which binds and computes nothing else.
 
 use crate::error::PassError;
 use crate::program::{Interface, Program, ProgramDesc, Programs};
 use crate::upload::{GpuScene, InstanceDraw, features_of};
-use framegraph_scene::{DrawLists, Lobes, MaterialId};
+use framegraph_scene::{Batch, Lobes, MaterialId};
 use framegraph_shaders::layout::{
-    STREAM_ATTRIBUTES, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexFormat, stream_stride_bytes,
+    STREAM_ATTRIBUTES, STREAM_INSTANCE, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexFormat, stream_stride_bytes,
 };
 use framegraph_shaders::{Feature, Module};
 use framegraph_wgpu::{Binding, Constants, Cx, Depth, Output, Raster, RasterPipeline, RecordError, VertexBuffer};
@@ -24,9 +25,13 @@ pub struct InstanceSource<'a> {
     pub scene: &'a GpuScene,
     /// `layout::ObjectUniforms` of each instance, by its number.
     pub objects: &'a Buffer,
+    /// Where the zero point of each instance's mesh is, relative to the eye, by its number.
+    pub origins: &'a Buffer,
+    /// Vertex buffer of instance numbers, of which batches are ranges.
+    pub numbers: &'a Buffer,
 }
 
-/// How a list of instances is drawn.
+/// How batches of instances are drawn.
 pub struct SurfaceDraw<'a> {
     /// Shader and entry points, by the lobes of the material.
     pub program: &'a ProgramOf<'a>,
@@ -38,17 +43,6 @@ pub struct SurfaceDraw<'a> {
     pub depth: Depth,
     /// Blending by color slot.
     pub colors: &'a [Output],
-    /// In which order.
-    pub order: DrawOrder,
-}
-
-/// In which order a list is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DrawOrder {
-    /// As the list has it: what blends must go from back to front.
-    Kept,
-    /// One pipeline after the other, in the list's order within each: where the order does not show.
-    ByPipeline,
 }
 
 /// How depth alone is drawn.
@@ -61,8 +55,8 @@ pub struct DepthDraw<'a> {
     pub frame: &'a [Option<Binding>],
     /// Depth test.
     pub depth: Depth,
-    /// What is drawn; surfaces that blend or transmit leave no depth.
-    pub lists: &'a DrawLists,
+    /// Opaque instances and masked ones, nearest first, so that depth rejects what is behind.
+    pub batches: &'a [Vec<Batch>; 2],
 }
 
 impl DepthDraw<'_> {
@@ -71,24 +65,20 @@ impl DepthDraw<'_> {
     /// # Errors
     /// What the shader or the device refuses.
     pub fn draw(&self, from: InstanceSource<'_>, programs: &Programs, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let Self { shader, interface, frame, depth, lists } = self;
+        let Self { shader, interface, frame, depth, batches } = self;
         let of = |vertex, fragment| ProgramDesc { vertex, fragment, ..ProgramDesc::new(shader, interface) };
-        let opaque = (of("vs_opaque", None), &lists.opaque);
-        let masked = (of("vs_mask", Some("fs_mask")), &lists.mask);
-        for (desc, list) in [opaque, masked] {
-            let program = |_| programs.get(&desc);
-            // Nearest first, so that depth rejects what is behind.
-            let order = DrawOrder::Kept;
-            let surface =
-                SurfaceDraw { program: &program, frame, constants: &[], depth: depth.clone(), colors: &[], order };
-            surface.draw(list, from, cx)?;
+        let programs_of = [of("vs_opaque", None), of("vs_mask", Some("fs_mask"))];
+        for (desc, batches) in programs_of.iter().zip(*batches) {
+            let program = |_| programs.get(desc);
+            let surface = SurfaceDraw { program: &program, frame, constants: &[], depth: depth.clone(), colors: &[] };
+            surface.draw(batches, from, cx)?;
         }
         Ok(())
     }
 }
 
 /// What a pipeline depends on beside the pass.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 struct PipelineKey {
     lobes: Lobes,
     double_sided: bool,
@@ -112,34 +102,57 @@ struct SharedState {
 }
 
 impl SurfaceDraw<'_> {
-    /// Draws `list`, instance numbers of the scene.
+    /// Draws `batches` of the scene's instances, in order. What a draw has in common with the one before it is not set again.
     ///
     /// # Errors
     /// What the shader or the device refuses.
-    pub fn draw(&self, list: &[usize], from: InstanceSource<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let key = |index: &usize| PipelineKey::of(*index, from.scene);
-        let mut pipelines: Vec<SharedState> = Vec::new();
-        for index in list {
-            let key = key(index);
-            if let Err(at) = pipelines.binary_search_by_key(&key, |p| p.key) {
-                pipelines.insert(at, self.pipeline(key, from.scene.instances[*index].material, from, cx)?);
-            }
+    pub fn draw(&self, batches: &[Batch], from: InstanceSource<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let InstanceSource { scene, numbers, .. } = from;
+        if batches.is_empty() {
+            return Ok(());
         }
-        match self.order {
-            DrawOrder::Kept => {
-                for index in list {
-                    if let Ok(at) = pipelines.binary_search_by_key(&key(index), |p| p.key) {
-                        draw_instance(&pipelines[at], *index, from.scene, cx)?;
-                    }
+        let pass = cx.render_pass()?;
+        pass.set_vertex_buffer(STREAM_POSITION, scene.positions.slice(..));
+        pass.set_vertex_buffer(STREAM_ATTRIBUTES, scene.attributes.slice(..));
+        pass.set_vertex_buffer(STREAM_INSTANCE, numbers.slice(..));
+        pass.set_index_buffer(scene.indices.slice(..), wgpu::IndexFormat::Uint32);
+        let mut states: Vec<SharedState> = Vec::new();
+        // Index of the state that is set, and the material.
+        let (mut set, mut bound): (Option<usize>, Option<MaterialId>) = (None, None);
+        for batch in batches {
+            let number = batch.instance as usize;
+            let instance = &scene.instances[number];
+            let key = PipelineKey::of(number, scene);
+            let at = match set {
+                Some(at) if states[at].key == key => at,
+                _ => {
+                    let at = match states.iter().position(|state| state.key == key) {
+                        Some(at) => at,
+                        None => {
+                            states.push(self.pipeline(key, instance.material, from, cx)?);
+                            states.len() - 1
+                        }
+                    };
+                    let SharedState { pipeline, frame, objects, .. } = &states[at];
+                    let pass = cx.render_pass()?;
+                    pass.set_pipeline(pipeline);
+                    pass.set_bind_group(0, frame, &[]);
+                    pass.set_bind_group(2, objects, &[]);
+                    (set, bound) = (Some(at), None);
+                    at
+                }
+            };
+            let SharedState { program, pipeline, .. } = &states[at];
+            if bound != Some(instance.material) {
+                bound = Some(instance.material);
+                if program.has_group(1) {
+                    let binding = |slot| scene.material_binding(instance.material, slot);
+                    let material = program.bind(cx, pipeline, 1, binding)?;
+                    cx.render_pass()?.set_bind_group(1, &material, &[]);
                 }
             }
-            DrawOrder::ByPipeline => {
-                for pipeline in &pipelines {
-                    for index in list.iter().filter(|index| key(index) == pipeline.key) {
-                        draw_instance(pipeline, *index, from.scene, cx)?;
-                    }
-                }
-            }
+            let mesh = scene.mesh(instance.mesh);
+            cx.render_pass()?.draw_indexed(mesh.indices(), mesh.base_vertex, batch.range());
         }
         Ok(())
     }
@@ -161,7 +174,7 @@ impl SurfaceDraw<'_> {
             .enumerate()
             .map(|(stream, attributes)| VertexBuffer {
                 stride_bytes: stream_stride_bytes(stream as u32),
-                step: VertexStepMode::Vertex,
+                step: if stream as u32 == STREAM_INSTANCE { VertexStepMode::Instance } else { VertexStepMode::Vertex },
                 attributes,
             })
             .collect();
@@ -180,31 +193,10 @@ impl SurfaceDraw<'_> {
             ..Raster::new(program.shader())
         })?;
         let frame = program.bind(cx, &pipeline, 0, |slot| frame.get(slot).cloned().flatten())?;
-        let objects = program.bind(cx, &pipeline, 2, |_| Some(from.objects.clone().into()))?;
+        let placement = [from.objects, from.origins];
+        let objects = program.bind(cx, &pipeline, 2, |slot| Some(placement.get(slot).copied()?.clone().into()))?;
         Ok(SharedState { key, program, pipeline, frame, objects })
     }
-}
-
-fn draw_instance(shared: &SharedState, index: usize, scene: &GpuScene, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-    let SharedState { program, pipeline, frame, objects, .. } = shared;
-    let instance = &scene.instances[index];
-    let material = if program.has_group(1) {
-        Some(program.bind(cx, pipeline, 1, |slot| scene.material_binding(instance.material, slot))?)
-    } else {
-        None
-    };
-    let mesh = scene.mesh(instance.mesh);
-    let pass = cx.render_pass()?;
-    pass.set_pipeline(pipeline);
-    pass.set_bind_group(0, frame, &[]);
-    pass.set_bind_group(1, material.as_ref(), &[]);
-    pass.set_bind_group(2, objects, &[]);
-    pass.set_vertex_buffer(STREAM_POSITION, scene.positions.slice(..));
-    pass.set_vertex_buffer(STREAM_ATTRIBUTES, scene.attributes.slice(..));
-    pass.set_index_buffer(scene.indices.slice(..), wgpu::IndexFormat::Uint32);
-    let number = index as u32;
-    pass.draw_indexed(mesh.indices(), mesh.base_vertex, number..number + 1);
-    Ok(())
 }
 
 /// Refuses a surface with more textures than the device shades with at once.
@@ -219,9 +211,9 @@ pub(crate) fn fits(program: &Program, lobes: Lobes, material: &str, limits: &wgp
     Ok(())
 }
 
-/// The attributes of the two vertex streams, as wgpu takes them.
-fn vertex_buffers() -> [Vec<VertexAttribute>; 2] {
-    [STREAM_POSITION, STREAM_ATTRIBUTES].map(|stream| {
+/// The attributes of the vertex streams, as wgpu takes them.
+fn vertex_buffers() -> [Vec<VertexAttribute>; 3] {
+    [STREAM_POSITION, STREAM_ATTRIBUTES, STREAM_INSTANCE].map(|stream| {
         let own = VERTEX_ATTRIBUTES.iter().filter(|a| a.stream == stream);
         own.map(|a| VertexAttribute {
             format: vertex_format(a.format),
@@ -238,5 +230,6 @@ const fn vertex_format(format: VertexFormat) -> wgpu::VertexFormat {
         VertexFormat::Float32x3 => wgpu::VertexFormat::Float32x3,
         VertexFormat::Float32x4 => wgpu::VertexFormat::Float32x4,
         VertexFormat::Float16x4 => wgpu::VertexFormat::Float16x4,
+        VertexFormat::Uint32 => wgpu::VertexFormat::Uint32,
     }
 }

@@ -197,9 +197,9 @@ impl<'a> Case<'a> {
         let risen = sun_of(scene, input.around.sun);
         let sun = risen.filter(|sun| seen.may_face(-sun.direction.as_dvec3()));
         let cameras: Vec<_> = views.iter().map(fit_camera).collect();
-        let selection = select(scene, risen, &cameras);
+        let selection = select(scene, &seen.renderables, risen, &cameras);
         let need = match &settings.shadows {
-            Some(shadows) => ShadowNeed::of(scene, sun, &selection.kept, &cameras, shadows),
+            Some(shadows) => ShadowNeed::of(&seen.renderables, sun, &selection.kept, &cameras, shadows),
             None => ShadowNeed::default(),
         };
         let lights = (selection.kept.len(), selection.dropped);

@@ -1,6 +1,6 @@
 //! Depth prepass: the depth of the visible surfaces, so that the color pass shades each pixel once.
 
-use crate::draw::{DepthDraw, InstanceSource};
+use crate::draw::DepthDraw;
 use crate::program::{Interface, Programs};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS};
 use crate::view::{ViewId, Views};
@@ -13,7 +13,8 @@ pub const DEPTH_FORMAT: Format = Format::Depth32Float;
 
 static SHADER: Module<'static> = library::pass("pass/prepass.wgsl").unwrap();
 
-static INTERFACE: Interface = Interface { groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects"]], constants: &[] };
+static INTERFACE: Interface =
+    Interface { groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &[] };
 
 /// Draws opaque and masked surfaces into a new depth texture; depth is reversed and cleared to the far plane.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +61,7 @@ where
         interface: &INTERFACE,
         frame: &[Some(cx.uniform(&view.view.frame))],
         depth: Depth::NEARER,
-        lists: &view.view.visible,
+        batches: &view.view.draws.depth,
     };
-    draw.draw(InstanceSource { scene: world.as_ref(), objects: &view.objects }, world.as_ref(), cx)
+    draw.draw(view.instances(world.as_ref()), world.as_ref(), cx)
 }

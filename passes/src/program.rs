@@ -267,7 +267,7 @@ mod tests {
                 "dfg_table",
             ],
             &MATERIAL_BINDINGS,
-            &["objects"],
+            &["objects", "origins"],
         ],
         constants: &["NO_SUCH_CONSTANT", "SH_BANDS", "ALPHA_MODE"],
     };

@@ -1,6 +1,6 @@
 //! What shading a surface binds: the interface of the color and sky shaders, and how passes fill it.
 
-use crate::draw::{DrawOrder, InstanceSource, SurfaceDraw};
+use crate::draw::{InstanceSource, SurfaceDraw};
 use crate::error::PassError;
 use crate::fog::FogSettings;
 use crate::lighting::Lighting;
@@ -30,7 +30,7 @@ pub(crate) static SKY_SHADER: Module<'static> = library::pass("pass/sky.wgsl").u
 
 /// What the color passes provide to the shader of surfaces, `pass/color.wgsl`.
 pub static SURFACE: Interface =
-    Interface { groups: &[FRAME_BINDINGS, &MATERIAL_BINDINGS, &["objects"]], constants: &CONSTANTS };
+    Interface { groups: &[FRAME_BINDINGS, &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &CONSTANTS };
 
 /// Those of shading, and whether ambient occlusion has bent normals.
 const CONSTANTS: [&str; Shading::CONSTANTS.len() + 1] = {
@@ -93,7 +93,7 @@ impl<'a> SurfaceWorld<'a> {
 
     /// Where draws take instances from.
     pub fn instances(&self) -> InstanceSource<'a> {
-        InstanceSource { scene: self.scene, objects: &self.view.objects }
+        self.view.instances(self.scene)
     }
 }
 
@@ -245,9 +245,8 @@ pub(crate) fn draw_blended(
         constants: &bindings.constants(AlphaUse::Blend),
         depth: Depth { write: false, ..Depth::NEARER },
         colors: &[Output { blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING), ..Output::REPLACE }],
-        order: DrawOrder::Kept,
     };
-    blended.draw(&world.view.view.visible.blend, world.instances(), cx)
+    blended.draw(&world.view.view.draws.blend, world.instances(), cx)
 }
 
 #[cfg(test)]

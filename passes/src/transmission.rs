@@ -13,7 +13,7 @@
 //! and loaded once more.
 
 use crate::depth_resolve::can_read_samples;
-use crate::draw::{DrawOrder, SurfaceDraw};
+use crate::draw::SurfaceDraw;
 use crate::fog::FogSettings;
 use crate::full_screen::FullScreen;
 use crate::lighting::Lighting;
@@ -22,9 +22,9 @@ use crate::shading::{AlphaUse, Shading};
 use crate::shadow::ShadowInput;
 use crate::surface::{SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
 use crate::upload::GpuScene;
-use crate::view::{ViewId, Views};
+use crate::view::{CameraView, ViewId, Views};
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
-use framegraph_scene::{DrawLists, Lobes};
+use framegraph_scene::{Batch, Lobes};
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError, SamplerDesc};
 
@@ -150,10 +150,11 @@ impl Layer {
         (0..count).rev().map(move |before| Self { before, last: before + 1 == count })
     }
 
-    /// The instances of this layer, nearest first.
-    fn of(self, lists: &DrawLists) -> Vec<usize> {
+    /// The draws of this layer, nearest first.
+    fn of(self, view: &CameraView) -> Vec<Batch> {
         let is_own = |layer: u8| if self.last { layer >= self.before } else { layer == self.before };
-        lists.transmit.iter().zip(&lists.transmit_layers).filter(|(_, l)| is_own(**l)).map(|(i, _)| *i).collect()
+        let draws = view.draws.transmit.iter().zip(&view.visible.transmit_layers);
+        draws.filter(|(_, layer)| is_own(**layer)).map(|(draw, _)| *draw).collect()
     }
 }
 
@@ -228,9 +229,8 @@ impl Transparent {
             constants: &bindings.constants(AlphaUse::Mask),
             depth: Depth::NEARER,
             colors: &[],
-            order: DrawOrder::Kept,
         };
-        transmissive.draw(&self.layer.of(&world.view.view.visible), world.instances(), cx)?;
+        transmissive.draw(&self.layer.of(&world.view.view), world.instances(), cx)?;
         if self.layer.before > 0 { Ok(()) } else { draw_blended(world, &bindings, cx) }
     }
 }

@@ -4,11 +4,12 @@
 //! declare the pass ([`Settings::moving`](crate::Settings::moving)). Between prepass and color pass it shares their step: it
 //! costs one attachment, cleared and stored, and the draws of what moves.
 
-use crate::draw::{DrawOrder, InstanceSource, SurfaceDraw};
+use crate::draw::SurfaceDraw;
 use crate::program::{Interface, ProgramDesc, Programs};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS};
 use crate::view::{ViewId, Views};
 use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
+use framegraph_scene::Batch;
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Record, RecordError};
 
@@ -21,7 +22,7 @@ const SLOT: u8 = 1;
 static SHADER: Module<'static> = library::pass("pass/velocity.wgsl").unwrap();
 
 static INTERFACE: Interface =
-    Interface { groups: &[&["frame", "motions"], &MATERIAL_BINDINGS, &["objects"]], constants: &[] };
+    Interface { groups: &[&["frame", "motions"], &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &[] };
 
 /// Draws velocity of opaque and masked surfaces that moved since the frame before ([`CameraView::after`](crate::CameraView::after)).
 #[derive(Clone, Copy, Debug)]
@@ -55,9 +56,8 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
         let (views, programs): (&Views, &Programs) = (world.as_ref(), world.as_ref());
         let seen = views.get(self.view)?;
         let frame = [Some(cx.uniform(&seen.view.frame)), Some(seen.motions.clone().into())];
-        let visible = &seen.view.visible;
-        for (list, fragment) in [(&visible.opaque, "fs_opaque"), (&visible.mask, "fs_mask")] {
-            let moved: Vec<usize> = list.iter().copied().filter(|index| seen.view.moves(*index)).collect();
+        let of_moved = |batches: &[Batch]| seen.view.draws.only(batches, |instance| seen.view.moves(instance as usize));
+        for (batches, fragment) in seen.view.draws.depth.iter().zip(["fs_opaque", "fs_mask"]) {
             let surfaces = SurfaceDraw {
                 program: &|_| {
                     programs.get(&ProgramDesc { fragment: Some(fragment), ..ProgramDesc::new(&SHADER, &INTERFACE) })
@@ -66,9 +66,8 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
                 constants: &[],
                 depth: Depth::EQUAL,
                 colors: &[],
-                order: DrawOrder::ByPipeline,
             };
-            surfaces.draw(&moved, InstanceSource { scene: world.as_ref(), objects: &seen.objects }, cx)?;
+            surfaces.draw(&of_moved(batches), seen.instances(world.as_ref()), cx)?;
         }
         Ok(())
     }

@@ -3,24 +3,24 @@
 //! Positions are sent relative to the eye, subtracted in double precision, so that a scene a thousand kilometers from its
 //! origin does not jitter. Lights are multiplied by the exposure here, in f32: what the shaders see fits half floats.
 //!
-//! A frame may have several views ([`Views`]). Each has buffers of its own for what depends on its eye, the placement of
-//! instances and the lights; meshes, materials and textures are the scene's and shared.
+//! A frame may have several views ([`Views`]). Each has buffers of its own for what depends on its eye and for what it draws;
+//! meshes, materials and textures are the scene's and shared.
 
 mod gpu;
 
 pub use gpu::{GpuView, ViewId, Views};
 
+use crate::draws::ViewDraws;
 use crate::ibl::ImageLight;
+use crate::prepared::{Placements, PreparedScene};
 use crate::punctual::{self, LightLists, LightReport, LightSearch};
 use crate::shadow::{FitCamera, ShadowSettings, ViewShadows};
 use crate::stand::Stand;
 use crate::sun::{angular_radius_rad, illuminance_lux, sun_of};
-use crate::upload::pack::{light_uniforms, object_uniforms};
+use crate::upload::pack::light_uniforms;
 use framegraph_scene::camera::exposure_from_ev100;
 use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene};
-use framegraph_shaders::layout::{
-    FrameUniforms, LightUniforms, MotionUniforms, ObjectUniforms, ShadowMapUniforms, SkyUniforms,
-};
+use framegraph_shaders::layout::{FrameUniforms, LightUniforms, MotionUniforms, SkyUniforms};
 use framegraph_shaders::reference::sky::Preetham;
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec2, Vec3, Vec4};
 
@@ -93,10 +93,12 @@ pub struct CameraView {
     pub light_lists: Option<LightLists>,
     /// What became of the scene's lights.
     pub light_report: LightReport,
-    /// Placement of each instance of the scene, relative to the eye.
-    pub objects: Vec<ObjectUniforms>,
-    /// Where each instance of the scene is, in world space: for the frame after to know what moved.
-    pub placements: Vec<DMat4>,
+    /// What is drawn of it, in which draws.
+    pub draws: ViewDraws,
+    /// Where the zero point of each instance's mesh is, in m, relative to the eye.
+    pub origins: Vec<Vec4>,
+    /// How each instance is turned and scaled.
+    pub placements: Placements,
     /// Where instances are and were in clip space, where any has moved since the frame before; of others it is zeros.
     pub motions: Vec<MotionUniforms>,
     /// Shadow maps, relative to this view's eye; none for a frame without.
@@ -116,9 +118,20 @@ pub struct CameraView {
 
 impl CameraView {
     /// A view of `scene`, lit from all around by `light`. The sun is the environment's own, else the scene's brightest
-    /// directional light; all other lights are punctual.
+    /// directional light; all other lights are punctual. The scene is prepared for this view alone.
     pub fn new(scene: &Scene, light: &ImageLight, background: &Background, settings: &ViewSettings) -> Self {
-        Self::of(scene, light, background, settings, std::slice::from_ref(settings))
+        Self::prepared(scene, &PreparedScene::new(scene), light, background, settings)
+    }
+
+    /// The same of a scene that was prepared before, and updated since where something moved.
+    pub fn prepared(
+        scene: &Scene,
+        prepared: &PreparedScene,
+        light: &ImageLight,
+        background: &Background,
+        settings: &ViewSettings,
+    ) -> Self {
+        Self::of(scene, prepared, light, background, settings, std::slice::from_ref(settings))
     }
 
     /// Views of `scene` that share shadow maps: each map is fitted to what all their cameras see, so one view's maps serve
@@ -130,29 +143,51 @@ impl CameraView {
         background: &Background,
         settings: &[ViewSettings],
     ) -> Vec<Self> {
-        settings.iter().map(|own| Self::of(scene, light, background, own, settings)).collect()
+        let prepared = PreparedScene::new(scene);
+        settings.iter().map(|own| Self::of(scene, &prepared, light, background, own, settings)).collect()
+    }
+
+    /// The surfaces of a scene that was prepared, without any light.
+    pub fn unlit(prepared: &PreparedScene, settings: &ViewSettings) -> Self {
+        Self::empty(settings).with_surfaces(prepared, settings)
+    }
+
+    /// Puts what is seen into a view that has its shadows.
+    fn with_surfaces(self, prepared: &PreparedScene, settings: &ViewSettings) -> Self {
+        let (renderables, eye) = (prepared.renderables(), settings.camera.eye);
+        let visible = DrawLists::seen(renderables, &settings.camera, aspect(settings), prepared.threads);
+        let from_eye = |origin: &DVec3| (*origin - eye).as_vec3().extend(0.0);
+        Self {
+            draws: ViewDraws::new(renderables, &visible, self.shadows.as_ref()),
+            visible,
+            origins: renderables.origins().iter().map(from_eye).collect(),
+            placements: prepared.placements().clone(),
+            ..self
+        }
     }
 
     fn of(
         scene: &Scene,
+        prepared: &PreparedScene,
         light: &ImageLight,
         background: &Background,
         settings: &ViewSettings,
         sharing: &[ViewSettings],
     ) -> Self {
+        let renderables = prepared.renderables();
         let ViewSettings { camera, environment_intensity, .. } = settings;
         let empty = Self::empty(settings);
         let exposure = empty.frame.exposure;
         let sun = sun_of(scene, light.sun.as_ref());
         let toward_sun = sun.map_or(Vec3::Y, |sun| -sun.direction);
         let cameras: Vec<_> = sharing.iter().map(fitted_camera).collect();
-        let selection = punctual::select(scene, sun, &cameras);
+        let selection = punctual::select(scene, renderables, sun, &cameras);
         let packed = selection.kept.iter().filter_map(|own| light_uniforms(own, camera.eye, exposure).ok());
         let mut lights: Vec<LightUniforms> = packed.collect();
         let shadows = sharing
             .first()
             .and_then(|first| first.shadows)
-            .map(|shadows| ViewShadows::fit(scene, sun, &selection.kept, &cameras, camera.eye, &shadows));
+            .map(|shadows| ViewShadows::fit(renderables, sun, &selection.kept, &cameras, camera.eye, &shadows));
         let first_maps = shadows.iter().flat_map(|shadows| &shadows.of_lights);
         for (light, first) in lights.iter_mut().zip(first_maps) {
             light.shadow_map = first.map_or(0, |first| first + 1);
@@ -161,7 +196,7 @@ impl CameraView {
         let light_count = lights.len() as u32;
         lights.resize(lights.len().max(1), LightUniforms::default());
         let (light_lists, light_report) =
-            punctual::lists(scene, selection, &fitted_camera(settings), settings.size_px, settings.lights);
+            punctual::lists(renderables, selection, &fitted_camera(settings), settings.size_px, settings.lights);
 
         let frame = FrameUniforms {
             sun_direction: toward_sun,
@@ -176,24 +211,14 @@ impl CameraView {
         };
         Self {
             frame,
-            visible: DrawLists::for_camera(scene, camera, aspect(settings)),
             background: BackgroundUniforms::new(background, exposure, environment_scale),
             lights,
             light_lists,
             light_report,
-            objects: object_uniforms(scene, camera.eye).collect(),
-            placements: scene.instances.iter().map(|instance| instance.world_from_model).collect(),
             shadows,
             ..empty
         }
-    }
-
-    fn light_words(&self) -> &[u32] {
-        self.light_lists.as_ref().map_or(&[], |lists| &lists.words)
-    }
-
-    fn shadow_map_uniforms(&self) -> Vec<ShadowMapUniforms> {
-        self.shadows.as_ref().map(ViewShadows::map_uniforms).unwrap_or_default()
+        .with_surfaces(prepared, settings)
     }
 
     /// The same view in a frame that follows one with the view `before`: passes that read the earlier picture find places in
@@ -251,8 +276,9 @@ impl CameraView {
             lights: vec![LightUniforms::default()],
             light_lists: None,
             light_report: LightReport::default(),
-            objects: Vec::new(),
-            placements: Vec::new(),
+            draws: ViewDraws::default(),
+            origins: Vec::new(),
+            placements: Placements::default(),
             motions: Vec::new(),
             shadows: None,
             eye: camera.eye,
@@ -283,18 +309,16 @@ fn eye_or_direction(camera: &Camera) -> Vec4 {
 
 /// Where instances of `now` are and were in clip space, joined in f64; empty where none has moved.
 fn motions(now: &CameraView, before: &CameraView) -> Vec<MotionUniforms> {
-    let pairs = || now.placements.iter().zip(&before.placements);
-    if pairs().all(|(here, there)| here == there) {
-        return Vec::new();
+    let mut motions = Vec::new();
+    for (number, here, there) in now.placements.moved_since(&before.placements) {
+        motions.resize(now.placements.count(), MotionUniforms::default());
+        let clip = |view: &CameraView, placed: &DMat4| {
+            (view.clip_from_world * DMat4::from_translation(-view.eye) * *placed).as_mat4()
+        };
+        motions[number] =
+            MotionUniforms { clip_from_model: clip(now, here), earlier_clip_from_model: clip(before, there) };
     }
-    let clip = |view: &CameraView, placed: &DMat4| {
-        (view.clip_from_world * DMat4::from_translation(-view.eye) * *placed).as_mat4()
-    };
-    let motion = |(here, there): (&DMat4, &DMat4)| match here == there {
-        true => MotionUniforms::default(),
-        false => MotionUniforms { clip_from_model: clip(now, here), earlier_clip_from_model: clip(before, there) },
-    };
-    pairs().map(motion).collect()
+    motions
 }
 
 /// What moves a picture of this size by so many pixels to the right and up, in clip space.
@@ -311,13 +335,11 @@ fn inverse(matrix: DMat4) -> DMat4 {
 #[cfg(all(test, feature = "ibl"))]
 mod tests {
     use super::*;
-    use crate::error::PassError;
     use crate::ibl::IblSettings;
     use crate::ibl::cache::Cache;
     use framegraph_scene::environment::ShBands;
     use framegraph_scene::{Environment, progress};
     use framegraph_wgpu::Gpu;
-    use glam::DVec3;
 
     /// Irradiance / π of an even light is its radiance, times intensity and exposure; bands that were left out are zero.
     #[test]
@@ -345,13 +367,6 @@ mod tests {
             assert_eq!(sh[8] == Vec4::ZERO, bands == ShBands::Two);
             assert!(sh.iter().all(|c| c.w == 0.0));
         }
-        Ok(())
-    }
-
-    #[test]
-    fn a_view_that_is_not_there_is_named() -> Result<(), Box<dyn std::error::Error>> {
-        let views = Views::new(&Gpu::noop()?, [])?;
-        assert_eq!(views.get(ViewId(1)).err(), Some(PassError::NoView { view: 1, count: 0 }));
         Ok(())
     }
 }

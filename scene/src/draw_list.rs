@@ -2,8 +2,9 @@
 
 use super::camera::Camera;
 use super::frustum::Frustum;
-use super::material::{AlphaMode, Lobe};
 use super::overlap::layers_from_front;
+use super::radix::{sort_key, sort_upper_halves};
+use super::renderables::{DrawKind, Renderables};
 use super::scene::Scene;
 
 /// Instance numbers of a scene by how they must be drawn. Order is a function of scene and camera:
@@ -11,58 +12,68 @@ use super::scene::Scene;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DrawLists {
     /// Opaque, nearest first, so that depth rejects what is behind.
-    pub opaque: Vec<usize>,
+    pub opaque: Vec<u32>,
     /// Alpha-tested, nearest first.
-    pub mask: Vec<usize>,
+    pub mask: Vec<u32>,
     /// Transmissive and not blended, nearest first: drawn after all opaque ones, and casting no shadow.
-    pub transmit: Vec<usize>,
+    pub transmit: Vec<u32>,
     /// Of each of these, how many layers of them lie over one another before it: those of layer 0 have nothing before them.
     /// Glass of one layer is not seen through glass of the same layer.
     pub transmit_layers: Vec<u8>,
     /// Blended, farthest first, so that each covers what is behind it.
-    pub blend: Vec<usize>,
+    pub blend: Vec<u32>,
     /// How many instances are outside of the view frustum.
     pub culled: usize,
 }
 
 impl DrawLists {
-    /// The instances that `camera` may see in a picture of `width_over_height`, sorted.
+    /// The instances that `camera` may see in a picture of `width_over_height`, sorted, of a scene that is looked at once;
+    /// [`DrawLists::seen`] otherwise.
+    #[must_use]
+    pub fn for_camera(scene: &Scene, camera: &Camera, width_over_height: f64) -> Self {
+        Self::seen(&Renderables::new(scene), camera, width_over_height, 1)
+    }
+
+    /// The same of what was made of a scene before, on as many as `threads` threads.
     ///
     /// The distance is that of the bounds' center along the view direction. Blended surfaces that
     /// intersect have no right order; that is the usual limit of sorted blending.
     #[must_use]
-    pub fn for_camera(scene: &Scene, camera: &Camera, width_over_height: f64) -> Self {
+    pub fn seen(of: &Renderables, camera: &Camera, width_over_height: f64, threads: usize) -> Self {
         let frustum = Frustum::of_camera(camera, width_over_height);
-        let mut lists = Self::of_scene_if(scene, |i| frustum.may_see(&scene.instances[i].bounds));
+        let mut seen = Vec::new();
+        of.boxes().reaching(camera.eye, frustum.planes(), threads, &mut seen);
+        let mut lists = Self::of_kinds(of, &seen);
         let forward = camera.forward();
-        let distance = |i: &usize| (scene.instances[*i].bounds.center() - camera.eye).dot(forward);
-        // Stable sorts with a total order: NaN cannot make the result depend on the algorithm.
-        let near = |a: &usize, b: &usize| distance(a).total_cmp(&distance(b));
-        lists.opaque.sort_by(near);
-        lists.mask.sort_by(near);
-        lists.transmit.sort_by(near);
-        lists.blend.sort_by(|a, b| near(b, a));
-        let bounds: Vec<_> = lists.transmit.iter().map(|i| scene.instances[*i].bounds).collect();
+        let distance = |i: u32| ((of.bounds()[i as usize].center() - camera.eye).dot(forward)) as f32;
+        let (mut keys, mut spare) = (Vec::new(), Vec::new());
+        let mut sort = |list: &mut Vec<u32>, sign: f32| {
+            keys.clear();
+            keys.extend(list.iter().map(|i| sort_key(sign * distance(*i), *i)));
+            sort_upper_halves(&mut keys, &mut spare);
+            list.clear();
+            list.extend(keys.iter().map(|key| *key as u32));
+        };
+        for nearest_first in [&mut lists.opaque, &mut lists.mask, &mut lists.transmit] {
+            sort(nearest_first, 1.0);
+        }
+        sort(&mut lists.blend, -1.0);
+        let bounds: Vec<_> = lists.transmit.iter().map(|i| of.bounds()[*i as usize]).collect();
         lists.transmit_layers = layers_from_front(&bounds, camera, width_over_height);
         lists
     }
 
-    /// The instances that `keep` keeps, by their numbers, in the scene's order; others count as culled.
+    /// The instances of `list` by how they are drawn, in its order; all others count as culled.
     #[must_use]
-    pub fn of_scene_if(scene: &Scene, keep: impl Fn(usize) -> bool) -> Self {
-        let mut lists = Self::default();
-        for (i, instance) in scene.instances.iter().enumerate() {
-            if !keep(i) {
-                lists.culled += 1;
-                continue;
-            }
-            let material = &scene.materials[instance.material.index()];
-            let transmits = material.lobes().contains(Lobe::Transmission);
-            match material.alpha {
-                AlphaMode::Blend => lists.blend.push(i),
-                _ if transmits => lists.transmit.push(i),
-                AlphaMode::Opaque => lists.opaque.push(i),
-                AlphaMode::Mask { .. } => lists.mask.push(i),
+    pub fn of_kinds(of: &Renderables, list: &[u32]) -> Self {
+        let opaque = Vec::with_capacity(list.len());
+        let mut lists = Self { opaque, culled: of.kinds().len() - list.len(), ..Self::default() };
+        for &i in list {
+            match of.kinds()[i as usize] {
+                DrawKind::Opaque => lists.opaque.push(i),
+                DrawKind::Mask => lists.mask.push(i),
+                DrawKind::Transmit => lists.transmit.push(i),
+                DrawKind::Blend => lists.blend.push(i),
             }
         }
         lists
@@ -76,7 +87,7 @@ mod tests {
     use super::*;
     use crate::bounds::Aabb;
     use crate::camera::Projection;
-    use crate::material::Material;
+    use crate::material::{AlphaMode, Material};
     use crate::{Instance, MaterialId, MeshId};
 
     #[test]
@@ -109,6 +120,7 @@ mod tests {
         assert_eq!(lists.blend, [4, 5, 6]);
         assert_eq!((lists.transmit, lists.transmit_layers), (vec![9, 8], vec![0, 1]));
         assert_eq!(lists.culled, 1);
-        assert_eq!(DrawLists::of_scene_if(&scene, |i| i != 1).opaque, [0, 2, 7]);
+        let all = DrawLists::of_kinds(&Renderables::new(&scene), &[0, 2, 3, 7]);
+        assert_eq!((all.opaque, all.mask, all.culled), (vec![0, 2, 7], vec![3], 6));
     }
 }

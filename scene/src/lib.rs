@@ -13,7 +13,9 @@
 //! (environments from OpenEXR, and writing such files). Without any of them the plain data, the built-in scenes, cameras,
 //! the sky and Radiance `.hdr` environments remain.
 
+pub mod batch;
 pub mod bounds;
+pub mod boxes;
 pub mod builtin;
 pub mod camera;
 mod check;
@@ -42,14 +44,18 @@ mod overlap;
 pub mod parallel;
 pub mod picture;
 pub mod progress;
+mod radix;
 mod read;
+pub mod renderables;
 mod scene;
 mod stage;
 #[cfg(test)]
 mod test_files;
 pub mod texture;
 
+pub use batch::{Batch, BatchOrder, Groups};
 pub use bounds::Aabb;
+pub use boxes::BoxArrays;
 pub use builtin::builtin;
 pub use camera::{Camera, CameraChoice, Projection};
 pub use check::InvalidScene;
@@ -69,6 +75,7 @@ pub use memory::Memory;
 pub use mesh::{Mesh, MeshError, MeshId};
 pub use options::LoadOptions;
 pub use progress::{Progress, ProgressFn, Stage};
+pub use renderables::{DrawKind, Renderables};
 pub use scene::Scene;
 pub use texture::{Image, ImageId, Sampler, SamplerId, Texture, TextureId, TextureRole, TextureSlot, UvTransform};
 

@@ -10,6 +10,7 @@ pub mod lookup;
 pub mod measure;
 pub mod mirror;
 pub mod reference;
+pub mod soak;
 pub mod truth;
 
 /// The examples of the README, run as doc tests.

@@ -22,7 +22,7 @@ type Polygon = Vec<DVec2>;
 pub(super) fn covers<'a>(seen: &Seen<'a>, views: &[ViewSettings]) -> Option<&'a str> {
     let mut name = None;
     for (view, lists) in views.iter().zip(&seen.lists) {
-        let found = lists.opaque.iter().map(|i| &seen.scene.instances[*i]).find(|instance| {
+        let found = lists.opaque.iter().map(|i| &seen.scene.instances[*i as usize]).find(|instance| {
             let material = &seen.scene.materials[instance.material.index()];
             material.alpha == AlphaMode::Opaque
                 && instance_covers(instance, &seen.scene.meshes[instance.mesh.index()], material.double_sided, view)

@@ -3,7 +3,7 @@
 use super::survey::{Survey, even_scale};
 use crate::shadow::FitCamera;
 use crate::view::ViewSettings;
-use framegraph_scene::{Aabb, DrawLists, Lobes, Scene};
+use framegraph_scene::{Aabb, DrawLists, Lobes, Renderables, Scene};
 use glam::{DMat3, DVec3};
 
 /// Instances that are opaque or masked are compared with each other up to this many; of more, some are taken to be near.
@@ -13,6 +13,7 @@ const MOST_NEIGHBOURS: usize = 64;
 pub(super) struct Seen<'a> {
     pub scene: &'a Scene,
     pub survey: &'a Survey,
+    pub renderables: Renderables,
     views: &'a [ViewSettings],
     pub lists: Vec<DrawLists>,
     /// Numbers of instances that some camera may see, in order.
@@ -22,12 +23,14 @@ pub(super) struct Seen<'a> {
 impl<'a> Seen<'a> {
     pub fn new(scene: &'a Scene, survey: &'a Survey, views: &'a [ViewSettings]) -> Self {
         let aspect = |view: &ViewSettings| fit_camera(view).width_over_height;
-        let lists: Vec<_> = views.iter().map(|v| DrawLists::for_camera(scene, &v.camera, aspect(v))).collect();
-        let mut instances: Vec<usize> =
-            lists.iter().flat_map(|l| [&l.opaque, &l.mask, &l.transmit, &l.blend]).flatten().copied().collect();
+        let renderables = Renderables::new(scene);
+        let seen_by = |v: &ViewSettings| DrawLists::seen(&renderables, &v.camera, aspect(v), 1);
+        let lists: Vec<DrawLists> = views.iter().map(seen_by).collect();
+        let all = lists.iter().flat_map(|l| [&l.opaque, &l.mask, &l.transmit, &l.blend]).flatten();
+        let mut instances: Vec<usize> = all.map(|number| *number as usize).collect();
         instances.sort_unstable();
         instances.dedup();
-        Self { scene, survey, views, lists, instances }
+        Self { scene, survey, renderables, views, lists, instances }
     }
 
     /// What all that is seen is made of: the sum over what is lit.
@@ -101,7 +104,8 @@ impl<'a> Seen<'a> {
             let surface = self.survey.surface(&self.scene.instances[i]);
             !surface.transmits()
         };
-        let mut seen: Vec<usize> = self.lists.iter().flat_map(|l| l.opaque.iter().chain(&l.mask)).copied().collect();
+        let mut seen: Vec<usize> =
+            self.lists.iter().flat_map(|l| l.opaque.iter().chain(&l.mask)).map(|i| *i as usize).collect();
         seen.sort_unstable();
         seen.dedup();
         let all: Vec<usize> = (0..self.scene.instances.len()).filter(|i| solid(*i)).collect();

@@ -6,7 +6,7 @@ use super::reach::Reach;
 use super::select::{DropReason, Selection};
 use super::settings::{FroxelSettings, LightSearch};
 use crate::shadow::FitCamera;
-use framegraph_scene::Scene;
+use framegraph_scene::Renderables;
 use framegraph_shaders::layout::FroxelUniforms;
 use glam::DQuat;
 
@@ -155,7 +155,7 @@ impl std::fmt::Display for LightReport {
 
 /// The lists of a view's lights, if they are found by lists, and what became of them.
 pub(crate) fn lists(
-    scene: &Scene,
+    scene: &Renderables,
     selection: Selection<'_>,
     camera: &FitCamera<'_>,
     size_px: [u32; 2],
@@ -172,7 +172,7 @@ pub(crate) fn lists(
         LightSearch::Auto(settings) | LightSearch::Froxels(settings) => settings,
     };
     let grid = FroxelGrid::new(camera, size_px, &settings);
-    let bounds = scene.bounds();
+    let bounds = scene.whole();
     let of = |light: &&framegraph_scene::Light| Reach::of(light, camera.camera.eye, &bounds);
     let reaches: Vec<Reach> = kept[everywhere..].iter().filter_map(of).collect();
     let view_from_world = camera.camera.world_from_view.inverse();

@@ -3,7 +3,7 @@
 use super::reach::Reach;
 use crate::shadow::FitCamera;
 use crate::upload::pack::light_uniforms;
-use framegraph_scene::{Aabb, Frustum, Light, Scene};
+use framegraph_scene::{Aabb, Frustum, Light, Renderables, Scene};
 use framegraph_shaders::layout::LightError;
 use glam::{DVec3, DVec4};
 
@@ -52,11 +52,19 @@ pub(crate) struct Selection<'a> {
 }
 
 /// Sorts the lights of a scene but the sun. A light is kept if any of the cameras may see what it lights.
-pub(crate) fn select<'a>(scene: &'a Scene, sun: Option<&Light>, cameras: &[FitCamera<'_>]) -> Selection<'a> {
+pub(crate) fn select<'a>(
+    scene: &'a Scene,
+    renderables: &Renderables,
+    sun: Option<&Light>,
+    cameras: &[FitCamera<'_>],
+) -> Selection<'a> {
     let is_sun = |light: &Light| sun.is_some_and(|sun| std::ptr::eq(sun, light));
-    let bounds = scene.bounds();
-    let views: Vec<Seen> = cameras.iter().map(|camera| Seen::new(scene, camera)).collect();
     let (mut found, mut ending) = (Selection::default(), Vec::new());
+    if scene.lights.iter().all(is_sun) {
+        return found;
+    }
+    let bounds = renderables.whole();
+    let views: Vec<Seen> = cameras.iter().map(|camera| Seen::new(renderables, scene.lights.len(), camera)).collect();
     for (number, light) in scene.lights.iter().enumerate().filter(|(_, light)| !is_sun(light)) {
         match why_not(light, &bounds, &views) {
             Ok(true) => ending.push(light),
@@ -95,11 +103,13 @@ struct Seen {
 }
 
 impl Seen {
-    fn new(scene: &Scene, FitCamera { camera, width_over_height }: &FitCamera<'_>) -> Self {
+    fn new(scene: &Renderables, lights: usize, FitCamera { camera, width_over_height }: &FitCamera<'_>) -> Self {
         let frustum = Frustum::of_camera(camera, *width_over_height);
-        let bounds = scene.instances.iter().map(|instance| instance.bounds);
+        let mut seen = Vec::new();
+        scene.boxes().reaching(camera.eye, frustum.planes(), 1, &mut seen);
+        let bounds = seen.iter().map(|number| scene.bounds()[*number as usize]);
         let mut surfaces: Vec<Aabb> = bounds.filter(|bounds| frustum.may_see(bounds)).collect();
-        if surfaces.len() * scene.lights.len() > MOST_TESTS {
+        if surfaces.len() * lights > MOST_TESTS {
             surfaces = vec![surfaces.into_iter().fold(Aabb::EMPTY, Aabb::union)];
         }
         Self { eye: camera.eye, planes: frustum.planes().to_vec(), surfaces }

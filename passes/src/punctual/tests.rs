@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::shadow::FitCamera;
-use framegraph_scene::{Camera, Light, LightKind, Material, Projection, Scene};
+use framegraph_scene::{Camera, Light, LightKind, Material, Projection, Renderables, Scene};
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
 /// SplitMix64, 0…1.
@@ -50,9 +50,10 @@ fn made(
     search: LightSearch,
 ) -> (Option<LightLists>, LightReport, Vec<Light>) {
     let camera = FitCamera { camera, width_over_height: f64::from(size_px[0]) / f64::from(size_px[1]) };
-    let selection = select(scene, None, std::slice::from_ref(&camera));
+    let renderables = Renderables::new(scene);
+    let selection = select(scene, &renderables, None, std::slice::from_ref(&camera));
     let kept = selection.kept.iter().map(|light| (*light).clone()).collect();
-    let (lists, report) = lists(scene, selection, &camera, size_px, search);
+    let (lists, report) = lists(&renderables, selection, &camera, size_px, search);
     (lists, report, kept)
 }
 

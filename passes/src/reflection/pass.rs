@@ -1,7 +1,7 @@
 //! The pass that follows mirrored rays.
 
 use super::settings::ReflectionSettings;
-use crate::draw::{DrawOrder, InstanceSource, SurfaceDraw};
+use crate::draw::SurfaceDraw;
 use crate::program::{Interface, ProgramDesc, Programs};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS};
 use crate::view::{CameraView, ViewId, Views};
@@ -16,7 +16,11 @@ const REFLECTION_FORMAT: Format = Format::Rgba16Float;
 static SHADER: Module<'static> = library::pass("pass/reflection.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface {
-    groups: &[&["frame", "settings", "structure", "earlier", "earlier_sampler"], &MATERIAL_BINDINGS, &["objects"]],
+    groups: &[
+        &["frame", "settings", "structure", "earlier", "earlier_sampler"],
+        &MATERIAL_BINDINGS,
+        &["objects", "origins"],
+    ],
     constants: &[],
 };
 
@@ -85,11 +89,10 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
             constants: &[],
             depth: Depth::EQUAL,
             colors: &[],
-            order: DrawOrder::ByPipeline,
         };
-        let from = InstanceSource { scene: world.as_ref(), objects: &seen.objects };
-        surfaces.draw(&seen.view.visible.opaque, from, cx)?;
-        surfaces.draw(&seen.view.visible.mask, from, cx)
+        let [opaque, masked] = &seen.view.draws.surfaces;
+        surfaces.draw(opaque, seen.instances(world.as_ref()), cx)?;
+        surfaces.draw(masked, seen.instances(world.as_ref()), cx)
     }
 }
 

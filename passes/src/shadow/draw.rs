@@ -3,7 +3,7 @@
 use super::fitted::ShadowMap;
 use super::settings::ShadowSettings;
 use super::view::ViewShadows;
-use crate::draw::{DrawOrder, InstanceSource, SurfaceDraw};
+use crate::draw::SurfaceDraw;
 use crate::full_screen::FullScreen;
 use crate::program::{Interface, ProgramDesc, Programs};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS};
@@ -19,7 +19,7 @@ pub const SHADOW_FORMAT: Format = Format::Depth32Float;
 static SHADER: Module<'static> = library::pass("pass/shadow.wgsl").unwrap();
 
 static INTERFACE: Interface =
-    Interface { groups: &[&["shadow_view"], &MATERIAL_BINDINGS, &["objects"]], constants: &[] };
+    Interface { groups: &[&["shadow_view"], &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &[] };
 
 /// A layer of the shadow maps, and which of its maps a pass draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,12 +37,12 @@ impl ShadowLayer {
         Self { layer, only: None }
     }
 
-    /// The maps that are drawn.
-    pub(super) fn maps<'a>(&self, shadows: &'a ViewShadows) -> impl Iterator<Item = &'a ShadowMap> + use<'a> {
+    /// The maps that are drawn, each with its number.
+    pub(super) fn maps<'a>(&self, shadows: &'a ViewShadows) -> impl Iterator<Item = (usize, &'a ShadowMap)> + use<'a> {
         let Self { layer, only } = *self;
         let drawn = move |number: usize| only.is_none_or(|only| only >> number & 1 == 1);
         let here = move |(number, map): &(usize, &ShadowMap)| map.place.layer == layer && drawn(*number);
-        shadows.maps.iter().enumerate().filter(here).map(|(_, map)| map)
+        shadows.maps.iter().enumerate().filter(here)
     }
 }
 
@@ -122,7 +122,7 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
         let opaque = of("vs_opaque", fragment(None, "fs_opaque_moments"));
         let masked = of("vs_mask", fragment(Some("fs_mask"), "fs_mask_moments"));
         let programs: &Programs = world.as_ref();
-        for map in self.layer.maps(view.shadows(self.settings.layers())?) {
+        for (number, map) in self.layer.maps(view.shadows(self.settings.layers())?) {
             confine(map, cx)?;
             let frame = [Some(cx.uniform(&map.view))];
             if self.layer.only.is_some() {
@@ -130,16 +130,17 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
                 FullScreen { depth: Depth { write: true, ..Depth::NONE }, ..FullScreen::new(far, &[&frame]) }
                     .draw(programs, cx)?;
             }
-            for (desc, list) in [(opaque, &map.casters.opaque), (masked, &map.casters.mask)] {
+            // The draws of a view are made of its maps, so each has its own.
+            let batches = view.view.draws.casters.get(number).map_or(&[][..], |own| own);
+            for (desc, batches) in [opaque, masked].into_iter().zip(batches) {
                 let draw = SurfaceDraw {
                     program: &|_| programs.get(&desc),
                     frame: &frame,
                     constants: &[],
                     depth: Depth { bias, ..Depth::NEARER },
                     colors: &[],
-                    order: DrawOrder::Kept,
                 };
-                draw.draw(list, InstanceSource { scene: world.as_ref(), objects: &view.objects }, cx)?;
+                draw.draw(batches, view.instances(world.as_ref()), cx)?;
             }
         }
         Ok(())

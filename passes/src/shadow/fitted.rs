@@ -68,11 +68,11 @@ pub struct ShadowMap {
 
 impl ShadowMap {
     /// The map as a view at `eye` sees it, The eye is subtracted in double precision.
-    pub(super) fn new(fitted: &Fitted, eye: DVec3, settings: &ShadowSettings, penumbra: Penumbra) -> Self {
+    pub(super) fn new(fitted: Fitted, eye: DVec3, settings: &ShadowSettings, penumbra: Penumbra) -> Self {
         let ShadowSettings { map_texels, filter, bias, .. } = *settings;
         // The variance of moments takes the place of a bias.
         let back_m = if settings.has_moments() { 0.0 } else { f64::from(bias.constant_m) };
-        let Fitted { axes: [right, up, toward], linear_depth, place, .. } = *fitted;
+        let Fitted { axes: [right, up, toward], linear_depth, place, .. } = fitted;
         let share = |texels: u32| texels as f32 / map_texels.max(1) as f32;
         let clip_from_relative = fitted.clip_from_world * DMat4::from_translation(eye);
         let linear = linear_depth.truncate().extend(linear_depth.truncate().dot(eye) + linear_depth.w);
@@ -109,7 +109,7 @@ impl ShadowMap {
                 exponent: filter.exponent(),
                 _pad: [0.0; 3],
             },
-            casters: fitted.casters.clone(),
+            casters: fitted.casters,
             place,
         }
     }
@@ -122,6 +122,6 @@ pub(super) struct MapKey {
     pub clip_from_world: DMat4,
     /// Where it is drawn.
     pub place: Place,
-    /// What casts, by the number of the instance, and where it stands.
-    pub casters: Vec<(usize, DMat4)>,
+    /// What casts, by the number of the instance, and the stamp of where it stands.
+    pub casters: Vec<(u32, u64)>,
 }

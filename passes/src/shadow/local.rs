@@ -3,8 +3,7 @@
 use super::atlas::{self, Place};
 use super::fitted::Fitted;
 use super::settings::ShadowSettings;
-use super::sun::casts;
-use framegraph_scene::{Aabb, DrawLists, Light, LightKind, Scene};
+use framegraph_scene::{Aabb, DrawLists, Light, LightKind, Renderables};
 use glam::{DMat4, DVec3, DVec4};
 
 /// Distance of a local map's near plane from the light, in meters.
@@ -79,20 +78,20 @@ fn squares(lights: &[&Light], chosen: &[(usize, u32)]) -> Vec<u32> {
     chosen.iter().flat_map(|(index, halved)| std::iter::repeat_n(*halved, maps_of(lights[*index]))).collect()
 }
 
-/// How many layers the maps of `lights` share.
-pub(super) fn layers(scene: &Scene, lights: &[&Light], eye: DVec3, settings: &ShadowSettings) -> u64 {
-    atlas::layers(squares(lights, &chosen(lights, &scene.bounds(), eye, settings)))
+/// How many layers the maps of `lights` share in a scene within `bounds`.
+pub(super) fn layers(bounds: &Aabb, lights: &[&Light], eye: DVec3, settings: &ShadowSettings) -> u64 {
+    atlas::layers(squares(lights, &chosen(lights, bounds, eye, settings)))
 }
 
 /// For each light of `lights` the number of its first map, counted from that of the first map behind the cascades, if it has
 /// any; and the maps.
 pub(super) fn fit(
-    scene: &Scene,
+    scene: &Renderables,
     lights: &[&Light],
     eye: DVec3,
     settings: &ShadowSettings,
 ) -> (Vec<Option<u32>>, Vec<Fitted>) {
-    let bounds = scene.bounds();
+    let bounds = scene.whole();
     let chosen = chosen(lights, &bounds, eye, settings);
     let cascades = settings.cascades;
     let behind = |place: Place| Place { layer: place.layer + u16::from(cascades), ..place };
@@ -135,7 +134,7 @@ struct LocalView {
 }
 
 impl LocalView {
-    fn fit(&self, scene: &Scene) -> Fitted {
+    fn fit(&self, scene: &Renderables) -> Fitted {
         let Self { position, direction, right, far_m, place, .. } = *self;
         let count = f64::from(place.texels.max(8));
         let tan_half = self.tan_half * count / (count - 2.0 * GUARD_TEXELS);
@@ -153,7 +152,11 @@ impl LocalView {
                 && !bounds.is_empty()
                 && (bounds.min.max(position.min(bounds.max)) - position).length() <= far_m
         };
-        let draws = |i: usize| casts(scene, i) && inside(&scene.instances[i].bounds);
+        let planes: Vec<DVec4> = sides.into_iter().flatten().chain([w]).collect();
+        let mut casters = Vec::new();
+        scene.boxes().reaching(DVec3::ZERO, &planes, 1, &mut casters);
+        let draws = |number: usize| scene.kinds()[number].leaves_depth() && inside(&scene.bounds()[number]);
+        casters.retain(|number| draws(*number as usize));
         let texel_m = 2.0 * tan_half / count;
         Fitted {
             clip_from_world: clip,
@@ -162,7 +165,7 @@ impl LocalView {
             texel_m: [texel_m; 2],
             depth_m: range,
             near_over_range: near / range,
-            casters: DrawLists::of_scene_if(scene, draws),
+            casters: DrawLists::of_kinds(scene, &casters),
             place,
         }
     }

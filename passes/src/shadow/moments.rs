@@ -89,7 +89,7 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for ShadowBlur {
         };
         let (views, programs): (&Views, &Programs) = (world.as_ref(), world.as_ref());
         let program = ProgramDesc { fragment: Some("fs_blur"), ..ProgramDesc::new(&SHADER, &INTERFACE) };
-        for map in self.layer.maps(views.get(self.view)?.shadows(self.settings.layers())?) {
+        for (_, map) in self.layer.maps(views.get(self.view)?.shadows(self.settings.layers())?) {
             confine(map, cx)?;
             let first = IVec2::from(map.place.corner.map(|texel| texel as i32));
             let last = first + map.place.texels as i32 - 1;

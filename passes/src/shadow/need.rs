@@ -4,7 +4,7 @@ use super::local;
 use super::settings::ShadowSettings;
 use super::sun::SunScene;
 use super::volume::FitCamera;
-use framegraph_scene::{Light, Scene};
+use framegraph_scene::{Light, Renderables};
 use glam::DVec3;
 
 /// What shadow maps a view has use for.
@@ -25,7 +25,7 @@ pub(crate) struct ShadowNeed {
 impl ShadowNeed {
     /// That of cameras which share maps, for the sun and for the lamps that reach what they see.
     pub fn of(
-        scene: &Scene,
+        scene: &Renderables,
         sun: Option<&Light>,
         lamps: &[&Light],
         cameras: &[FitCamera<'_>],
@@ -40,7 +40,7 @@ impl ShadowNeed {
             let eye = cameras.first().map_or(DVec3::ZERO, |camera| camera.camera.eye);
             let (_, maps) = local::fit(scene, lamps, eye, settings);
             need.lamp_maps = maps.len();
-            need.lamp_layers = local::layers(scene, lamps, eye, settings) as usize;
+            need.lamp_layers = local::layers(&scene.whole(), lamps, eye, settings) as usize;
             need.lamp_casters = maps.iter().map(|map| map.casters.opaque.len() + map.casters.mask.len()).sum();
         }
         need

@@ -10,7 +10,7 @@ use super::settings::{Fit, ShadowSettings};
 use super::splits::far_ends;
 use super::volume::{FitCamera, clip_box, intersect};
 use super::warp::{Warp, WarpRange};
-use framegraph_scene::{Aabb, AlphaMode, DrawLists, Lobe, Scene};
+use framegraph_scene::{Aabb, DrawLists, Renderables};
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 /// The smallest extent of a map in meters: an empty or flat scene still gives a finite matrix.
@@ -41,6 +41,16 @@ impl LightAxes {
         points.into_iter().fold(Aabb::EMPTY, |all, point| all.including(self.of(point)))
     }
 
+    /// What a box takes along each axis: its middle, and its half sizes as far as they lie along it.
+    fn of_box(&self, bounds: &Aabb) -> Aabb {
+        if bounds.is_empty() {
+            return Aabb::EMPTY;
+        }
+        let (middle, half) = (self.of(bounds.center()), bounds.half_extent());
+        let half = DVec3::from_array(self.0.map(|axis| axis.abs().dot(half)));
+        Aabb { min: middle - half, max: middle + half }
+    }
+
     /// Planes around a rectangle of the map, without ends.
     fn prism(&self, bounds: &Aabb) -> [DVec4; 4] {
         let [right, up, _] = self.0;
@@ -55,13 +65,13 @@ impl LightAxes {
 
 /// What the sun's maps are fitted to.
 pub(super) struct SunScene<'a> {
-    scene: &'a Scene,
+    scene: &'a Renderables,
     cameras: &'a [FitCamera<'a>],
     /// Toward the sun.
     toward: DVec3,
     settings: &'a ShadowSettings,
-    /// Instances that cast, by number.
-    casters: Vec<usize>,
+    /// Instances that cast nothing although they leave depth, by number.
+    left_out: Vec<u32>,
     bounds: Aabb,
 }
 
@@ -75,11 +85,39 @@ pub(super) struct SunMaps {
 }
 
 impl<'a> SunScene<'a> {
-    pub fn new(scene: &'a Scene, cameras: &'a [FitCamera<'a>], toward: DVec3, settings: &'a ShadowSettings) -> Self {
+    pub fn new(
+        scene: &'a Renderables,
+        cameras: &'a [FitCamera<'a>],
+        toward: DVec3,
+        settings: &'a ShadowSettings,
+    ) -> Self {
         let toward = toward.try_normalize().unwrap_or(DVec3::Y);
-        let casters = casters(scene, toward);
-        let bounds = shadowed(scene, &casters, toward);
-        Self { scene, cameras, toward, settings, casters, bounds }
+        let left_out: Vec<u32> =
+            scene.flat().iter().filter(|flat| !has_behind(scene, toward, **flat)).map(|f| f.0).collect();
+        let flat =
+            scene.flat().iter().map(|(number, _)| *number).filter(|number| left_out.binary_search(number).is_err());
+        let cast = flat.fold(scene.solid_casters(), |all, number| all.union(scene.bounds()[number as usize]));
+        let bounds = shadowed(scene.whole(), cast, toward);
+        Self { scene, cameras, toward, settings, left_out, bounds }
+    }
+
+    /// Whether an instance can shadow another or itself.
+    fn casts(&self, number: u32) -> bool {
+        self.scene.kinds()[number as usize].leaves_depth()
+            && (self.left_out.is_empty() || self.left_out.binary_search(&number).is_err())
+    }
+
+    /// What all that casts takes along the light's axes.
+    fn cast(&self, axes: &LightAxes) -> Aabb {
+        let boxes = (0..).zip(self.scene.bounds()).filter(|(number, _)| self.casts(*number));
+        boxes.fold(Aabb::EMPTY, |all, (_, bounds)| all.union(axes.of_box(bounds)))
+    }
+
+    /// Instances that reach into half spaces of the world.
+    fn reaching(&self, planes: &[DVec4]) -> Vec<u32> {
+        let mut found = Vec::new();
+        self.scene.boxes().reaching(DVec3::ZERO, planes, 1, &mut found);
+        found
     }
 
     /// Fits as many maps as the settings have cascades.
@@ -87,7 +125,7 @@ impl<'a> SunScene<'a> {
         let stable = self.settings.fit == Fit::Stable;
         let along = if stable { None } else { self.cameras.first().map(|c| c.camera.forward()) };
         let axes = LightAxes::new(self.toward, along);
-        let cast = axes.bounds(self.casters.iter().flat_map(|i| self.scene.instances[*i].bounds.corners()));
+        let cast = self.cast(&axes);
         let (near_m, far_m) = if stable { self.whole_range() } else { self.seen_range(&axes, &cast) };
         let far_ends = far_ends(self.settings.splits, self.settings.cascades.into(), near_m, far_m);
         let mut from = near_m;
@@ -105,7 +143,7 @@ impl<'a> SunScene<'a> {
     /// they may cast upon.
     pub fn need(&self) -> (usize, Option<(f64, f64)>) {
         let axes = LightAxes::new(self.toward, None);
-        let cast = axes.bounds(self.casters.iter().flat_map(|i| self.scene.instances[*i].bounds.corners()));
+        let cast = self.cast(&axes);
         let (from, to) = self.whole_range();
         let receivers = |camera| self.receivers(camera, &axes, &cast, from, to);
         let received = axes.bounds(self.cameras.iter().flat_map(receivers));
@@ -156,9 +194,7 @@ impl<'a> SunScene<'a> {
             let inside = |p: &DVec4| p.truncate().dot(center) + p.w + p.truncate().abs().dot(half) >= 0.0;
             slice.planes.iter().all(inside)
         };
-        let boxes: Vec<Aabb> =
-            self.scene.instances.iter().map(|i| i.bounds).filter(|b| !b.is_empty() && seen(b)).collect();
-        for bounds in few(boxes) {
+        for bounds in self.boxes(&self.reaching(&slice.planes)).into_iter().filter(seen) {
             intersect(&bounds, &slice, &prism, &mut points);
         }
         points
@@ -232,23 +268,25 @@ impl<'a> SunScene<'a> {
     }
 
     /// Casters over a rectangle of the map that are not all behind it.
-    fn casting(&self, axes: &LightAxes, received: &Aabb) -> Vec<usize> {
-        let over = |i: &usize| {
-            let own = axes.bounds(self.scene.instances[*i].bounds.corners());
-            own.min.x <= received.max.x
-                && own.max.x >= received.min.x
-                && own.min.y <= received.max.y
-                && own.max.y >= received.min.y
-                && own.max.z >= received.min.z
-        };
-        self.casters.iter().copied().filter(over).collect()
+    fn casting(&self, axes: &LightAxes, received: &Aabb) -> Vec<u32> {
+        let [right_from, right_to, up_from, up_to] = axes.prism(received);
+        let before = axes.0[2].extend(-received.min.z);
+        let mut casters = self.reaching(&[right_from, right_to, up_from, up_to, before]);
+        casters.retain(|number| self.casts(*number));
+        casters
+    }
+
+    /// The boxes of these instances, or the box around them if they are many.
+    fn boxes(&self, numbers: &[u32]) -> Vec<Aabb> {
+        let boxes = numbers.iter().map(|number| self.scene.bounds()[*number as usize]);
+        if numbers.len() <= MOST_BOXES { boxes.collect() } else { vec![boxes.fold(Aabb::EMPTY, Aabb::union)] }
     }
 
     /// From the farthest receiver to the nearest caster over the receivers, along the axis toward the sun.
-    fn depth_range(&self, axes: &LightAxes, received: &Aabb, casters: &[usize]) -> (f64, f64) {
+    fn depth_range(&self, axes: &LightAxes, received: &Aabb, casters: &[u32]) -> (f64, f64) {
         let prism = axes.prism(received);
         let mut points = Vec::new();
-        for bounds in few(casters.iter().map(|i| self.scene.instances[*i].bounds).collect()) {
+        for bounds in self.boxes(casters) {
             clip_box(&bounds, &prism, &mut points);
         }
         let nearest = points.iter().fold(received.max.z, |most, p| most.max(axes.0[2].dot(*p)));
@@ -262,7 +300,7 @@ impl<'a> SunScene<'a> {
         warp: Option<Warp>,
         (low, high): (DVec2, DVec2),
         (far, near): (f64, f64),
-        casters: &[usize],
+        casters: &[u32],
     ) -> Fitted {
         let [right, up, toward] = axes.0;
         let texels = f64::from(self.settings.map_texels.max(4));
@@ -285,7 +323,6 @@ impl<'a> SunScene<'a> {
         let clip = DMat4::from_cols(row(x, scale.x, middle.x), row(y, scale.y, middle.y), z, w).transpose();
         let per_texel = [2.0 / (texels * scale.x), 2.0 / (texels * scale.y)];
         let texel_m = warp.map_or(per_texel, |warp| warp.texel_m(per_texel));
-        let draws = |i: usize| casters.binary_search(&i).is_ok();
         Fitted {
             clip_from_world: clip,
             linear_depth,
@@ -293,31 +330,15 @@ impl<'a> SunScene<'a> {
             texel_m,
             depth_m: range / depth,
             near_over_range: 0.0,
-            casters: DrawLists::of_scene_if(self.scene, draws),
+            casters: DrawLists::of_kinds(self.scene, casters),
             place: Place::default(),
         }
     }
 }
 
-/// The boxes, or the box around them if they are many.
-fn few(boxes: Vec<Aabb>) -> Vec<Aabb> {
-    if boxes.len() <= MOST_BOXES {
-        return boxes;
-    }
-    vec![boxes.into_iter().fold(Aabb::EMPTY, Aabb::union)]
-}
-
-/// Whether an instance leaves depth in a shadow map.
-pub(super) fn casts(scene: &Scene, instance: usize) -> bool {
-    let material = &scene.materials[scene.instances[instance].material.index()];
-    material.alpha != AlphaMode::Blend && !material.lobes().contains(Lobe::Transmission)
-}
-
 /// A box around all that casts and the shadows of it, as far as the scene goes: wide ground does not count where no shadow
 /// falls.
-fn shadowed(scene: &Scene, casters: &[usize], toward: DVec3) -> Aabb {
-    let whole = scene.bounds();
-    let cast = casters.iter().fold(Aabb::EMPTY, |all, caster| all.union(scene.instances[*caster].bounds));
+fn shadowed(whole: Aabb, cast: Aabb, toward: DVec3) -> Aabb {
     if cast.is_empty() || toward.y <= 0.0 {
         return whole;
     }
@@ -327,25 +348,14 @@ fn shadowed(scene: &Scene, casters: &[usize], toward: DVec3) -> Aabb {
     Aabb { min: reach.min.max(whole.min), max: reach.max.min(whole.max) }
 }
 
-/// Instances that can shadow another or themselves, in order. A flat one with nothing behind it cannot: the ground.
-fn casters(scene: &Scene, toward: DVec3) -> Vec<usize> {
-    let has_behind = |i: usize| {
-        let bounds = &scene.instances[i].bounds;
-        let half = bounds.half_extent();
-        let Some(flat) = (0..3).find(|axis| half[*axis] <= 1e-6 * half.max_element()) else { return true };
-        let toward = toward[flat];
-        // The plane's far side, with room for what stands on it to be rounded.
-        let slack = 1e-4 * half.max_element().min(1.0);
-        toward == 0.0
-            || scene.instances.iter().enumerate().any(|(j, other)| {
-                let other = &other.bounds;
-                let below = if toward > 0.0 {
-                    other.min[flat] < bounds.min[flat] - slack
-                } else {
-                    other.max[flat] > bounds.max[flat] + slack
-                };
-                j != i && below
-            })
-    };
-    (0..scene.instances.len()).filter(|i| casts(scene, *i) && has_behind(*i)).collect()
+/// Whether anything is behind a flat instance, which then can shadow it; ground with everything on it casts nothing.
+fn has_behind(scene: &Renderables, toward: DVec3, (number, axis): (u32, usize)) -> bool {
+    let (bounds, whole, toward) = (&scene.bounds()[number as usize], scene.whole(), toward[axis]);
+    // The plane's far side, with room for what stands on it to be rounded.
+    let slack = 1e-4 * bounds.half_extent().max_element().min(1.0);
+    if toward > 0.0 {
+        whole.min[axis] < bounds.min[axis] - slack
+    } else {
+        toward == 0.0 || whole.max[axis] > bounds.max[axis] + slack
+    }
 }

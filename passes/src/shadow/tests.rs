@@ -7,7 +7,7 @@ use super::sun::{LightAxes, SunMaps, SunScene};
 use super::view::local_layers;
 use super::volume::FitCamera;
 use framegraph_scene::geometry::cuboid;
-use framegraph_scene::{Camera, Light, LightKind, Material, Projection, Scene};
+use framegraph_scene::{Camera, Light, LightKind, Material, Projection, Renderables, Scene};
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec3};
 
 const ASPECT: f64 = 16.0 / 9.0;
@@ -36,7 +36,7 @@ fn camera(eye: [f64; 3], target: [f64; 3]) -> Camera {
 }
 
 fn fit(scene: &Scene, camera: &Camera, toward: DVec3, settings: &ShadowSettings) -> SunMaps {
-    SunScene::new(scene, &[FitCamera { camera, width_over_height: ASPECT }], toward, settings).fit()
+    SunScene::new(&Renderables::new(scene), &[FitCamera { camera, width_over_height: ASPECT }], toward, settings).fit()
 }
 
 fn ndc(map: &Fitted, point: DVec3) -> DVec3 {
@@ -283,7 +283,7 @@ fn local_maps_are_as_large_as_their_lights_are_important() {
     let lights: Vec<&Light> = scene.lights.iter().collect();
     let settings = ShadowSettings { cascades: 2, local_maps: 24, ..ShadowSettings::texels(1024) };
     let sides = |settings: &ShadowSettings| -> [Option<u32>; 4] {
-        let (starts, maps) = local::fit(&scene, &lights, DVec3::ZERO, settings);
+        let (starts, maps) = local::fit(&Renderables::new(&scene), &lights, DVec3::ZERO, settings);
         let layers = maps.iter().map(|map| map.place.layer).max().map_or(0, |last| last - 1);
         assert_eq!(layers, u16::from(local_layers(&scene, DVec3::ZERO, settings)));
         assert!(layers <= settings.local_layers() && maps.iter().all(|map| map.place.layer >= 2));

@@ -5,7 +5,7 @@ use super::local;
 use super::settings::{MOST_MAPS, ShadowSettings};
 use super::sun::SunScene;
 use super::volume::FitCamera;
-use framegraph_scene::{DrawLists, Light, LightKind, Scene};
+use framegraph_scene::{DrawLists, Light, LightKind, Renderables, Scene};
 use framegraph_shaders::layout::{ShadowMapUniforms, ShadowUniforms};
 use glam::{DVec3, Vec4};
 
@@ -32,7 +32,7 @@ impl ViewShadows {
     /// Fits maps for a view at `eye` that shares them with other cameras: all see what they need in them. The first camera
     /// of `cameras` is the one that cascades are told apart by, and whose perspective the maps follow if it is alone.
     pub(crate) fn fit(
-        scene: &Scene,
+        scene: &Renderables,
         sun: Option<&Light>,
         lights: &[&Light],
         cameras: &[FitCamera<'_>],
@@ -58,12 +58,12 @@ impl ViewShadows {
         let of_local = Penumbra::Bulb(settings.bulb_m.unwrap_or(BULB_M));
         let key = |fitted: &Fitted| {
             let DrawLists { opaque, mask, .. } = &fitted.casters;
-            let stands = |i: &usize| (*i, scene.instances[*i].world_from_model);
+            let stands = |i: &u32| (*i, scene.stamps()[*i as usize]);
             let casters = opaque.iter().chain(mask).map(stands).collect();
             MapKey { clip_from_world: fitted.clip_from_world, place: fitted.place, casters }
         };
         let keys = fitted.iter().map(key).collect();
-        let map = |(i, fitted): (usize, &Fitted)| {
+        let map = |(i, fitted): (usize, Fitted)| {
             let penumbra = if i < cascades { of_sun } else { of_local };
             ShadowMap::new(fitted, eye, settings, penumbra)
         };
@@ -87,7 +87,7 @@ impl ViewShadows {
             contact_m: settings.contact.map_or(0.0, |contact| contact.distance_m),
             _pad: 0.0,
         };
-        Self { uniforms, maps: fitted.iter().enumerate().map(map).collect(), keys, of_lights, settings: *settings }
+        Self { uniforms, maps: fitted.into_iter().enumerate().map(map).collect(), keys, of_lights, settings: *settings }
     }
 
     /// What shaders read of each map.
@@ -108,5 +108,5 @@ pub fn local_maps(scene: &Scene, cascades: u8) -> u8 {
 #[must_use]
 pub fn local_layers(scene: &Scene, eye: DVec3, settings: &ShadowSettings) -> u8 {
     let lights: Vec<&Light> = scene.lights.iter().filter(|light| light.is_on()).collect();
-    local::layers(scene, &lights, eye, settings) as u8
+    local::layers(&scene.bounds(), &lights, eye, settings) as u8
 }

@@ -3,10 +3,10 @@
 use framegraph_shaders::layout::{
     LightError, LightUniforms, ObjectUniforms, Punctual, VertexAttributes, VertexPosition,
 };
-use glam::{DVec3, Vec2, Vec3, Vec4};
+use glam::{DMat3, DVec3, Mat4, Vec2, Vec3, Vec4};
 use half::f16;
 
-use framegraph_scene::Scene;
+use framegraph_scene::Instance;
 use framegraph_scene::light::{Light, LightKind};
 use framegraph_scene::mesh::Mesh;
 
@@ -42,10 +42,9 @@ pub fn colors_are_cut(mesh: &Mesh) -> bool {
     mesh.colors.iter().any(|c| c.max_element() > MAX_HALF || c.min_element() < 0.0)
 }
 
-/// The placement of every instance, in the scene's order, with `origin` (in meters) as the zero
-/// point: the eye for pictures that hold far from the world's origin, zero for plain world space.
-pub fn object_uniforms(scene: &Scene, origin: DVec3) -> impl Iterator<Item = ObjectUniforms> + '_ {
-    scene.instances.iter().map(move |instance| ObjectUniforms::new(instance.relative_from_model(origin)))
+/// How an instance is turned and scaled. Where its zero point is depends on the eye and is no part of it.
+pub fn object_uniforms(instance: &Instance) -> ObjectUniforms {
+    ObjectUniforms::new(Mat4::from_mat3(DMat3::from_mat4(instance.world_from_model).as_mat3()))
 }
 
 /// A light with `origin` as the zero point, multiplied with the exposure (in 1/nits).
@@ -74,7 +73,7 @@ mod tests {
 
     use super::*;
     use framegraph_scene::geometry::cuboid;
-    use framegraph_scene::{Aabb, Instance, MaterialId, MeshId};
+    use framegraph_scene::{Aabb, MaterialId, MeshId};
 
     #[test]
     fn vertices_carry_every_stream_and_absent_ones_are_neutral() {
@@ -101,16 +100,12 @@ mod tests {
     }
 
     #[test]
-    fn objects_and_lights_move_with_the_origin() {
-        let mut scene = Scene::default();
+    fn lights_move_with_the_origin_and_objects_do_not() {
         let origin = DVec3::new(1e6, 0.0, 0.0);
         let at = origin + DVec3::new(0.25, 1.0, 2.0);
         let id = (MeshId::new(0), MaterialId::new(0));
-        let placed = DMat4::from_translation(at);
-        scene.instances.push(Instance::new("", id.0, id.1, placed, &Aabb::EMPTY));
-        let objects: Vec<_> = object_uniforms(&scene, origin).collect();
-        let column = objects[0].world_from_model.w_axis;
-        assert_eq!(column.truncate(), Vec3::new(0.25, 1.0, 2.0));
+        let of = |placed: DMat4| object_uniforms(&Instance::new("", id.0, id.1, placed, &Aabb::EMPTY));
+        assert_eq!(of(DMat4::from_translation(at)), of(DMat4::IDENTITY));
         let light = Light {
             kind: LightKind::Point { intensity_candela: 100.0, range_m: Some(2.0) },
             position: at,

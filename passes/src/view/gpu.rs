@@ -1,8 +1,16 @@
-//! Views with their buffers on the device.
+//! The views of a frame on the GPU.
+//!
+//! Each view has buffers of its own for what depends on its eye, and for what it draws; meshes, materials and textures are the
+//! scene's and shared. How instances are turned and scaled is uploaded once, and again where it changed.
 
 use super::CameraView;
+use crate::draw::InstanceSource;
 use crate::error::PassError;
+use crate::prepared::Placements;
 use crate::shadow::ViewShadows;
+use crate::upload::GpuScene;
+use bytemuck::cast_slice;
+use framegraph_shaders::layout::ObjectUniforms;
 use framegraph_wgpu::{DeviceError, Gpu};
 use glam::DVec2;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages};
@@ -21,8 +29,6 @@ impl ViewId {
 pub struct GpuView {
     /// The view.
     pub view: CameraView,
-    /// `layout::ObjectUniforms` of each instance, by its number.
-    pub objects: Buffer,
     /// `layout::MotionUniforms` of each instance, where any moves.
     pub motions: Buffer,
     /// `layout::LightUniforms` of the punctual lights.
@@ -31,10 +37,64 @@ pub struct GpuView {
     pub light_lists: Buffer,
     /// `layout::ShadowMapUniforms` of the shadow maps.
     pub shadow_maps: Buffer,
+    /// `layout::ObjectUniforms` of each instance, by its number; and those that were uploaded.
+    objects: Buffer,
+    uploaded: Placements,
+    /// Where the zero point of each instance's mesh is, relative to the eye.
+    origins: Buffer,
+    /// Numbers of instances, as draws take them.
+    numbers: Buffer,
     id: ViewId,
 }
 
 impl GpuView {
+    fn new(gpu: &Gpu, id: ViewId, view: CameraView) -> Self {
+        let storage = |label| buffer(gpu, label, BufferUsages::STORAGE, 0);
+        let mut own = Self {
+            objects: storage("objects"),
+            uploaded: Placements::default(),
+            motions: storage("motions"),
+            origins: storage("origins"),
+            numbers: buffer(gpu, "instances", BufferUsages::VERTEX, 0),
+            lights: storage("lights"),
+            light_lists: storage("light lists"),
+            shadow_maps: storage("shadow maps"),
+            view,
+            id,
+        };
+        own.fill(gpu);
+        own
+    }
+
+    /// Uploads the view.
+    fn fill(&mut self, gpu: &Gpu) {
+        let view = &self.view;
+        let placements = &view.placements;
+        let bytes = (placements.count() * size_of::<ObjectUniforms>()) as u64;
+        if fit(gpu, &mut self.objects, "objects", BufferUsages::STORAGE, bytes) {
+            self.uploaded = Placements::default();
+        }
+        for (first, piece) in placements.changed_since(&self.uploaded) {
+            let offset = (first * size_of::<ObjectUniforms>()) as u64;
+            gpu.queue.write_buffer(&self.objects, offset, cast_slice(piece));
+        }
+        self.uploaded = placements.clone();
+        let light_words = view.light_lists.as_ref().map_or(&[][..], |lists| &lists.words);
+        let maps = view.shadows.as_ref().map(ViewShadows::map_uniforms).unwrap_or_default();
+        let storage = BufferUsages::STORAGE;
+        refill(gpu, &mut self.motions, "motions", storage, cast_slice(&view.motions));
+        refill(gpu, &mut self.origins, "origins", storage, cast_slice(&view.origins));
+        refill(gpu, &mut self.numbers, "instances", BufferUsages::VERTEX, cast_slice(&view.draws.numbers));
+        refill(gpu, &mut self.lights, "lights", storage, cast_slice(&view.lights));
+        refill(gpu, &mut self.light_lists, "light lists", storage, cast_slice(light_words));
+        refill(gpu, &mut self.shadow_maps, "shadow maps", storage, cast_slice(&maps));
+    }
+
+    /// Where its draws take instances from.
+    pub fn instances<'a>(&'a self, scene: &'a GpuScene) -> InstanceSource<'a> {
+        InstanceSource { scene, objects: &self.objects, origins: &self.origins, numbers: &self.numbers }
+    }
+
     /// The view's shadow maps for a frame that declares so many layers of them.
     ///
     /// # Errors
@@ -58,15 +118,7 @@ impl Views {
     /// When the device refuses a buffer.
     pub fn new(gpu: &Gpu, views: impl IntoIterator<Item = CameraView>) -> Result<Self, DeviceError> {
         gpu.guard("buffers of views", || {
-            let view = |(number, view): (u32, CameraView)| GpuView {
-                objects: storage(gpu, "objects", bytemuck::cast_slice(&view.objects)),
-                motions: storage(gpu, "motions", bytemuck::cast_slice(&view.motions)),
-                lights: storage(gpu, "lights", bytemuck::cast_slice(&view.lights)),
-                light_lists: storage(gpu, "light lists", bytemuck::cast_slice(view.light_words())),
-                shadow_maps: storage(gpu, "shadow maps", bytemuck::cast_slice(&view.shadow_map_uniforms())),
-                view,
-                id: ViewId(number),
-            };
+            let view = |(number, view)| GpuView::new(gpu, ViewId(number), view);
             Self((0..).zip(views).map(view).collect())
         })
     }
@@ -78,12 +130,8 @@ impl Views {
     pub fn set(&mut self, gpu: &Gpu, id: ViewId, view: CameraView) -> Result<(), PassError> {
         let count = self.0.len();
         let own = self.0.get_mut(id.0 as usize).ok_or(PassError::NoView { view: id.0, count })?;
-        refill(gpu, &mut own.objects, "objects", bytemuck::cast_slice(&view.objects));
-        refill(gpu, &mut own.motions, "motions", bytemuck::cast_slice(&view.motions));
-        refill(gpu, &mut own.lights, "lights", bytemuck::cast_slice(&view.lights));
-        refill(gpu, &mut own.light_lists, "light lists", bytemuck::cast_slice(view.light_words()));
-        refill(gpu, &mut own.shadow_maps, "shadow maps", bytemuck::cast_slice(&view.shadow_map_uniforms()));
         own.view = view;
+        own.fill(gpu);
         Ok(())
     }
 
@@ -111,20 +159,36 @@ impl Views {
     }
 }
 
-/// A storage buffer of these bytes; never empty, since an empty one cannot be bound.
-fn storage(gpu: &Gpu, label: &str, bytes: &[u8]) -> Buffer {
-    let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
-    let size = (bytes.len() as u64).max(256);
-    let buffer =
-        gpu.device.create_buffer(&BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false });
-    gpu.queue.write_buffer(&buffer, 0, bytes);
-    buffer
+/// A buffer for so many bytes; never empty, since an empty one cannot be bound.
+fn buffer(gpu: &Gpu, label: &str, usage: BufferUsages, bytes: u64) -> Buffer {
+    let (size, usage) = (bytes.max(256), usage | BufferUsages::COPY_DST);
+    gpu.device.create_buffer(&BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
 }
 
-fn refill(gpu: &Gpu, buffer: &mut Buffer, label: &str, bytes: &[u8]) {
-    if bytes.len() as u64 <= buffer.size() {
-        gpu.queue.write_buffer(buffer, 0, bytes);
-    } else {
-        *buffer = storage(gpu, label, bytes);
+/// Replaces a buffer that is too small for so many bytes; whether it did. One that grows again and again is replaced less
+/// and less often.
+fn fit(gpu: &Gpu, own: &mut Buffer, label: &str, usage: BufferUsages, bytes: u64) -> bool {
+    let is_small = bytes > own.size();
+    if is_small {
+        let most = gpu.device.limits().max_buffer_size;
+        *own = buffer(gpu, label, usage, bytes.max((own.size() + own.size() / 2).min(most)).next_multiple_of(4));
+    }
+    is_small
+}
+
+fn refill(gpu: &Gpu, own: &mut Buffer, label: &str, usage: BufferUsages, bytes: &[u8]) {
+    fit(gpu, own, label, usage, bytes.len() as u64);
+    gpu.queue.write_buffer(own, 0, bytes);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_view_that_is_not_there_is_named() -> Result<(), Box<dyn std::error::Error>> {
+        let views = Views::new(&Gpu::noop()?, [])?;
+        assert_eq!(views.get(ViewId(1)).err(), Some(PassError::NoView { view: 1, count: 0 }));
+        Ok(())
     }
 }

@@ -7,7 +7,8 @@ use glam::{DMat3, DVec3, Mat4, Vec3};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ObjectUniforms {
-    /// Transform from model to world space, in m.
+    /// Transform from model to world space, without the translation, which depends on the eye: shaders take it from
+    /// `origins`.
     pub world_from_model: Mat4,
     /// First column of the normal matrix: cofactors of the upper 3×3, scaled to a largest entry of one, times the sign
     /// of the determinant.

@@ -1,4 +1,4 @@
-//! The vertex format: two streams.
+//! The vertex format: two streams of vertices and one of instances.
 //!
 //! Positions lie in a stream of their own, everything else in a second one. Shadow maps and
 //! the depth prepass of opaque geometry read positions alone: 12 bytes a vertex instead of
@@ -12,6 +12,8 @@ use half::f16;
 pub const STREAM_POSITION: u32 = 0;
 /// Index of the vertex buffer with [`VertexAttributes`].
 pub const STREAM_ATTRIBUTES: u32 = 1;
+/// Index of the vertex buffer with a `u32` an instance: the number of the object.
+pub const STREAM_INSTANCE: u32 = 2;
 
 /// Element of the position stream.
 #[repr(C)]
@@ -54,6 +56,7 @@ pub enum VertexFormat {
     Float32x3,
     Float32x4,
     Float16x4,
+    Uint32,
 }
 
 /// Where a shader location is found in memory.
@@ -61,7 +64,7 @@ pub enum VertexFormat {
 pub struct VertexAttribute {
     /// `@location` in the vertex stage.
     pub location: u32,
-    /// [`STREAM_POSITION`] or [`STREAM_ATTRIBUTES`].
+    /// [`STREAM_POSITION`], [`STREAM_ATTRIBUTES`] or [`STREAM_INSTANCE`].
     pub stream: u32,
     /// Offset from the start of the element, in bytes.
     pub offset_bytes: u64,
@@ -73,8 +76,8 @@ const fn attribute(location: u32, stream: u32, offset_bytes: usize, format: Vert
     VertexAttribute { location, stream, offset_bytes: offset_bytes as u64, format }
 }
 
-/// All attributes by location: position, normal, tangent, uv0, uv1, color.
-pub const VERTEX_ATTRIBUTES: [VertexAttribute; 6] = {
+/// All attributes by location: position, normal, tangent, uv0, uv1, color, number of the object.
+pub const VERTEX_ATTRIBUTES: [VertexAttribute; 7] = {
     use VertexAttributes as A;
     use std::mem::offset_of;
     const REST: u32 = STREAM_ATTRIBUTES;
@@ -85,6 +88,7 @@ pub const VERTEX_ATTRIBUTES: [VertexAttribute; 6] = {
         attribute(3, REST, offset_of!(A, uv0), VertexFormat::Float32x2),
         attribute(4, REST, offset_of!(A, uv1), VertexFormat::Float32x2),
         attribute(5, REST, offset_of!(A, color), VertexFormat::Float16x4),
+        attribute(6, STREAM_INSTANCE, 0, VertexFormat::Uint32),
     ]
 };
 
@@ -92,14 +96,16 @@ pub const VERTEX_ATTRIBUTES: [VertexAttribute; 6] = {
 pub const fn stream_stride_bytes(stream: u32) -> u64 {
     match stream {
         STREAM_POSITION => size_of::<VertexPosition>() as u64,
+        STREAM_INSTANCE => size_of::<u32>() as u64,
         _ => size_of::<VertexAttributes>() as u64,
     }
 }
 
 impl VertexFormat {
-    /// Components a shader sees; all of these arrive as f32.
+    /// Components a shader sees; floats of any size arrive as f32.
     pub const fn components(self) -> u32 {
         match self {
+            Self::Uint32 => 1,
             Self::Float32x2 => 2,
             Self::Float32x3 => 3,
             Self::Float32x4 | Self::Float16x4 => 4,
@@ -109,6 +115,7 @@ impl VertexFormat {
     /// Bytes in memory.
     pub const fn size_bytes(self) -> u64 {
         match self {
+            Self::Uint32 => 4,
             Self::Float32x2 | Self::Float16x4 => 8,
             Self::Float32x3 => 12,
             Self::Float32x4 => 16,
@@ -122,7 +129,7 @@ mod tests {
 
     #[test]
     fn attributes_fill_their_streams_without_gap_or_overlap() {
-        for stream in [STREAM_POSITION, STREAM_ATTRIBUTES] {
+        for stream in [STREAM_POSITION, STREAM_ATTRIBUTES, STREAM_INSTANCE] {
             let mut end_bytes = 0;
             for attribute in VERTEX_ATTRIBUTES.iter().filter(|a| a.stream == stream) {
                 assert_eq!(attribute.offset_bytes, end_bytes, "location {}", attribute.location);

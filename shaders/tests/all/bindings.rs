@@ -55,12 +55,12 @@ fn the_color_pass_binds_frame_material_and_objects() {
     let names = |group: usize| -> Vec<&str> { groups[group].iter().map(|slot| slot.binding.name.as_str()).collect() };
     assert_eq!(groups.len(), 3);
     assert!(names(GROUP_FRAME).contains(&"frame") && names(GROUP_FRAME).contains(&"lights"));
-    assert_eq!(names(GROUP_OBJECTS), ["objects"]);
+    assert_eq!(names(GROUP_OBJECTS), ["objects", "origins"]);
 
     let frame = &groups[GROUP_FRAME][0];
     assert!(frame.vertex && frame.fragment && !frame.compute);
-    let objects = &groups[GROUP_OBJECTS][0];
-    assert!(objects.vertex && !objects.fragment, "the fragment stage reads no objects");
+    let is_of_vertices = groups[GROUP_OBJECTS].iter().all(|slot| slot.vertex && !slot.fragment);
+    assert!(is_of_vertices, "the fragment stage reads no objects");
 }
 
 /// Slot i of a material has its texture at 1 + 2i and its sampler at 2 + 2i, so that a new one renumbers no other.

@@ -108,7 +108,8 @@ fn depth_passes_of_opaque_geometry_read_positions_alone() {
         let shader = plain(&variants::pass(pass));
         let opaque = shader.reflection.entry_point("vs_opaque").unwrap();
         assert_eq!(opaque.stage, Stage::Vertex);
-        assert_eq!(opaque.vertex_inputs.len(), 1);
+        let read: Vec<u32> = opaque.vertex_inputs.iter().map(|input| input.location).collect();
+        assert_eq!(read, [0, 6], "position, and the number of the object");
         assert!(opaque.bindings.iter().all(|b| b.group != GROUP_MATERIAL));
     }
 }

@@ -1,11 +1,13 @@
-// Group 2: one element per object, indexed by the instance index of the draw.
+// Group 2: one element per object. Draws are instanced: the number of the object comes with the
+// instance, from the third vertex stream.
 
 import package::interface::frame::frame;
 import package::lib::numerics::normalize_or;
 
 /// Placement of an object. Mirrored by `layout::ObjectUniforms`, which fills it.
 struct ObjectUniforms {
-    /// Model to world space.
+    /// Model to world space, without the translation, which depends on the eye: its last column is
+    /// that of the identity.
     world_from_model: mat4x4<f32>,
     /// Columns of the matrix that carries normals: cofactors of the upper 3×3, scaled to a
     /// largest entry of one, times the sign of the determinant. Cofactors exist where the
@@ -18,10 +20,14 @@ struct ObjectUniforms {
 }
 
 @group(2) @binding(0) var<storage, read> objects: array<ObjectUniforms>;
+/// Where the zero point of each object's mesh is, in m; xyz.
+@group(2) @binding(1) var<storage, read> origins: array<vec4<f32>>;
 
 /// World position in m of a model position.
 fn world_position(position: vec3<f32>, instance: u32) -> vec3<f32> {
-    return (objects[instance].world_from_model * vec4<f32>(position, 1.0)).xyz;
+    let turned = objects[instance].world_from_model;
+    let origin = vec4<f32>(origins[instance].xyz, 1.0);
+    return (mat4x4<f32>(turned[0], turned[1], turned[2], origin) * vec4<f32>(position, 1.0)).xyz;
 }
 
 /// Clip position of a world position. The depth prepass and the color pass must agree to the

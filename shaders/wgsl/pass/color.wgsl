@@ -94,7 +94,7 @@ const F90_IS_GIVEN: bool = false;
 
 @vertex
 fn vs_main(
-    @builtin(instance_index) instance: u32,
+    @location(6) instance: u32,
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) tangent: vec4<f32>,

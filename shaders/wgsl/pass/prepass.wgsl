@@ -21,7 +21,7 @@ struct MaskVertex {
 /// Opaque geometry; no fragment stage.
 @vertex
 fn vs_opaque(
-    @builtin(instance_index) instance: u32,
+    @location(6) instance: u32,
     @location(0) position: vec3<f32>,
 ) -> OpaqueVertex {
     return OpaqueVertex(clip_position(world_position(position, instance)));
@@ -30,7 +30,7 @@ fn vs_opaque(
 /// Alpha-masked geometry.
 @vertex
 fn vs_mask(
-    @builtin(instance_index) instance: u32,
+    @location(6) instance: u32,
     @location(0) position: vec3<f32>,
     @location(3) uv0: vec2<f32>,
     @location(4) uv1: vec2<f32>,

@@ -50,7 +50,7 @@ struct ReflectionUniforms {
 
 @vertex
 fn vs_main(
-    @builtin(instance_index) instance: u32,
+    @location(6) instance: u32,
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) tangent: vec4<f32>,

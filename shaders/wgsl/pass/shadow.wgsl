@@ -48,7 +48,7 @@ fn vs_far(@builtin(vertex_index) index: u32) -> OpaqueVertex {
 /// Opaque geometry.
 @vertex
 fn vs_opaque(
-    @builtin(instance_index) instance: u32,
+    @location(6) instance: u32,
     @location(0) position: vec3<f32>,
 ) -> OpaqueVertex {
     let world = vec4<f32>(world_position(position, instance), 1.0);
@@ -58,7 +58,7 @@ fn vs_opaque(
 /// Alpha-masked geometry.
 @vertex
 fn vs_mask(
-    @builtin(instance_index) instance: u32,
+    @location(6) instance: u32,
     @location(0) position: vec3<f32>,
     @location(3) uv0: vec2<f32>,
     @location(4) uv1: vec2<f32>,

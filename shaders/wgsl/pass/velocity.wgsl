@@ -27,7 +27,7 @@ struct VelocityVertex {
 
 @vertex
 fn vs_main(
-    @builtin(instance_index) instance: u32,
+    @location(6) instance: u32,
     @location(0) position: vec3<f32>,
     @location(3) uv0: vec2<f32>,
     @location(4) uv1: vec2<f32>,

@@ -7,11 +7,10 @@ use framegraph_passes::reflection::{ReflectionSettings, reflections};
 use framegraph_passes::stages::Slot;
 use framegraph_passes::structure::Resolution;
 use framegraph_passes::upload::GpuScene;
-use framegraph_passes::upload::pack::object_uniforms;
 use framegraph_passes::view::Views;
-use framegraph_passes::{CameraView, Handles, LightSearch, ViewId, ViewSettings};
+use framegraph_passes::{CameraView, Handles, LightSearch, PreparedScene, ViewId, ViewSettings};
 use framegraph_scene::geometry::{plane, sphere};
-use framegraph_scene::{Camera, DrawLists, Material, Projection, Scene, progress};
+use framegraph_scene::{Camera, Material, Projection, Scene, progress};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports, Raster, Shader, read_texture};
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 use std::error::Error;
@@ -129,8 +128,6 @@ impl Stage {
 
     fn view(&self, lens: &Lens) -> Result<CameraView, Box<dyn Error>> {
         let camera = Camera::look_at(lens.eye, lens.target, DVec3::Y, self.projection)?;
-        let (objects, eye) = (object_uniforms(&self.scene, camera.eye).collect(), camera.eye);
-        let visible = DrawLists::for_camera(&self.scene, &camera, lens.aspect);
         let size_px = self.size_px;
         let seen = ViewSettings {
             camera,
@@ -140,8 +137,7 @@ impl Stage {
             shadows: None,
             lights: LightSearch::default(),
         };
-        assert_eq!(CameraView::empty(&seen).eye, eye);
-        Ok(CameraView { objects, visible, ..CameraView::empty(&seen) })
+        Ok(CameraView::unlit(&PreparedScene::new(&self.scene), &seen))
     }
 
     /// What the passes make of it in the second frame, where the first one was painted with texture coordinates; `broken` is

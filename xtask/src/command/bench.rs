@@ -15,6 +15,9 @@ Stages:
   peers    the same chain compiled by framegraph and by zenfg 0.2, in one process
   execute  the CPU's part of a frame, on wgpu's device that validates and draws
            nothing, so that no driver is measured
+  overhead what executing adds to the same calls of wgpu made by hand, in time and,
+           where valgrind is installed, in instructions
+  scenes   frames of 10,000 to 1,000,000 nodes on the same device; culling
 
 All print sections in Markdown, of which docs/performance.md is made. The peer
 asks for a newer compiler than the workspace and is built with
@@ -32,7 +35,14 @@ fn run(_: &Options) -> Result<(), Failure> {
     let mut render =
         workspace::cargo(&["run", "--quiet", "--release", "--package", "examples", "--bin", "render", "--"]);
     let execute = stage::run("execute", render.args(frames).env("WGPU_BACKEND", "noop"));
-    for outcome in [compile, peers, execute] {
+    // As a program that ships them: optimized, and not linked as a whole, which would take minutes.
+    let of = |package: &str, bench: &'static str| {
+        let arguments = ["bench", "--quiet", "--profile", "release", "--package", package, "--bench", bench];
+        stage::run(bench, &mut workspace::cargo(&arguments))
+    };
+    let overhead = of("framegraph-wgpu", "overhead");
+    let scenes = of("framegraph-passes", "scenes");
+    for outcome in [compile, peers, execute, overhead, scenes] {
         outcome.result.map_err(|reason| Failure::Failed(format!("{}: {reason}", outcome.name)))?;
     }
     Ok(())

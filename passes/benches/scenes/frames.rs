@@ -1,0 +1,104 @@
+//! Whole frames of large scenes.
+
+use super::cpu_ms;
+use super::workload::Workload;
+use framegraph::{Options, Plan, Scratch, Target, compile};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::shading::LightSettings;
+use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::{CameraView, LightSearch, Lighting, PreparedScene, Settings, ViewId, World, standard};
+use framegraph_scene::{Environment, progress};
+use framegraph_wgpu::{Executor, Frame, Gpu, Imports};
+use glam::DVec3;
+use std::error::Error;
+use std::time::Instant;
+
+const SIZE_PX: [u32; 2] = [1280, 720];
+const FRAMES: usize = 60;
+/// The first frames make what later ones find.
+const WARM_UP: usize = 3;
+
+const WORKLOADS: [Workload; 5] = [
+    Workload::alike(10_000),
+    Workload::alike(100_000),
+    Workload::alike(1_000_000),
+    Workload { nodes: 100_000, meshes: 1000, materials: 2000, mixed: false },
+    Workload { nodes: 100_000, meshes: 1000, materials: 2000, mixed: true },
+];
+
+/// Prints the table.
+pub fn print() -> Result<(), Box<dyn Error>> {
+    println!("### Large scenes\n");
+    println!(
+        "| nodes | meshes × materials | draws | prepare once, ms | view, ms | upload, ms | execute, ms | frame, ms |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
+    let gpu = Gpu::noop()?;
+    for workload in &WORKLOADS {
+        row(&gpu, workload)?;
+    }
+    println!();
+    Ok(())
+}
+
+fn row(gpu: &Gpu, workload: &Workload) -> Result<(), Box<dyn Error>> {
+    let scene = workload.scene();
+    let settings = Settings::DEFAULT.for_scene(&scene, SIZE_PX);
+    let light = LightSettings {
+        image: IblSettings { cube_texels: 64, bands: settings.shading.bands, ..IblSettings::default() },
+        dfg: DfgSettings { texels: 32, visibility: settings.shading.table },
+    };
+    let even = Environment::uniform(DVec3::splat(1000.0))?;
+    let lighting = Lighting::new(gpu, &even, &light, &Cache::off(), &mut progress::silent)?;
+    let origin = Instant::now();
+    let begun = cpu_ms(origin);
+    let prepared = PreparedScene::new(&scene);
+    let prepare_ms = cpu_ms(origin) - begun;
+    let seen = |frame| ViewSettings {
+        camera: workload.camera(frame),
+        size_px: SIZE_PX,
+        ev100: 14.5,
+        environment_intensity: 1.0,
+        shadows: settings.shadows,
+        lights: LightSearch::default(),
+    };
+    let background = Background::Constant(glam::Vec3::ONE);
+    let view = |frame, lighting: &Lighting| {
+        CameraView::prepared(&scene, &prepared, &lighting.image, &background, &seen(frame))
+    };
+    let first = view(0, &lighting);
+    let draws = first.draws.count();
+    let mut world = World::new(gpu, &scene, lighting, [first], &mut progress::silent)?;
+    let mut frame = Frame::<World>::new();
+    let io = standard(&mut frame, &settings, Target::New)?;
+    frame.graph_mut().readback(io.output)?;
+    let (mut plan, options) = (Plan::new(), Options::for_frame(SIZE_PX[0], SIZE_PX[1]));
+    compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
+    let mut executor = Executor::new(gpu);
+    // CPU time advances in the ticks of the system, so that only a sum over frames means anything.
+    let (mut spans, mut least_ms) = ([0.0; 3], f64::INFINITY);
+    for number in 0..WARM_UP + FRAMES {
+        let start = Instant::now();
+        let begun = cpu_ms(origin);
+        let own = view(number, &world.lighting);
+        let viewed = cpu_ms(origin);
+        world.set_view(gpu, ViewId::MAIN, own)?;
+        let uploaded = cpu_ms(origin);
+        executor.execute(&plan, &frame, &world, &Imports::new())?;
+        gpu.wait()?;
+        if number >= WARM_UP {
+            let ended = cpu_ms(origin);
+            least_ms = least_ms.min(1e3 * start.elapsed().as_secs_f64());
+            let own = [viewed - begun, uploaded - viewed, ended - uploaded];
+            spans.iter_mut().zip(own).for_each(|(sum, own)| *sum += own / FRAMES as f64);
+        }
+    }
+    let ([view_ms, upload_ms, execute_ms], frame_ms) = (spans, spans.iter().sum::<f64>());
+    println!(
+        "| {} | {} | {draws} | {prepare_ms:.1} | {view_ms:.2} | {upload_ms:.2} | {execute_ms:.2} | {frame_ms:.2} ({least_ms:.2}) |",
+        workload.nodes,
+        workload.name(),
+    );
+    Ok(())
+}

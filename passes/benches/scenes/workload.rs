@@ -1,0 +1,60 @@
+//! Scenes of many boxes, and cameras that see nearly all of them.
+
+use framegraph_scene::geometry::cuboid;
+use framegraph_scene::{Camera, Light, Material, MaterialId, MeshId, Projection, Scene};
+use glam::{DMat4, DVec3, Vec3};
+
+/// What a scene is made of.
+#[derive(Clone, Copy)]
+pub struct Workload {
+    pub nodes: usize,
+    pub meshes: usize,
+    pub materials: usize,
+    /// Any mesh comes with any material, so that hardly two nodes have both in common; else each material has one mesh.
+    pub mixed: bool,
+}
+
+impl Workload {
+    /// Nodes that share mesh and material.
+    pub const fn alike(nodes: usize) -> Self {
+        Self { nodes, meshes: 1, materials: 1, mixed: false }
+    }
+
+    pub fn name(&self) -> String {
+        let Self { meshes, materials, mixed, .. } = self;
+        format!("{meshes} × {materials}{}", if *mixed { ", mixed" } else { "" })
+    }
+
+    /// Boxes of different sizes and colors in a cube of space, and a sun.
+    pub fn scene(&self) -> Scene {
+        let mut scene = Scene { name: "boxes".into(), ..Scene::default() };
+        for i in 0..self.meshes {
+            scene.add_mesh(cuboid(Vec3::splat(0.1 + 0.2 * i as f32 / self.meshes as f32)));
+        }
+        for i in 0..self.materials {
+            let hue = i as f32 / self.materials as f32;
+            scene.add_material(Material::dielectric("box", Vec3::new(hue, 0.5, 1.0 - hue), 0.5));
+        }
+        let side = (self.nodes as f64).cbrt().ceil() as usize;
+        let mut state = 1_u64;
+        for i in 0..self.nodes {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let material = i % self.materials;
+            let mesh = if self.mixed { (state >> 33) as usize } else { i } % self.meshes;
+            let at = [i % side, i / side % side, i / (side * side)].map(|x| x as f64);
+            let placed = DMat4::from_rotation_translation(glam::DQuat::from_rotation_y(i as f64), DVec3::from(at));
+            scene.add_instance("", MeshId::new(mesh), MaterialId::new(material), placed);
+        }
+        scene.lights.push(Light::directional("sun", Vec3::new(-0.4, -0.8, -0.3).normalize(), 100_000.0));
+        scene
+    }
+
+    /// Before the cube, turning with the frames; all of it is in view.
+    pub fn camera(&self, frame: usize) -> Camera {
+        let side = (self.nodes as f64).cbrt();
+        let middle = DVec3::splat(0.5 * side);
+        let around = DVec3::new((0.01 * frame as f64).sin(), 0.3, (0.01 * frame as f64).cos());
+        let projection = Projection::perspective(1.0, 0.1);
+        Camera::look_at(middle + around * 2.0 * side, middle, DVec3::Y, projection).expect("a camera off its target")
+    }
+}

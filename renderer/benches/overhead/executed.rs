@@ -1,0 +1,74 @@
+//! The passes as a graph, planned once and executed frame after frame.
+
+use crate::shared::{Case, FACTOR, FIRST, NEXT, TEXELS};
+use framegraph::{
+    ClearValue, DeclareError, Extent, Format, Intent, Options, Pass, PassBuilder, Plan, Scratch, Texture, TextureDesc,
+    View, recompile,
+};
+use framegraph_wgpu::{Cx, Executor, Frame, Gpu, Imports, Raster, Record, RecordError};
+use std::error::Error;
+
+struct Draw {
+    before: Option<Texture>,
+    draws: u32,
+}
+
+impl Pass for Draw {
+    type Io = (Option<View>, Texture);
+
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Self::Io, DeclareError> {
+        let before = self.before.map(|before| pass.sampled(before)).transpose()?;
+        let desc = TextureDesc::new(Extent::absolute(TEXELS, TEXELS), Format::Rgba8Unorm);
+        let drawn = pass.texture("picture", desc);
+        Ok((before, pass.color(drawn, Intent::Clear(ClearValue::BLACK))?))
+    }
+}
+
+impl<W: ?Sized> Record<W> for Draw {
+    fn record(&self, (before, _): &Self::Io, _: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let pipeline = cx.raster_pipeline(&Raster::new(if before.is_some() { NEXT } else { FIRST }))?;
+        let group = match before {
+            Some(before) => {
+                let bindings = [(0, cx.view(*before)?.into()), (1, cx.uniform(&FACTOR))];
+                Some(cx.bind_group(pipeline.group(0), &bindings))
+            }
+            None => None,
+        };
+        let pass = cx.render_pass()?;
+        pass.set_pipeline(&pipeline);
+        if let Some(group) = &group {
+            pass.set_bind_group(0, group, &[]);
+        }
+        (0..self.draws).for_each(|_| pass.draw(0..3, 0..1));
+        Ok(())
+    }
+}
+
+/// The frame with its plan.
+pub struct Executed {
+    frame: Frame<()>,
+    plan: Plan,
+    executor: Executor,
+}
+
+impl Executed {
+    /// Declares and plans it.
+    pub fn new(gpu: &Gpu, case: Case) -> Result<Self, Box<dyn Error>> {
+        let mut frame = Frame::<()>::new();
+        let mut before = None;
+        for _ in 0..case.passes {
+            before = Some(frame.add("draw", Draw { before, draws: case.draws })?.1);
+        }
+        frame.graph_mut().export(before.ok_or("no pass")?)?;
+        let (mut plan, options) = (Plan::new(), Options::for_frame(TEXELS, TEXELS));
+        recompile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
+        assert_eq!(plan.counts().steps as usize, case.passes, "what is compared is a step a pass");
+        Ok(Self { frame, plan, executor: Executor::new(gpu) })
+    }
+
+    /// One more frame.
+    pub fn frame(&mut self) -> Result<(), Box<dyn Error>> {
+        self.executor.execute(&self.plan, &self.frame, &(), &Imports::new())?;
+        Ok(())
+    }
+}

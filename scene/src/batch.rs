@@ -1,0 +1,123 @@
+//! Instances of one mesh, surface and side, drawn by one instanced draw.
+
+/// Instances that one draw draws: a range of an array of instance numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Batch {
+    /// Any of them, here the first: what all have in common is found by it.
+    pub instance: u32,
+    /// Where in the array of numbers they begin.
+    pub first: u32,
+    /// How many they are.
+    pub count: u32,
+}
+
+impl Batch {
+    /// Their places in the array of numbers.
+    #[must_use]
+    pub fn range(&self) -> std::ops::Range<u32> {
+        self.first..self.first + self.count
+    }
+}
+
+/// In which order a list of instances is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BatchOrder {
+    /// As the list has it, where order shows: neighbors alone are drawn together.
+    Kept,
+    /// All of a group together, the group of the first instance first: near before far, roughly, for a list that is sorted so.
+    FirstFirst,
+    /// All of a group together, by the numbers of groups, so that what groups share is set as rarely as possible.
+    ByGroup,
+}
+
+/// Which instances may be drawn together.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Groups {
+    /// The group of each instance, by its number.
+    pub of: Vec<u32>,
+    /// How many groups there are.
+    pub count: u32,
+}
+
+impl Groups {
+    /// Groups of equal keys, numbered in the order of keys.
+    pub(crate) fn new<K: Ord + Copy>(keys: &[K]) -> Self {
+        let mut distinct = keys.to_vec();
+        distinct.sort_unstable();
+        distinct.dedup();
+        // Every key is among them.
+        let of = keys.iter().map(|key| distinct.partition_point(|other| other < key) as u32).collect();
+        Self { of, count: distinct.len() as u32 }
+    }
+
+    /// Appends the instances of `list` to `numbers` as they are drawn, within a group in the order of the list, and returns
+    /// the draws.
+    #[must_use]
+    pub fn batches(&self, list: &[u32], order: BatchOrder, numbers: &mut Vec<u32>) -> Vec<Batch> {
+        let group = |instance: u32| self.of[instance as usize] as usize;
+        let base = numbers.len() as u32;
+        let mut batches: Vec<Batch> = Vec::new();
+        if order == BatchOrder::Kept {
+            numbers.extend_from_slice(list);
+            for (first, instance) in (base..).zip(list.iter().copied()) {
+                match batches.last_mut() {
+                    Some(last) if group(last.instance) == group(instance) => last.count += 1,
+                    _ => batches.push(Batch { instance, first, count: 1 }),
+                }
+            }
+            return batches;
+        }
+        let mut counts = vec![0_u32; self.count as usize];
+        for instance in list {
+            counts[group(*instance)] += 1;
+        }
+        // Where the next instance of each group goes; at first none has a place.
+        const NO_PLACE: u32 = u32::MAX;
+        let (mut places, mut next) = (vec![NO_PLACE; counts.len()], base);
+        let mut open = |group: usize, places: &mut [u32]| {
+            let count = counts[group];
+            places[group] = next;
+            batches.push(Batch { instance: 0, first: next, count });
+            next += count;
+        };
+        if order == BatchOrder::ByGroup {
+            (0..counts.len()).filter(|group| counts[*group] > 0).for_each(|group| open(group, &mut places));
+        }
+        numbers.resize(numbers.len() + list.len(), 0);
+        for instance in list {
+            let group = group(*instance);
+            if places[group] == NO_PLACE {
+                open(group, &mut places);
+            }
+            numbers[places[group] as usize] = *instance;
+            places[group] += 1;
+        }
+        for batch in &mut batches {
+            batch.instance = numbers[batch.first as usize];
+        }
+        batches
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn instances_of_a_group_are_drawn_together() {
+        let groups = Groups::new(&["b", "a", "b", "c", "a", "b"]);
+        assert_eq!((groups.of.as_slice(), groups.count), (&[1, 0, 1, 2, 0, 1][..], 3));
+        let list = [5, 3, 0, 2, 4];
+        let drawn = |order| {
+            let mut numbers = vec![77];
+            let batches = groups.batches(&list, order, &mut numbers);
+            assert!(batches.iter().all(|batch| numbers[batch.first as usize] == batch.instance));
+            let of = |batch: &Batch| numbers[batch.range().start as usize..batch.range().end as usize].to_vec();
+            batches.iter().map(of).collect::<Vec<_>>()
+        };
+        assert_eq!(drawn(BatchOrder::Kept), [vec![5], vec![3], vec![0, 2], vec![4]]);
+        assert_eq!(drawn(BatchOrder::FirstFirst), [vec![5, 0, 2], vec![3], vec![4]]);
+        assert_eq!(drawn(BatchOrder::ByGroup), [vec![4], vec![5, 0, 2], vec![3]]);
+        assert_eq!(Groups::default().batches(&[], BatchOrder::ByGroup, &mut Vec::new()), []);
+    }
+}

@@ -1,0 +1,68 @@
+//! `soak`: the standard frame for hours, with its window, effects and scene changing all the time.
+//!
+//! `WGPU_BACKEND=noop cargo run --release -p tests --bin soak -- --frames 100000` prints what the run holds as it goes on, and at its end
+//! whether the last frame is that of a fresh run. Any error of any frame ends it.
+
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
+use framegraph_wgpu::{AdapterRequest, Gpu};
+use std::error::Error;
+use std::process::ExitCode;
+use tests::soak::Soak;
+
+const HELP: &str = "\
+soak: the standard frame under random sizes, effects and scenes
+
+  --frames N    frames to draw (10000)
+  --largest PX  most pixels of a side (512)
+  --rows N      rows to print (10)
+
+WGPU_BACKEND=noop draws nothing and validates everything.
+";
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => program::exit(0),
+        Err(error) => {
+            program::note(format_args!("soak: {error}"));
+            program::exit(1)
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
+    let (mut frames, mut largest, mut rows) = (10_000_usize, 512_u32, 10_usize);
+    let mut arguments = lexopt::Parser::from_env();
+    while let Some(argument) = arguments.next()? {
+        use lexopt::ValueExt;
+        match argument {
+            lexopt::Arg::Long("frames") => frames = arguments.value()?.parse()?,
+            lexopt::Arg::Long("largest") => largest = arguments.value()?.parse()?,
+            lexopt::Arg::Long("rows") => rows = arguments.value()?.parse()?,
+            lexopt::Arg::Long("help") => {
+                program::print(HELP);
+                return Ok(());
+            }
+            other => return Err(other.unexpected().into()),
+        }
+    }
+    let gpu = Gpu::open(&AdapterRequest::from_env())?;
+    program::line(format_args!("adapter: {}", gpu.describe()));
+    program::line("\n| frames | textures held | their MiB | made | resident MiB |\n| --- | --- | --- | --- | --- |");
+    let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+    let last = Soak::new(&gpu, largest.max(64))?.run(frames, (frames / rows.max(1)).max(1), |held| {
+        let (textures, resident) = (held.textures, mib(held.resident_bytes));
+        program::line(format_args!(
+            "| {} | {} | {:.1} | {} | {resident:.1} |",
+            held.frames,
+            textures.objects,
+            mib(textures.bytes),
+            textures.created,
+        ));
+    })?;
+    if last != Soak::fresh(&gpu)? {
+        return Err("the last frame is not that of a fresh run".into());
+    }
+    program::line("\nThe last frame is that of a fresh run.");
+    Ok(())
+}

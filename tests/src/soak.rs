@@ -1,0 +1,200 @@
+//! A long run of the standard frame under everything that changes while an application runs: the size of its window, the
+//! effects that are on, the scene that is shown. What a run leaves behind is compared with a fresh one.
+
+use framegraph::{Extent, Format, Target, TextureDesc};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::shading::LightSettings;
+use framegraph_passes::shadow::ShadowSettings;
+use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::{
+    CameraView, LightSearch, Lighting, OcclusionSettings, PreparedScene, ReflectionSettings, Settings, StageError,
+    ViewId, World, standard,
+};
+use framegraph_scene::{Environment, Scene, progress};
+use framegraph_wgpu::{FrameLoop, Gpu, PoolCounts, read_texture};
+use glam::{DVec3, Vec3};
+use std::error::Error;
+
+/// What a run is made of, drawn anew from frame to frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Width and height of the picture.
+    pub size_px: [u32; 2],
+    /// Which of the scenes.
+    pub scene: usize,
+    /// Which of the settings.
+    pub variant: usize,
+}
+
+/// The state in which a run ends, and which a fresh run draws alone.
+const LAST: State = State { size_px: [64, 36], scene: 0, variant: 0 };
+/// Side of a shadow map.
+const SHADOW_TEXELS: u32 = 128;
+
+/// What a run holds after a number of frames.
+#[derive(Clone, Copy, Debug)]
+pub struct Held {
+    /// Frames until then.
+    pub frames: usize,
+    /// Textures of the executor's pool.
+    pub textures: PoolCounts,
+    /// Resident memory of the program in bytes; zero where the system does not say.
+    pub resident_bytes: u64,
+}
+
+struct Stage {
+    scene: Scene,
+    prepared: PreparedScene,
+    world: World,
+}
+
+/// A run.
+pub struct Soak {
+    gpu: Gpu,
+    frames: FrameLoop<World>,
+    stages: Vec<Stage>,
+    state: u64,
+    largest_px: u32,
+}
+
+/// Effects in different combinations; all of them leave shaders as simple as software drivers want them.
+fn variants() -> [Settings; 5] {
+    let shadows = |cascades| Some(ShadowSettings { cascades, ..ShadowSettings::texels(SHADOW_TEXELS) });
+    let plain = Settings { shadows: shadows(1), ..Settings::DEFAULT };
+    [
+        plain,
+        Settings { samples: 4, shadows: shadows(3), ..plain },
+        Settings { shadows: None, fxaa: false, ..plain },
+        Settings { occlusion: Some(OcclusionSettings::SAO), split_post: true, ..plain },
+        Settings { reflections: Some(ReflectionSettings::DEFAULT), ..plain },
+    ]
+}
+
+impl Soak {
+    /// A run whose windows are at most `largest_px` wide and high.
+    ///
+    /// # Errors
+    /// When a scene cannot be set up.
+    pub fn new(gpu: &Gpu, largest_px: u32) -> Result<Self, Box<dyn Error>> {
+        let stages = ["spheres", "lamps:3"].map(|name| Stage::new(gpu, name));
+        let stages = stages.into_iter().collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { gpu: gpu.clone(), frames: FrameLoop::new(gpu), stages, state: 1, largest_px })
+    }
+
+    fn random(&mut self, below: u32) -> u32 {
+        self.state = self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.state >> 33) as u32 % below
+    }
+
+    /// Another window, effect or scene, or some of them at once. Small windows are more frequent than large ones, and a single texel
+    /// comes too.
+    fn next(&mut self, before: State) -> State {
+        let mut state = before;
+        let changed = self.random(7) + 1;
+        if changed & 1 != 0 {
+            let octaves = self.largest_px.ilog2() + 1;
+            state.size_px = [0; 2].map(|_: u32| {
+                let most = 1 << self.random(octaves);
+                (most + self.random(most)).min(self.largest_px)
+            });
+        }
+        if changed & 2 != 0 {
+            state.variant = self.random(variants().len() as u32) as usize;
+        }
+        if changed & 4 != 0 {
+            state.scene = self.random(self.stages.len() as u32) as usize;
+        }
+        state
+    }
+
+    /// Draws `count` frames, each state some of them, and tells what is held every `every` frames; the last frame is that of
+    /// a fresh run, and its bytes are returned.
+    ///
+    /// # Errors
+    /// Any error of any frame.
+    pub fn run(&mut self, count: usize, every: usize, mut told: impl FnMut(Held)) -> Result<Vec<u8>, Box<dyn Error>> {
+        let (mut state, mut left) = (LAST, 0);
+        for number in 0..count {
+            if left == 0 {
+                (state, left) = (self.next(state), self.random(9) + 1);
+            }
+            left -= 1;
+            self.draw(state).map_err(|error| format!("frame {number}, {state:?}: {error}"))?;
+            if (number + 1) % every == 0 {
+                self.gpu.wait()?;
+                let textures = self.frames.executor().texture_pool();
+                told(Held { frames: number + 1, textures, resident_bytes: resident_bytes() });
+            }
+        }
+        self.draw(LAST)
+    }
+
+    /// What a fresh run draws in the last state.
+    ///
+    /// # Errors
+    /// Any error of the frame.
+    pub fn fresh(gpu: &Gpu) -> Result<Vec<u8>, Box<dyn Error>> {
+        Self::new(gpu, 64)?.draw(LAST)
+    }
+
+    fn draw(&mut self, state: State) -> Result<Vec<u8>, Box<dyn Error>> {
+        let State { size_px, scene, variant } = state;
+        let Stage { scene, prepared, world } = &mut self.stages[scene];
+        let settings = variants()[variant].for_scene(scene, size_px);
+        let view = view(scene, prepared, &world.lighting, &settings, size_px);
+        world.set_view(&self.gpu, ViewId::MAIN, view)?;
+        let ran = self.frames.run(size_px, world, |frame, _| {
+            let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
+            let output = frame.graph_mut().texture("output", desc);
+            let io = standard(frame, &settings, Target::from(output))?;
+            frame.graph_mut().readback(io.output).map_err(StageError::from)?;
+            Ok::<_, StageError>(io.output)
+        })?;
+        if state != LAST {
+            return Ok(Vec::new());
+        }
+        let picture = ran.and_then(|ran| self.frames.executor().texture(self.frames.plan(), ran.io));
+        Ok(read_texture(&self.gpu, picture.ok_or("the frame left no picture")?)?.rgba8())
+    }
+}
+
+impl Stage {
+    fn new(gpu: &Gpu, name: &str) -> Result<Self, Box<dyn Error>> {
+        let scene = Scene::open(name, &mut progress::silent)?;
+        let prepared = PreparedScene::new(&scene);
+        let shading = Settings::DEFAULT.shading;
+        let image = IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() };
+        let light = LightSettings { image, dfg: DfgSettings { texels: 32, visibility: shading.table } };
+        let even = Environment::uniform(DVec3::splat(2000.0))?;
+        let lighting = Lighting::new(gpu, &even, &light, &Cache::off(), &mut progress::silent)?;
+        let first = view(&scene, &prepared, &lighting, &Settings::DEFAULT, LAST.size_px);
+        let world = World::new(gpu, &scene, lighting, [first], &mut progress::silent)?;
+        Ok(Self { scene, prepared, world })
+    }
+}
+
+fn view(
+    scene: &Scene,
+    prepared: &PreparedScene,
+    lighting: &Lighting,
+    settings: &Settings,
+    size_px: [u32; 2],
+) -> CameraView {
+    let seen = ViewSettings {
+        camera: scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
+        size_px,
+        ev100: 12.0,
+        environment_intensity: 1.0,
+        shadows: settings.shadows,
+        lights: LightSearch::default(),
+    };
+    CameraView::prepared(scene, prepared, &lighting.image, &Background::Constant(Vec3::ONE), &seen)
+}
+
+/// Resident memory of this program, as Linux tells.
+fn resident_bytes() -> u64 {
+    let text = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+    let pages: Option<u64> = text.split_whitespace().nth(1).and_then(|pages| pages.parse().ok());
+    pages.unwrap_or(0) * 4096
+}

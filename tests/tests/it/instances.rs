@@ -1,0 +1,102 @@
+//! Instanced draws: that they are few, and that the picture is that of a draw for each instance.
+
+use crate::stage::{Shot, declared, gpu, lighting, view_of};
+use framegraph::{Options, Plan, Scratch, compile};
+use framegraph_passes::shadow::{MomentSettings, ShadowFilter, ShadowSettings};
+use framegraph_passes::view::Background;
+use framegraph_passes::{CameraView, PreparedScene, Settings, ViewId, ViewSettings, World};
+use framegraph_scene::environment::Sky;
+use framegraph_scene::geometry::{cuboid, plane, sphere};
+use framegraph_scene::{AlphaMode, ClearCoat, Light, Material, Scene, Transmission, progress};
+use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
+use glam::{DMat4, DVec3, Vec3};
+use std::error::Error;
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+/// Rows of balls and boxes of all kinds of surfaces, each many times, some mirrored, on a floor.
+fn crowd() -> Scene {
+    let mut scene = Scene::default();
+    let meshes = [cuboid(Vec3::splat(0.3)), sphere(0.35, 12, 8)].map(|mesh| scene.add_mesh(mesh));
+    let clay = |hue: f32| Material::dielectric("clay", Vec3::new(hue, 0.4, 1.0 - hue), 0.4);
+    let materials = [
+        clay(0.9),
+        clay(0.1),
+        Material { clear_coat: Some(ClearCoat { factor: 1.0, ..ClearCoat::default() }), ..clay(0.5) },
+        Material { double_sided: true, ..clay(0.7) },
+        Material { alpha: AlphaMode::Mask { cutoff: 0.5 }, ..clay(0.3) },
+        Material { alpha: AlphaMode::Blend, base_color: clay(0.2).base_color * 0.6, ..clay(0.2) },
+        Material { transmission: Some(Transmission { factor: 1.0, ..Transmission::default() }), ..clay(0.8) },
+    ]
+    .map(|material| scene.add_material(material));
+    let floor = scene.add_mesh(plane(DVec3::splat(20.0).as_vec3().truncate(), 1, glam::Vec2::ONE));
+    scene.add_instance("floor", floor, materials[0], DMat4::from_translation(DVec3::NEG_Y * 0.4));
+    for i in 0..120_usize {
+        let mirror = if i % 5 == 0 { DVec3::new(-1.0, 1.0, 1.0) } else { DVec3::ONE };
+        let at = DVec3::new((i % 12) as f64 - 5.5, 0.1 * (i % 3) as f64, -((i / 12) as f64));
+        let placed = DMat4::from_translation(at) * DMat4::from_rotation_y(i as f64) * DMat4::from_scale(mirror);
+        scene.add_instance("one", meshes[i / 3 % 2], materials[i % 7], placed);
+    }
+    scene.lights.push(Light::directional("sun", Vec3::new(-0.4, -0.8, -0.3).normalize(), 50_000.0));
+    scene
+}
+
+fn draw(gpu: &Gpu, world: &World, settings: &Settings, options: &Options) -> Result<Vec<u8>, Box<dyn Error>> {
+    let (frame, io) = declared(settings);
+    let mut plan = Plan::new();
+    compile(frame.graph(), &gpu.caps(), options, &mut Scratch::new(), &mut plan)?;
+    let mut executor = Executor::new(gpu);
+    executor.execute(&plan, &frame, world, &Imports::new())?;
+    let picture = executor.texture(&plan, io.output).ok_or("the frame left no picture")?;
+    Ok(read_texture(gpu, picture)?.rgba8())
+}
+
+/// Moments as a shadow map, which unlike depth show the order of equally near ones; masked, blended and transmissive surfaces, mirrored ones: the same bytes from instanced
+/// draws as from a draw for each. What moves is where a scene prepared anew has it, in the buffers too.
+#[test]
+fn instanced_draws_are_the_same_picture() -> TestResult {
+    let Some(gpu) = gpu("instanced_draws_are_the_same_picture") else { return Ok(()) };
+    let mut scene = crowd();
+    let moments = MomentSettings { samples: 1, ..ShadowSettings::DEFAULT.moments };
+    let shadows = ShadowSettings { filter: ShadowFilter::Vsm, moments, ..ShadowSettings::texels(128) };
+    let settings = Settings { shadows: Some(shadows), ..Settings::DEFAULT };
+    let shot = Shot { size_px: [96, 64], options: Options::for_frame(96, 64), ..Shot::small(settings) };
+    let settings = settings.for_scene(&scene, shot.size_px);
+    let environment = Sky::default().environment(128)?;
+    let lighting = lighting(&gpu, &environment, &settings.shading)?;
+    let background = Background::Environment;
+    let view = |scene: &Scene, image: &_| view_of(scene, image, &background, &shot);
+    let instanced = view(&scene, &lighting.image);
+    let apart = CameraView { draws: instanced.draws.clone().one_by_one(), ..instanced.clone() };
+    let (few, many) = (instanced.draws.count(), apart.draws.count());
+    // Opaque and masked ones of one mesh, material and side are one draw each; clear ones, and blended ones that are no
+    // neighbors, are not.
+    assert!(many > 250 && few < 100, "{few} draws for {many}");
+    let mut world = World::new(&gpu, &scene, lighting, [instanced], &mut progress::silent)?;
+    let first = draw(&gpu, &world, &settings, &shot.options)?;
+    world.set_view(&gpu, ViewId::MAIN, apart)?;
+    assert!(first == draw(&gpu, &world, &settings, &shot.options)?, "a draw for each is another picture");
+
+    let mut prepared = PreparedScene::new(&scene);
+    let moved = &mut scene.instances[7];
+    moved.world_from_model = DMat4::from_translation(DVec3::Y) * moved.world_from_model * DMat4::from_rotation_x(1.0);
+    moved.bounds = scene.meshes[moved.mesh.index()].bounds.transformed(&moved.world_from_model);
+    prepared.update(&scene, &[7]);
+    let seen = ViewSettings {
+        camera: scene.default_camera(1.5),
+        size_px: shot.size_px,
+        ev100: shot.ev100,
+        environment_intensity: 1.0,
+        shadows: settings.shadows,
+        lights: framegraph_passes::LightSearch::default(),
+    };
+    let image = &world.lighting.image;
+    let own = CameraView::prepared(&scene, &prepared, image, &background, &seen);
+    let anew = CameraView::new(&scene, image, &background, &seen);
+    world.set_view(&gpu, ViewId::MAIN, own)?;
+    let updated = draw(&gpu, &world, &settings, &shot.options)?;
+    world.set_view(&gpu, ViewId::MAIN, anew)?;
+    assert!(updated == draw(&gpu, &world, &settings, &shot.options)?, "an update is not as preparing anew");
+    assert_ne!(updated, first, "nothing moved");
+    Ok(())
+}
