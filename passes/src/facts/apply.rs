@@ -1,8 +1,8 @@
 //! Facts into settings.
 
+use super::decided::{Amounts, Facts};
 use super::effect::{Effect, EffectSet};
 use super::fact::Decision;
-use super::{Amounts, Facts};
 use crate::bloom::BloomSettings;
 use crate::dof::DofSettings;
 use crate::fog::FogSettings;

@@ -1,9 +1,10 @@
 //! Rules for what air and lens do to light: fog, depth of field, bloom.
 
+use super::case::Case;
+use super::decided::Facts;
 use super::effect::Effect;
 use super::fact::{Fact, Proof};
 use super::seen::fit_camera;
-use super::{Case, Facts};
 use crate::bloom::{Blend, BloomSettings, Threshold};
 use crate::dof::DofSettings;
 use crate::fog::FogSettings;

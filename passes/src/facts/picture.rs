@@ -1,9 +1,10 @@
 //! Rules for what happens to the whole picture.
 
+use super::case::Case;
 use super::cover::covers;
+use super::decided::Facts;
 use super::effect::Effect;
 use super::fact::{Fact, Proof};
-use super::{Case, Facts};
 use crate::surface::HDR_FORMAT;
 use crate::view::Background;
 use framegraph_scene::camera::exposure_from_ev100;

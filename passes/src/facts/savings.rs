@@ -1,6 +1,6 @@
 //! What drops save: the plan of the frame with each against the plan without it.
 
-use super::Facts;
+use super::decided::Facts;
 use super::effect::{Effect, EffectSet};
 use crate::frame::{Settings, StandardWorld, standard};
 use crate::stages::StageError;

@@ -1,8 +1,9 @@
 //! Rules for what looks around in the picture, and for what is seen through something.
 
+use super::case::Case;
+use super::decided::Facts;
 use super::effect::Effect;
 use super::fact::{Fact, Proof};
-use super::{Case, Facts};
 
 /// Of what keeps post-processing out of the color pass.
 pub(super) fn apart(case: &Case<'_>) -> Proof {

@@ -1,8 +1,9 @@
 //! Rules for how surfaces are shaded: constants of pipelines, whose off state costs nothing.
 
+use super::case::Case;
+use super::decided::Facts;
 use super::effect::Effect;
 use super::fact::{Decision, Fact, Proof};
-use super::{Case, Facts};
 use framegraph_scene::environment::ShBands;
 use glam::Vec4;
 

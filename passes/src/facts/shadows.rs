@@ -1,8 +1,9 @@
 //! Rules for shadows.
 
+use super::case::Case;
+use super::decided::Facts;
 use super::effect::Effect;
 use super::fact::{Fact, Proof};
-use super::{Case, Facts};
 
 /// Where the farthest receiver is at most so many times as far as the nearest, one map of the sun has two texels a pixel where
 /// four would have one.

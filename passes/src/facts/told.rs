@@ -1,6 +1,6 @@
 //! Facts as text and as JSON. `docs/facts.md` documents the fields.
 
-use super::Facts;
+use super::decided::Facts;
 use super::fact::{Decision, Fact, Proof};
 use super::savings::{Cost, Saved};
 use std::fmt::Write as _;
