@@ -9,7 +9,7 @@ use framegraph_wgpu::{Cx, Record, RecordError};
 
 static SHADER: Module<'static> = library::pass("pass/sharpen.wgsl").unwrap();
 
-static INTERFACE: Interface = Interface { groups: &[&["settings", "picture"]], constants: &["DECODE"] };
+static INTERFACE: Interface = Interface { groups: &[&["sharpening", "picture"]], constants: &["DECODE"] };
 
 /// How many halvings of the strength no sharpness is; all of it is none. Filament's scale.
 const MOST_STOPS: f32 = 2.0;

@@ -71,6 +71,8 @@ fn names_are_the_same_whatever_the_settings_are() -> Result<(), StageError> {
         "scene",
         "transparent",
         "taa",
+        "dof",
+        "bloom",
         "post",
         "fxaa",
         "upscale",
@@ -90,7 +92,7 @@ fn names_are_the_same_whatever_the_settings_are() -> Result<(), StageError> {
 #[test]
 fn stages_are_inserted_and_replaced_where_they_are_named() -> Result<(), StageError> {
     let mut stages = stages(&Settings::DEFAULT);
-    stages.insert_after("color", radiance("bloom", HDR))?.insert_before("bloom", radiance("fog", HDR))?;
+    stages.insert_after("color", radiance("glow", HDR))?.insert_before("glow", radiance("fog", HDR))?;
     stages.replace(Stage::picture("fxaa", |frame, handles| {
         let desc = TextureDesc::new(handles.extent(), Format::Rgba8Unorm);
         let sharp = filter(frame, "smaa", handles.get(Slot::PICTURE)?, handles.target(), desc)?;
@@ -98,9 +100,9 @@ fn stages_are_inserted_and_replaced_where_they_are_named() -> Result<(), StageEr
         Ok(())
     }))?;
     let (frame, handles) = declare(&stages)?;
-    assert_eq!(passes(frame.graph()), ["shadow", "prepass", "color", "fog", "bloom", "post", "smaa"]);
+    assert_eq!(passes(frame.graph()), ["shadow", "prepass", "color", "fog", "glow", "post", "smaa"]);
     let name = |slot| frame.graph().resource_of(handles.get(slot).ok()?).map(|r| frame.graph().resource_name(r));
-    assert_eq!((name(Slot::HDR), name(Slot::PICTURE)), (Some("bloom"), Some("output")));
+    assert_eq!((name(Slot::HDR), name(Slot::PICTURE)), (Some("glow"), Some("output")));
     // What is declared again is the same again.
     assert_eq!(passes(declare(&stages)?.0.graph()), passes(frame.graph()));
     Ok(())
@@ -122,11 +124,11 @@ fn the_last_picture_goes_into_the_target() -> Result<(), StageError> {
 #[test]
 fn names_that_are_wrong_are_said_with_those_that_are_right() {
     let mut stages = stages(&Settings::DEFAULT);
-    let told = stages.insert_after("colour", radiance("bloom", HDR)).map(drop).map_err(|e| e.to_string());
-    let expected = "there is no stage `colour`; the stages are shadow, occlusion, reflection, prepass, color, scene, transparent, post, fxaa";
+    let told = stages.insert_after("colour", radiance("glow", HDR)).map(drop).map_err(|e| e.to_string());
+    let expected = "there is no stage `colour`; the stages are shadow, occlusion, reflection, prepass, color, scene, transparent, taa, dof, bloom, post, fxaa, upscale";
     assert_eq!(told, Err(expected.to_owned()));
-    let told = stages.replace(radiance("bloom", HDR)).map(drop).map_err(|e| e.to_string());
-    assert!(told.is_err_and(|told| told.contains("no stage `bloom`")));
+    let told = stages.replace(radiance("glow", HDR)).map(drop).map_err(|e| e.to_string());
+    assert!(told.is_err_and(|told| told.contains("no stage `glow`")));
     let told = stages.insert_before("post", radiance("color", HDR)).map(drop);
     assert_eq!(told, Err(StageError::Twice { name: "color" }));
 }
@@ -138,19 +140,19 @@ fn what_a_stage_hands_on_wrongly_is_named() -> Result<(), StageError> {
         stages.insert_after("color", stage)?;
         Ok(declare(&stages).err().unwrap_or_else(|| panic!("it was taken")))
     };
-    let wrong = |fault| StageError::Wrong { stage: "bloom", slot: "hdr", texture: "bloom".into(), fault };
+    let wrong = |fault| StageError::Wrong { stage: "glow", slot: "hdr", texture: "glow".into(), fault };
     let depth = TextureDesc::new(Extent::FRAME, Format::Depth32Float);
     let fault = SlotFault::Format { format: Format::Depth32Float, depth: false };
-    assert_eq!(after_color(radiance("bloom", depth))?, wrong(fault));
-    assert_eq!(after_color(radiance("bloom", HDR.samples(4)))?, wrong(SlotFault::Samples { samples: 4 }));
+    assert_eq!(after_color(radiance("glow", depth))?, wrong(fault));
+    assert_eq!(after_color(radiance("glow", HDR.samples(4)))?, wrong(SlotFault::Samples { samples: 4 }));
 
     let mut other = Frames::new();
     let foreign = other.graph_mut().texture("foreign", HDR);
-    let told = after_color(Stage::new("bloom", move |_, handles| {
+    let told = after_color(Stage::new("glow", move |_, handles| {
         handles.set(Slot::HDR, foreign);
         Ok(())
     }))?;
-    assert_eq!(told, StageError::Foreign { stage: "bloom", slot: "hdr" });
+    assert_eq!(told, StageError::Foreign { stage: "glow", slot: "hdr" });
     Ok(())
 }
 
@@ -193,9 +195,9 @@ fn a_picture_beside_the_target_is_named() -> Result<(), StageError> {
 fn a_stage_whose_result_would_be_lost_is_named() -> Result<(), StageError> {
     for (samples, after, sound) in [(1, "color", true), (4, "color", false), (4, "transparent", true)] {
         let mut stages = stages(&Settings { samples, scene_levels: 2, ..Settings::DEFAULT });
-        stages.insert_after(after, radiance("bloom", HDR))?;
+        stages.insert_after(after, radiance("glow", HDR))?;
         let told = declare(&stages).err();
-        let lost = StageError::Lost { stage: "transparent", slot: "hdr", samples: "hdr_samples", by: "bloom" };
+        let lost = StageError::Lost { stage: "transparent", slot: "hdr", samples: "hdr_samples", by: "glow" };
         assert_eq!(told, (!sound).then_some(lost), "{samples} samples, after {after}");
     }
     Ok(())

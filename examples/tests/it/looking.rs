@@ -83,7 +83,7 @@ fn looking_changes_neither_the_picture_nor_its_plan() {
     assert!(read("depth.png").starts_with(b"\x89PNG"));
     let seen = fs::read_dir(folder.join("all")).expect("the folder is there").count();
     assert!(seen >= 5, "{seen} pictures");
-    for name in ["shadow_map@shadow", "hdr_samples@color", "output@fxaa"] {
+    for name in ["shadow_map@shadow", "hdr_samples@color", "output@post"] {
         assert!(out.contains(&format!(".{name}.png")), "{name}: {out}");
     }
 

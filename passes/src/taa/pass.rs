@@ -16,7 +16,7 @@ pub(super) const SUM_FORMAT: Format = Format::Rgba16Float;
 static SHADER: Module<'static> = library::pass("pass/taa.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface {
-    groups: &[&["settings", "hdr", "depth", "earlier", "earlier_sampler", "velocity"]],
+    groups: &[&["temporal", "hdr", "depth", "earlier", "earlier_sampler", "velocity"]],
     constants: &[
         "BOX",
         "CLIPPING",

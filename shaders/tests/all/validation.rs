@@ -9,7 +9,7 @@ use crate::variants;
 
 /// What each pass is expected to offer.
 const ENTRY_POINTS: &[(&str, &[&str])] = &[
-    ("shadow", &["vs_opaque", "vs_mask", "fs_mask", "fs_opaque_moments", "fs_mask_moments"]),
+    ("shadow", &["vs_far", "vs_opaque", "vs_mask", "fs_mask", "fs_opaque_moments", "fs_mask_moments"]),
     ("shadow_blur", &["vs_main", "fs_blur", "fs_halve"]),
     ("prepass", &["vs_opaque", "vs_mask", "fs_mask"]),
     ("color", &["vs_main", "fs_main"]),
@@ -18,6 +18,13 @@ const ENTRY_POINTS: &[(&str, &[&str])] = &[
     ("occlusion", &["vs_main", "fs_sao", "fs_gtao"]),
     ("bilateral", &["vs_main", "fs_main"]),
     ("scene", &["vs_main", "fs_copy", "fs_copy_samples", "fs_level"]),
+    ("taa", &["vs_main", "fs_main"]),
+    ("dof", &["vs_main", "fs_coc", "fs_level", "fs_tiles", "fs_dilate", "fs_gather", "fs_median", "fs_combine"]),
+    ("bloom", &["vs_main", "fs_first", "fs_down", "fs_down_odd", "fs_up"]),
+    ("flare", &["vs_main", "fs_flare", "fs_blur"]),
+    ("upscale", &["vs_main", "fs_bilinear", "fs_edges"]),
+    ("sharpen", &["vs_main", "fs_main"]),
+    ("velocity", &["vs_main", "fs_opaque", "fs_mask"]),
     ("sky", &["vs_main", "fs_environment", "fs_procedural", "fs_constant", "fs_black"]),
     ("post", &["vs_main", "fs_main"]),
     ("fxaa", &["vs_main", "fs_main"]),
@@ -79,7 +86,9 @@ fn resolving_is_deterministic() {
 fn every_feature_makes_a_difference_and_only_to_what_shades() {
     for pass in library::passes() {
         let expected: Vec<Feature> = match pass.name() {
-            "color" => Feature::all().collect(),
+            "color" => Feature::all().filter(|feature| *feature != Feature::VELOCITY).collect(),
+            "taa" => vec![Feature::VELOCITY],
+            "sky" => vec![Feature::FOG],
             // Made of functions that shade, too, and made in f32.
             "dfg" => vec![Feature::HALF],
             "occlusion" => vec![Feature::HALF],

@@ -21,8 +21,8 @@ fn firefly_weight(color: vec3<f32>) -> f32 {
     return 1.0 / (1.0 + brightest(color));
 }
 
-/// What of a color glows. Where `hard` is 1, all of it from the threshold on; where it is 0, what is
-/// above the threshold, channel by channel. Bright glow nears 1 / `per_highlight`.
+/// What of a color glows. Where `hard` is 1, all of it from the threshold on; where it is 0, what
+/// is above the threshold, channel by channel. Bright glow nears 1 / `per_highlight`.
 fn glowing(color: vec3<f32>, threshold: f32, hard: f32, per_highlight: f32) -> vec3<f32> {
     let soft = max(color - threshold, vec3<f32>(0.0));
     let above = mix(soft, color * step(threshold, brightest(color)), hard);

@@ -5,8 +5,8 @@
 /// Where a distance ahead of the eye lies among the slices: in the slice of its whole part. Ends of
 /// slices are at equal ratios; `scale` is one over log2 of the ratio, `offset` the number of slices
 /// minus log2 of the last end times `scale`. The first slice begins behind the eye and has what is
-/// no number, too, told by its bits: those of what is less than zero, or NaN, are beyond infinity's.
-/// The last slice has no end (hard case 57).
+/// no number, too, told by its bits: those of what is less than zero, or NaN, are beyond
+/// infinity's. The last slice has no end (hard case 57).
 fn froxel_slice(ahead_m: f32, scale: f32, offset: f32, slices: u32) -> f32 {
     let is_nowhere = bitcast<u32>(ahead_m) > 0x7f800000u;
     let ahead = clamp(select(ahead_m, 0.0, is_nowhere), 1e-30, 1e30);

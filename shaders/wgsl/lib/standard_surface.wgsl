@@ -44,8 +44,9 @@ fn half_vector(a: real3, b: real3) -> real3 {
 }
 
 /// BRDF times cosine toward the unit vector `to_light`: multiplied by illuminance it is the
-/// reflected radiance. Exactly zero at and behind the horizon (hard case 2). The Lambert layer does not know what the layer above it took, as in glTF and Filament. Half floats hold
-/// each factor but not D · V, so those are put together in f32.
+/// reflected radiance. Exactly zero at and behind the horizon (hard case 2). The Lambert layer does
+/// not know what the layer above it took, as in glTF and Filament. Half floats hold each factor but
+/// not D · V, so those are put together in f32.
 fn reflect_light(s: StandardSurface, to_light: real3, fast_visibility: bool) -> vec3<f32> {
     let nol = min(dot(s.normal, to_light), 1.0);
     if !(nol > 0.0) {

@@ -1,8 +1,10 @@
-// Bloom: what glows in a picture, made smaller level by level, and added up again from the smallest.
+// Bloom: what glows in a picture, made smaller level by level, and added up again from the
+// smallest.
 //
-// `fs_first` reads texel by texel, since a filter would spread what is not finite; everything behind
-// it is finite. `fs_down` halves a picture of even sides, `fs_down_odd` any other; `fs_up` adds what
-// comes from below to a level, by a tent of three texels below or, with NARROW, by a box of one.
+// `fs_first` reads texel by texel, since a filter would spread what is not finite; everything
+// behind it is finite. `fs_down` halves a picture of even sides, `fs_down_odd` any other; `fs_up`
+// adds what comes from below to a level, by a tent of three texels below or, with NARROW, by a box
+// of one.
 
 import package::lib::bloom::{
     BLOOM_MOST, tent_weights, firefly_weight, glowing,
@@ -91,7 +93,8 @@ fn tap(uv: vec2<f32>) -> vec3<f32> {
 
 /// Four taps at the corners of a square about `uv`.
 fn corners(uv: vec2<f32>, d: vec2<f32>) -> vec3<f32> {
-    return tap(uv - d) + tap(uv + vec2<f32>(d.x, -d.y)) + tap(uv + vec2<f32>(-d.x, d.y)) + tap(uv + d);
+    return tap(uv - d) + tap(uv + vec2<f32>(d.x, -d.y))
+        + tap(uv + vec2<f32>(-d.x, d.y)) + tap(uv + d);
 }
 
 /// Four taps in the middles of the sides of that square.

@@ -206,7 +206,8 @@ fn gather_before(uv: vec2<f32>, tile: vec2<f32>, noise: vec2<f32>) -> vec4<f32> 
     return vec4<f32>(near + far * (1.0 - opacity.x), 1.0 - (1.0 - opacity.x) * (1.0 - opacity.y));
 }
 
-/// Taps of one ring: radiance times weight, weight, radius times weight, and how many reach farther.
+/// Taps of one ring: radiance times weight, weight, radius times weight, and how many reach
+/// farther.
 struct Ring {
     color: vec3<f32>,
     weight: f32,
@@ -250,7 +251,8 @@ fn gather_behind(uv: vec2<f32>, noise: vec2<f32>) -> vec4<f32> {
         all.radius = all.radius * left + own.radius;
     }
     let mean = all.radius / max(all.weight, 1e-6);
-    let opacity = coc_opacity(mean) * smoothstep(COC_IN_FOCUS, 2.0, radius) * step_above(all.weight);
+    let seen = smoothstep(COC_IN_FOCUS, 2.0, radius);
+    let opacity = coc_opacity(mean) * seen * step_above(all.weight);
     return vec4<f32>(all.color / max(all.weight, 1e-6) * opacity, opacity);
 }
 

@@ -26,17 +26,17 @@ struct ShadowViewUniforms {
 
 struct OpaqueVertex {
     @builtin(position) position: vec4<f32>,
-    /// Linear depth, of each sample: at the middle of a texel that a triangle covers in part it would
-    /// be that of a place beside the triangle, which the warp makes of any size.
-    @location(2) @interpolate(perspective, sample) depth: f32,
+    /// Linear depth. At the middle of a texel that a triangle covers in part it would be that of a
+    /// place beside the triangle, which the warp makes of any size: it is taken where it covers.
+    @location(2) @interpolate(perspective, centroid) depth: f32,
 }
 
 struct MaskVertex {
     @builtin(position) position: vec4<f32>,
     @location(0) uv: vec4<f32>,
     @location(1) alpha: f32,
-    /// Linear depth, of each sample.
-    @location(2) @interpolate(perspective, sample) depth: f32,
+    /// Linear depth, taken where the triangle covers the texel.
+    @location(2) @interpolate(perspective, centroid) depth: f32,
 }
 
 /// The far end, over a map that is drawn again.

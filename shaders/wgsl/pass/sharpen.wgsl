@@ -14,7 +14,7 @@ struct SharpenUniforms {
 /// True decodes what was sharpened encoded, for an sRGB target.
 override DECODE: bool = false;
 
-@group(0) @binding(0) var<uniform> settings: SharpenUniforms;
+@group(0) @binding(0) var<uniform> sharpening: SharpenUniforms;
 @group(0) @binding(1) var picture: texture_2d<f32>;
 
 @vertex
@@ -38,7 +38,7 @@ fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         texel(at - vec2<i32>(1, 0)).rgb,
         texel(at + vec2<i32>(1, 0)).rgb,
         texel(at + vec2<i32>(0, 1)).rgb,
-        settings.strength,
+        sharpening.strength,
     );
     return vec4<f32>(select(color, linear_from_srgb(color), DECODE), middle.a);
 }

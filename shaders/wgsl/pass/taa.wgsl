@@ -51,9 +51,9 @@ override REPROJECT: bool = true;
 /// Bright samples do not outweigh dark ones, else each counts by its light.
 override COMPRESS: bool = true;
 
-@group(0) @binding(0) var<uniform> settings: TaaUniforms;
+@group(0) @binding(0) var<uniform> temporal: TaaUniforms;
 @group(0) @binding(1) var hdr: texture_2d<f32>;
-@group(0) @binding(2) var depth: texture_depth_2d;
+@group(0) @binding(2) var depth: texture_2d<f32>;
 /// Way to the place before, in texture coordinates, of what moves, times a count, and that count.
 @if(VELOCITY)
 @group(0) @binding(5) var velocity: texture_2d<f32>;
@@ -72,7 +72,8 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
 fn earlier_place(texel: vec2<i32>, size: vec2<f32>) -> vec3<f32> {
     let uv = (vec2<f32>(texel) + 0.5) / size;
     let ndc = vec2<f32>(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y);
-    let clip = settings.earlier_clip_from_clip * vec4<f32>(ndc, textureLoad(depth, texel, 0), 1.0);
+    let place = vec4<f32>(ndc, textureLoad(depth, texel, 0).r, 1.0);
+    let clip = temporal.earlier_clip_from_clip * place;
     let before = clip.xy / max(clip.w, 1e-9);
     let place = vec2<f32>(0.5 + 0.5 * before.x, 0.5 - 0.5 * before.y);
     return shown_place(uv, place, clip.w > 1e-9);
@@ -89,12 +90,12 @@ fn shown_place(uv: vec2<f32>, place: vec2<f32>, ahead: bool) -> vec3<f32> {
 /// what is nearer on a round body moves more, and its outline would run ahead.
 @if(VELOCITY)
 fn moved_place(texel: vec2<i32>, last: vec2<i32>) -> vec3<f32> {
-    let own = textureLoad(depth, texel, 0);
+    let own = textureLoad(depth, texel, 0).r;
     var nearest = own;
     var at = texel;
     for (var i = 0; i < 9; i++) {
         let other = clamp(texel + vec2<i32>(i % 3, i / 3) - 1, vec2<i32>(0), last);
-        let around = textureLoad(depth, other, 0);
+        let around = textureLoad(depth, other, 0).r;
         at = select(at, other, around > nearest && around > 1.25 * own);
         nearest = max(nearest, around);
     }
@@ -143,7 +144,7 @@ fn earlier_color(place: vec2<f32>) -> vec3<f32> {
     } else {
         sum = textureSampleLevel(earlier, earlier_sampler, place, 0.0);
     }
-    return sum.rgb * settings.exposure_ratio;
+    return sum.rgb * temporal.exposure_ratio;
 }
 
 /// A color in the space that boxes are of.
@@ -168,7 +169,7 @@ fn held(history: vec3<f32>, filtered: vec3<f32>, near: array<vec3<f32>, 9>) -> v
     if BOX != BOX_BOUNDS {
         let sum = s[4] + s[1] + s[3] + s[5] + s[7];
         let squares = s[4] * s[4] + s[1] * s[1] + s[3] * s[3] + s[5] * s[5] + s[7] * s[7];
-        let reach = settings.variance_gamma * deviation_of_five(sum, squares);
+        let reach = temporal.variance_gamma * deviation_of_five(sum, squares);
         low = select(0.2 * sum - reach, max(low, 0.2 * sum - reach), BOX == BOX_BOTH);
         high = select(0.2 * sum + reach, min(high, 0.2 * sum + reach), BOX == BOX_BOTH);
     }
@@ -188,7 +189,7 @@ fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     for (var i = 0; i < 9; i++) {
         let at = clamp(texel + vec2<i32>(i % 3, i / 3) - 1, vec2<i32>(0), last);
         near[i] = saturate_half3(textureLoad(hdr, at, 0).rgb);
-        filtered += near[i] * settings.weights[i / 4][i % 4];
+        filtered += near[i] * temporal.weights[i / 4][i % 4];
     }
     filtered = select(near[4], filtered, FILTER_INPUT);
     let place = moved_place(texel, last);
@@ -196,7 +197,7 @@ fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     // What is broken in the sum does not stay there.
     let usable = all_finite3(before) && place.z > 0.0;
     let history = held(select(filtered, max(before, vec3<f32>(0.0)), usable), filtered, near);
-    var share = settings.feedback;
+    var share = temporal.feedback;
     if PREVENT_FLICKERING {
         share *= steadiness(luminance(filtered), luminance(history));
     }

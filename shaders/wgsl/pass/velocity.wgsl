@@ -1,9 +1,9 @@
 // Velocity: where in the picture of the frame before the surfaces of what moves were.
 //
-// Drawn over the depth of the visible surfaces where it is equal, as the color pass is, and with the
-// same position to the bit. Both clip positions come from matrices that were joined in f64, without
-// jitter. The last number counts samples: an average over some that moved and some that did not, over
-// it, is the mean of those that did.
+// Drawn over the depth of the visible surfaces where it is equal, as the color pass is, and with
+// the same position to the bit. Both clip positions come from matrices that were joined in f64,
+// without jitter. The last number counts samples: an average over some that moved and some that did
+// not, over it, is the mean of those that did.
 
 import package::interface::material::{material, base_color};
 import package::interface::object::{objects, world_position, clip_position};
