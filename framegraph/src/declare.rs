@@ -109,8 +109,7 @@ impl Graph {
         let about = tables.push_name(prefix, about);
         let start = tables.names.len();
         write!(tables.names, "{text}").expect("strings take every text");
-        let text = Span::new(start, tables.names.len());
-        tables.notes.push(Note { about, text });
+        tables.notes.push(Note { about, text: Span::new(start, tables.names.len()) });
     }
 
     /// A transient texture: nothing is in it until a pass writes it.

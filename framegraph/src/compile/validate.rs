@@ -35,8 +35,7 @@ pub(crate) fn validate(
     }
     let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MOST_TILE_BYTES;
     for (index, pass) in graph.passes.iter().enumerate() {
-        // Of the only attachment of a pass, the color attachment of a texture of one part, nothing but the clear value can be
-        // wrong on a device that has room for it.
+        // Of a pass with one color attachment, of a texture of one part, only the clear value can be wrong where it has room.
         let plain = roomy && !pass.sole_color.is_none();
         if !plain && pass.kind == PassKind::Raster {
             let framebuffer = framebuffer_of_pass(graph, &measures.rows, pass);

@@ -11,8 +11,7 @@ use serde::de::DeserializeOwned;
 /// is checked before everything else; `T` has the field too.
 ///
 /// # Errors
-/// Text that is no RON, or not of this form or version, with its place and, where a name is unknown, the one that was
-/// probably meant.
+/// Text that is no RON, or not of this form or version, with its place and, for an unknown name, the nearest that is known.
 pub fn document<T: DeserializeOwned>(path: &str, text: &str, version: u32) -> Result<T, FileErrors> {
     let source = Source { path, text: without_mark(text), included: &[] };
     check_version(source, version)?;

@@ -65,8 +65,7 @@ impl Tables {
         *resolves = false;
     }
 
-    /// Becomes a copy of what the phases after culling read, and keeps its memory: names, notes, clear values and errors are
-    /// left out.
+    /// Becomes a copy of what the phases after culling read (no names, notes, clear values and errors), in its own memory.
     pub(crate) fn copy_work(&mut self, source: &Self) {
         self.passes.clone_from(&source.passes);
         self.accesses.clone_from(&source.accesses);

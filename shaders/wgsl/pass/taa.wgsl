@@ -72,8 +72,8 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
 fn earlier_place(texel: vec2<i32>, size: vec2<f32>) -> vec3<f32> {
     let uv = (vec2<f32>(texel) + 0.5) / size;
     let ndc = vec2<f32>(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y);
-    let place = vec4<f32>(ndc, textureLoad(depth, texel, 0).r, 1.0);
-    let clip = temporal.earlier_clip_from_clip * place;
+    let here = vec4<f32>(ndc, textureLoad(depth, texel, 0).r, 1.0);
+    let clip = temporal.earlier_clip_from_clip * here;
     let before = clip.xy / max(clip.w, 1e-9);
     let place = vec2<f32>(0.5 + 0.5 * before.x, 0.5 - 0.5 * before.y);
     return shown_place(uv, place, clip.w > 1e-9);

@@ -24,7 +24,6 @@ const LOGARITHM: &str = "this driver's logarithm of zero and of less is finite; 
 const SWALLOWED: &str = "the limit around it makes a number of what is none on this driver; WGSL leaves it open";
 const ROUNDING: &str = "for what rounding may carry past the limit; no input is known that it does so to here";
 const TWICE: &str = "what follows holds the same values, by WGSL's rules; the guard says it without them";
-const ELSEWHERE: &str = "for the one place in a ten-thousandth off the middle, which is the middle of no texel";
 const WHOLE: &str = "for the middle, whose share is 1 whatever the angle";
 const BEFORE: &str = "for ways that end before fog begins, which are in none whatever its mean density";
 
@@ -44,21 +43,14 @@ pub const UNNOTICED: &[(&str, &str, &str)] = &[
     ("dfg_integration::dfg_ggx", "min(2.0 * voh * h.z - nov, 1.0)", ROUNDING),
     ("display_range::tone_display_range", "clamp(y, 1e-10, 65504.0)", LOGARITHM),
     ("dof::ring_level", "max(radius_texels, 1e-3)", LOGARITHM),
-    ("flare::flare_direction", "max(dot(v, v), 1e-12)", ELSEWHERE),
     ("flare::starburst", "clamp(v.x / max(d, 1e-6), -1.0, 1.0)", WHOLE),
     ("flare::starburst", "max(d, 1e-6)", WHOLE),
     ("fog::fog_optical_depth", "saturate(start_m / max(way_m, 1e-6))", BEFORE),
     ("fog::fog_optical_depth", "max(way_m, 1e-6)", BEFORE),
     ("fog::fog_optical_depth", "clamp(decay * clear, -FOG_MOST_EXPONENT, FOG_MOST_EXPONENT)", TWICE),
     ("fog::mean_decay", "select(x, 1.0, small)", SWALLOWED),
+    ("upscale::kernel_of", "max(length2, 1e-12)", TWICE),
     ("froxel::froxel_number", "max(pixel, vec2<f32>(0.0))", TWICE),
-    ("dof::ring_level", "max(radius_texels, 1e-3)", LOGARITHM),
-    ("flare::starburst", "clamp(v.x / max(d, 1e-6), -1.0, 1.0)", ROUNDING),
-    ("flare::starburst", "max(d, 1e-6)", SWALLOWED),
-    ("fog::fog_optical_depth", "saturate(start_m / max(way_m, 1e-6))", TWICE),
-    ("fog::fog_optical_depth", "max(way_m, 1e-6)", SWALLOWED),
-    ("fog::fog_optical_depth", "clamp(decay * clear, -FOG_MOST_EXPONENT, FOG_MOST_EXPONENT)", TWICE),
-    ("fog::mean_decay", "select(x, 1.0, small)", TWICE),
     ("froxel::froxel_slice", "clamp(select(ahead_m, 0.0, is_nowhere), 1e-30, 1e30)", LOGARITHM),
     ("froxel::froxel_slice", "select(ahead_m, 0.0, is_nowhere)", SWALLOWED),
     ("gamut::map_into_gamut", "max(e * e - 2.0 * abs(from_middle), 0.0)", ROUNDING),
