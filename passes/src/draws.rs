@@ -11,7 +11,8 @@ pub struct ViewDraws {
     pub numbers: Vec<u32>,
     /// Depth of opaque surfaces and of masked ones: what has the nearest instance first.
     pub depth: [Vec<Batch>; 2],
-    /// Opaque surfaces and masked ones over that depth: shader by shader, material by material.
+    /// Opaque surfaces and masked ones over that depth, in the same order: of surfaces that lie in one another the last is seen, so
+    /// order shows.
     pub surfaces: [Vec<Batch>; 2],
     /// What transmits, a draw each, nearest first.
     pub transmit: Vec<Batch>,
@@ -30,7 +31,7 @@ impl ViewDraws {
             |groups: &framegraph_scene::Groups, order, list: &[u32]| groups.batches(list, order, &mut numbers);
         let (surfaces, depths) = (of.surfaces(), of.depths());
         let depth = [opaque, mask].map(|list| batches(depths, BatchOrder::FirstFirst, list));
-        let shaded = [opaque, mask].map(|list| batches(surfaces, BatchOrder::ByGroup, list));
+        let shaded = [opaque, mask].map(|list| batches(surfaces, BatchOrder::FirstFirst, list));
         let blended = batches(surfaces, BatchOrder::Kept, blend);
         let maps = shadows.iter().flat_map(|shadows| &shadows.maps);
         let of_map =

@@ -18,8 +18,10 @@ fn shown(name: &str) -> Harness<'static, Viewer> {
 
 fn of(session: Session) -> Harness<'static, Viewer> {
     let viewer = Viewer::new(session);
-    let mut harness =
-        Harness::builder().with_size([1280.0, 720.0]).build_ui_state(|ui, viewer: &mut Viewer| viewer.show(ui), viewer);
+    let mut harness = Harness::builder()
+        .with_size([1280.0, 720.0])
+        .with_max_steps(16)
+        .build_ui_state(|ui, viewer: &mut Viewer| viewer.show(ui), viewer);
     harness.run();
     harness
 }
