@@ -78,11 +78,18 @@ pub(crate) fn switched<T>(
         "on" => usual,
         _ => return Err(Choice { key: switch, value: "" }.unknown(&["off", "on"])),
     };
-    for change in changes.split(',').filter(|change| !change.is_empty()) {
-        let (key, value) = change.split_once('=').unwrap_or((change, ""));
+    for Choice { key, value } in choices(changes) {
         set(&mut settings, key, value)?;
     }
     Ok(Some(settings))
+}
+
+/// The choices of `key=value,key=value`, in order; a key alone has the value "".
+pub(crate) fn choices(text: &str) -> impl Iterator<Item = Choice<'_>> {
+    text.split(',').filter(|choice| !choice.is_empty()).map(|choice| {
+        let (key, value) = choice.split_once('=').unwrap_or((choice, ""));
+        Choice { key, value }
+    })
 }
 
 /// One choice, as it was asked for.

@@ -1,7 +1,7 @@
 //! Ambient occlusion by name: `off`, `sao`, `sao:quality=high,radius=0.5`, `gtao:occluders=0.5`.
 
 use super::settings::{Blur, ConeTrace, Gtao, Method, Occluders, OcclusionSettings, SaoQuality};
-use crate::choice::{Choice, ChoiceError};
+use crate::choice::{Choice, ChoiceError, choices};
 use crate::structure::Resolution;
 
 impl OcclusionSettings {
@@ -40,8 +40,7 @@ impl OcclusionSettings {
             "gtao" => Self::GTAO,
             _ => return Err(Choice { key: method, value: "" }.unknown(&["off", "sao", "gtao"])),
         };
-        for change in changes.split(',').filter(|change| !change.is_empty()) {
-            let (key, value) = change.split_once('=').unwrap_or((change, ""));
+        for Choice { key, value } in choices(changes) {
             settings.set(key, value)?;
         }
         Ok(Some(settings))

@@ -1,6 +1,6 @@
 //! How shading finds the lights that reach a place, by name: `auto`, `all`, `froxels`, `froxels:slices=24,far=200`.
 
-use crate::choice::{Choice, ChoiceError};
+use crate::choice::{Choice, ChoiceError, choices};
 
 /// How shading finds the lights that reach a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,9 +60,7 @@ impl LightSearch {
     pub fn from_text(text: &str) -> Result<Self, ChoiceError> {
         let (way, changes) = text.split_once(':').unwrap_or((text, ""));
         let mut settings = FroxelSettings::DEFAULT;
-        for change in changes.split(',').filter(|change| !change.is_empty()) {
-            let (key, value) = change.split_once('=').unwrap_or((change, ""));
-            let choice = Choice { key, value };
+        for choice in choices(changes) {
             if way == "all" {
                 return Err(choice.only("froxels"));
             }

@@ -1,7 +1,7 @@
 //! What temporal anti-aliasing is made of, and the same by name. Defaults are Filament's.
 
 use super::jitter::JitterPattern;
-use crate::choice::{Choice, ChoiceError};
+use crate::choice::{Choice, ChoiceError, switched};
 use glam::DVec2;
 
 /// How frames are added up.
@@ -115,17 +115,7 @@ impl TaaSettings {
     /// # Errors
     /// When it is neither, or a choice is unknown or does not take the value: one line that names it and what it takes.
     pub fn from_text(text: &str) -> Result<Option<Self>, ChoiceError> {
-        let (switch, changes) = text.split_once(':').unwrap_or((text, ""));
-        let mut settings = match switch {
-            "off" => return Ok(None),
-            "on" => Self::DEFAULT,
-            _ => return Err(Choice { key: switch, value: "" }.unknown(&["off", "on"])),
-        };
-        for change in changes.split(',').filter(|change| !change.is_empty()) {
-            let (key, value) = change.split_once('=').unwrap_or((change, ""));
-            settings.set(key, value)?;
-        }
-        Ok(Some(settings))
+        switched(text, Self::DEFAULT, Self::set)
     }
 
     /// Changes one choice by name.

@@ -1,5 +1,6 @@
 //! Options of color grading, the tone curve, and the edges of the picture.
 
+use crate::look::pairs;
 use framegraph_passes::PostSettings;
 use framegraph_passes::grading::{GradeBy, Look, tone_map};
 use framegraph_shaders::layout::EdgeFade;
@@ -84,11 +85,6 @@ impl Grade {
         (post.look, post.by, post.edge_fade) = (self.look, self.by, self.edge_fade);
         Ok(())
     }
-}
-
-fn pairs<'a>(option: &str, text: &'a str) -> Result<Vec<(&'a str, &'a str)>, String> {
-    let pair = |pair: &'a str| pair.split_once('=').ok_or_else(|| format!("{option} {pair}: KEY=X is needed"));
-    text.split(',').filter(|text| !text.is_empty()).map(pair).collect()
 }
 
 fn set_fade(fade: &mut EdgeFade, key: &str, value: &str) -> Result<(), String> {

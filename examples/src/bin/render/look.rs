@@ -16,6 +16,15 @@ pub fn number(option: &str, text: &str, range: RangeInclusive<f32>) -> Result<f3
     }
 }
 
+/// The keys and values of `KEY=X,KEY=X`, in order.
+///
+/// # Errors
+/// One line that names the option, when there is a key alone.
+pub fn pairs<'a>(option: &str, text: &'a str) -> Result<Vec<(&'a str, &'a str)>, String> {
+    let pair = |pair: &'a str| pair.split_once('=').ok_or_else(|| format!("{option} {pair}: KEY=X is needed"));
+    text.split(',').filter(|text| !text.is_empty()).map(pair).collect()
+}
+
 /// `on` or `off`.
 ///
 /// # Errors
@@ -51,8 +60,7 @@ pub fn precision(text: &str) -> Result<Precision, String> {
 /// # Errors
 /// One line that names the key.
 pub fn shading(mut shading: Shading, text: &str) -> Result<Shading, String> {
-    for pair in text.split(',').filter(|pair| !pair.is_empty()) {
-        let (key, value) = pair.split_once('=').ok_or_else(|| format!("--shade {pair}: KEY=VALUE is needed"))?;
+    for (key, value) in pairs("--shade", text)? {
         shading.set(key, value).map_err(|error| format!("--shade {error}"))?;
     }
     Ok(shading)

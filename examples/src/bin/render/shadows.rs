@@ -1,5 +1,6 @@
 //! Options of shadows.
 
+use crate::look::pairs;
 use framegraph_passes::shadow::{
     ContactShadows, Fit, MOST_MAPS, ShadowFilter, ShadowSettings, Splits, local_layers, local_maps,
 };
@@ -72,9 +73,7 @@ impl Shadows {
             }
             "cascades" => self.settings.cascades = number("--cascades", &value()?, 1.0, 4.0)? as u8,
             "shadow" => {
-                for choice in value()?.split(',') {
-                    let (key, value) =
-                        choice.split_once('=').ok_or_else(|| format!("--shadow {choice}: KEY=X is needed"))?;
+                for (key, value) in pairs("--shadow", &value()?)? {
                     self.set(key, value)?;
                 }
             }

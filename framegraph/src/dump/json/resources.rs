@@ -37,8 +37,8 @@ fn resource(plan: &Plan, names: &Names, resource: ResourceId, offset: Option<u64
         field("format", plan.format(resource).map(|f| format!("{f:?}"))),
         field("extent", texture.map(|t| t.extent.texels(plan.frame()).to_vec())),
         field("mips", texture.map(|t| t.mip_count(plan.frame()))),
-        field("layers", texture.map(|t| t.layers)),
-        field("samples", texture.map(|t| t.samples)),
+        field("layers", texture.map(|t| u32::from(t.layers))),
+        field("samples", texture.map(|t| u32::from(t.samples))),
         field("usage", uses(row.usage)),
         field("first_step", row.first.some().map(StepId::index)),
         field("last_step", row.last.some().map(StepId::index)),
@@ -73,7 +73,7 @@ pub(super) fn histories(plan: &Plan, names: &Names) -> Json {
         let Kind::HistoryCurrent { frames } = row.kind else { return None };
         let previous = rows().filter_map(|(image, row)| match row.kind {
             Kind::HistoryPrevious { current, age } if current == history => {
-                Some(object([field("resource", names.resource(image)), field("age", age)]))
+                Some(object([field("resource", names.resource(image)), field("age", u32::from(age))]))
             }
             _ => None,
         });

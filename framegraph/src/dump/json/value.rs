@@ -94,18 +94,23 @@ impl From<bool> for Json {
     }
 }
 
-macro_rules! numbers {
-    ($($number:ty),+) => { $(
-        impl From<$number> for Json {
-            #[allow(clippy::cast_lossless, reason = "a usize has no `From`")]
-            fn from(value: $number) -> Self {
-                Self::Number(value as u64)
-            }
-        }
-    )+ };
+impl From<u32> for Json {
+    fn from(value: u32) -> Self {
+        Self::Number(value.into())
+    }
 }
 
-numbers!(u8, u16, u32, u64, usize);
+impl From<u64> for Json {
+    fn from(value: u64) -> Self {
+        Self::Number(value)
+    }
+}
+
+impl From<usize> for Json {
+    fn from(value: usize) -> Self {
+        Self::Number(value as u64)
+    }
+}
 
 impl From<String> for Json {
     fn from(text: String) -> Self {
