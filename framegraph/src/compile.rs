@@ -1,7 +1,6 @@
 //! Compiling: from what was declared to what is executed, the phases in order on one screen.
 
 mod barriers;
-mod classes;
 mod cull;
 mod error;
 mod framebuffer;

@@ -11,8 +11,8 @@ mod tables;
 use crate::handle::Tag;
 pub use rows::{Declared, Export, ExportKind, PassFlags, PassKind, Version};
 use std::ops::Deref;
-use std::sync::Arc;
 pub use tables::Tables;
+use triomphe::Arc;
 
 /// The most sets of arrays that a graph keeps for later beside its own: as many plans can be made from it in turns without
 /// allocating.
@@ -46,8 +46,8 @@ impl Graph {
 
     /// Forgets what was declared and keeps the memory; handles of before are refused from now on.
     pub fn reset(&mut self) {
-        if Arc::strong_count(&self.tables) > 1 {
-            let free = self.spares.iter().position(|spare| Arc::strong_count(spare) == 1);
+        if Arc::count(&self.tables) > 1 {
+            let free = self.spares.iter().position(|spare| Arc::count(spare) == 1);
             let next = free.map(|at| self.spares.remove(at)).unwrap_or_default();
             if self.spares.len() == MOST_SPARES {
                 self.spares.remove(0);

@@ -37,7 +37,8 @@
 //!
 //! # Features
 //!
-//! Without any, the crate depends on its packer of memory alone ([`pack`], a package of its own). `files` (on by default): graphs and devices as RON (the module `file`), and
+//! Without any, the crate depends on its packer of memory ([`pack`], a package of its own) and on an `Arc` without weak counts.
+//! `files` (on by default): graphs and devices as RON (the module `file`), and
 //! serde for formats, shapes, caps, options and counts. `petgraph`: the graph as a `petgraph` graph (the
 //! module `dump::graph`); comes with `files`, which finds cycles with it. `testing`: the independent
 //! oracle of plans, random graphs and mutants of plans.

@@ -5,6 +5,8 @@
 //! storage allocation"), yet on render graphs an optimal packing with its proof is nearly always to be had: no
 //! packing is lower than the peak of live bytes, so one that reaches it is optimal.
 //!
+//! Where resources share memory only with their like, [`classes`] numbers what is alike.
+//!
 //! Two efforts build on each other ([`Effort`]): a portfolio of greedy packings, and three searches that take turns.
 //! Both are deterministic and measured in steps, never in time, so that equal input gives equal offsets on every machine.
 //!
@@ -24,6 +26,7 @@
 //! ```
 
 mod canonical;
+pub mod classes;
 #[cfg(feature = "testing")]
 pub mod csv;
 mod eject;

@@ -38,9 +38,12 @@ pub(crate) fn cull(
     decisions: &mut Vec<Decision>,
 ) {
     let Culled { order, after, needs, dropped } = out;
-    order.clear();
     dropped.clear();
+    order.resize(graph.passes.len(), PassId::NONE);
+    let mut first_kept = order.len();
     after.resize(graph.accesses.len(), Need::Unread);
+    // One row an access: one check of its number serves for both.
+    let after = &mut after[..graph.accesses.len()];
     needs_at_exit(graph, parts, measures, needs);
     let trims = enabled && graph.resolves;
     let first = decisions.len();
@@ -63,14 +66,15 @@ pub(crate) fn cull(
             *decision = Decision { subject: Subject::Pass(pass), reason };
             continue;
         }
-        order.push(pass);
+        first_kept -= 1;
+        order[first_kept] = pass;
         if trims && declared.flags.has(PassFlags::RESOLVES) {
             keep_averages(parts, needs, pass, accesses, span.start, after, dropped);
         } else {
             keep_inputs(parts, needs, pass, accesses, &mut after[span]);
         }
     }
-    order.reverse();
+    order.drain(..first_kept);
     dropped.sort_unstable();
     decisions.extend(dropped.iter().map(|(pass, id)| {
         let reason = Reason::ResolveDropped(graph.accesses[id.index()].resource);
@@ -103,7 +107,7 @@ fn keep_averages(
         } else {
             after[first + at] = keep_input(parts, needs, pass, accesses, access);
             if in_vain && kind == AccessKind::Color && averaged & 1 << slot == 0 {
-                parts.fill(needs, resource, range, Need::Overwritten { pass, by_kept: true });
+                parts.fill(needs, resource, range, Need::Overwritten(pass));
             }
         }
     }
@@ -157,7 +161,7 @@ fn keep_input(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Acces
 /// what the access leaves is needed.
 #[inline]
 pub(super) fn need_before(pass: PassId, accesses: &[Access], access: &Access, after: impl FnOnce() -> bool) -> Need {
-    if reads(accesses, access, after) { Need::Reader(pass) } else { Need::Overwritten { pass, by_kept: true } }
+    if reads(accesses, access, after) { Need::Reader(pass) } else { Need::Overwritten(pass) }
 }
 
 /// Whether anything comes of what was there before this access of a pass. Blending in vain changes nothing: unlike a depth

@@ -5,10 +5,10 @@
 
 use super::measure::Measures;
 use super::steps::StepView;
-use crate::access::{AccessKind, Usage};
+use crate::access::{Access, AccessKind, Usage};
 use crate::graph::ExportKind;
 use crate::id::{ResourceId, StepId};
-use crate::plan::{Placement, Planned, Step};
+use crate::plan::{Placement, Planned, Step, StepPass};
 use crate::resource::Kind;
 
 /// Fills one row a resource: first and last step, uses, format and bytes. Exported transients are placed in memory of their
@@ -22,20 +22,19 @@ pub(crate) fn lifetimes(
     format_of: &[ResourceId],
     resources: &mut Vec<Planned>,
 ) {
-    let graph = view.graph;
+    let (graph, as_declared) = (view.graph, view.inlined_into.is_empty());
     resources.clear();
     resources.extend(measures.rows.iter().map(|measured| Planned { bytes: measured.bytes, ..UNUSED }));
+    let (rows, passes, accesses) = (&mut resources[..], graph.passes(), graph.accesses());
     for (index, step) in steps.iter().enumerate() {
-        let (step, members) = (StepId::unchecked(index), view.of(step));
-        for at in 0..members.passes.len() {
-            for access in members.accesses(at) {
-                let row = &mut resources[members.touched(access).0.index()];
-                row.first = row.first.min(step); // none is the largest
-                row.last = step;
-                let sampled = access.kind == AccessKind::SamePixel && !members.in_tile(at, access);
-                let usage = if sampled { Usage::SAMPLED } else { access.kind.usage() };
-                row.usage = row.usage.union(usage);
-                row.srgb_views |= access.range.view.is_some();
+        let step_id = StepId::unchecked(index);
+        for member in step.passes.of(view.step_passes) {
+            for access in passes[member.pass.index()].accesses.of(accesses) {
+                if as_declared && access.kind != AccessKind::SamePixel && access.range.view.is_none() {
+                    rows[access.resource.index()].touch(step_id, access.kind.usage());
+                } else {
+                    touch_unusual(view, (step_id, step), *member, access, rows);
+                }
             }
         }
     }
@@ -55,6 +54,37 @@ pub(crate) fn lifetimes(
         if graph.resources[export.resource.index()].kind == Kind::Transient {
             row.placement = Placement::Own;
         }
+    }
+}
+
+/// Notes an access that inlining may have replaced, that may find its texel in the tile, or that sees another format.
+#[inline(never)]
+fn touch_unusual(
+    view: StepView<'_>,
+    (step_id, step): (StepId, &Step),
+    member: StepPass,
+    access: &Access,
+    rows: &mut [Planned],
+) {
+    let members = view.of(step);
+    if members.replaces(member, access) {
+        return;
+    }
+    let in_tile = || members.passes.iter().position(|m| *m == member).is_some_and(|at| members.in_tile(at, access));
+    let sampled = access.kind == AccessKind::SamePixel && !in_tile();
+    let usage = if sampled { Usage::SAMPLED } else { access.kind.usage() };
+    let row = &mut rows[members.touched(access).0.index()];
+    row.touch(step_id, usage);
+    row.srgb_views |= access.range.view.is_some();
+}
+
+impl Planned {
+    /// Notes that an access of this step, the last so far, uses the resource.
+    #[inline(always)]
+    fn touch(&mut self, step: StepId, usage: Usage) {
+        self.first = self.first.min(step); // none is the largest
+        self.last = step;
+        self.usage = self.usage.union(usage);
     }
 }
 

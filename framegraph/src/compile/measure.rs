@@ -14,12 +14,20 @@ use crate::resource::{BufferDesc, BufferSize, Desc, Dimension, Extent, Kind, Res
 /// A resource in a frame of known size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Measured {
-    /// Width and height of level 0 in texels; 0 for a buffer.
+    /// Width and height of level 0 in texels; of a buffer, the lower and the upper half of its bytes. What differs in it cannot
+    /// share memory.
     pub(crate) extent: [u32; 2],
     /// Bytes without padding, in the declared format.
     pub(crate) bytes: u64,
     /// Levels, layers, samples, format.
     pub(crate) layout: Layout,
+}
+
+impl Measured {
+    #[inline]
+    const fn buffer(bytes: u64) -> Self {
+        Self { extent: [bytes as u32, (bytes >> 32) as u32], bytes, layout: Layout::BUFFER }
+    }
 }
 
 /// The measures of all resources.
@@ -58,7 +66,7 @@ pub(crate) fn measure(
             Desc::Buffer(BufferDesc { size: BufferSize::Bytes(bytes) })
                 if *bytes != 0 && *bytes <= caps.max_buffer_bytes =>
             {
-                Some(Measured { extent: [0; 2], bytes: *bytes, layout: Layout::BUFFER })
+                Some(Measured::buffer(*bytes))
             }
             Desc::Buffer(_) => None,
         };
@@ -166,7 +174,7 @@ fn measure_and_judge(
             bytes: t.bytes(frame),
             layout: Layout::of_texture(t, t.mip_count(frame) as u8),
         },
-        Desc::Buffer(b) => Measured { extent: [0; 2], bytes: b.bytes(frame), layout: Layout::BUFFER },
+        Desc::Buffer(b) => Measured::buffer(b.bytes(frame)),
     }
 }
 

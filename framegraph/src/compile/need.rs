@@ -22,23 +22,27 @@ pub(crate) enum Need {
     History,
     /// No pass reads it, and none writes over it.
     Unread,
-    /// Only this culled pass reads it; then a pass that is kept writes over it, if `overwritten`.
-    CulledReader { pass: PassId, overwritten: bool },
-    /// This pass writes over it first; a pass that is kept does, this one or a later one, if `by_kept`.
-    Overwritten { pass: PassId, by_kept: bool },
+    /// Only this culled pass reads it.
+    CulledReader(PassId),
+    /// Only this culled pass reads it; then a pass that is kept writes over it.
+    CulledReaderThenKept(PassId),
+    /// This culled pass writes over it, and no pass that is kept.
+    CulledWriter(PassId),
+    /// This pass writes over it first, and a pass that is kept does: this one or a later one.
+    Overwritten(PassId),
 }
 
 impl Need {
     /// A culled pass reads what otherwise has this fate, which is not to be needed.
     #[inline]
     pub(crate) const fn or_culled_reader(self, pass: PassId) -> Self {
-        Self::CulledReader { pass, overwritten: self.is_overwritten() }
+        if self.is_overwritten() { Self::CulledReaderThenKept(pass) } else { Self::CulledReader(pass) }
     }
 
     /// A culled pass writes over what otherwise has this fate, which is not to be needed.
     #[inline]
     pub(crate) const fn or_culled_writer(self, pass: PassId) -> Self {
-        Self::Overwritten { pass, by_kept: self.is_overwritten() }
+        if self.is_overwritten() { Self::Overwritten(pass) } else { Self::CulledWriter(pass) }
     }
 
     /// Whether the contents must be kept.
@@ -50,7 +54,7 @@ impl Need {
     /// Whether a kept pass writes over the contents before any kept pass reads them.
     #[inline]
     pub(crate) const fn is_overwritten(self) -> bool {
-        matches!(self, Self::CulledReader { overwritten: true, .. } | Self::Overwritten { by_kept: true, .. })
+        matches!(self, Self::CulledReaderThenKept(_) | Self::Overwritten(_))
     }
 
     /// The reason to keep the pass that writes `resource`.
@@ -61,15 +65,15 @@ impl Need {
             Self::Export => Reason::KeptExport(resource),
             Self::Import => Reason::KeptImport(resource),
             Self::History => Reason::KeptHistory(resource),
-            Self::Unread | Self::CulledReader { .. } | Self::Overwritten { .. } => Reason::KeptCullingOff,
+            _ => Reason::KeptCullingOff,
         }
     }
 
     /// The reason to drop the pass that writes `resource`.
     pub(crate) fn culled(self, resource: ResourceId) -> Reason {
         match self {
-            Self::CulledReader { pass, .. } => Reason::CulledReaderCulled(resource, pass),
-            Self::Overwritten { pass, .. } => Reason::CulledOverwritten(resource, pass),
+            Self::CulledReader(pass) | Self::CulledReaderThenKept(pass) => Reason::CulledReaderCulled(resource, pass),
+            Self::CulledWriter(pass) | Self::Overwritten(pass) => Reason::CulledOverwritten(resource, pass),
             _ => Reason::CulledUnread(resource),
         }
     }
@@ -82,7 +86,7 @@ impl Need {
             Self::Export => Some(Reason::StoreExport),
             Self::Import => Some(Reason::StoreImport),
             Self::History => Some(Reason::StoreHistory),
-            Self::Unread | Self::CulledReader { .. } | Self::Overwritten { .. } => None,
+            _ => None,
         }
     }
 }
@@ -111,7 +115,7 @@ mod tests {
     #[test]
     fn culled_passes_hide_no_kept_writer() {
         let [p, q] = [PassId::at(3), PassId::at(1)];
-        let overwritten = Need::Overwritten { pass: p, by_kept: true };
+        let overwritten = Need::Overwritten(p);
         for hidden in [overwritten.or_culled_reader(q), overwritten.or_culled_writer(q)] {
             assert!(hidden.is_overwritten() && hidden.or_culled_reader(q).is_overwritten() && !hidden.is_needed());
         }

@@ -95,7 +95,7 @@ pub(super) fn plan_order(
         stores::stores(view, parts, measures, steps, needs, attachments, decisions);
     }
     memoryless::memoryless(graph, caps, options, attachments, resources, decisions);
-    place::place(graph, inlined_into, resources, decisions);
+    place::place(graph, &measures.outside, inlined_into, resources, decisions);
     let placed = options.alias == Alias::Heap && caps.placed;
     let heaps = if placed { heap::heap(graph, caps, options, steps.len(), heap, resources, decisions) } else { None };
     *memory = heaps.unwrap_or_else(|| {

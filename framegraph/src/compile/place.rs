@@ -7,37 +7,33 @@ use crate::id::ResourceId;
 use crate::plan::{Placement, Planned};
 use crate::resource::Kind;
 
-/// Places what is imported, of a history, or inlined; logs unused ones. Exported and memoryless ones are placed already.
+/// Places what comes from `outside` (imported, of a history) or is inlined; logs unused ones. Exported and memoryless ones are
+/// placed already.
 #[inline(never)]
 pub(crate) fn place(
     graph: &Tables,
+    outside: &[ResourceId],
     inlined_into: &InlinedInto,
     resources: &mut [Planned],
     decisions: &mut Vec<Decision>,
 ) {
-    for (index, (row, declared)) in resources.iter_mut().zip(&graph.resources).enumerate() {
+    for resource in outside {
+        let imported = matches!(graph.resources[resource.index()].kind, Kind::Imported { .. });
+        resources[resource.index()].placement = if imported { Placement::External } else { Placement::Own };
+    }
+    for (index, row) in resources.iter_mut().enumerate() {
         // There are no more resources than versions, and those were counted.
         let resource = ResourceId::unchecked(index);
-        let inlined = || is_inlined(inlined_into, resource);
-        let is_transient = matches!(declared.kind, Kind::Transient);
-        if is_transient && row.placement != Placement::Own && !row.first.is_none() && !inlined() {
-            continue;
-        }
-        let reason = match declared.kind {
-            Kind::Imported { .. } => {
-                row.placement = Placement::External;
-                Reason::External
-            }
-            Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. } => {
-                row.placement = Placement::Own;
-                Reason::Persistent
-            }
-            Kind::Transient if row.placement == Placement::Own => Reason::Persistent,
-            Kind::Transient if inlined() => {
+        let reason = match row.placement {
+            Placement::External => Reason::External,
+            Placement::Own => Reason::Persistent,
+            _ if !row.first.is_none() => continue,
+            // No access touches what was inlined.
+            _ if is_inlined(inlined_into, resource) => {
                 row.placement = Placement::Inlined;
                 Reason::Inlined
             }
-            Kind::Transient => graph.forward_of(resource).map_or(Reason::Unused, Reason::Forwarded),
+            _ => graph.forward_of(resource).map_or(Reason::Unused, Reason::Forwarded),
         };
         decisions.push(Decision { subject: Subject::Resource(resource), reason });
     }

@@ -5,7 +5,6 @@
 //! slot that was freed last, in the order of first use, needs as many slots as are ever live at once: no assignment needs
 //! fewer. So the pool is optimal for its kind, and proved so.
 
-use super::classes::{Classes, NIL};
 use super::layout::Layout;
 use super::measure::Measured;
 use super::memory::Tally;
@@ -16,6 +15,7 @@ use crate::graph::Tables;
 use crate::id::{ResourceId, SlotId, StepId};
 use crate::plan::{Memory, Placement, Planned, Slot};
 use crate::resource::{Desc, Extent, TextureDesc};
+use framegraph_pack::classes::{Classes, NIL};
 
 /// Memory of the phase, kept between compiles.
 #[derive(Debug, Default)]
@@ -58,15 +58,15 @@ struct Tenancy {
     next_free: u32,
     /// Every use by any tenant.
     usage: Usage,
-    /// The format of its first tenant, and whether another's differs.
+    /// The format of its first tenant, and the bits in which another's differs.
     format: u8,
-    mixed_formats: bool,
+    mixed_formats: u8,
 }
 
 impl Tenancy {
     /// That of a slot's first tenant.
     const fn first(last: ResourceId, row: &Planned, tenant: &Tenant) -> Self {
-        Self { last, next_free: NIL, usage: row.usage, format: tenant.format, mixed_formats: row.srgb_views }
+        Self { last, next_free: NIL, usage: row.usage, format: tenant.format, mixed_formats: row.srgb_views as u8 }
     }
 }
 
@@ -103,7 +103,7 @@ pub(crate) fn pool(
             let (slot, reason) = match take_free(classes, tenant.class, tenancies) {
                 Some((slot, tenancy)) => {
                     tenancy.usage = tenancy.usage.union(row.usage);
-                    tenancy.mixed_formats |= (tenancy.format != tenant.format) | row.srgb_views;
+                    tenancy.mixed_formats |= (tenancy.format ^ tenant.format) | u8::from(row.srgb_views);
                     (slot, Reason::SlotAfter(std::mem::replace(&mut tenancy.last, resource)))
                 }
                 None => {
@@ -128,7 +128,7 @@ pub(crate) fn pool(
         }
     }
     for (slot, tenancy) in slots.iter_mut().zip(tenancies) {
-        (slot.usage, slot.srgb_views) = (tenancy.usage, tenancy.mixed_formats);
+        (slot.usage, slot.srgb_views) = (tenancy.usage, tenancy.mixed_formats != 0);
     }
     tally.finish(steps, resources)
 }
@@ -162,7 +162,7 @@ fn enlist(
         *tenant = Tenant {
             start: std::mem::replace(&mut lists[row.first.index()].start, index as u32),
             end: std::mem::replace(&mut lists[row.last.index()].end, index as u32),
-            class: if share { classes.of(size_of(measured), layout) } else { NIL },
+            class: if share { classes.of(measured.extent, layout.linear().bits()) } else { NIL },
             format: layout.format(),
         };
         tally.want(row.bytes);
@@ -193,16 +193,6 @@ fn open_slot(declared: &Desc, row: &Planned, measured: &Measured, slots: &mut Ve
         }
         Desc::Buffer(_) => slots.push(Slot { desc: *declared, usage, srgb_views: false, bytes }),
     }
-}
-
-/// What two resources of one layout must have in common to share a slot: both sides of a texture, or the bytes of a buffer.
-#[inline]
-fn size_of(measured: &Measured) -> u64 {
-    if measured.layout == Layout::BUFFER {
-        return measured.bytes;
-    }
-    let [width, height] = measured.extent;
-    u64::from(width) | u64::from(height) << 32
 }
 
 /// The slot of a shape that was freed last, which is free no more.

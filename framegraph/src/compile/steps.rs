@@ -45,10 +45,14 @@ impl<'a> Members<'a> {
     /// nothing: its producer draws into its target.
     #[inline(always)]
     pub(crate) fn accesses(self, at: usize) -> impl Iterator<Item = &'a Access> {
-        let StepPass { pass, join } = self.passes[at];
-        let inlined = join == Join::Inlined;
-        let replaced = |a: &&Access| matches!(a.kind, AccessKind::SamePixel | AccessKind::Color);
-        self.graph.accesses_of(pass).iter().filter(move |a| !(inlined && replaced(a)))
+        let member = self.passes[at];
+        self.graph.accesses_of(member.pass).iter().filter(move |a| !self.replaces(member, a))
+    }
+
+    /// Whether a pass of the step does not make that access of its own.
+    #[inline]
+    pub(crate) const fn replaces(self, member: StepPass, access: &Access) -> bool {
+        matches!(member.join, Join::Inlined) && matches!(access.kind, AccessKind::SamePixel | AccessKind::Color)
     }
 
     /// What an access touches in the plan.

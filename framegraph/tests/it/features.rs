@@ -1,8 +1,8 @@
 //! What the crate costs whoever builds it.
 
 #[test]
-fn without_features_the_packer_alone_is_built() {
-    optional(include_str!("../../Cargo.toml"), &["framegraph-pack"]);
+fn without_features_the_packer_and_an_arc_are_built() {
+    optional(include_str!("../../Cargo.toml"), &["framegraph-pack", "triomphe"]);
     optional(include_str!("../../pack/Cargo.toml"), &[]);
 }
 

@@ -1,24 +1,31 @@
-//! The shapes that share slots, numbered as they are met, each with its free slots.
-
-use super::layout::Layout;
+//! Where only what is alike shares memory: the shapes that take turns in slots, numbered as they are met, each with the slot
+//! of it that was freed last. A slot is a number of the caller's, who links those that are free.
 
 /// No slot, or no class.
-pub(super) const NIL: u32 = u32::MAX;
+pub const NIL: u32 = u32::MAX;
 
 /// One shape.
 #[derive(Clone, Copy, Debug)]
 struct Class {
-    /// Both sides of a texture, or the bytes of a buffer.
-    size: u64,
-    /// Without the sRGB transfer function.
-    layout: Layout,
+    size: [u32; 2],
+    layout: u64,
     /// Its slot that was freed last; [`NIL`] for none.
     free: u32,
 }
 
 /// Shapes, found by hashing.
+///
+/// ```
+/// use framegraph_pack::classes::{Classes, NIL};
+///
+/// let mut classes = Classes::default();
+/// classes.clear(); // Before the first shape, too.
+/// let shadow_map = classes.of([1024, 1024], 7);
+/// assert_eq!((shadow_map, classes.of([1024, 1024], 7), classes.of([512, 512], 7)), (0, 0, 1));
+/// assert_eq!(classes.free(shadow_map).copied(), Some(NIL)); // No slot of this shape is free.
+/// ```
 #[derive(Debug, Default)]
-pub(super) struct Classes {
+pub struct Classes {
     /// Open addressing: numbers of classes, by hash, at most a quarter full; [`NIL`] where there is none.
     table: Vec<u32>,
     /// How far a hash is shifted down to give a place in the table.
@@ -31,7 +38,7 @@ impl Classes {
     const LEAST: usize = 64;
 
     /// Forgets all shapes. The table stays as large as they needed it.
-    pub(super) fn clear(&mut self) {
+    pub fn clear(&mut self) {
         let enough = (self.classes.len() * 8).next_power_of_two().max(Self::LEAST);
         self.table.truncate(enough);
         self.table.fill(NIL);
@@ -42,10 +49,9 @@ impl Classes {
         self.classes.clear();
     }
 
-    /// The number of a shape, from 0 without gaps.
+    /// The number of a shape, from 0 without gaps: a size in the caller's units, and all else in which two can differ.
     #[inline]
-    pub(super) fn of(&mut self, size: u64, layout: Layout) -> u32 {
-        let layout = layout.linear();
+    pub fn of(&mut self, size: [u32; 2], layout: u64) -> u32 {
         let mut at = self.place(size, layout);
         while let Some(class) = self.classes.get(self.table[at] as usize) {
             if (class.size, class.layout) == (size, layout) {
@@ -58,20 +64,21 @@ impl Classes {
 
     /// The slot of a shape that was freed last, to be changed; none when nothing is shared.
     #[inline]
-    pub(super) fn free(&mut self, class: u32) -> Option<&mut u32> {
+    pub fn free(&mut self, class: u32) -> Option<&mut u32> {
         self.classes.get_mut(class as usize).map(|class| &mut class.free)
     }
 
     /// Where to look for a shape first.
     #[inline]
-    fn place(&self, size: u64, layout: Layout) -> usize {
-        let mixed = (size ^ layout.bits().rotate_left(29)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    fn place(&self, size: [u32; 2], layout: u64) -> usize {
+        let size = u64::from(size[0]) | u64::from(size[1]) << 32;
+        let mixed = (size ^ layout.rotate_left(29)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
         (mixed >> self.shift) as usize
     }
 
     /// Adds a shape that is not there, whose place in the table is free if there is room.
     #[inline]
-    fn add(&mut self, size: u64, layout: Layout, place: usize) -> u32 {
+    fn add(&mut self, size: [u32; 2], layout: u64, place: usize) -> u32 {
         let number = self.classes.len();
         self.classes.push(Class { size, layout, free: NIL });
         if self.table.len() < (number + 1) * 4 {
@@ -101,22 +108,20 @@ impl Classes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::format::Format;
 
     #[test]
     fn shapes_keep_their_numbers_while_the_table_grows() {
         let mut classes = Classes::default();
-        let plain = Layout::flat(Format::Rgba8Unorm);
         let mut before = 0;
         for (round, count) in [1000_u64, 3, 3, 400].into_iter().enumerate() {
             classes.clear();
-            for size in 0..count {
-                assert_eq!(classes.of(size << 32 | 256, plain), size as u32, "round {round}");
+            for size in 0..count as u32 {
+                assert_eq!(classes.of([256, size], 8), size, "round {round}");
             }
-            for size in (0..count).rev() {
-                assert_eq!(classes.of(size << 32 | 256, Layout::flat(Format::Rgba8UnormSrgb)), size as u32);
+            for size in (0..count as u32).rev() {
+                assert_eq!(classes.of([256, size], 8), size);
             }
-            assert_eq!(classes.of(256, Layout::flat(Format::R32Float)), count as u32);
+            assert_eq!(classes.of([256, 0], 9), count as u32);
             let most = 64.max(before.max(count) * 16);
             assert!(classes.table.len() as u64 <= most, "round {round}: {} entries", classes.table.len());
             before = count;
