@@ -8,7 +8,7 @@ use crate::named::Named;
 use crate::resources::realize::Physical;
 use crate::resources::views::ViewDesc;
 use framegraph::{
-    Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Range, ResolveMode, Role, StepId, StoreOp,
+    Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Range, ResolveMode, Role, StepId, StoreOp, Usage,
 };
 use wgpu::{
     Color, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureUsages, TextureView,
@@ -48,6 +48,7 @@ impl Attached {
         let mut attached = Self::default();
         for attachment in plan.attachments_of(step) {
             let (view, depth_slice) = view_of(frame, attachment)?;
+            let attachment = &kept_initialized(frame, attachment);
             let clear = plan.graph().clears().get(attachment.clear as usize).copied().unwrap_or(ClearValue::Zero);
             match attachment.role {
                 Role::Color(slot) => {
@@ -130,6 +131,17 @@ const fn kind<V>(op: &wgpu::LoadOp<V>) -> LoadOp {
         wgpu::LoadOp::Clear(_) => LoadOp::Clear,
         wgpu::LoadOp::DontCare(_) => LoadOp::DontCare,
     }
+}
+
+/// The attachment, stored in place of discarded where wgpu would fill it before its next use: it fills what was discarded and
+/// is next written by a shader or copied into, and cannot fill what is placed.
+fn kept_initialized(frame: &Prepared<'_>, attachment: &Attachment) -> Attachment {
+    let usage = frame.plan.resources()[attachment.resource.index()].usage;
+    let placed = frame.realized.placed_at(attachment.resource).is_some();
+    let filled = placed && (usage.contains(Usage::STORAGE) || usage.contains(Usage::COPY_TARGET));
+    let store = |op| if filled && op == StoreOp::Discard { StoreOp::Store } else { op };
+    let (color, stencil) = (store(attachment.store), store(attachment.stencil_store));
+    Attachment { store: color, stencil_store: stencil, ..*attachment }
 }
 
 /// The view to attach, and the slice of a three-dimensional texture.
