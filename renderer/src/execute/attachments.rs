@@ -48,7 +48,7 @@ impl Attached {
         let mut attached = Self::default();
         for attachment in plan.attachments_of(step) {
             let (view, depth_slice) = view_of(frame, attachment)?;
-            let attachment = &kept_initialized(frame, attachment);
+            let attachment = &kept_initialized(frame, step, attachment);
             let clear = plan.graph().clears().get(attachment.clear as usize).copied().unwrap_or(ClearValue::Zero);
             match attachment.role {
                 Role::Color(slot) => {
@@ -133,13 +133,17 @@ const fn kind<V>(op: &wgpu::LoadOp<V>) -> LoadOp {
     }
 }
 
-/// The attachment, stored in place of discarded where wgpu would fill it before its next use: it fills what was discarded and
-/// is next written by a shader or copied into, and cannot fill what is placed.
-fn kept_initialized(frame: &Prepared<'_>, attachment: &Attachment) -> Attachment {
-    let usage = frame.plan.resources()[attachment.resource.index()].usage;
+/// The attachment, stored in place of discarded where wgpu would take later contents for missing and fill them with zero:
+///
+/// - Memory is shared, so that a frame has several command buffers, and the texture is used again in this frame. wgpu notes a
+///   discard when the first of them is submitted, after it looked at what the next ones write.
+/// - It is placed itself and next written by a shader: wgpu fills first, and cannot fill what is placed.
+fn kept_initialized(frame: &Prepared<'_>, step: StepId, attachment: &Attachment) -> Attachment {
+    let row = &frame.plan.resources()[attachment.resource.index()];
+    let again = frame.realized.shares_memory() && row.last != step;
     let placed = frame.realized.placed_at(attachment.resource).is_some();
-    let filled = placed && (usage.contains(Usage::STORAGE) || usage.contains(Usage::COPY_TARGET));
-    let store = |op| if filled && op == StoreOp::Discard { StoreOp::Store } else { op };
+    let kept = again || placed && row.usage.contains(Usage::STORAGE);
+    let store = |op| if kept && op == StoreOp::Discard { StoreOp::Store } else { op };
     let (color, stencil) = (store(attachment.store), store(attachment.stencil_store));
     Attachment { store: color, stencil_store: stencil, ..*attachment }
 }

@@ -86,6 +86,11 @@ impl Realized {
         self.requests.placed_at(resource)
     }
 
+    /// Whether textures or buffers lie in one block of memory.
+    pub(crate) fn shares_memory(&self) -> bool {
+        !self.requests.placed().is_empty()
+    }
+
     /// Resources behind which there is a texture that takes no memory where the device has tiles.
     pub(crate) fn memoryless(&self) -> u32 {
         let transient = |p: &&Physical| match p {

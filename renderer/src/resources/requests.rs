@@ -250,13 +250,14 @@ impl Requests {
     }
 }
 
-/// Whether a pass has a texture cleared that cannot be cleared by drawing: wgpu's own clear is not for what is placed.
+/// Whether wgpu's own clear may be asked of a texture, which it does not have for what is placed: by a copy pass, whose recorder
+/// has the encoder; or by the executor, for a pass that declares storage as cleared that cannot be cleared by drawing.
 fn takes_wgpus_clear(plan: &Plan, resource: ResourceId, shape: &Shape) -> bool {
     let Shape::Texture(shape) = shape else { return false };
     let drawn = shape.usage.contains(TextureUsages::RENDER_ATTACHMENT) && shape.dimension == Dimension::D2;
     let passes = plan.running().flat_map(|m| plan.graph().accesses_of(m.pass));
     let mut cleared = passes.filter(|a| a.resource == resource && a.mode == Mode::Clear && !a.kind.is_attachment());
-    !drawn && cleared.next().is_some()
+    plan.resources()[resource.index()].usage.contains(Usage::COPY_TARGET) || !drawn && cleared.next().is_some()
 }
 
 /// Copying and sampling, where the format allows them: what readers outside of the frame need.
