@@ -8,7 +8,8 @@ use crate::named::Named;
 use crate::resources::realize::Physical;
 use crate::resources::views::ViewDesc;
 use framegraph::{
-    Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Range, ResolveMode, Role, StepId, StoreOp, Usage,
+    Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Range, ResolveMode, Role, StepId, StoreOp,
+    Usage,
 };
 use wgpu::{
     Color, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureUsages, TextureView,

@@ -32,7 +32,9 @@ impl FrameCommands {
             return queue.submit(before.into_iter().chain(buffers).chain(last).chain(behind));
         }
         queue.submit(before);
-        buffers.into_iter().for_each(|buffer| drop(queue.submit([buffer])));
+        for buffer in buffers {
+            queue.submit([buffer]);
+        }
         queue.submit(last.into_iter().chain(behind))
     }
 

@@ -3,9 +3,9 @@
 use crate::device::adapter::describe;
 use crate::device::error::DeviceError;
 use crate::named::Named;
-use crate::placed::not_placed::NotPlaced;
 use crate::pipelines::binding_error::BindingError;
 use crate::pipelines::shader::ShaderError;
+use crate::placed::not_placed::NotPlaced;
 use crate::resources::imports::ImportError;
 use crate::resources::no_memory::NoMemory;
 use crate::resources::support::Unsupported;

@@ -2,13 +2,13 @@
 //! the driver to place them.
 
 use crate::device::gpu::Gpu;
-use crate::named::Named;
 use crate::execute::error::ExecuteError;
+use crate::named::Named;
 use crate::placed::driver::{Driver, Needs, Object};
 use crate::placed::not_placed::NotPlaced;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
-use crate::resources::support::{Unsupported, check_buffer, check_texture};
 use crate::resources::requests::{PlacedRequest, Requests, shaped};
+use crate::resources::support::{Unsupported, check_buffer, check_texture};
 use framegraph::{Caps, Desc, Extent, Plan, TextureDesc};
 use wgpu::{Buffer, Texture};
 

@@ -1,7 +1,10 @@
 //! Vulkan beside wgpu: images and buffers in blocks of memory, and the barriers between their owners. All calls of Vulkan that
 //! wgpu does not make are here.
 
-#![allow(unsafe_code, reason = "wgpu has no safe call that binds an image to memory of the caller's, or that writes a barrier")]
+#![allow(
+    unsafe_code,
+    reason = "wgpu has no safe call that binds an image to memory of the caller's, or that writes a barrier"
+)]
 
 use crate::device::format::{both_forms, texture_format};
 use crate::device::gpu::Gpu;
@@ -132,8 +135,7 @@ impl Driver {
         let hal = unsafe { gpu.device.as_hal::<Vulkan>() }.ok_or_else(other)?;
         let (device, physical) = (hal.raw_device().clone(), hal.raw_physical_device());
         // SAFETY: the handle is that of the open device.
-        let memory =
-            unsafe { hal.shared_instance().raw_instance().get_physical_device_memory_properties(physical) };
+        let memory = unsafe { hal.shared_instance().raw_instance().get_physical_device_memory_properties(physical) };
         drop(hal);
         Ok(Self { gpu: gpu.clone(), device, memory })
     }
@@ -163,11 +165,7 @@ impl Driver {
     ///
     /// # Errors
     /// When there is no such memory, or not enough of it.
-    pub(crate) fn place(
-        &self,
-        items: &[(Shape, u64, &str)],
-        needs: &[Needs],
-    ) -> Result<(Vec<Object>, u64), NotPlaced> {
+    pub(crate) fn place(&self, items: &[(Shape, u64, &str)], needs: &[Needs]) -> Result<(Vec<Object>, u64), NotPlaced> {
         let (mut blocks, mut allocated) = ([None, None], 0);
         for (heap, block) in blocks.iter_mut().enumerate() {
             let own = || items.iter().zip(needs).filter(|((shape, ..), _)| heap_of(shape) == heap);

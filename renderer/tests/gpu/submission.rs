@@ -3,7 +3,8 @@
 use crate::bench::{Bench, GREEN, RED, TestResult, fill_full, on_adapter, on_every_device};
 use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::{
-    Cx, Executor, ExecutorOptions, Frame, FrameCommands, ObjectCounts, PipelineCacheError, Raster, RecordError, Shader, ShaderError,
+    Cx, Executor, ExecutorOptions, Frame, FrameCommands, ObjectCounts, PipelineCacheError, Raster, RecordError, Shader,
+    ShaderError,
 };
 use std::cell::Cell;
 

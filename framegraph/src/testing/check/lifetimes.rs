@@ -146,7 +146,9 @@ fn placement(case: &Case<'_>, resource: ResourceId, expected: &Planned) {
     let replaced = case.replaced[resource.index()].is_some();
     let allowed = match case.kind(resource) {
         Kind::Imported { .. } => found == Placement::External,
-        Kind::HistoryCurrent { .. } if heap && caps.placed_histories && touched => matches!(found, Placement::Heap { .. }),
+        Kind::HistoryCurrent { .. } if heap && caps.placed_histories && touched => {
+            matches!(found, Placement::Heap { .. })
+        }
         Kind::HistoryCurrent { .. } => found == Placement::Own,
         Kind::HistoryPrevious { current, age } => found == image(case, current, age),
         Kind::Transient if case.exported[resource.index()] => found == Placement::Own,
