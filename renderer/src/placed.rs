@@ -22,4 +22,5 @@ pub(crate) mod driver;
 pub(crate) mod driver;
 pub(crate) mod home;
 pub(crate) mod not_placed;
+pub(crate) mod shape;
 pub(crate) mod submission;

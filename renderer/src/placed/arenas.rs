@@ -6,18 +6,12 @@ use crate::execute::error::ExecuteError;
 use crate::named::Named;
 use crate::placed::driver::{Driver, Needs, Object};
 use crate::placed::not_placed::NotPlaced;
-use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
+use crate::placed::shape::Shape;
+use crate::resources::physical::PhysicalTextureDesc;
 use crate::resources::requests::{PlacedRequest, Requests, shaped};
 use crate::resources::support::{Unsupported, check_buffer, check_texture};
 use framegraph::{Caps, Desc, Extent, Plan, TextureDesc};
 use wgpu::{Buffer, Texture};
-
-/// What is placed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Shape {
-    Texture(PhysicalTextureDesc),
-    Buffer(PhysicalBufferDesc),
-}
 
 /// One block for textures and one for buffers, with what lies in them.
 #[derive(Debug)]

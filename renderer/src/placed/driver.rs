@@ -8,9 +8,9 @@
 
 use crate::device::format::{both_forms, texture_format};
 use crate::device::gpu::Gpu;
-use crate::placed::arenas::Shape;
 use crate::placed::home::{buffer_uses, home, texture_uses};
 use crate::placed::not_placed::NotPlaced;
+use crate::placed::shape::Shape;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use ash::vk;
 use framegraph::Dimension;

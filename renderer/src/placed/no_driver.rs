@@ -1,8 +1,8 @@
 //! In the place of [`driver`](super) where the program was built without Vulkan: there is no driver, so nothing is placed.
 
 use crate::device::gpu::Gpu;
-use crate::placed::arenas::Shape;
 use crate::placed::not_placed::NotPlaced;
+use crate::placed::shape::Shape;
 use wgpu::{Buffer, CommandBuffer, Texture, TextureUses};
 
 /// No value.

@@ -6,7 +6,7 @@ use crate::device::gpu::Gpu;
 use crate::execute::error::ExecuteError;
 use crate::hash::fnv;
 use crate::named::Named;
-use crate::placed::arenas::Shape;
+use crate::placed::shape::Shape;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::{Pool, Pooled, Request};
 use framegraph::{
