@@ -1,7 +1,9 @@
 //! What a device can do, as data: the same graph can be asked what it would cost elsewhere, without that device.
 
 use crate::access::{Access, AccessKind};
+use crate::format::Format;
 use crate::resolve::{ResolveMode, ResolveModes};
+use crate::resource::{Desc, Extent, TextureDesc};
 
 /// A device as the compiler sees it. Limits follow WebGPU's names and meanings.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,6 +52,11 @@ pub struct Caps {
     pub depth_resolves: ResolveModes,
     /// Textures and buffers can be placed at offsets of one allocation.
     pub placed: bool,
+    /// So are the images of histories; a back end that keeps them from plan to plan has them apart.
+    pub placed_histories: bool,
+    /// Bytes of placed textures that their driver pads, each by its shape with an absolute extent: no part of a file.
+    #[cfg_attr(feature = "files", serde(skip))]
+    pub padded: Vec<(TextureDesc, u64)>,
     /// Textures and buffers cannot share one heap.
     pub separate_heaps: bool,
     /// Alignment of a placed texture, in bytes; a power of two.
@@ -85,6 +92,8 @@ impl Caps {
             // What every device with Vulkan 1.2 does; the other modes are optional.
             depth_resolves: ResolveModes::of(&[ResolveMode::Sample0]),
             placed: true,
+            placed_histories: true,
+            padded: Vec::new(),
             separate_heaps: false,
             texture_alignment_bytes: 65536,
             buffer_alignment_bytes: 256,
@@ -149,6 +158,14 @@ impl Caps {
         debug_assert_eq!(access.kind, AccessKind::Resolve);
         let modes = if access.slot == Access::DEPTH { self.depth_resolves } else { self.color_resolves };
         modes.has(access.resolve)
+    }
+
+    /// The bytes that `desc` takes in a heap, in a frame of `frame` texels, if its texels take `bytes`.
+    pub(crate) fn padded_bytes(&self, desc: &Desc, format: Option<Format>, frame: [u32; 2], bytes: u64) -> u64 {
+        let Some(mut shape) = desc.texture().copied().filter(|_| !self.padded.is_empty()) else { return bytes };
+        let [width, height] = shape.extent.texels(frame);
+        (shape.extent, shape.format) = (Extent::Absolute { width, height }, format.unwrap_or(shape.format));
+        self.padded.iter().find(|(known, _)| *known == shape).map_or(bytes, |(_, padded)| bytes.max(*padded))
     }
 
     /// Becomes a copy of `source`, reusing the name's memory.

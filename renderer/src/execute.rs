@@ -3,6 +3,7 @@
 pub(crate) mod attachments;
 pub(crate) mod blame;
 pub(crate) mod clear;
+pub(crate) mod commands;
 pub(crate) mod cx;
 pub(crate) mod epilogue;
 pub(crate) mod error;
@@ -14,6 +15,7 @@ pub(crate) mod object_counts;
 pub(crate) mod part;
 pub(crate) mod prepared;
 pub(crate) mod recording;
+pub(crate) mod segments;
 pub(crate) mod steps;
 pub(crate) mod targets;
 pub(crate) mod uniforms;

@@ -1,13 +1,14 @@
 //! Everything that stays from frame to frame, in one value: declare and go.
 
 use crate::device::gpu::Gpu;
+use crate::execute::commands::FrameCommands;
 use crate::execute::error::ExecuteError;
 use crate::execute::executor::{Executor, ExecutorOptions, WarmUp};
 use crate::frame::Frame;
 use crate::resources::imports::Imports;
-use framegraph::{CompileErrors, DeclareError, Options, Plan, Scratch, recompile};
+use framegraph::{CompileErrors, DeclareError, Options, Plan, Scratch};
 use std::fmt;
-use wgpu::{CommandBuffer, SubmissionIndex};
+use wgpu::SubmissionIndex;
 
 /// A frame that is declared anew each time, with its plan, the memory to compile it, its imports and its executor.
 ///
@@ -105,7 +106,7 @@ impl<W: ?Sized + 'static> FrameLoop<W> {
         declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
     ) -> Result<Option<Ran<T>>, FrameError<E>> {
         let queue = self.executor.gpu().queue.clone();
-        self.run_with(size, world, declare, |commands| queue.submit([commands]))
+        self.run_with(size, world, declare, |commands| commands.submit(&queue, [], []))
     }
 
     /// As [`FrameLoop::run`], submitted by the caller ([`Executor::execute_with`]).
@@ -117,7 +118,7 @@ impl<W: ?Sized + 'static> FrameLoop<W> {
         size: [u32; 2],
         world: &W,
         declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
-        submit: impl FnOnce(CommandBuffer) -> SubmissionIndex,
+        submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
     ) -> Result<Option<Ran<T>>, FrameError<E>> {
         let Some(io) = self.declare(size, declare)? else { return Ok(None) };
         let submission = self.executor.execute_with(&self.plan, &self.frame, world, &self.imports, submit)?;
@@ -140,8 +141,7 @@ impl<W: ?Sized + 'static> FrameLoop<W> {
         self.imports.clear();
         let io = declare(&mut self.frame, &mut self.imports).map_err(FrameError::Declare)?;
         self.options.frame = size;
-        let caps = self.executor.gpu().caps();
-        recompile(self.frame.graph(), &caps, &self.options, &mut self.scratch, &mut self.plan)?;
+        self.executor.compile(self.frame.graph(), &self.options, &mut self.scratch, &mut self.plan)?;
         Ok(Some(io))
     }
 

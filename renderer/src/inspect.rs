@@ -53,7 +53,7 @@ use crate::execute::steps::{Extra, Passes};
 use crate::frame::Frame;
 use crate::named::Named;
 use crate::resources::imports::Imports;
-use framegraph::{Extent, Plan, Scratch, compile};
+use framegraph::{Alias, CompileErrors, Extent, Graph, Plan, Scratch, compile};
 
 /// Executes inspected plans, beside the executor of the frame under study. See the [module](self).
 #[derive(Debug)]
@@ -132,7 +132,8 @@ impl Inspector {
             .declare(&mut graph, handle, plan.frame())
             .map_err(|error| InspectError::Declare { name: name(), error: error.into() })?;
         let mut inspected = Plan::new();
-        compile(&graph, plan.caps(), plan.options(), &mut self.scratch, &mut inspected).map_err(|errors| {
+        let compiled = self.compile(&graph, plan, &mut inspected);
+        compiled.map_err(|errors| {
             let error = errors.listed.into_iter().next();
             error.map_or_else(missing, |error| InspectError::Compile { name: name(), error: error.into() })
         })?;
@@ -145,7 +146,7 @@ impl Inspector {
         let extra = Extra { pass: inspection.pass, record: &record };
         let passes = Passes { frame, world, extra: Some(extra) };
         self.executor
-            .run(&inspected, &passes, &own, |commands| gpu.queue.submit([commands]))
+            .run(&inspected, &passes, &own, |commands| commands.submit(&gpu.queue, [], []))
             .map_err(|error| InspectError::Execute { name: name(), error: error.into() })?;
 
         let unread = |error: ReadbackError| InspectError::Readback { name: name(), error: error.into() };
@@ -155,5 +156,13 @@ impl Inspector {
         let bits = words.as_chunks::<4>().0.to_vec();
         let texels = Texels { format: target.format, aspect: target.aspect, size: inspection.size, bits };
         Ok(Inspection { target, texels, plan: inspected })
+    }
+
+    /// Compiles as `plan` was. What is placed has other uses here, of which the driver is asked again.
+    fn compile(&mut self, graph: &Graph, plan: &Plan, inspected: &mut Plan) -> Result<(), CompileErrors> {
+        if plan.options().alias == Alias::Heap && plan.caps().placed {
+            return self.executor.compile(graph, plan.options(), &mut self.scratch, inspected);
+        }
+        compile(graph, plan.caps(), plan.options(), &mut self.scratch, inspected)
     }
 }

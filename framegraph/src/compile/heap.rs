@@ -51,7 +51,7 @@ pub(crate) fn heap(
         if buffers && !caps.separate_heaps {
             break;
         }
-        gather(graph, caps, steps, buffers, scratch, resources);
+        gather(graph, caps, options.frame, steps, buffers, scratch, resources);
         if scratch.items.is_empty() {
             continue;
         }
@@ -81,13 +81,25 @@ pub(crate) fn heap(
 }
 
 /// The items of one heap.
-fn gather(graph: &Tables, caps: &Caps, steps: usize, buffers: bool, scratch: &mut HeapScratch, resources: &[Planned]) {
+fn gather(
+    graph: &Tables,
+    caps: &Caps,
+    frame: [u32; 2],
+    steps: usize,
+    buffers: bool,
+    scratch: &mut HeapScratch,
+    resources: &mut [Planned],
+) {
     let HeapScratch { items, owners, previous_of_items, previous, .. } = scratch;
     items.clear();
     owners.clear();
     previous_of_items.clear();
-    for (index, row) in resources.iter().enumerate() {
+    for (index, row) in resources.iter_mut().enumerate() {
         let declared = &graph.resources[index];
+        let unplaced = row.placement == Placement::Unused && !row.first.is_none();
+        if unplaced && declared.kind == Kind::Transient {
+            row.bytes = caps.padded_bytes(&declared.desc, row.format, frame, row.bytes);
+        }
         let buffer = declared.desc.texture().is_none();
         if caps.separate_heaps && buffer != buffers {
             continue;
@@ -95,10 +107,10 @@ fn gather(graph: &Tables, caps: &Caps, steps: usize, buffers: bool, scratch: &mu
         let align = alignment(caps, buffer);
         let size = row.bytes.checked_next_multiple_of(align).unwrap_or(u64::MAX);
         let (lower, upper, images) = match declared.kind {
-            Kind::HistoryCurrent { frames } if !row.first.is_none() => (0, steps as u32, u64::from(frames) + 1),
-            Kind::Transient if row.placement == Placement::Unused && !row.first.is_none() => {
-                (row.first.index() as u32, row.last.index() as u32 + 1, 1)
+            Kind::HistoryCurrent { frames } if caps.placed_histories && !row.first.is_none() => {
+                (0, steps as u32, u64::from(frames) + 1)
             }
+            Kind::Transient if unplaced => (row.first.index() as u32, row.last.index() as u32 + 1, 1),
             _ => continue,
         };
         items.push(Interval { lower, upper, size: size.saturating_mul(images), align });

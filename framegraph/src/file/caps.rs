@@ -33,30 +33,12 @@ macro_rules! caps_form {
 }
 
 caps_form! {
-    name: String,
-    max_color_attachments: u8,
-    max_color_bytes_per_sample: u32,
-    max_texture_texels: u32,
-    max_texture_layers: u32,
-    max_buffer_bytes: u64,
-    max_samples: u8,
-    memoryless: bool,
-    memoryless_layers: bool,
-    memoryless_saves: bool,
-    merge_attachments: bool,
-    same_pixel: bool,
-    slot_mapping: bool,
-    inline: bool,
-    tile_bytes_per_pixel: u32,
-    sample_read_only_depth: bool,
-    separate_planes: bool,
-    color_resolves: ResolveModes,
-    depth_resolves: ResolveModes,
-    placed: bool,
-    separate_heaps: bool,
-    texture_alignment_bytes: u64,
-    buffer_alignment_bytes: u64,
-    explicit_barriers: bool,
+    name: String, max_color_attachments: u8, max_color_bytes_per_sample: u32, max_texture_texels: u32,
+    max_texture_layers: u32, max_buffer_bytes: u64, max_samples: u8, memoryless: bool, memoryless_layers: bool,
+    memoryless_saves: bool, merge_attachments: bool, same_pixel: bool, slot_mapping: bool, inline: bool,
+    tile_bytes_per_pixel: u32, sample_read_only_depth: bool, separate_planes: bool, color_resolves: ResolveModes,
+    depth_resolves: ResolveModes, placed: bool, placed_histories: bool, separate_heaps: bool,
+    texture_alignment_bytes: u64, buffer_alignment_bytes: u64, explicit_barriers: bool,
 }
 
 /// Reads a device from `text`; `path` is what errors call it. Fields that are left out are those of the preset named by

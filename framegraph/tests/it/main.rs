@@ -18,6 +18,7 @@ mod inlining;
 mod merging;
 mod ops;
 mod ordering;
+mod padding;
 mod properties;
 mod sharing;
 mod support;

@@ -9,6 +9,7 @@ use crate::resources::realize::Physical;
 use crate::resources::views::ViewDesc;
 use framegraph::{
     Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Range, ResolveMode, Role, StepId, StoreOp,
+    Usage,
 };
 use wgpu::{
     Color, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureUsages, TextureView,
@@ -48,6 +49,7 @@ impl Attached {
         let mut attached = Self::default();
         for attachment in plan.attachments_of(step) {
             let (view, depth_slice) = view_of(frame, attachment)?;
+            let attachment = &kept_initialized(frame, step, attachment);
             let clear = plan.graph().clears().get(attachment.clear as usize).copied().unwrap_or(ClearValue::Zero);
             match attachment.role {
                 Role::Color(slot) => {
@@ -130,6 +132,21 @@ const fn kind<V>(op: &wgpu::LoadOp<V>) -> LoadOp {
         wgpu::LoadOp::Clear(_) => LoadOp::Clear,
         wgpu::LoadOp::DontCare(_) => LoadOp::DontCare,
     }
+}
+
+/// The attachment, stored in place of discarded where wgpu would take later contents for missing and fill them with zero:
+///
+/// - Memory is shared, so that a frame has several command buffers, and the texture is used again in this frame. wgpu notes a
+///   discard when the first of them is submitted, after it looked at what the next ones write.
+/// - It is placed itself and next written by a shader: wgpu fills first, and cannot fill what is placed.
+fn kept_initialized(frame: &Prepared<'_>, step: StepId, attachment: &Attachment) -> Attachment {
+    let row = &frame.plan.resources()[attachment.resource.index()];
+    let again = frame.realized.shares_memory() && row.last != step;
+    let placed = frame.realized.placed_at(attachment.resource).is_some();
+    let kept = again || placed && row.usage.contains(Usage::STORAGE);
+    let store = |op| if kept && op == StoreOp::Discard { StoreOp::Store } else { op };
+    let (color, stencil) = (store(attachment.store), store(attachment.stencil_store));
+    Attachment { store: color, stencil_store: stencil, ..*attachment }
 }
 
 /// The view to attach, and the slice of a three-dimensional texture.

@@ -69,7 +69,8 @@ fn fill_texture(frame: &Prepared<'_>, access: &Access, value: ClearValue, encode
     let format = access.range.view.or(plan.format(access.resource)).unwrap_or(shape.format);
     // wgpu's own clear takes both planes whatever it is asked for.
     let whole = format.planes() == 1 || access.range.aspect == Aspect::All;
-    if whole && is_zero(value) && frame.gpu.device.features().contains(Features::CLEAR_TEXTURE) {
+    let placed = realized.placed_at(access.resource).is_some();
+    if !placed && whole && is_zero(value) && frame.gpu.device.features().contains(Features::CLEAR_TEXTURE) {
         let range = ImageSubresourceRange {
             aspect: wgpu::TextureAspect::All,
             base_mip_level: mips.start,

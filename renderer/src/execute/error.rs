@@ -5,6 +5,7 @@ use crate::device::error::DeviceError;
 use crate::named::Named;
 use crate::pipelines::binding_error::BindingError;
 use crate::pipelines::shader::ShaderError;
+use crate::placed::not_placed::NotPlaced;
 use crate::resources::imports::ImportError;
 use crate::resources::no_memory::NoMemory;
 use crate::resources::support::Unsupported;
@@ -254,12 +255,18 @@ pub enum ExecuteError {
         /// The resource concerned.
         resource: Named<ResourceId>,
     },
-    /// The plan places resources in a heap, which this back end has not.
-    #[error("`{resource}` is placed in a heap, which this device has not; compile with `Caps` of this device")]
+    /// The plan places a resource in a heap that this device has not, or where it does not fit.
+    #[error(
+        "`{resource}` is placed in a heap that this device has not, or has in other sizes; compile with `Executor::compile`, \
+         which asks the driver"
+    )]
     Heap {
         /// The resource concerned.
         resource: Named<ResourceId>,
     },
+    /// The driver does not make what the plan places in a heap.
+    #[error("the frame's textures cannot share one block of memory: {0}; compile with `Alias::Pool`")]
+    NotPlaced(#[from] NotPlaced),
     /// The device has no memory left for the frame's textures and buffers.
     #[error("the device is out of memory while making {0}; use a smaller frame, fewer samples or smaller textures")]
     OutOfMemory(Box<MemoryAsked>),

@@ -1,31 +1,36 @@
 //! Executing frames on a device, and everything that is kept from one to the next.
 
+mod placing;
 mod results;
+mod upkeep;
 mod warm_up;
 
+pub use placing::Allocated;
 pub use results::UnusedAccess;
 pub use warm_up::WarmUp;
 
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::gpu::Gpu;
 use crate::execute::blame::refused_pass;
+use crate::execute::commands::FrameCommands;
 use crate::execute::error::{ExecuteError, MemoryAsked, RecordError};
 use crate::execute::prepared::{Caches, Prepared};
 use crate::execute::recording::Recording;
+use crate::execute::segments::Segments;
 use crate::execute::steps::{Passes, record_step};
 use crate::frame::Frame;
 use crate::measure::timing::Timing;
 use crate::named::Named;
+use crate::placed::arenas::Arenas;
 use crate::resources::history::Histories;
-use crate::resources::imports::{Imports, Lifetime};
-use crate::resources::no_memory::NoMemory;
+use crate::resources::imports::Imports;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::{Limits, Pool};
-use crate::resources::realize::{Physical, Realized, Sources};
+use crate::resources::realize::{Realized, Sources};
 use framegraph::{Counts, Kind, Plan, ResourceId, StepId};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
-use wgpu::{CommandBuffer, CommandEncoderDescriptor, SubmissionIndex};
+use wgpu::SubmissionIndex;
 
 /// Options of an executor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,6 +94,7 @@ pub struct Executor {
     textures: Pool<PhysicalTextureDesc>,
     buffers: Pool<PhysicalBufferDesc>,
     histories: Histories,
+    arenas: Arenas,
     realized: Realized,
     timing: Timing,
     executed: Counts,
@@ -113,6 +119,7 @@ impl Executor {
             textures: Pool::new(limits),
             buffers: Pool::new(limits),
             histories: Histories::default(),
+            arenas: Arenas::default(),
             realized: Realized::default(),
             timing: Timing::new(options.timing, options.trace),
             executed: Counts::default(),
@@ -142,7 +149,7 @@ impl Executor {
         imports: &Imports,
     ) -> Result<SubmissionIndex, ExecuteError> {
         let queue = self.gpu.queue.clone();
-        self.execute_with(plan, frame, world, imports, |commands| queue.submit([commands]))
+        self.execute_with(plan, frame, world, imports, |commands| commands.submit(&queue, [], []))
     }
 
     /// As [`Executor::execute`], submitted by the caller: `submit` gets the frame's commands and submits them on the
@@ -161,7 +168,9 @@ impl Executor {
     /// # compile(frame.graph(), &gpu.caps(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan)?;
     /// let own = gpu.device.create_command_encoder(&Default::default()).finish();
     /// let queue = gpu.queue.clone();
-    /// let submitted = executor.execute_with(&plan, &frame, &(), &Imports::new(), |graph| queue.submit([graph, own]))?;
+    /// let submitted = executor.execute_with(&plan, &frame, &(), &Imports::new(), |graph| {
+    ///     graph.submit(&queue, [], [own])
+    /// })?;
     /// gpu.device.poll(wgpu::PollType::Wait { submission_index: Some(submitted), timeout: None })?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -174,7 +183,7 @@ impl Executor {
         frame: &Frame<W>,
         world: &W,
         imports: &Imports,
-        submit: impl FnOnce(CommandBuffer) -> SubmissionIndex,
+        submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
     ) -> Result<SubmissionIndex, ExecuteError> {
         if !frame.graph().same_as(plan.graph()) {
             return Err(ExecuteError::OtherPlan);
@@ -189,7 +198,7 @@ impl Executor {
         plan: &Plan,
         passes: &Passes<'_, W>,
         imports: &Imports,
-        submit: impl FnOnce(CommandBuffer) -> SubmissionIndex,
+        submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
     ) -> Result<SubmissionIndex, ExecuteError> {
         let commands = self.record(plan, passes, imports, &mut |_, _| ())?;
         let begun = Instant::now();
@@ -215,7 +224,7 @@ impl Executor {
         passes: &Passes<'_, W>,
         imports: &Imports,
         recorded: &mut dyn FnMut(StepId, u64),
-    ) -> Result<CommandBuffer, ExecuteError> {
+    ) -> Result<FrameCommands, ExecuteError> {
         self.gpu.poll()?;
         self.caches.begin_frame(self.options.max_age, self.options.max_pipeline_age);
         self.recording.begin_frame();
@@ -276,11 +285,11 @@ impl Executor {
 
     /// Makes, or finds again, every texture and buffer of the frame.
     fn prepare(&mut self, plan: &Plan, imports: &Imports) -> Result<(), ExecuteError> {
-        let Self { gpu, textures, buffers, histories, realized, options, touched, .. } = self;
+        let Self { gpu, textures, buffers, histories, arenas, realized, options, touched, .. } = self;
         touched.clear();
         touched.resize_with(plan.graph().accesses().len(), AtomicBool::default);
         let poison = options.poison;
-        realized.realize(plan, &mut Sources { gpu, textures, buffers, histories, imports, poison })
+        realized.realize(plan, &mut Sources { gpu, textures, buffers, histories, imports, arenas, poison })
     }
 
     /// Records all steps.
@@ -289,13 +298,13 @@ impl Executor {
         plan: &Plan,
         passes: &Passes<'_, W>,
         recorded: &mut dyn FnMut(StepId, u64),
-    ) -> Result<CommandBuffer, ExecuteError> {
-        let Self { gpu, caches, realized, timing, touched, options, recording, executed, .. } = self;
-        let descriptor = CommandEncoderDescriptor { label: Some("frame") };
-        let mut encoder = recording.in_wgpu(|| gpu.device.create_command_encoder(&descriptor));
+    ) -> Result<FrameCommands, ExecuteError> {
+        let Self { gpu, caches, arenas, realized, timing, touched, options, recording, executed, .. } = self;
+        let mut segments = recording.in_wgpu(|| Segments::new(gpu, plan, realized, arenas));
         let frame = &Prepared { gpu, plan, realized, caches, timing, touched, poison: options.poison };
         let all: Result<(), ExecuteError> = plan.step_ids().try_for_each(|step| {
-            record_step(frame, passes, step, recording, &mut encoder)?;
+            segments.begin_step(step);
+            record_step(frame, passes, step, recording, &mut segments.encoder)?;
             recorded(step, caches.pipelines.counts().created);
             Ok(())
         });
@@ -304,8 +313,8 @@ impl Executor {
         all?;
         executed.culled = plan.graph().passes().len() as u32 - executed.passes;
         Ok(recording.in_wgpu(|| {
-            timing.resolve(&mut encoder);
-            encoder.finish()
+            timing.resolve(&mut segments.encoder);
+            segments.finish()
         }))
     }
 
@@ -317,43 +326,6 @@ impl Executor {
             bytes: memory.bytes.saturating_add(memory.own_bytes),
             largest: largest.map(|r| (Named::resource(plan, r), bytes(r))),
             adapter: self.gpu.info().clone(),
-        }
-    }
-
-    /// After the device refused something: objects made in this frame may be no good, so none that it used is kept.
-    fn forget_frame(&mut self) {
-        let Self { caches, textures, buffers, histories, realized, .. } = self;
-        realized.clear();
-        caches.views.clear();
-        caches.groups.clear();
-        textures.forget_frame(|_| ());
-        buffers.forget_frame(|_| ());
-        histories.forget_frame();
-    }
-
-    /// Gives up at once what the last frame did not use, and returns how many bytes that were: textures and buffers of
-    /// the pools with their views and bind groups, whatever their age. Histories stay.
-    pub fn trim(&mut self) -> u64 {
-        let Self { caches, textures, buffers, .. } = self;
-        let held = |textures: &Pool<PhysicalTextureDesc>, buffers: &Pool<PhysicalBufferDesc>| {
-            textures.counts().bytes + buffers.counts().bytes
-        };
-        let before = held(textures, buffers);
-        textures.trim(|texture| caches.forget(texture));
-        buffers.trim(|buffer| caches.groups.forget_buffer(buffer));
-        before - held(textures, buffers)
-    }
-
-    /// Drops objects that no recent frame used, and what was lent for this frame alone.
-    fn give_up(&mut self) {
-        let Self { caches, textures, buffers, realized, .. } = self;
-        textures.evict(|texture| caches.forget(texture));
-        buffers.evict(|buffer| caches.groups.forget_buffer(buffer));
-        for physical in &mut realized.resources {
-            if let Physical::Texture { texture, lifetime: Lifetime::Frame, .. } = physical {
-                caches.forget(texture);
-                *physical = Physical::Absent(NoMemory::Lent);
-            }
         }
     }
 

@@ -3,7 +3,7 @@
 /// How many wgpu objects were made since the executor was. Equal before and after a frame in the steady state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ObjectCounts {
-    /// Textures of the pool.
+    /// Textures of the pool, and textures and buffers placed in a heap.
     pub textures: u64,
     /// Images of histories.
     pub histories: u64,

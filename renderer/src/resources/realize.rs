@@ -2,6 +2,7 @@
 
 use crate::device::gpu::Gpu;
 use crate::execute::error::ExecuteError;
+use crate::placed::arenas::{Arena, Arenas};
 use crate::resources::history::{Declared, Earlier, Histories};
 use crate::resources::imports::{Imports, Lifetime};
 use crate::resources::no_memory::NoMemory;
@@ -37,6 +38,7 @@ pub(crate) struct Sources<'a> {
     pub(crate) buffers: &'a mut Pool<PhysicalBufferDesc>,
     pub(crate) histories: &'a mut Histories,
     pub(crate) imports: &'a Imports,
+    pub(crate) arenas: &'a mut Arenas,
     /// Contents that may be anything will be filled: textures must allow that.
     pub(crate) poison: bool,
 }
@@ -62,8 +64,10 @@ impl Realized {
         from.textures.begin_frame();
         from.buffers.begin_frame();
         from.histories.begin_frame();
+        from.arenas.begin_frame();
         self.requests.collect(plan, from.gpu, from.poison)?;
         self.requests.serve(from.gpu, plan, from.textures, from.buffers)?;
+        from.arenas.acquire(from.gpu, plan, self.requests.placed())?;
         for resource in plan.graph().resource_ids() {
             let physical = self.place(plan, resource, from)?;
             self.resources.push(physical);
@@ -75,6 +79,16 @@ impl Realized {
             }
         }
         Ok(())
+    }
+
+    /// The number of a resource in its arena; none of what lies elsewhere.
+    pub(crate) fn placed_at(&self, resource: ResourceId) -> Option<usize> {
+        self.requests.placed_at(resource)
+    }
+
+    /// Whether textures or buffers lie in one block of memory.
+    pub(crate) fn shares_memory(&self) -> bool {
+        !self.requests.placed().is_empty()
     }
 
     /// Resources behind which there is a texture that takes no memory where the device has tiles.
@@ -103,7 +117,12 @@ impl Realized {
             Placement::External if !row.first.is_none() => {
                 return external(plan, resource, from.imports);
             }
-            Placement::External | Placement::Unused | Placement::Heap { .. } => {
+            Placement::Heap { .. } => {
+                if let Some(at) = self.requests.placed_at(resource) {
+                    return Ok(in_arena(plan, resource, from.arenas.current(), at));
+                }
+            }
+            Placement::External | Placement::Unused => {
                 return Ok(Physical::Absent(NoMemory::Unused));
             }
             Placement::Inlined => {
@@ -158,6 +177,21 @@ impl Realized {
             }
             None => Physical::Absent(NoMemory::NoHistory),
         }
+    }
+}
+
+/// What lies in an arena.
+fn in_arena(plan: &Plan, resource: ResourceId, arena: Option<&Arena>, at: usize) -> Physical {
+    let texture = arena.and_then(|arena| arena.texture(at));
+    let buffer = arena.and_then(|arena| arena.buffer(at));
+    match (texture, buffer, plan.graph().resources()[resource.index()].desc) {
+        (Some((texture, shape)), ..) => {
+            Physical::Texture { texture: texture.clone(), shape, valid: true, lifetime: Lifetime::Kept }
+        }
+        (None, Some(buffer), Desc::Buffer(b)) => {
+            Physical::Buffer { buffer: buffer.clone(), bytes: b.bytes(plan.frame()) }
+        }
+        _ => Physical::Absent(NoMemory::NotRealized),
     }
 }
 

@@ -1,11 +1,12 @@
-//! What one frame asks of the pools: an object for each slot of the plan, each exported transient, and each memoryless
-//! attachment of a step.
+//! What one frame asks for: of the pools an object for each slot of the plan, each exported transient, and each memoryless
+//! attachment of a step; of a heap what the plan places there.
 
 use crate::device::format::{buffer_usages, texture_usages};
 use crate::device::gpu::Gpu;
 use crate::execute::error::ExecuteError;
 use crate::hash::fnv;
 use crate::named::Named;
+use crate::placed::shape::Shape;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::{Pool, Pooled, Request};
 use framegraph::{
@@ -27,6 +28,17 @@ pub(crate) struct Requests {
     served_by: Vec<usize>,
     /// For each resource, uses that no access names.
     extra: Vec<Usage>,
+    /// What lies in a heap, and for each resource its number there.
+    placed: Vec<PlacedRequest>,
+    placed_at: Vec<usize>,
+}
+
+/// A texture or buffer at an offset of a heap.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedRequest {
+    pub(crate) resource: ResourceId,
+    pub(crate) shape: Shape,
+    pub(crate) offset: u64,
 }
 
 /// Requests to one pool, the resource that names each, and what they got.
@@ -68,6 +80,17 @@ impl Requests {
     pub(crate) fn clear(&mut self) {
         self.textures.clear();
         self.buffers.clear();
+        self.placed.clear();
+    }
+
+    /// What lies in a heap.
+    pub(crate) fn placed(&self) -> &[PlacedRequest] {
+        &self.placed
+    }
+
+    /// The number of a resource among [`Requests::placed`]; none of what lies elsewhere.
+    pub(crate) fn placed_at(&self, resource: ResourceId) -> Option<usize> {
+        self.placed_at.get(resource.index()).copied().filter(|at| *at != NONE)
     }
 
     /// Uses of a resource that no access names.
@@ -75,10 +98,10 @@ impl Requests {
         self.extra[resource.index()]
     }
 
-    /// Works out what the plan needs of the pools; with `poison`, contents can be filled.
+    /// Works out what the plan needs; with `poison`, contents can be filled.
     ///
     /// # Errors
-    /// When the plan places resources in a heap.
+    /// When the plan places images of a history in a heap.
     pub(crate) fn collect(&mut self, plan: &Plan, gpu: &Gpu, poison: bool) -> Result<(), ExecuteError> {
         self.clear();
         extra_usage(plan, &mut self.extra);
@@ -89,6 +112,8 @@ impl Requests {
         self.slots.resize(plan.slots().len(), [NONE; 2]);
         self.served_by.clear();
         self.served_by.resize(plan.resources().len(), NONE);
+        self.placed_at.clear();
+        self.placed_at.resize(plan.resources().len(), NONE);
         let graph = plan.graph();
         for resource in graph.resource_ids() {
             let row = &plan.resources()[resource.index()];
@@ -104,6 +129,22 @@ impl Requests {
                     let request = self.push(plan, resource, shaped(plan, resource), usage, row.srgb_views);
                     self.served_by[resource.index()] = request;
                     self.offer(plan, resource, request, gpu);
+                }
+                Placement::Heap { offset } if graph.resources()[resource.index()].kind == Kind::Transient => {
+                    let shape = match shaped(plan, resource) {
+                        Desc::Texture(t) => {
+                            let shape = PhysicalTextureDesc::new(&t, plan.frame(), usage, row.srgb_views);
+                            Shape::Texture(shape)
+                        }
+                        Desc::Buffer(b) => Shape::Buffer(PhysicalBufferDesc::new(b.bytes(plan.frame()), usage)),
+                    };
+                    if takes_wgpus_clear(plan, resource, &shape) {
+                        let request = self.push(plan, resource, shaped(plan, resource), usage, row.srgb_views);
+                        self.served_by[resource.index()] = request;
+                    } else {
+                        self.placed_at[resource.index()] = self.placed.len();
+                        self.placed.push(PlacedRequest { resource, shape, offset });
+                    }
                 }
                 Placement::Heap { .. } => {
                     return Err(ExecuteError::Heap { resource: Named::resource(plan, resource) });
@@ -207,6 +248,16 @@ impl Requests {
         let free = (0..self.textures.requests.len()).filter(equal).find(|request| !busy(*request));
         free.unwrap_or_else(|| self.textures.push(plan, resource, shape))
     }
+}
+
+/// Whether wgpu's own clear may be asked of a texture, which it does not have for what is placed: by a copy pass, whose recorder
+/// has the encoder; or by the executor, for a pass that declares storage as cleared that cannot be cleared by drawing.
+fn takes_wgpus_clear(plan: &Plan, resource: ResourceId, shape: &Shape) -> bool {
+    let Shape::Texture(shape) = shape else { return false };
+    let drawn = shape.usage.contains(TextureUsages::RENDER_ATTACHMENT) && shape.dimension == Dimension::D2;
+    let passes = plan.running().flat_map(|m| plan.graph().accesses_of(m.pass));
+    let mut cleared = passes.filter(|a| a.resource == resource && a.mode == Mode::Clear && !a.kind.is_attachment());
+    plan.resources()[resource.index()].usage.contains(Usage::COPY_TARGET) || !drawn && cleared.next().is_some()
 }
 
 /// Copying and sampling, where the format allows them: what readers outside of the frame need.

@@ -51,8 +51,8 @@ fn every_export_is_what_was_declared() -> TestResult {
         let mut seed = 0;
         while executed < wanted && seed < 4 * wanted {
             let mut ran = false;
-            // The default, and one of all combinations in turn.
-            for number in [0, seed as u32] {
+            // The default, one of all combinations in turn, and one of those in which memory is shared whatever the shape.
+            for number in [0, seed as u32, 32 + seed as u32 % 32] {
                 let prepared = runner.prepare(graph(seed), &options(number));
                 let case = match prepared.map_err(|e| format!("seed {seed}: {e}"))? {
                     Ok(case) => case,

@@ -18,6 +18,7 @@ mod inspect_random;
 mod merge;
 mod msaa;
 mod parts;
+mod placed;
 mod poison;
 mod random;
 mod raster;

@@ -3,7 +3,8 @@
 use crate::bench::{Bench, GREEN, RED, TestResult, fill_full, on_adapter, on_every_device};
 use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::{
-    Cx, Executor, ExecutorOptions, Frame, ObjectCounts, PipelineCacheError, Raster, RecordError, Shader, ShaderError,
+    Cx, Executor, ExecutorOptions, Frame, FrameCommands, ObjectCounts, PipelineCacheError, Raster, RecordError, Shader,
+    ShaderError,
 };
 use std::cell::Cell;
 
@@ -34,9 +35,9 @@ fn a_frame_is_submitted_with_commands_of_the_callers() -> TestResult {
         let into = wgpu::TexelCopyBufferInfo { buffer: &copy, layout };
         encoder.copy_texture_to_buffer(texture.as_image_copy(), into, texture.size());
         let (queue, own, called) = (gpu.queue.clone(), encoder.finish(), Cell::new(false));
-        let submit = |graph| {
+        let submit = |graph: FrameCommands| {
             called.set(true);
-            queue.submit([graph, own])
+            graph.submit(&queue, [], [own])
         };
         let index = bench.executor.execute_with(&bench.plan, &bench.frame, &(), &bench.imports, submit)?;
         assert!(called.get());
@@ -68,9 +69,9 @@ fn nothing_is_submitted_of_a_frame_that_failed() -> TestResult {
                 Ok(())
             })?;
             let called = Cell::new(false);
-            let submit = |commands| {
+            let submit = |commands: FrameCommands| {
                 called.set(true);
-                gpu.queue.submit([commands])
+                commands.submit(&gpu.queue, [], [])
             };
             let told = bench.executor.execute_with(&bench.plan, &bench.frame, &(), &bench.imports, submit);
             assert!(told.is_err() && !called.get(), "{told:?}");

@@ -2,10 +2,10 @@
 //! nothing made anew once it is warm.
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
-use framegraph::{Alias, Options, Order, Plan, Scratch, recompile};
+use framegraph::{Alias, Options, Order, Placement, Plan, Scratch};
 use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::view::Background;
-use framegraph_passes::{Settings, ViewId, World};
+use framegraph_passes::{Preset, Settings, ViewId, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
 use framegraph_wgpu::{Executor, Gpu, Imports, ObjectCounts, read_texture};
@@ -45,7 +45,7 @@ impl Film {
         self.world.set_view(&self.gpu, ViewId::MAIN, view)?;
         let (frame, io) = declared(&shot.settings.for_scene(&self.scene, shot.size_px));
         let options = Options { frame: shot.size_px, ..shot.options };
-        recompile(frame.graph(), &self.gpu.caps(), &options, &mut self.scratch, &mut self.plan)?;
+        self.executor.compile(frame.graph(), &options, &mut self.scratch, &mut self.plan)?;
         self.executor.execute(&self.plan, &frame, &self.world, &Imports::new())?;
         assert_eq!(self.executor.executed(), self.plan.counts(), "executed against planned");
         let texture = self.executor.texture(&self.plan, io.output).ok_or("the frame left no picture")?;
@@ -87,6 +87,8 @@ fn ten_frames_with_a_resize_are_the_same_however_they_are_planned() -> Result<()
         Options { alias: Alias::Off, ..base },
         Options { memoryless: false, ..base },
         Options { order: Order::Optimized, merge: false, alias: Alias::Off, ..base },
+        Options { alias: Alias::Heap, ..base },
+        Options { alias: Alias::Heap, merge: false, memoryless: false, ..base },
         base.immediate(),
     ];
     let shots = ten(Settings { samples: 4, shadows: Some(ShadowSettings::texels(256)), ..Settings::default() });
@@ -106,6 +108,34 @@ fn ten_frames_with_a_resize_are_the_same_however_they_are_planned() -> Result<()
             }
         }
     }
+    Ok(())
+}
+
+/// With every effect and its histories, frame after frame: textures in one block of memory show what they show apart.
+#[test]
+fn frames_in_one_block_of_memory_are_the_frames_apart() -> Result<(), Box<dyn Error>> {
+    const NAME: &str = "frames_in_one_block_of_memory_are_the_frames_apart";
+    let Some(gpu) = gpu(NAME) else { return Ok(()) };
+    let settings = Settings { shadows: Some(ShadowSettings::texels(256)), ..Preset::Ultra.frame().settings };
+    let shots = (0..24_u8).map(|index| Shot { ev100: 13.5 + f32::from(index) / 16.0, ..Shot::small(settings) });
+    let (mut films, mut pictures) = (Vec::new(), Vec::new());
+    for alias in [Alias::Off, Alias::Heap] {
+        let mut film = Film::new(&gpu, "spheres")?;
+        let shoot = |shot: Shot| film.shoot(&Shot { options: Options { alias, ..shot.options }, ..shot });
+        pictures.push(shots.clone().map(shoot).collect::<Result<Vec<_>, _>>()?);
+        films.push(film);
+    }
+    let placed = films[1].plan.resources().iter().filter(|r| matches!(r.placement, Placement::Heap { .. })).count();
+    if let Some(why) = films[1].executor.not_placed() {
+        test_report::skip(NAME, &why.to_string());
+        return Ok(());
+    }
+    assert!(placed > 5 && is_picture(&pictures[0][0]), "{placed} textures are placed");
+    for (index, (apart, block)) in pictures[0].iter().zip(&pictures[1]).enumerate() {
+        assert!(apart == block, "frame {index}");
+    }
+    let [apart, block] = [&films[0], &films[1]].map(|film| (film.executor.allocated().placed, film.plan.memory()));
+    assert!(apart.0 == 0 && block.0 > 0 && block.0 < block.1.unaliased_bytes, "{apart:?} {block:?}");
     Ok(())
 }
 

@@ -119,8 +119,8 @@ impl Set {
         options: &Options,
     ) -> Result<(Vec<u8>, Plan), Box<dyn Error>> {
         let mut plan = Plan::new();
-        compile(frame.graph(), &gpu.caps(), options, &mut Scratch::new(), &mut plan)?;
         let mut executor = Executor::new(gpu);
+        executor.compile(frame.graph(), options, &mut Scratch::new(), &mut plan)?;
         executor.execute(&plan, frame, &self.world, &Imports::new())?;
         assert_eq!(executor.executed(), plan.counts(), "executed against planned");
         let texture = executor.texture(&plan, picture).ok_or("the frame left no picture")?;

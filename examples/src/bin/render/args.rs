@@ -10,7 +10,8 @@ use crate::look::{number, precision, quality, shading, switch};
 use crate::moment::{self, Moment};
 use crate::name::{plan_files, with_ending};
 use crate::shadows::{self, Shadows};
-use crate::values::{camera, frames, memory, samples, size};
+use crate::values::{alias, camera, frames, memory, samples, size};
+use framegraph::Alias;
 use framegraph_passes::PostSettings;
 use framegraph_passes::{Precision, Quality, Settings, Shading};
 use framegraph_scene::{CameraChoice, LoadOptions, Memory};
@@ -57,6 +58,8 @@ LIGHTING
   --vignette EV        how much darker the corners are than the middle (0)
   --dither X           amplitude of the dither: 1 is half a code either way (1)
   --inline on|off      post-processing at the end of the color pass's shader, where that is sound (on)
+  --alias heap|pool|none  textures that live at other times share memory: at offsets of one block, whatever their shape
+                       (Vulkan; elsewhere the pool serves); textures of one shape (pool); or not
   --round-hdr          where it is inlined, round the radiance first as the device stores it: with --msaa 1 the same bits
                        as --inline off
   --split-post         a pass for each effect of post-processing
@@ -107,6 +110,7 @@ pub struct Args {
     pub grade: Grade,
     /// Post-processing in the color pass's shader, where that is sound.
     pub inline: bool,
+    pub alias: Alias,
     /// Round the radiance as the device stores it, where it is not stored.
     pub round_hdr: bool,
     /// A pass for each effect.
@@ -184,6 +188,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         post: PostSettings::DEFAULT,
         grade: Grade::default(),
         inline: true,
+        alias: Alias::Pool,
         round_hdr: false,
         split_post: false,
         compare_post: false,
@@ -231,6 +236,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
                 found.post.vignette_ev = number("--vignette", &text(&mut parser, "--vignette")?, 0.0..=16.0)?;
             }
             Long("dither") => found.post.dither = number("--dither", &text(&mut parser, "--dither")?, 0.0..=1.0)?,
+            Long("alias") => found.alias = alias(&text(&mut parser, "--alias")?)?,
             Long("inline") => found.inline = switch("--inline", &text(&mut parser, "--inline")?)?,
             Long("round-hdr") => found.round_hdr = true,
             Long("split-post") => found.split_post = true,
@@ -338,6 +344,7 @@ mod tests {
             (&["--ev100", "99"], "--ev100 99"),
             (&["--tone-map", "sepia"], "--tone-map sepia"),
             (&["--inline", "maybe"], "--inline maybe"),
+            (&["--alias", "heaps"], "--alias heaps"),
             (&["--quality", "best"], "--quality best"),
             (&["--precision", "f64"], "--precision f64"),
             (&["--shade", "gloss=1"], "--shade gloss"),

@@ -292,9 +292,8 @@ pub fn run_bisect(args: &Args) -> Result<(), Failure> {
         let (mut options, mut execute) = prepared.options(args);
         mode.iter().for_each(|mode| mode.apply(&mut options, &mut execute));
         let mut plan = Plan::new();
-        compile(prepared.frame.graph(), &prepared.gpu.caps(), &options, &mut Scratch::new(), &mut plan)
-            .map_err(input)?;
         let mut executor = Executor::with(&prepared.gpu, execute);
+        executor.compile(prepared.frame.graph(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;
         render(&mut prepared, &plan, &mut executor, 0..WARM_UP, &mut Frames::new(WARM_UP))?;
         let texture = executor.texture(&plan, prepared.io.output).ok_or_else(|| device("the frame left no picture"))?;
         Ok(read_texture(&prepared.gpu, texture).map_err(device)?.rgba8())

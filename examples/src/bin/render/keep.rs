@@ -2,7 +2,7 @@
 
 use crate::args::Args;
 use crate::run::{Failure, Frames, Prepared, device, input, render};
-use framegraph::{Extent, Format, Plan, Scratch, Target, TextureDesc, compile};
+use framegraph::{Extent, Format, Plan, Scratch, Target, TextureDesc};
 use framegraph_passes::shadow::{KeptShadows, Redraw, ViewShadows, maps_slot};
 use framegraph_passes::{Facts, FrameIo, Handles, Settings, Slot, ViewId, World, stages};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports};
@@ -72,9 +72,9 @@ pub fn first_frame(args: &Args, prepared: &mut Prepared) -> Result<(), Failure> 
     program::line(format_args!("the first frame {}", kept.told()));
     let (options, execute) = prepared.options(args);
     let mut plan = Plan::new();
-    let caps = prepared.gpu.caps();
-    compile(prepared.frame.graph(), &caps, &options, &mut Scratch::new(), &mut plan).map_err(input)?;
-    render(prepared, &plan, &mut Executor::with(&prepared.gpu.clone(), execute), 0..1, &mut Frames::new(1))?;
+    let mut executor = Executor::with(&prepared.gpu.clone(), execute);
+    executor.compile(prepared.frame.graph(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;
+    render(prepared, &plan, &mut executor, 0..1, &mut Frames::new(1))?;
     let Prepared { kept, world, .. } = &mut *prepared;
     let view = &world.views.get(ViewId::MAIN).map_err(device)?.view;
     if let (Some(kept), Some(shadows)) = (kept, &view.shadows) {

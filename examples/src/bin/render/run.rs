@@ -7,10 +7,10 @@ use crate::keep::{Kept, declare, first_frame};
 use crate::light::Around;
 use crate::load::{self, Loaded};
 use crate::sequence;
-use crate::table::{facts_table, table};
+use crate::table::{facts_table, memory, table};
 use crate::what_if;
 use framegraph::file::to_ron;
-use framegraph::{Options, Plan, Scratch, Texture, compile, dump};
+use framegraph::{Options, Plan, Scratch, Texture, dump};
 use framegraph_passes::facts::savings;
 use framegraph_passes::punctual::LightLists;
 use framegraph_passes::view::ViewSettings;
@@ -74,7 +74,7 @@ impl Prepared {
     /// What plans and executors are made with.
     pub fn options(&self, args: &Args) -> (Options, ExecutorOptions) {
         let [width, height] = args.size_px;
-        let mut options = Options { inline: args.inline, ..Options::for_frame(width, height) };
+        let mut options = Options { inline: args.inline, alias: args.alias, ..Options::for_frame(width, height) };
         let mut execute = ExecutorOptions::default();
         args.debug.apply(&mut options, &mut execute);
         (options, execute)
@@ -214,20 +214,21 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let (options, execute) = prepared.options(args);
     let mut plan = Plan::new();
+    let mut executor = Executor::with(&prepared.gpu, execute);
+    executor.compile(prepared.frame.graph(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;
     let caps = prepared.gpu.caps();
-    compile(prepared.frame.graph(), &caps, &options, &mut Scratch::new(), &mut plan).map_err(input)?;
     let inspections = args.debug.wanted(&plan)?;
     for (path, _) in &inspections {
         outputs.add(path).map_err(input)?;
     }
 
-    let mut executor = Executor::with(&prepared.gpu, execute);
     let mut shown = Frames::new(WARM_UP + args.frames);
     render(&mut prepared, &plan, &mut executor, 0..WARM_UP, &mut shown)?;
     let before = executor.objects();
     render(&mut prepared, &plan, &mut executor, WARM_UP..WARM_UP + args.frames, &mut shown)?;
     executor.catch_up().map_err(device)?;
     program::print(table(&plan, executor.timing()));
+    program::print(memory(&plan, &executor));
     let saved = savings::<World>(&prepared.facts, &prepared.asked, &caps, &options).map_err(device)?;
     program::print(facts_table(&prepared.facts, &saved));
     if let Some(which) = &args.decide.what_if {

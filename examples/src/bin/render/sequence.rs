@@ -4,7 +4,7 @@ use crate::args::Args;
 use crate::decide::Sequence;
 use crate::keep::declare;
 use crate::run::{Failure, Prepared, device, executed, input};
-use framegraph::{Plan, Scratch, recompile};
+use framegraph::{Plan, Scratch};
 use framegraph_passes::view::ViewSettings;
 use framegraph_passes::{CameraView, FrameIndex, ViewId};
 use framegraph_scene::picture::encode_png;
@@ -52,7 +52,7 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         world.set_view(gpu, ViewId::MAIN, view).map_err(device)?;
         world.frame_index = FrameIndex(index);
         let (frame, io, imports) = declare(&settings, &facts, false, None)?;
-        recompile(frame.graph(), &gpu.caps(), &options, &mut scratch, &mut plan).map_err(input)?;
+        executor.compile(frame.graph(), &options, &mut scratch, &mut plan).map_err(input)?;
         plans += u32::from(planned.replace(settings) != Some(settings));
         executor.execute(&plan, &frame, world, &imports).map_err(executed)?;
         let texture = executor.texture(&plan, io.output).ok_or_else(|| device("the frame left no picture"))?;

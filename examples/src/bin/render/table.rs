@@ -1,8 +1,8 @@
 //! The one table that a run prints: each step with its passes, what it moves and how long it takes.
 
-use framegraph::{Join, Plan, StepId};
+use framegraph::{Alias, Join, Plan, StepId};
 use framegraph_passes::facts::{Cost, Decision, Facts, Saved};
-use framegraph_wgpu::{Summary, Times, Timing};
+use framegraph_wgpu::{Executor, Summary, Times, Timing};
 
 /// The table, one line a step, then the totals. Times are medians in milliseconds.
 pub fn table(plan: &Plan, timing: &Timing) -> String {
@@ -22,6 +22,23 @@ pub fn table(plan: &Plan, timing: &Timing) -> String {
         milliseconds(gpu),
     ]);
     aligned(&rows, 2)
+}
+
+/// What the driver gave for textures and buffers, where they share one block or were meant to.
+pub fn memory(plan: &Plan, executor: &Executor) -> String {
+    if plan.options().alias != Alias::Heap {
+        return String::new();
+    }
+    let allocated = executor.allocated();
+    let block = match executor.not_placed() {
+        Some(why) => format!("--alias heap: {why}; textures of one shape share memory in its place"),
+        None => format!(
+            "in one block: {} allocated, for what would take {} apart",
+            mebibytes(allocated.placed),
+            mebibytes(plan.memory().unaliased_bytes)
+        ),
+    };
+    format!("{block}; wgpu has allocated {}\n", mebibytes(allocated.by_wgpu))
 }
 
 fn row(plan: &Plan, step: StepId, times: Times) -> [String; 8] {

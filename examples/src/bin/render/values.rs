@@ -1,5 +1,6 @@
 //! Values of options that stand alone.
 
+use framegraph::Alias;
 use framegraph_scene::CameraChoice;
 use program::bytes;
 use std::str::FromStr;
@@ -28,6 +29,19 @@ pub fn samples(text: &str) -> Result<u8, String> {
         "1" => Ok(1),
         "4" => Ok(4),
         _ => Err(format!("--msaa {text}: 1 or 4 samples are offered")),
+    }
+}
+
+/// How textures share memory.
+///
+/// # Errors
+/// One line that names the option.
+pub fn alias(text: &str) -> Result<Alias, String> {
+    match text {
+        "heap" => Ok(Alias::Heap),
+        "pool" => Ok(Alias::Pool),
+        "none" => Ok(Alias::Off),
+        _ => Err(format!("--alias {text}: `heap`, `pool` or `none` is needed")),
     }
 }
 

@@ -64,7 +64,7 @@ impl Executor {
     /// Objects made since the beginning.
     pub fn objects(&self) -> ObjectCounts {
         ObjectCounts {
-            textures: self.textures.counts().created,
+            textures: self.textures.counts().created + self.arenas.created(),
             histories: self.histories.created(),
             buffers: self.buffers.counts().created,
             uniform_buffers: self.recording.uniforms.created(),

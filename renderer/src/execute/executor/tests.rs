@@ -9,7 +9,7 @@ use crate::execute::error::RecordError;
 use crate::pipelines::shader::Shader;
 use crate::pipelines::state::{Constants, Raster};
 use framegraph::{DeclareError, Extent, Format, Intent, Options, Scratch, Texture, TextureDesc, compile};
-use wgpu::CommandBuffer;
+use wgpu::{CommandBuffer, CommandEncoderDescriptor};
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
 

@@ -64,11 +64,12 @@ impl Executor {
         }
         let before = self.objects().pipelines;
         let (of, mut done) = (plan.steps().len(), 0);
-        self.record(plan, &Passes { frame, world, extra: None }, imports, &mut |step, pipelines| {
+        let unsent = self.record(plan, &Passes { frame, world, extra: None }, imports, &mut |step, pipelines| {
             done += 1;
             let pass = plan.passes_of(step).first().map_or("", |m| plan.graph().pass_name(m.pass));
             progress(WarmUp { done, of, pass, pipelines: pipelines - before });
         })?;
+        drop(unsent);
         self.give_up();
         Ok(())
     }

@@ -101,8 +101,7 @@ impl Runner {
     /// Compiles a graph and gives each pass its recorder.
     pub fn prepare(&mut self, graph: Graph, options: &Options) -> Result<Result<Case, Beyond>, String> {
         let mut plan = Plan::new();
-        framegraph::compile(&graph, &self.gpu.caps(), options, &mut self.scratch, &mut plan)
-            .map_err(|e| e.to_string())?;
+        self.executors[0].compile(&graph, options, &mut self.scratch, &mut plan).map_err(|e| e.to_string())?;
         let copies = |p: PassId| plan.graph().passes()[p.index()].kind == PassKind::Copy;
         let mut kept = plan.graph().pass_ids().filter(|p| copies(*p));
         if kept.any(|p| copy::copies(plan.graph(), p).is_none()) {

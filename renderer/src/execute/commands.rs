@@ -1,0 +1,45 @@
+//! The commands of a frame on their way to the queue.
+
+use wgpu::{CommandBuffer, Queue, SubmissionIndex};
+
+/// The commands of a frame, recorded and not yet submitted. One command buffer, unless textures share memory
+/// ([`framegraph::Alias::Heap`]): then one ends wherever memory changes hands.
+#[must_use = "a frame whose commands are not submitted is not drawn"]
+#[derive(Debug)]
+pub struct FrameCommands {
+    buffers: Vec<CommandBuffer>,
+    /// Each is a submission of its own.
+    apart: bool,
+}
+
+impl FrameCommands {
+    pub(crate) fn new(buffers: Vec<CommandBuffer>, apart: bool) -> Self {
+        Self { buffers, apart }
+    }
+
+    /// Submits them in order, with commands of the caller's `before` and `behind` them; all at once where the driver keeps the
+    /// order of commands that touch one memory through different textures. Mesa's llvmpipe before version 25 does not, and
+    /// gets each command buffer apart.
+    pub fn submit(
+        self,
+        queue: &Queue,
+        before: impl IntoIterator<Item = CommandBuffer>,
+        behind: impl IntoIterator<Item = CommandBuffer>,
+    ) -> SubmissionIndex {
+        let Self { mut buffers, apart } = self;
+        let last = buffers.pop();
+        if !apart {
+            return queue.submit(before.into_iter().chain(buffers).chain(last).chain(behind));
+        }
+        queue.submit(before);
+        for buffer in buffers {
+            queue.submit([buffer]);
+        }
+        queue.submit(last.into_iter().chain(behind))
+    }
+
+    /// How many command buffers they are.
+    pub fn buffers(&self) -> usize {
+        self.buffers.len()
+    }
+}

@@ -1,0 +1,101 @@
+//! The command buffers of a frame while its steps are recorded: one, or a new one wherever memory changes hands.
+
+use crate::device::gpu::Gpu;
+use crate::execute::commands::FrameCommands;
+use crate::placed::activation::{Activation, activations};
+use crate::placed::arenas::{Arena, Arenas};
+use crate::placed::driver::{Driver, Object, PlacedTexture};
+use crate::placed::submission::keeps_order_of_aliases;
+use crate::resources::realize::Realized;
+use framegraph::{Plan, ResourceId, StepId};
+use wgpu::{CommandBuffer, CommandEncoder, CommandEncoderDescriptor, TextureTransition};
+
+/// See the [module](self).
+pub(crate) struct Segments<'a> {
+    gpu: &'a Gpu,
+    pub(crate) encoder: CommandEncoder,
+    done: Vec<CommandBuffer>,
+    sharing: Option<Sharing<'a>>,
+}
+
+/// What shares memory in this frame.
+struct Sharing<'a> {
+    driver: &'a Driver,
+    arena: &'a Arena,
+    plan: &'a Plan,
+    realized: &'a Realized,
+    /// What comes, the last first.
+    coming: Vec<Activation>,
+    /// What has its memory.
+    active: Vec<ResourceId>,
+}
+
+impl<'a> Segments<'a> {
+    /// Begins a frame. Opens an encoder, which is told to be wgpu's time by who calls.
+    pub(crate) fn new(gpu: &'a Gpu, plan: &'a Plan, realized: &'a Realized, arenas: &'a Arenas) -> Self {
+        let sharing = arenas.current().zip(arenas.placing()).map(|(arena, driver)| {
+            let mut coming = activations(plan, |resource| realized.placed_at(resource).is_some());
+            if arenas.leaves_out_hand_overs() {
+                // All at once, before the first step.
+                let resources = coming.drain(..).flat_map(|a| a.resources).collect();
+                coming.push(Activation { before: StepId::at(0), resources });
+            }
+            coming.reverse();
+            Sharing { driver, arena, plan, realized, coming, active: Vec::new() }
+        });
+        Self { gpu, encoder: encoder(gpu), done: Vec::new(), sharing }
+    }
+
+    /// Begins a step: what uses memory from here on gets it.
+    pub(crate) fn begin_step(&mut self, step: StepId) {
+        let Some(sharing) = &mut self.sharing else { return };
+        let Some(now) = sharing.coming.pop_if(|a| a.before == step) else { return };
+        sharing.retire(step, &mut self.encoder);
+        let before = std::mem::replace(&mut self.encoder, encoder(self.gpu));
+        // In front of the first step there is nothing to end.
+        if step.index() > 0 {
+            self.done.push(before.finish());
+        }
+        self.done.push(sharing.activate(now.resources));
+    }
+
+    /// Ends the frame.
+    pub(crate) fn finish(mut self) -> FrameCommands {
+        if let Some(sharing) = &mut self.sharing {
+            sharing.retire(StepId::NONE, &mut self.encoder);
+        }
+        self.done.push(self.encoder.finish());
+        FrameCommands::new(self.done, self.sharing.is_some() && !keeps_order_of_aliases(self.gpu.info()))
+    }
+}
+
+impl<'a> Sharing<'a> {
+    fn texture(&self, resource: ResourceId) -> Option<&'a PlacedTexture> {
+        match &self.arena.objects[self.realized.placed_at(resource)?] {
+            Object::Texture(placed) => Some(placed),
+            Object::Buffer(_) => None,
+        }
+    }
+
+    /// Puts what no step from `step` on uses back into the state in which it is found by the next frame.
+    fn retire(&mut self, step: StepId, encoder: &mut CommandEncoder) {
+        let over = |r: &ResourceId| self.plan.resources()[r.index()].last < step;
+        let (over, active): (Vec<_>, Vec<_>) = self.active.iter().copied().partition(over);
+        self.active = active;
+        let textures: Vec<_> = over.into_iter().filter_map(|r| self.texture(r)).collect();
+        let home = |t: &'a PlacedTexture| TextureTransition { texture: t.texture(), selector: None, state: t.home() };
+        if !textures.is_empty() {
+            encoder.transition_resources(std::iter::empty(), textures.into_iter().map(home));
+        }
+    }
+
+    fn activate(&mut self, resources: Vec<ResourceId>) -> CommandBuffer {
+        let textures: Vec<_> = resources.iter().filter_map(|r| self.texture(*r)).collect();
+        self.active.extend(resources);
+        self.driver.hand_over(&textures)
+    }
+}
+
+fn encoder(gpu: &Gpu) -> CommandEncoder {
+    gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("frame") })
+}

@@ -1,0 +1,265 @@
+//! Blocks of memory with the textures and buffers placed in them, kept from frame to frame; and what the planner must know of
+//! the driver to place them.
+
+use crate::device::gpu::Gpu;
+use crate::execute::error::ExecuteError;
+use crate::named::Named;
+use crate::placed::driver::{Driver, Needs, Object};
+use crate::placed::not_placed::NotPlaced;
+use crate::placed::shape::Shape;
+use crate::resources::physical::PhysicalTextureDesc;
+use crate::resources::requests::{PlacedRequest, Requests, shaped};
+use crate::resources::support::{Unsupported, check_buffer, check_texture};
+use framegraph::{Caps, Desc, Extent, Plan, TextureDesc};
+use wgpu::{Buffer, Texture};
+
+/// One block for textures and one for buffers, with what lies in them.
+#[derive(Debug)]
+pub(crate) struct Arena {
+    /// Shape and offset of each object.
+    key: Vec<(Shape, u64)>,
+    pub(crate) objects: Vec<Object>,
+    /// Bytes that the driver was asked for.
+    allocated_bytes: u64,
+    /// The frame that used it last.
+    used: u64,
+}
+
+/// All arenas of an executor. See the [module](self).
+#[derive(Debug, Default)]
+pub(crate) struct Arenas {
+    driver: Option<Result<Driver, NotPlaced>>,
+    caps: Option<Caps>,
+    asked: Vec<(Shape, Needs)>,
+    requests: Requests,
+    arenas: Vec<Arena>,
+    frame: u64,
+    created: u64,
+    broken: bool,
+}
+
+impl Arenas {
+    /// The device as the compiler must see it to place; as it is without, where it cannot.
+    pub(crate) fn caps(&mut self, gpu: &Gpu) -> &Caps {
+        let placed = self.driver(gpu).is_ok();
+        self.caps.get_or_insert_with(|| match placed {
+            true => Caps {
+                placed: true,
+                placed_histories: false,
+                // Images and buffers may need other kinds of memory.
+                separate_heaps: true,
+                texture_alignment_bytes: 1,
+                buffer_alignment_bytes: 1,
+                explicit_barriers: true,
+                ..gpu.caps()
+            },
+            false => gpu.caps(),
+        })
+    }
+
+    /// Why nothing is placed; none where it is, or nobody asked.
+    pub(crate) fn not_placed(&self) -> Option<&NotPlaced> {
+        self.driver.as_ref().and_then(|driver| driver.as_ref().err())
+    }
+
+    /// From now on nothing is placed.
+    pub(crate) fn give_up(&mut self, gpu: &Gpu, why: NotPlaced) {
+        (self.driver, self.caps) = (Some(Err(why)), Some(gpu.caps()));
+    }
+
+    fn driver(&mut self, gpu: &Gpu) -> Result<&Driver, NotPlaced> {
+        self.driver.get_or_insert_with(|| Driver::of(gpu)).as_ref().map_err(Clone::clone)
+    }
+
+    /// Asks the driver what the placed textures and buffers of `plan` take. True when that is more than the plan knew of: it
+    /// must be compiled again, with [`Arenas::caps`] as they are now. Whether contents will be poisoned changes no plan, so
+    /// what either takes is asked.
+    pub(crate) fn ask(&mut self, gpu: &Gpu, plan: &Plan) -> Result<bool, NotPlaced> {
+        let mut more = false;
+        for poison in [false, true] {
+            let mut requests = std::mem::take(&mut self.requests);
+            // What cannot be collected is refused when the plan is executed.
+            let told = requests.collect(plan, gpu, poison).is_ok();
+            for request in requests.placed().iter().filter(|_| told) {
+                more |= self.learn(gpu, plan, request)?;
+            }
+            requests.clear();
+            self.requests = requests;
+        }
+        Ok(more)
+    }
+
+    /// Asks of one; true when the caps changed.
+    fn learn(&mut self, gpu: &Gpu, plan: &Plan, request: &PlacedRequest) -> Result<bool, NotPlaced> {
+        if check(gpu, &request.shape, "").is_err() {
+            return Ok(false);
+        }
+        let Needs { bytes, alignment, .. } = self.needs(gpu, &request.shape)?;
+        self.caps(gpu);
+        let Some(caps) = &mut self.caps else { return Ok(false) };
+        let aligned = match request.shape {
+            Shape::Texture(_) => &mut caps.texture_alignment_bytes,
+            // Rounding up to the alignment is also how a buffer gets the driver's padding.
+            Shape::Buffer(_) => &mut caps.buffer_alignment_bytes,
+        };
+        let padding = bytes.saturating_sub(plan.resources()[request.resource.index()].bytes);
+        let wanted = match request.shape {
+            Shape::Texture(_) => alignment,
+            Shape::Buffer(_) => alignment.max(padding.next_power_of_two()),
+        };
+        let mut more = wanted > *aligned;
+        *aligned = wanted.max(*aligned);
+        if let (Desc::Texture(desc), true) = (shaped(plan, request.resource), padding > 0) {
+            let desc = absolute(desc, plan.frame());
+            match caps.padded.iter_mut().find(|(known, _)| *known == desc) {
+                Some((_, known)) => {
+                    more |= bytes > *known;
+                    *known = bytes.max(*known);
+                }
+                None => {
+                    more = true;
+                    caps.padded.push((desc, bytes));
+                }
+            }
+        }
+        Ok(more)
+    }
+
+    /// What the driver says that a shape takes; asked once.
+    fn needs(&mut self, gpu: &Gpu, shape: &Shape) -> Result<Needs, NotPlaced> {
+        if let Some((_, needs)) = self.asked.iter().find(|(known, _)| known == shape) {
+            return Ok(*needs);
+        }
+        let needs = self.driver(gpu)?.needs(shape)?;
+        self.asked.push((*shape, needs));
+        Ok(needs)
+    }
+
+    /// Begins a frame: no arena is in use.
+    pub(crate) fn begin_frame(&mut self) {
+        self.frame += 1;
+    }
+
+    /// Finds or makes the arena in which everything of `requests` lies; it is [`Arenas::current`] then.
+    ///
+    /// # Errors
+    /// When the device places nothing, or the plan's offsets do not suit what the driver asks for.
+    pub(crate) fn acquire(&mut self, gpu: &Gpu, plan: &Plan, requests: &[PlacedRequest]) -> Result<(), ExecuteError> {
+        if requests.is_empty() {
+            return Ok(());
+        }
+        let same = |arena: &Arena| arena.key.iter().copied().eq(requests.iter().map(|r| (r.shape, r.offset)));
+        if let Some(at) = self.arenas.iter().position(same) {
+            self.arenas[at].used = self.frame;
+            self.arenas.swap(0, at);
+            return Ok(());
+        }
+        let mut all = Vec::with_capacity(requests.len());
+        for request in requests {
+            check(gpu, &request.shape, plan.graph().resource_name(request.resource))?;
+            let needs = self.needs(gpu, &request.shape)?;
+            let (row, caps) = (&plan.resources()[request.resource.index()], plan.caps());
+            let alignment = match request.shape {
+                Shape::Texture(_) => caps.texture_alignment_bytes,
+                Shape::Buffer(_) => caps.buffer_alignment_bytes,
+            };
+            let taken = row.bytes.checked_next_multiple_of(alignment.max(1)).unwrap_or(u64::MAX);
+            if needs.bytes > taken || request.offset % needs.alignment != 0 {
+                return Err(ExecuteError::Heap { resource: Named::resource(plan, request.resource) });
+            }
+            all.push(needs);
+        }
+        let name = |r: &PlacedRequest| plan.graph().resource_name(r.resource);
+        let items: Vec<_> = requests.iter().map(|r| (r.shape, r.offset, name(r))).collect();
+        let (objects, allocated_bytes) = self.driver(gpu)?.place(&items, &all)?;
+        let key = requests.iter().map(|r| (r.shape, r.offset)).collect();
+        self.created += objects.len() as u64;
+        self.arenas.push(Arena { key, objects, allocated_bytes, used: self.frame });
+        let last = self.arenas.len() - 1;
+        self.arenas.swap(0, last);
+        Ok(())
+    }
+
+    /// The arena of this frame; none when nothing is placed.
+    pub(crate) fn current(&self) -> Option<&Arena> {
+        self.arenas.first().filter(|arena| arena.used == self.frame)
+    }
+
+    /// The driver, where something is placed.
+    pub(crate) fn placing(&self) -> Option<&Driver> {
+        self.driver.as_ref().and_then(|driver| driver.as_ref().ok())
+    }
+
+    /// Ends a frame: of the arenas that no frame used during `max_age` frames none stays, and beside those of the last two
+    /// frames not more than one. `gone` is told what lay in them.
+    pub(crate) fn evict(&mut self, max_age: u64, mut gone: impl FnMut(&Object)) {
+        let frame = self.frame;
+        let newest_old = self.arenas.iter().map(|a| a.used).filter(|used| used + 1 < frame).max();
+        self.arenas.retain(|arena| {
+            let stays = arena.used + 1 >= frame || (Some(arena.used) == newest_old && frame - arena.used <= max_age);
+            if !stays {
+                arena.objects.iter().for_each(&mut gone);
+            }
+            stays
+        });
+    }
+
+    /// Gives up the arena of this frame: after the device refused something, nothing is known of it.
+    pub(crate) fn forget_frame(&mut self) {
+        let frame = self.frame;
+        self.arenas.retain(|arena| arena.used != frame);
+    }
+
+    /// Bytes that the driver gave for all arenas.
+    pub(crate) fn allocated_bytes(&self) -> u64 {
+        self.arenas.iter().map(|arena| arena.allocated_bytes).sum()
+    }
+
+    /// Whether memory changes hands without a word ([`Arenas::leave_out_hand_overs`]).
+    pub(crate) fn leaves_out_hand_overs(&self) -> bool {
+        self.broken
+    }
+
+    /// From now on memory changes hands without a word.
+    #[cfg(any(test, feature = "testing"))]
+    pub(crate) fn leave_out_hand_overs(&mut self) {
+        self.broken = true;
+    }
+
+    /// Textures and buffers placed since the beginning.
+    pub(crate) fn created(&self) -> u64 {
+        self.created
+    }
+}
+
+impl Arena {
+    /// The texture of that number.
+    pub(crate) fn texture(&self, at: usize) -> Option<(&Texture, PhysicalTextureDesc)> {
+        match (&self.objects[at], self.key[at].0) {
+            (Object::Texture(placed), Shape::Texture(shape)) => Some((placed.texture(), shape)),
+            _ => None,
+        }
+    }
+
+    /// The buffer of that number.
+    pub(crate) fn buffer(&self, at: usize) -> Option<&Buffer> {
+        match &self.objects[at] {
+            Object::Buffer(buffer) => Some(buffer),
+            Object::Texture(_) => None,
+        }
+    }
+}
+
+/// Whether the device makes such a thing at all.
+fn check(gpu: &Gpu, shape: &Shape, name: &str) -> Result<(), Unsupported> {
+    match shape {
+        Shape::Texture(shape) => check_texture(gpu, shape, name),
+        Shape::Buffer(shape) => check_buffer(gpu, shape.bytes, name),
+    }
+}
+
+/// The shape with its extent in texels, as the caps know it.
+fn absolute(desc: TextureDesc, frame: [u32; 2]) -> TextureDesc {
+    let [width, height] = desc.extent.texels(frame);
+    TextureDesc { extent: Extent::Absolute { width, height }, ..desc }
+}

@@ -1,0 +1,382 @@
+//! Vulkan beside wgpu: images and buffers in blocks of memory, and the barriers between their owners. All calls of Vulkan that
+//! wgpu does not make are here.
+
+#![allow(
+    unsafe_code,
+    reason = "wgpu has no safe call that binds an image to memory of the caller's, or that writes a barrier"
+)]
+
+use crate::device::format::{both_forms, texture_format};
+use crate::device::gpu::Gpu;
+use crate::placed::home::{buffer_uses, home, texture_uses};
+use crate::placed::not_placed::NotPlaced;
+use crate::placed::shape::Shape;
+use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
+use ash::vk;
+use framegraph::Dimension;
+use std::sync::Arc;
+use wgpu::hal::api::Vulkan;
+use wgpu::hal::vulkan::{Buffer as HalBuffer, TextureMemory, conv};
+use wgpu::{Buffer, CommandBuffer, Extent3d, Texture, TextureDimension, TextureUses};
+
+/// What the driver asks for an image or buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Needs {
+    /// Size, padding included.
+    pub(crate) bytes: u64,
+    /// What its offset must be a multiple of; a power of two.
+    pub(crate) alignment: u64,
+    /// The kinds of memory that it may lie in, as bits.
+    pub(crate) memory_types: u32,
+}
+
+/// A placed image or buffer, as wgpu knows it.
+#[derive(Debug)]
+pub(crate) enum Object {
+    Texture(PlacedTexture),
+    Buffer(Buffer),
+}
+
+/// A placed image.
+#[derive(Debug)]
+pub(crate) struct PlacedTexture {
+    texture: Texture,
+    home: TextureUses,
+    /// Lives as long as `texture`.
+    raw: vk::Image,
+    /// Layout and planes at home.
+    layout: vk::ImageLayout,
+    planes: vk::ImageAspectFlags,
+}
+
+impl PlacedTexture {
+    /// The texture as wgpu knows it.
+    pub(crate) fn texture(&self) -> &Texture {
+        &self.texture
+    }
+
+    /// The use that it is in between its last step of a frame and its first of the next.
+    pub(crate) fn home(&self) -> TextureUses {
+        self.home
+    }
+}
+
+/// The functions of the device that wgpu opened.
+pub(crate) struct Driver {
+    /// Keeps the device open.
+    gpu: Gpu,
+    device: ash::Device,
+    memory: vk::PhysicalDeviceMemoryProperties,
+}
+
+impl std::fmt::Debug for Driver {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Driver").field("memory_types", &self.memory.memory_type_count).finish_non_exhaustive()
+    }
+}
+
+/// Memory of the driver, given back when the last image in it is destroyed.
+struct Block {
+    device: ash::Device,
+    raw: vk::DeviceMemory,
+}
+
+impl Drop for Block {
+    fn drop(&mut self) {
+        // SAFETY: only images and buffers bound to it hold it (`Image`, `Bytes`), each is destroyed before it lets go, and wgpu
+        // drops one only when the GPU is done with it. The device is open: wgpu drops textures and buffers before it.
+        unsafe { self.device.free_memory(self.raw, None) };
+    }
+}
+
+/// An image that is destroyed with this.
+struct Image {
+    device: ash::Device,
+    raw: vk::Image,
+    /// What it is bound to.
+    _block: Option<Arc<Block>>,
+}
+
+impl Drop for Image {
+    fn drop(&mut self) {
+        // SAFETY: made by `Driver::image`, and destroyed nowhere else: wgpu leaves that to the callback that drops this, when no
+        // command uses the image any more.
+        unsafe { self.device.destroy_image(self.raw, None) };
+    }
+}
+
+/// A buffer that is destroyed with this.
+struct Bytes {
+    device: ash::Device,
+    raw: vk::Buffer,
+    /// What it is bound to.
+    _block: Option<Arc<Block>>,
+}
+
+impl Drop for Bytes {
+    fn drop(&mut self) {
+        // SAFETY: as for `Image`.
+        unsafe { self.device.destroy_buffer(self.raw, None) };
+    }
+}
+
+fn refused(call: &'static str) -> impl Fn(vk::Result) -> NotPlaced {
+    move |result| NotPlaced::Driver { call, why: result.to_string() }
+}
+
+impl Driver {
+    /// The driver of a device of Vulkan.
+    ///
+    /// # Errors
+    /// For a device of another interface.
+    pub(crate) fn of(gpu: &Gpu) -> Result<Self, NotPlaced> {
+        let other = || NotPlaced::Backend(gpu.info().backend);
+        // SAFETY: the device of wgpu is looked at and not destroyed; `gpu` keeps it open.
+        let hal = unsafe { gpu.device.as_hal::<Vulkan>() }.ok_or_else(other)?;
+        let (device, physical) = (hal.raw_device().clone(), hal.raw_physical_device());
+        // SAFETY: the handle is that of the open device.
+        let memory = unsafe { hal.shared_instance().raw_instance().get_physical_device_memory_properties(physical) };
+        drop(hal);
+        Ok(Self { gpu: gpu.clone(), device, memory })
+    }
+
+    /// What the driver asks for `shape`: the object is made, looked at and destroyed.
+    ///
+    /// # Errors
+    /// When the driver makes no such thing.
+    pub(crate) fn needs(&self, shape: &Shape) -> Result<Needs, NotPlaced> {
+        let asked = match shape {
+            Shape::Texture(shape) => {
+                let image = self.image(shape, None)?;
+                // SAFETY: the image was made above by this device.
+                unsafe { self.device.get_image_memory_requirements(image.raw) }
+            }
+            Shape::Buffer(shape) => {
+                let buffer = self.bytes(shape, None)?;
+                // SAFETY: the buffer was made above by this device.
+                unsafe { self.device.get_buffer_memory_requirements(buffer.raw) }
+            }
+        };
+        Ok(Needs { bytes: asked.size, alignment: asked.alignment.max(1), memory_types: asked.memory_type_bits })
+    }
+
+    /// Makes all objects, textures in one block and buffers in another, at their offsets; and says how many bytes were taken.
+    /// `needs` are those of the items, and offsets suit them. The third of an item is what debuggers call it.
+    ///
+    /// # Errors
+    /// When there is no such memory, or not enough of it.
+    pub(crate) fn place(&self, items: &[(Shape, u64, &str)], needs: &[Needs]) -> Result<(Vec<Object>, u64), NotPlaced> {
+        let (mut blocks, mut allocated) = ([None, None], 0);
+        for (heap, block) in blocks.iter_mut().enumerate() {
+            let own = || items.iter().zip(needs).filter(|((shape, ..), _)| heap_of(shape) == heap);
+            let bytes = own().map(|((_, offset, _), needs)| offset + needs.bytes).max().unwrap_or(0);
+            if bytes > 0 {
+                *block = Some(self.block(bytes, own().fold(u32::MAX, |types, (_, n)| types & n.memory_types))?);
+                allocated += bytes;
+            }
+        }
+        let made = items.iter().map(|(shape, offset, name)| {
+            let block = blocks[heap_of(shape)].as_ref().ok_or(NotPlaced::Restless)?;
+            match shape {
+                Shape::Texture(shape) => self.texture(shape, block, *offset, name).map(Object::Texture),
+                Shape::Buffer(shape) => self.buffer(shape, block, *offset, name).map(Object::Buffer),
+            }
+        });
+        Ok((made.collect::<Result<_, _>>()?, allocated))
+    }
+
+    /// Commands that wait for everything submitted before, hand memory over to these textures (and whatever buffers), and put
+    /// the images into their homes.
+    pub(crate) fn hand_over(&self, textures: &[&PlacedTexture]) -> CommandBuffer {
+        let images: Vec<_> = textures
+            .iter()
+            .map(|placed| {
+                let range = vk::ImageSubresourceRange::default()
+                    .aspect_mask(placed.planes)
+                    .level_count(vk::REMAINING_MIP_LEVELS)
+                    .layer_count(vk::REMAINING_ARRAY_LAYERS);
+                vk::ImageMemoryBarrier::default()
+                    .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
+                    .dst_access_mask(vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE)
+                    .old_layout(vk::ImageLayout::UNDEFINED)
+                    .new_layout(placed.layout)
+                    .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                    .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                    .image(placed.raw)
+                    .subresource_range(range)
+            })
+            .collect();
+        let memory = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
+            .dst_access_mask(vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE)];
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("hand over") };
+        let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
+        let all = vk::PipelineStageFlags::ALL_COMMANDS;
+        // SAFETY: nothing but this is written into the encoder, which wgpu begins and ends. Images are of this device and live as
+        // long as `textures`, and their contents are of no use: the plan hands their memory over here.
+        unsafe {
+            encoder.as_hal_mut::<Vulkan, _, _>(|hal| {
+                if let Some(hal) = hal {
+                    let none = vk::DependencyFlags::empty();
+                    self.device.cmd_pipeline_barrier(hal.raw_handle(), all, all, none, &memory, &[], &images);
+                }
+            });
+        }
+        encoder.finish()
+    }
+
+    fn image(&self, shape: &PhysicalTextureDesc, block: Option<Arc<Block>>) -> Result<Image, NotPlaced> {
+        let format = texture_format(shape.format);
+        // SAFETY: the adapter of wgpu is looked at and not destroyed.
+        let adapter = unsafe { self.gpu.adapter().as_hal::<Vulkan>() };
+        let adapter = adapter.ok_or(NotPlaced::Backend(self.gpu.info().backend))?;
+        let raw_format = |format| adapter.texture_format_as_raw(format);
+        let described = described(shape, None);
+        let views: Vec<_> = described.view_formats.iter().chain([&format]).map(|f| raw_format(*f)).collect();
+        let mut list = vk::ImageFormatListCreateInfo::default().view_formats(&views);
+        let mut flags = vk::ImageCreateFlags::empty();
+        if shape.dimension == Dimension::D3 && described.usage.contains(TextureUses::COLOR_TARGET) {
+            flags |= vk::ImageCreateFlags::TYPE_2D_ARRAY_COMPATIBLE;
+        }
+        if described.is_cube_compatible() {
+            flags |= vk::ImageCreateFlags::CUBE_COMPATIBLE;
+        }
+        if shape.srgb_views {
+            flags |= vk::ImageCreateFlags::MUTABLE_FORMAT;
+        }
+        let mut info = vk::ImageCreateInfo::default()
+            .flags(flags)
+            .image_type(conv::map_texture_dimension(described.dimension))
+            .format(raw_format(format))
+            .extent(conv::map_copy_extent(&described.copy_extent()))
+            .mip_levels(shape.mips)
+            .array_layers(described.array_layer_count())
+            .samples(vk::SampleCountFlags::from_raw(shape.samples))
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(conv::map_texture_usage(described.usage))
+            .sharing_mode(vk::SharingMode::EXCLUSIVE)
+            .initial_layout(vk::ImageLayout::UNDEFINED);
+        let listed = c"VK_KHR_image_format_list";
+        // SAFETY: the device of wgpu is looked at and not destroyed.
+        let device = unsafe { self.gpu.device.as_hal::<Vulkan>() };
+        if shape.srgb_views && device.is_some_and(|d| d.enabled_device_extensions().contains(&listed)) {
+            info = info.push_next(&mut list);
+        }
+        // SAFETY: the description is that of a texture that wgpu made or would make itself: `check_texture` has compared it with
+        // the device's limits and formats.
+        let raw = unsafe { self.device.create_image(&info, None) }.map_err(refused("vkCreateImage"))?;
+        Ok(Image { device: self.device.clone(), raw, _block: block })
+    }
+
+    fn bytes(&self, shape: &PhysicalBufferDesc, block: Option<Arc<Block>>) -> Result<Bytes, NotPlaced> {
+        let info = vk::BufferCreateInfo::default()
+            .size(shape.bytes)
+            .usage(conv::map_buffer_usage(buffer_uses(shape.usage)))
+            .sharing_mode(vk::SharingMode::EXCLUSIVE);
+        // SAFETY: `check_buffer` has compared the size with the device's limit, and it is not 0.
+        let raw = unsafe { self.device.create_buffer(&info, None) }.map_err(refused("vkCreateBuffer"))?;
+        Ok(Bytes { device: self.device.clone(), raw, _block: block })
+    }
+
+    /// Memory of the device's own of one of these types.
+    fn block(&self, bytes: u64, types: u32) -> Result<Arc<Block>, NotPlaced> {
+        let unfit = vk::MemoryPropertyFlags::LAZILY_ALLOCATED | vk::MemoryPropertyFlags::PROTECTED;
+        let known = self.memory.memory_types_as_slice().iter().enumerate();
+        let fits = |flags: vk::MemoryPropertyFlags| {
+            flags.contains(vk::MemoryPropertyFlags::DEVICE_LOCAL) && !flags.intersects(unfit)
+        };
+        let mut fitting = known.filter(|(at, kind)| types & (1 << at) != 0 && fits(kind.property_flags));
+        let (at, _) = fitting.next().ok_or(NotPlaced::MemoryType { types })?;
+        let info = vk::MemoryAllocateInfo::default().allocation_size(bytes).memory_type_index(at as u32);
+        // SAFETY: the type is one of the device's, and the size is not 0.
+        let raw = unsafe { self.device.allocate_memory(&info, None) }.map_err(refused("vkAllocateMemory"))?;
+        Ok(Arc::new(Block { device: self.device.clone(), raw }))
+    }
+
+    fn texture(
+        &self,
+        shape: &PhysicalTextureDesc,
+        block: &Arc<Block>,
+        offset: u64,
+        name: &str,
+    ) -> Result<PlacedTexture, NotPlaced> {
+        let image = self.image(shape, Some(block.clone()))?;
+        let raw = image.raw;
+        // SAFETY: the image is new, the offset suits what the driver asked for it, and it ends inside of the block (`place`).
+        unsafe { self.device.bind_image_memory(raw, block.raw, offset) }.map_err(refused("vkBindImageMemory"))?;
+        let format = texture_format(shape.format);
+        let home = home(shape.usage, format);
+        let described = described(shape, Some(name));
+        // SAFETY: the device of wgpu is looked at and not destroyed.
+        let hal = unsafe { self.gpu.device.as_hal::<Vulkan>() };
+        let hal = hal.ok_or(NotPlaced::Backend(self.gpu.info().backend))?;
+        // SAFETY: the image was made as `described` says; it and its memory live until wgpu calls back, which drops `image`.
+        let texture = unsafe {
+            hal.texture_from_raw(raw, &described, Some(Box::new(move || drop(image))), TextureMemory::External)
+        };
+        drop(hal);
+        let descriptor = wgpu::TextureDescriptor {
+            label: Some(name),
+            size: described.size,
+            mip_level_count: shape.mips,
+            sample_count: shape.samples,
+            dimension: described.dimension,
+            format,
+            usage: shape.usage,
+            view_formats: &described.view_formats,
+        };
+        // SAFETY: the texture is of this device and made as described. It is in its home whenever wgpu uses it: `hand_over` puts
+        // it there before its first step of each frame. What it holds then is memory of this device alone, and no pass reads
+        // it: the plan has every part written before it is read, which the compiler checks.
+        let texture = unsafe { self.gpu.device.create_texture_from_hal::<Vulkan>(texture, &descriptor, home) };
+        let layout = conv::derive_image_layout(home, format);
+        let planes = conv::map_aspects(wgpu::hal::FormatAspects::from(format));
+        Ok(PlacedTexture { texture, home, raw, layout, planes })
+    }
+
+    fn buffer(
+        &self,
+        shape: &PhysicalBufferDesc,
+        block: &Arc<Block>,
+        offset: u64,
+        name: &str,
+    ) -> Result<Buffer, NotPlaced> {
+        let bytes = self.bytes(shape, Some(block.clone()))?;
+        let raw = bytes.raw;
+        // SAFETY: as for an image.
+        unsafe { self.device.bind_buffer_memory(raw, block.raw, offset) }.map_err(refused("vkBindBufferMemory"))?;
+        // SAFETY: the buffer and its memory live until wgpu calls back, which drops `bytes`.
+        let buffer = unsafe { HalBuffer::from_raw_externally_owned(raw, Box::new(move || drop(bytes))) };
+        let descriptor = wgpu::BufferDescriptor {
+            label: Some(name),
+            size: shape.bytes,
+            usage: shape.usage,
+            mapped_at_creation: false,
+        };
+        // SAFETY: of this device, of this size, which is not 0. What it holds is memory of this device alone, as for a texture.
+        Ok(unsafe { self.gpu.device.create_buffer_from_hal::<Vulkan>(buffer, &descriptor) })
+    }
+}
+
+fn heap_of(shape: &Shape) -> usize {
+    usize::from(matches!(shape, Shape::Buffer(_)))
+}
+
+/// The shape in the words of wgpu's back end.
+fn described<'n>(shape: &PhysicalTextureDesc, label: Option<&'n str>) -> wgpu::hal::TextureDescriptor<'n> {
+    let ([width, height, depth_or_array_layers], format) = (shape.size, texture_format(shape.format));
+    wgpu::hal::TextureDescriptor {
+        label,
+        size: Extent3d { width, height, depth_or_array_layers },
+        mip_level_count: shape.mips,
+        sample_count: shape.samples,
+        dimension: match shape.dimension {
+            Dimension::D2 => TextureDimension::D2,
+            Dimension::D3 => TextureDimension::D3,
+        },
+        format,
+        usage: texture_uses(shape.usage, format),
+        memory_flags: wgpu::hal::MemoryFlags::empty(),
+        view_formats: if shape.srgb_views { both_forms(format).to_vec() } else { Vec::new() },
+    }
+}

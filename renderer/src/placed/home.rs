@@ -1,0 +1,72 @@
+//! The uses of wgpu's textures and buffers one by one, as its trackers know them, and the one that a placed texture rests in.
+
+use wgpu::{BufferUsages, BufferUses, TextureFormat, TextureUsages, TextureUses};
+
+/// What a texture made for `usage` may be in.
+pub(crate) fn texture_uses(usage: TextureUsages, format: TextureFormat) -> TextureUses {
+    let drawn = if format.is_depth_stencil_format() {
+        TextureUses::DEPTH_STENCIL_READ | TextureUses::DEPTH_STENCIL_WRITE
+    } else {
+        TextureUses::COLOR_TARGET
+    };
+    let stored = TextureUses::STORAGE_READ_ONLY | TextureUses::STORAGE_WRITE_ONLY | TextureUses::STORAGE_READ_WRITE;
+    [
+        (TextureUsages::COPY_SRC, TextureUses::COPY_SRC),
+        (TextureUsages::COPY_DST, TextureUses::COPY_DST),
+        (TextureUsages::TEXTURE_BINDING, TextureUses::RESOURCE),
+        (TextureUsages::STORAGE_BINDING, stored),
+        (TextureUsages::RENDER_ATTACHMENT, drawn),
+    ]
+    .into_iter()
+    .filter(|(asked, _)| usage.contains(*asked))
+    .fold(TextureUses::empty(), |all, (_, uses)| all | uses)
+}
+
+/// The use that a texture is in from its last step of one frame to its first of the next: one that it is made for, and
+/// mostly that of its first step, so that no transition follows.
+pub(crate) fn home(usage: TextureUsages, format: TextureFormat) -> TextureUses {
+    if usage.contains(TextureUsages::RENDER_ATTACHMENT) {
+        if format.is_depth_stencil_format() { TextureUses::DEPTH_STENCIL_WRITE } else { TextureUses::COLOR_TARGET }
+    } else if usage.contains(TextureUsages::STORAGE_BINDING) {
+        TextureUses::STORAGE_WRITE_ONLY
+    } else if usage.contains(TextureUsages::COPY_DST) {
+        TextureUses::COPY_DST
+    } else if usage.contains(TextureUsages::TEXTURE_BINDING) {
+        TextureUses::RESOURCE
+    } else {
+        TextureUses::COPY_SRC
+    }
+}
+
+/// What a buffer made for `usage` may be in.
+pub(crate) fn buffer_uses(usage: BufferUsages) -> BufferUses {
+    [
+        (BufferUsages::COPY_SRC, BufferUses::COPY_SRC),
+        (BufferUsages::COPY_DST, BufferUses::COPY_DST),
+        (BufferUsages::INDEX, BufferUses::INDEX),
+        (BufferUsages::VERTEX, BufferUses::VERTEX),
+        (BufferUsages::UNIFORM, BufferUses::UNIFORM),
+        (BufferUsages::STORAGE, BufferUses::STORAGE_READ_ONLY | BufferUses::STORAGE_READ_WRITE),
+        (BufferUsages::INDIRECT, BufferUses::INDIRECT),
+    ]
+    .into_iter()
+    .filter(|(asked, _)| usage.contains(*asked))
+    .fold(BufferUses::empty(), |all, (_, uses)| all | uses)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_texture_rests_in_a_use_that_it_is_made_for() {
+        for format in [TextureFormat::Rgba8Unorm, TextureFormat::Depth32Float] {
+            for bits in 1..32 {
+                let usage = TextureUsages::from_bits_truncate(bits);
+                let (uses, home) = (texture_uses(usage, format), home(usage, format));
+                assert!(uses.contains(home), "{usage:?} of {format:?}: {home:?} is none of {uses:?}");
+                assert!(home.bits().is_power_of_two(), "{home:?}");
+            }
+        }
+    }
+}

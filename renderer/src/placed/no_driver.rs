@@ -1,0 +1,57 @@
+//! In the place of [`driver`](super) where the program was built without Vulkan: there is no driver, so nothing is placed.
+
+use crate::device::gpu::Gpu;
+use crate::placed::not_placed::NotPlaced;
+use crate::placed::shape::Shape;
+use wgpu::{Buffer, CommandBuffer, Texture, TextureUses};
+
+/// No value.
+#[derive(Debug)]
+pub(crate) enum Driver {}
+
+/// No value.
+#[derive(Debug)]
+pub(crate) enum PlacedTexture {}
+
+/// What a driver asks for an image or buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Needs {
+    pub(crate) bytes: u64,
+    pub(crate) alignment: u64,
+    pub(crate) memory_types: u32,
+}
+
+/// An image or buffer.
+#[derive(Debug)]
+pub(crate) enum Object {
+    Texture(PlacedTexture),
+    Buffer(Buffer),
+}
+
+impl PlacedTexture {
+    pub(crate) fn texture(&self) -> &Texture {
+        match *self {}
+    }
+
+    pub(crate) fn home(&self) -> TextureUses {
+        match *self {}
+    }
+}
+
+impl Driver {
+    pub(crate) fn of(_: &Gpu) -> Result<Self, NotPlaced> {
+        Err(NotPlaced::NotBuilt)
+    }
+
+    pub(crate) fn needs(&self, _: &Shape) -> Result<Needs, NotPlaced> {
+        match *self {}
+    }
+
+    pub(crate) fn place(&self, _: &[(Shape, u64, &str)], _: &[Needs]) -> Result<(Vec<Object>, u64), NotPlaced> {
+        match *self {}
+    }
+
+    pub(crate) fn hand_over(&self, _: &[&PlacedTexture]) -> CommandBuffer {
+        match *self {}
+    }
+}

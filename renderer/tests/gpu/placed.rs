@@ -1,0 +1,212 @@
+//! Textures and buffers that share one block of memory: contents, bytes, fallbacks, and what the validation layers say.
+
+use crate::bench::{GREEN, TestResult, fill_full, on_adapter, skip};
+use framegraph::{
+    Alias, ClearValue, DeclareError, Extent, Format, Intent, Options, PassBuilder, Placement, Plan, Scratch, Texture,
+    TextureDesc, View,
+};
+use framegraph_wgpu::{
+    AdapterRequest, ExecuteError, Executor, Frame, Gpu, Imports, NotPlaced, Raster, Shader, read_texture,
+};
+use std::process::Command;
+
+/// Copies a picture texel by texel.
+const COPY: Shader<'static> = Shader::new(
+    "copy",
+    "@group(0) @binding(0) var image: texture_2d<f32>;
+     @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+       return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.0, 1.0);
+     }
+     @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {
+       return textureLoad(image, vec2u(at.xy), 0);
+     }",
+);
+
+/// A chain of pictures of other sizes and formats: each lives in two steps, so the next but one can have its memory.
+fn chain(frame: &mut Frame, length: u32) -> Result<Texture, DeclareError> {
+    let formats = [Format::Rgba8Unorm, Format::Rgba16Float, Format::Rg11b10Ufloat, Format::Rgba32Float];
+    let desc = |at: u32| TextureDesc::new(Extent::absolute(96 - at, 64 + at), formats[at as usize % 4]);
+    let first = frame.graph_mut().texture("link 0", desc(0));
+    let mut last = frame.add_fn("fill", |p| p.color(first, Intent::Overwrite), |_, _, cx| fill_full(cx, GREEN))?;
+    for at in 1..=length {
+        let next = frame.graph_mut().texture(&format!("link {at}"), desc(if at == length { 0 } else { at }));
+        let declare = |p: &mut PassBuilder<'_>| {
+            let view = p.sampled(last)?;
+            // Everything beside the copied texels is cleared.
+            Ok((view, p.color(next, Intent::Clear(ClearValue::Color([1.0, 0.0, 0.0, 1.0])))?))
+        };
+        (_, last) = frame.add_fn("copy", declare, |(view, _): &(View, Texture), _, cx| {
+            let pipeline = cx.raster_pipeline(&Raster::new(COPY))?;
+            let image = cx.view(*view)?;
+            let group = cx.bind_group(pipeline.group(0), &[(0, image.into())]);
+            let pass = cx.render_pass()?;
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            pass.draw(0..3, 0..1);
+            Ok(())
+        })?;
+    }
+    frame.graph_mut().readback(last)?;
+    Ok(last)
+}
+
+/// Links of the chain.
+const LENGTH: u32 = 12;
+
+/// An executor that has executed the chain for some frames.
+struct Ran {
+    executor: Executor,
+    frame: Frame,
+    plan: Plan,
+    last: Texture,
+}
+
+impl Ran {
+    fn new(gpu: &Gpu, alias: Alias, broken: bool) -> Result<Self, Box<dyn std::error::Error>> {
+        let (mut frame, mut plan, mut executor) = (Frame::new(), Plan::new(), Executor::new(gpu));
+        let last = chain(&mut frame, LENGTH)?;
+        let options = Options { alias, ..Options::for_frame(96, 64) };
+        executor.compile(frame.graph(), &options, &mut Scratch::new(), &mut plan)?;
+        if broken {
+            executor.leave_out_hand_overs();
+        }
+        Ok(Self { executor, frame, plan, last })
+    }
+
+    fn frames(&mut self, count: usize) -> Result<(), ExecuteError> {
+        (0..count).try_for_each(|_| {
+            self.executor.execute(&self.plan, &self.frame, &(), &Imports::new())?;
+            Ok(())
+        })
+    }
+
+    fn bytes(&self, gpu: &Gpu) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+        let texture = self.executor.texture(&self.plan, self.last).ok_or("the last link has no memory")?;
+        Ok(read_texture(gpu, texture)?.bytes)
+    }
+
+    fn placed(&self) -> usize {
+        let rows = self.plan.resources().iter();
+        rows.filter(|row| matches!(row.placement, Placement::Heap { .. })).count()
+    }
+}
+
+/// Why nothing is placed on this adapter, where that is as it should be.
+fn elsewhere(executor: &Executor) -> Option<String> {
+    match executor.not_placed() {
+        Some(why @ NotPlaced::Backend(_)) => Some(why.to_string()),
+        _ => None,
+    }
+}
+
+#[test]
+fn a_chain_in_one_block_is_the_chain_apart() -> TestResult {
+    const NAME: &str = "a_chain_in_one_block_is_the_chain_apart";
+    on_adapter(NAME, |gpu| {
+        let mut placed = Ran::new(gpu, Alias::Heap, false)?;
+        if let Some(why) = elsewhere(&placed.executor) {
+            return skip(NAME, &why);
+        }
+        let mut apart = Ran::new(gpu, Alias::Off, false)?;
+        assert_eq!((placed.executor.not_placed(), placed.placed()), (None, LENGTH as usize));
+        apart.frames(1)?;
+        for _ in 0..24 {
+            placed.frames(1)?;
+            assert!(placed.bytes(gpu)? == apart.bytes(gpu)?, "the pictures differ");
+        }
+        let steady = placed.executor.objects();
+        placed.frames(3)?;
+        assert_eq!(placed.executor.objects(), steady, "nothing is made in the steady state");
+
+        // The block is what the plan says, and less than half of what its tenants take apart.
+        let (memory, allocated) = (placed.plan.memory(), placed.executor.allocated());
+        assert!(allocated.placed > 0 && allocated.placed <= memory.bytes, "{allocated:?} {memory:?}");
+        assert!(allocated.placed * 2 < memory.unaliased_bytes, "{allocated:?} {memory:?}");
+        assert_eq!(apart.executor.allocated().placed, 0);
+        Ok(())
+    })
+}
+
+#[test]
+fn sizes_that_the_driver_was_not_asked_for_are_refused() -> TestResult {
+    const NAME: &str = "sizes_that_the_driver_was_not_asked_for_are_refused";
+    on_adapter(NAME, |gpu| {
+        let mut placed = Ran::new(gpu, Alias::Heap, false)?;
+        if let Some(why) = elsewhere(&placed.executor) {
+            return skip(NAME, &why);
+        }
+        // As if images had no padding and could lie anywhere.
+        let caps = framegraph::Caps { padded: Vec::new(), texture_alignment_bytes: 1, ..placed.plan.caps().clone() };
+        let options = *placed.plan.options();
+        framegraph::compile(placed.frame.graph(), &caps, &options, &mut Scratch::new(), &mut placed.plan)?;
+        let told = placed.frames(1);
+        assert!(matches!(told, Err(ExecuteError::Heap { .. })), "{told:?}");
+        Ok(())
+    })
+}
+
+#[test]
+fn a_device_without_placing_shares_by_shape_and_says_why() -> TestResult {
+    let gpu = Gpu::noop()?;
+    let mut ran = Ran::new(&gpu, Alias::Heap, false)?;
+    ran.frames(2)?;
+    assert!(ran.placed() == 0 && !ran.plan.slots().is_empty(), "the pool serves");
+    let why = ran.executor.not_placed().ok_or("no reason")?.to_string();
+    assert!(why.contains("noop") && why.contains("Vulkan"), "{why}");
+    Ok(())
+}
+
+/// A run of its own with the layers on; see `the_layers_are_silent_about_what_is_placed`.
+#[test]
+#[ignore = "a part of another test, which sets its environment"]
+fn chain_under_validation() -> TestResult {
+    let gpu = Gpu::open(&AdapterRequest::from_env())?;
+    let mut ran = Ran::new(&gpu, Alias::Heap, std::env::var_os("FRAMEGRAPH_BROKEN").is_some())?;
+    if let Some(why) = elsewhere(&ran.executor) {
+        println!("ELSEWHERE {why}");
+        return Ok(());
+    }
+    assert!(ran.placed() > 0);
+    ran.frames(3)?;
+    gpu.wait()?;
+    println!("DONE");
+    Ok(())
+}
+
+/// What the validation layers say of the chain in one block, with hand-overs and without; an error where nothing is placed.
+fn told(broken: bool) -> Result<Result<Vec<String>, String>, Box<dyn std::error::Error>> {
+    let mut run = Command::new(std::env::current_exe()?);
+    run.args(["--exact", "placed::chain_under_validation", "--ignored", "--nocapture"]);
+    run.env("WGPU_VALIDATION", "1").env_remove("FRAMEGRAPH_BROKEN");
+    // Older layers compare command buffers with each other only when told to.
+    run.env("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT");
+    if broken {
+        run.env("FRAMEGRAPH_BROKEN", "1");
+    }
+    let out = run.output()?;
+    let text = format!("{}\n{}", String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr));
+    if let Some(why) = text.lines().find_map(|line| line.split_once("ELSEWHERE ")) {
+        return Ok(Err(why.1.to_owned()));
+    }
+    assert!(text.contains("DONE"), "{text}");
+    Ok(Ok(text.lines().filter(|line| line.contains("Validation Error")).map(str::to_owned).collect()))
+}
+
+#[test]
+fn the_layers_are_silent_about_what_is_placed() -> TestResult {
+    const NAME: &str = "the_layers_are_silent_about_what_is_placed";
+    on_adapter(NAME, |_| {
+        let silent = match told(false)? {
+            Ok(messages) => messages,
+            Err(why) => return skip(NAME, &why),
+        };
+        assert!(silent.is_empty(), "{}", silent.join("\n"));
+        // Without layers nothing is said of either, and newer ones do not compare memory of different images.
+        let broken = told(true)?.unwrap_or_default();
+        if broken.is_empty() {
+            return skip(NAME, "there are no validation layers that find hand-overs that were left out");
+        }
+        assert!(broken.iter().all(|message| message.contains("SYNC-HAZARD")), "{}", broken.join("\n"));
+        Ok(())
+    })
+}
