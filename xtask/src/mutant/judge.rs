@@ -3,7 +3,7 @@
 
 use crate::Failure;
 use crate::mutant::plant::Mutant;
-use crate::rustc_time::children_seconds;
+use crate::rustc_time::seconds_of;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
@@ -31,6 +31,10 @@ pub struct Test {
 /// Tests of no more processor time than this are asked about all faults before others are asked about any, in seconds.
 pub const QUICK: f64 = 4.0;
 
+/// Processor time for which quick tests are asked about a fault at the most, and others again, in seconds: a line that all
+/// of them compile would else be asked about for a quarter of an hour.
+pub const ASKED: f64 = 90.0;
+
 /// What a test says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Says {
@@ -45,13 +49,14 @@ pub enum Says {
 pub type Replaced<'a> = Option<(&'a Path, &'a str)>;
 
 impl Test {
-    /// Seconds that one noticed fault of a file is likely to cost: what was seen of that file counts for more than the rest.
+    /// What one noticed fault of a file is likely to cost: what was seen of that file counts for more than the rest, and of
+    /// much that is compiled a test judges less.
     fn cost(&self, file: &str) -> f64 {
         let seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         let weighted = seen.iter().map(|(of, counts)| (if of == file { 8 } else { 1 }, counts));
         let [asked, noticed] = weighted.fold([2, 1], |sum, (by, counts)| [0, 1].map(|i| sum[i] + by * counts[i]));
         // What every process takes.
-        (0.2 + self.seconds) * f64::from(asked) / f64::from(noticed)
+        (0.2 + self.seconds) * self.lines.len().max(1) as f64 * f64::from(asked) / f64::from(noticed)
     }
 
     /// Counts a fault of a file.
@@ -73,7 +78,7 @@ impl Test {
     /// # Errors
     /// When the program cannot be started.
     pub fn run(&self, program: &Path, folder: &Path, file: &str, replaced: Replaced<'_>) -> Result<Says, Failure> {
-        let says = run(program, folder, &self.name, self.seconds, replaced, None)?;
+        let (says, _) = run(program, folder, &self.name, self.seconds, replaced, None)?;
         if says != Says::Refused {
             self.count(file, says == Says::Fell);
         }
@@ -87,8 +92,8 @@ impl Test {
     /// # Errors
     /// When the program cannot be started.
     pub fn is_sound(&self, program: &Path, folder: &Path) -> Result<bool, Failure> {
-        let sound =
-            self.sound.load(Relaxed) || run(program, folder, &self.name, self.seconds, None, None)? == Says::Passed;
+        let passes = || run(program, folder, &self.name, self.seconds, None, None).map(|(says, _)| says == Says::Passed);
+        let sound = self.sound.load(Relaxed) || passes()?;
         self.sound.store(sound, Relaxed);
         Ok(sound)
     }
@@ -131,18 +136,17 @@ pub fn names(program: &Path, filters: &[&str], without: &[&str]) -> Result<Vec<S
 /// When it falls, or cannot be started.
 pub fn learn(program: usize, path: &Path, folder: &Path, name: String, notes: &Path) -> Result<Test, Failure> {
     let _ = fs::remove_file(notes);
-    let (start, before) = (Instant::now(), children_seconds());
-    let says = run(path, folder, &name, f64::INFINITY, None, Some(notes))?;
+    let (says, seconds) = run(path, folder, &name, f64::INFINITY, None, Some(notes))?;
     if says != Says::Passed {
         return Err(unsound(&name));
     }
-    let processor = children_seconds().zip(before).map(|(after, before)| after - before);
-    let seconds = processor.unwrap_or_else(|| start.elapsed().as_secs_f64());
     let lines = fs::read_to_string(notes).unwrap_or_default().lines().map(str::to_owned).collect();
+    let _ = fs::remove_file(notes);
     Ok(Test { program, name, seconds, lines, sound: AtomicBool::new(true), ..Test::default() })
 }
 
-/// Runs one test of a program. One that takes two minutes and twenty times what it took without a fault has no end.
+/// Runs one test of a program, and tells how much processor time it took, where the system tells it, or else how long. One
+/// that takes two minutes and twenty times what it took without a fault has no end.
 fn run(
     program: &Path,
     folder: &Path,
@@ -150,7 +154,7 @@ fn run(
     seconds: f64,
     replaced: Replaced<'_>,
     notes: Option<&Path>,
-) -> Result<Says, Failure> {
+) -> Result<(Says, f64), Failure> {
     let mut command = Command::new(program);
     command.args(["--exact", name]).current_dir(folder).env("NODEVICE_SELECT", "1").env("RUST_BACKTRACE", "0");
     // Mesa's software driver compiles a shader of a fault once: without optimization that takes half of the time.
@@ -168,28 +172,32 @@ fn run(
     let child = command.stdout(file).stderr(Stdio::null()).spawn();
     let mut child = child.map_err(|error| unstarted(program, &error))?;
     let start = Instant::now();
+    let mut took = None;
     let status = loop {
+        took = seconds_of(child.id()).or(took);
         match child.try_wait().map_err(|error| unstarted(program, &error))? {
             Some(status) => break status,
             None if start.elapsed().as_secs_f64() > 120.0 + 20.0 * seconds => {
                 let _ = child.kill().and_then(|()| child.wait());
                 let _ = fs::remove_file(&output);
-                return Ok(Says::Fell);
+                return Ok((Says::Fell, seconds));
             }
             None => std::thread::sleep(Duration::from_millis(10)),
         }
     };
+    let took = took.unwrap_or_else(|| start.elapsed().as_secs_f64());
     let text = String::from_utf8_lossy(&fs::read(&output).unwrap_or_default()).into_owned();
     let _ = fs::remove_file(&output);
     if status.success() {
-        return Ok(Says::Passed);
+        return Ok((Says::Passed, took));
     }
     // A text that does not compile is refused with its place.
     let placed = |path: &str| {
         let path = format!("{path}:");
         text.split(&path).skip(1).any(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
     };
-    Ok(if replaced.is_some_and(|(_, path)| placed(path)) { Says::Refused } else { Says::Fell })
+    let refused = replaced.is_some_and(|(_, path)| placed(path));
+    Ok((if refused { Says::Refused } else { Says::Fell }, took))
 }
 
 fn unstarted(path: &Path, error: &std::io::Error) -> Failure {
