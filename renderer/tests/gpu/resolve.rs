@@ -1,8 +1,8 @@
 //! Resolves by mode: what each makes of four samples that differ, of colors, of integers and of depth.
 
-use crate::bench::{Bench, TestResult, on_adapter, on_every_device, skip};
+use crate::bench::{Bench, SHOW_DEPTH, TestResult, draw, draw_of, on_adapter, on_every_device, skip};
 use framegraph::{ClearValue, Extent, Format, Intent, Join, Options, Plan, ResolveMode, Scratch, TextureDesc, compile};
-use framegraph_wgpu::{Depth, ExecuteError, Executor, Frame, Gpu, Imports, Raster, RecordError, Shader};
+use framegraph_wgpu::{Cx, Depth, ExecuteError, Executor, Frame, Gpu, Imports, Raster, RecordError, Shader};
 use wgpu::CompareFunction;
 
 const SIDE: u32 = 16;
@@ -58,11 +58,7 @@ fn frame(frame: &mut Frame, mode: ResolveMode) -> Result<[framegraph::Texture; 3
     };
     let resolved = frame.add_fn("paint", declare, |_, _, cx| -> Result<(), RecordError> {
         let depth = Depth { compare: CompareFunction::Always, write: true, ..Depth::NONE };
-        let pipeline = cx.raster_pipeline(&Raster { depth, ..Raster::new(Shader::new("paint", PAINT)) })?;
-        let pass = cx.render_pass()?;
-        pass.set_pipeline(&pipeline);
-        pass.draw(0..3, 0..1);
-        Ok(())
+        draw(cx, &Raster { depth, ..Raster::new(Shader::new("paint", PAINT)) }, &[])
     })?;
     resolved.iter().try_for_each(|target| frame.graph_mut().readback(*target))?;
     Ok(resolved)
@@ -153,16 +149,8 @@ fn depth_beside_stencil_is_resolved_by_a_pass_that_draws_nothing() -> TestResult
                     let view = p.sampled(target)?;
                     Ok((view, p.color(shown, Intent::Overwrite)?))
                 };
-                let (_, shown) = frame.add_fn("show", show, |(view, _), (), cx| {
-                    let pipeline = cx.raster_pipeline(&Raster::new(SHOW))?;
-                    let view = cx.view(*view)?.into();
-                    let group = cx.bind_group(pipeline.group(0), &[(0, view)]);
-                    let pass = cx.render_pass()?;
-                    pass.set_pipeline(&pipeline);
-                    pass.set_bind_group(0, &group, &[]);
-                    pass.draw(0..3, 0..1);
-                    Ok(())
-                })?;
+                let draw = |(view, _): &(_, _), (): &(), cx: &mut Cx<'_>| draw_of(cx, &Raster::new(SHOW_DEPTH), *view);
+                let (_, shown) = frame.add_fn("show", show, draw)?;
                 frame.graph_mut().readback(shown)?;
                 Ok(shown)
             })?;
@@ -174,14 +162,3 @@ fn depth_beside_stencil_is_resolved_by_a_pass_that_draws_nothing() -> TestResult
         Ok(())
     })
 }
-
-const SHOW: Shader<'static> = Shader::new(
-    "show",
-    "@group(0) @binding(0) var depth: texture_depth_2d;
-     @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-       return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.0, 1.0);
-     }
-     @fragment fn fs_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
-       return vec4f(textureLoad(depth, vec2u(position.xy), 0));
-     }",
-);

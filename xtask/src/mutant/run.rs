@@ -79,12 +79,10 @@ impl<'a> Bench<'a> {
             judges = hash(judges, &bytes);
         }
         bench.kept = Kept::read(&kept_in, judges);
-        let learned = folder.join(format!("{}.tests", room.name));
-        bench.tests = bench.learned(&learned)?;
+        bench.tests = bench.learned(&folder.join("tests"))?;
         for test in &bench.tests {
             bench.kept.noticed_by(&test.name).for_each(|file| test.count(file, true));
         }
-        fs::write(&learned, judge::written(bench.lines_of(), &bench.tests)).map_err(|error| told(&learned, &error))?;
         Ok(bench)
     }
 
@@ -95,25 +93,34 @@ impl<'a> Bench<'a> {
         texts.flatten().fold(0, |known, text| hash(known, &text))
     }
 
-    /// Every test with what it takes and compiles: as `file` has it, or else as a run without a fault tells.
+    /// Every test with what it takes and compiles: as `file` has it, which all rooms share, or else as a run without a fault
+    /// tells.
     fn learned(&self, file: &Path) -> Result<Vec<Test>, Failure> {
-        let known = judge::read(self.lines_of(), &fs::read_to_string(file).unwrap_or_default());
-        let (known, mut names) = (Mutex::new(known), Vec::new());
+        let texts = self.lines_of();
+        let known = Mutex::new(judge::read(texts, &fs::read_to_string(file).unwrap_or_default()));
+        let mut names = Vec::new();
         for (index, (judge, program)) in self.room.judges.iter().zip(&self.built).enumerate() {
             names.extend(judge::names(program, judge.filters, judge.without)?.into_iter().map(|name| (index, name)));
         }
-        workers::share(workers::processors(), names.len(), |worker, at| {
+        let learned = workers::share(workers::processors(), names.len(), |worker, at| {
             let (index, name) = &names[at];
+            let package = self.room.judges[*index].binary[1];
             let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
-            match known.iter().position(|test| (test.program, &test.name) == (*index, name)) {
-                Some(at) => Ok(known.swap_remove(at)),
+            let mut test = match known.iter().position(|test| test.package == package && test.name == *name) {
+                Some(at) => known.swap_remove(at),
                 None => {
                     drop(known);
                     let lines = file.with_extension(format!("lines{worker}"));
-                    judge::learn(*index, &self.built[*index], &self.folder(*index), name.clone(), &lines)
+                    judge::learn(&self.built[*index], &self.folder(*index), name.clone(), &lines)?
                 }
-            }
-        })
+            };
+            (test.program, test.package) = (*index, package.to_owned());
+            Ok(test)
+        })?;
+        let others = known.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let written = judge::written(texts, others.iter().chain(&learned));
+        fs::write(file, written).map_err(|error| told(file, &error))?;
+        Ok(learned)
     }
 
     /// The folder that a judge runs in: that of its package.
@@ -205,6 +212,8 @@ impl<'a> Bench<'a> {
             // A copy, so that whoever builds in this workspace meanwhile does not change the judge.
             let copy = self.build.join("mutants/judges").join(format!("{}{}", self.room.name, programs.len()));
             let folder = fs::create_dir_all(self.build.join("mutants/judges"));
+            // One that an interrupted run has left running cannot be written over.
+            let _ = fs::remove_file(&copy);
             folder.and_then(|()| fs::copy(&program, &copy)).map_err(|error| told(&copy, &error))?;
             programs.push(copy);
         }
