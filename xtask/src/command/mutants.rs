@@ -37,10 +37,8 @@ noticed nor explained in xtask/src/mutant/explained.rs.
 };
 
 fn run(options: &Options) -> Result<(), Failure> {
-    let rooms = match &options.room {
-        Some(name) => vec![Room::named(name)?],
-        None => ROOMS.iter().collect(),
-    };
+    let named: Vec<&Room> = options.rooms.iter().map(|name| Room::named(name)).collect::<Result<_, _>>()?;
+    let rooms = if named.is_empty() { ROOMS.iter().collect() } else { named };
     if options.has("--list") {
         for room in rooms {
             let mutants = room.mutants()?;

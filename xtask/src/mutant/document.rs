@@ -39,7 +39,7 @@ pub fn document(rooms: &[Tried]) -> String {
          first, until one falls: those of up to {quick} seconds of processor time, and where all of those pass longer ones, each\n\
          kind for up to {asked} seconds. A fault that the compiler refuses does not count. Faults are tried in the order of a hash of file, line and\n\
          faulty line (FNV-1a), so that a sample is even, and the same one each time; `--all` tries every one, `--count N` as\n\
-         many as that.\n",
+         many as that. A room that is not here was not asked about; `cargo xtask mutants --help` has all of them.\n",
         quick = judge::QUICK,
         asked = judge::ASKED,
     );
