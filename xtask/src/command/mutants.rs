@@ -15,7 +15,7 @@ pub const COMMAND: Command = Command {
     name: "mutants",
     summary: "plant faults one at a time, and list those that no test notices",
     details: "\
-Rooms, all of them if none is named:
+Rooms, all of them if none is named, each after the other if several are:
   wgsl       shaders/wgsl; texts are replaced when tests start, so that nothing
              is built anew
   occlusion  the passes of ambient occlusion; the same
