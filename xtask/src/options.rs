@@ -10,8 +10,8 @@ use crate::command::Command;
 pub struct Options {
     /// Print the command that would install a missing driver, instead of running it.
     pub no_install: bool,
-    /// The room that `mutants` is about; all of them if none is named.
-    pub room: Option<String>,
+    /// The rooms that `mutants` is about; all of them if none is named.
+    pub rooms: Vec<String>,
     /// Options of one command, with their values, as they stand.
     own: Vec<(&'static str, Option<OsString>)>,
 }
@@ -84,10 +84,8 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, commands: &[Command]
                 options.own.push((name, value));
             }
             name => {
-                if let Some(Command { name: "mutants", .. }) = command
-                    && options.room.is_none()
-                {
-                    options.room = Some(name.to_owned());
+                if let Some(Command { name: "mutants", .. }) = command {
+                    options.rooms.push(name.to_owned());
                     continue;
                 }
                 if command.is_some() {
@@ -194,11 +192,11 @@ mod tests {
     }
 
     #[test]
-    fn a_room_and_its_options_follow_mutants() {
-        let Ok(Request::Run(_, options)) = read("mutants wgsl --count 5 --all") else { panic!("sound") };
-        assert_eq!(options.room.as_deref(), Some("wgsl"));
+    fn rooms_and_their_options_follow_mutants() {
+        let Ok(Request::Run(_, options)) = read("mutants wgsl passes --count 5 --all") else { panic!("sound") };
+        assert_eq!(options.rooms, ["wgsl", "passes"]);
         assert!(options.has("--all") && options.value("--count").is_some_and(|n| n == "5"));
-        assert_eq!(refusal("mutants wgsl passes"), "unexpected argument `passes`");
+        assert_eq!(refusal("prove wgsl"), "unexpected argument `wgsl`");
     }
 
     #[test]

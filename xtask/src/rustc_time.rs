@@ -40,9 +40,20 @@ pub fn wrap(mut arguments: impl Iterator<Item = OsString>, log: &OsString) -> Ex
 
 /// Processor time of the children that ended, in seconds; none where there is no `/proc` (proc(5), fields 16 and 17).
 pub fn children_seconds() -> Option<f64> {
-    let stat = fs::read_to_string("/proc/self/stat").ok()?;
+    seconds("self", 13, 2)
+}
+
+/// Processor time that a process and its children that ended have taken so far, in seconds; none where there is no `/proc`
+/// (proc(5), fields 14 to 17).
+pub fn seconds_of(process: u32) -> Option<f64> {
+    seconds(&process.to_string(), 11, 4)
+}
+
+/// The sum of some fields of a process, counted from the one after its name.
+fn seconds(process: &str, first: usize, count: usize) -> Option<f64> {
+    let stat = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     let after_name = stat.rsplit_once(") ")?.1;
-    let ticks = after_name.split(' ').skip(13).take(2).map(|word| word.parse::<f64>());
+    let ticks = after_name.split(' ').skip(first).take(count).map(|word| word.parse::<f64>());
     Some(ticks.collect::<Result<Vec<_>, _>>().ok()?.iter().sum::<f64>() / TICKS_PER_SECOND)
 }
 
@@ -72,6 +83,8 @@ mod tests {
         let mut shell = Command::new("/bin/sh");
         shell.args(["-c", "i=0; while [ $i -lt 300000 ]; do i=$((i+1)); done"]);
         assert!(shell.status().is_ok_and(|status| status.success()));
-        assert!(children_seconds().expect("there is a /proc") > before);
+        let after = children_seconds().expect("there is a /proc");
+        assert!(after > before);
+        assert!(seconds_of(std::process::id()).expect("there is a /proc") >= after);
     }
 }

@@ -1,9 +1,9 @@
 //! What all tests share: a device, a frame that is declared, compiled and executed, and small passes.
 
-use framegraph::{DeclareError, Options, Plan, Scratch, Texture};
+use framegraph::{DeclareError, Options, Plan, Scratch, Texture, View};
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{
-    AdapterRequest, Cx, Executor, Gpu, Imports, OpenError, Pixels, Raster, RecordError, Shader, read_texture,
+    AdapterRequest, Binding, Cx, Executor, Gpu, Imports, OpenError, Pixels, Raster, RecordError, Shader, read_texture,
 };
 
 pub type TestResult = Result<(), Box<dyn std::error::Error>>;
@@ -107,16 +107,53 @@ pub const FILL: Shader<'static> = Shader::new(
      @fragment fn fs_main() -> @location(0) vec4f { return fill.color; }",
 );
 
-/// Draws one triangle of `FILL`.
-pub fn fill(cx: &mut Cx<'_>, raster: &Raster<'_>, color: [f32; 4], depth: f32) -> Result<(), RecordError> {
+/// The texel of an image under the fragment, whatever its size.
+pub const SHOW: Shader<'static> = Shader::new(
+    "show",
+    "@group(0) @binding(0) var image: texture_2d<f32>;
+     @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+       return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
+     }
+     @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {
+       return textureLoad(image, min(vec2u(at.xy), textureDimensions(image) - 1), 0);
+     }",
+);
+
+/// The depth under the fragment, drawn at depth 0.5.
+pub const SHOW_DEPTH: Shader<'static> = Shader::new(
+    "show depth",
+    "@group(0) @binding(0) var depth: texture_depth_2d;
+     @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+       return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
+     }
+     @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {
+       return vec4f(textureLoad(depth, vec2u(at.xy), 0));
+     }",
+);
+
+/// Draws one triangle, with what is bound to group 0 beside the numbers of bindings.
+pub fn draw(cx: &mut Cx<'_>, raster: &Raster<'_>, bindings: &[(u32, Binding)]) -> Result<(), RecordError> {
     let pipeline = cx.raster_pipeline(raster)?;
-    let constants = cx.uniform(&[color[0], color[1], color[2], color[3], depth, 0.0, 0.0, 0.0]);
-    let group = cx.bind_group(pipeline.group(0), &[(0, constants)]);
+    let group = (!bindings.is_empty()).then(|| cx.bind_group(pipeline.group(0), bindings));
     let pass = cx.render_pass()?;
     pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &group, &[]);
+    if let Some(group) = &group {
+        pass.set_bind_group(0, group, &[]);
+    }
     pass.draw(0..3, 0..1);
     Ok(())
+}
+
+/// Draws one triangle that reads a texture at binding 0.
+pub fn draw_of(cx: &mut Cx<'_>, raster: &Raster<'_>, view: View) -> Result<(), RecordError> {
+    let view = cx.view(view)?.into();
+    draw(cx, raster, &[(0, view)])
+}
+
+/// Draws one triangle of `FILL`.
+pub fn fill(cx: &mut Cx<'_>, raster: &Raster<'_>, color: [f32; 4], depth: f32) -> Result<(), RecordError> {
+    let constants = cx.uniform(&[color[0], color[1], color[2], color[3], depth, 0.0, 0.0, 0.0]);
+    draw(cx, raster, &[(0, constants)])
 }
 
 /// The whole target in one color.

@@ -1,29 +1,8 @@
 //! Copy passes, and textures that share memory under both transfer functions.
 
-use crate::bench::{Bench, RED, TestResult, fill_full, on_every_device};
+use crate::bench::{Bench, RED, SHOW, TestResult, draw_of, fill_full, on_every_device};
 use framegraph::{Aspect, ClearValue, Extent, Format, Intent, TextureDesc};
-use framegraph_wgpu::{Readback, Subresource};
-
-/// The texel under the fragment, copied.
-const SHOW: framegraph_wgpu::Shader<'static> = framegraph_wgpu::Shader::new(
-    "show",
-    "@group(0) @binding(0) var image: texture_2d<f32>;
-     @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-       return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
-     }
-     @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f { return textureLoad(image, vec2u(at.xy), 0); }",
-);
-
-fn show(cx: &mut framegraph_wgpu::Cx<'_>, view: framegraph::View) -> Result<(), framegraph_wgpu::RecordError> {
-    let pipeline = cx.raster_pipeline(&framegraph_wgpu::Raster::new(SHOW))?;
-    let view = cx.view(view)?;
-    let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
-    let pass = cx.render_pass()?;
-    pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &group, &[]);
-    pass.draw(0..3, 0..1);
-    Ok(())
-}
+use framegraph_wgpu::{Raster, Readback, Subresource};
 
 #[test]
 fn a_copy_is_what_was_copied() -> TestResult {
@@ -72,7 +51,7 @@ fn twins_share_memory_and_keep_their_transfer_function() -> TestResult {
                     let Some(view) = view else {
                         return fill_full(cx, [0.5, 0.25, 1.0, 1.0]);
                     };
-                    show(cx, *view)
+                    draw_of(cx, &Raster::new(SHOW), *view)
                 })?;
                 shown = Some(texture);
             }
@@ -147,7 +126,8 @@ fn a_texture_that_was_storage_serves_its_srgb_twin() -> TestResult {
                 let copy = frame.graph_mut().texture("copy", linear.format(Format::Rgba8UnormSrgb));
                 let declare =
                     |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(image)?, p.color(copy, Intent::Overwrite)?));
-                let (_, copy) = frame.add_fn("copy", declare, |(from, _), (), cx| show(cx, *from))?;
+                let (_, copy) =
+                    frame.add_fn("copy", declare, |(from, _), (), cx| draw_of(cx, &Raster::new(SHOW), *from))?;
                 frame.graph_mut().readback(copy)?;
                 Ok(copy)
             })?;

@@ -1,12 +1,14 @@
 //! Each debug mode takes away what it names, and poison reaches everything that may hold anything.
 
-use crate::bench::{Bench, RED, TestResult, fill_corner, fill_full, on_every_device};
+use crate::bench::{Bench, RED, SHOW, SHOW_DEPTH, TestResult, draw_of, fill_corner, fill_full, on_every_device};
 use framegraph::file::{GraphFile, Registry};
 use framegraph::{
     AccessKind, Buffer, ClearValue, Counts, Extent, Format, Intent, Options, Plan, Scratch, Texture, TextureDesc,
 };
 use framegraph_wgpu::debug::Mode;
-use framegraph_wgpu::{Compute, Cx, Executor, ExecutorOptions, Gpu, ObjectCounts, RecordError, Shader, read_buffer};
+use framegraph_wgpu::{
+    Compute, Cx, Executor, ExecutorOptions, Gpu, ObjectCounts, Raster, RecordError, Shader, read_buffer,
+};
 use framegraph_wgpu::{Frame, stand_in};
 
 /// A pass that is culled, two that merge, one that is inlined, and a chain that shares textures.
@@ -153,26 +155,7 @@ fn what_the_last_tenant_left_is_poisoned() -> TestResult {
         let a = frame.add_fn("a", |p| p.color(a, Intent::Overwrite), |_, (), cx| fill_full(cx, [0.5; 4]))?;
         let (_, b) = frame.add_fn("b", read(a, b), |_, (), cx| fill_full(cx, RED))?;
         let (_, c) = frame.add_fn("c", read(b, c), |_, (), cx| fill_corner(cx, RED))?;
-        let (_, d) = frame.add_fn("d", read(c, d), |(c, _), (), cx| {
-            const COPY: Shader<'static> = Shader::new(
-                "copy",
-                "@group(0) @binding(0) var image: texture_2d<f32>;
-                 @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-                   return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
-                 }
-                 @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {
-                   return textureLoad(image, vec2u(at.xy), 0);
-                 }",
-            );
-            let pipeline = cx.raster_pipeline(&framegraph_wgpu::Raster::new(COPY))?;
-            let view = cx.view(*c)?;
-            let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
-            let pass = cx.render_pass()?;
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.draw(0..3, 0..1);
-            Ok(())
-        })?;
+        let (_, d) = frame.add_fn("d", read(c, d), |(c, _), (), cx| draw_of(cx, &Raster::new(SHOW), *c))?;
         frame.graph_mut().readback(d)?;
         Ok(d)
     };
@@ -206,26 +189,8 @@ fn a_dropped_plane_is_poisoned_alone() -> TestResult {
             let view = p.sampled(depth.aspect(framegraph::Aspect::Depth))?;
             Ok((view, p.color(out, Intent::Overwrite)?))
         };
-        const SHOW: Shader<'static> = Shader::new(
-            "show",
-            "@group(0) @binding(0) var image: texture_depth_2d;
-             @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-               return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
-             }
-             @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {
-               return vec4f(textureLoad(image, vec2u(at.xy), 0));
-             }",
-        );
-        let (_, out) = frame.add_fn("show", read, |(view, _), (), cx| {
-            let pipeline = cx.raster_pipeline(&framegraph_wgpu::Raster::new(SHOW))?;
-            let view = cx.view(*view)?;
-            let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
-            let pass = cx.render_pass()?;
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.draw(0..3, 0..1);
-            Ok(())
-        })?;
+        let draw = |(view, _): &(_, _), (): &(), cx: &mut Cx<'_>| draw_of(cx, &Raster::new(SHOW_DEPTH), *view);
+        let (_, out) = frame.add_fn("show", read, draw)?;
         frame.graph_mut().readback(out)?;
         Ok(out)
     };

@@ -1,6 +1,6 @@
 //! Images that one frame writes and later frames read.
 
-use crate::bench::{Bench, RED, TestResult, fill_full, on_every_device};
+use crate::bench::{Bench, RED, TestResult, draw, draw_of, fill_full, on_every_device};
 use framegraph::{DeclareError, Extent, Format, Intent, PassBuilder, Previous, Texture, TextureDesc, View};
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::inspect::Inspector;
@@ -42,14 +42,8 @@ struct Io {
 }
 
 fn record(io: &Io, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-    let pipeline = cx.raster_pipeline(&Raster::new(ADD))?;
     let (one, two) = (cx.view(io.one)?, cx.view(io.two)?);
-    let group = cx.bind_group(pipeline.group(0), &[(0, one.into()), (1, two.into())]);
-    let pass = cx.render_pass()?;
-    pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &group, &[]);
-    pass.draw(0..3, 0..1);
-    Ok(())
+    draw(cx, &Raster::new(ADD), &[(0, one.into()), (1, two.into())])
 }
 
 fn declare(frame: &mut Frame, valid: &Arc<AtomicU32>) -> Result<Texture, DeclareError> {
@@ -178,14 +172,7 @@ fn a_history_goes_on_while_sizes_change() -> TestResult {
                     let image = cx.history(previous)?;
                     let told = image.valid.then_some(image.texels);
                     *note.lock().map_err(|_| RecordError::custom("poisoned"))? = Some((told, cx.texels(*view)?));
-                    let view = cx.view(*view)?;
-                    let pipeline = cx.raster_pipeline(&Raster::new(ADD_LAST))?;
-                    let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
-                    let pass = cx.render_pass()?;
-                    pass.set_pipeline(&pipeline);
-                    pass.set_bind_group(0, &group, &[]);
-                    pass.draw(0..3, 0..1);
-                    Ok(())
+                    draw_of(cx, &Raster::new(ADD_LAST), *view)
                 })?;
                 frame.graph_mut().readback(current)?;
                 Ok(current)

@@ -1,6 +1,6 @@
 //! Looking into a frame shows what is there, and changes nothing of it.
 
-use crate::bench::{Bench, FILL, RED, TestResult, fill, fill_corner, fill_full, on_every_device};
+use crate::bench::{Bench, FILL, RED, TestResult, draw_of, fill, fill_corner, fill_full, on_every_device};
 use framegraph::{
     Aspect, ClearValue, DeclareError, Dimension, Entry, Exit, Extent, Format, Intent, Placement, Texture, TextureDesc,
     dump,
@@ -291,16 +291,7 @@ fn histories_are_seen_as_the_next_frame_finds_them() -> TestResult {
         );
         let declare =
             |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(earlier)?, p.color(history, Intent::Overwrite)?));
-        let (_, current) = frame.add_fn("next", declare, |(view, _), (), cx| {
-            let pipeline = cx.raster_pipeline(&Raster::new(NEXT))?;
-            let view = cx.view(*view)?;
-            let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
-            let pass = cx.render_pass()?;
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.draw(0..3, 0..1);
-            Ok(())
-        })?;
+        let (_, current) = frame.add_fn("next", declare, |(view, _), (), cx| draw_of(cx, &Raster::new(NEXT), *view))?;
         frame.graph_mut().export(current)?;
         Ok(current)
     };

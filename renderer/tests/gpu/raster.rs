@@ -1,6 +1,8 @@
 //! One pass: cleared, overwritten, depth tested, bound to other levels and layers.
 
-use crate::bench::{Bench, FILL, GREEN, RED, TestResult, fill, fill_corner, fill_full, on_every_device, skip};
+use crate::bench::{
+    Bench, FILL, GREEN, RED, SHOW_DEPTH, TestResult, draw, draw_of, fill, fill_corner, fill_full, on_every_device, skip,
+};
 use framegraph::{ClearValue, Extent, Format, Intent, TextureDesc};
 use framegraph_wgpu::{Depth, Gpu, Raster, Readback, Shader, Subresource};
 
@@ -87,16 +89,6 @@ fn reversed_depth_decides_and_is_discarded() -> TestResult {
 
 #[test]
 fn depth_is_tested_read_only_and_sampled_in_one_step() -> TestResult {
-    const SHOW_DEPTH: Shader<'static> = Shader::new(
-        "show depth",
-        "@group(0) @binding(0) var depth: texture_depth_2d;
-         @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-           return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
-         }
-         @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {
-           return vec4f(textureLoad(depth, vec2u(at.xy), 0));
-         }",
-    );
     on_every_device("depth_is_tested_read_only_and_sampled_in_one_step", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 16, 16);
         let color = bench.declare(|frame| {
@@ -121,14 +113,7 @@ fn depth_is_tested_read_only_and_sampled_in_one_step() -> TestResult {
             };
             let (_, color) = frame.add_fn("show", declare, |(depth, _), (), cx| {
                 let test = Depth { write: false, ..Depth::NEARER };
-                let pipeline = cx.raster_pipeline(&Raster { depth: test, ..Raster::new(SHOW_DEPTH) })?;
-                let view = cx.view(*depth)?;
-                let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
-                let pass = cx.render_pass()?;
-                pass.set_pipeline(&pipeline);
-                pass.set_bind_group(0, &group, &[]);
-                pass.draw(0..3, 0..1);
-                Ok(())
+                draw_of(cx, &Raster { depth: test, ..Raster::new(SHOW_DEPTH) }, *depth)
             })?;
             frame.graph_mut().readback(color)?;
             Ok(color)
@@ -199,13 +184,8 @@ fn three_layers(gpu: &Gpu) -> Result<Vec<[Option<Vec<u8>>; 2]>, Box<dyn std::err
         let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm).layers(3);
         let texture = frame.graph_mut().texture("layers", desc);
         let clear = Intent::Clear(ClearValue::Color([0.0, 0.0, 1.0, 1.0]));
-        let draw = |_: &framegraph::Texture, (): &(), cx: &mut framegraph_wgpu::Cx<'_>| {
-            let pipeline = cx.raster_pipeline(&Raster::new(VIEWS))?;
-            let pass = cx.render_pass()?;
-            pass.set_pipeline(&pipeline);
-            pass.draw(0..3, 0..1);
-            Ok(())
-        };
+        let draw =
+            |_: &framegraph::Texture, (): &(), cx: &mut framegraph_wgpu::Cx<'_>| draw(cx, &Raster::new(VIEWS), &[]);
         let texture = frame.add_fn("views", |p| p.color(texture, clear), draw)?;
         frame.graph_mut().readback(texture)?;
         Ok(texture)

@@ -1,21 +1,9 @@
 //! From frame to frame: nothing is made anew, resizes and toggles neither leak nor show stale pictures.
 
-use crate::bench::{Bench, TestResult, fill_corner, fill_full, on_every_device};
+use crate::bench::{Bench, SHOW, TestResult, draw_of, fill_corner, fill_full, on_every_device};
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::Frame;
-use framegraph_wgpu::{Raster, Shader};
-
-const BLEND: Shader<'static> = Shader::new(
-    "blur",
-    "@group(0) @binding(0) var image: texture_2d<f32>;
-     @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-       return vec4f(f32(i & 1) * 4.0 - 1.0, f32(i >> 1) * 4.0 - 1.0, 0.5, 1.0);
-     }
-     @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {
-       let size = textureDimensions(image);
-       return textureLoad(image, min(vec2u(at.xy), size - 1), 0);
-     }",
-);
+use framegraph_wgpu::Raster;
 
 /// A chain of `length` full-screen passes behind a drawing; `red` tells frames apart.
 fn chain(frame: &mut Frame, length: u32, red: f32) -> Result<Texture, DeclareError> {
@@ -29,16 +17,7 @@ fn chain(frame: &mut Frame, length: u32, red: f32) -> Result<Texture, DeclareErr
         let source = texture;
         let declare =
             |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(source)?, p.color(target, Intent::Overwrite)?));
-        let (_, linked) = frame.add_fn("link", declare, |(view, _), (), cx| {
-            let pipeline = cx.raster_pipeline(&Raster::new(BLEND))?;
-            let view = cx.view(*view)?;
-            let group = cx.bind_group(pipeline.group(0), &[(0, view.into())]);
-            let pass = cx.render_pass()?;
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.draw(0..3, 0..1);
-            Ok(())
-        })?;
+        let (_, linked) = frame.add_fn("link", declare, |(view, _), (), cx| draw_of(cx, &Raster::new(SHOW), *view))?;
         texture = linked;
     }
     frame.graph_mut().readback(texture)?;

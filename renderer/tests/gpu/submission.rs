@@ -1,6 +1,6 @@
 //! Who submits a frame, and what is made ahead of the first one: pipelines, kept bytes, shaders that change meanwhile.
 
-use crate::bench::{Bench, GREEN, RED, TestResult, fill_full, on_adapter, on_every_device};
+use crate::bench::{Bench, GREEN, RED, TestResult, draw, fill_full, on_adapter, on_every_device};
 use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::{
     Cx, Executor, ExecutorOptions, Frame, FrameCommands, ObjectCounts, PipelineCacheError, Raster, RecordError, Shader,
@@ -124,14 +124,8 @@ fn tinted(frame: &mut Frame, format: Format) -> Result<Texture, DeclareError> {
         "tint",
         |p| p.color(target, Intent::Overwrite),
         |_, (), cx| {
-            let pipeline = cx.raster_pipeline(&Raster::new(TINT))?;
             let tint = cx.uniform(&RED);
-            let group = cx.bind_group(pipeline.group(0), &[(0, tint)]);
-            let pass = cx.render_pass()?;
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.draw(0..3, 0..1);
-            Ok(())
+            draw(cx, &Raster::new(TINT), &[(0, tint)])
         },
     )?;
     frame.graph_mut().readback(target)?;

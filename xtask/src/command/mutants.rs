@@ -15,7 +15,7 @@ pub const COMMAND: Command = Command {
     name: "mutants",
     summary: "plant faults one at a time, and list those that no test notices",
     details: "\
-Rooms, all of them if none is named:
+Rooms, all of them if none is named, each after the other if several are:
   wgsl       shaders/wgsl; texts are replaced when tests start, so that nothing
              is built anew
   occlusion  the passes of ambient occlusion; the same
@@ -37,10 +37,8 @@ noticed nor explained in xtask/src/mutant/explained.rs.
 };
 
 fn run(options: &Options) -> Result<(), Failure> {
-    let rooms = match &options.room {
-        Some(name) => vec![Room::named(name)?],
-        None => ROOMS.iter().collect(),
-    };
+    let named: Vec<&Room> = options.rooms.iter().map(|name| Room::named(name)).collect::<Result<_, _>>()?;
+    let rooms = if named.is_empty() { ROOMS.iter().collect() } else { named };
     if options.has("--list") {
         for room in rooms {
             let mutants = room.mutants()?;

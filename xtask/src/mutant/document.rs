@@ -1,6 +1,7 @@
 //! `docs/mutants.md`, as `cargo xtask mutants` prints it.
 
 use crate::mutant::explained::why;
+use crate::mutant::judge;
 use crate::mutant::plant::{Kind, Mutant};
 use crate::mutant::run::Fate;
 
@@ -31,13 +32,16 @@ impl Tried {
 
 /// The document.
 pub fn document(rooms: &[Tried]) -> String {
-    let mut text = String::from(
+    let mut text = format!(
         "# Planted faults\n\n\
          Printed by `cargo xtask mutants --out docs/mutants.md`: operators, comparisons, constants and channels are changed and\n\
-         statements left out, one at a time, and tests run: each alone, those alone that compile the faulty line, until one\n\
-         falls. A fault that the compiler refuses does not count. Faults are tried in the order of a hash of file, line and\n\
-         faulty line (FNV-1a), so that a sample is even, and the same one each time; `--all` tries every one, `--count N` as\n\
-         many as that.\n",
+         statements left out, one at a time, and tests run: each alone, those alone that compile the faulty line, the likeliest\n\
+         first, until one falls: those of up to {quick} seconds of processor time, and where all of those pass longer ones, each\n\
+         kind for up to {asked} seconds. A fault that the compiler refuses does not count. Faults are tried in the order of a\n\
+         hash of file, line and faulty line (FNV-1a), so that a sample is even, and the same one each time; `--all` tries every\n\
+         one, `--count N` as many as that. A room that is not here was not asked about; `cargo xtask mutants --help` has all.\n",
+        quick = judge::QUICK,
+        asked = judge::ASKED,
     );
     for room in rooms {
         text += &format!(

@@ -15,6 +15,42 @@ pub struct Explained {
 /// All of them, by file.
 pub const EXPLAINED: &[Explained] = &[
     Explained {
+        file: "shaders/wgsl/pass/flare.wgsl",
+        before: "textureSampleLevel(glow, glow_sampler, uv + d, 0.0).r,",
+        after: "textureSampleLevel(glow, glow_sampler, uv + d, 0.1).r,",
+        why: "What is bound is one level, and there is none between it and the next.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/dof.wgsl",
+        before: "sort(&v, 5u, 8u);",
+        after: "sort(&v, 5u, 9u);",
+        why: "There are nine, and an index beyond the last is taken for the last, which is 8.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/dof.wgsl",
+        before: "if tile.y - tile.x <= abs(tile.y) * 0.05 {",
+        after: "if tile.y - tile.x <= abs(tile.y) * 0.05500000000000001 {",
+        why: "It is from where on the cheaper gather is taken: of radii that differ by a twentieth both make the same picture.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/dof.wgsl",
+        before: "return vec4<f32>(found, 0.0, 0.0);",
+        after: "return vec4<f32>(found, 0.0, 0.1);",
+        why: "Tiles have two channels.",
+    },
+    Explained {
+        file: "shaders/wgsl/lib/fog.wgsl",
+        before: "let series = 1.0 - x * (0.5 - x * (1.0 / 6.0 - x / 24.0));",
+        after: "let series = 1.0 - x * (0.5 - x * (1.0 / 6.0 - x / 26.400000000000002));",
+        why: "Below 0.01 the change of the last term is a fifteenth of what 32 bits resolve.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/reflection.wgsl",
+        before: "let along = normalize_or(view_from_world * mirrored, vec3<f32>(0.0, 0.0, -1.0));",
+        after: "let along = normalize_or(view_from_world * mirrored, vec3<f32>(0.0, 0.1, -1.0));",
+        why: "What is mirrored has a length of one; what stands in the place of none is not seen.",
+    },
+    Explained {
         file: "shaders/wgsl/interface/structure.wgsl",
         before: "return StructureTap(vec3<f32>(0.0), false);",
         after: "return StructureTap(vec3<f32>(0.1), false);",

@@ -3,7 +3,7 @@
 
 use crate::Failure;
 use crate::mutant::plant::Mutant;
-use crate::rustc_time::children_seconds;
+use crate::rustc_time::seconds_of;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
@@ -17,6 +17,8 @@ use std::time::{Duration, Instant};
 pub struct Test {
     /// Its program, as the index of it among the room's.
     pub program: usize,
+    /// The package that the program is of.
+    pub package: String,
     pub name: String,
     /// Processor time that it takes without a fault, where the system tells it.
     pub seconds: f64,
@@ -30,6 +32,10 @@ pub struct Test {
 
 /// Tests of no more processor time than this are asked about all faults before others are asked about any, in seconds.
 pub const QUICK: f64 = 4.0;
+
+/// Processor time for which quick tests are asked about a fault at the most, and others again, in seconds: a line that all
+/// of them compile would else be asked about for minutes.
+pub const ASKED: f64 = 45.0;
 
 /// What a test says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,13 +51,14 @@ pub enum Says {
 pub type Replaced<'a> = Option<(&'a Path, &'a str)>;
 
 impl Test {
-    /// Seconds that one noticed fault of a file is likely to cost: what was seen of that file counts for more than the rest.
+    /// What one noticed fault of a file is likely to cost: what was seen of that file counts for more than the rest, and of
+    /// much that is compiled a test judges less.
     fn cost(&self, file: &str) -> f64 {
         let seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         let weighted = seen.iter().map(|(of, counts)| (if of == file { 8 } else { 1 }, counts));
         let [asked, noticed] = weighted.fold([2, 1], |sum, (by, counts)| [0, 1].map(|i| sum[i] + by * counts[i]));
         // What every process takes.
-        (0.2 + self.seconds) * f64::from(asked) / f64::from(noticed)
+        (0.2 + self.seconds) * self.lines.len().max(1) as f64 * f64::from(asked) / f64::from(noticed)
     }
 
     /// Counts a fault of a file.
@@ -73,7 +80,7 @@ impl Test {
     /// # Errors
     /// When the program cannot be started.
     pub fn run(&self, program: &Path, folder: &Path, file: &str, replaced: Replaced<'_>) -> Result<Says, Failure> {
-        let says = run(program, folder, &self.name, self.seconds, replaced, None)?;
+        let (says, _) = run(program, folder, &self.name, self.seconds, replaced, None)?;
         if says != Says::Refused {
             self.count(file, says == Says::Fell);
         }
@@ -87,8 +94,9 @@ impl Test {
     /// # Errors
     /// When the program cannot be started.
     pub fn is_sound(&self, program: &Path, folder: &Path) -> Result<bool, Failure> {
-        let sound =
-            self.sound.load(Relaxed) || run(program, folder, &self.name, self.seconds, None, None)? == Says::Passed;
+        let passes =
+            || run(program, folder, &self.name, self.seconds, None, None).map(|(says, _)| says == Says::Passed);
+        let sound = self.sound.load(Relaxed) || passes()?;
         self.sound.store(sound, Relaxed);
         Ok(sound)
     }
@@ -129,20 +137,20 @@ pub fn names(program: &Path, filters: &[&str], without: &[&str]) -> Result<Vec<S
 ///
 /// # Errors
 /// When it falls, or cannot be started.
-pub fn learn(program: usize, path: &Path, folder: &Path, name: String, notes: &Path) -> Result<Test, Failure> {
+pub fn learn(program: &Path, folder: &Path, name: String, notes: &Path) -> Result<Test, Failure> {
     let _ = fs::remove_file(notes);
-    let (start, before) = (Instant::now(), children_seconds());
-    let says = run(path, folder, &name, f64::INFINITY, None, Some(notes))?;
+    let (says, seconds) = run(program, folder, &name, f64::INFINITY, None, Some(notes))?;
     if says != Says::Passed {
         return Err(unsound(&name));
     }
-    let processor = children_seconds().zip(before).map(|(after, before)| after - before);
-    let seconds = processor.unwrap_or_else(|| start.elapsed().as_secs_f64());
     let lines = fs::read_to_string(notes).unwrap_or_default().lines().map(str::to_owned).collect();
-    Ok(Test { program, name, seconds, lines, sound: AtomicBool::new(true), ..Test::default() })
+    let _ = fs::remove_file(notes);
+    Ok(Test { name, seconds, lines, sound: AtomicBool::new(true), ..Test::default() })
 }
 
-/// Runs one test of a program. One that takes two minutes and twenty times what it took without a fault has no end.
+/// Runs one test of a program, and tells how much processor time it took, where the system tells it, or else how long. One
+/// that takes half a minute of it and twenty times what it took without a fault has no end, nor has one that takes two minutes
+/// and a hundred times that long by the clock.
 fn run(
     program: &Path,
     folder: &Path,
@@ -150,7 +158,7 @@ fn run(
     seconds: f64,
     replaced: Replaced<'_>,
     notes: Option<&Path>,
-) -> Result<Says, Failure> {
+) -> Result<(Says, f64), Failure> {
     let mut command = Command::new(program);
     command.args(["--exact", name]).current_dir(folder).env("NODEVICE_SELECT", "1").env("RUST_BACKTRACE", "0");
     // Mesa's software driver compiles a shader of a fault once: without optimization that takes half of the time.
@@ -168,28 +176,34 @@ fn run(
     let child = command.stdout(file).stderr(Stdio::null()).spawn();
     let mut child = child.map_err(|error| unstarted(program, &error))?;
     let start = Instant::now();
+    let mut took = None;
     let status = loop {
+        took = seconds_of(child.id()).or(took);
         match child.try_wait().map_err(|error| unstarted(program, &error))? {
             Some(status) => break status,
-            None if start.elapsed().as_secs_f64() > 120.0 + 20.0 * seconds => {
+            None if took.is_some_and(|took| took > 30.0 + 20.0 * seconds)
+                || start.elapsed().as_secs_f64() > 120.0 + 100.0 * seconds =>
+            {
                 let _ = child.kill().and_then(|()| child.wait());
                 let _ = fs::remove_file(&output);
-                return Ok(Says::Fell);
+                return Ok((Says::Fell, seconds));
             }
             None => std::thread::sleep(Duration::from_millis(10)),
         }
     };
+    let took = took.unwrap_or_else(|| start.elapsed().as_secs_f64());
     let text = String::from_utf8_lossy(&fs::read(&output).unwrap_or_default()).into_owned();
     let _ = fs::remove_file(&output);
     if status.success() {
-        return Ok(Says::Passed);
+        return Ok((Says::Passed, took));
     }
     // A text that does not compile is refused with its place.
     let placed = |path: &str| {
         let path = format!("{path}:");
         text.split(&path).skip(1).any(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
     };
-    Ok(if replaced.is_some_and(|(_, path)| placed(path)) { Says::Refused } else { Says::Fell })
+    let refused = replaced.is_some_and(|(_, path)| placed(path));
+    Ok((if refused { Says::Refused } else { Says::Fell }, took))
 }
 
 fn unstarted(path: &Path, error: &std::io::Error) -> Failure {
@@ -197,22 +211,22 @@ fn unstarted(path: &Path, error: &std::io::Error) -> Failure {
 }
 
 /// What was learned of tests with texts of this hash, as a file keeps it.
-pub fn written(texts: u64, tests: &[Test]) -> String {
+pub fn written<'t>(texts: u64, tests: impl IntoIterator<Item = &'t Test>) -> String {
     let line = |test: &Test| {
         let lines: Vec<&str> = test.lines.iter().map(String::as_str).collect();
-        format!("{} {:.3} {} {}\n", test.program, test.seconds, test.name, lines.join(" "))
+        format!("{} {:.3} {} {}\n", test.package, test.seconds, test.name, lines.join(" "))
     };
-    tests.iter().fold(format!("{texts:016x}\n"), |text, test| text + &line(test))
+    tests.into_iter().fold(format!("{texts:016x}\n"), |text, test| text + &line(test))
 }
 
 /// What a file kept of tests; nothing if the texts are others.
 pub fn read(texts: u64, text: &str) -> Vec<Test> {
     let test = |line: &str| {
         let mut words = line.split(' ');
-        let (program, seconds) = (words.next()?.parse().ok()?, words.next()?.parse().ok()?);
+        let (package, seconds) = (words.next()?.to_owned(), words.next()?.parse().ok()?);
         let name = words.next()?.to_owned();
         let lines = words.filter(|word| !word.is_empty()).map(str::to_owned).collect();
-        Some(Test { program, name, seconds, lines, ..Test::default() })
+        Some(Test { package, name, seconds, lines, ..Test::default() })
     };
     let (head, tests) = text.split_once('\n').unwrap_or_default();
     let same = head == format!("{texts:016x}");
@@ -246,7 +260,9 @@ mod tests {
 
     #[test]
     fn what_was_learned_is_read_back() {
-        let text = written(7, &[test("a::b", 1.5, &["a.wgsl:1", "b.wgsl:2"]), test("c", 0.25, &[])]);
+        let mut tests = [test("a::b", 1.5, &["a.wgsl:1", "b.wgsl:2"]), test("c", 0.25, &[])];
+        tests.iter_mut().for_each(|test| test.package = "tests".to_owned());
+        let text = written(7, &tests);
         let back = read(7, &text);
         assert_eq!((written(7, &back), back.len()), (text.clone(), 2));
         assert!(read(8, &text).is_empty() && read(7, "").is_empty());

@@ -5,12 +5,12 @@ use crate::mutant::judge::{self, Replaced, Says, Test};
 use crate::mutant::kept::Kept;
 use crate::mutant::plant::{Language, Mutant};
 use crate::mutant::room::{self, Judge, Room};
+use crate::mutant::workers;
 use crate::{Failure, workspace};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
 /// What became of a fault.
@@ -22,7 +22,7 @@ pub enum Fate {
     Noticed,
     /// All quick tests pass, and no others were asked.
     Left,
-    /// All tests pass.
+    /// All tests pass, or those that there was time to ask.
     Survived,
 }
 
@@ -79,12 +79,10 @@ impl<'a> Bench<'a> {
             judges = hash(judges, &bytes);
         }
         bench.kept = Kept::read(&kept_in, judges);
-        let learned = folder.join(format!("{}.tests", room.name));
-        bench.tests = bench.learned(&learned)?;
+        bench.tests = bench.learned(&folder.join("tests"))?;
         for test in &bench.tests {
             bench.kept.noticed_by(&test.name).for_each(|file| test.count(file, true));
         }
-        fs::write(&learned, judge::written(bench.lines_of(), &bench.tests)).map_err(|error| told(&learned, &error))?;
         Ok(bench)
     }
 
@@ -95,20 +93,34 @@ impl<'a> Bench<'a> {
         texts.flatten().fold(0, |known, text| hash(known, &text))
     }
 
-    /// Every test with what it takes and compiles: as `file` has it, or else as a run without a fault tells.
+    /// Every test with what it takes and compiles: as `file` has it, which all rooms share, or else as a run without a fault
+    /// tells.
     fn learned(&self, file: &Path) -> Result<Vec<Test>, Failure> {
-        let mut known = judge::read(self.lines_of(), &fs::read_to_string(file).unwrap_or_default());
-        let mut tests = Vec::new();
+        let texts = self.lines_of();
+        let known = Mutex::new(judge::read(texts, &fs::read_to_string(file).unwrap_or_default()));
+        let mut names = Vec::new();
         for (index, (judge, program)) in self.room.judges.iter().zip(&self.built).enumerate() {
-            for name in judge::names(program, judge.filters, judge.without)? {
-                let test = match known.iter().position(|test| (test.program, &test.name) == (index, &name)) {
-                    Some(at) => known.swap_remove(at),
-                    None => judge::learn(index, program, &self.folder(index), name, &file.with_extension("lines"))?,
-                };
-                tests.push(test);
-            }
+            names.extend(judge::names(program, judge.filters, judge.without)?.into_iter().map(|name| (index, name)));
         }
-        Ok(tests)
+        let learned = workers::share(workers::processors(), names.len(), |worker, at| {
+            let (index, name) = &names[at];
+            let package = self.room.judges[*index].binary[1];
+            let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut test = match known.iter().position(|test| test.package == package && test.name == *name) {
+                Some(at) => known.swap_remove(at),
+                None => {
+                    drop(known);
+                    let lines = file.with_extension(format!("lines{worker}"));
+                    judge::learn(&self.built[*index], &self.folder(*index), name.clone(), &lines)?
+                }
+            };
+            (test.program, test.package) = (*index, package.to_owned());
+            Ok(test)
+        })?;
+        let others = known.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let written = judge::written(texts, others.iter().chain(&learned));
+        fs::write(file, written).map_err(|error| told(file, &error))?;
+        Ok(learned)
     }
 
     /// The folder that a judge runs in: that of its package.
@@ -127,34 +139,12 @@ impl<'a> Bench<'a> {
         done: bool,
         told: impl Fn(usize, Fate) + Sync,
     ) -> Result<Vec<Fate>, Failure> {
-        let processors = std::thread::available_parallelism().map_or(1, usize::from);
-        let workers = if self.room.language == Language::Wgsl { processors } else { 1 };
-        let (next, failure) = (AtomicUsize::new(0), Mutex::new(None));
-        let found = Mutex::new(vec![Fate::Left; mutants.len()]);
-        let try_next = |worker: usize| -> Result<bool, Failure> {
-            let index = next.fetch_add(1, Relaxed);
-            let (Some(mutant), None) = (mutants.get(index), &*locked(&failure)) else { return Ok(false) };
-            let fate = self.fate(mutant, done, worker)?;
+        let workers = if self.room.language == Language::Wgsl { workers::processors() } else { 1 };
+        workers::share(workers, mutants.len(), |worker, index| {
+            let fate = self.fate(&mutants[index], done, worker)?;
             told(index, fate);
-            locked(&found)[index] = fate;
-            Ok(true)
-        };
-        std::thread::scope(|scope| {
-            for worker in 0..workers {
-                let (try_next, failure) = (&try_next, &failure);
-                scope.spawn(move || {
-                    loop {
-                        match try_next(worker) {
-                            Ok(true) => {}
-                            Ok(false) => break,
-                            Err(error) => *locked(failure) = Some(error),
-                        }
-                    }
-                });
-            }
-        });
-        let failure = locked(&failure).take();
-        failure.map_or_else(|| Ok(std::mem::take(&mut *locked(&found))), Err)
+            Ok(fate)
+        })
     }
 
     fn fate(&self, mutant: &Mutant, done: bool, worker: usize) -> Result<Fate, Failure> {
@@ -222,13 +212,16 @@ impl<'a> Bench<'a> {
             // A copy, so that whoever builds in this workspace meanwhile does not change the judge.
             let copy = self.build.join("mutants/judges").join(format!("{}{}", self.room.name, programs.len()));
             let folder = fs::create_dir_all(self.build.join("mutants/judges"));
+            // One that an interrupted run has left running cannot be written over.
+            let _ = fs::remove_file(&copy);
             folder.and_then(|()| fs::copy(&program, &copy)).map_err(|error| told(&copy, &error))?;
             programs.push(copy);
         }
         Ok(Some(programs))
     }
 
-    /// Runs test after test until one falls: the quick tests, or when they are `done` the others.
+    /// Runs test after test until one falls: the quick tests, or when they are `done` the others, as long as
+    /// [`judge::ASKED`] says.
     fn judged(
         &self,
         programs: &[PathBuf],
@@ -236,7 +229,12 @@ impl<'a> Bench<'a> {
         replaced: Replaced<'_>,
     ) -> Result<(Fate, &str), Failure> {
         let all = judge::asked(&self.tests, mutant, self.kept.likely(mutant));
+        let mut asked = 0.0;
         for test in all.into_iter().filter(|test| (test.seconds > judge::QUICK) == done) {
+            if asked + test.seconds > judge::ASKED && asked > 0.0 {
+                break;
+            }
+            asked += test.seconds;
             let folder = self.folder(test.program);
             match test.run(&programs[test.program], &folder, &mutant.file, replaced)? {
                 Says::Passed => {}
@@ -249,10 +247,6 @@ impl<'a> Bench<'a> {
         }
         Ok((if done { Fate::Survived } else { Fate::Left }, ""))
     }
-}
-
-fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// FNV-1a of 64 bits, going on from `hash`.
