@@ -3,6 +3,7 @@
 pub mod compare;
 pub mod cube_file;
 pub mod files;
+pub mod filtered;
 pub mod fuzz;
 pub mod hard;
 pub mod lab;

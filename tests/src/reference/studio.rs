@@ -9,7 +9,8 @@ use super::light::around;
 use super::occlusion;
 use super::picture::Picture;
 use super::temporal;
-use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
+use crate::filtered::filtered;
+use framegraph::{Options, Plan, Scratch, Target, Texture, compile};
 use framegraph_passes::fxaa::Fxaa;
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
@@ -357,36 +358,11 @@ fn settings(document: &Document, shade: Shade) -> Settings {
 /// # Errors
 /// What the device refuses.
 pub fn antialiased(gpu: &Gpu, picture: &Picture) -> Result<Picture, Box<dyn Error>> {
-    let [width, height] = picture.size_px;
-    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
-    let mut frame: Frame<Programs> = Frame::new();
-    let unfiltered = frame.graph_mut().import_texture("unfiltered", desc, Entry::Defined, Exit::Discard);
-    let filter = Fxaa { ldr: unfiltered, into: Target::New, settings: FxaaUniforms::default() };
-    let output = frame.add("fxaa", filter)?.output;
-    frame.graph_mut().readback(output)?;
-    let mut plan = Plan::new();
-    compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
-    let texture = gpu.device.create_texture_with_data(
-        &gpu.queue,
-        &TextureDescriptor {
-            label: Some("unfiltered"),
-            size: Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: TextureDimension::D2,
-            format: TextureFormat::Rgba8Unorm,
-            usage: TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        },
-        TextureDataOrder::LayerMajor,
-        &with_luma(picture),
-    );
-    let mut imports = Imports::new();
-    imports.texture(unfiltered, &texture);
-    let mut executor = Executor::new(gpu);
-    executor.execute(&plan, &frame, &Programs::new(), &imports)?;
-    let texture = executor.texture(&plan, output).ok_or("the frame left no picture")?;
-    Ok(Picture::from_codes(picture.size_px, &read_texture(gpu, texture)?.rgba8()))
+    let codes = filtered(gpu, &with_luma(picture), picture.size_px, |frame, ldr| {
+        let filter = Fxaa { ldr, into: Target::New, settings: FxaaUniforms::default() };
+        Ok(frame.add("fxaa", filter)?.output)
+    })?;
+    Ok(Picture::from_codes(picture.size_px, &codes))
 }
 
 /// Codes with the luma of the encoded color in alpha, as the filter reads them (Rec.709).

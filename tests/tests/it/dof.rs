@@ -165,6 +165,27 @@ fn edges_are_near_what_rays_through_the_lens_see() -> TestResult {
     Ok(())
 }
 
+/// Two walls on one side of what is in focus, full size: of those before it the nearer lies over the other, and of those behind it
+/// the farther reaches under the nearer. Taps see neither what is hidden, nor more than two layers.
+#[test]
+fn walls_on_one_side_of_focus_are_near_what_rays_see() -> TestResult {
+    let Some(gpu) = gpu("walls_on_one_side_of_focus_are_near_what_rays_see") else { return Ok(()) };
+    let [near, far] = [[0.2, 1.0, 0.1], [1.0, 0.1, 0.4]].map(|color| {
+        let color = DVec3::from_array(color);
+        Image::from_fn(SIZE, |_, _| color).rounded()
+    });
+    let image = Image::from_fn(SIZE, |x, y| (if x < 32 { &near } else { &far }).at(x.into(), y.into()));
+    for distances in [[1.6, 2.4], [5.5, 1e6]] {
+        let settings = DofSettings { median: false, ..lens(8.0) };
+        let ours = shoot(&gpu, &image, |x, _| if x < 32 { distances[0] } else { distances[1] }, &settings)?;
+        let truth = two_walls([&near, &far], distances, 8.0);
+        let (off, sharp) = (rms(&ours, &truth), rms(&image, &truth));
+        println!("{distances:?}: off by {off}, sharp by {sharp}");
+        assert!(off < 0.4 * sharp, "{distances:?} m: off by {off}, sharp by {sharp}");
+    }
+    Ok(())
+}
+
 /// What is in focus has the same bits, also beside what is not; and the light of a disc is that of its point.
 #[test]
 fn what_is_in_focus_stays() -> TestResult {

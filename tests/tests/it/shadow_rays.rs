@@ -26,6 +26,9 @@ type TestResult = Result<(), Box<dyn Error>>;
 
 /// Pixels across and down.
 const SIZE: [u32; 2] = [128, 72];
+/// Pixels that rays must be able to judge, a sixth of a picture: a camera that sees the sky, or a margin about edges that leaves
+/// next to nothing, would agree with any map.
+const JUDGED: u32 = SIZE[0] * SIZE[1] / 6;
 
 /// Cosine to the light under which a pixel says nothing: 6°. The grazing sun of these tests stands at 8°.
 const GRAZING: f64 = 0.1;
@@ -141,7 +144,7 @@ impl Set {
     /// `blur_m(distance)`: acne and light that leaks in.
     fn wrong(&self, gpu: &Gpu, shadows: ShadowSettings, blur_m: impl Fn(f64) -> f64) -> Result<f64, Box<dyn Error>> {
         let [wrong, count, dark] = self.compared(gpu, shadows, blur_m)?;
-        assert!(count > 1500 && dark > 50, "{count} pixels, {dark} in shadow");
+        assert!(count >= JUDGED && dark > 50, "{count} pixels, {dark} in shadow");
         Ok(1000.0 * f64::from(wrong) / f64::from(count))
     }
 

@@ -1,18 +1,17 @@
 //! Frames that are drawn smaller than they are shown: what they load and store, and the filters against their mirrors.
 
 use crate::stage::{self, Shot, gpu, picture};
-use framegraph::{Caps, Counts, Entry, Exit, Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
+use framegraph::{Caps, Counts, Options, Target};
 use framegraph_passes::program::Programs;
 use framegraph_passes::sharpen::Sharpen;
 use framegraph_passes::upscale::{Enlarge, UpscaleFilter};
 use framegraph_passes::{Settings, Upscale};
 use framegraph_shaders::reference::sharpen::sharpened;
 use framegraph_shaders::reference::upscale::upscaled;
-use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Frame, Gpu};
 use glam::{DVec2, DVec3};
 use std::error::Error;
-use wgpu::util::{DeviceExt, TextureDataOrder};
-use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+use tests::filtered::filtered;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
@@ -31,42 +30,6 @@ fn texel(codes: &[u8], [width, height]: [u32; 2], x: i64, y: i64) -> DVec3 {
     let (x, y) = (x.clamp(0, i64::from(width) - 1), y.clamp(0, i64::from(height) - 1));
     let at = 4 * (y as usize * width as usize + x as usize);
     DVec3::new(codes[at].into(), codes[at + 1].into(), codes[at + 2].into()) / 255.0
-}
-
-/// What a pass makes of codes.
-fn filtered(
-    gpu: &Gpu,
-    codes: &[u8],
-    [width, height]: [u32; 2],
-    declare: impl Fn(&mut Frame<Programs>, framegraph::Texture) -> Result<framegraph::Texture, framegraph::DeclareError>,
-) -> Result<Vec<u8>, Box<dyn Error>> {
-    let mut frame = Frame::<Programs>::new();
-    let desc = TextureDesc::new(Extent::absolute(width, height), Format::Rgba8Unorm);
-    let given = frame.graph_mut().import_texture("given", desc, Entry::Defined, Exit::Discard);
-    let output = declare(&mut frame, given)?;
-    frame.graph_mut().readback(output)?;
-    let mut plan = Plan::new();
-    compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
-    let texture = gpu.device.create_texture_with_data(
-        &gpu.queue,
-        &TextureDescriptor {
-            label: Some("given"),
-            size: Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: TextureDimension::D2,
-            format: TextureFormat::Rgba8Unorm,
-            usage: TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        },
-        TextureDataOrder::LayerMajor,
-        codes,
-    );
-    let mut imports = Imports::new();
-    imports.texture(given, &texture);
-    let mut executor = Executor::new(gpu);
-    executor.execute(&plan, &frame, &Programs::new(), &imports)?;
-    Ok(read_texture(gpu, executor.texture(&plan, output).ok_or("there is no picture")?)?.rgba8())
 }
 
 fn enlarged(

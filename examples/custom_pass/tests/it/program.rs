@@ -3,9 +3,9 @@
 use super::{TestResult, skip};
 use framegraph_scene::picture::read_rgba8;
 use std::fs::{self, File};
-use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Output};
+use test_report::display::Display;
 
 fn folder(test: &str) -> std::io::Result<PathBuf> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("custom_pass").join(test);
@@ -76,39 +76,13 @@ fn bad_input_is_one_line_and_exit_code_2() -> TestResult {
     Ok(())
 }
 
-/// A display without a screen, gone with this value.
-struct Display(Child, String);
-
-impl Display {
-    fn open() -> Option<Self> {
-        let mut server = Command::new("Xvfb");
-        server.args(["-displayfd", "1", "-screen", "0", "640x480x24", "-nolisten", "tcp"]);
-        let mut child = server.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().ok()?;
-        let mut number = String::new();
-        let read = child.stdout.take().map(|out| BufReader::new(out).read_line(&mut number));
-        let display = Self(child, format!(":{}", number.trim()));
-        (matches!(read, Some(Ok(_))) && !number.trim().is_empty()).then_some(display)
-    }
-}
-
-impl Drop for Display {
-    fn drop(&mut self) {
-        // Asked to end, it takes its lock file with it.
-        let asked = Command::new("kill").arg(self.0.id().to_string()).status();
-        if !asked.is_ok_and(|status| status.success()) {
-            let _ = self.0.kill();
-        }
-        let _ = self.0.wait();
-    }
-}
-
 #[test]
 fn a_window_is_drawn_into() -> TestResult {
     let name = "a_window_is_drawn_into";
     let Some(display) = Display::open() else { return skip(name, "there is no Xvfb to open a window on") };
     let folder = folder("window")?;
     let mut command = program(&folder, &["--frames", "3", "--size", "200x120", "--plan"]);
-    let Output { status, stdout, stderr } = command.env("DISPLAY", &display.1).output()?;
+    let Output { status, stdout, stderr } = command.env("DISPLAY", &display.name).output()?;
     let (out, told) = (String::from_utf8_lossy(&stdout), String::from_utf8_lossy(&stderr));
     if told.contains("no adapter") || told.contains("no window can be opened") {
         return skip(name, told.trim());

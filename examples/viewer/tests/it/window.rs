@@ -1,45 +1,21 @@
 //! A real window on a display without a screen.
 
 use crate::{case, folder};
-use std::io::{BufRead, BufReader, Read};
-use std::process::{Child, Command, Output, Stdio};
+use std::io::Read;
+use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
+use test_report::display::Display;
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt, EventMask, Window};
 use x11rb::rust_connection::RustConnection;
 
-/// A display without a screen, gone with this value.
-struct Display(Child, String);
-
-impl Display {
-    fn open() -> Option<Self> {
-        let mut server = Command::new("Xvfb");
-        server.args(["-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp"]);
-        let mut child = server.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().ok()?;
-        let mut number = String::new();
-        let read = child.stdout.take().map(|out| BufReader::new(out).read_line(&mut number));
-        let display = Self(child, format!(":{}", number.trim()));
-        (matches!(read, Some(Ok(_))) && !number.trim().is_empty()).then_some(display)
-    }
-
-    fn program(&self, args: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_viewer"));
-        command.args(args).env("DISPLAY", &self.1).env_remove("WAYLAND_DISPLAY");
-        command.env("XDG_STATE_HOME", folder(&format!("state{}", args.len())));
-        command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        command
-    }
-}
-
-impl Drop for Display {
-    fn drop(&mut self) {
-        // Asked to end, it takes its lock file with it.
-        let asked = Command::new("kill").arg(self.0.id().to_string()).status();
-        if !asked.is_ok_and(|status| status.success()) {
-            let _ = self.0.kill();
-        }
-        let _ = self.0.wait();
-    }
+/// The program, to be started on a display.
+fn program(display: &Display, args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_viewer"));
+    command.args(args).env("DISPLAY", &display.name).env_remove("WAYLAND_DISPLAY");
+    command.env("XDG_STATE_HOME", folder(&format!("state{}", args.len())));
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
 }
 
 /// Skips where there is no display or no device for it.
@@ -56,7 +32,7 @@ fn a_window_draws_sixty_frames() {
     let name = "a_window_draws_sixty_frames";
     let Some(display) = Display::open() else { return test_report::skip(name, "there is no Xvfb to open a window on") };
     let frame = case("filament");
-    let output = display.program(&[frame.to_str().expect("a name"), "--frames", "60"]).output();
+    let output = program(&display, &[frame.to_str().expect("a name"), "--frames", "60"]).output();
     let Output { status, stdout, stderr } = output.expect("the program starts");
     let (out, told) = (String::from_utf8_lossy(&stdout), String::from_utf8_lossy(&stderr));
     if !skipped(name, &told) {
@@ -86,8 +62,8 @@ fn a_window_is_resized_hidden_and_closed() {
     let name = "a_window_is_resized_hidden_and_closed";
     let Some(display) = Display::open() else { return test_report::skip(name, "there is no Xvfb to open a window on") };
     let frame = case("filament");
-    let mut program = display.program(&[frame.to_str().expect("a name")]).spawn().expect("the program starts");
-    let (x, screen) = RustConnection::connect(Some(&display.1)).expect("a display");
+    let mut program = program(&display, &[frame.to_str().expect("a name")]).spawn().expect("the program starts");
+    let (x, screen) = RustConnection::connect(Some(&display.name)).expect("a display");
     let root = x.setup().roots[screen].root;
     let Some(window) = window(&x, root) else {
         let _ = program.kill();

@@ -1,0 +1,47 @@
+//! One pass over a picture of eight bits a channel, with nothing but its shaders.
+
+use framegraph::{DeclareError, Entry, Exit, Extent, Format, Options, Plan, Scratch, Texture, TextureDesc, compile};
+use framegraph_passes::program::Programs;
+use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use std::error::Error;
+use wgpu::util::{DeviceExt, TextureDataOrder};
+use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+
+/// What a pass makes of codes, four bytes a texel from left to right and top to bottom.
+///
+/// # Errors
+/// What the frame, the compiler or the device refuses.
+pub fn filtered(
+    gpu: &Gpu,
+    codes: &[u8],
+    [width, height]: [u32; 2],
+    declare: impl Fn(&mut Frame<Programs>, Texture) -> Result<Texture, DeclareError>,
+) -> Result<Vec<u8>, Box<dyn Error>> {
+    let mut frame = Frame::<Programs>::new();
+    let desc = TextureDesc::new(Extent::absolute(width, height), Format::Rgba8Unorm);
+    let given = frame.graph_mut().import_texture("given", desc, Entry::Defined, Exit::Discard);
+    let output = declare(&mut frame, given)?;
+    frame.graph_mut().readback(output)?;
+    let mut plan = Plan::new();
+    compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
+    let texture = gpu.device.create_texture_with_data(
+        &gpu.queue,
+        &TextureDescriptor {
+            label: Some("given"),
+            size: Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format: TextureFormat::Rgba8Unorm,
+            usage: TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        },
+        TextureDataOrder::LayerMajor,
+        codes,
+    );
+    let mut imports = Imports::new();
+    imports.texture(given, &texture);
+    let mut executor = Executor::new(gpu);
+    executor.execute(&plan, &frame, &Programs::new(), &imports)?;
+    Ok(read_texture(gpu, executor.texture(&plan, output).ok_or("there is no picture")?)?.rgba8())
+}
