@@ -1,5 +1,6 @@
 //! What facts leave out of a frame changes its picture by no more than they say.
 
+mod late;
 mod masks;
 mod rules;
 mod settings;

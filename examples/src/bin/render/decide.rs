@@ -7,6 +7,7 @@ use crate::load::Loaded;
 use crate::shadows::Shadows;
 use framegraph_passes::facts::{Around, Survey, decide};
 use framegraph_passes::ibl::ImageLight;
+use framegraph_passes::measure::Measurement;
 use framegraph_passes::view::ViewSettings;
 use framegraph_passes::{Effect, EffectSet, FactInput, FactMemory, Facts, FrameSettings, Preset, Settings};
 use lexopt::Parser;
@@ -176,7 +177,14 @@ impl Deciding {
     }
 
     /// What the facts say of a view; nothing where effects are forced.
-    pub fn facts(&mut self, loaded: &Loaded, light: &ImageLight, seen: &ViewSettings, settings: &Settings) -> Facts {
+    pub fn facts(
+        &mut self,
+        loaded: &Loaded,
+        light: &ImageLight,
+        seen: &ViewSettings,
+        settings: &Settings,
+        measured: Measurement,
+    ) -> Facts {
         if self.off {
             return Facts::default();
         }
@@ -187,6 +195,7 @@ impl Deciding {
             background: &loaded.background,
             views: std::slice::from_ref(seen),
             settings,
+            measured,
             forced: self.forced,
             most_codes: FactInput::MOST_CODES,
         };

@@ -12,6 +12,7 @@ use crate::what_if;
 use framegraph::file::to_ron;
 use framegraph::{Options, Plan, Scratch, Texture, compile, dump};
 use framegraph_passes::facts::savings;
+use framegraph_passes::measure::Measurement;
 use framegraph_passes::punctual::LightLists;
 use framegraph_passes::view::ViewSettings;
 use framegraph_passes::{CameraView, Facts, FrameIndex, FrameIo, Settings, ViewId, World};
@@ -111,7 +112,7 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
         asked.stored = Some(StoreRounding::measure(&gpu).map_err(device)?);
     }
     let mut deciding = Deciding::new(&args.decide, &loaded, &asked);
-    let facts = deciding.facts(&loaded, &lighting.image, &seen, &asked);
+    let facts = deciding.facts(&loaded, &lighting.image, &seen, &asked, Measurement::Off);
     let settings = facts.apply(&asked);
     let shown = ViewSettings { shadows: settings.shadows, ..seen.clone() };
     let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &shown);
