@@ -28,7 +28,8 @@ FRAME
   --what-if WHICH      the plan's counts for a device that is not here, beside those for this one: desktop, tiler, wgpu, or a
                        FILE.ron that describes one (docs/graph-format.md)
   --turntable N DIR    no picture, but N of them as DIR/turntable_0000.png, …: the camera goes once around the scene
-  --sequence N DIR     N frames in a row, as DIR/frame_0000.png, …
+  --sequence N DIR     N frames in a row, as DIR/frame_0000.png, …; with --time S an animation plays on from there, 30 frames a
+                       second
 ";
 
 /// The help with the names of effects, in lines.
@@ -58,7 +59,7 @@ pub struct Decide {
 }
 
 /// Several pictures instead of one.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Sequence {
     /// The camera goes around the scene.
     pub turns: bool,
@@ -66,6 +67,8 @@ pub struct Sequence {
     pub frames: u32,
     /// Where they go.
     pub folder: PathBuf,
+    /// Frames a second of an animation.
+    pub per_second: f64,
 }
 
 impl Decide {
@@ -87,7 +90,7 @@ impl Decide {
                 let count = text(raw("a number of pictures")?)?;
                 let wrong = || format!("--{name} {count}: a number of pictures from 1 to 9999 is needed");
                 let frames = count.parse().ok().filter(|n| (1..=9999).contains(n)).ok_or_else(wrong)?;
-                self.sequence = Some(Sequence { turns: name == "turntable", frames, folder: raw("a folder")?.into() });
+                self.sequence = Some(Sequence { turns: name == "turntable", frames, folder: raw("a folder")?.into(), per_second: 30.0 });
             }
             // Read by `base`, before all others.
             "preset" | "settings" => _ = raw("a value")?,

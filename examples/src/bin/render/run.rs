@@ -89,7 +89,7 @@ impl Prepared {
 pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> {
     let options = args.load_options();
     let mut loaded = load::load(args, &options).map_err(input)?;
-    args.moment.apply(&mut loaded.scene).map_err(input)?;
+    args.moment.apply(&mut loaded.scene, 0.0).map_err(input)?;
     for file in &loaded.scene.files {
         outputs.reads(file).map_err(input)?;
     }
