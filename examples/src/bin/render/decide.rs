@@ -24,6 +24,8 @@ FRAME
   --force-effects      every effect that is asked for; without it, what facts about the scene prove to change nothing is left
                        out, and said after the table with its reason (docs/facts.md)
   --facts FILE.json    what was decided of each effect
+  --what-it-costs      beside the picture a table of what each effect takes: the frame with it and without it, in turns, all
+                       other decisions being made; times are medians of --frames, from recording to the end
   --graph FILE.ron     the frame's graph, for the program `plan` (docs/graph-format.md)
   --what-if WHICH      the plan's counts for a device that is not here, beside those for this one: desktop, tiler, wgpu, or a
                        FILE.ron that describes one (docs/graph-format.md)
@@ -54,6 +56,8 @@ pub struct Decide {
     pub graph: Option<PathBuf>,
     /// A device to plan for beside this one.
     pub what_if: Option<String>,
+    /// The frame is measured with and without each effect.
+    pub what_it_costs: bool,
     /// Several pictures.
     pub sequence: Option<Sequence>,
 }
@@ -83,6 +87,7 @@ impl Decide {
             "enable" => self.enabled = self.enabled.with(effect(name, &text(raw("an effect")?)?)?),
             "disable" => self.disabled = self.disabled.with(effect(name, &text(raw("an effect")?)?)?),
             "force-effects" => self.forced = true,
+            "what-it-costs" => self.what_it_costs = true,
             "facts" => self.json = Some(crate::name::with_ending(raw("a file")?.into(), "--facts", &["json"])?),
             "graph" => self.graph = Some(crate::name::with_ending(raw("a file")?.into(), "--graph", &["ron"])?),
             "what-if" => self.what_if = Some(text(raw("a device")?)?),

@@ -4,6 +4,7 @@ use crate::args::Args;
 use crate::debug::report;
 use crate::decide::Deciding;
 use crate::keep::{Kept, declare, first_frame};
+use crate::leave_out;
 use crate::light::Around;
 use crate::load::{self, Loaded};
 use crate::sequence;
@@ -229,13 +230,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     render(&mut prepared, &plan, &mut executor, WARM_UP..WARM_UP + args.frames, &mut shown)?;
     executor.catch_up().map_err(device)?;
     program::print(table(&plan, executor.timing()));
-    let saved = savings::<World>(&prepared.facts, &prepared.asked, &caps, &options).map_err(device)?;
+    let mut saved = savings::<World>(&prepared.facts, &prepared.asked, &caps, &options).map_err(device)?;
     program::print(facts_table(&prepared.facts, &saved));
     if let Some(which) = &args.decide.what_if {
         program::print(what_if::table(which, prepared.frame.graph(), &options, &plan)?);
     }
 
-    let Prepared { gpu, io, facts, .. } = &prepared;
+    let Prepared { gpu, io, .. } = &prepared;
     let fetch = |handle: Texture| -> Result<Pixels, Failure> {
         let texture = executor.texture(&plan, handle).ok_or_else(|| device("the frame left no picture"))?;
         read_texture(gpu, texture).map_err(device)
@@ -255,10 +256,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let text = to_ron(prepared.frame.graph(), &args.scene, args.size_px);
         outputs.write(path, |file| file.write_all(text.as_bytes())).map_err(input)?;
     }
-    if let Some(path) = &args.decide.json {
-        outputs.write(path, |file| file.write_all(facts.json(&saved).as_bytes())).map_err(input)?;
-    }
     let told = report(args, &mut prepared, &plan, &executor, before, &inspections, &mut outputs)?;
+    if args.decide.what_it_costs {
+        saved = leave_out::measure(args, &mut prepared)?;
+        program::print(leave_out::table(&prepared, &saved));
+    }
+    if let Some(path) = &args.decide.json {
+        outputs.write(path, |file| file.write_all(prepared.facts.json(&saved).as_bytes())).map_err(input)?;
+    }
     written(outputs, &told)
 }
 
