@@ -8,7 +8,8 @@ use crate::program::{Interface, Program, ProgramDesc, Programs};
 use crate::upload::{GpuScene, InstanceDraw, features_of};
 use framegraph_scene::{Batch, Lobes, MaterialId};
 use framegraph_shaders::layout::{
-    STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexFormat, stream_stride_bytes,
+    STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexFormat,
+    stream_stride_bytes,
 };
 use framegraph_shaders::{Feature, Module};
 use framegraph_wgpu::{Binding, Constants, Cx, Depth, Output, Raster, RasterPipeline, RecordError, VertexBuffer};

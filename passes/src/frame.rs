@@ -49,10 +49,10 @@ use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Trans
 use crate::upload::GpuScene;
 use crate::upscale::{Upscale, enlarge};
 use crate::view::{ViewId, Views};
+use before::{occlusion, prepass, reflection};
 use framegraph::{AccessKind, Extent, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
 use framegraph_wgpu::{Frame, StoreRounding};
-use before::{occlusion, prepass, reflection};
 use lens::{bloom, dof, mix_of};
 use picture::{PostWay, fxaa};
 use shadows::{maps_of, shadow};

@@ -53,7 +53,8 @@ pub(super) fn focused(case: &Case<'_>, dof: &DofSettings, row: Fact, facts: &mut
     facts.measure.depth = true;
     let Measurement::Known(measured) = case.input.measured else { return unknown(row) };
     let Some(distances_m) = measured.distances_m else { return unknown(row) };
-    let most = distances_m.map(|distance| radius_px(&case.input.views[0], dof, distance)).into_iter().fold(0.0, f64::max);
+    let most =
+        distances_m.map(|distance| radius_px(&case.input.views[0], dof, distance)).into_iter().fold(0.0, f64::max);
     let few = case.memory.within(Effect::DepthOfField, SAFETY * most, LEAST_RADIUS_PX);
     let ago = ago(measured.frames_ago);
     let why = format!("circles of confusion had a radius of {most:.2} pixels at most {ago}");

@@ -126,8 +126,7 @@ impl Measuring {
             Some(texture) => Readback::start(gpu, texture, Subresource::FIRST).map(|copy| Some(Arriving::Away(copy))),
             None => Ok(None),
         };
-        let flight =
-            Flight { frame: self.frame, stand, light: copy(textures.light)?, depth: copy(textures.depth)? };
+        let flight = Flight { frame: self.frame, stand, light: copy(textures.light)?, depth: copy(textures.depth)? };
         self.flights.push_back(flight);
         self.counts.begun += 1;
         Ok(())
@@ -151,9 +150,7 @@ impl Measuring {
         }
         let next = self.frame + 1;
         Ok(match self.latest.filter(|(frame, _)| next - frame <= OLDEST_FRAMES) {
-            Some((frame, measured)) => {
-                Measurement::Known(Measured { frames_ago: (next - frame) as u32, ..measured })
-            }
+            Some((frame, measured)) => Measurement::Known(Measured { frames_ago: (next - frame) as u32, ..measured }),
             None => Measurement::Unknown,
         })
     }

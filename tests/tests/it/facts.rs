@@ -2,6 +2,7 @@
 
 mod late;
 mod masks;
+mod pictures;
 mod rules;
 mod settings;
 mod table;

@@ -95,7 +95,12 @@ impl Decide {
                 let count = text(raw("a number of pictures")?)?;
                 let wrong = || format!("--{name} {count}: a number of pictures from 1 to 9999 is needed");
                 let frames = count.parse().ok().filter(|n| (1..=9999).contains(n)).ok_or_else(wrong)?;
-                self.sequence = Some(Sequence { turns: name == "turntable", frames, folder: raw("a folder")?.into(), per_second: 30.0 });
+                self.sequence = Some(Sequence {
+                    turns: name == "turntable",
+                    frames,
+                    folder: raw("a folder")?.into(),
+                    per_second: 30.0,
+                });
             }
             // Read by `base`, before all others.
             "preset" | "settings" => _ = raw("a value")?,

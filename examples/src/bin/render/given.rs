@@ -23,7 +23,11 @@ const AGAINST: [(&str, &[&str], &str); 9] = [
         &["sequence", "compare-post", "bisect", "timing", "facts", "graph", "what-if", "what-it-costs"],
         "it renders pictures alone",
     ),
-    ("sequence", &["compare-post", "bisect", "timing", "facts", "graph", "what-if", "what-it-costs"], "it renders pictures alone"),
+    (
+        "sequence",
+        &["compare-post", "bisect", "timing", "facts", "graph", "what-if", "what-it-costs"],
+        "it renders pictures alone",
+    ),
     (
         "compare-post",
         &["facts", "graph", "what-if", "what-it-costs", "enable", "disable", "force-effects"],

@@ -209,6 +209,7 @@ impl Frames {
 /// One line, by whose fault it is.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let mut outputs = outputs(args)?;
+    let what_if = args.decide.what_if.as_deref().map(what_if::device).transpose()?;
     let mut prepared = prepare(args, &mut outputs)?;
     if let Some(asked) = &args.decide.sequence {
         sequence::render(args, &mut prepared, asked, &mut outputs)?;
@@ -232,8 +233,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     program::print(table(&plan, executor.timing()));
     let mut saved = savings::<World>(&prepared.facts, &prepared.asked, &caps, &options).map_err(device)?;
     program::print(facts_table(&prepared.facts, &saved));
-    if let Some(which) = &args.decide.what_if {
-        program::print(what_if::table(which, prepared.frame.graph(), &options, &plan)?);
+    if let Some(caps) = &what_if {
+        program::print(what_if::table(caps, prepared.frame.graph(), &options, &plan)?);
     }
 
     let Prepared { gpu, io, .. } = &prepared;
@@ -287,8 +288,12 @@ fn outputs(args: &Args) -> Result<Outputs, Failure> {
     if let Some(file) = &args.settings {
         outputs.reads(file).map_err(input)?;
     }
+    if let Some(file) = args.decide.what_if.as_ref().filter(|which| which.ends_with(".ron")) {
+        outputs.reads(Path::new(file)).map_err(input)?;
+    }
     if let Some(sequence) = &args.decide.sequence {
-        check_folder(&sequence.folder).map_err(input)?;
+        let option = if sequence.turns { "turntable" } else { "sequence" };
+        check_folder(&sequence.folder).map_err(|error| input(format!("--{option}: {error}")))?;
         for file in sequence::files(sequence) {
             outputs.add(&file).map_err(input)?;
         }

@@ -34,7 +34,10 @@ fn glowing() -> Settings {
 fn light_and_distances_are_measured() -> TestResult {
     let Some(gpu) = gpu("light_and_distances_are_measured") else { return Ok(()) };
     let mut row = row(&gpu, "ball")?;
-    let asked = Settings { dof: Some(DofSettings { f_number: 0.5, focal_length_m: Some(0.5), ..DofSettings::DEFAULT }), ..glowing() };
+    let asked = Settings {
+        dof: Some(DofSettings { f_number: 0.5, focal_length_m: Some(0.5), ..DofSettings::DEFAULT }),
+        ..glowing()
+    };
     for size_px in [[64, 64], [75, 41], [7, 1]] {
         let seen = ViewSettings { size_px, ..lit(&row, 1.0) };
         let (facts, _) = row.next(&asked.for_scene(&row.case().scene, size_px), &seen)?;
