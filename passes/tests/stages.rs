@@ -71,6 +71,7 @@ fn names_are_the_same_whatever_the_settings_are() -> Result<(), StageError> {
         "scene",
         "transparent",
         "taa",
+        "measure",
         "dof",
         "bloom",
         "post",
