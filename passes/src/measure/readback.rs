@@ -1,6 +1,6 @@
 //! What was measured on its way to the CPU: frames late, and never waited for.
 
-use super::MeasuredTextures;
+use super::wanted::MeasuredTextures;
 use crate::stand::Stand;
 use framegraph::{Plan, Texture};
 use framegraph_wgpu::{Executor, Gpu, Pixels, Readback, ReadbackError, Subresource};
