@@ -8,7 +8,8 @@ use crate::program::{Interface, Program, ProgramDesc, Programs};
 use crate::upload::{GpuScene, InstanceDraw, features_of};
 use framegraph_scene::{Batch, Lobes, MaterialId};
 use framegraph_shaders::layout::{
-    STREAM_ATTRIBUTES, STREAM_INSTANCE, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexFormat, stream_stride_bytes,
+    STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexFormat,
+    stream_stride_bytes,
 };
 use framegraph_shaders::{Feature, Module};
 use framegraph_wgpu::{Binding, Constants, Cx, Depth, Output, Raster, RasterPipeline, RecordError, VertexBuffer};
@@ -115,6 +116,7 @@ impl SurfaceDraw<'_> {
         pass.set_vertex_buffer(STREAM_POSITION, scene.positions.slice(..));
         pass.set_vertex_buffer(STREAM_ATTRIBUTES, scene.attributes.slice(..));
         pass.set_vertex_buffer(STREAM_INSTANCE, numbers.slice(..));
+        pass.set_vertex_buffer(STREAM_EARLIER, scene.earlier_positions().slice(..));
         pass.set_index_buffer(scene.indices.slice(..), wgpu::IndexFormat::Uint32);
         let mut states: Vec<SharedState> = Vec::new();
         // Index of the state that is set, and the material.
@@ -212,8 +214,8 @@ pub(crate) fn fits(program: &Program, lobes: Lobes, material: &str, limits: &wgp
 }
 
 /// The attributes of the vertex streams, as wgpu takes them.
-fn vertex_buffers() -> [Vec<VertexAttribute>; 3] {
-    [STREAM_POSITION, STREAM_ATTRIBUTES, STREAM_INSTANCE].map(|stream| {
+fn vertex_buffers() -> [Vec<VertexAttribute>; 4] {
+    [STREAM_POSITION, STREAM_ATTRIBUTES, STREAM_INSTANCE, STREAM_EARLIER].map(|stream| {
         let own = VERTEX_ATTRIBUTES.iter().filter(|a| a.stream == stream);
         own.map(|a| VertexAttribute {
             format: vertex_format(a.format),

@@ -3,7 +3,8 @@
 //! ```text
 //! Scene ──> Survey ─┐
 //! cameras, light ───┼─> decide ──> Facts (a row an effect) ──> apply ──> Settings ──> stages ──> Plan
-//! Settings asked ───┘      └── FactMemory, kept from frame to frame
+//! Settings asked ───┤      └── FactMemory, kept from frame to frame
+//! Measurement ──────┘      of frames before (`measure.rs`), where they are measured
 //! ```
 //!
 //! | file | what |
@@ -12,7 +13,7 @@
 //! | `case.rs`, `decided.rs` | what rules look at; what they decide |
 //! | `survey.rs` | what is known of meshes and materials whatever the camera is |
 //! | `seen.rs`, `cover.rs` | what cameras may see; what covers the whole picture |
-//! | `shadows.rs`, `shading.rs`, `screen.rs`, `picture.rs`, `lens.rs` | the rules |
+//! | `shadows.rs`, `shading.rs`, `screen.rs`, `picture.rs`, `lens.rs`, `late.rs` | the rules |
 //! | `memory.rs` | effects do not flicker at thresholds |
 //! | `apply.rs` | facts into settings |
 //! | `savings.rs`, `told.rs` | what each drop saves; text and JSON |
@@ -27,6 +28,7 @@ mod cover;
 mod decided;
 mod effect;
 mod fact;
+mod late;
 mod lens;
 mod memory;
 mod picture;

@@ -13,6 +13,7 @@
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
 //! | `taa` | `depth_resolve`, `taa`, `taa_sharpen` | radiance, depth, what the frames before came to | radiance |
+//! | `measure` | `measure/light`, `measure/depth`, `measure/smaller` | radiance, depth | what is read back of them |
 //! | `dof` | `dof/coc`, `dof/level`…, `dof/tiles`, `dof/dilate`, `dof/gather`, `dof/median`, `dof/combine` | radiance, depth | radiance |
 //! | `bloom` | `bloom/half`…, `bloom/first`, `bloom/down`…, `bloom/flare`, `bloom/flare_blur` twice, `bloom/up`… | radiance | what glows, lens flare |
 //! | `post` | `post`, or one an effect | radiance, what glows, lens flare, dirt on the lens | picture |
@@ -21,6 +22,7 @@
 //!
 //! All stages are there whatever the settings are; one that a frame does not need declares nothing.
 
+mod before;
 mod lens;
 mod picture;
 mod shadows;
@@ -32,11 +34,11 @@ use crate::fog::FogSettings;
 use crate::frame_index::FrameIndex;
 use crate::grading::GradingTables;
 use crate::lighting::Lighting;
-use crate::occlusion::{self, OcclusionSettings};
+use crate::measure::{Measure, MeasuredTextures, measure};
+use crate::occlusion::OcclusionSettings;
 use crate::post::PostSettings;
-use crate::prepass::Prepass;
 use crate::program::Programs;
-use crate::reflection::{ReflectionSettings, reflections};
+use crate::reflection::ReflectionSettings;
 use crate::shading::{Quality, Shading};
 use crate::shadow::ShadowSettings;
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
@@ -46,8 +48,8 @@ use crate::taa::{TaaSettings, temporal};
 use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
 use crate::upscale::{Upscale, enlarge};
-use crate::velocity::Velocity;
 use crate::view::{ViewId, Views};
+use before::{occlusion, prepass, reflection};
 use framegraph::{AccessKind, Extent, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
 use framegraph_wgpu::{Frame, StoreRounding};
@@ -124,6 +126,9 @@ pub struct Settings {
     /// Something moves: where it was is drawn for what adds frames up.
     #[cfg_attr(feature = "files", serde(skip))]
     pub moving: bool,
+    /// What is measured of the frame for the facts of those after it; [`Facts::apply`](crate::Facts::apply) sets it.
+    #[cfg_attr(feature = "files", serde(skip))]
+    pub measure: Measure,
     /// Soften edges of the finished picture.
     pub fxaa: bool,
     /// Draw less than is shown, and make the picture larger. The view is then one of [`Upscale::extent`].
@@ -166,6 +171,7 @@ impl Settings {
         scene_levels: 0,
         glass_layers: 1,
         moving: false,
+        measure: Measure::NONE,
         sky: true,
         taa: None,
         fxaa: true,
@@ -212,6 +218,8 @@ pub struct FrameIo {
     pub hdr: Texture,
     /// The finished picture.
     pub output: Texture,
+    /// What was measured, read back.
+    pub measured: MeasuredTextures,
 }
 
 /// Declares the standard frame of the main view, its picture going into `into`.
@@ -225,7 +233,8 @@ pub fn standard<W: StandardWorld + ?Sized>(
 ) -> Result<FrameIo, StageError> {
     let extent = settings.upscale.map_or(Extent::FRAME, |upscale| upscale.extent());
     let handles = stages(settings).declare(frame, Handles::for_view(ViewId::MAIN, extent), into)?;
-    Ok(FrameIo { hdr: handles.get(Slot::HDR)?, output: handles.get(Slot::PICTURE)? })
+    let (hdr, output) = (handles.get(Slot::HDR)?, handles.get(Slot::PICTURE)?);
+    Ok(FrameIo { hdr, output, measured: MeasuredTextures::of(&handles) })
 }
 
 /// The stages of the standard frame. See the [module](self).
@@ -242,13 +251,18 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, s.shadows, s.structure())),
         // Before the prepass, so that nothing comes between that and the color pass: they share a step.
-        Stage::new("occlusion", move |frame, handles| occlusion(frame, handles, &s)),
-        Stage::new("reflection", move |frame, handles| reflection(frame, handles, &s)),
-        Stage::new("prepass", move |frame, handles| prepass(frame, handles, &s)),
+        Stage::new("occlusion", move |frame, handles| {
+            occlusion(frame, handles, s.occlusion, (s.structure_levels, s.shading.precision))
+        }),
+        Stage::new("reflection", move |frame, handles| {
+            reflection(frame, handles, s.reflections, s.structure(), (s.reflection_levels, s.hdr_format))
+        }),
+        Stage::new("prepass", move |frame, handles| prepass(frame, handles, s.samples, s.moving && s.taa.is_some())),
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
         Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
         Stage::new("taa", move |frame, handles| s.taa.as_ref().map_or(Ok(()), |own| temporal(frame, handles, own))),
+        Stage::new("measure", move |frame, handles| measure(frame, handles, s.measure)),
         Stage::new("dof", move |frame, handles| dof(frame, handles, s.dof, s.size_texels)),
         Stage::new("bloom", move |frame, handles| bloom(frame, handles, s.bloom, (s.size_texels, s.taa.is_some()))),
         Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
@@ -258,38 +272,6 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
 }
 
 type Declared = Result<(), StageError>;
-
-fn prepass<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    let pass = Prepass { view: handles.view(), extent: handles.extent(), samples: settings.samples };
-    let depth = frame.add("prepass", pass)?;
-    handles.set(Slot::DEPTH, depth);
-    if settings.moving && settings.taa.is_some() {
-        handles.set(Slot::VELOCITY, frame.add("velocity", Velocity { view: handles.view(), depth })?);
-    }
-    Ok(())
-}
-
-/// A stage may have handed on ambient occlusion of its own.
-fn occlusion<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    match settings.occlusion.filter(OcclusionSettings::occludes) {
-        Some(occlusion) if handles.find(Slot::OCCLUSION).is_none() => {
-            let Settings { structure_levels, shading, .. } = *settings;
-            occlusion::occlusion(frame, handles, &occlusion, structure_levels, shading.precision)
-        }
-        _ => Ok(()),
-    }
-}
-
-/// A stage may have handed on reflections of its own.
-fn reflection<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    match &settings.reflections {
-        Some(own) if handles.find(Slot::REFLECTIONS).is_none() => {
-            let Settings { reflection_levels, hdr_format, .. } = *settings;
-            reflections(frame, handles, own, settings.structure(), reflection_levels, hdr_format)
-        }
-        _ => Ok(()),
-    }
-}
 
 fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     let Settings { samples, shading, fog, blended, scene_levels, sky, hdr_format, .. } = *settings;

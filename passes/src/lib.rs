@@ -44,6 +44,7 @@ pub mod fxaa;
 pub mod grading;
 pub mod ibl;
 pub mod lighting;
+pub mod measure;
 pub mod occlusion;
 #[cfg(feature = "files")]
 pub mod plugins;

@@ -100,6 +100,11 @@ impl Placements {
         self.0.iter().map(|chunk| chunk.objects.len()).sum()
     }
 
+    /// Model to world space of an instance.
+    pub(crate) fn of(&self, instance: usize) -> Option<&DMat4> {
+        self.0.get(instance / CHUNK)?.world_from_model.get(instance % CHUNK)
+    }
+
     /// The pieces that are others than those of `before`, each with the number of its first instance.
     pub(crate) fn changed_since<'a>(&'a self, before: &'a Self) -> impl Iterator<Item = (usize, &'a [ObjectUniforms])> {
         let same = |number: usize, own| before.0.get(number).is_some_and(|other| Arc::ptr_eq(own, other));

@@ -5,6 +5,7 @@
 //! they play, with mip levels made here, on all cores. Bind groups are the passes' business:
 //! [`GpuScene::material_binding`] says what goes into the material's.
 
+mod bodies;
 mod buffers;
 mod environment;
 mod error;

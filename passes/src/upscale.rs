@@ -4,8 +4,10 @@
 //! the last makes the picture larger: bilinearly, or along its edges and then sharpened (FSR 1.0). The share may change from frame
 //! to frame: histories are read by coordinate and go on.
 
+mod dynamic;
 mod settings;
 
+pub use dynamic::DynamicResolution;
 pub use settings::{Upscale, UpscaleFilter};
 
 use crate::full_screen::FullScreen;

@@ -229,6 +229,20 @@ impl CameraView {
         Self { earlier: Some(before.stand()), still_frames: 0, motions, ..self }
     }
 
+    /// The same view with bodies of the scene that have another shape than in the frame before `before`
+    /// ([`GpuScene::repose`](crate::upload::GpuScene::repose)), wherever they are.
+    #[must_use]
+    pub fn deformed(mut self, before: &Self, scene: &Scene) -> Self {
+        for instance in scene.motion.bodies.iter().map(|body| body.instance) {
+            if let (Some(here), Some(there)) = (self.placements.of(instance), before.placements.of(instance)) {
+                let moved = motion(&self, before, here, there);
+                self.motions.resize(self.placements.count(), MotionUniforms::default());
+                self.motions[instance] = moved;
+            }
+        }
+        self
+    }
+
     /// Whether an instance has moved since the frame before.
     pub fn moves(&self, instance: usize) -> bool {
         self.motions.get(instance).is_some_and(|motion| *motion != MotionUniforms::default())
@@ -312,13 +326,17 @@ fn motions(now: &CameraView, before: &CameraView) -> Vec<MotionUniforms> {
     let mut motions = Vec::new();
     for (number, here, there) in now.placements.moved_since(&before.placements) {
         motions.resize(now.placements.count(), MotionUniforms::default());
-        let clip = |view: &CameraView, placed: &DMat4| {
-            (view.clip_from_world * DMat4::from_translation(-view.eye) * *placed).as_mat4()
-        };
-        motions[number] =
-            MotionUniforms { clip_from_model: clip(now, here), earlier_clip_from_model: clip(before, there) };
+        motions[number] = motion(now, before, here, there);
     }
     motions
+}
+
+/// Where an instance is and was in clip space, from where it is and was in the world.
+fn motion(now: &CameraView, before: &CameraView, here: &DMat4, there: &DMat4) -> MotionUniforms {
+    let clip = |view: &CameraView, placed: &DMat4| {
+        (view.clip_from_world * DMat4::from_translation(-view.eye) * *placed).as_mat4()
+    };
+    MotionUniforms { clip_from_model: clip(now, here), earlier_clip_from_model: clip(before, there) }
 }
 
 /// What moves a picture of this size by so many pixels to the right and up, in clip space.

@@ -83,6 +83,6 @@ pub use sky::SkyUniforms;
 pub use taa::TaaUniforms;
 pub use tone::{GenericCurve, ToneMap};
 pub use vertex::{
-    STREAM_ATTRIBUTES, STREAM_INSTANCE, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexAttribute, VertexAttributes,
-    VertexFormat, VertexPosition, stream_stride_bytes,
+    STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexAttribute,
+    VertexAttributes, VertexFormat, VertexPosition, stream_stride_bytes,
 };

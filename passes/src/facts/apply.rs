@@ -40,6 +40,7 @@ impl Facts {
         let dropped = self.dropped().iter().filter(|effect| !kept.contains(*effect));
         let mut applied = dropped.fold(*settings, |settings, effect| less(settings, effect, &self.amounts));
         applied.shadows = applied.shadows.filter(|shadows| shadows.layers() > 0);
+        applied.measure = self.measure;
         applied
     }
 }

@@ -7,6 +7,7 @@ use super::seen::{Seen, Surfaces, fit_camera};
 use super::survey::Survey;
 use crate::frame::Settings;
 use crate::ibl::{IRRADIANCE_COEFFICIENTS, ImageLight};
+use crate::measure::Measurement;
 use crate::punctual::{DropReason, select};
 use crate::shadow::ShadowNeed;
 use crate::sun::sun_of;
@@ -51,6 +52,8 @@ pub struct FactInput<'a> {
     pub views: &'a [ViewSettings],
     /// The frame as it is asked for.
     pub settings: &'a Settings,
+    /// What is known by measuring frames before; [`Measurement::Off`] where they are not measured.
+    pub measured: Measurement,
     /// Effects that stay whatever the facts are.
     pub forced: EffectSet,
     /// Drops that may change a pixel by more codes of 255 than this are not made.

@@ -2,6 +2,7 @@
 
 use super::effect::{Effect, EffectSet};
 use super::fact::{Decision, Fact, Proof};
+use crate::measure::Measure;
 use framegraph_scene::environment::ShBands;
 
 /// What was decided about a frame.
@@ -12,6 +13,8 @@ pub struct Facts {
     /// What the frame leaves out by its structure, whatever is forced: lights that reach nothing, variants of shaders that
     /// nothing in view needs. The class of the proof, and a sentence.
     pub always: Vec<(Proof, String)>,
+    /// What is to be measured of the frame, since the frames after it are decided by that.
+    pub measure: Measure,
     /// Of what is not left out altogether, how much is made.
     pub(super) amounts: Amounts,
 }

@@ -20,6 +20,9 @@ pub enum Proof {
     Edges,
     /// By what the effect errs: the picture without it is nearer to the truth that it estimates.
     Truer,
+    /// As an edge of several samples ([`Proof::Edges`]), as long as what was measured some frames ago is not more than twice as
+    /// much by now: what comes suddenly has the effect some frames late.
+    Late,
 }
 
 impl Proof {
@@ -28,7 +31,7 @@ impl Proof {
         match self {
             Self::Exact => "X",
             Self::Variant => "V",
-            Self::Codes(_) | Self::Texels(_) | Self::Edges | Self::Truer => "B",
+            Self::Codes(_) | Self::Texels(_) | Self::Edges | Self::Truer | Self::Late => "B",
         }
     }
 
@@ -40,6 +43,7 @@ impl Proof {
             Self::Texels(texels) => format!("{texels} texels at edges"),
             Self::Edges => "a code; at edges samples are graded before they are averaged".into(),
             Self::Truer => "the effect's own error".into(),
+            Self::Late => "a code, unless what was measured has more than doubled since".into(),
         }
     }
 }

@@ -4,27 +4,27 @@ use super::case::Case;
 use super::decided::Facts;
 use super::effect::Effect;
 use super::fact::{Fact, Proof};
+use super::late;
 use super::seen::fit_camera;
 use crate::bloom::{Blend, BloomSettings, Threshold};
 use crate::dof::DofSettings;
 use crate::fog::FogSettings;
 use crate::view::ViewSettings;
-use framegraph_shaders::layout::Projection;
 
 /// Fog that hides less of anything is half a code at most, where its own light is no brighter than white.
 const LEAST_OPACITY: f64 = 1.0 / 512.0;
-/// Circles of confusion of a smaller radius in pixels leave every pixel what it is: they are rounded to nothing below 1.
-const LEAST_RADIUS_PX: f64 = 0.5;
 
 pub(super) fn rules(case: &Case<'_>, facts: &mut Facts) {
     if let Some(fog) = &case.settings.fog {
         facts.rows.push(fogged(case, fog));
     }
     if let Some(dof) = &case.settings.dof {
-        facts.rows.push(focused(case, dof));
+        let row = late::focused(case, dof, focused(case, dof), facts);
+        facts.rows.push(row);
     }
     if let Some(bloom) = &case.settings.bloom {
-        facts.rows.push(glowing(case, bloom));
+        let row = late::glowing(case, bloom, glowing(case, bloom), facts);
+        facts.rows.push(row);
     }
 }
 
@@ -72,18 +72,11 @@ fn focused(case: &Case<'_>, dof: &DofSettings) -> Fact {
         return Fact::decide(effect, super::screen::apart(case), true, "its circles have no size", "");
     }
     let radius = |view: &ViewSettings| {
-        let camera = fit_camera(view);
-        if !camera.is_perspective() {
-            return f64::INFINITY;
-        }
         let [near, far, _] = distances(case, view);
-        let projection = Projection::new(&view.camera.clip_from_view(camera.width_over_height));
-        let (focus, endless_px) = dof.lens(&projection, view.size_px[1]);
-        let at = |distance: f64| 0.5 * f64::from(endless_px) * (1.0 - f64::from(focus) / distance).abs();
-        at(near.min(far)).max(at(far))
+        late::radius_px(view, dof, near.min(far)).max(late::radius_px(view, dof, far))
     };
     let most = case.input.views.iter().map(radius).fold(0.0, f64::max);
-    let few = case.memory.within(effect, most, LEAST_RADIUS_PX);
+    let few = case.memory.within(effect, most, late::LEAST_RADIUS_PX);
     let numbers = format!("circles of confusion have a radius of {most:.2} pixels at most");
     Fact::decide(effect, super::screen::apart(case), few, numbers.clone(), numbers)
 }

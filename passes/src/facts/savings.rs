@@ -37,7 +37,7 @@ impl Cost {
 }
 
 /// What leaving one effect out saves, all other drops being made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Saved {
     /// Which.
     pub effect: Effect,
@@ -45,6 +45,8 @@ pub struct Saved {
     pub with: Cost,
     /// The frame without.
     pub without: Cost,
+    /// What both take in ms, if that was measured.
+    pub ms: Option<[f64; 2]>,
 }
 
 /// A frame cannot be planned.
@@ -100,7 +102,7 @@ pub fn savings<W: StandardWorld + ?Sized>(
     let mut saved = Vec::new();
     for effect in facts.dropped().iter() {
         let kept = facts.apply_but(asked, EffectSet::NONE.with(effect));
-        saved.push(Saved { effect, with: costs::<W>(&kept, caps, options, &mut scratch)?, without });
+        saved.push(Saved { effect, with: costs::<W>(&kept, caps, options, &mut scratch)?, without, ms: None });
     }
     Ok(saved)
 }

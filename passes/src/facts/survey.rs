@@ -20,8 +20,10 @@ impl Survey {
     /// Looks at all meshes and materials of a scene. Images are not looked at, so that they may be gone.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        let (shapes, surfaces) = (scene.meshes.iter().map(Shape::of), scene.materials.iter().map(Surface::of));
-        Self { shapes: shapes.collect(), surfaces: surfaces.collect() }
+        let moves = |mesh: usize| scene.motion.bodies.iter().any(|body| body.mesh.index() == mesh);
+        let shape = |(number, mesh)| if moves(number) { Shape::UNKNOWN } else { Shape::of(mesh) };
+        let surfaces = scene.materials.iter().map(Surface::of);
+        Self { shapes: scene.meshes.iter().enumerate().map(shape).collect(), surfaces: surfaces.collect() }
     }
 
     /// The shape of an instance.
@@ -49,6 +51,9 @@ pub(super) struct Shape {
 }
 
 impl Shape {
+    /// Of what may be of another shape in the next frame.
+    const UNKNOWN: Self = Self { facing: None, turn_per_m: f64::INFINITY, convex: false, colored: true };
+
     fn of(mesh: &Mesh) -> Self {
         Self {
             facing: facing(&mesh.normals),

@@ -39,7 +39,7 @@ impl Facts {
             let cost = |cost: Option<&Cost>| cost.map_or_else(|| "null".to_owned(), cost_json);
             _ = write!(
                 out,
-                "{}\n    {{\"effect\": {}, \"decision\": {}, {}, \"reason\": {}, \"with\": {}, \"without\": {}}}",
+                "{}\n    {{\"effect\": {}, \"decision\": {}, {}, \"reason\": {}, \"with\": {}, \"without\": {}, \"ms\": {}}}",
                 if index == 0 { "" } else { "," },
                 quoted(row.effect.name()),
                 quoted(row.decision.word()),
@@ -47,6 +47,7 @@ impl Facts {
                 quoted(&row.reason),
                 cost(found.map(|s| &s.with)),
                 cost(found.map(|s| &s.without)),
+                found.and_then(|s| s.ms).map_or_else(|| "null".into(), |[a, b]| format!("[{a:.4}, {b:.4}]")),
             );
         }
         out += "\n  ],\n  \"always\": [";

@@ -64,6 +64,11 @@ impl Slot {
     pub const FLARE: Self = Self::new("flare", Holds::Color);
     /// What dirt on the lens lets light up of bloom, over the whole picture; an application's own.
     pub const LENS_DIRT: Self = Self::new("lens_dirt", Holds::Color);
+    /// The most and the least light of parts of the picture, to be read back; only where it is measured
+    /// ([`Measure`](crate::measure::Measure)).
+    pub const MEASURED_LIGHT: Self = Self::new("measured_light", Holds::Color);
+    /// The nearest and the farthest depth of parts of the picture, reversed, to be read back; only where it is measured.
+    pub const MEASURED_DEPTH: Self = Self::new("measured_depth", Holds::Color);
     /// The picture for the display.
     pub const PICTURE: Self = Self::new("picture", Holds::Color);
 

@@ -32,6 +32,8 @@ pub struct GpuScene {
     pub size_bytes: u64,
     /// What drawing each instance takes, by its number.
     pub instances: Vec<InstanceDraw>,
+    /// Where vertices were in the frame before; none while no body has moved.
+    pub(super) earlier: Option<wgpu::Buffer>,
     meshes: Vec<MeshRange>,
     textures: MaterialTextures,
     surfaces: Vec<Surface>,
@@ -97,6 +99,7 @@ impl GpuScene {
             warnings,
             size_bytes,
             instances: scene.instances.iter().map(|instance| InstanceDraw::new(scene, instance)).collect(),
+            earlier: None,
             meshes,
             textures,
             surfaces: scene.materials.iter().map(|m| Surface { name: m.name.clone(), lobes: m.lobes() }).collect(),

@@ -5,6 +5,7 @@ use crate::device::caps::caps_of;
 use crate::device::error::{DeviceError, DeviceErrors, ErrorScopes};
 use crate::device::format::texture_format;
 use framegraph::{Caps, Format};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use wgpu::{
     Adapter, AdapterInfo, Backend, Backends, Device, DownlevelFlags, Features, Instance, Limits, Queue,
@@ -35,6 +36,7 @@ pub struct Gpu {
     adapter: Adapter,
     info: AdapterInfo,
     errors: Arc<DeviceErrors>,
+    waits: Arc<AtomicU64>,
     view_formats: bool,
     formats: Arc<[OnceLock<TextureFormatFeatures>; Format::ALL.len()]>,
     pub(super) attached_layers: Arc<OnceLock<u32>>,
@@ -179,6 +181,7 @@ impl Gpu {
             info: adapter.get_info(),
             adapter: adapter.clone(),
             errors: Arc::default(),
+            waits: Arc::default(),
             view_formats,
             formats,
             attached_layers: Arc::default(),
@@ -278,7 +281,13 @@ impl Gpu {
     /// # Errors
     /// When the device is lost.
     pub fn wait(&self) -> Result<(), DeviceError> {
+        self.waits.fetch_add(1, Ordering::Relaxed);
         self.poll_as(wgpu::PollType::wait_indefinitely(), "waiting for submitted work")
+    }
+
+    /// How often anything has waited for this device by [`Gpu::wait`]: a frame loop that never stalls adds nothing to it.
+    pub fn waits(&self) -> u64 {
+        self.waits.load(Ordering::Relaxed)
     }
 
     fn poll_as(&self, kind: wgpu::PollType, doing: &'static str) -> Result<(), DeviceError> {

@@ -1,4 +1,4 @@
-//! The vertex format: two streams of vertices and one of instances.
+//! The vertex format: two streams of vertices and one of instances; and where vertices were in the frame before.
 //!
 //! Positions lie in a stream of their own, everything else in a second one. Shadow maps and
 //! the depth prepass of opaque geometry read positions alone: 12 bytes a vertex instead of
@@ -14,6 +14,9 @@ pub const STREAM_POSITION: u32 = 0;
 pub const STREAM_ATTRIBUTES: u32 = 1;
 /// Index of the vertex buffer with a `u32` an instance: the number of the object.
 pub const STREAM_INSTANCE: u32 = 2;
+/// Index of the vertex buffer with [`VertexPosition`] in the frame before, which velocity reads of what joints and morph
+/// targets move.
+pub const STREAM_EARLIER: u32 = 3;
 
 /// Element of the position stream.
 #[repr(C)]
@@ -64,7 +67,7 @@ pub enum VertexFormat {
 pub struct VertexAttribute {
     /// `@location` in the vertex stage.
     pub location: u32,
-    /// [`STREAM_POSITION`], [`STREAM_ATTRIBUTES`] or [`STREAM_INSTANCE`].
+    /// [`STREAM_POSITION`], [`STREAM_ATTRIBUTES`], [`STREAM_INSTANCE`] or [`STREAM_EARLIER`].
     pub stream: u32,
     /// Offset from the start of the element, in bytes.
     pub offset_bytes: u64,
@@ -76,8 +79,8 @@ const fn attribute(location: u32, stream: u32, offset_bytes: usize, format: Vert
     VertexAttribute { location, stream, offset_bytes: offset_bytes as u64, format }
 }
 
-/// All attributes by location: position, normal, tangent, uv0, uv1, color, number of the object.
-pub const VERTEX_ATTRIBUTES: [VertexAttribute; 7] = {
+/// All attributes by location: position, normal, tangent, uv0, uv1, color, number of the object, position in the frame before.
+pub const VERTEX_ATTRIBUTES: [VertexAttribute; 8] = {
     use VertexAttributes as A;
     use std::mem::offset_of;
     const REST: u32 = STREAM_ATTRIBUTES;
@@ -89,13 +92,14 @@ pub const VERTEX_ATTRIBUTES: [VertexAttribute; 7] = {
         attribute(4, REST, offset_of!(A, uv1), VertexFormat::Float32x2),
         attribute(5, REST, offset_of!(A, color), VertexFormat::Float16x4),
         attribute(6, STREAM_INSTANCE, 0, VertexFormat::Uint32),
+        attribute(7, STREAM_EARLIER, 0, VertexFormat::Float32x3),
     ]
 };
 
 /// Bytes from one element of a stream to the next.
 pub const fn stream_stride_bytes(stream: u32) -> u64 {
     match stream {
-        STREAM_POSITION => size_of::<VertexPosition>() as u64,
+        STREAM_POSITION | STREAM_EARLIER => size_of::<VertexPosition>() as u64,
         STREAM_INSTANCE => size_of::<u32>() as u64,
         _ => size_of::<VertexAttributes>() as u64,
     }
@@ -129,7 +133,7 @@ mod tests {
 
     #[test]
     fn attributes_fill_their_streams_without_gap_or_overlap() {
-        for stream in [STREAM_POSITION, STREAM_ATTRIBUTES, STREAM_INSTANCE] {
+        for stream in [STREAM_POSITION, STREAM_ATTRIBUTES, STREAM_INSTANCE, STREAM_EARLIER] {
             let mut end_bytes = 0;
             for attribute in VERTEX_ATTRIBUTES.iter().filter(|a| a.stream == stream) {
                 assert_eq!(attribute.offset_bytes, end_bytes, "location {}", attribute.location);

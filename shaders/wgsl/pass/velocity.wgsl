@@ -32,12 +32,12 @@ fn vs_main(
     @location(3) uv0: vec2<f32>,
     @location(4) uv1: vec2<f32>,
     @location(5) color: vec4<f32>,
+    @location(7) earlier: vec3<f32>,
 ) -> VelocityVertex {
-    let model = vec4<f32>(position, 1.0);
     return VelocityVertex(
         clip_position(world_position(position, instance)),
-        (motions[instance].clip_from_model * model).xyw,
-        (motions[instance].earlier_clip_from_model * model).xyw,
+        (motions[instance].clip_from_model * vec4<f32>(position, 1.0)).xyw,
+        (motions[instance].earlier_clip_from_model * vec4<f32>(earlier, 1.0)).xyw,
         vec4<f32>(uv0, uv1),
         color.a,
     );

@@ -1,12 +1,14 @@
 //! Six small scenes between one that needs nothing and one that needs most, drawn with the effects that they are asked for
 //! and with those that their facts leave.
 
+pub mod late;
 pub mod table;
 
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
 use framegraph_passes::facts::{Around, Effect, EffectSet, FactInput, FactMemory, Facts, Proof, Survey, decide};
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::measure::Measurement;
 use framegraph_passes::program::Programs;
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::shadow::{ContactShadows, ShadowSettings};
@@ -252,6 +254,7 @@ impl Drawn {
             views: &views,
             settings: asked,
             forced,
+            measured: Measurement::Off,
             most_codes: FactInput::MOST_CODES,
         };
         decide(&input, memory)

@@ -1,6 +1,8 @@
 //! What facts leave out of a frame changes its picture by no more than they say.
 
+mod late;
 mod masks;
+mod pictures;
 mod rules;
 mod settings;
 mod table;

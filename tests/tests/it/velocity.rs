@@ -6,7 +6,8 @@ use framegraph_passes::stages::{Handles, Slot};
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, LightSearch, Settings, Shading, TaaSettings, ViewId, World, stages};
 use framegraph_scene::geometry::{plane, sphere};
-use framegraph_scene::{Camera, Environment, Material, Projection, Scene, progress};
+use framegraph_scene::motion::{Body, Moves, Shape};
+use framegraph_scene::{Aabb, Camera, Environment, Material, Mesh, MeshId, Projection, Scene, progress};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 use std::error::Error;
@@ -72,6 +73,15 @@ impl<'g> Film<'g> {
         Self { gpu, scene, world: None, executor: Executor::new(gpu), size_px }
     }
 
+    /// The ball is moved vertex by vertex, as joints and morph targets move a body, instead of as a whole.
+    fn by_vertices(mut self) -> Self {
+        let Mesh { positions, normals, tangents, .. } = self.scene.meshes[0].clone();
+        let rest = Shape { positions, normals, tangents };
+        let body = Body { mesh: MeshId::new(0), instance: 0, node: 0, skin: None, rest, moves: Moves::default() };
+        self.scene.motion.bodies.push(body);
+        self
+    }
+
     /// One more frame; what is in the texture that is `wanted`.
     fn shoot(
         &mut self,
@@ -79,7 +89,14 @@ impl<'g> Film<'g> {
         number: u32,
         wanted: fn(&Handles) -> Option<Texture>,
     ) -> Result<Vec<[f32; 4]>, Box<dyn Error>> {
-        let placed = DMat4::from_translation(moment(number.into()).0);
+        let at = moment(number.into()).0;
+        let mut placed = DMat4::from_translation(at);
+        if let Some(body) = self.scene.motion.bodies.first() {
+            placed = DMat4::IDENTITY;
+            let mesh = &mut self.scene.meshes[0];
+            mesh.positions = body.rest.positions.iter().map(|place| *place + at.as_vec3()).collect();
+            mesh.bounds = Aabb::from_points(&mesh.positions);
+        }
         self.scene.instances[0].world_from_model = placed;
         self.scene.instances[0].bounds = self.scene.meshes[0].bounds.transformed(&placed);
         let seen = ViewSettings {
@@ -96,7 +113,8 @@ impl<'g> Film<'g> {
         match &mut self.world {
             Some(world) => {
                 let before = world.views.get(ViewId::MAIN)?.view.clone();
-                view = view.after(&before);
+                world.scene.repose(self.gpu, &self.scene)?;
+                view = view.after(&before).deformed(&before, &self.scene);
                 view.jitter(settings.taa.map_or(DVec2::ZERO, |taa| taa.jitter_px(number)));
                 world.set_view(self.gpu, ViewId::MAIN, view)?;
             }
@@ -136,13 +154,15 @@ fn truth(frame: f64, uv: DVec2, aspect: f64) -> Result<Option<DVec2>, Box<dyn Er
     Ok(Some(DVec2::new(0.5 + 0.5 * before.x, 0.5 - 0.5 * before.y)))
 }
 
-/// Velocity is the way of each place on the ball, of the eye's movement too, and nothing elsewhere.
+/// Velocity is the way of each place on the ball, of the eye's movement too, and nothing elsewhere; whether the ball moves as a
+/// whole or its vertices do.
 #[test]
 fn velocity_says_where_surfaces_were() -> TestResult {
     let Some(gpu) = gpu("velocity_says_where_surfaces_were") else { return Ok(()) };
-    for samples in [1, 4] {
+    for (samples, vertices) in [(1, false), (4, false), (1, true), (4, true)] {
         let size = [96_u32, 64];
-        let mut film = Film::new(&gpu, size);
+        let film = Film::new(&gpu, size);
+        let mut film = if vertices { film.by_vertices() } else { film };
         let frame = Settings { samples, ..MOVING };
         let first = film.shoot(frame, 0, |handles| handles.find(Slot::VELOCITY))?;
         assert!(first.iter().all(|texel| *texel == [0.0; 4]), "no frame was before");

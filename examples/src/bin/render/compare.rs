@@ -35,7 +35,7 @@ struct Way {
 pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let options = args.load_options();
     let mut loaded = load::load(args, &options).map_err(input)?;
-    args.moment.apply(&mut loaded.scene).map_err(input)?;
+    args.moment.apply(&mut loaded.scene, 0.0).map_err(input)?;
     let colors = load::colors(args).map_err(input)?;
     let seen = load::view(args, &loaded).map_err(input)?;
     let gpu = open()?;

@@ -7,6 +7,7 @@ use crate::load::Loaded;
 use crate::shadows::Shadows;
 use framegraph_passes::facts::{Around, Survey, decide};
 use framegraph_passes::ibl::ImageLight;
+use framegraph_passes::measure::Measurement;
 use framegraph_passes::view::ViewSettings;
 use framegraph_passes::{Effect, EffectSet, FactInput, FactMemory, Facts, FrameSettings, Preset, Settings};
 use lexopt::Parser;
@@ -23,11 +24,14 @@ FRAME
   --force-effects      every effect that is asked for; without it, what facts about the scene prove to change nothing is left
                        out, and said after the table with its reason (docs/facts.md)
   --facts FILE.json    what was decided of each effect
+  --what-it-costs      beside the picture a table of what each effect takes: the frame with it and without it, in turns, all
+                       other decisions being made; times are medians of --frames, from recording to the end
   --graph FILE.ron     the frame's graph, for the program `plan` (docs/graph-format.md)
   --what-if WHICH      the plan's counts for a device that is not here, beside those for this one: desktop, tiler, wgpu, or a
                        FILE.ron that describes one (docs/graph-format.md)
   --turntable N DIR    no picture, but N of them as DIR/turntable_0000.png, …: the camera goes once around the scene
-  --sequence N DIR     N frames in a row, as DIR/frame_0000.png, …
+  --sequence N DIR     N frames in a row, as DIR/frame_0000.png, …; with --time S an animation plays on from there, 30 frames a
+                       second
 ";
 
 /// The help with the names of effects, in lines.
@@ -52,12 +56,14 @@ pub struct Decide {
     pub graph: Option<PathBuf>,
     /// A device to plan for beside this one.
     pub what_if: Option<String>,
+    /// The frame is measured with and without each effect.
+    pub what_it_costs: bool,
     /// Several pictures.
     pub sequence: Option<Sequence>,
 }
 
 /// Several pictures instead of one.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Sequence {
     /// The camera goes around the scene.
     pub turns: bool,
@@ -65,6 +71,8 @@ pub struct Sequence {
     pub frames: u32,
     /// Where they go.
     pub folder: PathBuf,
+    /// Frames a second of an animation.
+    pub per_second: f64,
 }
 
 impl Decide {
@@ -79,6 +87,7 @@ impl Decide {
             "enable" => self.enabled = self.enabled.with(effect(name, &text(raw("an effect")?)?)?),
             "disable" => self.disabled = self.disabled.with(effect(name, &text(raw("an effect")?)?)?),
             "force-effects" => self.forced = true,
+            "what-it-costs" => self.what_it_costs = true,
             "facts" => self.json = Some(crate::name::with_ending(raw("a file")?.into(), "--facts", &["json"])?),
             "graph" => self.graph = Some(crate::name::with_ending(raw("a file")?.into(), "--graph", &["ron"])?),
             "what-if" => self.what_if = Some(text(raw("a device")?)?),
@@ -86,7 +95,12 @@ impl Decide {
                 let count = text(raw("a number of pictures")?)?;
                 let wrong = || format!("--{name} {count}: a number of pictures from 1 to 9999 is needed");
                 let frames = count.parse().ok().filter(|n| (1..=9999).contains(n)).ok_or_else(wrong)?;
-                self.sequence = Some(Sequence { turns: name == "turntable", frames, folder: raw("a folder")?.into() });
+                self.sequence = Some(Sequence {
+                    turns: name == "turntable",
+                    frames,
+                    folder: raw("a folder")?.into(),
+                    per_second: 30.0,
+                });
             }
             // Read by `base`, before all others.
             "preset" | "settings" => _ = raw("a value")?,
@@ -176,7 +190,14 @@ impl Deciding {
     }
 
     /// What the facts say of a view; nothing where effects are forced.
-    pub fn facts(&mut self, loaded: &Loaded, light: &ImageLight, seen: &ViewSettings, settings: &Settings) -> Facts {
+    pub fn facts(
+        &mut self,
+        loaded: &Loaded,
+        light: &ImageLight,
+        seen: &ViewSettings,
+        settings: &Settings,
+        measured: Measurement,
+    ) -> Facts {
         if self.off {
             return Facts::default();
         }
@@ -187,6 +208,7 @@ impl Deciding {
             background: &loaded.background,
             views: std::slice::from_ref(seen),
             settings,
+            measured,
             forced: self.forced,
             most_codes: FactInput::MOST_CODES,
         };

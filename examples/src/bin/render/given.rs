@@ -20,13 +20,17 @@ const AGAINST: [(&str, &[&str], &str); 9] = [
     ("sequence", &OF_ONE_FRAME, "it renders pictures of its own"),
     (
         "turntable",
-        &["sequence", "compare-post", "bisect", "timing", "facts", "graph", "what-if"],
+        &["sequence", "compare-post", "bisect", "timing", "facts", "graph", "what-if", "what-it-costs"],
         "it renders pictures alone",
     ),
-    ("sequence", &["compare-post", "bisect", "timing", "facts", "graph", "what-if"], "it renders pictures alone"),
+    (
+        "sequence",
+        &["compare-post", "bisect", "timing", "facts", "graph", "what-if", "what-it-costs"],
+        "it renders pictures alone",
+    ),
     (
         "compare-post",
-        &["facts", "graph", "what-if", "enable", "disable", "force-effects"],
+        &["facts", "graph", "what-if", "what-it-costs", "enable", "disable", "force-effects"],
         "it compares frames of every effect",
     ),
     ("compare-post", &OF_ONE_FRAME, "it renders no picture"),
@@ -36,7 +40,7 @@ const AGAINST: [(&str, &[&str], &str); 9] = [
         "it goes through all ways of post-processing itself",
     ),
     ("bisect", &OF_ONE_FRAME, "it compares pictures and keeps none"),
-    ("bisect", &["timing"], "it measures nothing"),
+    ("bisect", &["timing", "what-it-costs"], "it measures nothing"),
 ];
 
 /// An option that means something only beside one of others.
@@ -90,6 +94,9 @@ impl Given {
             return Err(
                 "--shadow keep=on does not go together with --turntable and --sequence: they draw whole frames".into(),
             );
+        }
+        if args.decide.what_it_costs && args.shadows.keep {
+            return Err("--shadow keep=on does not go together with --what-it-costs: it draws whole frames".into());
         }
         if args.compare_post && args.shadows.keep {
             return Err("--shadow keep=on does not go together with --compare-post: it draws whole frames".into());

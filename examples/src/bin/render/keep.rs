@@ -3,6 +3,7 @@
 use crate::args::Args;
 use crate::run::{Failure, Frames, Prepared, device, input, render};
 use framegraph::{Extent, Format, Plan, Scratch, Target, TextureDesc};
+use framegraph_passes::measure::MeasuredTextures;
 use framegraph_passes::shadow::{KeptShadows, Redraw, ViewShadows, maps_slot};
 use framegraph_passes::{Facts, FrameIo, Handles, Settings, Slot, ViewId, World, stages};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports};
@@ -55,7 +56,8 @@ pub fn declare(
     let output = frame.graph_mut().texture("output", desc);
     let handles = stages(settings).declare(&mut frame, handles, Target::from(output)).map_err(device)?;
     let slot = |slot| handles.get(slot).map_err(device);
-    let io = FrameIo { hdr: slot(Slot::HDR)?, output: slot(Slot::PICTURE)? };
+    let measured = MeasuredTextures::of(&handles);
+    let io = FrameIo { hdr: slot(Slot::HDR)?, output: slot(Slot::PICTURE)?, measured };
     frame.graph_mut().readback(io.output).map_err(device)?;
     if linear {
         frame.graph_mut().readback(io.hdr).map_err(device)?;

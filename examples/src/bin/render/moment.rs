@@ -40,12 +40,17 @@ impl Moment {
         Ok(true)
     }
 
-    /// Moves the scene.
+    /// Whether an animation plays.
+    pub fn plays(&self) -> bool {
+        self.time_s.is_some()
+    }
+
+    /// Moves the scene to that time, and so many seconds later.
     ///
     /// # Errors
     /// One line that names the option and what the scene lacks.
-    pub fn apply(&self, scene: &mut Scene) -> Result<(), String> {
-        let Some(time_s) = self.time_s else { return Ok(()) };
+    pub fn apply(&self, scene: &mut Scene, later_s: f64) -> Result<(), String> {
+        let Some(time_s) = self.time_s.map(|time_s| time_s + later_s) else { return Ok(()) };
         let all = &scene.motion.animations;
         let number = match &self.animation {
             None => 0,

@@ -4,6 +4,7 @@ use crate::args::Args;
 use crate::debug::report;
 use crate::decide::Deciding;
 use crate::keep::{Kept, declare, first_frame};
+use crate::leave_out;
 use crate::light::Around;
 use crate::load::{self, Loaded};
 use crate::sequence;
@@ -12,6 +13,7 @@ use crate::what_if;
 use framegraph::file::to_ron;
 use framegraph::{Options, Plan, Scratch, Texture, dump};
 use framegraph_passes::facts::savings;
+use framegraph_passes::measure::Measurement;
 use framegraph_passes::punctual::LightLists;
 use framegraph_passes::view::ViewSettings;
 use framegraph_passes::{CameraView, Facts, FrameIndex, FrameIo, Settings, ViewId, World};
@@ -88,7 +90,7 @@ impl Prepared {
 pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> {
     let options = args.load_options();
     let mut loaded = load::load(args, &options).map_err(input)?;
-    args.moment.apply(&mut loaded.scene).map_err(input)?;
+    args.moment.apply(&mut loaded.scene, 0.0).map_err(input)?;
     for file in &loaded.scene.files {
         outputs.reads(file).map_err(input)?;
     }
@@ -111,7 +113,7 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
         asked.stored = Some(StoreRounding::measure(&gpu).map_err(device)?);
     }
     let mut deciding = Deciding::new(&args.decide, &loaded, &asked);
-    let facts = deciding.facts(&loaded, &lighting.image, &seen, &asked);
+    let facts = deciding.facts(&loaded, &lighting.image, &seen, &asked, Measurement::Off);
     let settings = facts.apply(&asked);
     let shown = ViewSettings { shadows: settings.shadows, ..seen.clone() };
     let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &shown);
@@ -207,6 +209,7 @@ impl Frames {
 /// One line, by whose fault it is.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let mut outputs = outputs(args)?;
+    let what_if = args.decide.what_if.as_deref().map(what_if::device).transpose()?;
     let mut prepared = prepare(args, &mut outputs)?;
     if let Some(asked) = &args.decide.sequence {
         sequence::render(args, &mut prepared, asked, &mut outputs)?;
@@ -229,13 +232,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     executor.catch_up().map_err(device)?;
     program::print(table(&plan, executor.timing()));
     program::print(memory(&plan, &executor));
-    let saved = savings::<World>(&prepared.facts, &prepared.asked, &caps, &options).map_err(device)?;
+    let mut saved = savings::<World>(&prepared.facts, &prepared.asked, &caps, &options).map_err(device)?;
     program::print(facts_table(&prepared.facts, &saved));
-    if let Some(which) = &args.decide.what_if {
-        program::print(what_if::table(which, prepared.frame.graph(), &options, &plan)?);
+    if let Some(caps) = &what_if {
+        program::print(what_if::table(caps, prepared.frame.graph(), &options, &plan)?);
     }
 
-    let Prepared { gpu, io, facts, .. } = &prepared;
+    let Prepared { gpu, io, .. } = &prepared;
     let fetch = |handle: Texture| -> Result<Pixels, Failure> {
         let texture = executor.texture(&plan, handle).ok_or_else(|| device("the frame left no picture"))?;
         read_texture(gpu, texture).map_err(device)
@@ -255,10 +258,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let text = to_ron(prepared.frame.graph(), &args.scene, args.size_px);
         outputs.write(path, |file| file.write_all(text.as_bytes())).map_err(input)?;
     }
-    if let Some(path) = &args.decide.json {
-        outputs.write(path, |file| file.write_all(facts.json(&saved).as_bytes())).map_err(input)?;
-    }
     let told = report(args, &mut prepared, &plan, &executor, before, &inspections, &mut outputs)?;
+    if args.decide.what_it_costs {
+        saved = leave_out::measure(args, &mut prepared)?;
+        program::print(leave_out::table(&prepared, &saved));
+    }
+    if let Some(path) = &args.decide.json {
+        outputs.write(path, |file| file.write_all(prepared.facts.json(&saved).as_bytes())).map_err(input)?;
+    }
     written(outputs, &told)
 }
 
@@ -282,8 +289,12 @@ fn outputs(args: &Args) -> Result<Outputs, Failure> {
     if let Some(file) = &args.settings {
         outputs.reads(file).map_err(input)?;
     }
+    if let Some(file) = args.decide.what_if.as_ref().filter(|which| which.ends_with(".ron")) {
+        outputs.reads(Path::new(file)).map_err(input)?;
+    }
     if let Some(sequence) = &args.decide.sequence {
-        check_folder(&sequence.folder).map_err(input)?;
+        let option = if sequence.turns { "turntable" } else { "sequence" };
+        check_folder(&sequence.folder).map_err(|error| input(format!("--{option}: {error}")))?;
         for file in sequence::files(sequence) {
             outputs.add(&file).map_err(input)?;
         }

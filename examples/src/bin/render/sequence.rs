@@ -5,6 +5,7 @@ use crate::decide::Sequence;
 use crate::keep::declare;
 use crate::run::{Failure, Prepared, device, executed, input};
 use framegraph::{Plan, Scratch};
+use framegraph_passes::measure::Measuring;
 use framegraph_passes::view::ViewSettings;
 use framegraph_passes::{CameraView, FrameIndex, ViewId};
 use framegraph_scene::picture::encode_png;
@@ -23,7 +24,8 @@ pub fn files(sequence: &Sequence) -> impl Iterator<Item = PathBuf> {
     (0..sequence.frames).map(move |index| folder.join(format!("{name}_{index:04}.png")))
 }
 
-/// Renders the pictures and puts them into `outputs`. Facts are decided for each, with what the frames before decided.
+/// Renders the pictures and puts them into `outputs`. Facts are decided for each, with what the frames before decided and were
+/// measured to have; where the camera turns or an animation plays, what adds frames up is told what moved.
 ///
 /// # Errors
 /// One line, by whose fault it is, or that a signal asked to stop.
@@ -33,28 +35,40 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
     let mut executor = Executor::with(&prepared.gpu, execute);
     let mut shown = Shown::default();
     let center = prepared.loaded.scene.bounds_above_ground().center();
-    let (mut plans, mut planned) = (0_u32, None);
+    let (mut plans, mut planned, mut measuring) = (0_u32, None, Measuring::new());
     for (path, index) in files(sequence).zip(0..) {
         let turned = if sequence.turns { f64::from(index) / f64::from(sequence.frames) * TAU } else { 0.0 };
         let seen = around(&prepared.seen, center, turned);
+        let plays = args.moment.plays() && !sequence.turns && index > 0;
+        if plays {
+            args.moment.apply(&mut prepared.loaded.scene, f64::from(index) / sequence.per_second).map_err(input)?;
+            prepared.world.scene.repose(&prepared.gpu, &prepared.loaded.scene).map_err(device)?;
+        }
         let light = &prepared.world.lighting.image;
-        let facts = prepared.deciding.facts(&prepared.loaded, light, &seen, &prepared.asked);
-        let settings = facts.apply(&prepared.asked);
+        let measured = measuring.known(&prepared.gpu).map_err(device)?;
+        let facts = prepared.deciding.facts(&prepared.loaded, light, &seen, &prepared.asked, measured);
+        let mut settings = facts.apply(&prepared.asked);
         let seen = ViewSettings { shadows: settings.shadows, ..seen };
         let view = CameraView::new(&prepared.loaded.scene, light, &prepared.loaded.background, &seen);
-        let Prepared { gpu, world, .. } = &mut *prepared;
+        let Prepared { gpu, world, loaded, .. } = &mut *prepared;
         // What is found in the frame before is found from where that was seen.
         let before = &world.views.get(ViewId::MAIN).map_err(device)?.view;
         let mut view = if index == 0 { view } else { view.after(before) };
+        if plays {
+            view = view.deformed(before, &loaded.scene);
+        }
         if let Some(taa) = &settings.taa {
             view.jitter(taa.jitter_px(index));
         }
+        settings.moving = (0..loaded.scene.instances.len()).any(|instance| view.moves(instance));
+        let stand = view.stand();
         world.set_view(gpu, ViewId::MAIN, view).map_err(device)?;
         world.frame_index = FrameIndex(index);
         let (frame, io, imports) = declare(&settings, &facts, false, None)?;
         executor.compile(frame.graph(), &options, &mut scratch, &mut plan).map_err(input)?;
         plans += u32::from(planned.replace(settings) != Some(settings));
         executor.execute(&plan, &frame, world, &imports).map_err(executed)?;
+        measuring.begin(gpu, (&executor, &plan), io.measured, stand).map_err(device)?;
         let texture = executor.texture(&plan, io.output).ok_or_else(|| device("the frame left no picture"))?;
         let picture = read_texture(gpu, texture).map_err(device)?.rgba8();
         outputs.write(&path, |file| encode_png(file, args.size_px, &picture)).map_err(input)?;

@@ -10,7 +10,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// One line that names the option, and the file with the place.
-fn device(which: &str) -> Result<Caps, Failure> {
+pub fn device(which: &str) -> Result<Caps, Failure> {
     if let Some(caps) = Caps::preset(which) {
         return Ok(caps);
     }
@@ -25,12 +25,11 @@ fn device(which: &str) -> Result<Caps, Failure> {
 /// A table of the plan's counts for this device and for another.
 ///
 /// # Errors
-/// When there is no such device, or it cannot hold the frame.
-pub fn table(which: &str, graph: &Graph, options: &Options, plan: &Plan) -> Result<String, Failure> {
-    let caps = device(which)?;
+/// When that one cannot hold the frame.
+pub fn table(caps: &Caps, graph: &Graph, options: &Options, plan: &Plan) -> Result<String, Failure> {
     let mut other = Plan::new();
-    compile(graph, &caps, options, &mut Scratch::new(), &mut other)
-        .map_err(|error| input(format!("--what-if {which}: {error}")))?;
+    compile(graph, caps, options, &mut Scratch::new(), &mut other)
+        .map_err(|error| input(format!("--what-if {}: {error}", caps.name)))?;
     let head = ["device", "steps", "unresolves", "resolves", "loaded", "stored", "memoryless", "memory"];
     let mut rows = vec![head.map(String::from)];
     for plan in [plan, &other] {
@@ -46,5 +45,5 @@ pub fn table(which: &str, graph: &Graph, options: &Options, plan: &Plan) -> Resu
             mebibytes(memory.bytes + memory.own_bytes),
         ]);
     }
-    Ok(aligned(&rows, 1))
+    Ok(format!("\n{}", aligned(&rows, 1)))
 }

@@ -3,6 +3,7 @@
 use framegraph_passes::facts::{
     Around, Decision, Effect, EffectSet, FactInput, FactMemory, Facts, Proof, Survey, decide,
 };
+use framegraph_passes::measure::Measurement;
 use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings};
@@ -41,6 +42,7 @@ impl Stage {
             views: &[view],
             settings: &case.asked,
             forced: EffectSet::NONE,
+            measured: Measurement::Off,
             most_codes: FactInput::MOST_CODES,
         };
         decide(&input, memory)
@@ -305,6 +307,7 @@ fn forced_effects_stay() {
         views: &view,
         settings: &floor.case.asked,
         forced: EffectSet::ALL,
+        measured: Measurement::Off,
         most_codes: 1.0,
     };
     let facts = decide(&input, &mut FactMemory::default());

@@ -1,0 +1,79 @@
+//! Rules by what frames before were measured to have: what no bound on the CPU proves, some frames late.
+
+use super::case::Case;
+use super::decided::Facts;
+use super::effect::Effect;
+use super::fact::{Decision, Fact, Proof};
+use super::seen::fit_camera;
+use crate::bloom::{Blend, BloomSettings, Threshold};
+use crate::dof::DofSettings;
+use crate::measure::Measurement;
+use crate::view::ViewSettings;
+use framegraph_scene::camera::exposure_from_ev100;
+use framegraph_shaders::layout::Projection;
+
+/// Frames are some frames older when their measures have come: what was measured counts so many times.
+const SAFETY: f64 = 2.0;
+/// Circles of confusion of a smaller radius in pixels leave every pixel what it is: they are rounded to nothing below 1.
+pub(super) const LEAST_RADIUS_PX: f64 = 0.5;
+
+/// Radius of the circle of confusion at a distance from the eye's plane in m, in pixels; infinite without a perspective.
+pub(super) fn radius_px(view: &ViewSettings, dof: &DofSettings, distance_m: f64) -> f64 {
+    let camera = fit_camera(view);
+    if !camera.is_perspective() {
+        return f64::INFINITY;
+    }
+    let projection = Projection::new(&view.camera.clip_from_view(camera.width_over_height));
+    let (focus, endless_px) = dof.lens(&projection, view.size_px[1]);
+    0.5 * f64::from(endless_px) * (1.0 - f64::from(focus) / distance_m).abs()
+}
+
+/// Decides anew of bloom what bounds keep, and has the light measured for the next frame.
+pub(super) fn glowing(case: &Case<'_>, bloom: &BloomSettings, row: Fact, facts: &mut Facts) -> Fact {
+    let thresholds = bloom.threshold != Threshold::None && bloom.blend == Blend::Add;
+    if !measures(case, &row) || !thresholds || case.input.views.len() != 1 {
+        return row;
+    }
+    facts.measure.light = true;
+    let Measurement::Known(measured) = case.input.measured else { return unknown(row) };
+    let Some(nits) = measured.most_nits else { return unknown(row) };
+    let light = f64::from(nits) * f64::from(exposure_from_ev100(case.input.views[0].ev100));
+    // What is as bright as the threshold glows where that is hard.
+    let at = f64::from(bloom.threshold_at);
+    let dark = SAFETY * light < at && case.memory.within(Effect::Bloom, SAFETY * light, at);
+    let why = format!("light was {light:.2} at most {}, and what glows begins at {at:.2}", ago(measured.frames_ago));
+    Fact::decide(Effect::Bloom, Proof::Late, dark, why.clone(), why)
+}
+
+/// Decides anew of depth of field what bounds keep, and has the depth measured for the next frame.
+pub(super) fn focused(case: &Case<'_>, dof: &DofSettings, row: Fact, facts: &mut Facts) -> Fact {
+    if !measures(case, &row) || case.input.views.len() != 1 {
+        return row;
+    }
+    facts.measure.depth = true;
+    let Measurement::Known(measured) = case.input.measured else { return unknown(row) };
+    let Some(distances_m) = measured.distances_m else { return unknown(row) };
+    let most =
+        distances_m.map(|distance| radius_px(&case.input.views[0], dof, distance)).into_iter().fold(0.0, f64::max);
+    let few = case.memory.within(Effect::DepthOfField, SAFETY * most, LEAST_RADIUS_PX);
+    let ago = ago(measured.frames_ago);
+    let why = format!("circles of confusion had a radius of {most:.2} pixels at most {ago}");
+    Fact::decide(Effect::DepthOfField, Proof::Late, few, why.clone(), why)
+}
+
+/// Whether frames are measured, and what bounds say leaves something open.
+fn measures(case: &Case<'_>, row: &Fact) -> bool {
+    let forced = case.input.forced.contains(row.effect);
+    row.decision == Decision::Kept && !forced && case.input.measured != Measurement::Off
+}
+
+fn unknown(row: Fact) -> Fact {
+    Fact { proof: Proof::Late, reason: format!("{}; no measure of it has come yet", row.reason), ..row }
+}
+
+fn ago(frames: u32) -> String {
+    match frames {
+        1 => "a frame ago".into(),
+        more => format!("{more} frames ago"),
+    }
+}

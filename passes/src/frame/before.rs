@@ -1,0 +1,60 @@
+//! Stages before surfaces are shaded: depth, ambient occlusion, reflections.
+
+use crate::occlusion::{self, OcclusionSettings};
+use crate::precision::Precision;
+use crate::prepass::Prepass;
+use crate::program::Programs;
+use crate::reflection::{ReflectionSettings, reflections};
+use crate::stages::{Handles, Slot, StageError};
+use crate::structure::Resolution;
+use crate::upload::GpuScene;
+use crate::velocity::Velocity;
+use crate::view::Views;
+use framegraph::Format;
+use framegraph_wgpu::Frame;
+
+/// Depth of what is seen, of so many samples, and where what moves was.
+pub(super) fn prepass<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
+    frame: &mut Frame<W>,
+    handles: &mut Handles,
+    samples: u8,
+    moving: bool,
+) -> Result<(), StageError> {
+    let depth = frame.add("prepass", Prepass { view: handles.view(), extent: handles.extent(), samples })?;
+    handles.set(Slot::DEPTH, depth);
+    if moving {
+        handles.set(Slot::VELOCITY, frame.add("velocity", Velocity { view: handles.view(), depth })?);
+    }
+    Ok(())
+}
+
+/// A stage may have handed on ambient occlusion of its own.
+pub(super) fn occlusion<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
+    frame: &mut Frame<W>,
+    handles: &mut Handles,
+    settings: Option<OcclusionSettings>,
+    (structure_levels, precision): (u8, Precision),
+) -> Result<(), StageError> {
+    match settings.filter(OcclusionSettings::occludes) {
+        Some(own) if handles.find(Slot::OCCLUSION).is_none() => {
+            occlusion::occlusion(frame, handles, &own, structure_levels, precision)
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A stage may have handed on reflections of its own.
+pub(super) fn reflection<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
+    frame: &mut Frame<W>,
+    handles: &mut Handles,
+    settings: Option<ReflectionSettings>,
+    structure: (Resolution, u8),
+    (levels, format): (u8, Format),
+) -> Result<(), StageError> {
+    match settings {
+        Some(own) if handles.find(Slot::REFLECTIONS).is_none() => {
+            reflections(frame, handles, &own, structure, levels, format)
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,163 @@
+//! Facts that only the GPU knows: they come some frames late, no frame waits for them, and nothing flickers.
+
+use super::TestResult;
+use crate::stage::{LIGHT, gpu};
+use framegraph_passes::facts::{Decision, Effect, Proof};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::measure::{Measure, Measurement};
+use framegraph_passes::view::ViewSettings;
+use framegraph_passes::{BloomSettings, DofSettings, Settings};
+use framegraph_wgpu::Gpu;
+use tests::measure::facts::late::InARow;
+use tests::measure::facts::{Drawn, SIZE_PX, cases};
+
+/// A frame of one effect.
+const BARE: Settings = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
+
+fn row(gpu: &Gpu, name: &str) -> Result<InARow, Box<dyn std::error::Error>> {
+    let case = cases().into_iter().find(|case| case.name == name).ok_or("a case")?;
+    Ok(InARow::new(gpu, Drawn::new(gpu, case, &Cache::at(LIGHT))?))
+}
+
+/// The ball under light from all around that is so many times as bright; at 1 the sky is 1.15 before grading.
+fn lit(row: &InARow, times: f32) -> ViewSettings {
+    ViewSettings { environment_intensity: times, ..row.case().view(&BARE, SIZE_PX) }
+}
+
+fn glowing() -> Settings {
+    Settings { bloom: Some(BloomSettings::DEFAULT), ..BARE }
+}
+
+/// The sky and the ball are measured as bright as they are, and as near; the sky is infinitely far away. The picture is not
+/// of a size that eight divides.
+#[test]
+fn light_and_distances_are_measured() -> TestResult {
+    let Some(gpu) = gpu("light_and_distances_are_measured") else { return Ok(()) };
+    let mut row = row(&gpu, "ball")?;
+    let asked = Settings {
+        dof: Some(DofSettings { f_number: 0.5, focal_length_m: Some(0.5), ..DofSettings::DEFAULT }),
+        ..glowing()
+    };
+    for size_px in [[64, 64], [75, 41], [7, 1]] {
+        let seen = ViewSettings { size_px, ..lit(&row, 1.0) };
+        let (facts, _) = row.next(&asked.for_scene(&row.case().scene, size_px), &seen)?;
+        assert_eq!(facts.measure, Measure { light: true, depth: true });
+        row.show()?;
+        gpu.wait()?;
+        let Measurement::Known(found) = row.measuring.known(&gpu)? else { return Err("nothing has come".into()) };
+        let (nits, [near, far]) = (found.most_nits.ok_or("light")?, found.distances_m.ok_or("depth")?);
+        // Half floats hold radiance to a 2048th; the sky of 2000 nits is the brightest.
+        assert!((nits / 2000.0 - 1.0).abs() < 2e-3, "{size_px:?}: {nits} nits");
+        assert_eq!(far, f64::INFINITY, "{size_px:?}");
+        // The camera is 3.3 m from the middle of the ball, whose radius is half a meter, of 24 segments.
+        let expected = 3.306 - 0.5;
+        let nearest = if size_px == [7, 1] { 0.05 } else { 0.01 };
+        assert!((near - expected).abs() < nearest, "{size_px:?}: {near} m");
+    }
+    Ok(())
+}
+
+/// Bloom goes where twice the light is below its threshold, and the picture keeps every bit; it stays where it is not.
+#[test]
+fn bloom_goes_where_nothing_was_bright() -> TestResult {
+    let Some(gpu) = gpu("bloom_goes_where_nothing_was_bright") else { return Ok(()) };
+    // Twice 1.15 times the factor reaches 1 at 0.434.
+    for (times, decision) in [(0.42, Decision::Dropped), (0.45, Decision::Kept), (2.0, Decision::Kept)] {
+        let mut row = row(&gpu, "ball")?;
+        let seen = lit(&row, times);
+        let asked = glowing();
+        let (first, measured) = row.next(&asked, &seen)?;
+        let fact = first.of(Effect::Bloom).ok_or("bloom")?;
+        assert!(measured == Measurement::Unknown && fact.decision == Decision::Kept, "{fact:?}");
+        assert!(fact.reason.ends_with("no measure of it has come yet"), "{fact:?}");
+        let with = row.picture()?;
+        row.show()?;
+        gpu.wait()?;
+        row.forget();
+        let (second, _) = row.next(&asked, &seen)?;
+        let fact = second.of(Effect::Bloom).ok_or("bloom")?;
+        assert_eq!((fact.decision, fact.proof), (decision, Proof::Late), "{times}: {fact:?}");
+        assert!(second.measure.light, "it is measured on, so that bloom can come back");
+        let notes = second.json(&[]);
+        assert!(notes.contains("at most a frame ago, and what glows begins at 1.00"), "{notes}");
+        assert!(row.picture()? == with, "{times}: the picture is another");
+    }
+    Ok(())
+}
+
+/// The floor fills the picture: by its box and the sky behind it nothing is known, by its depth all is in focus, or is not.
+#[test]
+fn depth_of_field_goes_where_all_was_in_focus() -> TestResult {
+    let Some(gpu) = gpu("depth_of_field_goes_where_all_was_in_focus") else { return Ok(()) };
+    for (f_number, decision) in [(64.0, Decision::Dropped), (1.0, Decision::Kept)] {
+        let mut row = row(&gpu, "floor")?;
+        let seen = row.case().view(&BARE, SIZE_PX);
+        // Close to what is seen, so that the sky, by its bound, is out of focus at either aperture.
+        let focal_length_m = Some(0.2);
+        let own = DofSettings { focus_m: 2.1, f_number, focal_length_m, ..DofSettings::DEFAULT };
+        let asked = Settings { dof: Some(own), ..BARE };
+        let (first, _) = row.next(&asked, &seen)?;
+        assert_eq!(first.of(Effect::DepthOfField).ok_or("dof")?.decision, Decision::Kept);
+        let with = row.picture()?;
+        row.show()?;
+        gpu.wait()?;
+        row.forget();
+        let (second, _) = row.next(&asked, &seen)?;
+        let fact = second.of(Effect::DepthOfField).ok_or("dof")?;
+        assert_eq!((fact.decision, fact.proof), (decision, Proof::Late), "{f_number}: {fact:?}");
+        assert!(decision == Decision::Kept || row.picture()? == with, "{f_number}: the picture is another");
+    }
+    Ok(())
+}
+
+/// Light that grows over 64 frames and trembles by 5 % on its way: bloom goes once, comes once, and does not come and go with
+/// every tremor as it does if nothing is remembered. No frame waits for the device.
+#[test]
+fn a_slow_crossing_neither_flickers_nor_waits() -> TestResult {
+    let Some(gpu) = gpu("a_slow_crossing_neither_flickers_nor_waits") else { return Ok(()) };
+    let crossing = |remembers: bool| -> Result<Vec<Decision>, Box<dyn std::error::Error>> {
+        let mut row = row(&gpu, "ball")?;
+        let (asked, waited) = (glowing(), gpu.waits());
+        let mut decided = Vec::new();
+        for frame in 0..64_u8 {
+            let tremor = if frame % 2 == 0 { 1.05 } else { 0.95 };
+            let seen = lit(&row, (0.3 + 0.3 * f32::from(frame) / 63.0) * tremor);
+            let (facts, measured) = row.next(&asked, &seen)?;
+            let late = matches!(measured, Measurement::Known(found) if found.frames_ago <= 3);
+            assert!(late || frame < 3, "frame {frame}: {measured:?}");
+            decided.push(facts.of(Effect::Bloom).ok_or("bloom")?.decision);
+            if !remembers {
+                row.forget();
+            }
+            row.show()?;
+        }
+        let counts = row.measuring.counts();
+        assert!(counts.begun == 64 && counts.left_out == 0 && counts.come >= 62, "{counts:?}");
+        assert_eq!(gpu.waits() - waited, 0, "a frame has waited");
+        Ok(decided)
+    };
+    let changes = |decided: &[Decision]| decided.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    let remembered = crossing(true)?;
+    assert_eq!(changes(&remembered), 2, "{remembered:?}");
+    assert_eq!((remembered[0], remembered[63]), (Decision::Kept, Decision::Kept));
+    assert!(changes(&crossing(false)?) > 2);
+    Ok(())
+}
+
+/// A light that goes on at once has its bloom within four frames.
+#[test]
+fn what_comes_suddenly_glows_some_frames_late() -> TestResult {
+    let Some(gpu) = gpu("what_comes_suddenly_glows_some_frames_late") else { return Ok(()) };
+    let mut row = row(&gpu, "ball")?;
+    let mut decided = |times: f32| -> Result<Decision, Box<dyn std::error::Error>> {
+        let seen = lit(&row, times);
+        let (facts, _) = row.next(&glowing(), &seen)?;
+        row.show()?;
+        Ok(facts.of(Effect::Bloom).ok_or("bloom")?.decision)
+    };
+    let dark: Vec<Decision> = (0..16).map(|_| decided(0.1)).collect::<Result<_, _>>()?;
+    assert_eq!(dark[15], Decision::Dropped, "{dark:?}");
+    let bright: Vec<Decision> = (0..4).map(|_| decided(2.0)).collect::<Result<_, _>>()?;
+    assert_eq!(bright[3], Decision::Kept, "{bright:?}");
+    Ok(())
+}
