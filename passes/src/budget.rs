@@ -14,7 +14,7 @@ mod select;
 mod settle;
 
 pub use groups::{FrameOption, GROUPS, Group, reference};
-pub use measured::{Measured, MeasuredError, MeasuredGroup, MeasuredOption, MeasuredPair};
+pub use measured::{Choices, Measured, MeasuredError, MeasuredGroup, MeasuredOption, MeasuredPair};
 pub use rate::FrameRate;
 pub use select::{Chosen, Offer, Offers, Pair};
 pub use settle::{Bound, Settled, Trial, settle};

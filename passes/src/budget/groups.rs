@@ -153,11 +153,11 @@ impl Group {
         self.options.iter().find(|option| option.name == name)
     }
 
-    /// Whether the facts leave out everything that it is about, of what the reference asks for: then every option is the
-    /// same frame, which costs and errs nothing.
+    /// Whether nothing that it is about is left of the reference, because the scene has no use for it: then every option is
+    /// the same frame, which costs and errs nothing. Facts without a row were not asked for, and leave out nothing.
     pub fn is_dropped(&self, of_reference: &Facts) -> bool {
-        let mut asked = self.effects.iter().filter_map(|effect| of_reference.of(*effect)).peekable();
-        asked.peek().is_some() && asked.all(|fact| fact.decision == Decision::Dropped)
+        let gone = |effect: &Effect| of_reference.of(*effect).is_none_or(|fact| fact.decision == Decision::Dropped);
+        !of_reference.rows.is_empty() && !self.effects.is_empty() && self.effects.iter().all(gone)
     }
 }
 

@@ -60,6 +60,19 @@ impl Offers {
         Chosen { options: options.to_vec(), ms: sum.ms, squares: sum.squares }
     }
 
+    /// Scales what options take beyond the fastest frame, so that a set takes what it did, by a factor of four at most: one
+    /// measurement is not believed beyond. Of the fastest frame it is that frame's time.
+    pub fn scale_to(&mut self, options: &[usize], took_ms: f64) {
+        let (predicted, found) = (self.predicted(options).ms - self.fastest_ms, took_ms - self.fastest_ms);
+        if predicted <= 0.0 {
+            self.fastest_ms = took_ms;
+            return;
+        }
+        let scale = (found / predicted).clamp(0.25, 4.0);
+        self.groups.iter_mut().flatten().for_each(|offer| offer.ms *= scale);
+        self.pairs.iter_mut().for_each(|pair| pair.beyond.ms *= scale);
+    }
+
     /// The option of each group that errs least: the reference.
     pub fn finest(&self) -> Vec<usize> {
         self.groups.iter().map(|group| least(group, |offer| offer.squares)).collect()

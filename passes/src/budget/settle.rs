@@ -66,7 +66,7 @@ pub fn settle<E>(
             Bound::Ms(ms) => trial.ms <= ms,
             Bound::Codes(codes) => trial.squares <= codes * codes,
         };
-        learn_time(offers, &chosen, trial.ms);
+        offers.scale_to(&chosen.options, trial.ms);
         let off = (trial.squares.sqrt() - chosen.codes()).abs() > OFF * trial.squares.sqrt();
         let paired = match pair_of(offers, &chosen.options).filter(|_| off) {
             Some(at) => {
@@ -87,19 +87,6 @@ pub fn settle<E>(
     };
     let best = |holds: bool| tried.iter().filter(|set| set.holds == holds).min_by(|a, b| better(a, b)).cloned();
     Ok(best(true).or_else(|| best(false)).expect("the first round tries a set"))
-}
-
-/// Scales what options take beyond the fastest frame, so that the set takes what it did.
-fn learn_time(offers: &mut Offers, chosen: &Chosen, ms: f64) {
-    let (predicted, found) = (chosen.ms - offers.fastest_ms, ms - offers.fastest_ms);
-    if predicted <= 0.0 {
-        offers.fastest_ms = ms;
-        return;
-    }
-    // One trial is not believed beyond a factor of four.
-    let scale = (found / predicted).clamp(0.25, 4.0);
-    offers.groups.iter_mut().flatten().for_each(|offer| offer.ms *= scale);
-    offers.pairs.iter_mut().for_each(|pair| pair.beyond.ms *= scale);
 }
 
 /// The two options of a set that err most, where no pair of them is known.

@@ -4,6 +4,7 @@ use super::guard::guards;
 use super::judge::Questions;
 use super::probe;
 use super::rows::{Place, ROWS};
+use super::strict::strict;
 use framegraph_wgpu::Gpu;
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -123,7 +124,13 @@ pub fn kept(gpu: &Gpu, start: usize, step: usize) -> Result<Vec<Kept>, Box<dyn E
             });
             let chosen = (count - 1) % step == start % step;
             if place.by.is_none() && (step == 1 || chosen) {
-                place.by = questions.failures(gpu, &guard.removed_from(&wgsl))?.into_iter().next().map(|f| f.name);
+                let without = guard.removed_from(&wgsl);
+                place.by = questions.failures(gpu, &without)?.into_iter().next().map(|f| f.name);
+                // As a driver may read it, where the guarded function itself is sound so.
+                if place.by.is_none() && questions.failures(gpu, &strict(&wgsl, case.function))?.is_empty() {
+                    let failed = questions.failures(gpu, &strict(&without, case.function))?;
+                    place.by = failed.into_iter().next().map(|f| format!("{}, read strictly", f.name));
+                }
             }
         }
     }
