@@ -183,14 +183,14 @@ fn fog() -> Technique {
 }
 
 fn froxels() -> Technique {
-    let mut truth = base("lamps");
+    let mut truth = base("lamps:250");
     (truth.lights, truth.ev100) = (LightSearch::All, 8.0);
     fn cut(setup: &mut Setup, tiles: u32, slices: u32) {
         setup.lights = LightSearch::Froxels(FroxelSettings { tiles, slices, ..FroxelSettings::DEFAULT });
     }
     pictures(
         "froxel-resolution",
-        "Tiles of the picture and slices of distance that lamps are listed for; coarser lists are longer.",
+        "Tiles of the picture and slices of distance that 250 lamps are listed for; coarser lists are longer.",
         ("every lamp looked at everywhere.", Truth::Frame(truth)),
         truth,
         &[
