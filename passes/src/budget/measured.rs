@@ -147,13 +147,11 @@ mod tests {
             let options = group.options.iter().enumerate().map(option).collect();
             MeasuredGroup { name: group.name.to_owned(), scene: "columns".to_owned(), options }
         };
-        let pair = MeasuredPair { options: [["edges", "none"], ["occlusion", "none"]].map(|p| p.map(str::to_owned)), squares: 1.5 };
-        Measured {
-            fastest_ms: 5.0,
-            reference_ms: 20.0,
-            groups: GROUPS.iter().map(group).collect(),
-            pairs: vec![pair],
-        }
+        let pair = MeasuredPair {
+            options: [["edges", "none"], ["occlusion", "none"]].map(|p| p.map(str::to_owned)),
+            squares: 1.5,
+        };
+        Measured { fastest_ms: 5.0, reference_ms: 20.0, groups: GROUPS.iter().map(group).collect(), pairs: vec![pair] }
     }
 
     #[test]
@@ -172,7 +170,11 @@ mod tests {
         assert!(left.len() == GROUPS.len() - 1 && left.iter().all(|(group, _)| group.name != "occlusion"));
         assert!(measured().offers(&left, 10.0, 20.0).pairs.is_empty(), "its pair is out of the question");
         facts.rows = vec![row(Effect::Msaa, Decision::Kept), row(Effect::Fxaa, Decision::Dropped)];
-        assert_eq!(measured().choices(&facts, |_| true).expect("known names").len(), GROUPS.len(), "one of both is there");
+        assert_eq!(
+            measured().choices(&facts, |_| true).expect("known names").len(),
+            GROUPS.len(),
+            "one of both is there"
+        );
     }
 
     #[test]

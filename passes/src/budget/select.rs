@@ -88,8 +88,10 @@ impl Offers {
     /// another beats in both go.
     pub fn front(&self) -> Vec<Chosen> {
         let paired = |index: usize| self.pairs.iter().any(|pair| pair.at.iter().any(|[group, _]| *group == index));
-        let order: Vec<usize> =
-            (0..self.groups.len()).filter(|i| paired(*i)).chain((0..self.groups.len()).filter(|i| !paired(*i))).collect();
+        let order: Vec<usize> = (0..self.groups.len())
+            .filter(|i| paired(*i))
+            .chain((0..self.groups.len()).filter(|i| !paired(*i)))
+            .collect();
         let start = Offer { ms: self.fastest_ms, squares: 0.0 };
         let mut sets: Vec<(Vec<usize>, Offer)> = vec![(vec![0; self.groups.len()], start)];
         for (rank, index) in order.iter().enumerate() {
@@ -102,9 +104,8 @@ impl Offers {
                     let known = &order[..=rank];
                     for pair in &self.pairs {
                         let now = pair.at.iter().any(|[group, _]| group == index);
-                        let whole = pair.at.iter().all(|[group, option]| {
-                            known.contains(group) && options[*group] == *option
-                        });
+                        let whole =
+                            pair.at.iter().all(|[group, option]| known.contains(group) && options[*group] == *option);
                         if now && whole {
                             add(&mut sum, pair.beyond);
                         }

@@ -117,7 +117,8 @@ mod tests {
     use super::*;
 
     fn offers() -> Offers {
-        let group = |offers: &[[f64; 2]]| offers.iter().map(|[ms, squares]| Offer { ms: *ms, squares: *squares }).collect();
+        let group =
+            |offers: &[[f64; 2]]| offers.iter().map(|[ms, squares]| Offer { ms: *ms, squares: *squares }).collect();
         let groups = vec![
             group(&[[0.0, 4.0], [1.0, 1.0], [4.0, 0.0]]),
             group(&[[0.0, 9.0], [2.0, 0.0]]),
@@ -145,7 +146,10 @@ mod tests {
                     let mut swapped = settled.chosen.options.clone();
                     swapped[group] = option;
                     let trial = device(&swapped);
-                    assert!(trial.ms > AIM * bound || trial.squares >= settled.trial.squares, "{bound} ms: {swapped:?}");
+                    assert!(
+                        trial.ms > AIM * bound || trial.squares >= settled.trial.squares,
+                        "{bound} ms: {swapped:?}"
+                    );
                 }
             }
         }

@@ -66,7 +66,8 @@ mod tests {
 
     #[test]
     fn calls_of_one_function_are_read_strictly() {
-        let text = "fn g(x: f32) -> f32 { return log2(x); }\nfn f(x: f32) -> f32 { return saturate(log2(max(x, 1.0))); }";
+        let text =
+            "fn g(x: f32) -> f32 { return log2(x); }\nfn f(x: f32) -> f32 { return saturate(log2(max(x, 1.0))); }";
         let read = strict(text, "f");
         assert!(read.starts_with("fn g(x: f32) -> f32 { return log2(x); }\n"), "{read}");
         assert!(read.contains("select((x) + (1.0), max(x, 1.0), ((x) == (x)) & ((1.0) == (1.0)))"), "{read}");

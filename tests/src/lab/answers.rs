@@ -2,7 +2,7 @@
 
 use super::markdown::number;
 use super::record::{ChoiceRecord, Record};
-use framegraph_passes::budget::{Chosen, Choices, Measured, Offers};
+use framegraph_passes::budget::{Choices, Chosen, Measured, Offers};
 use framegraph_passes::{Facts, FrameSettings, Preset};
 use std::fmt::Write as _;
 
@@ -14,11 +14,18 @@ pub fn taps(record: &Record) -> String {
     let told = |choice: &ChoiceRecord| {
         let ms = choice.ms.map_or_else(|| "was not timed".to_owned(), |ms| format!("takes {} ms", number(ms.median)));
         let step = choice.steps.iter().find(|step| step.passes.split(" + ").any(|pass| pass == "occlusion"));
-        let step = step.map_or_else(String::new, |step| format!(", {} of them the step `occlusion`", number(step.median)));
+        let step =
+            step.map_or_else(String::new, |step| format!(", {} of them the step `occlusion`", number(step.median)));
         let noise = choice.noise.map_or_else(String::new, |noise| format!(", of which noise {}", number(noise)));
         let presets = choice.presets.join(" and ");
-        let presets = if presets.is_empty() { "no preset has it".to_owned() } else { format!("preset {presets} has it") };
-        format!("**{}** errs by {} ({}{noise}), a frame {ms}{step}, and {presets}", choice.name, number(choice.error), technique.unit)
+        let presets =
+            if presets.is_empty() { "no preset has it".to_owned() } else { format!("preset {presets} has it") };
+        format!(
+            "**{}** errs by {} ({}{noise}), a frame {ms}{step}, and {presets}",
+            choice.name,
+            number(choice.error),
+            technique.unit
+        )
     };
     let same = few.ms.zip(many.ms).is_some_and(|(a, b)| !a.differs_from(&b));
     let same = if same { " The two times are not distinguishable in this record." } else { "" };
@@ -109,11 +116,13 @@ fn preset_rows(choices: &Choices, offers: &Offers) -> String {
             || (codes, String::new()),
             |best| {
                 let other = choices.iter().zip(best.options.iter().zip(&set)).filter(|(_, (a, b))| a != b);
-                let names = other.map(|((group, options), (index, _))| format!("{}: {}", group.name, options[*index].name));
+                let names =
+                    other.map(|((group, options), (index, _))| format!("{}: {}", group.name, options[*index].name));
                 (best.codes(), names.collect::<Vec<_>>().join("; "))
             },
         );
-        let _ = writeln!(text, "| {} | {} | {} | {} | {differs} |", preset.name(), number(codes), number(ms), number(best));
+        let _ =
+            writeln!(text, "| {} | {} | {} | {} | {differs} |", preset.name(), number(codes), number(ms), number(best));
     }
     text
 }
@@ -125,7 +134,8 @@ mod tests {
 
     #[test]
     fn every_preset_is_a_set_of_the_groups() {
-        let all: Choices = GROUPS.iter().map(|group| (group, group.options.iter().collect::<Vec<&FrameOption>>())).collect();
+        let all: Choices =
+            GROUPS.iter().map(|group| (group, group.options.iter().collect::<Vec<&FrameOption>>())).collect();
         for preset in Preset::ALL {
             let set = set_of(&all, &preset.frame());
             assert!(set.iter().all(Option::is_some), "{}: {set:?}", preset.name());

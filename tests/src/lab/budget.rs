@@ -6,8 +6,8 @@ use super::studio::{Ready, Setup, Studio, codes, times};
 use super::technique::Outcome;
 use crate::reference::picture::Picture;
 use framegraph_passes::budget::{
-    Bound, Choices, FrameOption, GROUPS, Group, Measured, MeasuredGroup, MeasuredOption, MeasuredPair, Offers, Trial, reference,
-    settle,
+    Bound, Choices, FrameOption, GROUPS, Group, Measured, MeasuredGroup, MeasuredOption, MeasuredPair, Offers, Trial,
+    reference, settle,
 };
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::shadow::ShadowSettings;
@@ -136,37 +136,43 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// What the device refuses.
     pub fn measured(&mut self) -> Outcome<Measured> {
-        let gpu = self.studio.gpu;
         let mut measured = Measured::default();
         let mut facts = Vec::new();
         for scene in SCENES {
             facts.push((scene, self.ready(scene, &finest())?.facts()));
         }
         let cheapest = with(GROUPS.iter().filter_map(|group| self.options(group).first().copied()));
-        let mut frames: Vec<(&'static str, FrameSettings)> = vec![(SCENES[0], cheapest)];
-        frames.extend(SCENES.map(|scene| (scene, finest())));
+        let ends = self.timed(&[(SCENES[0], cheapest), (SCENES[0], finest())])?;
+        (measured.fastest_ms, measured.reference_ms) = (ends[0], ends[1]);
         for group in &GROUPS {
             let calls = |(_, facts): &&(&str, _)| !group.is_dropped(facts);
             let scene = facts.iter().find(calls).map_or(SCENES[0], |(scene, _)| scene);
-            let mut options = Vec::new();
-            for option in self.options(group) {
-                let codes = self.squares(scene, &with([option]))?.sqrt();
-                options.push(MeasuredOption { name: option.name.to_owned(), ms: 0.0, codes });
-                frames.push((scene, with([option])));
+            let options = self.options(group);
+            let frames: Vec<_> = options.iter().map(|option| (scene, with([*option]))).collect();
+            let timed = self.timed(&frames)?;
+            let mut found = Vec::new();
+            for ((option, (scene, frame)), ms) in options.iter().zip(&frames).zip(timed) {
+                let codes = self.squares(scene, frame)?.sqrt();
+                found.push(MeasuredOption { name: option.name.to_owned(), ms, codes });
                 program::interrupt::check()?;
             }
-            measured.groups.push(MeasuredGroup { name: group.name.to_owned(), scene: scene.to_owned(), options });
+            measured.groups.push(MeasuredGroup {
+                name: group.name.to_owned(),
+                scene: scene.to_owned(),
+                options: found,
+            });
         }
+        self.learn_pairs(&mut measured)?;
+        Ok(measured)
+    }
+
+    /// Median times of frames in ms, drawn in turn: the finest option of a group is the reference, so a group has its own.
+    fn timed(&self, frames: &[(&'static str, FrameSettings)]) -> Outcome<Vec<f64>> {
         let prepare = |(scene, frame): &(&'static str, FrameSettings)| {
             self.studio.prepare(&setup(scene, frame), self.studio.size_px)
         };
         let mut ready = frames.iter().map(prepare).collect::<Outcome<Vec<_>>>()?;
-        let timed: Vec<f64> = times(gpu, &mut ready, WARM_UP, TIMED)?.iter().map(|times| times.median).collect();
-        (measured.fastest_ms, measured.reference_ms) = (timed[0], timed[1]);
-        let options = measured.groups.iter_mut().flat_map(|group| &mut group.options);
-        options.zip(&timed[1 + SCENES.len()..]).for_each(|(option, ms)| option.ms = *ms);
-        self.learn_pairs(&mut measured)?;
-        Ok(measured)
+        Ok(times(self.studio.gpu, &mut ready, WARM_UP, TIMED)?.iter().map(|times| times.median).collect())
     }
 
     /// Those that the device has.
@@ -193,9 +199,8 @@ impl<'a> Bench<'a> {
                 Ok::<_, Box<dyn std::error::Error>>(Trial { ms: asked.predicted(set).ms, squares })
             })?;
         }
-        let name = |[group, option]: [usize; 2]| {
-            [choices[group].0.name.to_owned(), choices[group].1[option].name.to_owned()]
-        };
+        let name =
+            |[group, option]: [usize; 2]| [choices[group].0.name.to_owned(), choices[group].1[option].name.to_owned()];
         let pairs = offers.pairs.iter();
         measured.pairs =
             pairs.map(|pair| MeasuredPair { options: pair.at.map(name), squares: pair.beyond.squares }).collect();

@@ -19,11 +19,7 @@ pub const TIMED: u32 = 31;
 ///
 /// # Errors
 /// What the device refuses, in its words; that a picture cannot be written.
-pub fn measure(
-    studio: &Studio<'_>,
-    technique: &Technique,
-    pictures: &Path,
-) -> Outcome<TechniqueRecord> {
+pub fn measure(studio: &Studio<'_>, technique: &Technique, pictures: &Path) -> Outcome<TechniqueRecord> {
     let truth = technique.picture.as_ref().map(|truth| studio.truth(truth)).transpose()?;
     let mut choices = Vec::new();
     let (mut timed, mut ready) = (Vec::new(), Vec::new());

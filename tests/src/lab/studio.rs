@@ -9,11 +9,14 @@ use framegraph_passes::facts::{Around, Survey, decide};
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, EffectSet, FactInput, FactMemory, Facts, FrameIndex, LightSearch, Lighting, Settings, ViewId, World, standard};
+use framegraph_passes::{
+    CameraView, EffectSet, FactInput, FactMemory, Facts, FrameIndex, LightSearch, Lighting, Settings, ViewId, World,
+    standard,
+};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Light, Scene, progress};
 use framegraph_shaders::reference::srgb::{linear_from_srgb_channel, srgb_from_linear_channel};
-use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Executor, ExecutorOptions, Frame, Gpu, Imports, read_texture};
 use glam::{DVec2, Vec3};
 use std::cell::RefCell;
 use std::path::PathBuf;
@@ -110,7 +113,9 @@ impl<'a> Studio<'a> {
         let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
         let world = World::new(self.gpu, &scene, lighting, [view], &mut progress::silent)?;
         let (frame, plan, output) = self.declared(&setup.settings, &scene, size_px)?;
-        let executor = Executor::new(self.gpu);
+        // One frame is drawn again and again, or many frames a few times each: what is not drawn any more goes.
+        let options = ExecutorOptions { max_age: 4, max_pipeline_age: 16, ..ExecutorOptions::default() };
+        let executor = Executor::with(self.gpu, options);
         let settings = setup.settings;
         Ok(Ready { scene, moment, world, frame, plan, executor, output, size_px, settings, drawn: 0 })
     }

@@ -82,12 +82,11 @@ const fn edge(lens: bool, stage: &'static str, slot: Slot, reach: Option<i32>, s
 }
 
 /// The edge filter reaches 7 pixels, the upsampling of occlusion one more; what is added up over time is looked at 3×3.
-const EDGES: [Edge; 9] = [
+const EDGES: [Edge; 8] = [
     edge(false, "occlusion", Slot::OCCLUSION, Some(9), 0),
     edge(false, "color", Slot::HDR, None, 1),
     edge(false, "transparent", Slot::HDR, Some(8), 1),
     edge(false, "post", Slot::PICTURE, Some(8), 0),
-    edge(false, "fxaa", Slot::PICTURE, Some(0), 0),
     edge(true, "transparent", Slot::HDR, None, 1),
     edge(true, "taa", Slot::HDR, None, 1),
     edge(true, "dof", Slot::HDR, None, 1),

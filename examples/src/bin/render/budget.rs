@@ -77,7 +77,9 @@ fn record(file: Option<&PathBuf>) -> Result<(Measured, String), String> {
     };
     let Record { schema, version, adapter, budget } = serde_json::from_str(text).map_err(|error| told(&error))?;
     if (schema.as_str(), version) != ("framegraph-accuracy", 2) {
-        return Err(told(&format!("it is {schema} of version {version}, and framegraph-accuracy of version 2 is read")));
+        return Err(told(&format!(
+            "it is {schema} of version {version}, and framegraph-accuracy of version 2 is read"
+        )));
     }
     let budget = budget.ok_or_else(|| told(&"it has no `budget`; run `accuracy` to its end"))?;
     Ok((budget, adapter.unwrap_or_default()))

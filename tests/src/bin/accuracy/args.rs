@@ -111,5 +111,7 @@ fn positive(text: &str) -> Result<f64, String> {
 
 fn scene(name: &str) -> Result<&'static str, String> {
     let known = builtin::NAMES.into_iter().find(|known| *known == name);
-    known.ok_or_else(|| format!("--scene {name}: there is no such built-in scene; there are {}", builtin::NAMES.join(", ")))
+    known.ok_or_else(|| {
+        format!("--scene {name}: there is no such built-in scene; there are {}", builtin::NAMES.join(", "))
+    })
 }

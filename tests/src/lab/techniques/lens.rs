@@ -178,7 +178,8 @@ fn fog() -> Technique {
         of("the mean of the whole way, Filament's", false),
         of("the mean of what is in fog, the default", true),
     ];
-    let what = "Opacity of fog whose density falls with height and that begins 5 m from the eye, over ways of 1 to 100 m.";
+    let what =
+        "Opacity of fog whose density falls with height and that begins 5 m from the eye, over ways of 1 to 100 m.";
     formula("fog", what, "the way in 4,096 steps, in f64.", "opacity, RMS", choices)
 }
 
@@ -197,11 +198,7 @@ fn froxels() -> Technique {
             ("24 tiles, 4 slices", |s| cut(s, 24, 4), nowhere),
             ("24 tiles, 16 slices", |s| cut(s, 24, 16), nowhere),
             ("144 tiles, 4 slices", |s| cut(s, 144, 4), nowhere),
-            (
-                "144 tiles, 16 slices",
-                |s| cut(s, 144, 16),
-                |f| f.lights == LightSearch::Auto(FroxelSettings::DEFAULT),
-            ),
+            ("144 tiles, 16 slices", |s| cut(s, 144, 16), |f| f.lights == LightSearch::Auto(FroxelSettings::DEFAULT)),
             ("144 tiles, 32 slices", |s| cut(s, 144, 32), nowhere),
         ],
     )

@@ -130,7 +130,8 @@ fn table_coordinates() -> Technique {
         choice("logarithmic, half a texel off", log, light, false),
         choice("linear", |grey| grey / BRIGHTEST, |x| x * BRIGHTEST, true),
     ];
-    let what = "What the axes of a table of 32 colors a side are even in: the default look of greys over sixteen stops.";
+    let what =
+        "What the axes of a table of 32 colors a side are even in: the default look of greys over sixteen stops.";
     formula("table-coordinates", what, "the look itself.", "codes, RMS", choices)
 }
 

@@ -43,7 +43,8 @@ fn diffuse() -> Technique {
             // Places even in the area of the disc under the hemisphere: each stands for as much of the cosine.
             let at = |i: u32| {
                 let (radius2, turn) = ((f64::from(i / 64) + 0.5) / 64.0, (f64::from(i % 64) + 0.5) / 64.0 * TAU);
-                let light = DVec3::new(radius2.sqrt() * turn.cos(), radius2.sqrt() * turn.sin(), (1.0 - radius2).sqrt());
+                let light =
+                    DVec3::new(radius2.sqrt() * turn.cos(), radius2.sqrt() * turn.sin(), (1.0 - radius2).sqrt());
                 lobe(nov, light.z, light.dot((light + view).normalize()), roughness)
             };
             (0..4096).map(at).sum::<f64>() / 4096.0
@@ -78,10 +79,8 @@ fn table_fit() -> Technique {
         let apart = grid.map(|(nov, roughness)| karis(nov, roughness) - ggx(nov, roughness, Masking::Smith)[1]);
         Ok(off(&apart.collect::<Vec<_>>()))
     };
-    let choices = vec![
-        number("a table of 64² texels", table).found_in(|_| true),
-        number("Karis's fit for phones", fit),
-    ];
+    let choices =
+        vec![number("a table of 64² texels", table).found_in(|_| true), number("Karis's fit for phones", fit)];
     let what = "Directional albedo at f0 = 1 from a table or from a fit, which was made for another masking and for dielectrics.";
     formula("table-fit", what, "the lobe's integral by quadrature.", "albedo, RMS", choices)
 }
