@@ -1,7 +1,7 @@
 //! What a newcomer asks, answered from a record: what more taps cost, what each preset has, what a budget buys.
 
-use super::markdown::number;
 use super::record::{ChoiceRecord, Record};
+use super::statistics::number;
 use framegraph_passes::budget::{Choices, Chosen, Measured, Offers};
 use framegraph_passes::{Facts, FrameSettings, Preset};
 use std::fmt::Write as _;

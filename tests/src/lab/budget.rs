@@ -2,7 +2,7 @@
 
 use super::run::{TIMED, WARM_UP};
 use super::statistics::quantile;
-use super::studio::{Ready, Setup, Studio, codes, times};
+use super::studio::{Ready, Setup, Studio, codes};
 use super::technique::Outcome;
 use crate::reference::picture::Picture;
 use framegraph_passes::budget::{
@@ -166,13 +166,32 @@ impl<'a> Bench<'a> {
         Ok(measured)
     }
 
-    /// Median times of frames in ms, drawn in turn: the finest option of a group is the reference, so a group has its own.
-    fn timed(&self, frames: &[(&'static str, FrameSettings)]) -> Outcome<Vec<f64>> {
-        let prepare = |(scene, frame): &(&'static str, FrameSettings)| {
-            self.studio.prepare(&setup(scene, frame), self.studio.size_px)
+    /// Median times of frames in ms, in three rounds of another order each: the finest option of a group is the reference, so a
+    /// group has its own. In a round a frame is drawn as often as it takes to warm up and to be timed, since drivers keep what
+    /// they compile for each executor, and one for each frame would take gigabytes.
+    fn timed(&mut self, frames: &[(&'static str, FrameSettings)]) -> Outcome<Vec<f64>> {
+        const ROUNDS: u32 = 3;
+        let gpu = self.studio.gpu;
+        let mut took = vec![Vec::new(); frames.len()];
+        for round in 0..ROUNDS {
+            for step in 0..frames.len() {
+                // Another one first each round, and every other round backwards.
+                let at = (step + round as usize) % frames.len();
+                let at = if round % 2 == 1 { frames.len() - 1 - at } else { at };
+                let (scene, frame) = &frames[at];
+                let ready = self.ready(scene, frame)?;
+                for index in 0..WARM_UP.div_ceil(ROUNDS) + TIMED.div_ceil(ROUNDS) {
+                    let ms = ready.draw(gpu)?;
+                    took[at].extend((index >= WARM_UP.div_ceil(ROUNDS)).then_some(ms));
+                }
+                program::interrupt::check()?;
+            }
+        }
+        let median = |mut took: Vec<f64>| {
+            took.sort_by(f64::total_cmp);
+            quantile(&took, 0.5)
         };
-        let mut ready = frames.iter().map(prepare).collect::<Outcome<Vec<_>>>()?;
-        Ok(times(self.studio.gpu, &mut ready, WARM_UP, TIMED)?.iter().map(|times| times.median).collect())
+        Ok(took.into_iter().map(median).collect())
     }
 
     /// Those that the device has.

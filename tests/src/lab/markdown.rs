@@ -2,8 +2,9 @@
 
 use super::answers;
 use super::record::{ChoiceRecord, Record, TechniqueRecord};
+pub use super::statistics::number;
+
 use super::statistics::Times;
-use std::fmt::Write as _;
 
 /// The document.
 pub fn document(record: &Record) -> String {
@@ -121,19 +122,4 @@ fn cells(choice: &ChoiceRecord, best: bool, fastest: Option<Times>) -> [String; 
         operations,
         choice.presets.join(", "),
     ]
-}
-
-/// Three digits.
-pub fn number(x: f64) -> String {
-    if x == 0.0 {
-        return "0".to_owned();
-    }
-    let digits = (2 - x.abs().log10().floor() as i32).clamp(0, 9) as usize;
-    let mut text = String::new();
-    if x.abs() < 1e-4 {
-        let _ = write!(text, "{x:.2e}");
-    } else {
-        let _ = write!(text, "{x:.digits$}");
-    }
-    text
 }

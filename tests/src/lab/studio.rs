@@ -113,8 +113,8 @@ impl<'a> Studio<'a> {
         let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
         let world = World::new(self.gpu, &scene, lighting, [view], &mut progress::silent)?;
         let (frame, plan, output) = self.declared(&setup.settings, &scene, size_px)?;
-        // One frame is drawn again and again, or many frames a few times each: what is not drawn any more goes.
-        let options = ExecutorOptions { max_age: 4, max_pipeline_age: 16, ..ExecutorOptions::default() };
+        // Textures of a frame that is not drawn any more go; pipelines stay, since frames share them.
+        let options = ExecutorOptions { max_age: 4, ..ExecutorOptions::default() };
         let executor = Executor::with(self.gpu, options);
         let settings = setup.settings;
         Ok(Ready { scene, moment, world, frame, plan, executor, output, size_px, settings, drawn: 0 })
