@@ -27,6 +27,7 @@
 mod adapter;
 mod background;
 pub mod bloom;
+pub mod budget;
 pub mod choice;
 pub mod color;
 pub mod depth_resolve;

@@ -2,13 +2,14 @@
 //!
 //! A [`technique::Technique`] is a choice with its options, its truth and its metric; [`techniques`] has those of the standard
 //! frame, and a pass from outside brings its own. [`run`] measures them into a [`record::Record`], which
-//! [`markdown`] and [`html`] show and [`select`] chooses from. The program is `accuracy`.
+//! [`markdown`] and [`html`] show. [`budget`] measures what frames within a budget are chosen from, and how they turn out. The program is `accuracy`.
 
+pub mod answers;
+pub mod budget;
 pub mod html;
 pub mod markdown;
 pub mod record;
 pub mod run;
-pub mod select;
 pub mod statistics;
 pub mod studio;
 pub mod technique;

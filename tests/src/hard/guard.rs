@@ -25,14 +25,14 @@ impl Guard {
 }
 
 /// The bytes of a function's body in a shader's text.
-fn body(wgsl: &str, function: &str) -> Option<Range<usize>> {
+pub(super) fn body(wgsl: &str, function: &str) -> Option<Range<usize>> {
     let head = wgsl.find(&format!("fn {function}("))?;
     let open = head + wgsl[head..].find('{')?;
     Some(open..open + closing(&wgsl[open..])?)
 }
 
 /// Where the bracket that a text begins with is closed.
-fn closing(text: &str) -> Option<usize> {
+pub(super) fn closing(text: &str) -> Option<usize> {
     let mut depth = 0;
     for (at, c) in text.char_indices() {
         match c {
@@ -50,7 +50,7 @@ fn closing(text: &str) -> Option<usize> {
 }
 
 /// Arguments of a call, without the brackets around them.
-fn arguments(list: &str) -> Vec<&str> {
+pub(super) fn arguments(list: &str) -> Vec<&str> {
     let (mut depth, mut from, mut found) = (0_i32, 0, Vec::new());
     for (at, c) in list.char_indices() {
         match c {
@@ -72,7 +72,7 @@ fn arguments(list: &str) -> Vec<&str> {
 }
 
 /// Whether an expression is a number, or made of numbers and constants.
-fn is_constant(expression: &str) -> bool {
+pub(super) fn is_constant(expression: &str) -> bool {
     let words = expression.split(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.'));
     let known = |word: &str| {
         word.is_empty()

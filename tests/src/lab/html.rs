@@ -1,10 +1,12 @@
 //! A record as a page that needs no other file: plots of error against time, tables, and pictures.
 
+use super::answers;
 use super::markdown::number;
 use super::record::{Record, TechniqueRecord};
 use super::run::file_name;
 use super::technique::Outcome;
 use crate::reference::picture::Picture;
+use framegraph_passes::budget::Measured;
 use image::{ImageEncoder as _, codecs::png::PngEncoder};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -48,6 +50,10 @@ pub fn page(record: &Record, pictures: &Path) -> String {
         size_px[0],
         size_px[1]
     );
+    let _ = write!(text, "<p>{}</p>", escaped(&answers::taps(record)).replace("**", ""));
+    if let Some(measured) = &record.budget {
+        text.push_str(&budget(measured));
+    }
     for technique in &record.techniques {
         let TechniqueRecord { name, what, truth, .. } = technique;
         let _ = write!(text, "<h2 id={name}>{name}</h2><p>{} Truth: {}</p>", escaped(what), escaped(truth));
@@ -66,6 +72,34 @@ pub fn page(record: &Record, pictures: &Path) -> String {
         }
     }
     text
+}
+
+/// What options take and err by as parts of one frame, and a bar a group: how much of the reference's time its finest option
+/// takes beyond the cheapest.
+fn budget(measured: &Measured) -> String {
+    let mut text = format!(
+        "<h2 id=budget>budget</h2><p>Options as parts of one frame, each changed alone of the reference, which takes {} ms. \
+        Bars: of that time, what the option takes beyond its group's fastest.</p><table><tr><th>group<th>option<th>codes, \
+        RMS<th>ms<th>",
+        number(measured.reference_ms)
+    );
+    for group in &measured.groups {
+        let least = group.options.iter().map(|option| option.ms).fold(f64::INFINITY, f64::min);
+        for option in &group.options {
+            let share = 100.0 * (option.ms - least) / measured.reference_ms;
+            let _ = write!(
+                text,
+                "<tr><td>{}<td>{}<td>{}<td>{}<td><svg width=200 height=10 style=border:0><rect width={:.1} height=10 fill=#06c \
+                /></svg>",
+                escaped(&group.name),
+                escaped(&option.name),
+                number(option.codes),
+                number(option.ms),
+                2.0 * share.clamp(0.0, 100.0)
+            );
+        }
+    }
+    text + "</table>"
 }
 
 fn table(technique: &TechniqueRecord) -> String {
@@ -135,11 +169,19 @@ fn plot(technique: &TechniqueRecord) -> String {
         if choice.presets.iter().any(|preset| preset == "high") {
             let _ = write!(text, "<circle cx={x:.1} cy={y:.1} r=8 fill=none stroke=#c00 />");
         }
+    }
+    // From the top down, each under the one above it; those on the right end at their points.
+    let mut labels: Vec<_> = points.iter().collect();
+    labels.sort_by(|a, b| b.0.error.total_cmp(&a.0.error));
+    let mut above = 20.0_f64;
+    for (choice, best, ms) in labels {
+        let x = at_x(ms.median);
+        let (from, anchor) = if x > 0.55 * width { (x - 8.0, "end") } else { (x + 8.0, "start") };
+        above = (at_y(choice.error) - 6.0).max(above + 13.0);
         let _ = write!(
             text,
-            "<text x={:.1} y={:.1} fill={color}>{}: {}, {} ms</text>",
-            x + 8.0,
-            y - 6.0,
+            "<text x={from:.1} y={above:.1} text-anchor={anchor} fill={}>{}: {}, {} ms</text>",
+            if *best { "#06c" } else { "#777" },
             escaped(&choice.name),
             number(choice.error),
             number(ms.median)

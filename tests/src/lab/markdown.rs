@@ -1,12 +1,14 @@
 //! A record as a document: `accuracy.md`, which `docs/accuracy.md` is of a committed record.
 
+use super::answers;
 use super::record::{ChoiceRecord, Record, TechniqueRecord};
+pub use super::statistics::number;
+
 use super::statistics::Times;
-use std::fmt::Write as _;
 
 /// The document.
 pub fn document(record: &Record) -> String {
-    let Record { adapter, size_px, load, warm_up, repeats, quick, optimized, .. } = record;
+    let Record { adapter, size_px, load, warm_up, repeats, scene, quick, optimized, .. } = record;
     let mut text = format!(
         "# What accuracy costs\n\n\
         Printed by `cargo run {}-p tests --bin accuracy{}`; the numbers are those of the `accuracy.json` beside it. \
@@ -17,17 +19,25 @@ pub fn document(record: &Record) -> String {
         *Best* marks options that no other beats in both error and time (in operations where no frame is timed). Times are \
         medians with the interval that holds them in 95 of 100 resamplings; `≈` marks options whose interval overlaps \
         that of the fastest, which are not distinguishable from it. An error below three standard errors of the truth is not \
-        printed. Operations are those of the shader's function: arithmetic + transcendental + texture + conversion.\n\n",
+        printed. *Steps* is the sum of the medians of the frame's steps by the device's own clock, in which waiting and \
+        recording have no part. Operations are those of the shader's function: arithmetic + transcendental + texture + \
+        conversion.{}\n\n",
         if *optimized { "--release " } else { "" },
         if *quick { " -- --quick" } else { "" },
         size_px[0],
         size_px[1],
         load[0],
         load[1],
+        scene.as_ref().map_or_else(String::new, |scene| format!(" All pictures are of the scene `{scene}`.")),
     );
+    text.push_str(&answers::taps(record));
+    text.push_str("What presets have, where they differ:\n\n");
+    text.push_str(&answers::presets(record));
+    text.push_str("\nAll choices:\n\n");
     text.push_str("| choice | options | smallest to largest error | unit | fastest to slowest |\n| --- | --- | --- | --- | --- |\n");
     record.techniques.iter().for_each(|technique| text.push_str(&overview(technique)));
     record.techniques.iter().for_each(|technique| text.push_str(&section(technique)));
+    record.budget.iter().for_each(|measured| text.push_str(&answers::budget(measured)));
     text
 }
 
@@ -47,7 +57,7 @@ fn section(technique: &TechniqueRecord) -> String {
     let TechniqueRecord { name, what, truth, unit, choices } = technique;
     let mut text = format!("\n## {name}\n\n{what} Truth: {truth}\n\n");
     let any = |has: fn(&ChoiceRecord) -> bool| choices.iter().any(has);
-    let columns: [(&str, bool); 9] = [
+    let columns: [(&str, bool); 10] = [
         ("option", true),
         ("", true),
         (unit, true),
@@ -55,10 +65,11 @@ fn section(technique: &TechniqueRecord) -> String {
         ("noise", any(|c| c.noise.is_some())),
         ("worst, 99.9 %, PSNR, FLIP, relative MSE", any(|c| c.picture.is_some())),
         ("ms", any(|c| c.ms.is_some())),
+        ("steps, ms", any(|c| !c.steps.is_empty())),
         ("operations", any(|c| c.operations.is_some())),
         ("presets", any(|c| !c.presets.is_empty())),
     ];
-    let shown = |cells: [String; 9]| {
+    let shown = |cells: [String; 10]| {
         let kept = cells.into_iter().zip(columns).filter(|(_, (_, shown))| *shown).map(|(cell, _)| cell);
         format!("| {} |\n", kept.collect::<Vec<_>>().join(" | "))
     };
@@ -71,7 +82,7 @@ fn section(technique: &TechniqueRecord) -> String {
     text
 }
 
-fn cells(choice: &ChoiceRecord, best: bool, fastest: Option<Times>) -> [String; 9] {
+fn cells(choice: &ChoiceRecord, best: bool, fastest: Option<Times>) -> [String; 10] {
     let optional = |value: Option<f64>| value.map_or_else(String::new, number);
     let picture = choice.picture.map_or_else(String::new, |p| {
         let psnr = p.psnr_db.map_or_else(|| "∞".to_owned(), |db| format!("{db:.1} dB"));
@@ -89,6 +100,10 @@ fn cells(choice: &ChoiceRecord, best: bool, fastest: Option<Times>) -> [String; 
             number(t.p25)
         )
     });
+    let steps = match choice.steps.iter().map(|step| step.median).sum::<f64>() {
+        0.0 => String::new(),
+        ms => number(ms),
+    };
     let operations = choice.operations.map_or_else(String::new, |parts| parts.map(|n| n.to_string()).join(" + "));
     let error = if choice.is_void() {
         format!("below {}, the truth's own", number(3.0 * choice.truth_error))
@@ -103,22 +118,8 @@ fn cells(choice: &ChoiceRecord, best: bool, fastest: Option<Times>) -> [String; 
         optional(choice.noise),
         picture,
         ms,
+        steps,
         operations,
         choice.presets.join(", "),
     ]
-}
-
-/// Three digits.
-pub fn number(x: f64) -> String {
-    if x == 0.0 {
-        return "0".to_owned();
-    }
-    let digits = (2 - x.abs().log10().floor() as i32).clamp(0, 9) as usize;
-    let mut text = String::new();
-    if x.abs() < 1e-4 {
-        let _ = write!(text, "{x:.2e}");
-    } else {
-        let _ = write!(text, "{x:.digits$}");
-    }
-    text
 }

@@ -1,6 +1,7 @@
 //! What was measured, as a file: `accuracy.json`.
 
 use super::statistics::{Times, undominated};
+use framegraph_passes::budget::Measured;
 use serde::{Deserialize, Serialize};
 use std::error::Error;
 use std::path::Path;
@@ -8,7 +9,7 @@ use std::path::Path;
 /// The file's `schema`.
 pub const SCHEMA: &str = "framegraph-accuracy";
 /// Its `version`: another one is not read.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// All that was measured in one place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,16 +25,20 @@ pub struct Record {
     pub size_px: [u32; 2],
     /// Processors, and how many tasks wanted one when the measuring began, over a minute.
     pub load: [f64; 2],
-    /// Frames that are drawn before any is timed.
+    /// Frames of each choice that are drawn before any is timed.
     pub warm_up: u32,
     /// Timed frames of each choice, interleaved with those of the others in random order.
     pub repeats: u32,
+    /// The scene of all pictures; none where each technique has its own.
+    pub scene: Option<String>,
     /// Whether it is the short run.
     pub quick: bool,
     /// Whether the program was optimized; one that is not takes longer about every frame.
     pub optimized: bool,
     /// In the order of their list.
     pub techniques: Vec<TechniqueRecord>,
+    /// What frames are chosen from within a budget; none until all of it is measured.
+    pub budget: Option<Measured>,
 }
 
 /// A choice of the frame.
@@ -70,10 +75,26 @@ pub struct ChoiceRecord {
     pub picture: Option<PictureRecord>,
     /// Time of a whole frame.
     pub ms: Option<Times>,
+    /// Of a frame, where the device has a clock of its own.
+    pub steps: Vec<StepRecord>,
     /// Arithmetic, transcendental, texture and conversion operations of the shader's function.
     pub operations: Option<[u32; 4]>,
     /// Presets that have it.
     pub presets: Vec<String>,
+}
+
+/// Time of a step of a frame by the device's clock, in ms.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StepRecord {
+    /// Names of its passes, joined by ` + `.
+    pub passes: String,
+    /// The least.
+    pub min: f64,
+    /// A quarter is below.
+    pub p25: f64,
+    /// Half is below.
+    pub median: f64,
 }
 
 /// A picture against the truth.
@@ -90,6 +111,13 @@ pub struct PictureRecord {
     pub flip: f64,
     /// Mean of squares over (truth² + 0.01), of linear light.
     pub relative_mse: f64,
+}
+
+/// What every version begins with.
+#[derive(Deserialize)]
+struct Head {
+    schema: String,
+    version: u32,
 }
 
 impl ChoiceRecord {
@@ -118,16 +146,24 @@ impl Record {
     /// With the file's name, when it is missing, no such record, or of another version.
     pub fn read(path: &Path) -> Result<Self, Box<dyn Error>> {
         let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
-        let record: Self = serde_json::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
-        if record.schema != SCHEMA || record.version != VERSION {
-            let Self { schema, version, .. } = &record;
+        let told = |error| format!("{}: {error}", path.display());
+        // The version first: another one has other fields.
+        let Head { schema, version } = serde_json::from_str(&text).map_err(told)?;
+        if schema != SCHEMA || version != VERSION {
             return Err(format!(
                 "{}: it is {schema} of version {version}, and {SCHEMA} of version {VERSION} is read; measure anew",
                 path.display()
             )
             .into());
         }
-        Ok(record)
+        Ok(serde_json::from_str(&text).map_err(told)?)
+    }
+
+    /// Whether what one has measured may stand beside what the other has: all is the same but the results, and how busy the
+    /// machine was.
+    pub fn is_of_the_kind_of(&self, other: &Self) -> bool {
+        let kind = |of: &Self| Self { load: [0.0; 2], techniques: Vec::new(), budget: None, ..of.clone() };
+        kind(self) == kind(other)
     }
 
     /// As a file, a line each number of lines long that a person can read.

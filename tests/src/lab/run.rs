@@ -10,32 +10,16 @@ use framegraph_shaders::reference::cases;
 use framegraph_shaders::reflect::Operations;
 use std::path::Path;
 
-/// Frames that are drawn of each choice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Repeats {
-    /// Before any is timed.
-    pub warm_up: u32,
-    /// Timed.
-    pub timed: u32,
-}
-
-impl Repeats {
-    /// The short run's.
-    pub const QUICK: Self = Self { warm_up: 2, timed: 9 };
-    /// The long run's.
-    pub const FULL: Self = Self { warm_up: 10, timed: 31 };
-}
+/// Frames of each choice that are drawn before any is timed.
+pub const WARM_UP: u32 = 10;
+/// Timed frames of each choice.
+pub const TIMED: u32 = 31;
 
 /// Measures a technique; pictures go into `pictures`, a file a choice.
 ///
 /// # Errors
 /// What the device refuses, in its words; that a picture cannot be written.
-pub fn measure(
-    studio: &Studio<'_>,
-    technique: &Technique,
-    repeats: Repeats,
-    pictures: &Path,
-) -> Outcome<TechniqueRecord> {
+pub fn measure(studio: &Studio<'_>, technique: &Technique, pictures: &Path) -> Outcome<TechniqueRecord> {
     let truth = technique.picture.as_ref().map(|truth| studio.truth(truth)).transpose()?;
     let mut choices = Vec::new();
     let (mut timed, mut ready) = (Vec::new(), Vec::new());
@@ -52,8 +36,9 @@ pub fn measure(
         choices.push(record);
         program::interrupt::check()?;
     }
-    for (index, times) in timed.into_iter().zip(times(studio.gpu, &mut ready, repeats.warm_up, repeats.timed)?) {
-        choices[index].ms = Some(times);
+    let times = times(studio.gpu, &mut ready, WARM_UP, TIMED)?;
+    for ((index, times), mut ready) in timed.into_iter().zip(times).zip(ready) {
+        (choices[index].ms, choices[index].steps) = (Some(times), ready.steps()?);
     }
     let Technique { name, what, truth, unit, .. } = technique;
     Ok(TechniqueRecord { name: name.clone(), what: what.clone(), truth: truth.clone(), unit: unit.clone(), choices })
@@ -71,12 +56,13 @@ fn judged(
         Subject::Formula(measure) => (measure(studio.gpu)?, None),
         Subject::Picture => {
             let (truth, truth_error) = truth.ok_or("a picture with nothing to compare it with")?;
-            let ours = drawn.ok_or("a picture of no frame")?.picture(studio.gpu)?;
+            let drawn = drawn.ok_or("a picture of no frame")?;
+            let (ours, noise) = (drawn.picture(studio.gpu)?, drawn.trembles(studio.gpu)?);
             let (error, bias, picture) = compared(&ours, truth)?;
             let file = pictures.join(format!("{}.{}.png", technique.name, file_name(&choice.name)));
             std::fs::write(&file, strip(&ours, truth)?).map_err(|e| format!("{}: {e}", file.display()))?;
             let truth_error = *truth_error;
-            (Measured { error, bias: Some(bias), noise: None, truth_error }, Some(picture))
+            (Measured { error, bias: Some(bias), noise, truth_error }, Some(picture))
         }
     };
     let Measured { error, bias, noise, truth_error } = measured;
@@ -84,7 +70,8 @@ fn judged(
         return Err(format!("{}, {}: the error is {error}", technique.name, choice.name).into());
     }
     let name = choice.name.clone();
-    Ok(ChoiceRecord { name, error, bias, noise, truth_error, picture, ms: None, operations: None, presets: Vec::new() })
+    let (ms, steps, operations, presets) = (None, Vec::new(), None, Vec::new());
+    Ok(ChoiceRecord { name, error, bias, noise, truth_error, picture, ms, steps, operations, presets })
 }
 
 /// A choice's name as a part of a file's.

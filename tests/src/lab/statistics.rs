@@ -1,6 +1,7 @@
 //! Times as numbers that say how sure they are, and which choices nothing beats.
 
 use serde::{Deserialize, Serialize};
+use std::fmt::Write as _;
 
 /// A frame's time over interleaved repeats, in ms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,6 +67,21 @@ pub fn quantile(sorted: &[f64], share: f64) -> f64 {
 pub fn undominated(points: &[[f64; 2]]) -> Vec<bool> {
     let beats = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
     points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect()
+}
+
+/// Three digits.
+pub fn number(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    let digits = (2 - x.abs().log10().floor() as i32).clamp(0, 9) as usize;
+    let mut text = String::new();
+    if x.abs() < 1e-4 {
+        let _ = write!(text, "{x:.2e}");
+    } else {
+        let _ = write!(text, "{x:.digits$}");
+    }
+    text
 }
 
 #[cfg(test)]

@@ -5,19 +5,24 @@ use super::technique::Outcome;
 use crate::reference::metrics::Metrics;
 use crate::reference::picture::Picture;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
+use framegraph_passes::facts::{Around, Survey, decide};
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, LightSearch, Lighting, Settings, World, standard};
+use framegraph_passes::{
+    CameraView, EffectSet, FactInput, FactMemory, Facts, FrameIndex, LightSearch, Lighting, Settings, ViewId, World,
+    standard,
+};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Light, Scene, progress};
 use framegraph_shaders::reference::srgb::{linear_from_srgb_channel, srgb_from_linear_channel};
-use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
-use glam::Vec3;
+use framegraph_wgpu::{Executor, ExecutorOptions, Frame, Gpu, Imports, read_texture};
+use glam::{DVec2, Vec3};
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use super::record::PictureRecord;
+use super::record::{PictureRecord, StepRecord};
 
 /// A frame to be drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +42,7 @@ pub struct Setup {
 }
 
 /// What a picture is compared with.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Truth {
     /// Another frame.
     Frame(Setup),
@@ -56,20 +61,35 @@ pub struct Studio<'a> {
     pub size_px: [u32; 2],
     /// Where light that was made is kept.
     pub light: PathBuf,
+    /// Truths that were drawn, which techniques share.
+    truths: RefCell<Vec<(Truth, (Picture, f64))>>,
 }
 
 /// A frame that is ready to be drawn again and again.
 #[derive(Debug)]
 pub struct Ready {
+    scene: Scene,
+    moment: ViewSettings,
     world: World,
     frame: Frame<World>,
     plan: Plan,
     executor: Executor,
     output: framegraph::Texture,
     size_px: [u32; 2],
+    settings: Settings,
+    drawn: u32,
 }
 
-impl Studio<'_> {
+/// Frames that are added up over time before their picture is taken, and how many after them tell how it trembles.
+const SUMMED: u32 = 32;
+const TREMBLING: u32 = 16;
+
+impl<'a> Studio<'a> {
+    /// Pictures of a size, in pixels; light that is made is kept in a folder.
+    pub fn new(gpu: &'a Gpu, size_px: [u32; 2], light: PathBuf) -> Self {
+        Self { gpu, size_px, light, truths: RefCell::default() }
+    }
+
     /// Makes everything that a setup needs.
     ///
     /// # Errors
@@ -84,7 +104,7 @@ impl Studio<'_> {
         let lighting = Lighting::new(self.gpu, &environment, &setup.light, &cache, &mut progress::silent)?;
         let moment = ViewSettings {
             camera: scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
-            size_px,
+            size_px: drawn_px(&setup.settings, size_px),
             ev100: setup.ev100,
             environment_intensity: if setup.sun.is_some() { 0.3 } else { 1.0 },
             shadows: setup.settings.shadows,
@@ -92,14 +112,44 @@ impl Studio<'_> {
         };
         let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
         let world = World::new(self.gpu, &scene, lighting, [view], &mut progress::silent)?;
+        let (frame, plan, output) = self.declared(&setup.settings, &scene, size_px)?;
+        // Textures of a frame that is not drawn any more go; pipelines stay, since frames share them.
+        let options = ExecutorOptions { max_age: 4, ..ExecutorOptions::default() };
+        let executor = Executor::with(self.gpu, options);
+        let settings = setup.settings;
+        Ok(Ready { scene, moment, world, frame, plan, executor, output, size_px, settings, drawn: 0 })
+    }
+
+    fn declared(
+        &self,
+        settings: &Settings,
+        scene: &Scene,
+        size_px: [u32; 2],
+    ) -> Outcome<(Frame<World>, Plan, framegraph::Texture)> {
         let mut frame = Frame::new();
         let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
-        let io = standard(&mut frame, &setup.settings.for_scene(&scene, size_px), Target::from(output))?;
+        let settings = settings.for_scene(scene, drawn_px(settings, size_px));
+        let io = standard(&mut frame, &settings, Target::from(output))?;
         frame.graph_mut().readback(io.output)?;
         let mut plan = Plan::new();
         let options = Options::for_frame(size_px[0], size_px[1]);
         compile(frame.graph(), &self.gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
-        Ok(Ready { world, frame, plan, executor: Executor::new(self.gpu), output: io.output, size_px })
+        Ok((frame, plan, io.output))
+    }
+
+    /// The same scene, light and device with other settings: what was compiled for them stays.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn change(&self, ready: &mut Ready, settings: &Settings) -> Outcome<()> {
+        (ready.moment.shadows, ready.moment.size_px) = (settings.shadows, drawn_px(settings, ready.size_px));
+        let light = &ready.world.lighting.image;
+        let view = CameraView::new(&ready.scene, light, &Background::Environment, &ready.moment);
+        ready.world.set_view(self.gpu, ViewId::MAIN, view)?;
+        (ready.frame, ready.plan, ready.output) = self.declared(settings, &ready.scene, ready.size_px)?;
+        (ready.settings, ready.drawn) = (*settings, 0);
+        ready.executor.reset_histories();
+        Ok(())
     }
 
     /// The picture of a setup.
@@ -115,6 +165,15 @@ impl Studio<'_> {
     /// # Errors
     /// As [`Self::prepare`].
     pub fn truth(&self, truth: &Truth) -> Outcome<(Picture, f64)> {
+        if let Some((_, known)) = self.truths.borrow().iter().find(|(own, _)| own == truth) {
+            return Ok(known.clone());
+        }
+        let found = self.drawn_truth(truth)?;
+        self.truths.borrow_mut().push((*truth, found.clone()));
+        Ok(found)
+    }
+
+    fn drawn_truth(&self, truth: &Truth) -> Outcome<(Picture, f64)> {
         let [width, height] = self.size_px;
         match truth {
             Truth::Frame(setup) => Ok((self.picture(setup)?, 0.0)),
@@ -135,11 +194,14 @@ impl Studio<'_> {
                 let (toward, radius) = setup.sun.ok_or("a sun to stand for many")?;
                 let (right, up) = toward.any_orthonormal_pair();
                 let mut halves = [const { Vec::new() }; 2];
+                let mut ready = self.prepare(setup, self.size_px)?;
                 for index in 0..*count {
                     let (share, turn) = ((index as f32 + 0.5) / *count as f32, index as f32 * 2.399_963_2);
                     let aside = (right * turn.cos() + up * turn.sin()) * (radius.tan() * share.sqrt());
-                    let sharp = Setup { sun: Some(((toward + aside).normalize(), 0.0)), ..*setup };
-                    halves[index as usize % 2].push(self.picture(&sharp)?.linear);
+                    let sun = -(toward + aside).normalize();
+                    ready.scene.lights = vec![Light::directional("sun", sun, 60_000.0)];
+                    self.change(&mut ready, &setup.settings)?;
+                    halves[index as usize % 2].push(ready.picture(self.gpu)?.linear);
                 }
                 let mean = |pictures: Vec<Vec<[f32; 3]>>| {
                     (0..(width * height) as usize).map(|i| mean_of(pictures.iter().map(|p| p[i]))).collect::<Vec<_>>()
@@ -183,25 +245,102 @@ pub fn times(gpu: &Gpu, ready: &mut [Ready], warm_up: u32, repeats: u32) -> Outc
 
 impl Ready {
     /// Draws it; how long that took from the call to the device's last step, in ms.
-    fn draw(&mut self, gpu: &Gpu) -> Outcome<f64> {
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn draw(&mut self, gpu: &Gpu) -> Outcome<f64> {
+        let Settings { taa, reflections, .. } = self.settings;
+        if taa.is_some() || reflections.is_some() {
+            let jitter_px = taa.map_or(DVec2::ZERO, |taa| taa.jitter_px(self.drawn));
+            self.world.views.again(ViewId::MAIN, jitter_px)?;
+        }
+        self.world.frame_index = FrameIndex(if taa.is_some() { self.drawn } else { 0 });
+        self.drawn += 1;
         let start = Instant::now();
         self.executor.execute(&self.plan, &self.frame, &self.world, &Imports::new())?;
         gpu.wait()?;
         Ok(1e3 * start.elapsed().as_secs_f64())
     }
 
-    /// Its picture.
+    /// Its picture: of the second frame where frames look into the one before, and of a sum where they are added up.
     ///
     /// # Errors
     /// What the device refuses.
     pub fn picture(&mut self, gpu: &Gpu) -> Outcome<Picture> {
-        self.draw(gpu)?;
+        let frames = match self.settings {
+            Settings { taa: Some(_), .. } => SUMMED,
+            Settings { reflections: Some(_), .. } => 2,
+            _ => 1,
+        };
+        for _ in 0..frames {
+            self.draw(gpu)?;
+        }
+        self.read(gpu)
+    }
+
+    /// How much the picture trembles where frames are added up: the root mean square of 16 frames against their mean, in
+    /// codes. None where frames are not added up.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn trembles(&mut self, gpu: &Gpu) -> Outcome<Option<f64>> {
+        if self.settings.taa.is_none() {
+            return Ok(None);
+        }
+        let mut frames = Vec::new();
+        for _ in 0..TREMBLING {
+            self.draw(gpu)?;
+            frames.push(self.read(gpu)?);
+        }
+        let rest = (0..frames[0].linear.len()).map(|i| mean_of(frames.iter().map(|frame| frame.linear[i]))).collect();
+        let rest = encoded(self.size_px, rest);
+        let squares = frames.iter().flat_map(|frame| codes(frame, &rest)).map(|d| d * d);
+        Ok(Some((squares.sum::<f64>() / (frames.len() * 3 * rest.linear.len()) as f64).sqrt()))
+    }
+
+    /// What the facts about its scene say of its frame.
+    pub fn facts(&self) -> Facts {
+        let input = FactInput {
+            scene: &self.scene,
+            survey: &Survey::new(&self.scene),
+            around: Around::from(&self.world.lighting.image),
+            background: &Background::Environment,
+            views: std::slice::from_ref(&self.moment),
+            settings: &self.settings.for_scene(&self.scene, self.moment.size_px),
+            forced: EffectSet::NONE,
+            most_codes: FactInput::MOST_CODES,
+        };
+        decide(&input, &mut FactMemory::default())
+    }
+
+    fn read(&self, gpu: &Gpu) -> Outcome<Picture> {
         let texture = self.executor.texture(&self.plan, self.output).ok_or("the frame left no picture")?;
         let codes = read_texture(gpu, texture)?.rgba8();
         let linear =
             |pixel: &[u8]| [0, 1, 2].map(|c: usize| linear_from_srgb_channel(f64::from(pixel[c]) / 255.0) as f32);
         Ok(encoded(self.size_px, codes.chunks_exact(4).map(linear).collect()))
     }
+
+    /// What the device's own clock says of each step, where it has one: frames but the first four.
+    ///
+    /// # Errors
+    /// What the device refuses.
+    pub fn steps(&mut self) -> Outcome<Vec<StepRecord>> {
+        self.executor.catch_up()?;
+        let timing = self.executor.timing();
+        let of = |step| {
+            let gpu = timing.step(step).gpu?;
+            let names = self.plan.passes_of(step).iter().map(|member| self.plan.graph().pass_name(member.pass));
+            let passes = names.collect::<Vec<_>>().join(" + ");
+            Some(StepRecord { passes, min: gpu.min_ms, p25: gpu.p25_ms, median: gpu.median_ms })
+        };
+        Ok(self.plan.step_ids().filter_map(of).collect())
+    }
+}
+
+/// Width and height as drawn, where so many pixels are shown.
+fn drawn_px(settings: &Settings, shown_px: [u32; 2]) -> [u32; 2] {
+    settings.upscale.map_or(shown_px, |upscale| upscale.extent().texels(shown_px))
 }
 
 /// A picture of linear light of a display.

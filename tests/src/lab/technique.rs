@@ -77,3 +77,13 @@ pub struct Technique {
     /// The ways of doing it.
     pub choices: Vec<Choice>,
 }
+
+impl Technique {
+    /// Draws another scene in all of its frames.
+    pub fn show(&mut self, scene: &'static str) {
+        if let Some(Truth::Frame(setup) | Truth::Supersampled(setup, _) | Truth::Suns(setup, _)) = &mut self.picture {
+            setup.scene = scene;
+        }
+        self.choices.iter_mut().filter_map(|choice| choice.setup.as_mut()).for_each(|setup| setup.scene = scene);
+    }
+}

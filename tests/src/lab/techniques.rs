@@ -1,9 +1,11 @@
 //! The choices of the standard frame, as techniques of the lab.
 
 mod formulas;
+mod lens;
 mod light;
 mod picture;
 mod screen;
+mod terms;
 
 use super::studio::{Setup, Truth};
 use super::technique::{Choice, Measured, Outcome, Subject, Technique};
@@ -13,10 +15,8 @@ use framegraph_wgpu::Gpu;
 
 /// All of them. Half floats in shaders are measured where the device has them.
 pub fn all(gpu: &Gpu) -> Vec<Technique> {
-    [light::techniques(gpu), screen::techniques(), picture::techniques(gpu), formulas::techniques()]
-        .into_iter()
-        .flatten()
-        .collect()
+    let own = [light::techniques(gpu), terms::techniques(), screen::techniques(), lens::techniques()];
+    own.into_iter().flatten().chain(picture::techniques(gpu)).chain(formulas::techniques()).collect()
 }
 
 /// The frame that choices vary: high quality, one sample, no dither and no edge filter, which would make an edge more or less

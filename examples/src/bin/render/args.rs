@@ -1,5 +1,6 @@
 //! The command line of `render`.
 
+use crate::budget::{self, Budget};
 use crate::debug::{self, Debugging};
 use crate::decide::{self, Decide};
 use crate::effects::{self, Effects};
@@ -25,6 +26,7 @@ pub fn help() -> String {
         .replace("GRADING\n", &plain(grade::HELP))
         .replace("SHADOWS\n", &plain(shadows::HELP))
         .replace("EFFECTS\n", &plain(effects::HELP))
+        .replace("BUDGET\n", &plain(budget::HELP))
         .replace("FRAME\n", &plain(&decide::help()))
         .replace("MOMENT\n", &plain(moment::HELP))
         .replace("DEBUGGING\n", &plain(debug::HELP))
@@ -66,6 +68,7 @@ LIGHTING
   --compare-post       no picture, but a table of what post-processing costs inlined, in one pass and in a pass for each
                        effect, at one and four samples (--size 1920x1080)
 FRAME
+BUDGET
 EFFECTS
   --no-fxaa            leave edges as they are
   --frames N           measured frames after four for warming up (8)
@@ -147,6 +150,10 @@ pub struct Args {
     pub allow_outside: bool,
     /// Looking into the frame, and bisecting it.
     pub debug: Debugging,
+    /// What the frame is held to.
+    pub budget: Budget,
+    /// It is one of several frames that are tried, and what was told of the scene is not told again.
+    pub trial: bool,
 }
 
 impl Args {
@@ -207,6 +214,8 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         memory_bytes: None,
         allow_outside: false,
         debug: Debugging::default(),
+        budget: Budget::default(),
+        trial: false,
     };
     if let Some(frame) = &frame {
         found.begin_with(frame);
@@ -262,6 +271,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
                     || found.moment.take(&name, &mut parser)?
                     || found.grade.take(&name, &mut parser)?
                     || found.decide.take(&name, &mut parser)?
+                    || found.budget.take(&name, &mut parser)?
                     || found.debug.take(&name, &mut parser)?;
                 if !taken {
                     return Err(format!("--{name}: unknown option; `render --help` lists them"));
@@ -334,7 +344,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 33] = [
+        let cases: [(&[&str], &str); 36] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -360,6 +370,9 @@ mod tests {
             (&["--fog", "on:density=x"], "--fog density=x"),
             (&["--taa", "on:feedback=2"], "--taa feedback=2"),
             (&["--time", "-1"], "--time -1"),
+            (&["--budget-ms", "0"], "--budget-ms 0"),
+            (&["--max-error", "NaN"], "--max-error NaN"),
+            (&["--record", "a.txt", "--budget-ms", "9"], "--record a.txt"),
             (&["--camera", "1,2:3"], "--camera"),
             (&["--camera", "orbit", "--camera-from-gltf"], "--camera-from-gltf"),
             (&["--out", "a.jpg"], "--out a.jpg"),

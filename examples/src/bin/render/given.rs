@@ -11,11 +11,35 @@ pub struct Given(Vec<String>);
 const OF_ONE_FRAME: [&str; 9] =
     ["out", "linear-out", "plan", "inspect", "inspect-out", "inspect-mode", "inspect-sample", "inspect-all", "trace"];
 
+/// What a frame within a budget is chosen from.
+const CHOSEN: [&str; 12] = [
+    "msaa",
+    "no-fxaa",
+    "shadows",
+    "no-shadows",
+    "cascades",
+    "shadow",
+    "ao",
+    "quality",
+    "shade",
+    "precision",
+    "ssr",
+    "glass-layers",
+];
+
+/// What renders other frames than one.
+const OF_MANY: [&str; 4] = ["compare-post", "bisect", "turntable", "sequence"];
+
 /// What may be given several times.
 const REPEATED: [&str; 2] = ["enable", "disable"];
 
 /// An option with others that it leaves nothing to do, and why.
-const AGAINST: [(&str, &[&str], &str); 9] = [
+const AGAINST: [(&str, &[&str], &str); 14] = [
+    ("budget-ms", &["max-error"], "a frame is held to one of both"),
+    ("budget-ms", &CHOSEN, "it chooses that itself; --preset and --settings are what it begins with"),
+    ("max-error", &CHOSEN, "it chooses that itself; --preset and --settings are what it begins with"),
+    ("budget-ms", &OF_MANY, "it is for one frame"),
+    ("max-error", &OF_MANY, "it is for one frame"),
     ("turntable", &OF_ONE_FRAME, "it renders pictures of its own"),
     ("sequence", &OF_ONE_FRAME, "it renders pictures of its own"),
     (
@@ -44,7 +68,8 @@ const AGAINST: [(&str, &[&str], &str); 9] = [
 ];
 
 /// An option that means something only beside one of others.
-const BESIDE: [(&str, &[&str]); 6] = [
+const BESIDE: [(&str, &[&str]); 7] = [
+    ("record", &["budget-ms", "max-error"]),
     ("animation", &["time"]),
     ("upscale", &["scale"]),
     ("sharpness", &["scale"]),
@@ -125,6 +150,10 @@ mod tests {
             ("--inspect-mode auto", "--inspect-mode goes together with --inspect or --inspect-all only"),
             ("--round-hdr --inline off", "--round-hdr does not go together with --inline off"),
             ("--compare-post --shadow keep=on", "--shadow keep=on does not go together with --compare-post"),
+            ("--budget-ms 9 --max-error 1", "--max-error does not go together with --budget-ms"),
+            ("--max-error 1 --ao gtao", "--ao does not go together with --max-error"),
+            ("--budget-ms 9 --bisect", "--bisect does not go together with --budget-ms"),
+            ("--record a.json", "--record goes together with --budget-ms or --max-error only"),
             ("--sun in-map", "--sun in-map goes together with --environment FILE only"),
             ("--no-fxaa --no-fxaa", "--no-fxaa: it is given twice"),
         ] {

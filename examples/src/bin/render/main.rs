@@ -3,6 +3,7 @@
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod args;
+mod budget;
 mod compare;
 mod debug;
 mod decide;

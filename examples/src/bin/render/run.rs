@@ -1,6 +1,7 @@
 //! The run itself: device, graph, frames, files.
 
 use crate::args::Args;
+use crate::budget;
 use crate::debug::report;
 use crate::decide::Deciding;
 use crate::keep::{Kept, declare, first_frame};
@@ -100,7 +101,9 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     let colors = load::colors(args).map_err(input)?;
     let seen = load::view(args, &loaded).map_err(input)?;
     let gpu = open()?;
-    program::line(format_args!("adapter: {}", gpu.describe()));
+    if !args.trial {
+        program::line(format_args!("adapter: {}", gpu.describe()));
+    }
     args.shading.precision.check(&gpu).map_err(|told| input(format!("--{told}")))?;
     let [width, height] = args.size_px;
     let most = gpu.caps().max_texture_texels;
@@ -117,7 +120,7 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     let settings = facts.apply(&asked);
     let shown = ViewSettings { shadows: settings.shadows, ..seen.clone() };
     let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &shown);
-    if !loaded.scene.lights.is_empty() {
+    if !loaded.scene.lights.is_empty() && !args.trial {
         program::line(format_args!("lights: {}", moment.light_report));
     }
     if moment.light_lists.is_some() && !LightLists::can_be_bound(&gpu.device.limits()) {
@@ -210,6 +213,8 @@ impl Frames {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let mut outputs = outputs(args)?;
     let what_if = args.decide.what_if.as_deref().map(what_if::device).transpose()?;
+    let chosen = args.budget.bound.map(|bound| budget::choose(args, bound)).transpose()?;
+    let args = chosen.as_ref().unwrap_or(args);
     let mut prepared = prepare(args, &mut outputs)?;
     if let Some(asked) = &args.decide.sequence {
         sequence::render(args, &mut prepared, asked, &mut outputs)?;
@@ -286,7 +291,7 @@ fn outputs(args: &Args) -> Result<Outputs, Failure> {
     if let Around::File(environment) = &args.lighting.around {
         outputs.reads(environment).map_err(input)?;
     }
-    if let Some(file) = &args.settings {
+    for file in args.settings.iter().chain(&args.budget.record) {
         outputs.reads(file).map_err(input)?;
     }
     if let Some(file) = args.decide.what_if.as_ref().filter(|which| which.ends_with(".ron")) {

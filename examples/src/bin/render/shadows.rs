@@ -50,6 +50,16 @@ impl Shadows {
         Self { settings: settings.unwrap_or(Self::default().settings), off: settings.is_none(), keep: false }
     }
 
+    /// What a frame asks for of any scene; none where shadows are off.
+    pub fn asked(&self) -> Option<ShadowSettings> {
+        (!self.off).then_some(self.settings)
+    }
+
+    /// Takes the shadows of another frame; whether maps are kept stays.
+    pub fn hold(&mut self, settings: Option<ShadowSettings>) {
+        *self = Self { keep: self.keep, ..Self::with(settings) };
+    }
+
     /// Takes an option of this file; false for others.
     ///
     /// # Errors

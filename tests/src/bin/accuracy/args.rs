@@ -1,5 +1,7 @@
 //! The command line of `accuracy`.
 
+use framegraph_passes::budget::Bound;
+use framegraph_scene::builtin;
 use lexopt::prelude::*;
 use std::path::PathBuf;
 
@@ -7,20 +9,27 @@ use std::path::PathBuf;
 pub const HELP: &str = "\
 Measures what each approximation of the frame errs by and costs on this adapter.
 
-    accuracy [--quick] [--technique NAME]… [--again] [--out DIR]
-    accuracy [--out DIR] --budget-ms MS | --max-error CODES | --document
+    accuracy [--quick] [--technique NAME]… [--scene NAME] [--again] [--out DIR]
+    accuracy [--out DIR] --budget-ms MS | --max-error CODES | --verify N
+    accuracy [--out DIR] --document
 
 Writes accuracy.json after each technique (an interrupted run goes on where it
-was), then accuracy.md and accuracy.html. Times say something about this adapter
-alone; nothing else should run beside it.
+was), then accuracy.md and accuracy.html. Each option is timed 31 times after 10
+that do not count. Times say something about this adapter alone; nothing else
+should run beside it.
 
-  --quick            small pictures, 9 repeats: some minutes
-  --technique NAME   only this one, measured anew; may be given several times
+  --quick            pictures of 96 × 64 pixels instead of 192 × 128
+  --technique NAME   only this one, measured anew; may be given several times.
+                     `budget` is what options take as parts of one frame
+  --scene NAME       a built-in scene for all pictures, instead of one that calls
+                     for what is compared
   --again            measure all anew
   --out DIR          where to; target/accuracy without it
-  --budget-ms MS     of what was measured, the most accurate set of options that
-                     takes at most so much more than the fastest
-  --max-error CODES  the fastest set whose errors add up to no more
+  --budget-ms MS     of what was measured, the most accurate frame in that time
+  --max-error CODES  the fastest frame that is no farther from the reference,
+                     root mean square in codes of 255
+  --verify N         choose for N random budgets, draw and time what was chosen,
+                     and each swap of one option: must the chosen frames fit?
   --document         print accuracy.md of the accuracy.json that is there
   -h, --help         print this
 ";
@@ -34,10 +43,10 @@ pub enum Wanted {
     Measure,
     /// Print the document of the record.
     Document,
-    /// Choose within a time.
-    Budget(f64),
-    /// Choose within an error.
-    MostError(f64),
+    /// Choose within a time or an error.
+    Budget(Bound),
+    /// Choose for so many random budgets, and draw what was chosen.
+    Verify(usize),
 }
 
 /// What was asked for.
@@ -51,6 +60,8 @@ pub struct Args {
     pub again: bool,
     /// Names; all where there are none.
     pub techniques: Vec<String>,
+    /// Scene of all pictures; none for that of each technique.
+    pub scene: Option<&'static str>,
     /// Folder.
     pub out: PathBuf,
 }
@@ -66,6 +77,7 @@ impl Args {
             quick: false,
             again: false,
             techniques: Vec::new(),
+            scene: None,
             out: PathBuf::from("target/accuracy"),
         };
         let mut parser = lexopt::Parser::from_env();
@@ -75,8 +87,14 @@ impl Args {
                 Long("again") => args.again = true,
                 Long("technique") => args.techniques.push(parser.value()?.string()?),
                 Long("out") => args.out = parser.value()?.into(),
-                Long("budget-ms") => args.wanted = Wanted::Budget(positive(&parser.value()?.string()?)?),
-                Long("max-error") => args.wanted = Wanted::MostError(positive(&parser.value()?.string()?)?),
+                Long("budget-ms") => {
+                    args.wanted = Wanted::Budget(Bound::Ms(positive(&parser.value()?.string()?)?));
+                }
+                Long("max-error") => {
+                    args.wanted = Wanted::Budget(Bound::Codes(positive(&parser.value()?.string()?)?));
+                }
+                Long("verify") => args.wanted = Wanted::Verify(parser.value()?.parse()?),
+                Long("scene") => args.scene = Some(scene(&parser.value()?.string()?)?),
                 Long("document") => args.wanted = Wanted::Document,
                 Long("help") | Short('h') => args.wanted = Wanted::Help,
                 other => return Err(other.unexpected()),
@@ -89,4 +107,11 @@ impl Args {
 fn positive(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|x| *x >= 0.0 && x.is_finite());
     number.ok_or_else(|| format!("{text:?} is no number from 0 on"))
+}
+
+fn scene(name: &str) -> Result<&'static str, String> {
+    let known = builtin::NAMES.into_iter().find(|known| *known == name);
+    known.ok_or_else(|| {
+        format!("--scene {name}: there is no such built-in scene; there are {}", builtin::NAMES.join(", "))
+    })
 }

@@ -3,6 +3,7 @@
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod args;
+mod budget;
 
 use args::{Args, Wanted};
 use framegraph_wgpu::{AdapterRequest, Gpu};
@@ -11,12 +12,15 @@ use program::progress::Shown;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
+use tests::lab::budget::Bench;
 use tests::lab::record::{Record, SCHEMA, VERSION};
-use tests::lab::run::{Repeats, measure};
-use tests::lab::select::{groups, offers, within_budget, within_error};
+use tests::lab::run::{TIMED, WARM_UP, measure};
 use tests::lab::studio::Studio;
 use tests::lab::technique::Outcome;
 use tests::lab::{html, markdown, techniques};
+
+/// What options take and err by as parts of one frame, measured after the techniques.
+const BUDGET: &str = "budget";
 
 fn main() -> ExitCode {
     let args = match Args::parse() {
@@ -47,10 +51,8 @@ fn run(args: &Args) -> Outcome<()> {
             program::print(markdown::document(&Record::read(&file)?));
             Ok(())
         }
-        Wanted::Budget(ms) => chosen(&Record::read(&file)?, |offers| within_budget(offers, ms), "no set is as fast"),
-        Wanted::MostError(error) => {
-            chosen(&Record::read(&file)?, |offers| within_error(offers, error), "no set is as accurate")
-        }
+        Wanted::Budget(bound) => budget::chosen(&Record::read(&file)?, bound),
+        Wanted::Verify(count) => budget::verified(args, &Record::read(&file)?, count),
     }
 }
 
@@ -60,7 +62,6 @@ fn measured(args: &Args, file: &Path) -> Outcome<()> {
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
     let pictures = args.out.join("pictures");
     std::fs::create_dir_all(&pictures).map_err(|e| format!("{}: {e}", pictures.display()))?;
-    let repeats = if args.quick { Repeats::QUICK } else { Repeats::FULL };
     let size_px = if args.quick { [96, 64] } else { [192, 128] };
     let processors = std::thread::available_parallelism().map_or(1.0, |n| n.get() as f64);
     let fresh = Record {
@@ -69,23 +70,27 @@ fn measured(args: &Args, file: &Path) -> Outcome<()> {
         adapter: gpu.describe(),
         size_px,
         load: [processors, load()],
-        warm_up: repeats.warm_up,
-        repeats: repeats.timed,
+        warm_up: WARM_UP,
+        repeats: TIMED,
+        scene: args.scene.map(str::to_owned),
         quick: args.quick,
         optimized: !cfg!(debug_assertions),
         techniques: Vec::new(),
+        budget: None,
     };
     // A run that was interrupted goes on, where it was of the same kind.
     let mut record = match Record::read(file) {
-        Ok(found) if !args.again && Record { load: fresh.load, techniques: Vec::new(), ..found.clone() } == fresh => {
-            found
-        }
+        Ok(found) if !args.again && found.is_of_the_kind_of(&fresh) => found,
         _ => fresh,
     };
-    let studio = Studio { gpu: &gpu, size_px, light: args.out.join("light") };
-    let all = techniques::all(&gpu);
-    if let Some(unknown) = args.techniques.iter().find(|name| !all.iter().any(|t| t.name == **name)) {
-        let names: Vec<_> = all.iter().map(|t| t.name.as_str()).collect();
+    let studio = Studio::new(&gpu, size_px, args.out.join("light"));
+    let mut all = techniques::all(&gpu);
+    if let Some(scene) = args.scene {
+        all.iter_mut().for_each(|technique| technique.show(scene));
+    }
+    let known = |name: &str| name == BUDGET || all.iter().any(|t| t.name == name);
+    if let Some(unknown) = args.techniques.iter().find(|name| !known(name)) {
+        let names: Vec<_> = all.iter().map(|t| t.name.as_str()).chain([BUDGET]).collect();
         return Err(format!("there is no technique {unknown}; there are {}", names.join(", ")).into());
     }
     let wanted = |name: &str| args.techniques.is_empty() || args.techniques.iter().any(|own| own == name);
@@ -100,11 +105,16 @@ fn measured(args: &Args, file: &Path) -> Outcome<()> {
         let each = start.elapsed().as_secs_f64() / done.max(1) as f64;
         let rest = if done > 0 { format!(", {:.0} s left", each * (left.len() - done) as f64) } else { String::new() };
         progress.step("measuring", done, left.len(), &format!("{}{rest}", technique.name));
-        let found = measure(&studio, technique, repeats, &pictures)?;
+        let found = measure(&studio, technique, &pictures)?;
         record.techniques.retain(|old| old.name != technique.name);
         record.techniques.push(found);
         let place = |name: &str| all.iter().position(|t| t.name == name);
         record.techniques.sort_by_key(|t| place(&t.name));
+        Outputs::one(file, record.json()?.as_bytes())?;
+    }
+    if (args.techniques.is_empty() && record.budget.is_none()) || args.techniques.iter().any(|own| own == BUDGET) {
+        progress.step("measuring", left.len(), left.len() + 1, BUDGET);
+        record.budget = Some(Bench::new(&studio).measured()?);
         Outputs::one(file, record.json()?.as_bytes())?;
     }
     progress.clear();
@@ -118,24 +128,4 @@ fn measured(args: &Args, file: &Path) -> Outcome<()> {
 fn load() -> f64 {
     let text = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
     text.split(' ').next().and_then(|word| word.parse().ok()).unwrap_or(0.0)
-}
-
-fn chosen(
-    record: &Record,
-    choose: impl Fn(&[Vec<tests::lab::select::Offer>]) -> Option<tests::lab::select::Chosen>,
-    none: &str,
-) -> Outcome<()> {
-    let groups = groups(record);
-    let offers: Vec<_> = groups.iter().map(|(_, choices)| offers(choices)).collect();
-    let set = choose(&offers).ok_or(none)?;
-    for ((name, choices), index) in groups.iter().zip(&set.options) {
-        program::line(format_args!("{name}: {}", choices[*index].name));
-    }
-    program::line(format_args!(
-        "{} ms beyond the fastest set, errors that add up to {} codes, on {}",
-        markdown::number(set.ms),
-        markdown::number(set.error),
-        record.adapter
-    ));
-    Ok(())
 }

@@ -3,13 +3,14 @@
 use super::{Choice, Technique, formula, number};
 use crate::lab::technique::Measured;
 use framegraph_shaders::reference::clear_coat::{f0_under_clear_coat, f0_under_clear_coat_fast, v_kelemen};
+use framegraph_shaders::reference::depth_normal::continues_ahead;
 use framegraph_shaders::reference::fresnel::f_schlick_scalar;
 use framegraph_shaders::reference::ggx::{v_smith_ggx_correlated, v_smith_ggx_correlated_fast};
 use framegraph_wgpu::Gpu;
 use glam::DVec3;
 
 pub(super) fn techniques() -> Vec<Technique> {
-    vec![visibility_term(), fresnel(), coat_visibility(), coat_base(), depth_format()]
+    vec![visibility_term(), fresnel(), coat_visibility(), coat_base(), depth_format(), depth_normals()]
 }
 
 /// Root mean square, signed mean and so on of numbers.
@@ -149,4 +150,49 @@ fn depth_format() -> Technique {
     ];
     let what = "What depth is stored as: distances about 10 m away, read back, with a near plane of 0.1 m and a far one of 1 km.";
     formula("depth-format", what, "the distance.", "m, RMS", choices)
+}
+
+fn depth_normals() -> Technique {
+    /// Distance in m at a column a centimeter wide: a wall that leans back, a step of half a meter, a wall that leans
+    /// forward, a crease, and a strip two columns wide.
+    fn distance(column: i32) -> f64 {
+        let x = 0.01 * f64::from(column);
+        match column {
+            ..40 => 5.0 + 0.6 * x,
+            40..80 => 5.8 - 0.3 * x,
+            80..120 => 5.56 + 0.8 * (x - 0.8),
+            120..122 => 4.0,
+            _ => 5.9 + 0.2 * x,
+        }
+    }
+    /// What the surface at a column rises by a column, in m.
+    fn rise(column: i32) -> f64 {
+        0.01 * match column {
+            ..40 => 0.6,
+            40..80 => -0.3,
+            80..120 => 0.8,
+            120..122 => 0.0,
+            _ => 0.2,
+        }
+    }
+    let over = |found: fn([f64; 5]) -> f64| {
+        move || {
+            let angle = |rise: f64| (rise / 0.01).atan().to_degrees();
+            let at = |column: i32| [-2, -1, 0, 1, 2].map(|step| distance(column + step));
+            (2..158).map(|column| angle(found(at(column))) - angle(rise(column))).collect::<Vec<_>>()
+        }
+    };
+    fn nearer([far_back, back, here, ahead, far_ahead]: [f64; 5]) -> f64 {
+        let goes_on = continues_ahead([far_back, back], here, [ahead, far_ahead]);
+        if goes_on { ahead - here } else { here - back }
+    }
+    let choices = vec![
+        rms("three taps: toward one side", over(|z| z[3] - z[2])),
+        rms("three taps: across both sides", over(|z| 0.5 * (z[3] - z[1]))),
+        rms("five taps: the side that goes on", over(nearer))
+            .counted("continues_ahead", false)
+            .found_in(|f| f.settings.occlusion.is_some_and(|o| o.fine_normals)),
+    ];
+    let what = "Slopes from depth, across steps, a crease and a strip of two pixels: the angle they are off.";
+    formula("depth-normals", what, "the slope of the surface.", "degrees, RMS", choices)
 }

@@ -24,7 +24,9 @@ pub(super) fn techniques(gpu: &Gpu) -> Vec<Technique> {
     let has_half = gpu.device.features().contains(wgpu::Features::SHADER_F16);
     let mut all = vec![visibility(), table_size(), compensation(), harmonics_bands(), harmonics_window()];
     all.extend([cube_levels(), cube_size(), roughness_floor(), specular_aa(), distribution(has_half)]);
-    all.extend(has_half.then(precision));
+    if has_half {
+        all.extend([precision("precision", "spheres"), precision("precision-materials", "materials")]);
+    }
     all
 }
 
@@ -50,13 +52,13 @@ fn visibility() -> Technique {
     )
 }
 
-fn precision() -> Technique {
-    let mut full = base("spheres");
+fn precision(name: &str, scene: &'static str) -> Technique {
+    let mut full = base(scene);
     // What half floats hold: the floor is no part of the choice.
     full.settings.shading.roughness_floor = 0.089;
     pictures(
-        "precision",
-        "Shading in half floats against f32, roughness from 0.089 on in both.",
+        name,
+        &format!("Shading of the scene `{scene}` in half floats against f32, roughness from 0.089 on in both."),
         ("shading in f32.", Truth::Frame(full)),
         full,
         &[

@@ -5,15 +5,17 @@ use crate::lab::studio::Truth;
 use crate::lab::technique::Measured;
 use crate::measure::grading;
 use framegraph::Format;
-use framegraph_passes::grading::{GradeBy, TableDesc, TableFormat};
+use framegraph_passes::grading::{Extras, GradeBy, Look, TableDesc, TableFormat};
+use framegraph_shaders::layout::ToneMap;
 use framegraph_shaders::reference::dither::dither_offset;
+use framegraph_shaders::reference::grading::{linear_from_log_c, log_c_from_linear};
 use framegraph_shaders::reference::quantize::{quantize_rg11b10ufloat, quantize_rgba16float};
 use framegraph_shaders::reference::srgb::srgb_from_linear_channel;
 use framegraph_wgpu::Gpu;
 use glam::{DVec2, DVec3};
 
 pub(super) fn techniques(_: &Gpu) -> Vec<Technique> {
-    vec![format(), tone_table(), oetf(), dither(), post_passes()]
+    vec![format(), tone_mapper(), tone_table(), table_coordinates(), oetf(), dither(), post_passes()]
 }
 
 /// Colors from nine stops below grey to seven above, each channel by itself.
@@ -69,6 +71,68 @@ fn tone_table() -> Technique {
     ];
     let what = "The ACES curve in a table over logarithmic coordinates: root mean square over random colors.";
     formula("tone-table", what, "the curve itself.", "codes, RMS", choices)
+}
+
+/// A look without grading.
+fn curve(tone_map: ToneMap) -> Look {
+    Look { tone_map, ..Look::default() }
+}
+
+fn tone_mapper() -> Technique {
+    let choice = |name: &str, tone_map: ToneMap| {
+        let mut setup = base("spheres");
+        setup.settings.post.look = curve(tone_map);
+        let measure = move |_: &Gpu| {
+            let extras = Extras::default();
+            let (ours, aces) = (curve(tone_map).function(&extras)?, curve(ToneMap::Aces).function(&extras)?);
+            let squares = colors().iter().map(|c| (255.0 * (ours(*c) - aces(*c))).length_squared()).sum::<f64>();
+            Ok(Measured::exact((squares / (3 * colors().len()) as f64).sqrt()))
+        };
+        number(name, measure).timed(setup)
+    };
+    let choices = vec![
+        choice("ACES", ToneMap::Aces),
+        choice("ACES as fitted by Hill", ToneMap::Hill).found_in(|f| f.settings.post.look.tone_map == ToneMap::Hill),
+        choice("ACES as fitted by Narkowicz", ToneMap::Filmic),
+        choice("Khronos neutral", ToneMap::Neutral),
+    ];
+    let what = "The tone curve, over random colors of sixteen stops; one that is meant to look otherwise errs by what it means.";
+    formula("tone-mapper", what, "Filament's ACES curve in f64.", "codes, RMS", choices)
+}
+
+fn table_coordinates() -> Technique {
+    const ENTRIES: usize = 32;
+    /// The brightest light that a table over plain light holds: seven stops above grey.
+    const BRIGHTEST: f64 = 0.18 * 128.0;
+    // Greys: each of a table's axes by itself.
+    let choice = |name: &str, place: fn(f64) -> f64, light: fn(f64) -> f64, stretched: bool| {
+        number(name, move |_: &Gpu| {
+            let extras = Extras::default();
+            let shown = Look::default().function(&extras)?;
+            let last = (ENTRIES - 1) as f64;
+            let table: Vec<f64> = (0..ENTRIES).map(|i| shown(DVec3::splat(light(i as f64 / last))).x).collect();
+            let sample = |grey: f64| {
+                let x = place(grey).clamp(0.0, 1.0);
+                // Without the remapping of half a texel the first and the last texel's middles are missed.
+                let at = if stretched { x * last } else { (x * ENTRIES as f64 - 0.5).clamp(0.0, last) };
+                let below = (at as usize).min(ENTRIES - 2);
+                table[below] + (table[below + 1] - table[below]) * (at - below as f64)
+            };
+            let greys: Vec<f64> = (0..2000).map(|i| 0.18 * (16.0 * f64::from(i) / 1999.0 - 9.0).exp2()).collect();
+            let off = greys.iter().map(|grey| (255.0 * (sample(*grey) - shown(DVec3::splat(*grey)).x)).powi(2));
+            Ok(Measured::exact((off.sum::<f64>() / greys.len() as f64).sqrt()))
+        })
+    };
+    let log = |grey: f64| log_c_from_linear(DVec3::splat(grey)).x;
+    let light = |x: f64| linear_from_log_c(DVec3::splat(x)).x.max(0.0);
+    let choices = vec![
+        choice("logarithmic", log, light, true).found_in(|_| true),
+        choice("logarithmic, half a texel off", log, light, false),
+        choice("linear", |grey| grey / BRIGHTEST, |x| x * BRIGHTEST, true),
+    ];
+    let what =
+        "What the axes of a table of 32 colors a side are even in: the default look of greys over sixteen stops.";
+    formula("table-coordinates", what, "the look itself.", "codes, RMS", choices)
 }
 
 fn oetf() -> Technique {

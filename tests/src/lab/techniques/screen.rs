@@ -260,11 +260,11 @@ fn antialiasing() -> Technique {
 }
 
 fn light_search() -> Technique {
-    let mut all = base("lamps");
+    let mut all = base("lamps:250");
     (all.lights, all.ev100) = (LightSearch::All, 8.0);
     pictures(
         "light-search",
-        "How shading finds the lamps that reach a place.",
+        "How shading finds those of 250 lamps that reach a place.",
         ("every lamp looked at everywhere.", Truth::Frame(all)),
         all,
         &[

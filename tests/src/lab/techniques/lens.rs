@@ -1,0 +1,205 @@
+//! What lies between scene and sensor, and frames that are added up or made larger.
+
+use super::{Choice, Technique, base, formula, nowhere, number, pictures};
+use crate::lab::studio::{Setup, Truth};
+use crate::lab::technique::Measured;
+use framegraph_passes::bloom::Threshold;
+use framegraph_passes::dof::DofSettings;
+use framegraph_passes::punctual::FroxelSettings;
+use framegraph_passes::structure::Resolution;
+use framegraph_passes::taa::JitterPattern;
+use framegraph_passes::upscale::UpscaleFilter;
+use framegraph_passes::{BloomSettings, FogSettings, LightSearch, TaaSettings, Upscale};
+use framegraph_shaders::reference::fog::{fog_opacity, fog_optical_depth};
+use framegraph_wgpu::Gpu;
+
+pub(super) fn techniques() -> Vec<Technique> {
+    vec![temporal(), upscaling(), bloom_levels(), dof_rings(), dof_resolution(), fog(), froxels()]
+}
+
+fn temporal() -> Technique {
+    let one = base("columns");
+    fn sums(setup: &mut Setup) -> &mut TaaSettings {
+        setup.settings.taa.get_or_insert(TaaSettings::DEFAULT)
+    }
+    pictures(
+        "taa",
+        "Frames added up over time, each seen through another place of its pixels: the picture after 32 frames of a still \
+         scene, and as noise how much the 16 frames after that differ from their mean.",
+        ("eight by eight times the pixels, averaged as light of the display.", Truth::Supersampled(one, 8)),
+        one,
+        &[
+            ("none", |_| (), |f| f.settings.taa.is_none()),
+            ("a share of 0.12, Filament's", |s| _ = sums(s), |f| f.settings.taa == Some(TaaSettings::DEFAULT)),
+            ("a share of 0.05", |s| sums(s).feedback = 0.05, nowhere),
+            ("the input not filtered", |s| sums(s).filter_input = false, nowhere),
+            (
+                "the mean of all frames",
+                |s| {
+                    let own = sums(s);
+                    (own.converge, own.filter_input, own.jitter) = (true, false, JitterPattern::Halton32);
+                },
+                nowhere,
+            ),
+        ],
+    )
+}
+
+fn upscaling() -> Technique {
+    let mut whole = base("columns");
+    // What is made larger should have no steps at its edges: those would be the most of what differs.
+    whole.settings.samples = 4;
+    fn drawn(setup: &mut Setup, percent: u16, filter: UpscaleFilter) {
+        setup.settings.upscale = Some(Upscale { percent, filter, ..Upscale::DEFAULT });
+    }
+    pictures(
+        "upscaling",
+        "Frames of four samples drawn smaller than they are shown: percent of the width and height, and how they are made \
+         larger.",
+        ("the frame drawn as large as it is shown.", Truth::Frame(whole)),
+        whole,
+        &[
+            ("100 %", |_| (), |f| f.settings.upscale.is_none()),
+            ("77 %, FSR", |s| drawn(s, 77, UpscaleFilter::Fsr), nowhere),
+            ("67 %, FSR", |s| drawn(s, 67, UpscaleFilter::Fsr), nowhere),
+            ("50 %, FSR", |s| drawn(s, 50, UpscaleFilter::Fsr), nowhere),
+            ("50 %, bilinear", |s| drawn(s, 50, UpscaleFilter::Bilinear), nowhere),
+        ],
+    )
+}
+
+fn bloom_levels() -> Technique {
+    fn glowing(setup: &mut Setup, levels: u8) {
+        let bloom = BloomSettings { strength: 0.3, threshold: Threshold::None, levels, ..BloomSettings::DEFAULT };
+        setup.settings.bloom = Some(bloom);
+    }
+    let mut truth = base("spheres");
+    glowing(&mut truth, BloomSettings::MOST_LEVELS);
+    pictures(
+        "bloom-levels",
+        "Levels of the pyramid that spreads what glows, at a strength of 0.3 without a threshold.",
+        ("as many levels as the picture has.", Truth::Frame(truth)),
+        truth,
+        &[
+            ("2", |s| glowing(s, 2), nowhere),
+            ("3", |s| glowing(s, 3), nowhere),
+            ("4", |s| glowing(s, 4), nowhere),
+            ("5", |s| glowing(s, 5), nowhere),
+            ("6, the default", |s| glowing(s, 6), nowhere),
+        ],
+    )
+}
+
+/// A lens that is wide open, so that most of the columns are out of focus.
+fn open_lens(rings: u8, resolution: Resolution) -> DofSettings {
+    DofSettings {
+        focus_m: 3.0,
+        f_number: 1.0,
+        scale: 4.0,
+        resolution,
+        rings_before: rings,
+        rings_behind: rings,
+        rings_even: rings,
+        ..DofSettings::DEFAULT
+    }
+}
+
+fn out_of_focus() -> (Setup, (&'static str, Truth)) {
+    let mut truth = base("columns");
+    truth.settings.dof = Some(open_lens(17, Resolution::Full));
+    (truth, ("17 rings at full size, the most that the frame takes.", Truth::Frame(truth)))
+}
+
+fn dof_rings() -> Technique {
+    let (setup, truth) = out_of_focus();
+    pictures(
+        "dof-rings",
+        "Rings of taps that circles of confusion are gathered with, eight more taps a ring, at full size.",
+        truth,
+        setup,
+        &[
+            ("3", |s| s.settings.dof = Some(open_lens(3, Resolution::Full)), nowhere),
+            ("5, the default", |s| s.settings.dof = Some(open_lens(5, Resolution::Full)), nowhere),
+            ("8", |s| s.settings.dof = Some(open_lens(8, Resolution::Full)), nowhere),
+            ("12", |s| s.settings.dof = Some(open_lens(12, Resolution::Full)), nowhere),
+        ],
+    )
+}
+
+fn dof_resolution() -> Technique {
+    let (setup, truth) = out_of_focus();
+    pictures(
+        "dof-resolution",
+        "The size that circles of confusion are gathered at against the picture's, with five rings.",
+        truth,
+        setup,
+        &[
+            ("half, the default", |s| s.settings.dof = Some(open_lens(5, Resolution::Half)), nowhere),
+            ("full", |s| s.settings.dof = Some(open_lens(5, Resolution::Full)), nowhere),
+        ],
+    )
+}
+
+/// Opacity of a way through air whose density falls off along it, of which the first meters are clear: by steps.
+fn marched(density: f64, decay: f64, start_m: f64, way_m: f64) -> f64 {
+    const STEPS: u32 = 4096;
+    let reached = (way_m - start_m).max(0.0);
+    let step = |i: u32| {
+        let at = (start_m + reached * (f64::from(i) + 0.5) / f64::from(STEPS)) / way_m;
+        density * (-decay * at).exp()
+    };
+    1.0 - (-(0..STEPS).map(step).sum::<f64>() * reached / f64::from(STEPS)).exp()
+}
+
+fn fog() -> Technique {
+    /// Ways of 1 to 100 m that rise, go level and fall, through fog that begins after 5 m.
+    fn apart(opacity: impl Fn(f64, f64, f64, f64) -> f64) -> Measured {
+        let grid = (0..20).flat_map(|w| (0..9).map(move |d| (100.0_f64.powf(f64::from(w) / 19.0), f64::from(d) - 4.0)));
+        let off = grid.map(|(way, decay)| opacity(0.03, decay, 5.0, way) - marched(0.03, decay, 5.0, way));
+        let off: Vec<f64> = off.collect();
+        let count = off.len() as f64;
+        let error = (off.iter().map(|d| d * d).sum::<f64>() / count).sqrt();
+        Measured { bias: Some(off.iter().sum::<f64>() / count), ..Measured::exact(error) }
+    }
+    let foggy = |exact| {
+        let mut setup = base("columns");
+        setup.settings.fog = Some(FogSettings { density: 0.03, start_m: 5.0, exact, ..FogSettings::DEFAULT });
+        setup
+    };
+    let of = |name: &str, exact: bool| -> Choice {
+        let flag = f64::from(u8::from(exact));
+        let measure = move |_: &Gpu| Ok(apart(|d, k, s, w| fog_opacity(fog_optical_depth(d, k, s, w, flag), 1.0)));
+        number(name, measure).timed(foggy(exact)).counted("fog_optical_depth", false)
+    };
+    let choices = vec![
+        number("none", |_: &Gpu| Ok(apart(|_, _, _, _| 0.0)))
+            .timed(base("columns"))
+            .found_in(|f| f.settings.fog.is_none()),
+        of("the mean of the whole way, Filament's", false),
+        of("the mean of what is in fog, the default", true),
+    ];
+    let what =
+        "Opacity of fog whose density falls with height and that begins 5 m from the eye, over ways of 1 to 100 m.";
+    formula("fog", what, "the way in 4,096 steps, in f64.", "opacity, RMS", choices)
+}
+
+fn froxels() -> Technique {
+    let mut truth = base("lamps:250");
+    (truth.lights, truth.ev100) = (LightSearch::All, 8.0);
+    fn cut(setup: &mut Setup, tiles: u32, slices: u32) {
+        setup.lights = LightSearch::Froxels(FroxelSettings { tiles, slices, ..FroxelSettings::DEFAULT });
+    }
+    pictures(
+        "froxel-resolution",
+        "Tiles of the picture and slices of distance that 250 lamps are listed for; coarser lists are longer.",
+        ("every lamp looked at everywhere.", Truth::Frame(truth)),
+        truth,
+        &[
+            ("24 tiles, 4 slices", |s| cut(s, 24, 4), nowhere),
+            ("24 tiles, 16 slices", |s| cut(s, 24, 16), nowhere),
+            ("144 tiles, 4 slices", |s| cut(s, 144, 4), nowhere),
+            ("144 tiles, 16 slices", |s| cut(s, 144, 16), |f| f.lights == LightSearch::Auto(FroxelSettings::DEFAULT)),
+            ("144 tiles, 32 slices", |s| cut(s, 144, 32), nowhere),
+        ],
+    )
+}
