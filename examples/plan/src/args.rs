@@ -1,6 +1,6 @@
 //! The command line of `plan`.
 
-use crate::budget::Budget;
+use program::budget::Budget;
 use framegraph::Order;
 use lexopt::{Arg, Parser, ValueExt};
 use std::ffi::OsString;

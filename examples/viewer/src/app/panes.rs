@@ -17,20 +17,56 @@ pub enum Pane {
     List,
     /// Questions.
     WhatIf,
+    /// The frame that is drawn.
+    Viewport,
+    /// Its settings.
+    Settings,
+    /// Its effects, and what facts say of them.
+    Effects,
+    /// Camera and light.
+    Lens,
+    /// The scene.
+    Scene,
+    /// Debug modes and budgets.
+    Debugging,
+    /// The contents of a texture.
+    Preview,
 }
 
-/// Search and questions on the left, views as tabs in the middle, the inspector on the right.
-pub(super) fn arranged() -> Tree<Pane> {
+impl Pane {
+    /// The name on its tab.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::View(view) => view.word(),
+            Self::List => "search",
+            Self::WhatIf => "what-if",
+            Self::Viewport => "viewport",
+            Self::Settings => "settings",
+            Self::Effects => "effects",
+            Self::Lens => "camera+light",
+            Self::Scene => "scene",
+            Self::Debugging => "debug",
+            Self::Preview => "texture",
+        }
+    }
+}
+
+/// Search and questions on the left, views as tabs in the middle, the inspector on the right; with a frame that is drawn, what is
+/// set about it on the left, itself in the middle, and its textures on the right.
+pub(super) fn arranged(live: bool) -> Tree<Pane> {
     let mut tiles = Tiles::default();
-    let list = tiles.insert_pane(Pane::List);
-    let what_if = tiles.insert_pane(Pane::WhatIf);
-    let left = tiles.insert_tab_tile(vec![list, what_if]);
-    let views = View::ALL.into_iter().filter(|view| *view != View::Inspector);
-    let views: Vec<TileId> = views.map(|view| tiles.insert_pane(Pane::View(view))).collect();
-    let middle = tiles.insert_tab_tile(views);
-    let inspector = tiles.insert_pane(Pane::View(View::Inspector));
+    let views = View::ALL.into_iter().filter(|view| *view != View::Inspector).map(Pane::View);
+    let drawn = |panes: &[Pane]| if live { panes.to_vec() } else { Vec::new() };
+    let mut tabs = |panes: Vec<Pane>| {
+        let panes = panes.into_iter().map(|pane| tiles.insert_pane(pane)).collect();
+        tiles.insert_tab_tile(panes)
+    };
+    let set = [Pane::Settings, Pane::Effects, Pane::Lens, Pane::Scene, Pane::Debugging];
+    let left = tabs(drawn(&set).into_iter().chain([Pane::List, Pane::WhatIf]).collect());
+    let middle = tabs(drawn(&[Pane::Viewport]).into_iter().chain(views).collect());
+    let inspector = tabs([Pane::View(View::Inspector)].into_iter().chain(drawn(&[Pane::Preview])).collect());
     let mut row = egui_tiles::Linear::new(egui_tiles::LinearDir::Horizontal, vec![left, middle, inspector]);
-    for (tile, share) in [(left, 0.98), (middle, 2.6), (inspector, 1.0)] {
+    for (tile, share) in [(left, if live { 1.2 } else { 0.98 }), (middle, 2.6), (inspector, 1.0)] {
         row.shares.set_share(tile, share);
     }
     let root = tiles.insert_container(row);
@@ -38,7 +74,7 @@ pub(super) fn arranged() -> Tree<Pane> {
 }
 
 /// Whether an arrangement has every pane once.
-pub(super) fn is_whole(tree: &Tree<Pane>) -> bool {
+pub(super) fn is_whole(tree: &Tree<Pane>, live: bool) -> bool {
     let panes = |tree: &Tree<Pane>| -> Vec<Pane> {
         let of = tree.tiles.tiles().filter_map(|tile| match tile {
             Tile::Pane(pane) => Some(*pane),
@@ -46,7 +82,7 @@ pub(super) fn is_whole(tree: &Tree<Pane>) -> bool {
         });
         of.collect()
     };
-    let (found, all) = (panes(tree), panes(&arranged()));
+    let (found, all) = (panes(tree), panes(&arranged(live)));
     found.len() == all.len() && found.into_iter().collect::<BTreeSet<_>>() == all.into_iter().collect()
 }
 
@@ -67,6 +103,11 @@ pub(super) struct Panes<'a> {
     pub list: &'a mut List,
     pub canvases: &'a mut BTreeMap<View, Canvas>,
     pub drawings: &'a BTreeMap<View, Drawing>,
+    #[cfg(feature = "window")]
+    pub live: &'a mut Option<crate::live::Live>,
+    /// Paths of a scene and of a picture of light, as they are typed.
+    #[cfg(feature = "window")]
+    pub typed: &'a mut [String; 2],
 }
 
 impl Panes<'_> {
@@ -111,6 +152,28 @@ impl Panes<'_> {
         }
     }
 
+    /// A pane of the frame that is drawn.
+    #[cfg(feature = "window")]
+    fn drawn(&mut self, ui: &mut Ui, pane: Pane) {
+        use crate::live::panel as live;
+        let [scene, light] = &mut *self.typed;
+        let Some(drawn) = &mut *self.live else { return };
+        match pane {
+            Pane::Viewport => live::viewport(ui, drawn, self.session),
+            Pane::Settings => live::SettingsPanel::show(ui, drawn),
+            Pane::Effects => live::effects(ui, drawn),
+            Pane::Lens => live::lens(ui, drawn, light),
+            Pane::Scene => live::scene(ui, drawn, scene, self.session),
+            Pane::Debugging => live::debugging(ui, drawn, self.session),
+            Pane::Preview => live::preview(ui, drawn, self.session),
+            Pane::View(_) | Pane::List | Pane::WhatIf => {}
+        }
+    }
+
+    /// Without a window of its own, no frame is drawn.
+    #[cfg(not(feature = "window"))]
+    fn drawn(&mut self, _: &mut Ui, _: Pane) {}
+
     fn questions(&mut self, ui: &mut Ui) {
         let planning = self.session.doing().is_some();
         let (base, now) = (self.session.base(), self.session.plan.clone());
@@ -131,6 +194,13 @@ impl Behavior<Pane> for Panes<'_> {
         let pane = *pane;
         egui::Frame::new().inner_margin(6.0).show(ui, |ui| match pane {
             Pane::View(view) => self.view(ui, view),
+            Pane::Viewport
+            | Pane::Settings
+            | Pane::Effects
+            | Pane::Lens
+            | Pane::Scene
+            | Pane::Debugging
+            | Pane::Preview => self.drawn(ui, pane),
             Pane::WhatIf => self.questions(ui),
             Pane::List => {
                 if let Some(plan) = self.session.plan.clone()
@@ -144,11 +214,7 @@ impl Behavior<Pane> for Panes<'_> {
     }
 
     fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
-        match pane {
-            Pane::View(view) => view.word().into(),
-            Pane::List => "search".into(),
-            Pane::WhatIf => "what-if".into(),
-        }
+        pane.word().into()
     }
 
     fn simplification_options(&self) -> SimplificationOptions {
