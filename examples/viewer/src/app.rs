@@ -12,6 +12,7 @@ pub use shortcuts::SHORTCUTS;
 
 use crate::drawing::{Drawing, Item};
 use crate::panel::{self, Canvas, List};
+use crate::plan_data::PlanData;
 use crate::view::{self, Beside, View};
 use egui::{Context, Panel, RichText, Ui};
 use egui_tiles::Tree;
@@ -154,12 +155,13 @@ impl Viewer {
         self.drawn = drawn;
         let timed = |view: &View| matches!(view, View::Timeline | View::Trace);
         self.drawings.retain(|view, _| only_times && !timed(view));
-        if let Some(plan) = &self.session.plan {
-            let beside =
-                Beside { against: self.session.against(), trace: self.session.trace.as_deref(), selected: None };
-            for view in View::ALL.into_iter().filter(|view| *view != View::Inspector) {
-                self.drawings.entry(view).or_insert_with(|| view::drawing(view, plan, beside, LETTERS));
-            }
+        let none = PlanData::default();
+        let plan = self.session.plan.as_deref();
+        let beside = Beside { selected: None, ..self.session.beside() };
+        let all = View::ALL.into_iter().filter(|view| *view != View::Inspector);
+        for view in all.filter(|view| plan.is_some() || !view.is_of_a_plan()) {
+            let make = || view::drawing(view, plan.unwrap_or(&none), beside, LETTERS);
+            self.drawings.entry(view).or_insert_with(make);
         }
     }
 

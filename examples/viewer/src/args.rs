@@ -35,7 +35,7 @@ planned anew when it changes, or a trace (`render --trace`). docs/viewer.md show
                       switches a feature of the graph; may be given several times
   --order WHICH       declared (default) or optimized
   --select NAME       selects a pass or a resource
-  --view VIEW         graph (default), timeline, memory, bandwidth, inspector, diff or trace
+  --view VIEW         graph (default), timeline, memory, bandwidth, inspector, diff, trace or accuracy
   --theme WHICH       light or dark; default: what the desktop says, light without a window
   --scale X           pixels per point, 0.5 to 4 (1)
   --headless          no window: writes --out and ends
@@ -43,6 +43,7 @@ planned anew when it changes, or a trace (`render --trace`). docs/viewer.md show
   --picture WxH       size of a PNG in pixels; default: as large as the view
   --whole             the PNG shows the whole application, 1280x720 if --picture says nothing
   --frames N          the window draws without a pause, closes after so many frames or one more, and says how many
+  --measure           no window: prints what the panels cost on this machine
   --help              this text
 
 Exit codes: 0 done, 2 bad input or output, 3 no device or window.
@@ -59,6 +60,8 @@ pub struct Args {
     pub live: bool,
     /// The settings that it begins with.
     pub settings: Option<String>,
+    /// Prints what the panels cost.
+    pub measure: bool,
     /// What lights its scene.
     pub environment: Option<PathBuf>,
     /// The file to compare with.
@@ -100,6 +103,7 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
         file: None,
         standard: None,
         live: false,
+        measure: false,
         settings: None,
         environment: None,
         against: None,
@@ -133,6 +137,7 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
             "headless" => headless = true,
             "whole" => out.whole = true,
             "live" => out.live = true,
+            "measure" => out.measure = true,
             _ => value(&mut parser, &option, &mut out)?,
         }
     }
@@ -150,7 +155,7 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
     if !out.live && (out.settings.is_some() || out.environment.is_some()) {
         return Err("--settings and --environment go together with --live only".into());
     }
-    if headless && out.file.is_none() && out.standard.is_none() && out.view != View::Trace {
+    if headless && out.file.is_none() && out.standard.is_none() && out.view.is_of_a_plan() {
         return Err("--headless needs a file to look at: --plan FILE".into());
     }
     Ok(Some(out))

@@ -74,7 +74,7 @@ pub struct Live {
     /// Frames that are still to be drawn.
     left: u32,
     told: u64,
-    drawn_document: Document,
+    drawn_with: (Document, framegraph_wgpu::debug::Modes),
     refused: Option<String>,
     times_at: Option<Instant>,
     clock: times::Clock,
@@ -103,7 +103,7 @@ impl Live {
             wanted,
             left: AFTER_CHANGE,
             told: 0,
-            drawn_document: Document::default(),
+            drawn_with: Default::default(),
             refused: None,
             times_at: None,
             clock: times::Clock::default(),
@@ -310,7 +310,8 @@ impl Live {
         let shows = session.is_live() || session.plan.is_none();
         if shows && running.plans() != self.told {
             let name = format!("live frame, {}", running.loaded.name);
-            let changed = self.told > 0 && *self.history.now() != self.drawn_document;
+            let drawn = (self.history.now().clone(), self.asked.modes.clone());
+            let changed = self.told > 0 && drawn != self.drawn_with;
             match PlanData::of(running.plan(), &name) {
                 Ok(plan) => {
                     let (planner, base) = running.planner(self.history.now(), &self.asked.modes);
@@ -319,7 +320,7 @@ impl Live {
                 Err(error) => session.say(error.to_string()),
             }
             self.told = running.plans();
-            self.drawn_document = self.history.now().clone();
+            self.drawn_with = drawn;
         }
         if shows && self.times_at.is_none_or(|at| at.elapsed().as_secs_f32() >= TIMES_S) {
             self.times_at = Some(Instant::now());

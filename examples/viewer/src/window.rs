@@ -112,7 +112,9 @@ impl App for Program {
             }
         }
         self.viewer.show(ui);
-        self.drawn += 1;
+        // Frames count once the scene is there.
+        let loading = self.viewer.live.as_ref().is_some_and(|live| live.running.is_none() && live.doing().is_some());
+        self.drawn += u64::from(!loading);
         if let Some(frames) = self.frames {
             if self.drawn >= frames {
                 ui.ctx().send_viewport_cmd(ViewportCommand::Close);
@@ -125,6 +127,9 @@ impl App for Program {
     fn on_exit(&mut self) {
         if self.frames.is_some() {
             program::line(format_args!("{} frames", self.drawn));
+            if let Some(running) = self.viewer.live.as_ref().and_then(|live| live.running.as_ref()) {
+                program::line(format_args!("{} of the scene", running.drawn()));
+            }
         }
         let (Some(path), Some(text)) = (&self.kept, self.viewer.arrangement()) else { return };
         // An arrangement that cannot be kept is none that is worth a word.

@@ -7,6 +7,7 @@ use crate::view::{self, View};
 use egui::{Ui, WidgetText};
 use egui_tiles::{Behavior, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// What a pane shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
@@ -43,7 +44,7 @@ impl Pane {
             Self::Viewport => "viewport",
             Self::Settings => "settings",
             Self::Effects => "effects",
-            Self::Lens => "camera+light",
+            Self::Lens => "camera",
             Self::Scene => "scene",
             Self::Debugging => "debug",
             Self::Preview => "texture",
@@ -62,11 +63,14 @@ pub(super) fn arranged(live: bool) -> Tree<Pane> {
         tiles.insert_tab_tile(panes)
     };
     let set = [Pane::Settings, Pane::Effects, Pane::Lens, Pane::Scene, Pane::Debugging];
-    let left = tabs(drawn(&set).into_iter().chain([Pane::List, Pane::WhatIf]).collect());
+    let asked = [Pane::List, Pane::WhatIf];
+    let left = tabs(if live { set.to_vec() } else { asked.to_vec() });
     let middle = tabs(drawn(&[Pane::Viewport]).into_iter().chain(views).collect());
-    let inspector = tabs([Pane::View(View::Inspector)].into_iter().chain(drawn(&[Pane::Preview])).collect());
+    let beside = drawn(&[Pane::Preview, asked[0], asked[1]]);
+    let inspector = tabs([Pane::View(View::Inspector)].into_iter().chain(beside).collect());
     let mut row = egui_tiles::Linear::new(egui_tiles::LinearDir::Horizontal, vec![left, middle, inspector]);
-    for (tile, share) in [(left, if live { 1.2 } else { 0.98 }), (middle, 2.6), (inspector, 1.0)] {
+    let shares = if live { [1.15, 2.4, 1.1] } else { [0.98, 2.6, 1.0] };
+    for (tile, share) in [left, middle, inspector].into_iter().zip(shares) {
         row.shares.set_share(tile, share);
     }
     let root = tiles.insert_container(row);
@@ -117,7 +121,8 @@ impl Panes<'_> {
     }
 
     fn view(&mut self, ui: &mut Ui, view: View) {
-        let Some(plan) = self.session.plan.clone() else {
+        let plan = self.session.plan.clone();
+        let Some(plan) = plan.or_else(|| (!view.is_of_a_plan()).then(Arc::default)) else {
             ui.centered_and_justified(|ui| {
                 ui.label("open a plan (JSON) or a graph (RON): type its path above, or drop it here")
             });
@@ -141,6 +146,12 @@ impl Panes<'_> {
             }
             if ui.small_button("SVG").on_hover_text("copies the picture as an SVG document").clicked() {
                 ui.ctx().copy_text(crate::drawing::svg(drawing, panel::theme(ui)));
+            }
+            if view == View::Accuracy {
+                let mut more_ms = self.session.more_ms;
+                let slider = egui::Slider::new(&mut more_ms, 0.0..=200.0).suffix(" ms").text("beyond the fastest");
+                ui.add(slider).on_hover_text("of each technique, the most accurate choice that takes so much more is framed");
+                self.session.allow_ms(more_ms);
             }
         });
         let lit = self.session.lit();

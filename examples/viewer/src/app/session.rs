@@ -1,12 +1,13 @@
 //! What the application looks at: plans, where they come from, what is asked and selected. No windows here.
 
+use crate::accuracy_data::AccuracyData;
 use crate::drawing::Item;
 use crate::job::Job;
 use crate::open::{Opened, open};
 use crate::panel::Questions;
 use crate::plan_data::PlanData;
 use crate::trace_data::TraceData;
-use crate::view::graph;
+use crate::view::{Beside, graph};
 use crate::watch::Watch;
 use crate::what_if::{Planner, WhatIf};
 use std::path::{Path, PathBuf};
@@ -44,6 +45,10 @@ pub struct Session {
     pub plan: Option<Arc<PlanData>>,
     /// The trace that is shown.
     pub trace: Option<Arc<TraceData>>,
+    /// What techniques err by and take.
+    pub accuracy: Option<Arc<AccuracyData>>,
+    /// What each of them may take beyond its fastest choice, in ms.
+    pub more_ms: f64,
     /// What is asked; none where nobody can plan anew, as of a saved plan.
     pub questions: Option<Questions>,
     /// What is selected.
@@ -74,6 +79,8 @@ impl Session {
         Self {
             plan: None,
             trace: None,
+            accuracy: None,
+            more_ms: 0.0,
             questions: None,
             selected: None,
             messages: Vec::new(),
@@ -90,6 +97,18 @@ impl Session {
             wake: Arc::new(wake),
             first,
         }
+    }
+
+    /// Lets techniques take so many milliseconds beyond their fastest choice.
+    pub fn allow_ms(&mut self, more_ms: f64) {
+        self.generation += u64::from(self.more_ms != more_ms);
+        self.more_ms = more_ms;
+    }
+
+    /// What views look at beside the plan.
+    pub fn beside(&self) -> Beside<'_> {
+        let (accuracy, trace) = (self.accuracy.as_deref(), self.trace.as_deref());
+        Beside { against: self.against(), trace, accuracy, more_ms: self.more_ms, selected: self.selected }
     }
 
     /// Counts the changes of what is shown.
@@ -219,6 +238,11 @@ impl Session {
         self.times
     }
 
+    /// Shows a plan that nobody can plan anew.
+    pub fn show_plan(&mut self, plan: PlanData) {
+        self.opened(Path::new(""), Role::Shown, Opened::Plan(Arc::new(plan)));
+    }
+
     /// The features of a frame, set as a question has them.
     fn features(&self, planner: &dyn Planner, question: &WhatIf) -> Vec<(String, bool)> {
         let asked = |name: &str| question.features.iter().find(|(known, _)| known == name).map(|(_, on)| *on);
@@ -310,6 +334,10 @@ impl Session {
         match (opened, role) {
             (Opened::Trace(trace), _) => {
                 self.trace = Some(trace);
+                self.generation += 1;
+            }
+            (Opened::Accuracy(accuracy), _) => {
+                self.accuracy = Some(accuracy);
                 self.generation += 1;
             }
             (Opened::Plan(plan), Role::Against) => {

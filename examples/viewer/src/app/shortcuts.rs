@@ -6,7 +6,7 @@ use egui::{Context, Grid, Key, Modifiers};
 /// Each shortcut with what it does.
 pub const SHORTCUTS: [(&str, &str); 14] = [
     ("Ctrl+F", "search passes and resources"),
-    ("Ctrl+1 … Ctrl+7", "graph, timeline, memory, bandwidth, inspector, diff, trace"),
+    ("Ctrl+1 … Ctrl+8", "graph, timeline, memory, bandwidth, inspector, diff, trace, accuracy"),
     ("Escape", "select nothing; close this list"),
     ("F", "show the whole view under the pointer"),
     ("1", "show it at its own size"),
@@ -45,7 +45,7 @@ pub(super) fn asked(ctx: &Context) -> Vec<Asked> {
     if pressed(Modifiers::COMMAND, Key::F) {
         asked.push(Asked::Search);
     }
-    let numbers = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7];
+    let numbers = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8];
     asked.extend(
         numbers
             .into_iter()

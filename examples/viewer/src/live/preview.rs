@@ -3,7 +3,7 @@
 
 use super::frame::Running;
 use framegraph_wgpu::inspect::{
-    Channel, DisplayImage, DisplayMode, InspectTarget, Inspector, Request, Texels, VersionSelector, all_targets,
+    Channel, DisplayImage, DisplayMode, InspectTarget, Inspector, Texels, all_targets,
 };
 
 /// Boxes of a histogram.
@@ -48,7 +48,7 @@ pub struct Preview {
     /// Why nothing was found.
     pub error: Option<String>,
     inspector: Option<Inspector>,
-    asked: Option<(Request, u64)>,
+    asked: Option<(InspectTarget, u64)>,
     shown: Option<DisplayMode>,
     made: u64,
 }
@@ -93,33 +93,49 @@ impl Preview {
     /// The parts of the resource that there are to look at.
     pub fn targets(&self, running: &Running) -> Vec<InspectTarget> {
         let Some(name) = &self.name else { return Vec::new() };
+        let graph = running.plan().graph();
+        let resource = |target: &InspectTarget| graph.versions()[target.version.index()].resource;
+        // Rows of a plan number resources of one name, in their order.
+        let (plain, number) = match name.rsplit_once('#').map(|(plain, number)| (plain, number.parse::<usize>())) {
+            Some((plain, Ok(number))) => (plain, number.max(1)),
+            _ => (name.as_str(), 1),
+        };
         let mut all = all_targets(running.plan());
-        all.retain(|target| target.name == *name);
+        all.retain(|target| target.name == plain);
+        let mut of_name: Vec<_> = all.iter().map(resource).collect();
+        of_name.sort_unstable();
+        of_name.dedup();
+        let own = of_name.get(number - 1).copied();
+        all.retain(|target| Some(resource(target)) == own);
         all
     }
 
     /// What is asked for, of the parts that there are.
-    fn request(&self, targets: &[InspectTarget]) -> Option<Request> {
+    fn target(&self, targets: &[InspectTarget]) -> Option<InspectTarget> {
         let newest = targets.iter().map(|target| target.number).max()?;
         let number = self.version.filter(|v| targets.iter().any(|t| t.number == *v)).unwrap_or(newest);
         let of_version: Vec<&InspectTarget> = targets.iter().filter(|target| target.number == number).collect();
         let mut planes: Vec<_> = of_version.iter().map(|target| target.aspect).collect();
         planes.dedup();
         let aspect = *planes.get(self.plane).or(planes.first())?;
-        let name = self.name.clone()?;
-        let which = VersionSelector::Number(number);
-        Some(Request { name, which, mip: self.mip, layer: self.layer, aspect, sample: self.sample })
+        let is_asked = |target: &&&InspectTarget| {
+            target.aspect == aspect && target.mip == self.mip && target.layer == self.layer
+        };
+        let found = of_version.iter().find(is_asked).or(of_version.first())?;
+        let mut found = (*found).clone();
+        found.sample = self.sample;
+        Some(found)
     }
 
     /// Looks, where something else is asked for than was found. `frame` counts the frames that were drawn, where those matter.
     pub fn refresh(&mut self, running: &Running, frame: u64) {
         let targets = self.targets(running);
-        let Some(request) = self.request(&targets) else {
+        let Some(target) = self.target(&targets) else {
             (self.found, self.error) = (None, self.name.as_ref().map(|name| format!("`{name}` has no texels in this frame")));
             return;
         };
         let frame = if self.follow { frame } else { running.plans() };
-        let asked = (request, frame);
+        let asked = (target, frame);
         if self.asked.as_ref() != Some(&asked) {
             self.shown = None;
             match self.look(running, &asked.0) {
@@ -131,11 +147,11 @@ impl Preview {
         self.display(running);
     }
 
-    fn look(&mut self, running: &Running, request: &Request) -> Result<Found, String> {
+    fn look(&mut self, running: &Running, target: &InspectTarget) -> Result<Found, String> {
         let frames = running.frames();
         let inspector = self.inspector.get_or_insert_with(|| Inspector::new(&running.screen().gpu));
         let (executor, plan, world) = (frames.executor(), frames.plan(), &running.loaded.world);
-        let found = inspector.inspect(executor, plan, frames.frame(), world, frames.imports(), request);
+        let found = inspector.inspect_target(executor, plan, frames.frame(), world, frames.imports(), target.clone());
         let found = found.map_err(|e| e.to_string())?;
         let (title, numbers) = (found.title(), found.texels.numbers());
         let picture = DisplayImage { rgba8: Vec::new(), range: [0.0; 2], non_finite: 0 };

@@ -33,7 +33,7 @@ pub fn viewer(screen: &Screen, document: Document, scene: &str) -> Viewer {
     assert!(live.settle(&mut session, PATIENCE), "loading takes five minutes");
     assert!(live.running.is_some(), "{:?}", session.messages);
     live.asked.forced = true;
-    live.share = 0.2;
+    live.share = 0.1;
     Viewer::with(session, live)
 }
 
@@ -88,7 +88,7 @@ fn an_effect_that_is_switched_off_is_not_drawn_and_undo_draws_it_again() {
     assert_eq!((u64::from(executed.passes), u64::from(executed.steps)), (shown.passes, shown.steps));
     assert!(before.declared_at.iter().all(|place| place.contains(".rs:")));
 
-    harness.get_by_label("effects").click();
+    harness.state_mut().turn_to(Pane::Effects);
     harness.run();
     harness.get_by_label("ao").click();
     harness.run();
@@ -116,7 +116,7 @@ fn what_facts_drop_is_told_beside_its_switch() {
     live(&mut harness).asked.forced = false;
     live(&mut harness).again();
     harness.run();
-    harness.get_by_label("effects").click();
+    harness.state_mut().turn_to(Pane::Effects);
     harness.run();
     let facts = live(&mut harness).running.as_ref().expect("a frame").facts.clone();
     let row = facts.rows.iter().find(|row| facts.dropped().contains(row.effect)).expect("spheres need not everything");
@@ -129,13 +129,15 @@ fn four_k_is_asked_of_the_frame_that_is_drawn() {
     let name = "four_k_is_asked_of_the_frame_that_is_drawn";
     let Some(mut harness) = harness(name, "spheres") else { return };
     let before = plan(&harness).form.clone();
-    harness.get_by_label("what-if").click();
+    harness.state_mut().turn_to(Pane::WhatIf);
     harness.run();
     harness.get_by_label("4K").click();
     harness.run();
     settled(&mut harness);
     let after = plan(&harness);
-    assert_eq!(after.form.frame, [3840, 2160]);
+    let session = &harness.state().session;
+    let told = (&session.messages, session.questions.as_ref().map(|questions| questions.asked.frame));
+    assert_eq!(after.form.frame, [3840, 2160], "{told:?}");
     assert!(after.form.totals.resolve_bytes > before.totals.resolve_bytes);
     let drawn = live(&mut harness).running.as_ref().expect("a frame").plan().frame();
     assert_eq!(drawn, before.frame, "only the plan is of another size");
@@ -175,14 +177,15 @@ fn looking_at_textures_changes_no_count() {
     let name = "looking_at_textures_changes_no_count";
     let Some(mut harness) = harness(name, "spheres") else { return };
     let before = plan(&harness);
-    harness.get_by_label("texture").click();
+    harness.state_mut().turn_to(Pane::Preview);
     harness.run();
     for texture in before.form.resources.iter().filter(|r| r.format.is_some()).map(|r| r.name.clone()) {
         live(&mut harness).preview.look_at(&texture);
         harness.run();
         let preview = &live(&mut harness).preview;
         let found = preview.found.as_ref().map(|found| (found.title.clone(), found.numbers.len()));
-        assert!(found.is_some_and(|(title, texels)| title.starts_with(&texture) && texels > 0), "{texture}: {:?}", preview.error);
+        let plain = texture.split('#').next().expect("a name");
+        assert!(found.is_some_and(|(title, texels)| title.starts_with(plain) && texels > 0), "{texture}: {:?}", preview.error);
     }
     let running = live(&mut harness).running.as_ref().expect("a frame");
     assert_eq!(u64::from(running.plan().counts().passes), before.form.totals.passes);
@@ -209,15 +212,15 @@ fn debug_modes_are_executed_and_compared() {
     live(&mut harness).asked.modes = Modes::default();
     live(&mut harness).again();
     harness.run();
-    harness.get_by_label("debug").click();
+    harness.state_mut().turn_to(Pane::Debugging);
     harness.run();
     harness.get_by_label("Compare").click();
     harness.run();
     let bisecting = live(&mut harness).bisecting.as_ref().expect("it has begun");
     assert!(bisecting.is_done() && bisecting.outcomes.len() == Mode::ALL.len() + 1);
-    // No-inline grades in a pass of its own, from a texture of half floats: by a code at most.
-    let worst = bisecting.outcomes.iter().map(|outcome| (outcome.name(), outcome.worst_codes)).collect::<Vec<_>>();
-    assert!(worst.iter().all(|(_, codes)| *codes <= 2), "{worst:?}");
+    // Grading in a pass of its own reads what a texture of small floats has rounded, and FXAA sees other edges then.
+    let differ: Vec<_> = bisecting.outcomes.iter().filter(|o| !o.is_same()).map(|o| o.name()).collect();
+    assert_eq!(differ, ["no-inline", "immediate"]);
     assert_eq!(bisecting.pictures(0).map(|pictures| pictures[2].iter().step_by(4).any(|code| *code > 0)), Some(false));
     // A budget that the plan breaks is told with what to blame.
     live(&mut harness).budget = "steps=0".into();
@@ -232,11 +235,11 @@ fn settings_go_to_a_file_and_come_back() {
     let path = folder("live_settings").join("own.ron");
     let document = live(&mut harness).document().clone();
     live(&mut harness).save(&path).expect("a file");
-    harness.get_by_label("settings").click();
+    harness.state_mut().turn_to(Pane::Settings);
     harness.run();
-    harness.get_by_label("ultra").click();
+    harness.get_by_label("medium").click();
     harness.run();
-    assert_eq!(live(&mut harness).document().frame, Preset::Ultra.frame());
+    assert_eq!(live(&mut harness).document().frame, Preset::Medium.frame());
     harness.state_mut().open(&path, viewer::app::Role::Shown);
     harness.run();
     assert_eq!(*live(&mut harness).document(), document);
@@ -252,4 +255,23 @@ fn a_frame_that_stands_still_is_not_drawn() {
     assert!(idle.is_some_and(|delay| delay > Duration::from_secs(3600)), "{idle:?}");
     harness.step();
     assert_eq!(live(&mut harness).running.as_ref().expect("a frame").drawn(), drawn);
+}
+
+#[test]
+fn every_panel_is_there_and_every_widget_has_a_name() {
+    let name = "every_panel_is_there_and_every_widget_has_a_name";
+    let Some(mut harness) = harness(name, "materials") else { return };
+    let everything = Effect::ALL.into_iter().fold(Settings::DEFAULT, Settings::with);
+    for settings in [Settings::DEFAULT, everything] {
+        let mut document = live(&mut harness).document().clone();
+        document.frame.settings = Settings { taa: None, reflections: None, ..settings };
+        live(&mut harness).set(document, false);
+        for pane in [Pane::Settings, Pane::Effects, Pane::Lens, Pane::Scene, Pane::Debugging, Pane::Preview] {
+            harness.state_mut().turn_to(pane);
+            harness.run();
+            harness.check_accessibility();
+            assert!(harness.query_all_by_label(pane.word()).count() > 0, "{pane:?}");
+        }
+    }
+    assert!(harness.state().session.messages.is_empty(), "{:?}", harness.state().session.messages);
 }

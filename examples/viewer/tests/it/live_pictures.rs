@@ -35,7 +35,7 @@ fn panels_of_a_frame_fit_their_window() {
         viewer.turn_to(middle);
         viewer.turn_to(Pane::Preview);
         let live = viewer.live.as_mut().expect("a frame");
-        live.preview.look_at("shadow/shadow_map");
+        live.preview.look_at("shadow_map");
         live.again();
         let mut shown = Vec::new();
         for _ in 0..4 {

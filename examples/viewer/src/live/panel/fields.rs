@@ -29,7 +29,7 @@ impl Fields<'_> {
             Node::Items(_, items) if items.iter().all(|item| matches!(item, Node::Word(_))) => {
                 ui.horizontal_wrapped(|ui| {
                     for (index, value) in items.iter_mut().enumerate() {
-                        self.word(ui, &own(&index.to_string()), value);
+                        self.word(ui, &own(&index.to_string()), value, None);
                     }
                 });
             }
@@ -66,7 +66,7 @@ impl Fields<'_> {
                 if let Some(all) = alternatives(path) {
                     self.choice(ui, path, &all, node, id);
                 } else {
-                    self.word(ui, path, node);
+                    self.word(ui, path, node, Some(id));
                 }
             });
             if !node.children().is_empty() {
@@ -97,7 +97,7 @@ impl Fields<'_> {
                     replace(node, &all[usize::from(on)]);
                 } else if was_word {
                     // A number that may be none.
-                    self.word(ui, path, node);
+                    self.word(ui, path, node, Some(label));
                 }
             });
             return;
@@ -115,10 +115,14 @@ impl Fields<'_> {
     }
 
     /// A word: a truth value, a number, or anything else.
-    fn word(&self, ui: &mut Ui, path: &str, node: &mut Node) {
+    fn word(&self, ui: &mut Ui, path: &str, node: &mut Node, label: Option<egui::Id>) {
         let Node::Word(word) = node else { return };
+        let named = |response: egui::Response| match label {
+            Some(label) => response.labelled_by(label),
+            None => response.on_hover_text(path),
+        };
         if let Ok(mut on) = word.parse::<bool>() {
-            if ui.checkbox(&mut on, "").changed() {
+            if named(ui.add(Checkbox::without_text(&mut on))).changed() {
                 *word = on.to_string();
             }
             return;
@@ -136,11 +140,11 @@ impl Fields<'_> {
                     }
                     None => drag.speed(if whole { 0.1 } else { 0.01 * number.abs().max(0.05) }),
                 };
-                if ui.add(drag).changed() && changed != number {
+                if named(ui.add(drag)).changed() && changed != number {
                     *word = if whole { format!("{changed:.0}") } else { format!("{changed:?}") };
                 }
             }
-            _ => _ = ui.add(TextEdit::singleline(word).desired_width(90.0)),
+            _ => _ = named(ui.add(TextEdit::singleline(word).desired_width(90.0))),
         }
     }
 }

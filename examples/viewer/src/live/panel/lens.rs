@@ -3,7 +3,7 @@
 use super::goes_on;
 use crate::live::Live;
 use crate::live::look::{Behind, Exposure, Look, Sun, focal_length_mm};
-use egui::{DragValue, Grid, ScrollArea, Slider, TextEdit, Ui};
+use egui::{Checkbox, DragValue, Grid, ScrollArea, Slider, TextEdit, Ui};
 use framegraph_passes::DofSettings;
 use framegraph_passes::fog::FogSettings;
 use framegraph_passes::shadow::ShadowSettings;
@@ -110,9 +110,9 @@ fn focal(ui: &mut Ui, live: &Live, look: &mut Look) {
 }
 
 fn focus(ui: &mut Ui, dof: &mut Option<DofSettings>) {
-    ui.label("depth of field");
+    let label = ui.label("depth of field").id;
     let mut on = dof.is_some();
-    if ui.checkbox(&mut on, "").changed() {
+    if ui.add(Checkbox::without_text(&mut on)).labelled_by(label).changed() {
         *dof = on.then_some(DofSettings::DEFAULT);
     }
     ui.end_row();
@@ -183,7 +183,7 @@ fn shadows(ui: &mut Ui, shadows: &mut Option<ShadowSettings>) {
         Grid::new("shadows").num_columns(2).show(ui, |ui| {
             row(ui, "cascades", |ui| ui.add(Slider::new(&mut own.cascades, 0..=4)));
             row(ui, "texels of a map", |ui| ui.add(Slider::new(&mut own.map_texels, 256..=4096).step_by(256.0)));
-            row(ui, "show cascades", |ui| ui.checkbox(&mut own.show_cascades, "").on_hover_text("tints what is lit by the number of its cascade"));
+            row(ui, "show cascades", |ui| ui.add(Checkbox::without_text(&mut own.show_cascades)).on_hover_text("tints what is lit by the number of its cascade"));
         });
     }
 }

@@ -38,7 +38,9 @@ pub fn preview(ui: &mut Ui, live: &mut Live, session: &Session) {
                     preview.look_at(&name);
                 }
             }
-        });
+        })
+        .response
+        .on_hover_text("the texture that is looked at: that of the resource that is selected");
         parts(ui, preview, &targets);
     });
     modes(ui, preview);
@@ -68,17 +70,19 @@ fn parts(ui: &mut Ui, preview: &mut Preview, targets: &[InspectTarget]) {
                 preview.version = Some(*version);
             }
         }
-    });
+    })
+    .response
+    .on_hover_text("which version of it: as this pass has left it");
     let of_version = || targets.iter().filter(|target| target.number == number);
     let mips = of_version().map(|target| target.mip).max().unwrap_or(0);
     let layers = of_version().map(|target| target.layer).max().unwrap_or(0);
     preview.mip = preview.mip.min(mips);
     preview.layer = preview.layer.min(layers);
     if mips > 0 {
-        ui.add(DragValue::new(&mut preview.mip).range(0..=mips).speed(0.05).prefix("level "));
+        ui.add(DragValue::new(&mut preview.mip).range(0..=mips).speed(0.05).prefix("level ")).on_hover_text("mip level");
     }
     if layers > 0 {
-        ui.add(DragValue::new(&mut preview.layer).range(0..=layers).speed(0.05).prefix("layer "));
+        ui.add(DragValue::new(&mut preview.layer).range(0..=layers).speed(0.05).prefix("layer ")).on_hover_text("layer of an array, or slice");
     }
     let mut planes: Vec<_> = of_version().map(|target| target.aspect).collect();
     planes.dedup();
@@ -139,7 +143,8 @@ fn modes(ui: &mut Ui, preview: &mut Preview) {
                 *range = own.then_some(span);
             }
             for end in range.iter_mut().flatten() {
-                ui.add(DragValue::new(end).speed(0.01 * (span[1] - span[0]).abs().max(1e-3)));
+                let drag = DragValue::new(end).speed(0.01 * (span[1] - span[0]).abs().max(1e-3));
+                ui.add(drag).on_hover_text("what the first and the last color stand for");
             }
         }
         DisplayMode::Auto | DisplayMode::Depth { .. } => {}

@@ -52,7 +52,9 @@ fn open(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::ap
                     live.load(name);
                 }
             }
-        });
+        })
+        .response
+        .on_hover_text("scenes that the program makes itself");
     });
     let offered = if path.is_empty() { Vec::new() } else { completions(path) };
     if !offered.is_empty() {
@@ -109,13 +111,15 @@ fn animation(ui: &mut Ui, live: &mut Live) {
             for number in 0..animations.len() {
                 ui.selectable_value(&mut document.look.animation, Some(number), named(number));
             }
-        });
+        })
+        .response
+        .on_hover_text("which animation of the scene");
         if chosen.is_some() {
             ui.checkbox(&mut live.asked.playing, "play");
         }
     });
     if chosen.is_some() {
-        let slider = Slider::new(&mut live.asked.time_s, 0.0..=length_s.max(1e-3)).suffix(" s").max_decimals(3);
+        let slider = Slider::new(&mut live.asked.time_s, 0.0..=length_s.max(1e-3)).suffix(" s").max_decimals(3).text("time");
         if ui.add(slider).changed() {
             live.again();
         }
@@ -160,15 +164,15 @@ fn hierarchy(ui: &mut Ui, scene: &Scene) {
             ui.horizontal(|ui| {
                 ui.add_space(10.0 * depth as f32);
                 let place = instance.world_from_model.w_axis;
-                let label = ui.label(name).on_hover_text(format!(
+                ui.label(name).on_hover_text(format!(
                     "at {:.3} {:.3} {:.3} m, {} triangles",
                     place.x,
                     place.y,
                     place.z,
                     scene.meshes[instance.mesh.index()].triangle_count()
                 ));
-                let _ = label;
-                ui.menu_button(RichText::new(&material.name).size(11.0), |ui| self::material(ui, material));
+                let named = if material.name.is_empty() { "(no name)" } else { &material.name };
+                ui.menu_button(RichText::new(named).size(11.0), |ui| self::material(ui, material));
             });
         }
     });

@@ -86,7 +86,7 @@ fn bar(ui: &mut Ui, live: &mut Live) {
         }
     });
     ui.horizontal(|ui| {
-        let width = (ui.available_width() - 90.0).max(40.0);
+        let width = (ui.available_width() - 122.0).max(40.0);
         ui.add(TextEdit::singleline(&mut live.path).hint_text("SETTINGS.ron").desired_width(width));
         let path = PathBuf::from(live.path.trim());
         let named = !live.path.trim().is_empty();

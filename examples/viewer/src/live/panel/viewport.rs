@@ -3,7 +3,7 @@
 use crate::app::Session;
 use crate::live::Live;
 use crate::live::camera::{Mode, Moves};
-use egui::{Color32, Key, PointerButton, Rect, RichText, Sense, Ui, pos2};
+use egui::{Color32, Key, PointerButton, Rect, Sense, Ui, pos2, vec2};
 use glam::{DVec2, DVec3};
 
 /// The largest side that is drawn, in pixels.
@@ -30,6 +30,13 @@ pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         Some((id, _)) => {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             ui.painter().image(id, rect, whole, Color32::WHITE);
+            // Over the picture: words that grow would change its size, and so what is measured.
+            let font = egui::FontId::monospace(11.0);
+            let words = ui.painter().layout_no_wrap(statistics(live), font, Color32::WHITE);
+            let at = rect.left_bottom() + vec2(6.0, -6.0 - words.size().y);
+            let behind = Rect::from_min_size(at, words.size()).expand(3.0);
+            ui.painter().rect_filled(behind, 2.0, Color32::from_black_alpha(170));
+            ui.painter().galley(at, words, Color32::WHITE);
         }
         None => {
             let text = if live.doing().is_some() { "loading" } else { "no scene: drop a glTF file here" };
@@ -82,7 +89,6 @@ fn bar(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         if !session.is_live() && ui.button("Show its plan").on_hover_text("the views show the plan of this frame").clicked() {
             live.show_plan(session);
         }
-        ui.label(RichText::new(statistics(live)).monospace().size(11.0));
     });
 }
 
