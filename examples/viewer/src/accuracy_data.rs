@@ -121,7 +121,10 @@ impl Technique {
 pub fn read(text: &[u8]) -> Result<AccuracyData, String> {
     let data: AccuracyData = serde_json::from_slice(text).map_err(|e| format!("the accuracy cannot be read: {e}"))?;
     if data.schema != SCHEMA {
-        return Err(format!("it is `{}`, and `{SCHEMA}` is read; `accuracy` writes it (docs/accuracy.md)", data.schema));
+        return Err(format!(
+            "it is `{}`, and `{SCHEMA}` is read; `accuracy` writes it (docs/accuracy.md)",
+            data.schema
+        ));
     }
     let finite = |x: f64| x.is_finite() && x >= 0.0;
     let is_sound = |choice: &Choice| finite(choice.error) && choice.ms.is_none_or(|ms| finite(ms.median));

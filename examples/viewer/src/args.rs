@@ -164,8 +164,23 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
 /// Reads the value of one option.
 fn value(parser: &mut Parser, option: &str, out: &mut Args) -> Result<(), String> {
     const KNOWN: [&str; 17] = [
-        "standard", "settings", "environment", "plan", "against", "trace", "caps", "size", "set", "order", "select", "view", "theme", "scale",
-        "out", "picture", "frames",
+        "standard",
+        "settings",
+        "environment",
+        "plan",
+        "against",
+        "trace",
+        "caps",
+        "size",
+        "set",
+        "order",
+        "select",
+        "view",
+        "theme",
+        "scale",
+        "out",
+        "picture",
+        "frames",
     ];
     if !KNOWN.contains(&option) {
         return Err(format!("there is no option `--{option}`; see --help"));

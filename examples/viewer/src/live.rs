@@ -83,7 +83,13 @@ pub struct Live {
 
 impl Live {
     /// Begins to load a scene, a built-in name or a path; `wake` is called from other threads when there is something new.
-    pub fn new(screen: Screen, document: Document, scene: &str, environment: Option<&Path>, wake: impl Fn() + Send + Sync + 'static) -> Self {
+    pub fn new(
+        screen: Screen,
+        document: Document,
+        scene: &str,
+        environment: Option<&Path>,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) -> Self {
         let wanted = environment.map_or(Around::Sky(None), |path| Around::File(path.to_owned()));
         let mut live = Self {
             screen,
@@ -119,9 +125,11 @@ impl Live {
         let settings = self.light_settings();
         let wake = self.wake.clone();
         self.relighting = None;
-        self.loading = Some(Job::start(format!("loading {name}"), move || wake(), move |handle| {
-            loading::load(&gpu, &name, &around, &settings, handle)
-        }));
+        self.loading = Some(Job::start(
+            format!("loading {name}"),
+            move || wake(),
+            move |handle| loading::load(&gpu, &name, &around, &settings, handle),
+        ));
     }
 
     /// Opens a file by its ending: a scene, a picture of light from all around, or settings; false for others.
@@ -135,7 +143,9 @@ impl Live {
                 match crate::standard_frame::settings(&name) {
                     Ok(frame) => self.set(Document { frame, ..self.document().clone() }, false),
                     // A graph is another kind of file; settings say what is wrong with them.
-                    Err(_) if !std::fs::read_to_string(path).is_ok_and(|text| text.contains("frame: (")) => return false,
+                    Err(_) if !std::fs::read_to_string(path).is_ok_and(|text| text.contains("frame: (")) => {
+                        return false;
+                    }
                     Err(error) => session.say(error),
                 }
             }
@@ -270,9 +280,11 @@ impl Live {
             lights: loaded.lights.clone(),
             ..framegraph_scene::Scene::default()
         };
-        self.relighting = Some(Job::start("making light", move || wake(), move |handle| {
-            loading::light(&gpu, &scene, &around, &settings, handle)
-        }));
+        self.relighting = Some(Job::start(
+            "making light",
+            move || wake(),
+            move |handle| loading::light(&gpu, &scene, &around, &settings, handle),
+        ));
     }
 
     /// Whether a frame is to be drawn.

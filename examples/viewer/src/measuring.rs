@@ -91,7 +91,10 @@ pub fn table() -> Result<String, String> {
     let panes = View::ALL.into_iter().filter(|view| view.is_of_a_plan()).map(Pane::View);
     for pane in panes.chain([Pane::WhatIf]) {
         viewer.turn_to(pane);
-        rows.push((format!("panels of the standard frame, {} in front, CPU", pane.word()), ms(frames(&mut viewer, false).0)));
+        rows.push((
+            format!("panels of the standard frame, {} in front, CPU", pane.word()),
+            ms(frames(&mut viewer, false).0),
+        ));
     }
     let mut text = String::new();
     for (index, (what, number)) in rows.iter().enumerate() {

@@ -34,7 +34,7 @@ struct Program {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let document = document(args)?;
     let mut setup = WgpuSetupCreateNew::without_display_handle();
-    setup.device_descriptor = Arc::new(|adapter| Gpu::descriptor(adapter));
+    setup.device_descriptor = Arc::new(Gpu::descriptor);
     let wgpu_options = WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() };
     let options = NativeOptions {
         wgpu_options,
@@ -56,7 +56,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
                 let wake = cc.egui_ctx.clone();
                 let scene = args.file.as_ref().map_or("spheres".into(), |file| file.to_string_lossy());
                 let (screen, around) = (Screen::of(state), args.environment.as_deref());
-                let live = Live::new(screen, document.clone(), &scene, around, move || wake.request_repaint());
+                let mut live = Live::new(screen, document.clone(), &scene, around, move || wake.request_repaint());
+                live.continuous = args.frames.is_some();
                 Viewer::with(session, live)
             }
             (Some(_), None) => return Err("eframe has opened no device".into()),
@@ -72,7 +73,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             shown.arrange(&text);
         }
         shown.turn_to(if args.live && args.view == View::Graph { Pane::Viewport } else { Pane::View(args.view) });
-        let files = [(args.against, Role::Against), (args.trace, Role::Shown), (args.file.filter(|_| !args.live), Role::Shown)];
+        let files =
+            [(args.against, Role::Against), (args.trace, Role::Shown), (args.file.filter(|_| !args.live), Role::Shown)];
         let waiting = files.into_iter().filter_map(|(path, role)| Some((path?, role))).collect();
         Ok(Box::new(Program { viewer: shown, waiting, select: args.select, frames: args.frames, drawn: 0, kept }))
     });

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 use std::num::NonZeroU64;
 
-use framegraph_scene::{Image, Lobes, MaterialId, Memory, MeshId, ProgressFn, Scene};
 use bytemuck::cast_slice;
+use framegraph_scene::{Image, Lobes, MaterialId, Memory, MeshId, ProgressFn, Scene};
 use framegraph_shaders::layout::{MaterialUniforms, VertexAttributes, VertexPosition};
 use framegraph_wgpu::{Binding, DeviceError, Gpu};
 

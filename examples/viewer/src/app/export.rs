@@ -16,11 +16,17 @@ const SCALE: f32 = 2.0;
 ///
 /// # Errors
 /// One line that names the file.
-pub(super) fn write(path: &Path, drawing: Option<&Drawing>, plan: Option<&PlanData>, theme: Theme) -> Result<(), String> {
+pub(super) fn write(
+    path: &Path,
+    drawing: Option<&Drawing>,
+    plan: Option<&PlanData>,
+    theme: Theme,
+) -> Result<(), String> {
     let shown = path.display();
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let drawing = || drawing.ok_or_else(|| format!("{shown}: nothing is shown; open a plan"));
-    let live = || plan.and_then(|plan| plan.plan.as_deref()).ok_or_else(|| format!("{shown}: a saved plan is a file already"));
+    let live =
+        || plan.and_then(|plan| plan.plan.as_deref()).ok_or_else(|| format!("{shown}: a saved plan is a file already"));
     let name = || plan.map_or("", |plan| plan.form.name.as_str());
     let bytes = match ending.as_str() {
         "svg" => svg(drawing()?, theme).into_bytes(),
@@ -29,7 +35,11 @@ pub(super) fn write(path: &Path, drawing: Option<&Drawing>, plan: Option<&PlanDa
         "json" => dump::json(live()?, name()).into_bytes(),
         "dot" => dump::dot(live()?).into_bytes(),
         "mmd" => dump::mermaid(live()?).into_bytes(),
-        _ => return Err(format!("{shown}: the ending is none of svg, png, txt (of a view), json, dot, mmd (of the plan)")),
+        _ => {
+            return Err(format!(
+                "{shown}: the ending is none of svg, png, txt (of a view), json, dot, mmd (of the plan)"
+            ));
+        }
     };
     std::fs::write(path, bytes).map_err(|e| format!("{shown}: cannot be written: {e}"))
 }

@@ -150,7 +150,8 @@ impl Panes<'_> {
             if view == View::Accuracy {
                 let mut more_ms = self.session.more_ms;
                 let slider = egui::Slider::new(&mut more_ms, 0.0..=200.0).suffix(" ms").text("beyond the fastest");
-                ui.add(slider).on_hover_text("of each technique, the most accurate choice that takes so much more is framed");
+                ui.add(slider)
+                    .on_hover_text("of each technique, the most accurate choice that takes so much more is framed");
                 self.session.allow_ms(more_ms);
             }
         });

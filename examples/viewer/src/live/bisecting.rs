@@ -78,9 +78,12 @@ impl Bisecting {
     /// The picture of an outcome, the picture without any mode, and their difference, 16 times as large.
     pub fn pictures(&self, outcome: usize) -> Option<[Vec<u8>; 3]> {
         let (first, other) = (self.drawn.first()?, self.drawn.get(outcome + 1)?);
-        let difference = first.rgba8.iter().zip(&other.rgba8).enumerate().map(|(index, (a, b))| {
-            if index % 4 == 3 { 255 } else { a.abs_diff(*b).saturating_mul(16) }
-        });
+        let difference = first
+            .rgba8
+            .iter()
+            .zip(&other.rgba8)
+            .enumerate()
+            .map(|(index, (a, b))| if index % 4 == 3 { 255 } else { a.abs_diff(*b).saturating_mul(16) });
         Some([first.rgba8.clone(), other.rgba8.clone(), difference.collect()])
     }
 }

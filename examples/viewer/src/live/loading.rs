@@ -2,11 +2,11 @@
 
 use super::look::{Behind, Sun};
 use crate::job::Handle;
+use framegraph_passes::facts::Survey;
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::upload::GpuScene;
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::facts::Survey;
 use framegraph_passes::{CameraView, LightSearch, Lighting, PreparedScene, World};
 use framegraph_scene::environment::{Sky, SunExtraction};
 use framegraph_scene::{Environment, Light, LightKind, LoadOptions, Progress, Scene};
@@ -109,19 +109,8 @@ pub fn load(
     let (lights, survey) = (scene.lights.clone(), Arc::new(Survey::new(&scene)));
     let name = name.to_owned();
     let light_settings = settings;
-    let loaded = Loaded {
-        name,
-        scene,
-        lights,
-        survey,
-        prepared,
-        world,
-        sun,
-        around,
-        light_settings,
-        background,
-        metered_ev100,
-    };
+    let loaded =
+        Loaded { name, scene, lights, survey, prepared, world, sun, around, light_settings, background, metered_ev100 };
     Ok((loaded, warnings))
 }
 

@@ -179,7 +179,10 @@ mod tests {
     #[test]
     fn exposure_and_lens_are_those_of_cameras() {
         let sunny = Exposure::Camera { aperture: 16.0, shutter_s: 1.0 / 128.0, iso: 100.0 };
-        assert_eq!((sunny.ev100(3.0), Exposure::Metered.ev100(3.0), Exposure::Ev100(-2.0).ev100(3.0)), (15.0, 3.0, -2.0));
+        assert_eq!(
+            (sunny.ev100(3.0), Exposure::Metered.ev100(3.0), Exposure::Ev100(-2.0).ev100(3.0)),
+            (15.0, 3.0, -2.0)
+        );
         let look = Look { focal_length_mm: Some(28.0), ..Look::default() };
         assert!((focal_length_mm(look.fov_y_rad().expect("a lens")) - 28.0).abs() < 1e-9);
     }

@@ -2,9 +2,7 @@
 //! executed for it, so the frame's own stays as it is.
 
 use super::frame::Running;
-use framegraph_wgpu::inspect::{
-    Channel, DisplayImage, DisplayMode, InspectTarget, Inspector, Texels, all_targets,
-};
+use framegraph_wgpu::inspect::{Channel, DisplayImage, DisplayMode, InspectTarget, Inspector, Texels, all_targets};
 
 /// Boxes of a histogram.
 pub const BOXES: usize = 64;
@@ -118,9 +116,8 @@ impl Preview {
         let mut planes: Vec<_> = of_version.iter().map(|target| target.aspect).collect();
         planes.dedup();
         let aspect = *planes.get(self.plane).or(planes.first())?;
-        let is_asked = |target: &&&InspectTarget| {
-            target.aspect == aspect && target.mip == self.mip && target.layer == self.layer
-        };
+        let is_asked =
+            |target: &&&InspectTarget| target.aspect == aspect && target.mip == self.mip && target.layer == self.layer;
         let found = of_version.iter().find(is_asked).or(of_version.first())?;
         let mut found = (*found).clone();
         found.sample = self.sample;
@@ -131,7 +128,8 @@ impl Preview {
     pub fn refresh(&mut self, running: &Running, frame: u64) {
         let targets = self.targets(running);
         let Some(target) = self.target(&targets) else {
-            (self.found, self.error) = (None, self.name.as_ref().map(|name| format!("`{name}` has no texels in this frame")));
+            (self.found, self.error) =
+                (None, self.name.as_ref().map(|name| format!("`{name}` has no texels in this frame")));
             return;
         };
         let frame = if self.follow { frame } else { running.plans() };

@@ -21,7 +21,9 @@ impl Screen {
         let gpu = Gpu::wrap(&state.adapter, &state.device, &state.queue);
         state.device.on_uncaptured_error(Arc::new(|error| program::note(format_args!("the device refused: {error}"))));
         let lost = gpu.shared_errors();
-        state.device.set_device_lost_callback(move |reason, message| lost.report_lost(format!("{reason:?}: {message}")));
+        state
+            .device
+            .set_device_lost_callback(move |reason, message| lost.report_lost(format!("{reason:?}: {message}")));
         Self { gpu, renderer: Some(state.renderer.clone()) }
     }
 

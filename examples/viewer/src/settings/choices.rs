@@ -46,7 +46,7 @@ const VARIANTS: [(&str, &[&str]); 27] = [
     ("settings.shading.bands", &["Two", "Three", "Five"]),
     ("settings.shading.window", &["None", "Hann", "Sinc", "Laplacian(lambda: 0.01)"]),
     ("settings.shadows.filter", &["Pcf", "Dpcf", "Pcss", "Vsm", "Evsm"]),
-    ("settings.shadows.splits", &["Uniform", "Logarithmic", "Practical(0.8)", "At((0.125, 0.25, 0.5))"]),
+    ("settings.shadows.splits", &["Uniform", "Logarithmic", "Practical(0.8)", "At(0.125, 0.25, 0.5)"]),
     ("settings.shadows.fit", &["Tight(lispsm: true)", "Stable"]),
     (
         "settings.occlusion.method",
@@ -54,7 +54,10 @@ const VARIANTS: [(&str, &[&str]); 27] = [
     ),
     ("settings.occlusion.method.occluders", &["Solid", "Fading", "Thick(0.2)"]),
     ("settings.occlusion.resolution", &["Full", "Half"]),
-    ("settings.fog.color", &["Radiance((2000.0, 2500.0, 3000.0))", "Environment(tint: (1.0, 1.0, 1.0), sharp_m: 100.0)"]),
+    (
+        "settings.fog.color",
+        &["Radiance(2000.0, 2500.0, 3000.0)", "Environment(tint: (1.0, 1.0, 1.0), sharp_m: 100.0)"],
+    ),
     ("settings.dof.resolution", &["Full", "Half"]),
     ("settings.bloom.quality", &["Low", "Medium", "High"]),
     ("settings.bloom.blend", &["Add", "Interpolate"]),
@@ -165,7 +168,8 @@ mod tests {
                 let mut whole = template().clone();
                 if path == "settings.occlusion.method.occluders" {
                     *whole.at_mut("settings.occlusion.method").expect("a method") =
-                        super::super::parse(&alternatives("settings.occlusion.method").expect("methods")[1]).expect("a value");
+                        super::super::parse(&alternatives("settings.occlusion.method").expect("methods")[1])
+                            .expect("a value");
                 }
                 if path == "settings.post.by.format" {
                     *whole.at_mut("settings.post.by").expect("a way") =
@@ -175,7 +179,8 @@ mod tests {
                 *place = super::super::parse(&text).unwrap_or_else(|error| panic!("{path}: {text}: {error}"));
                 let read = settings(&whole).unwrap_or_else(|error| panic!("{path}: {text}: {error}"));
                 let again = tree(&read).expect("a tree");
-                let (is, asked) = (again.at(path).and_then(Node::variant), super::super::parse(&text).expect("a value"));
+                let (is, asked) =
+                    (again.at(path).and_then(Node::variant), super::super::parse(&text).expect("a value"));
                 assert_eq!(is, asked.variant(), "{path}");
                 tried += 1;
             }

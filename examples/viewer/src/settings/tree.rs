@@ -127,7 +127,8 @@ impl Reader<'_> {
         self.space();
         let ends = |c: char| c.is_whitespace() || matches!(c, '(' | ')' | ',' | ':' | '"');
         let length = self.rest().find(ends).unwrap_or(self.rest().len());
-        let word = self.rest()[..length].to_owned();
+        // `r#None` is a variant of that name, which is read without the mark too.
+        let word = self.rest()[..length].trim_start_matches("r#").to_owned();
         self.at += length;
         word
     }
@@ -157,7 +158,12 @@ impl Reader<'_> {
                 self.at = before;
                 items.push(self.value(depth + 1)?);
             }
-            if !self.take(',') && !{ self.space(); self.rest().starts_with(')') } {
+            if !self.take(',')
+                && !{
+                    self.space();
+                    self.rest().starts_with(')')
+                }
+            {
                 return Err(self.wrong("a comma or a closing bracket is expected"));
             }
         }
@@ -175,7 +181,8 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_again() -> Result<(), TreeError> {
-        let text = "(a: 1.5, b: Some(x: -2, y: inf), c: (1, 2, (q: true)), d: None, e: \"no, (word)\", f: At((0.1, 0.2)))";
+        let text =
+            "(a: 1.5, b: Some(x: -2, y: inf), c: (1, 2, (q: true)), d: None, e: \"no, (word)\", f: At((0.1, 0.2)))";
         let node = parse(text)?;
         assert_eq!(node.to_string(), text);
         assert_eq!(node.at("b.x"), Some(&Node::Word("-2".into())));
@@ -188,7 +195,9 @@ mod tests {
 
     #[test]
     fn what_is_no_tree_is_refused_where_it_ends_to_be_one() {
-        for (text, at) in [("", 0), ("(a: 1", 5), ("(a: 1, 2)", 9), ("(a: \"b)", 5), ("(a: 1) b", 7), ("(a: , b: 2)", 4)] {
+        for (text, at) in
+            [("", 0), ("(a: 1", 5), ("(a: 1, 2)", 9), ("(a: \"b)", 5), ("(a: 1) b", 7), ("(a: , b: 2)", 4)]
+        {
             assert_eq!(parse(text).map_err(|error| error.at), Err(at), "{text}");
         }
         assert!(parse(&"(".repeat(100_000)).is_err());

@@ -4,9 +4,9 @@ use crate::accuracy_data::{AccuracyData, Technique, Unit};
 use crate::drawing::{Align, Drawing, Ink, letters_in, shortened, wrapped};
 
 /// Size of a plot, without its words.
-const PLOT: [f32; 2] = [260.0, 130.0];
+const PLOT: [f32; 2] = [230.0, 130.0];
 /// From one plot to the next.
-const STEP: [f32; 2] = [360.0, 252.0];
+const STEP: [f32; 2] = [320.0, 264.0];
 /// Plots in a row.
 const COLUMNS: usize = 3;
 /// Where the first plot begins.
@@ -23,9 +23,15 @@ pub fn drawing(data: Option<&AccuracyData>, more_ms: f64) -> Drawing {
         return drawing;
     };
     let [width, height] = data.size_px;
-    let head = format!("{} techniques, error over cost; frames of {width}x{height} on {}", data.techniques.len(), data.adapter);
+    let head = format!(
+        "{} techniques, error over cost; frames of {width}x{height} on {}",
+        data.techniques.len(),
+        data.adapter
+    );
     drawing.text([0.0, 10.0], 14.0, Ink::Text, head);
-    let key = format!("joined: no other is cheaper and as accurate;  framed: the most accurate within {more_ms:.1} ms of the fastest");
+    let key = format!(
+        "joined: no other is cheaper and as accurate;  framed: the most accurate within {more_ms:.1} ms of the fastest"
+    );
     drawing.text([0.0, 28.0], 11.0, Ink::Faint, key);
     for (index, technique) in data.techniques.iter().enumerate() {
         let at = [STEP[0] * (index % COLUMNS) as f32, TOP + STEP[1] * (index / COLUMNS) as f32];
@@ -40,7 +46,7 @@ fn plot(drawing: &mut Drawing, technique: &Technique, [left, top]: [f32; 2], mor
     for (line, text) in wrapped(&technique.what, letters_in(STEP[0] - 20.0, 10.0)).into_iter().take(3).enumerate() {
         drawing.text([left, top + 24.0 + 12.0 * line as f32], 10.0, Ink::Faint, text);
     }
-    let (x0, y0) = (left + 44.0, top + 62.0);
+    let (x0, y0) = (left + 20.0, top + 76.0);
     let (x1, y1) = (x0 + PLOT[0], y0 + PLOT[1]);
     drawing.rect([x0, y0, x1, y1], None, Ink::Grid);
     let (unit, cost_of) = (technique.unit_of_cost(), |choice| technique.cost(choice));
@@ -81,14 +87,16 @@ fn plot(drawing: &mut Drawing, technique: &Technique, [left, top]: [f32; 2], mor
         let right = x > x0 + 0.6 * PLOT[0];
         let (align, beside) = if right { (Align::Right, x - 10.0) } else { (Align::Left, x + 10.0) };
         let letters = letters_in(if right { beside - x0 } else { x1 - beside }, 9.0);
-        let above = if index % 2 == 0 { -7.0 } else { 7.0 };
+        // Names of marks that lie beside each other stand above and below them.
+        let above = [-8.0, 8.0, -18.0, 18.0][index % 4];
         drawing.aligned([beside, y + above], 9.0, align, Ink::Text, shortened(&choice.name, letters));
         let cost = match unit {
             Unit::Ms => format!("{:.2} ms", technique.cost(choice)),
             Unit::Operations => format!("{:.0} operations", technique.cost(choice)),
             Unit::Nothing => "not timed".into(),
         };
-        let presets = if choice.presets.is_empty() { String::new() } else { format!("; {}", choice.presets.join(", ")) };
+        let presets =
+            if choice.presets.is_empty() { String::new() } else { format!("; {}", choice.presets.join(", ")) };
         let tip = format!("{}: {:.4} {}, {cost}{presets}", choice.name, choice.error, technique.unit);
         drawing.hit([x - 8.0, y - 8.0, x + 8.0, y + 8.0], None, tip);
     }
@@ -98,7 +106,13 @@ fn plot(drawing: &mut Drawing, technique: &Technique, [left, top]: [f32; 2], mor
         Unit::Operations => ("operations", format!("{low:.0}"), format!("{high:.0} operations")),
         Unit::Nothing => ("cost unknown", String::new(), String::new()),
     };
-    drawing.aligned([x_of(low), y1 + 9.0], 9.0, Align::Center, Ink::Faint, if from.is_empty() { name.into() } else { from });
+    drawing.aligned(
+        [x_of(low), y1 + 9.0],
+        9.0,
+        Align::Center,
+        Ink::Faint,
+        if from.is_empty() { name.into() } else { from },
+    );
     if high > low {
         drawing.aligned([x_of(high), y1 + 9.0], 9.0, Align::Center, Ink::Faint, to);
     }

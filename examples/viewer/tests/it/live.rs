@@ -185,7 +185,11 @@ fn looking_at_textures_changes_no_count() {
         let preview = &live(&mut harness).preview;
         let found = preview.found.as_ref().map(|found| (found.title.clone(), found.numbers.len()));
         let plain = texture.split('#').next().expect("a name");
-        assert!(found.is_some_and(|(title, texels)| title.starts_with(plain) && texels > 0), "{texture}: {:?}", preview.error);
+        assert!(
+            found.is_some_and(|(title, texels)| title.starts_with(plain) && texels > 0),
+            "{texture}: {:?}",
+            preview.error
+        );
     }
     let running = live(&mut harness).running.as_ref().expect("a frame");
     assert_eq!(u64::from(running.plan().counts().passes), before.form.totals.passes);

@@ -27,7 +27,8 @@ pub fn effects(ui: &mut Ui, live: &mut Live) {
             let mut on = asked.has(effect);
             let row = live.running.as_ref().and_then(|running| running.facts.of(effect));
             let dropped = row.is_some_and(|row| row.decision == Decision::Dropped);
-            let name = if dropped { RichText::new(effect.name()).strikethrough() } else { RichText::new(effect.name()) };
+            let name =
+                if dropped { RichText::new(effect.name()).strikethrough() } else { RichText::new(effect.name()) };
             let can = on || !OF_THE_SCENE.contains(&effect);
             let response = ui.add_enabled(can, egui::Checkbox::new(&mut on, name));
             if response.changed() {

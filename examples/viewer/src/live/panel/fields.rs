@@ -45,7 +45,8 @@ impl Fields<'_> {
     /// Whether a field or something in it has the search in its name.
     fn is_found(&self, path: &str, node: &Node) -> bool {
         let search = self.search.trim();
-        path.contains(search) || node.children().iter().any(|(name, child)| self.is_found(&format!("{path}.{name}"), child))
+        path.contains(search)
+            || node.children().iter().any(|(name, child)| self.is_found(&format!("{path}.{name}"), child))
     }
 
     /// A field: its name, its value, and below that what it holds.

@@ -26,7 +26,9 @@ pub fn lens(ui: &mut Ui, live: &mut Live, environment: &mut String) {
         around(ui, live, environment);
         Grid::new("around").num_columns(2).show(ui, |ui| {
             let look = &mut document.look;
-            row(ui, "intensity", |ui| ui.add(Slider::new(&mut look.environment_intensity, 0.0..=8.0).logarithmic(true)));
+            row(ui, "intensity", |ui| {
+                ui.add(Slider::new(&mut look.environment_intensity, 0.0..=8.0).logarithmic(true))
+            });
             let tip = "turns a picture about the vertical, with its sun; a clear sky turns with the sun that is given";
             row(ui, "rotation", |ui| {
                 ui.add(Slider::new(&mut look.environment_turned_deg, -180.0..=180.0).suffix("°")).on_hover_text(tip)
@@ -81,7 +83,9 @@ fn exposure(ui: &mut Ui, live: &Live, look: &mut Look) {
         Exposure::Camera { aperture, shutter_s, iso } => {
             row(ui, "aperture", |ui| ui.add(DragValue::new(aperture).range(0.5..=64.0).speed(0.05).prefix("f/")));
             let mut per_s = 1.0 / *shutter_s;
-            row(ui, "shutter", |ui| ui.add(DragValue::new(&mut per_s).range(0.01..=100_000.0).speed(1.0).prefix("1/").suffix(" s")));
+            row(ui, "shutter", |ui| {
+                ui.add(DragValue::new(&mut per_s).range(0.01..=100_000.0).speed(1.0).prefix("1/").suffix(" s"))
+            });
             *shutter_s = 1.0 / per_s;
             row(ui, "ISO", |ui| ui.add(DragValue::new(iso).range(1.0..=409_600.0).speed(5.0)));
             ui.label("EV100");
@@ -117,8 +121,12 @@ fn focus(ui: &mut Ui, dof: &mut Option<DofSettings>) {
     }
     ui.end_row();
     if let Some(dof) = dof {
-        row(ui, "focus distance", |ui| ui.add(DragValue::new(&mut dof.focus_m).range(0.01..=1e4).speed(0.02).suffix(" m")));
-        row(ui, "its aperture", |ui| ui.add(DragValue::new(&mut dof.f_number).range(0.5..=64.0).speed(0.05).prefix("f/")));
+        row(ui, "focus distance", |ui| {
+            ui.add(DragValue::new(&mut dof.focus_m).range(0.01..=1e4).speed(0.02).suffix(" m"))
+        });
+        row(ui, "its aperture", |ui| {
+            ui.add(DragValue::new(&mut dof.f_number).range(0.5..=64.0).speed(0.05).prefix("f/"))
+        });
     }
 }
 
@@ -183,7 +191,10 @@ fn shadows(ui: &mut Ui, shadows: &mut Option<ShadowSettings>) {
         Grid::new("shadows").num_columns(2).show(ui, |ui| {
             row(ui, "cascades", |ui| ui.add(Slider::new(&mut own.cascades, 0..=4)));
             row(ui, "texels of a map", |ui| ui.add(Slider::new(&mut own.map_texels, 256..=4096).step_by(256.0)));
-            row(ui, "show cascades", |ui| ui.add(Checkbox::without_text(&mut own.show_cascades)).on_hover_text("tints what is lit by the number of its cascade"));
+            row(ui, "show cascades", |ui| {
+                ui.add(Checkbox::without_text(&mut own.show_cascades))
+                    .on_hover_text("tints what is lit by the number of its cascade")
+            });
         });
     }
 }
@@ -196,7 +207,9 @@ fn fog(ui: &mut Ui, fog: &mut Option<FogSettings>) {
     if let Some(own) = fog {
         Grid::new("fog").num_columns(2).show(ui, |ui| {
             row(ui, "density", |ui| ui.add(Slider::new(&mut own.density, 0.0..=10.0).logarithmic(true)));
-            row(ui, "begins at", |ui| ui.add(DragValue::new(&mut own.start_m).range(0.0..=1e4).speed(0.1).suffix(" m")));
+            row(ui, "begins at", |ui| {
+                ui.add(DragValue::new(&mut own.start_m).range(0.0..=1e4).speed(0.1).suffix(" m"))
+            });
             row(ui, "height", |ui| ui.add(DragValue::new(&mut own.height_m).range(-1e4..=1e4).speed(0.1).suffix(" m")));
             row(ui, "thins out by", |ui| ui.add(Slider::new(&mut own.falloff, 0.0..=10.0).logarithmic(true)));
             row(ui, "at most", |ui| ui.add(Slider::new(&mut own.most_opacity, 0.0..=1.0)));

@@ -32,15 +32,17 @@ pub fn preview(ui: &mut Ui, live: &mut Live, session: &Session) {
         });
         names.sort_unstable();
         let shown = preview.name.clone().unwrap_or_else(|| "a texture".into());
-        ComboBox::from_id_salt("texture").selected_text(shown).show_ui(ui, |ui| {
-            for name in names {
-                if ui.selectable_label(preview.name.as_ref() == Some(&name), &name).clicked() {
-                    preview.look_at(&name);
+        ComboBox::from_id_salt("texture")
+            .selected_text(shown)
+            .show_ui(ui, |ui| {
+                for name in names {
+                    if ui.selectable_label(preview.name.as_ref() == Some(&name), &name).clicked() {
+                        preview.look_at(&name);
+                    }
                 }
-            }
-        })
-        .response
-        .on_hover_text("the texture that is looked at: that of the resource that is selected");
+            })
+            .response
+            .on_hover_text("the texture that is looked at: that of the resource that is selected");
         parts(ui, preview, &targets);
     });
     modes(ui, preview);
@@ -63,26 +65,31 @@ fn parts(ui: &mut Ui, preview: &mut Preview, targets: &[InspectTarget]) {
     versions.dedup();
     let Some((newest, _)) = versions.last().cloned() else { return };
     let number = preview.version.unwrap_or(newest);
-    let text = versions.iter().find(|(v, _)| *v == number).map_or_else(String::new, |(_, writer)| format!("by {writer}"));
-    ComboBox::from_id_salt("version").selected_text(text).show_ui(ui, |ui| {
-        for (version, writer) in &versions {
-            if ui.selectable_label(*version == number, format!("by {writer}")).clicked() {
-                preview.version = Some(*version);
+    let text =
+        versions.iter().find(|(v, _)| *v == number).map_or_else(String::new, |(_, writer)| format!("by {writer}"));
+    ComboBox::from_id_salt("version")
+        .selected_text(text)
+        .show_ui(ui, |ui| {
+            for (version, writer) in &versions {
+                if ui.selectable_label(*version == number, format!("by {writer}")).clicked() {
+                    preview.version = Some(*version);
+                }
             }
-        }
-    })
-    .response
-    .on_hover_text("which version of it: as this pass has left it");
+        })
+        .response
+        .on_hover_text("which version of it: as this pass has left it");
     let of_version = || targets.iter().filter(|target| target.number == number);
     let mips = of_version().map(|target| target.mip).max().unwrap_or(0);
     let layers = of_version().map(|target| target.layer).max().unwrap_or(0);
     preview.mip = preview.mip.min(mips);
     preview.layer = preview.layer.min(layers);
     if mips > 0 {
-        ui.add(DragValue::new(&mut preview.mip).range(0..=mips).speed(0.05).prefix("level ")).on_hover_text("mip level");
+        ui.add(DragValue::new(&mut preview.mip).range(0..=mips).speed(0.05).prefix("level "))
+            .on_hover_text("mip level");
     }
     if layers > 0 {
-        ui.add(DragValue::new(&mut preview.layer).range(0..=layers).speed(0.05).prefix("layer ")).on_hover_text("layer of an array, or slice");
+        ui.add(DragValue::new(&mut preview.layer).range(0..=layers).speed(0.05).prefix("layer "))
+            .on_hover_text("layer of an array, or slice");
     }
     let mut planes: Vec<_> = of_version().map(|target| target.aspect).collect();
     planes.dedup();
@@ -108,7 +115,9 @@ fn parts(ui: &mut Ui, preview: &mut Preview, targets: &[InspectTarget]) {
 /// How numbers are shown.
 fn modes(ui: &mut Ui, preview: &mut Preview) {
     let channel = match preview.mode {
-        DisplayMode::Stretch { channel } | DisplayMode::Plain { channel } | DisplayMode::False { channel, .. } => channel,
+        DisplayMode::Stretch { channel } | DisplayMode::Plain { channel } | DisplayMode::False { channel, .. } => {
+            channel
+        }
         _ => Channel::Red,
     };
     ui.horizontal_wrapped(|ui| {
@@ -118,7 +127,11 @@ fn modes(ui: &mut Ui, preview: &mut Preview) {
             ("distance", DisplayMode::Depth { near_m: None }, "distance from the camera, of depth"),
             ("stretch", DisplayMode::Stretch { channel }, "one channel, from its least to its greatest number"),
             ("plain", DisplayMode::Plain { channel }, "one channel, from 0 to 1"),
-            ("colors", DisplayMode::False { channel, range: None }, "one channel in the colors of the Turbo map, over a range"),
+            (
+                "colors",
+                DisplayMode::False { channel, range: None },
+                "one channel in the colors of the Turbo map, over a range",
+            ),
         ] {
             let is = std::mem::discriminant(&preview.mode) == std::mem::discriminant(&mode);
             if ui.selectable_label(is, name).on_hover_text(tip).clicked() && !is {
@@ -194,12 +207,18 @@ fn histogram(ui: &mut Ui, found: &Found) {
     let inks = [[213, 94, 0], [0, 158, 115], [0, 114, 178], [128, 128, 128]];
     for (boxes, [r, g, b]) in found.histogram.iter().zip(inks) {
         let most = boxes.iter().copied().max().unwrap_or(1).max(1) as f32;
-        let points: Vec<Pos2> = boxes.iter().enumerate().map(|(index, count)| {
-            let x = rect.left() + rect.width() * (index as f32 + 0.5) / boxes.len() as f32;
-            pos2(x, rect.bottom() - rect.height() * (*count as f32 / most).sqrt())
-        }).collect();
+        let points: Vec<Pos2> = boxes
+            .iter()
+            .enumerate()
+            .map(|(index, count)| {
+                let x = rect.left() + rect.width() * (index as f32 + 0.5) / boxes.len() as f32;
+                pos2(x, rect.bottom() - rect.height() * (*count as f32 / most).sqrt())
+            })
+            .collect();
         painter.add(egui::Shape::line(points, egui::Stroke::new(1.2, Color32::from_rgb(r, g, b))));
     }
     let [low, high] = found.span();
-    response.on_hover_text(format!("how often numbers from {low} to {high} occur: red, green, blue, alpha; heights are square roots"));
+    response.on_hover_text(format!(
+        "how often numbers from {low} to {high} occur: red, green, blue, alpha; heights are square roots"
+    ));
 }

@@ -46,15 +46,18 @@ fn open(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::ap
         {
             live.load(path.trim());
         }
-        ComboBox::from_id_salt("built-in").selected_text("built-in").width(60.0).show_ui(ui, |ui| {
-            for name in NAMES {
-                if ui.selectable_label(false, name).clicked() {
-                    live.load(name);
+        ComboBox::from_id_salt("built-in")
+            .selected_text("built-in")
+            .width(60.0)
+            .show_ui(ui, |ui| {
+                for name in NAMES {
+                    if ui.selectable_label(false, name).clicked() {
+                        live.load(name);
+                    }
                 }
-            }
-        })
-        .response
-        .on_hover_text("scenes that the program makes itself");
+            })
+            .response
+            .on_hover_text("scenes that the program makes itself");
     });
     let offered = if path.is_empty() { Vec::new() } else { completions(path) };
     if !offered.is_empty() {
@@ -71,9 +74,9 @@ fn open(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::ap
 
 /// Folders and files that a path may go on with: scenes and pictures of light, in their order.
 pub(super) fn completions(path: &str) -> Vec<String> {
-    let (folder, begun) = path.rsplit_once('/').map_or((".", path), |(folder, begun)| {
-        (if folder.is_empty() { "/" } else { folder }, begun)
-    });
+    let (folder, begun) = path
+        .rsplit_once('/')
+        .map_or((".", path), |(folder, begun)| (if folder.is_empty() { "/" } else { folder }, begun));
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
     let mut names: Vec<String> = entries
         .flatten()
@@ -106,20 +109,23 @@ fn animation(ui: &mut Ui, live: &mut Live) {
     let length_s = chosen.map_or(0.0, |number| animations[number].duration_s());
     ui.horizontal(|ui| {
         let text = chosen.map_or("at rest".into(), named);
-        ComboBox::from_id_salt("animation").selected_text(text).show_ui(ui, |ui| {
-            ui.selectable_value(&mut document.look.animation, None, "at rest");
-            for number in 0..animations.len() {
-                ui.selectable_value(&mut document.look.animation, Some(number), named(number));
-            }
-        })
-        .response
-        .on_hover_text("which animation of the scene");
+        ComboBox::from_id_salt("animation")
+            .selected_text(text)
+            .show_ui(ui, |ui| {
+                ui.selectable_value(&mut document.look.animation, None, "at rest");
+                for number in 0..animations.len() {
+                    ui.selectable_value(&mut document.look.animation, Some(number), named(number));
+                }
+            })
+            .response
+            .on_hover_text("which animation of the scene");
         if chosen.is_some() {
             ui.checkbox(&mut live.asked.playing, "play");
         }
     });
     if chosen.is_some() {
-        let slider = Slider::new(&mut live.asked.time_s, 0.0..=length_s.max(1e-3)).suffix(" s").max_decimals(3).text("time");
+        let slider =
+            Slider::new(&mut live.asked.time_s, 0.0..=length_s.max(1e-3)).suffix(" s").max_decimals(3).text("time");
         if ui.add(slider).changed() {
             live.again();
         }

@@ -91,7 +91,7 @@ fn bar(ui: &mut Ui, live: &mut Live) {
         let path = PathBuf::from(live.path.trim());
         let named = !live.path.trim().is_empty();
         if ui.add_enabled(named, egui::Button::new("Load")).on_hover_text("docs/settings.md").clicked() {
-            let read = crate::standard_frame::settings(&live.path.trim().to_owned());
+            let read = crate::standard_frame::settings(live.path.trim());
             live.settings.refused = match read {
                 Ok(frame) => {
                     let mut document = live.document().clone();

@@ -47,14 +47,21 @@ pub(super) fn curve(ui: &mut Ui, post: &PostSettings) {
         }
         let font = FontId::proportional(10.0);
         for (stops, text) in [(low, "-8"), (0.0, "middle gray"), (high, "+8 stops")] {
-            let align = if stops < 0.0 { Align2::LEFT_TOP } else if stops > 0.0 { Align2::RIGHT_TOP } else { Align2::CENTER_TOP };
+            let align = if stops < 0.0 {
+                Align2::LEFT_TOP
+            } else if stops > 0.0 {
+                Align2::RIGHT_TOP
+            } else {
+                Align2::CENTER_TOP
+            };
             painter.text(at(stops, 0.0), align, text, font.clone(), color(Ink::Text, theme));
         }
         if let Some(pointer) = response.hover_pos() {
             let stops = low + (high - low) * f64::from((pointer.x - rect.left()) / rect.width());
             if let Some(codes) = codes(post, stops) {
                 let codes = codes * 255.0;
-                response.on_hover_text(format!("{stops:+.2} stops: {:.0} {:.0} {:.0} of 255", codes.x, codes.y, codes.z));
+                response
+                    .on_hover_text(format!("{stops:+.2} stops: {:.0} {:.0} {:.0} of 255", codes.x, codes.y, codes.z));
             }
         }
     });

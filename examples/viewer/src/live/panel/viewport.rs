@@ -40,7 +40,13 @@ pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         }
         None => {
             let text = if live.doing().is_some() { "loading" } else { "no scene: drop a glTF file here" };
-            ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, text, egui::FontId::proportional(16.0), ui.visuals().text_color());
+            ui.painter().text(
+                rect.center(),
+                egui::Align2::CENTER_CENTER,
+                text,
+                egui::FontId::proportional(16.0),
+                ui.visuals().text_color(),
+            );
         }
     }
     if live.wants_frame() {
@@ -64,8 +70,16 @@ fn bar(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         }
         let Some(running) = &mut live.running else { return };
         for (mode, name, tip) in [
-            (Mode::Orbit, "orbit", "dragging goes around the place in the middle, the right button shifts, the wheel comes nearer"),
-            (Mode::Fly, "fly", "dragging looks around; W A S D move, Q and E go down and up, Shift is four times as fast"),
+            (
+                Mode::Orbit,
+                "orbit",
+                "dragging goes around the place in the middle, the right button shifts, the wheel comes nearer",
+            ),
+            (
+                Mode::Fly,
+                "fly",
+                "dragging looks around; W A S D move, Q and E go down and up, Shift is four times as fast",
+            ),
         ] {
             ui.selectable_value(&mut running.rig.mode, mode, name).on_hover_text(tip);
         }
@@ -86,7 +100,9 @@ fn bar(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         })
         .response
         .on_hover_text("pixels that are drawn along each side, of those that the viewport has");
-        if !session.is_live() && ui.button("Show its plan").on_hover_text("the views show the plan of this frame").clicked() {
+        if !session.is_live()
+            && ui.button("Show its plan").on_hover_text("the views show the plan of this frame").clicked()
+        {
             live.show_plan(session);
         }
     });
