@@ -89,7 +89,8 @@ fn plot(drawing: &mut Drawing, technique: &Technique, [left, top]: [f32; 2], mor
         let letters = letters_in(if right { beside - x0 } else { x1 - beside }, 9.0);
         // Names of marks that lie beside each other stand above and below them.
         let above = [-8.0, 8.0, -18.0, 18.0][index % 4];
-        drawing.aligned([beside, y + above], 9.0, align, Ink::Text, shortened(&choice.name, letters));
+        let beside_y = (y + above).clamp(y0 + 6.0, y1 - 6.0);
+        drawing.aligned([beside, beside_y], 9.0, align, Ink::Text, shortened(&choice.name, letters));
         let cost = match unit {
             Unit::Ms => format!("{:.2} ms", technique.cost(choice)),
             Unit::Operations => format!("{:.0} operations", technique.cost(choice)),
