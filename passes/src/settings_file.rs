@@ -71,7 +71,7 @@ impl FrameSettings {
     fn check(&self, path: &str) -> Result<(), SettingsError> {
         let refuse =
             |field, value: String, takes: String| Err(SettingsError::Range { path: path.into(), field, value, takes });
-        for (field, value, low, high) in self.numbers() {
+        for (field, value, low, high) in self.ranges() {
             if !(low..=high).contains(&value) {
                 return refuse(field, value.to_string(), format!("a number from {low} to {high}"));
             }
@@ -100,8 +100,8 @@ impl FrameSettings {
         Ok(())
     }
 
-    /// Numbers with their ranges.
-    fn numbers(&self) -> Vec<(&'static str, f64, f64, f64)> {
+    /// The numbers that have a range: field, value, least and greatest.
+    pub fn ranges(&self) -> Vec<(&'static str, f64, f64, f64)> {
         let s = &self.settings;
         let mut all = vec![
             (

@@ -19,6 +19,7 @@ use crate::stand::Stand;
 use crate::sun::{angular_radius_rad, illuminance_lux, sun_of};
 use crate::upload::pack::light_uniforms;
 use framegraph_scene::camera::exposure_from_ev100;
+use framegraph_scene::environment::{Sky, sun_light};
 use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene};
 use framegraph_shaders::layout::{FrameUniforms, LightUniforms, MotionUniforms, SkyUniforms};
 use framegraph_shaders::reference::sky::Preetham;
@@ -52,6 +53,16 @@ pub enum Background {
     ClearSky(Preetham),
     /// The same radiance in every direction, in nits, linear Rec.709; it lights nothing.
     Constant(Vec3),
+}
+
+impl Background {
+    /// A clear sky, to be seen. Its ground is lit by the sun that belongs to it.
+    #[must_use]
+    pub fn clear_sky(sky: &Sky) -> Self {
+        let sun_lux = sun_light(sky.toward_sun, sky.turbidity)
+            .map_or(DVec3::ZERO, |sun| sun.color.as_dvec3() * f64::from(illuminance_lux(&sun)));
+        Self::ClearSky(Preetham::new(sky.toward_sun, sky.turbidity, sky.ground_albedo, sun_lux))
+    }
 }
 
 /// A [`Background`] as the sky's shader reads it, multiplied by the exposure.

@@ -103,7 +103,7 @@ pub use frame::Frame;
 pub use frame_loop::{FrameError, FrameLoop, Ran};
 pub use measure::statistics::Summary;
 pub use measure::timing::{Times, Timing};
-pub use measure::trace::Trace;
+pub use measure::trace::{FrameTimes, StepTimes, Trace};
 pub use named::Named;
 pub use pipelines::bind_groups::Binding;
 pub use pipelines::binding_error::{BindingError, BindingReason};

@@ -1,8 +1,8 @@
 //! The command line of `plan`.
 
-use crate::budget::Budget;
 use framegraph::Order;
 use lexopt::{Arg, Parser, ValueExt};
+use program::budget::Budget;
 use std::ffi::OsString;
 use std::path::PathBuf;
 

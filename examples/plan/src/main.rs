@@ -4,7 +4,6 @@
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod args;
-mod budget;
 mod offsets;
 mod output;
 mod plugins;

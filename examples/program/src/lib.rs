@@ -4,8 +4,11 @@
 //! - [`outputs`] (feature `run`): the files that a run writes, checked before the work and put in place together after it.
 //! - [`interrupt`] (feature `run`): SIGINT and SIGTERM as a question that long work asks at each step.
 //! - [`bytes`](fn@crate::bytes) (feature `run`): numbers of bytes as users write them.
+//! - [`budget`] (feature `budget`): limits on what a plan may cost.
 //! - [`progress`] (feature `run`): how far the work is, on standard error.
 
+#[cfg(feature = "budget")]
+pub mod budget;
 #[cfg(feature = "run")]
 mod bytes;
 #[cfg(feature = "run")]

@@ -1,5 +1,7 @@
 //! The application: panes in tiles around one [`Session`].
 
+#[cfg(feature = "window")]
+mod export;
 mod panes;
 mod session;
 mod shortcuts;
@@ -10,6 +12,7 @@ pub use shortcuts::SHORTCUTS;
 
 use crate::drawing::{Drawing, Item};
 use crate::panel::{self, Canvas, List};
+use crate::plan_data::PlanData;
 use crate::view::{self, Beside, View};
 use egui::{Context, Panel, RichText, Ui};
 use egui_tiles::Tree;
@@ -30,7 +33,13 @@ pub struct Viewer {
     canvases: BTreeMap<View, Canvas>,
     /// The pictures, made once for each state of the session.
     drawings: BTreeMap<View, Drawing>,
-    drawn: u64,
+    drawn: [u64; 2],
+    /// A frame that is drawn beside its plan.
+    #[cfg(feature = "window")]
+    pub live: Option<crate::live::Live>,
+    /// Paths of a scene and of a picture of light, and the file that a view goes to, as they are typed.
+    #[cfg(feature = "window")]
+    typed: ([String; 2], String),
     /// The file that is opened or written next, as it is typed.
     path: String,
     /// The list of shortcuts is open.
@@ -42,19 +51,41 @@ impl Viewer {
     pub fn new(session: Session) -> Self {
         Self {
             session,
-            tiles: panes::arranged(),
+            tiles: panes::arranged(false),
             list: List::default(),
             canvases: BTreeMap::new(),
             drawings: BTreeMap::new(),
-            drawn: 0,
+            drawn: [0; 2],
+            #[cfg(feature = "window")]
+            live: None,
+            #[cfg(feature = "window")]
+            typed: Default::default(),
             path: String::new(),
             help: false,
         }
     }
 
+    /// Shows a session, and draws a frame beside its plan.
+    #[cfg(feature = "window")]
+    pub fn with(session: Session, live: crate::live::Live) -> Self {
+        Self { live: Some(live), tiles: panes::arranged(true), ..Self::new(session) }
+    }
+
+    /// Whether a frame is drawn.
+    pub fn is_live(&self) -> bool {
+        #[cfg(feature = "window")]
+        return self.live.is_some();
+        #[cfg(not(feature = "window"))]
+        false
+    }
+
     /// Shows everything. Nothing is worked out anew unless something changed.
     pub fn show(&mut self, ui: &mut Ui) {
         self.session.poll();
+        #[cfg(feature = "window")]
+        if let Some(live) = &mut self.live {
+            live.tick(&mut self.session, ui.input(|i| i.stable_dt));
+        }
         self.refresh();
         self.dropped(ui.ctx());
         for asked in shortcuts::asked(ui.ctx()) {
@@ -65,7 +96,16 @@ impl Viewer {
             Panel::top("messages").show(ui, |ui| self.messages(ui));
         }
         let Self { session, tiles, list, canvases, drawings, .. } = self;
-        let mut behavior = panes::Panes { session, list, canvases, drawings };
+        let mut behavior = panes::Panes {
+            session,
+            list,
+            canvases,
+            drawings,
+            #[cfg(feature = "window")]
+            live: &mut self.live,
+            #[cfg(feature = "window")]
+            typed: &mut self.typed.0,
+        };
         egui::CentralPanel::default().show(ui, |ui| tiles.ui(&mut behavior, ui));
         if self.help {
             self.help = shortcuts::list(ui.ctx());
@@ -98,7 +138,7 @@ impl Viewer {
     /// Arranges the panes as they were; a text that is none changes nothing.
     pub fn arrange(&mut self, text: &str) {
         if let Ok(tiles) = serde_json::from_str::<Tree<Pane>>(text)
-            && panes::is_whole(&tiles)
+            && panes::is_whole(&tiles, self.is_live())
         {
             self.tiles = tiles;
         }
@@ -106,17 +146,22 @@ impl Viewer {
 
     /// Makes pictures of what has changed.
     fn refresh(&mut self) {
-        if self.drawn == self.session.generation() && !self.drawings.is_empty() {
+        let drawn = [self.session.generation(), self.session.times()];
+        if self.drawn == drawn && !self.drawings.is_empty() {
             return;
         }
-        self.drawn = self.session.generation();
-        self.drawings.clear();
-        if let Some(plan) = &self.session.plan {
-            let beside =
-                Beside { against: self.session.against(), trace: self.session.trace.as_deref(), selected: None };
-            for view in View::ALL.into_iter().filter(|view| *view != View::Inspector) {
-                self.drawings.insert(view, view::drawing(view, plan, beside, LETTERS));
-            }
+        // Where times alone have changed, views without any stay.
+        let only_times = self.drawn[0] == drawn[0] && !self.drawings.is_empty();
+        self.drawn = drawn;
+        let timed = |view: &View| matches!(view, View::Timeline | View::Trace);
+        self.drawings.retain(|view, _| only_times && !timed(view));
+        let none = PlanData::default();
+        let plan = self.session.plan.as_deref();
+        let beside = Beside { selected: None, ..self.session.beside() };
+        let all = View::ALL.into_iter().filter(|view| *view != View::Inspector);
+        for view in all.filter(|view| plan.is_some() || !view.is_of_a_plan()) {
+            let make = || view::drawing(view, plan.unwrap_or(&none), beside, LETTERS);
+            self.drawings.entry(view).or_insert_with(make);
         }
     }
 
@@ -129,6 +174,18 @@ impl Viewer {
             }
             shortcuts::Asked::View(view) => self.turn_to(Pane::View(view)),
             shortcuts::Asked::Help => self.help = !self.help,
+            #[cfg(feature = "window")]
+            shortcuts::Asked::Undo | shortcuts::Asked::Redo => {
+                if let Some(live) = &mut self.live {
+                    let undo = asked == shortcuts::Asked::Undo;
+                    let moved = if undo { live.history.undo() } else { live.history.redo() };
+                    if moved {
+                        live.again();
+                    }
+                }
+            }
+            #[cfg(not(feature = "window"))]
+            shortcuts::Asked::Undo | shortcuts::Asked::Redo => {}
             shortcuts::Asked::Nothing => (self.help, self.session.selected) = (false, None),
         }
     }
@@ -138,8 +195,20 @@ impl Viewer {
         let paths: Vec<std::path::PathBuf> =
             ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
         for path in paths {
-            self.session.open(&path, Role::Shown);
+            self.open(&path, Role::Shown);
         }
+    }
+
+    /// Opens a file of any kind: what the frame that is drawn takes goes there.
+    pub fn open(&mut self, path: &std::path::Path, role: Role) {
+        #[cfg(feature = "window")]
+        if let Some(live) = &mut self.live
+            && role == Role::Shown
+            && live.open(path, &mut self.session)
+        {
+            return;
+        }
+        self.session.open(path, role);
     }
 
     fn bar(&mut self, ui: &mut Ui) {
@@ -154,11 +223,13 @@ impl Viewer {
             let against = ui.button("Compare with").on_hover_text(tip).clicked();
             if (open || against) && !self.path.trim().is_empty() {
                 let path = std::path::PathBuf::from(self.path.trim());
-                self.session.open(&path, if against { Role::Against } else { Role::Shown });
+                self.open(&path, if against { Role::Against } else { Role::Shown });
             }
             if self.session.has_against() && ui.button("Compare with nothing").clicked() {
                 self.session.forget_against();
             }
+            #[cfg(feature = "window")]
+            self.export_menu(ui);
             ui.separator();
             if let Some(doing) = self.session.doing().map(str::to_owned) {
                 match self.session.progress() {

@@ -15,6 +15,7 @@ usage: viewer [FILE] [options]
        viewer --headless --view VIEW --plan FILE [--against FILE] --out FILE.png|svg
 
        viewer --standard PRESET|SETTINGS.ron [options]
+       viewer --live [SCENE] [--settings PRESET|SETTINGS.ron] [--environment FILE] [options]
 
 FILE is a plan (JSON, docs/plan-json.md), a graph (FRAME.ron, docs/graph-format.md), which is planned here, watched, and
 planned anew when it changes, or a trace (`render --trace`). docs/viewer.md shows the views.
@@ -22,6 +23,10 @@ planned anew when it changes, or a trace (`render --trace`). docs/viewer.md show
   --plan FILE         the same as FILE
   --standard WHICH    the standard frame instead of a file: low, medium, high, ultra, or a FILE.ron of settings
                       (docs/settings.md); its effects are features
+  --live [SCENE]      the standard frame, drawn in the window: FILE is a glTF or GLB file or a built-in scene (spheres);
+                      the views show the plan that is executed
+  --settings WHICH    with --live: the settings that it begins with (high)
+  --environment FILE  with --live: light from a .hdr, .exr or .ktx picture instead of a clear sky
   --against FILE      a plan or graph to compare with
   --trace FILE        times of many frames
   --caps WHICH        graphs are planned for: desktop, tiler, wgpu (default), or a FILE.ron that describes a device
@@ -30,7 +35,7 @@ planned anew when it changes, or a trace (`render --trace`). docs/viewer.md show
                       switches a feature of the graph; may be given several times
   --order WHICH       declared (default) or optimized
   --select NAME       selects a pass or a resource
-  --view VIEW         graph (default), timeline, memory, bandwidth, inspector, diff or trace
+  --view VIEW         graph (default), timeline, memory, bandwidth, inspector, diff, trace or accuracy
   --theme WHICH       light or dark; default: what the desktop says, light without a window
   --scale X           pixels per point, 0.5 to 4 (1)
   --headless          no window: writes --out and ends
@@ -38,6 +43,7 @@ planned anew when it changes, or a trace (`render --trace`). docs/viewer.md show
   --picture WxH       size of a PNG in pixels; default: as large as the view
   --whole             the PNG shows the whole application, 1280x720 if --picture says nothing
   --frames N          the window draws without a pause, closes after so many frames or one more, and says how many
+  --measure           no window: prints what the panels cost on this machine
   --help              this text
 
 Exit codes: 0 done, 2 bad input or output, 3 no device or window.
@@ -50,6 +56,14 @@ pub struct Args {
     pub file: Option<PathBuf>,
     /// The standard frame of a preset or of a file of settings.
     pub standard: Option<String>,
+    /// The standard frame is drawn; the file is a scene.
+    pub live: bool,
+    /// The settings that it begins with.
+    pub settings: Option<String>,
+    /// Prints what the panels cost.
+    pub measure: bool,
+    /// What lights its scene.
+    pub environment: Option<PathBuf>,
     /// The file to compare with.
     pub against: Option<PathBuf>,
     /// Times.
@@ -88,6 +102,10 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
     let mut out = Args {
         file: None,
         standard: None,
+        live: false,
+        measure: false,
+        settings: None,
+        environment: None,
         against: None,
         trace: None,
         caps: "wgpu".into(),
@@ -118,6 +136,8 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
             "help" => return Ok(None),
             "headless" => headless = true,
             "whole" => out.whole = true,
+            "live" => out.live = true,
+            "measure" => out.measure = true,
             _ => value(&mut parser, &option, &mut out)?,
         }
     }
@@ -129,7 +149,13 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
     if out.standard.is_some() && out.file.is_some() {
         return Err("--standard does not go together with a FILE".into());
     }
-    if headless && out.file.is_none() && out.standard.is_none() && out.view != View::Trace {
+    if out.live && (headless || out.standard.is_some()) {
+        return Err("--live does not go together with --headless or --standard".into());
+    }
+    if !out.live && (out.settings.is_some() || out.environment.is_some()) {
+        return Err("--settings and --environment go together with --live only".into());
+    }
+    if headless && out.file.is_none() && out.standard.is_none() && out.view.is_of_a_plan() {
         return Err("--headless needs a file to look at: --plan FILE".into());
     }
     Ok(Some(out))
@@ -137,9 +163,24 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
 
 /// Reads the value of one option.
 fn value(parser: &mut Parser, option: &str, out: &mut Args) -> Result<(), String> {
-    const KNOWN: [&str; 15] = [
-        "standard", "plan", "against", "trace", "caps", "size", "set", "order", "select", "view", "theme", "scale",
-        "out", "picture", "frames",
+    const KNOWN: [&str; 17] = [
+        "standard",
+        "settings",
+        "environment",
+        "plan",
+        "against",
+        "trace",
+        "caps",
+        "size",
+        "set",
+        "order",
+        "select",
+        "view",
+        "theme",
+        "scale",
+        "out",
+        "picture",
+        "frames",
     ];
     if !KNOWN.contains(&option) {
         return Err(format!("there is no option `--{option}`; see --help"));
@@ -149,6 +190,7 @@ fn value(parser: &mut Parser, option: &str, out: &mut Args) -> Result<(), String
     match option {
         "plan" => return set(&mut out.file, value.into(), "FILE"),
         "against" => return set(&mut out.against, value.into(), &name),
+        "environment" => return set(&mut out.environment, value.into(), &name),
         "trace" => return set(&mut out.trace, value.into(), &name),
         "out" => return set(&mut out.out, value.into(), &name),
         _ => {}
@@ -159,6 +201,7 @@ fn value(parser: &mut Parser, option: &str, out: &mut Args) -> Result<(), String
         "caps" => out.caps = value,
         "select" => out.select = Some(value),
         "standard" => out.standard = Some(value),
+        "settings" => out.settings = Some(value),
         "size" => out.size = Some(sides(&value, 65536).ok_or_else(|| wrong("WxH with 1 to 65536 texels each way"))?),
         "picture" => {
             let most = viewer::offscreen::MOST_PX;
@@ -242,6 +285,8 @@ mod tests {
         for (line, named) in [
             ("a.ron b.ron", "FILE is given twice"),
             ("a.ron --plan b.ron", "FILE is given twice"),
+            ("--live --standard low", "--live"),
+            ("--settings low", "--live only"),
             ("--capz tiler", "--capz"),
             ("-x", "-x"),
             ("a.ron --standard low", "--standard"),

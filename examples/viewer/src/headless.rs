@@ -8,7 +8,7 @@ use viewer::app::{Pane, Session, Viewer};
 use viewer::drawing::svg;
 use viewer::offscreen::{Offscreen, own_size_px};
 use viewer::plan_data::PlanData;
-use viewer::view::{Beside, drawing};
+use viewer::view::drawing;
 
 /// The application, when nobody says how large, in pixels.
 const WHOLE: [u32; 2] = [1280, 720];
@@ -47,8 +47,7 @@ pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
 fn picture(args: &Args, session: &Session) -> viewer::drawing::Drawing {
     let empty = PlanData::default();
     let plan = session.plan.as_deref().unwrap_or(&empty);
-    let beside = Beside { against: session.against(), trace: session.trace.as_deref(), selected: session.selected };
-    drawing(args.view, plan, beside, LETTERS)
+    drawing(args.view, plan, session.beside(), LETTERS)
 }
 
 fn of_view(args: &Args, session: &Session) -> String {

@@ -36,6 +36,7 @@ fn main() -> ExitCode {
         }
     };
     let done = match &args.out {
+        _ if args.measure => viewer::measuring::table().map(program::print).map_err(Failure::Device),
         Some(out) => headless::run(&args, out),
         None => window::run(&args),
     };

@@ -1,10 +1,13 @@
 //! Pictures of panels without a window, on a device of the renderer's choice.
 
 use crate::drawing::{Drawing, Theme};
+use crate::live::screen::Screen;
 use crate::panel::Canvas;
 use eframe::egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
+use egui::mutex::RwLock;
 use egui::{Context, FullOutput, RawInput, Rect, Ui, Vec2, pos2};
 use framegraph_wgpu::{AdapterRequest, Gpu, read_texture};
+use std::sync::Arc;
 use wgpu::{TextureFormat, TextureUsages};
 
 /// Pictures are at most so wide and high, in pixels.
@@ -13,7 +16,7 @@ pub const MOST_PX: u32 = 8192;
 /// A device that draws what egui shows.
 pub struct Offscreen {
     gpu: Gpu,
-    renderer: Renderer,
+    renderer: Arc<RwLock<Renderer>>,
 }
 
 /// What is drawn, in sRGB: egui blends there.
@@ -33,7 +36,12 @@ impl Offscreen {
     pub fn on(gpu: Gpu) -> Self {
         // The same pixels on every driver, as far as that can be had.
         let renderer = Renderer::new(&gpu.device, FORMAT, RendererOptions::PREDICTABLE);
-        Self { gpu, renderer }
+        Self { gpu, renderer: Arc::new(RwLock::new(renderer)) }
+    }
+
+    /// The device, for a frame that is drawn in the panels.
+    pub fn screen(&self) -> Screen {
+        Screen::new(&self.gpu, Some(self.renderer.clone()))
     }
 
     /// The device.
@@ -80,7 +88,7 @@ impl Offscreen {
         set.sort_unstable_by_key(|(id, _)| *id);
         for (id, deltas) in set {
             for delta in deltas {
-                self.renderer.update_texture(&self.gpu.device, &self.gpu.queue, id, &delta);
+                self.renderer.write().update_texture(&self.gpu.device, &self.gpu.queue, id, &delta);
             }
         }
         // What is freed lives until the picture is made.
@@ -106,7 +114,7 @@ impl Offscreen {
         let triangles = ctx.tessellate(output.shapes, output.pixels_per_point);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
         let queue = &self.gpu.queue;
-        let before = self.renderer.update_buffers(device, queue, &mut encoder, &triangles, &screen);
+        let before = self.renderer.write().update_buffers(device, queue, &mut encoder, &triangles, &screen);
         let mut pass = encoder
             .begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("picture"),
@@ -122,7 +130,7 @@ impl Offscreen {
                 ..wgpu::RenderPassDescriptor::default()
             })
             .forget_lifetime();
-        self.renderer.render(&mut pass, &triangles, &screen);
+        self.renderer.write().render(&mut pass, &triangles, &screen);
         drop(pass);
         queue.submit(before.into_iter().chain([encoder.finish()]));
         let pixels = read_texture(&self.gpu, &texture).map_err(|e| e.to_string())?;

@@ -1,5 +1,6 @@
 //! Opening a file of any kind that the viewer shows: a saved plan, a graph, a trace.
 
+use crate::accuracy_data::AccuracyData;
 use crate::file_bytes::bytes_of;
 use crate::graph_source::GraphSource;
 use crate::job::Handle;
@@ -20,9 +21,12 @@ pub enum Opened {
     Graph(Arc<GraphSource>),
     /// Frames with their times.
     Trace(Arc<TraceData>),
+    /// What techniques err by and take.
+    Accuracy(Arc<AccuracyData>),
 }
 
-/// Opens a file: `.ron` is a graph; JSON is a plan, or a trace if it has `traceEvents`.
+/// Opens a file: `.ron` is a graph; JSON is a plan, a trace if it has `traceEvents`, or accuracy
+/// by its schema.
 ///
 /// # Errors
 /// A line that names the file, the reason, and what to do.
@@ -44,6 +48,10 @@ pub fn open(path: &Path, handle: &Handle) -> Result<Opened, String> {
         return crate::trace_data::read(&bytes)
             .map(|t| Opened::Trace(Arc::new(t)))
             .map_err(|e| format!("{shown}: {e}"));
+    }
+    if String::from_utf8_lossy(head).contains(crate::accuracy_data::SCHEMA) {
+        let read = crate::accuracy_data::read(&bytes);
+        return read.map(|a| Opened::Accuracy(Arc::new(a))).map_err(|e| format!("{shown}: {e}"));
     }
     plan_data::read(&bytes).map(|p| Opened::Plan(Arc::new(p))).map_err(|e| format!("{shown}: {e}"))
 }

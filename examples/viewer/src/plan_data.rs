@@ -21,6 +21,7 @@ impl PlanData {
     pub fn of(plan: &Plan, name: &str) -> Result<Self, ReadError> {
         let mut data = read(framegraph::dump::json(plan, name).as_bytes())?;
         data.declared_at = plan.graph().passes().iter().map(|p| p.location.to_string()).collect();
+        data.plan = Some(std::sync::Arc::new(plan.clone()));
         Ok(data)
     }
 }

@@ -1,45 +1,76 @@
-//! The standard frame of `framegraph_passes` as a source of plans: a preset or a file of settings, its effects as features.
+//! The standard frame of `framegraph_passes` as a source of plans: a preset, a file of settings or a frame that is drawn now, its
+//! effects as features.
 
 use crate::plan_data::PlanData;
 use crate::what_if::{Planner, WhatIf};
-use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
-use framegraph_passes::{Effect, FrameSettings, Preset, Settings, World, standard};
+use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
+use framegraph_passes::{Effect, Facts, FrameSettings, Preset, Settings, StageError, World, standard};
 use framegraph_scene::Scene;
 use framegraph_wgpu::Frame;
+use std::sync::Arc;
 
 /// The size of the frame when nobody says one, in texels.
 const FRAME: [u32; 2] = [1920, 1080];
 
-/// The standard frame of some settings, for a scene without glass.
+/// The standard frame of some settings.
 #[derive(Clone, Debug)]
 pub struct StandardFrame {
     name: String,
     frame: FrameSettings,
+    scene: Arc<Scene>,
+    facts: Facts,
 }
 
 impl StandardFrame {
-    /// The frame of a preset, or of a file of settings (`docs/settings.md`).
+    /// The frame of a preset, or of a file of settings (`docs/settings.md`), for a scene without glass.
     ///
     /// # Errors
     /// No such preset, a file that cannot be read, and everything that is wrong with it.
     pub fn open(which: &str) -> Result<Self, String> {
-        if let Some(preset) = Preset::from_name(which) {
-            return Ok(Self { name: format!("standard frame, {which}"), frame: preset.frame() });
-        }
-        if !which.ends_with(".ron") {
-            let presets = Preset::ALL.map(Preset::name).join(", ");
-            return Err(format!("`{which}` is neither {presets} nor a file of settings (SETTINGS.ron)"));
-        }
-        let text = std::fs::read_to_string(which).map_err(|e| format!("{which}: cannot be read: {e}"))?;
-        let frame = FrameSettings::from_ron(which, &text).map_err(|e| e.to_string())?;
-        Ok(Self { name: format!("standard frame, {which}"), frame })
+        let frame = settings(which)?;
+        Ok(Self { name: format!("standard frame, {which}"), frame, scene: Arc::default(), facts: Facts::default() })
+    }
+
+    /// The frame that is drawn of a scene, of which only materials and instances are looked at.
+    pub fn live(scene_name: &str, frame: FrameSettings, scene: Arc<Scene>, facts: Facts) -> Self {
+        Self { name: format!("live frame, {scene_name}"), frame, scene, facts }
     }
 
     /// The settings with some effects switched off, for a frame of that size.
     fn settings(&self, features: &[(String, bool)], size_texels: [u32; 2]) -> Settings {
         let off = features.iter().filter(|(_, on)| !on).filter_map(|(name, _)| Effect::from_name(name));
-        off.fold(self.frame.settings, Settings::without).for_scene(&Scene::default(), size_texels)
+        let asked = off.fold(self.frame.settings, Settings::without);
+        let drawn = asked.upscale.map_or(size_texels, |upscale| upscale.extent().texels(size_texels));
+        self.facts.apply(&asked.for_scene(&self.scene, drawn))
     }
+}
+
+/// The settings of a preset, or of a file.
+///
+/// # Errors
+/// No such preset, a file that cannot be read, and everything that is wrong with it.
+pub fn settings(which: &str) -> Result<FrameSettings, String> {
+    if let Some(preset) = Preset::from_name(which) {
+        return Ok(preset.frame());
+    }
+    if !which.ends_with(".ron") {
+        let presets = Preset::ALL.map(Preset::name).join(", ");
+        return Err(format!("`{which}` is neither {presets} nor a file of settings (SETTINGS.ron)"));
+    }
+    let text = std::fs::read_to_string(which).map_err(|e| format!("{which}: cannot be read: {e}"))?;
+    FrameSettings::from_ron(which, &text).map_err(|e| e.to_string())
+}
+
+/// Declares the standard frame into a picture that a window shows, with what facts left out; returns the picture's import.
+///
+/// # Errors
+/// What a stage refuses.
+pub fn declare(frame: &mut Frame<World>, settings: &Settings, facts: &Facts) -> Result<Texture, StageError> {
+    facts.note(frame.graph_mut());
+    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+    let picture = frame.graph_mut().import_texture("picture", desc, Entry::Undefined, Exit::Keep);
+    standard(frame, settings, Target::from(picture))?;
+    Ok(picture)
 }
 
 impl Planner for StandardFrame {
@@ -58,12 +89,8 @@ impl Planner for StandardFrame {
         let size = frame.unwrap_or(FRAME);
         let inline = inline && self.frame.inline;
         let options = Options { frame: size, order, alias, cull, merge, inline, memoryless, ..Options::default() };
-        let settings = self.settings(&features, size);
         let mut frame = Frame::<World>::new();
-        let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
-        let picture = frame.graph_mut().texture("picture", desc);
-        let io = standard(&mut frame, &settings, Target::from(picture)).map_err(|e| e.to_string())?;
-        frame.graph_mut().export(io.output).map_err(|e| e.to_string())?;
+        declare(&mut frame, &self.settings(&features, size), &self.facts).map_err(|e| e.to_string())?;
         let mut plan = Plan::new();
         compile(frame.graph(), &caps, &options, &mut Scratch::new(), &mut plan).map_err(|e| e.to_string())?;
         PlanData::of(&plan, &self.name).map_err(|e| e.to_string())

@@ -1,5 +1,6 @@
 //! The views: each a pure function from a plan to a [`Drawing`], without a window.
 
+pub mod accuracy;
 pub mod bandwidth;
 pub mod diff;
 pub mod facts;
@@ -12,6 +13,7 @@ mod words;
 
 pub use words::{bytes, change, change_ink, cost_ink};
 
+use crate::accuracy_data::AccuracyData;
 use crate::drawing::{Drawing, Item};
 use crate::plan_data::PlanData;
 use crate::trace_data::TraceData;
@@ -33,12 +35,27 @@ pub enum View {
     Diff,
     /// The times of many frames.
     Trace,
+    /// Error over cost of each technique.
+    Accuracy,
 }
 
 impl View {
     /// All of them, in the order of the tabs.
-    pub const ALL: [Self; 7] =
-        [Self::Graph, Self::Timeline, Self::Memory, Self::Bandwidth, Self::Inspector, Self::Diff, Self::Trace];
+    pub const ALL: [Self; 8] = [
+        Self::Graph,
+        Self::Timeline,
+        Self::Memory,
+        Self::Bandwidth,
+        Self::Inspector,
+        Self::Diff,
+        Self::Trace,
+        Self::Accuracy,
+    ];
+
+    /// Whether it shows a plan, and not a file of another kind.
+    pub const fn is_of_a_plan(self) -> bool {
+        !matches!(self, Self::Trace | Self::Accuracy)
+    }
 
     /// Its name.
     pub const fn word(self) -> &'static str {
@@ -50,6 +67,7 @@ impl View {
             Self::Inspector => "inspector",
             Self::Diff => "diff",
             Self::Trace => "trace",
+            Self::Accuracy => "accuracy",
         }
     }
 }
@@ -61,6 +79,10 @@ pub struct Beside<'a> {
     pub against: Option<&'a PlanData>,
     /// Times of the frame.
     pub trace: Option<&'a TraceData>,
+    /// What techniques err by and take.
+    pub accuracy: Option<&'a AccuracyData>,
+    /// What each of them may take beyond its fastest choice, in ms.
+    pub more_ms: f64,
     /// What is selected.
     pub selected: Option<Item>,
 }
@@ -75,5 +97,6 @@ pub fn drawing(view: View, plan: &PlanData, beside: Beside<'_>, letters: usize) 
         View::Inspector => facts::drawing(&facts::sections(plan, beside.selected), letters),
         View::Diff => diff::drawing(beside.against, plan),
         View::Trace => trace::drawing(beside.trace),
+        View::Accuracy => accuracy::drawing(beside.accuracy, beside.more_ms),
     }
 }

@@ -43,6 +43,27 @@ impl WhatIf {
     }
 }
 
+impl WhatIf {
+    /// What is asked otherwise than `was`, asked of `base`.
+    #[must_use]
+    pub fn moved(&self, was: &Self, base: &Self) -> Self {
+        fn of<T: Clone + PartialEq>(asked: &T, was: &T, base: &T) -> T {
+            if asked == was { base.clone() } else { asked.clone() }
+        }
+        Self {
+            caps: of(&self.caps, &was.caps, &base.caps),
+            frame: of(&self.frame, &was.frame, &base.frame),
+            order: of(&self.order, &was.order, &base.order),
+            alias: of(&self.alias, &was.alias, &base.alias),
+            cull: of(&self.cull, &was.cull, &base.cull),
+            merge: of(&self.merge, &was.merge, &base.merge),
+            inline: of(&self.inline, &was.inline, &base.inline),
+            memoryless: of(&self.memoryless, &was.memoryless, &base.memoryless),
+            features: of(&self.features, &was.features, &base.features),
+        }
+    }
+}
+
 /// Common sizes of a frame, by name, in texels.
 pub const SIZES: [(&str, [u32; 2]); 6] = [
     ("720p", [1280, 720]),

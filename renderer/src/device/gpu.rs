@@ -188,6 +188,21 @@ impl Gpu {
         }
     }
 
+    /// What a device is opened with to have all that frames can use of an adapter: for an application whose toolkit opens the
+    /// device, to be [wrapped](Gpu::wrap) afterwards.
+    pub fn descriptor(adapter: &Adapter) -> wgpu::DeviceDescriptor<'static> {
+        // The adapter that does nothing claims everything: formats then have no use at all, and limits overflow inside wgpu.
+        let noop = adapter.get_info().backend == Backend::Noop;
+        let mut wanted = WANTED;
+        wanted.set(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES, !noop);
+        wgpu::DeviceDescriptor {
+            label: Some("renderer"),
+            required_features: adapter.features() & wanted,
+            required_limits: if noop { noop_limits(adapter) } else { adapter.limits() },
+            ..Default::default()
+        }
+    }
+
     fn owned(adapter: Adapter, device: Device, queue: Queue) -> Self {
         let gpu = Self::wrap(&adapter, &device, &queue);
         let errors = gpu.errors.clone();
@@ -330,17 +345,7 @@ fn enumerate(backends: Backends) -> Vec<Adapter> {
 }
 
 fn open_device(adapter: &Adapter) -> Result<(Device, Queue), wgpu::RequestDeviceError> {
-    // The adapter that does nothing claims everything: formats then have no use at all, and limits overflow inside wgpu.
-    let noop = adapter.get_info().backend == Backend::Noop;
-    let mut wanted = WANTED;
-    wanted.set(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES, !noop);
-    let descriptor = wgpu::DeviceDescriptor {
-        label: Some("renderer"),
-        required_features: adapter.features() & wanted,
-        required_limits: if noop { noop_limits(adapter) } else { adapter.limits() },
-        ..Default::default()
-    };
-    pollster::block_on(adapter.request_device(&descriptor))
+    pollster::block_on(adapter.request_device(&Gpu::descriptor(adapter)))
 }
 
 /// WebGPU's guaranteed limits, and several layers attached at once.

@@ -36,6 +36,38 @@ struct Between {
     end_ns: f64,
 }
 
+impl Between {
+    fn ms(&self) -> f64 {
+        (self.end_ns - self.begin_ns) / 1e6
+    }
+}
+
+/// One frame that was written down ([`Trace::latest`]).
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameTimes<'a> {
+    /// Its number.
+    pub number: u64,
+    /// One of the first, in which pipelines are made.
+    pub warm_up: bool,
+    /// From realizing to submitting, in milliseconds.
+    pub cpu_ms: f64,
+    /// From the begin of its first step on the device to the end of its last, in milliseconds; none before that is known.
+    pub gpu_ms: Option<f64>,
+    /// Its steps, in their order.
+    pub steps: Vec<StepTimes<'a>>,
+}
+
+/// One step of such a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepTimes<'a> {
+    /// Its passes, joined by ` + `.
+    pub name: &'a str,
+    /// Recording, in milliseconds.
+    pub cpu_ms: Option<f64>,
+    /// On the device, in milliseconds; none where it was not measured.
+    pub gpu_ms: Option<f64>,
+}
+
 /// What a plan says of its steps.
 #[derive(Debug)]
 struct Described {
@@ -133,6 +165,27 @@ impl Trace {
     /// How many frames were written down.
     pub fn frames(&self) -> usize {
         self.frames.len()
+    }
+
+    /// The times of the latest frames, at most so many, the oldest first.
+    pub fn latest(&self, most: usize) -> impl Iterator<Item = FrameTimes<'_>> {
+        self.frames.iter().skip(self.frames.len().saturating_sub(most)).map(|frame| {
+            let steps = frame.described.steps.iter().enumerate().map(|(index, (name, ..))| StepTimes {
+                name,
+                cpu_ms: frame.cpu_steps.get(index).map(Between::ms),
+                gpu_ms: frame.gpu_steps.get(index).copied().flatten().map(|step| step.ms()),
+            });
+            let measured = || frame.gpu_steps.iter().flatten();
+            let begin_ns = measured().map(|step| step.begin_ns).fold(f64::INFINITY, f64::min);
+            let end_ns = measured().map(|step| step.end_ns).fold(f64::NEG_INFINITY, f64::max);
+            FrameTimes {
+                number: frame.number,
+                warm_up: frame.warm_up,
+                cpu_ms: frame.cpu.ms(),
+                gpu_ms: (end_ns >= begin_ns).then(|| Between { begin_ns, end_ns }.ms()),
+                steps: steps.collect(),
+            }
+        })
     }
 
     /// The frames as JSON (the Trace Event Format, Google, 2016): a CPU and a GPU process, each with a track of frames and

@@ -6,7 +6,8 @@ use super::equirect::EquirectMap;
 use super::filtered::FilteredLight;
 use crate::color::luminance_from_rec709;
 use crate::error::SceneError;
-use crate::light::Light;
+use crate::light::{Light, LightKind};
+use crate::scene::Scene;
 
 /// What surrounds the scene.
 #[derive(Clone, Debug)]
@@ -49,5 +50,20 @@ impl Environment {
     #[must_use]
     pub fn average_luminance_nits(&self) -> f64 {
         luminance_from_rec709(self.map.average())
+    }
+
+    /// The exposure value at ISO 100 that shows a white card in a scene as white: lit by half the sphere of the environment,
+    /// and by the sun at 60° from its normal. Its luminance is E / π, and 1 / (1.2 · 2^EV100) of that is to be 1.
+    #[must_use]
+    pub fn metered_ev100(&self, scene: &Scene) -> f32 {
+        let sky_lux = std::f64::consts::PI * self.average_luminance_nits();
+        let directional = |kind: LightKind| match kind {
+            LightKind::Directional { illuminance_lux, .. } => f64::from(illuminance_lux),
+            _ => 0.0,
+        };
+        let own = self.sun.iter().map(|sun| directional(sun.kind)).sum::<f64>();
+        let suns = if own > 0.0 { own } else { scene.lights.iter().map(|l| directional(l.kind)).fold(0.0, f64::max) };
+        let nits = (sky_lux + 0.5 * suns) / std::f64::consts::PI;
+        if nits > 0.0 { (nits / 1.2).log2() as f32 } else { 0.0 }
     }
 }

@@ -8,11 +8,9 @@ use framegraph_passes::lighting::LightingError;
 use framegraph_passes::upload::GpuScene;
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, Lighting, World};
-use framegraph_scene::environment::{Sky, SunExtraction, sun_light};
+use framegraph_scene::environment::{Sky, SunExtraction};
 use framegraph_scene::{ColorTable, Environment, Light, LightKind, LoadOptions, Progress, Scene, SceneError};
-use framegraph_shaders::reference::sky::Preetham;
 use framegraph_wgpu::Gpu;
-use glam::DVec3;
 use program::interrupt;
 use program::progress::Shown;
 use std::ops::ControlFlow;
@@ -57,7 +55,7 @@ pub fn load(args: &Args, options: &LoadOptions) -> Result<Loaded, SceneError> {
     };
     let background = match (&asked.around, asked.behind) {
         (_, Behind::Constant(nits)) => Background::Constant(nits.as_vec3()),
-        (Around::Sky, _) | (_, Behind::Sky) => Background::ClearSky(preetham(&sky(args, &scene))),
+        (Around::Sky, _) | (_, Behind::Sky) => Background::clear_sky(&sky(args, &scene)),
         (_, Behind::Environment) => Background::Environment,
     };
     // The sun of a map is light without a shadow, and what filters the map cannot hold it.
@@ -79,7 +77,7 @@ pub fn load(args: &Args, options: &LoadOptions) -> Result<Loaded, SceneError> {
             });
         }
     }
-    let metered_ev100 = metered(&scene, &environment);
+    let metered_ev100 = environment.metered_ev100(&scene);
     shown.clear();
     if own {
         program::note(format_args!("{}: {extraction}", environment.name));
@@ -110,15 +108,6 @@ fn sky(args: &Args, scene: &Scene) -> Sky {
     }
 }
 
-/// The same sky, to be seen. Its ground is lit by the sun that belongs to it.
-fn preetham(sky: &Sky) -> Preetham {
-    let sun_lux = sun_light(sky.toward_sun, sky.turbidity).map_or(DVec3::ZERO, |sun| match sun.kind {
-        LightKind::Directional { illuminance_lux, .. } => sun.color.as_dvec3() * f64::from(illuminance_lux),
-        _ => DVec3::ZERO,
-    });
-    Preetham::new(sky.toward_sun, sky.turbidity, sky.ground_albedo, sun_lux)
-}
-
 /// The view that the command line asks for.
 ///
 /// # Errors
@@ -144,20 +133,6 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
         shadows,
         lights: args.lighting.lights,
     })
-}
-
-/// The exposure value that shows a white card as white: lit by half the sphere of the environment, and by the sun at 60°
-/// from its normal. Its luminance is E / π, and 1 / (1.2 · 2^EV100) of that is to be 1.
-fn metered(scene: &Scene, environment: &Environment) -> f32 {
-    let sky_lux = std::f64::consts::PI * environment.average_luminance_nits();
-    let directional = |kind: LightKind| match kind {
-        LightKind::Directional { illuminance_lux, .. } => f64::from(illuminance_lux),
-        _ => 0.0,
-    };
-    let own = environment.sun.iter().map(|sun| directional(sun.kind)).sum::<f64>();
-    let suns = if own > 0.0 { own } else { scene.lights.iter().map(|l| directional(l.kind)).fold(0.0, f64::max) };
-    let nits = (sky_lux + 0.5 * suns) / std::f64::consts::PI;
-    if nits > 0.0 { (nits / 1.2).log2() as f32 } else { 0.0 }
 }
 
 /// Makes light of the environment, or finds it in the cache.

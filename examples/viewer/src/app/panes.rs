@@ -7,6 +7,7 @@ use crate::view::{self, View};
 use egui::{Ui, WidgetText};
 use egui_tiles::{Behavior, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// What a pane shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
@@ -17,20 +18,59 @@ pub enum Pane {
     List,
     /// Questions.
     WhatIf,
+    /// The frame that is drawn.
+    Viewport,
+    /// Its settings.
+    Settings,
+    /// Its effects, and what facts say of them.
+    Effects,
+    /// Camera and light.
+    Lens,
+    /// The scene.
+    Scene,
+    /// Debug modes and budgets.
+    Debugging,
+    /// The contents of a texture.
+    Preview,
 }
 
-/// Search and questions on the left, views as tabs in the middle, the inspector on the right.
-pub(super) fn arranged() -> Tree<Pane> {
+impl Pane {
+    /// The name on its tab.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::View(view) => view.word(),
+            Self::List => "search",
+            Self::WhatIf => "what-if",
+            Self::Viewport => "viewport",
+            Self::Settings => "settings",
+            Self::Effects => "effects",
+            Self::Lens => "camera",
+            Self::Scene => "scene",
+            Self::Debugging => "debug",
+            Self::Preview => "texture",
+        }
+    }
+}
+
+/// Search and questions on the left, views as tabs in the middle, the inspector on the right; with a frame that is drawn, what is
+/// set about it on the left, itself in the middle, and its textures on the right.
+pub(super) fn arranged(live: bool) -> Tree<Pane> {
     let mut tiles = Tiles::default();
-    let list = tiles.insert_pane(Pane::List);
-    let what_if = tiles.insert_pane(Pane::WhatIf);
-    let left = tiles.insert_tab_tile(vec![list, what_if]);
-    let views = View::ALL.into_iter().filter(|view| *view != View::Inspector);
-    let views: Vec<TileId> = views.map(|view| tiles.insert_pane(Pane::View(view))).collect();
-    let middle = tiles.insert_tab_tile(views);
-    let inspector = tiles.insert_pane(Pane::View(View::Inspector));
+    let views = View::ALL.into_iter().filter(|view| *view != View::Inspector).map(Pane::View);
+    let drawn = |panes: &[Pane]| if live { panes.to_vec() } else { Vec::new() };
+    let mut tabs = |panes: Vec<Pane>| {
+        let panes = panes.into_iter().map(|pane| tiles.insert_pane(pane)).collect();
+        tiles.insert_tab_tile(panes)
+    };
+    let set = [Pane::Settings, Pane::Effects, Pane::Lens, Pane::Scene, Pane::Debugging];
+    let asked = [Pane::List, Pane::WhatIf];
+    let left = tabs(if live { set.to_vec() } else { asked.to_vec() });
+    let middle = tabs(drawn(&[Pane::Viewport]).into_iter().chain(views).collect());
+    let beside = drawn(&[Pane::Preview, asked[0], asked[1]]);
+    let inspector = tabs([Pane::View(View::Inspector)].into_iter().chain(beside).collect());
     let mut row = egui_tiles::Linear::new(egui_tiles::LinearDir::Horizontal, vec![left, middle, inspector]);
-    for (tile, share) in [(left, 0.98), (middle, 2.6), (inspector, 1.0)] {
+    let shares = if live { [1.15, 2.4, 1.1] } else { [0.98, 2.6, 1.0] };
+    for (tile, share) in [left, middle, inspector].into_iter().zip(shares) {
         row.shares.set_share(tile, share);
     }
     let root = tiles.insert_container(row);
@@ -38,7 +78,7 @@ pub(super) fn arranged() -> Tree<Pane> {
 }
 
 /// Whether an arrangement has every pane once.
-pub(super) fn is_whole(tree: &Tree<Pane>) -> bool {
+pub(super) fn is_whole(tree: &Tree<Pane>, live: bool) -> bool {
     let panes = |tree: &Tree<Pane>| -> Vec<Pane> {
         let of = tree.tiles.tiles().filter_map(|tile| match tile {
             Tile::Pane(pane) => Some(*pane),
@@ -46,7 +86,7 @@ pub(super) fn is_whole(tree: &Tree<Pane>) -> bool {
         });
         of.collect()
     };
-    let (found, all) = (panes(tree), panes(&arranged()));
+    let (found, all) = (panes(tree), panes(&arranged(live)));
     found.len() == all.len() && found.into_iter().collect::<BTreeSet<_>>() == all.into_iter().collect()
 }
 
@@ -67,6 +107,11 @@ pub(super) struct Panes<'a> {
     pub list: &'a mut List,
     pub canvases: &'a mut BTreeMap<View, Canvas>,
     pub drawings: &'a BTreeMap<View, Drawing>,
+    #[cfg(feature = "window")]
+    pub live: &'a mut Option<crate::live::Live>,
+    /// Paths of a scene and of a picture of light, as they are typed.
+    #[cfg(feature = "window")]
+    pub typed: &'a mut [String; 2],
 }
 
 impl Panes<'_> {
@@ -76,7 +121,8 @@ impl Panes<'_> {
     }
 
     fn view(&mut self, ui: &mut Ui, view: View) {
-        let Some(plan) = self.session.plan.clone() else {
+        let plan = self.session.plan.clone();
+        let Some(plan) = plan.or_else(|| (!view.is_of_a_plan()).then(Arc::default)) else {
             ui.centered_and_justified(|ui| {
                 ui.label("open a plan (JSON) or a graph (RON): type its path above, or drop it here")
             });
@@ -101,6 +147,13 @@ impl Panes<'_> {
             if ui.small_button("SVG").on_hover_text("copies the picture as an SVG document").clicked() {
                 ui.ctx().copy_text(crate::drawing::svg(drawing, panel::theme(ui)));
             }
+            if view == View::Accuracy {
+                let mut more_ms = self.session.more_ms;
+                let slider = egui::Slider::new(&mut more_ms, 0.0..=200.0).suffix(" ms").text("beyond the fastest");
+                ui.add(slider)
+                    .on_hover_text("of each technique, the most accurate choice that takes so much more is framed");
+                self.session.allow_ms(more_ms);
+            }
         });
         let lit = self.session.lit();
         let canvas = self.canvases.entry(view).or_default();
@@ -110,6 +163,28 @@ impl Panes<'_> {
             Clicked::Item(item) => self.session.selected = Some(item),
         }
     }
+
+    /// A pane of the frame that is drawn.
+    #[cfg(feature = "window")]
+    fn drawn(&mut self, ui: &mut Ui, pane: Pane) {
+        use crate::live::panel as live;
+        let [scene, light] = &mut *self.typed;
+        let Some(drawn) = &mut *self.live else { return };
+        match pane {
+            Pane::Viewport => live::viewport(ui, drawn, self.session),
+            Pane::Settings => live::SettingsPanel::show(ui, drawn),
+            Pane::Effects => live::effects(ui, drawn),
+            Pane::Lens => live::lens(ui, drawn, light),
+            Pane::Scene => live::scene(ui, drawn, scene, self.session),
+            Pane::Debugging => live::debugging(ui, drawn, self.session),
+            Pane::Preview => live::preview(ui, drawn, self.session),
+            Pane::View(_) | Pane::List | Pane::WhatIf => {}
+        }
+    }
+
+    /// Without a window of its own, no frame is drawn.
+    #[cfg(not(feature = "window"))]
+    fn drawn(&mut self, _: &mut Ui, _: Pane) {}
 
     fn questions(&mut self, ui: &mut Ui) {
         let planning = self.session.doing().is_some();
@@ -131,6 +206,13 @@ impl Behavior<Pane> for Panes<'_> {
         let pane = *pane;
         egui::Frame::new().inner_margin(6.0).show(ui, |ui| match pane {
             Pane::View(view) => self.view(ui, view),
+            Pane::Viewport
+            | Pane::Settings
+            | Pane::Effects
+            | Pane::Lens
+            | Pane::Scene
+            | Pane::Debugging
+            | Pane::Preview => self.drawn(ui, pane),
             Pane::WhatIf => self.questions(ui),
             Pane::List => {
                 if let Some(plan) = self.session.plan.clone()
@@ -144,11 +226,7 @@ impl Behavior<Pane> for Panes<'_> {
     }
 
     fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
-        match pane {
-            Pane::View(view) => view.word().into(),
-            Pane::List => "search".into(),
-            Pane::WhatIf => "what-if".into(),
-        }
+        pane.word().into()
     }
 
     fn simplification_options(&self) -> SimplificationOptions {

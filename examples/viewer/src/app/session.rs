@@ -1,12 +1,13 @@
 //! What the application looks at: plans, where they come from, what is asked and selected. No windows here.
 
+use crate::accuracy_data::AccuracyData;
 use crate::drawing::Item;
 use crate::job::Job;
 use crate::open::{Opened, open};
 use crate::panel::Questions;
 use crate::plan_data::PlanData;
 use crate::trace_data::TraceData;
-use crate::view::graph;
+use crate::view::{Beside, graph};
 use crate::watch::Watch;
 use crate::what_if::{Planner, WhatIf};
 use std::path::{Path, PathBuf};
@@ -44,6 +45,10 @@ pub struct Session {
     pub plan: Option<Arc<PlanData>>,
     /// The trace that is shown.
     pub trace: Option<Arc<TraceData>>,
+    /// What techniques err by and take.
+    pub accuracy: Option<Arc<AccuracyData>>,
+    /// What each of them may take beyond its fastest choice, in ms.
+    pub more_ms: f64,
     /// What is asked; none where nobody can plan anew, as of a saved plan.
     pub questions: Option<Questions>,
     /// What is selected.
@@ -52,12 +57,17 @@ pub struct Session {
     pub messages: Vec<String>,
     base: Option<Arc<PlanData>>,
     against: Option<Arc<PlanData>>,
+    /// The frame that is drawn now, before its settings were changed last.
+    before: Option<Arc<PlanData>>,
+    /// The frame of the planner is drawn now.
+    live: bool,
     planner: Option<Arc<dyn Planner>>,
     watch: Option<(PathBuf, Watch)>,
     job: Option<Job<Brought>>,
     /// Something else was asked while a plan was made.
     stale: bool,
     generation: u64,
+    times: u64,
     wake: Arc<dyn Fn() + Send + Sync>,
     first: WhatIf,
 }
@@ -69,19 +79,36 @@ impl Session {
         Self {
             plan: None,
             trace: None,
+            accuracy: None,
+            more_ms: 0.0,
             questions: None,
             selected: None,
             messages: Vec::new(),
             base: None,
             against: None,
+            before: None,
+            live: false,
             planner: None,
             watch: None,
             job: None,
             stale: false,
             generation: 0,
+            times: 0,
             wake: Arc::new(wake),
             first,
         }
+    }
+
+    /// Lets techniques take so many milliseconds beyond their fastest choice.
+    pub fn allow_ms(&mut self, more_ms: f64) {
+        self.generation += u64::from(self.more_ms != more_ms);
+        self.more_ms = more_ms;
+    }
+
+    /// What views look at beside the plan.
+    pub fn beside(&self) -> Beside<'_> {
+        let (accuracy, trace) = (self.accuracy.as_deref(), self.trace.as_deref());
+        Beside { against: self.against(), trace, accuracy, more_ms: self.more_ms, selected: self.selected }
     }
 
     /// Counts the changes of what is shown.
@@ -89,10 +116,12 @@ impl Session {
         self.generation
     }
 
-    /// The plan to compare with: the one that was opened for it, else how the frame is where something else is asked.
+    /// The plan to compare with: the one that was opened for it; else how the frame is where something else is asked; else, of a
+    /// frame that is drawn now, how it was before its settings were changed last.
     pub fn against(&self) -> Option<&PlanData> {
         let asked = self.questions.as_ref().is_some_and(|q| q.asked != q.base);
-        self.against.as_deref().or(self.base.as_deref().filter(|_| asked))
+        let own = if asked { self.base.as_deref() } else { self.before.as_deref() };
+        self.against.as_deref().or(own)
     }
 
     /// What is selected and what belongs to it, itself first.
@@ -143,6 +172,7 @@ impl Session {
 
     /// Shows the frame of a planner.
     pub fn show(&mut self, planner: Arc<dyn Planner>) {
+        (self.before, self.live) = (None, false);
         let base = WhatIf { features: self.features(&*planner, &self.first), ..self.first.clone() };
         // A file that is read again keeps what was asked, as far as it still knows it.
         let asked = match (&self.questions, &self.planner) {
@@ -157,6 +187,60 @@ impl Session {
         self.planner = Some(planner);
         self.base = None;
         self.ask();
+    }
+
+    /// Shows the plan of a frame that is drawn now, and who plans it anew. What is asked beside it stays asked. The plan before is
+    /// kept to compare with where `changed` says that the user changed the frame.
+    pub fn show_live(&mut self, planner: Arc<dyn Planner>, base: WhatIf, plan: Arc<PlanData>, changed: bool) {
+        self.watch = None;
+        let old = if std::mem::replace(&mut self.live, true) { self.base.take() } else { None };
+        if changed {
+            self.before = old;
+        }
+        let asked = match &self.questions {
+            Some(Questions { base: was, asked, .. }) if asked != was => {
+                let features = self.features(&*planner, asked);
+                WhatIf { features, ..asked.moved(was, &base) }
+            }
+            _ => base.clone(),
+        };
+        let same = asked == base;
+        let mut questions = Questions::new(base);
+        questions.asked = asked;
+        (self.questions, self.planner, self.base) = (Some(questions), Some(planner), Some(plan.clone()));
+        if same {
+            self.put(plan);
+        } else {
+            self.generation += 1;
+            self.ask();
+        }
+    }
+
+    /// Shows no plan any more, so that the frame that is drawn now shows its own.
+    pub fn forget_plan(&mut self) {
+        (self.plan, self.planner, self.questions, self.base, self.watch) = (None, None, None, None, None);
+        self.generation += 1;
+    }
+
+    /// Whether the frame that is planned is drawn now.
+    pub fn is_live(&self) -> bool {
+        self.live
+    }
+
+    /// Takes times of the frame; views that show them are drawn anew.
+    pub fn take_times(&mut self, trace: TraceData) {
+        self.trace = Some(Arc::new(trace));
+        self.times += 1;
+    }
+
+    /// Counts the changes of times alone.
+    pub fn times(&self) -> u64 {
+        self.times
+    }
+
+    /// Shows a plan that nobody can plan anew.
+    pub fn show_plan(&mut self, plan: PlanData) {
+        self.opened(Path::new(""), Role::Shown, Opened::Plan(Arc::new(plan)));
     }
 
     /// The features of a frame, set as a question has them.
@@ -252,6 +336,10 @@ impl Session {
                 self.trace = Some(trace);
                 self.generation += 1;
             }
+            (Opened::Accuracy(accuracy), _) => {
+                self.accuracy = Some(accuracy);
+                self.generation += 1;
+            }
             (Opened::Plan(plan), Role::Against) => {
                 self.against = Some(plan);
                 self.generation += 1;
@@ -265,6 +353,7 @@ impl Session {
             }
             (Opened::Plan(plan), Role::Shown) => {
                 (self.planner, self.questions, self.base, self.watch) = (None, None, None, None);
+                (self.before, self.live) = (None, false);
                 self.put(plan);
             }
             (Opened::Graph(graph), Role::Shown) => {
@@ -292,7 +381,8 @@ impl Session {
         self.generation += 1;
     }
 
-    fn say(&mut self, message: String) {
+    /// Tells the user something that went wrong.
+    pub fn say(&mut self, message: String) {
         if self.messages.last() != Some(&message) {
             self.messages.push(message);
         }

@@ -4,9 +4,9 @@ use crate::view::View;
 use egui::{Context, Grid, Key, Modifiers};
 
 /// Each shortcut with what it does.
-pub const SHORTCUTS: [(&str, &str); 12] = [
+pub const SHORTCUTS: [(&str, &str); 14] = [
     ("Ctrl+F", "search passes and resources"),
-    ("Ctrl+1 … Ctrl+7", "graph, timeline, memory, bandwidth, inspector, diff, trace"),
+    ("Ctrl+1 … Ctrl+8", "graph, timeline, memory, bandwidth, inspector, diff, trace, accuracy"),
     ("Escape", "select nothing; close this list"),
     ("F", "show the whole view under the pointer"),
     ("1", "show it at its own size"),
@@ -15,6 +15,8 @@ pub const SHORTCUTS: [(&str, &str); 12] = [
     ("drag, wheel", "pan it"),
     ("Ctrl+wheel", "zoom it about the pointer"),
     ("Ctrl+plus, Ctrl+minus", "make all letters larger or smaller"),
+    ("Ctrl+Z", "take back the last change of settings, camera or light"),
+    ("Ctrl+Y", "do it again"),
     ("Ctrl+D", "change between light and dark"),
     ("F1", "this list"),
 ];
@@ -28,6 +30,10 @@ pub(super) enum Asked {
     View(View),
     /// The list of shortcuts, or no list.
     Help,
+    /// Settings before the last change.
+    Undo,
+    /// Settings after it.
+    Redo,
     /// Nothing selected, no list.
     Nothing,
 }
@@ -39,7 +45,7 @@ pub(super) fn asked(ctx: &Context) -> Vec<Asked> {
     if pressed(Modifiers::COMMAND, Key::F) {
         asked.push(Asked::Search);
     }
-    let numbers = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7];
+    let numbers = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8];
     asked.extend(
         numbers
             .into_iter()
@@ -47,6 +53,15 @@ pub(super) fn asked(ctx: &Context) -> Vec<Asked> {
             .filter(|(key, _)| pressed(Modifiers::COMMAND, *key))
             .map(|(_, view)| Asked::View(view)),
     );
+    // Letters that are being typed have an undo of their own.
+    if !ctx.egui_wants_keyboard_input() {
+        if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || pressed(Modifiers::COMMAND, Key::Y) {
+            asked.push(Asked::Redo);
+        }
+        if pressed(Modifiers::COMMAND, Key::Z) {
+            asked.push(Asked::Undo);
+        }
+    }
     if pressed(Modifiers::COMMAND, Key::D) {
         let dark = ctx.theme() == egui::Theme::Dark;
         ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });

@@ -1,7 +1,9 @@
 //! The rows of a plan, found by name.
 
 use super::rows::{Access, Attachment, Form, Step};
+use framegraph::Plan;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// A plan with its rows found by name.
 #[derive(Clone, Debug, Default)]
@@ -12,6 +14,8 @@ pub struct PlanData {
     pub notes: Vec<String>,
     /// Where each pass was declared, by its index; empty where nobody knows, as in a saved plan.
     pub declared_at: Vec<String>,
+    /// The plan itself; none of a saved one.
+    pub plan: Option<Arc<Plan>>,
     passes: HashMap<String, usize>,
     resources: HashMap<String, usize>,
 }
@@ -27,7 +31,7 @@ impl PlanData {
         for (index, resource) in form.resources.iter().enumerate() {
             resources.entry(resource.name.clone()).or_insert(index);
         }
-        Self { form, notes, declared_at: Vec::new(), passes, resources }
+        Self { form, notes, declared_at: Vec::new(), plan: None, passes, resources }
     }
 
     /// The index of a pass in [`Form::passes`].

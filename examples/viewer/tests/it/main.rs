@@ -1,6 +1,8 @@
 //! Tests of the viewer: what it reads, what it draws, what its panels do, and its window.
 
 mod changes;
+mod live;
+mod live_pictures;
 mod panels;
 mod pictures;
 mod program;

@@ -61,6 +61,11 @@ fn shown(view: View) -> (Viewer, Option<Item>) {
         View::Memory => plan.resource("structure").map(Item::Resource),
         _ => None,
     };
+    if view == View::Accuracy {
+        viewer.session.open(Path::new("tests/it/accuracy.json"), viewer::app::Role::Shown);
+        assert!(viewer.session.settle(Duration::from_secs(60)));
+        viewer.session.allow_ms(20.0);
+    }
     (viewer, selected)
 }
 

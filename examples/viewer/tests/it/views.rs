@@ -162,41 +162,41 @@ fn a_trace_gives_quartiles_and_stutters() {
 
 #[test]
 fn two_thousand_passes_are_laid_out() {
-    let mut graph = framegraph::Graph::new();
-    let desc = |format| framegraph::TextureDesc::new(framegraph::Extent::FRAME, format);
-    let screen = desc(framegraph::Format::Rgba8Unorm);
-    let mut screen = graph.import_texture("screen", screen, framegraph::Entry::Defined, framegraph::Exit::Keep);
-    let mut made = Vec::new();
-    for pass in 0..2000usize {
-        let written = graph.texture(&format!("texture {pass}"), desc(framegraph::Format::R8Unorm));
-        // Readers of the one before, of one long ago, and now and then of the very first.
-        let read: Vec<_> = [pass.checked_sub(1), pass.checked_sub(37), (pass % 100 == 99).then_some(0)]
-            .into_iter()
-            .flatten()
-            .filter_map(|before| made.get(before).copied())
-            .collect();
-        let declared = graph.add_fn(&format!("pass {pass}"), |builder| {
-            read.into_iter().try_for_each(|texture| builder.sampled(texture).map(drop))?;
-            builder.color(written, framegraph::Intent::Overwrite)
-        });
-        made.push(declared.expect("a pass"));
-    }
-    for last in made.iter().rev().take(40).copied().collect::<Vec<_>>() {
-        let name = format!("show {}", graph.passes().len());
-        screen = graph
-            .add_fn(&name, |builder| {
-                builder.sampled(last)?;
-                builder.color(screen, framegraph::Intent::Modify)
-            })
-            .expect("a pass");
-    }
-    let mut plan = framegraph::Plan::new();
-    let options = framegraph::Options::for_frame(64, 64);
-    framegraph::compile(&graph, &Caps::desktop(), &options, &mut framegraph::Scratch::new(), &mut plan)
-        .expect("a plan");
-    let plan = viewer::plan_data::PlanData::of(&plan, "large").expect("the text is read back");
+    let plan = viewer::measuring::large(2000).expect("a plan");
     let started = std::time::Instant::now();
     let drawing = graph::drawing(&plan, None);
     println!("{} passes are laid out in {:?}", plan.form.passes.len(), started.elapsed());
     assert!(plan.form.passes.len() >= 2000 && drawing.hits.len() > 2000);
+}
+
+#[test]
+fn accuracy_is_plotted_for_every_technique() {
+    let text = std::fs::read("tests/it/accuracy.json").expect("the sample");
+    let data = viewer::accuracy_data::read(&text).expect("it is sound");
+    assert!(data.techniques.len() > 3);
+    let drawn = |more_ms: f64| {
+        let beside = Beside { accuracy: Some(&data), more_ms, ..Beside::default() };
+        drawing(View::Accuracy, &viewer::plan_data::PlanData::default(), beside, 80)
+    };
+    let (strict, free) = (drawn(0.0), drawn(1e9));
+    for technique in &data.techniques {
+        assert!(strict.words().contains(&technique.name));
+        let front = technique.front();
+        let best = technique.choices.iter().map(|choice| choice.error).fold(f64::INFINITY, f64::min);
+        let is_best = |index: usize| technique.choices[index].error == best;
+        assert!((0..front.len()).any(|index| front[index] && is_best(index)), "the most accurate is beaten by none");
+        // Without a limit the most accurate is chosen, with none the fastest.
+        if let (Some(fast), Some(fine)) = (technique.within(0.0), technique.within(1e9)) {
+            let ms = |index: usize| technique.cost(&technique.choices[index]);
+            assert!(is_best(fine) && (0..front.len()).all(|index| ms(fast) <= ms(index)), "{}", technique.name);
+        }
+    }
+    assert_ne!(strict.shapes, free.shapes);
+    let timed = data.techniques.iter().filter(|technique| technique.within(0.0).is_some()).count();
+    assert!(timed > 1 && timed < data.techniques.len(), "some are timed, some are counted: {timed}");
+    for (text, told) in [("{}", "cannot be read"), ("[", "cannot be read")] {
+        assert!(viewer::accuracy_data::read(text.as_bytes()).is_err_and(|error| error.contains(told)), "{text}");
+    }
+    let other = String::from_utf8_lossy(&text).replace("framegraph-accuracy", "framegraph-other");
+    assert!(viewer::accuracy_data::read(other.as_bytes()).is_err_and(|error| error.contains("framegraph-other")));
 }

@@ -108,3 +108,37 @@ fn a_window_is_resized_hidden_and_closed() {
     assert_eq!(status.and_then(|status| status.code()), Some(0), "{told}");
     assert!(!told.contains("panicked"), "{told}");
 }
+
+#[test]
+fn a_live_frame_is_drawn_in_a_window() {
+    let name = "a_live_frame_is_drawn_in_a_window";
+    let Some(display) = Display::open() else { return test_report::skip(name, "there is no Xvfb to open a window on") };
+    let args = ["--live", "spheres", "--settings", "low", "--frames", "60"];
+    let mut program = display.program(&args).spawn().expect("the program starts");
+    let (x, screen) = RustConnection::connect(Some(&display.1)).expect("a display");
+    let root = x.setup().roots[screen].root;
+    // Resized while it draws.
+    if let Some(window) = window(&x, root) {
+        std::thread::sleep(Duration::from_millis(400));
+        let _ = x.configure_window(window, &ConfigureWindowAux::new().width(700).height(420));
+        let _ = x.flush();
+    }
+    let Output { status, stdout, stderr } = program_output(&mut program);
+    let (out, told) = (String::from_utf8_lossy(&stdout), String::from_utf8_lossy(&stderr));
+    if !skipped(name, &told) {
+        let frames = out.split_once(" frames").and_then(|(count, _)| count.parse::<u32>().ok());
+        assert!(status.code() == Some(0) && frames >= Some(60), "{status}: {out}{told}");
+        let mut words = out.split_whitespace().rev().skip_while(|word| *word != "of").skip(1);
+        let drawn = words.next().and_then(|word| word.parse::<u32>().ok());
+        assert!(drawn >= Some(55), "the scene is drawn in each of them: {out}{told}");
+        assert!(!told.contains("refused") && !told.contains("panicked"), "{told}");
+    }
+}
+
+/// What a program wrote until it ended.
+fn program_output(program: &mut Child) -> Output {
+    let (mut stdout, mut stderr) = (Vec::new(), Vec::new());
+    program.stdout.take().map(|mut out| out.read_to_end(&mut stdout));
+    program.stderr.take().map(|mut err| err.read_to_end(&mut stderr));
+    Output { status: program.wait().expect("a program"), stdout, stderr }
+}

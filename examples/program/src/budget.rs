@@ -1,7 +1,7 @@
 //! Limits on what a plan may cost, and which decisions break them.
 
+use crate::bytes;
 use framegraph::{Decision, Plan, Reason, Subject};
-use program::bytes;
 
 /// A kind of cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,0 +1,360 @@
+//! The standard frame of a scene, executed again and again into a texture that egui shows.
+
+use super::camera::Rig;
+use super::loading::Loaded;
+use super::look::{Document, Look};
+use super::screen::Screen;
+use crate::standard_frame::{StandardFrame, declare};
+use crate::what_if::WhatIf;
+use egui::TextureId;
+use framegraph::{Options, Plan};
+use framegraph_passes::facts::{Around, decide};
+use framegraph_passes::shadow::{ShadowSettings, local_layers, local_maps};
+use framegraph_passes::sun::has_sun;
+use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::{
+    CameraView, Effect, EffectSet, FactInput, FactMemory, Facts, FrameIndex, FrameSettings, Settings, ViewId, World,
+};
+use framegraph_scene::{Camera, Scene};
+use framegraph_wgpu::debug::{Mode, Modes};
+use framegraph_wgpu::{ExecutorOptions, FrameLoop};
+use glam::{DVec2, Vec2};
+use std::sync::Arc;
+
+/// What the frame is asked for, beside size and document.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Asked {
+    /// Switches to find a fault with.
+    pub modes: Modes,
+    /// Effects stay, whatever the facts are.
+    pub forced: bool,
+    /// Moment of the animation, in seconds.
+    pub time_s: f64,
+    /// The animation runs.
+    pub playing: bool,
+}
+
+/// The texture that the frame is drawn into.
+struct Picture {
+    texture: wgpu::Texture,
+    size_px: [u32; 2],
+    id: TextureId,
+}
+
+/// All that a view of the frame depends on.
+#[derive(Clone, Debug, PartialEq)]
+struct Stand {
+    document: Document,
+    camera: Camera,
+    size_px: [u32; 2],
+    settings: Settings,
+    moment: Option<(usize, f64)>,
+    light: u64,
+}
+
+/// A scene that is drawn.
+pub struct Running {
+    screen: Screen,
+    /// The scene with its light.
+    pub loaded: Loaded,
+    /// The camera.
+    pub rig: Rig,
+    /// What was decided for the frame that was drawn last.
+    pub facts: Facts,
+    frames: FrameLoop<World>,
+    poison: bool,
+    picture: Option<Picture>,
+    memory: FactMemory,
+    stand: Option<Stand>,
+    posed: Option<(usize, f64)>,
+    asked: Settings,
+    /// Counts changes of light.
+    light: u64,
+    index: u32,
+    key: Option<(Settings, Options)>,
+    plans: u64,
+}
+
+impl Running {
+    /// A scene that nothing was drawn of.
+    pub fn new(screen: &Screen, loaded: Loaded) -> Self {
+        Self {
+            screen: screen.clone(),
+            rig: Rig::new(&loaded.scene, 16.0 / 9.0),
+            loaded,
+            facts: Facts::default(),
+            frames: frames(screen, false),
+            poison: false,
+            picture: None,
+            memory: FactMemory::default(),
+            stand: None,
+            posed: None,
+            asked: Settings::DEFAULT,
+            light: 0,
+            index: 0,
+            key: None,
+            plans: 0,
+        }
+    }
+
+    /// Takes other light.
+    pub fn relight(&mut self, lit: super::loading::Lit) {
+        self.loaded.relight(lit);
+        self.light += 1;
+    }
+
+    /// Draws the frame once. What is wrong with it is told, and the picture before stays.
+    ///
+    /// # Errors
+    /// One line: what the frame or the device refuses.
+    pub fn draw(&mut self, size_px: [u32; 2], document: &Document, asked: &Asked) -> Result<(), String> {
+        document.frame.settings.shading.precision.check(&self.screen.gpu).map_err(|e| e.to_string())?;
+        self.pose(document.look.animation, asked.time_s)?;
+        let settings = self.settings(size_px, document, asked);
+        self.look(size_px, document, &settings)?;
+        let mut options = Options { inline: document.frame.inline, ..Options::for_frame(size_px[0], size_px[1]) };
+        let mut execute = ExecutorOptions::default();
+        asked.modes.apply(&mut options, &mut execute);
+        if self.poison != execute.poison {
+            (self.frames, self.poison) = (frames(&self.screen, execute.poison), execute.poison);
+        }
+        *self.frames.options_mut() = options;
+        let texture = self.texture(size_px);
+        let (facts, world) = (&self.facts, &self.loaded.world);
+        let ran = self.frames.run(size_px, world, |frame, imports| {
+            let output = declare(frame, &settings, facts)?;
+            imports.texture(output, &texture);
+            Ok::<_, framegraph_passes::StageError>(())
+        });
+        self.index = self.index.wrapping_add(1);
+        ran.map_err(|error| error.to_string())?;
+        let key = (settings, options);
+        if self.key != Some(key) {
+            (self.key, self.plans) = (Some(key), self.plans + 1);
+        }
+        Ok(())
+    }
+
+    /// Begins anew, as after a cut: no history of earlier frames, effects over time from their first frame.
+    pub fn restart(&mut self) {
+        self.frames.executor_mut().reset_histories();
+        (self.stand, self.index) = (None, 0);
+    }
+
+    /// Moves the scene to a moment of an animation.
+    fn pose(&mut self, animation: Option<usize>, time_s: f64) -> Result<(), String> {
+        let moment = animation.map(|number| (number, time_s));
+        if moment == self.posed {
+            return Ok(());
+        }
+        let Loaded { scene, prepared, world, .. } = &mut self.loaded;
+        let posed = scene.pose(animation, time_s).map_err(|e| e.to_string());
+        for body in &scene.motion.bodies {
+            world.scene.write_mesh(&self.screen.gpu, scene, body.mesh).map_err(|e| e.to_string())?;
+        }
+        prepared.update(scene, &(0..scene.instances.len()).collect::<Vec<_>>());
+        self.posed = moment;
+        posed
+    }
+
+    /// What is drawn of the settings: what the scene has nothing for, and what facts leave out, is not.
+    fn settings(&mut self, size_px: [u32; 2], document: &Document, asked: &Asked) -> Settings {
+        let FrameSettings { lights, settings, .. } = document.frame;
+        let look = &document.look;
+        self.loaded.set_sun(look.sun, self.turned_rad(look));
+        let Self { loaded, rig, memory, .. } = self;
+        let (scene, image) = (&loaded.scene, &loaded.world.lighting.image);
+        let camera = rig.camera(look.fov_y_rad());
+        let cascades = |own: &ShadowSettings| if has_sun(scene, image.sun.as_ref()) { own.cascades } else { 0 };
+        let shadows = settings.shadows.map(|own| {
+            let cascades = cascades(&own);
+            let local_maps = local_maps(scene, cascades).min(own.local_maps);
+            let own = ShadowSettings { cascades, local_maps, ..own };
+            ShadowSettings { local_layers: local_layers(scene, camera.eye, &own), ..own }
+        });
+        let shadows = shadows.filter(|shadows| shadows.layers() > 0);
+        let drawn_px = drawn_px(&settings, size_px);
+        let settings = Settings { shadows, moving: asked.playing, ..settings }.for_scene(scene, drawn_px);
+        self.asked = settings;
+        if asked.forced {
+            self.facts = Facts::default();
+            return settings;
+        }
+        // What tints by cascades shows those that were asked for.
+        let tinted = shadows.is_some_and(|shadows| shadows.show_cascades);
+        let shown = [Effect::SunShadows, Effect::Cascades].into_iter().filter(|_| tinted);
+        let seen = ViewSettings {
+            camera,
+            size_px: drawn_px,
+            ev100: look.exposure.ev100(loaded.metered_ev100),
+            environment_intensity: look.environment_intensity,
+            shadows,
+            lights,
+        };
+        self.facts = decide(
+            &FactInput {
+                scene,
+                survey: &loaded.survey,
+                around: Around::from(image),
+                background: &loaded.background(look.behind),
+                views: std::slice::from_ref(&seen),
+                settings: &settings,
+                forced: shown.collect::<EffectSet>(),
+                most_codes: FactInput::MOST_CODES,
+            },
+            memory,
+        );
+        self.facts.apply(&settings)
+    }
+
+    /// How far the environment is turned; a clear sky is not, which has its sun moved instead.
+    fn turned_rad(&self, look: &Look) -> f64 {
+        if matches!(self.loaded.background, Background::Environment) { look.turned_rad() } else { 0.0 }
+    }
+
+    /// Makes the view.
+    fn look(&mut self, size_px: [u32; 2], document: &Document, settings: &Settings) -> Result<(), String> {
+        let look = &document.look;
+        let camera = self.rig.camera(look.fov_y_rad());
+        let stand = Stand {
+            document: document.clone(),
+            camera: camera.clone(),
+            size_px,
+            settings: *settings,
+            moment: self.posed,
+            light: self.light,
+        };
+        let jitter = settings.taa.map_or(DVec2::ZERO, |taa| taa.jitter_px(self.index));
+        let turned = self.turned_rad(look);
+        let Loaded { scene, prepared, world, .. } = &self.loaded;
+        let told = |error: framegraph_passes::PassError| error.to_string();
+        if self.stand.as_ref() == Some(&stand) {
+            let world = &mut self.loaded.world;
+            world.frame_index = FrameIndex(self.index);
+            return world.views.again(ViewId::MAIN, jitter).map_err(told);
+        }
+        let seen = ViewSettings {
+            camera,
+            size_px: drawn_px(settings, size_px),
+            ev100: look.exposure.ev100(self.loaded.metered_ev100),
+            environment_intensity: look.environment_intensity,
+            shadows: settings.shadows,
+            lights: document.frame.lights,
+        };
+        let background = self.loaded.background(look.behind);
+        let mut view = CameraView::prepared(scene, prepared, &world.lighting.image, &background, &seen);
+        view.frame.environment_rotation = Vec2::new(turned.cos() as f32, -turned.sin() as f32);
+        if self.stand.is_some() {
+            view = view.after(&world.views.get(ViewId::MAIN).map_err(told)?.view);
+        }
+        view.jitter(jitter);
+        let world = &mut self.loaded.world;
+        world.frame_index = FrameIndex(self.index);
+        world.set_view(&self.screen.gpu, ViewId::MAIN, view).map_err(told)?;
+        self.stand = Some(stand);
+        Ok(())
+    }
+
+    /// The texture that the frame is drawn into.
+    fn texture(&mut self, size_px: [u32; 2]) -> wgpu::Texture {
+        if let Some(picture) = self.picture.as_ref().filter(|picture| picture.size_px == size_px) {
+            return picture.texture.clone();
+        }
+        let [width, height] = size_px.map(|side| side.max(1));
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST;
+        let texture = self.screen.gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("viewport"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let id = self.screen.show(&view, self.picture.as_ref().map(|picture| picture.id));
+        self.picture = Some(Picture { texture: texture.clone(), size_px, id });
+        texture
+    }
+
+    /// What egui knows the picture by, and its size; none before it was drawn.
+    pub fn picture(&self) -> Option<(TextureId, [u32; 2])> {
+        self.picture.as_ref().map(|picture| (picture.id, picture.size_px))
+    }
+
+    /// The texture of the picture.
+    pub fn picture_texture(&self) -> Option<&wgpu::Texture> {
+        self.picture.as_ref().map(|picture| &picture.texture)
+    }
+
+    /// Counts the plans that differ: by settings, size or options.
+    pub fn plans(&self) -> u64 {
+        self.plans
+    }
+
+    /// Counts the frames that were drawn.
+    pub fn drawn(&self) -> u32 {
+        self.index
+    }
+
+    /// The plan that was executed last.
+    pub fn plan(&self) -> &Plan {
+        self.frames.plan()
+    }
+
+    /// Frame, plan, executor and imports of the frame that was executed last.
+    pub fn frames(&self) -> &FrameLoop<World> {
+        &self.frames
+    }
+
+    /// The device.
+    pub fn screen(&self) -> &Screen {
+        &self.screen
+    }
+
+    /// Whether poison fills what was never written.
+    pub fn is_poisoned(&self) -> bool {
+        self.poison
+    }
+
+    /// Who plans the frame that was drawn last anew, and the question that it answers as it is.
+    pub fn planner(&self, document: &Document, modes: &Modes) -> (Arc<StandardFrame>, WhatIf) {
+        let Loaded { name, scene, .. } = &self.loaded;
+        // What settings ask a scene for.
+        let (materials, instances) = (scene.materials.clone(), scene.instances.clone());
+        let needs = Scene { materials, instances, ..Scene::default() };
+        let frame = FrameSettings { settings: self.asked, ..document.frame };
+        let planner = StandardFrame::live(name, frame, Arc::new(needs), self.facts.clone());
+        let options = self.key.map_or_else(Options::default, |(_, options)| options);
+        let features = crate::what_if::Planner::features(&planner);
+        let no_cull = modes.0.contains(&Mode::NoCull);
+        let Options { frame: size, order, alias, merge, inline, memoryless, cull, .. } = options;
+        let question = WhatIf {
+            caps: self.screen.gpu.caps(),
+            frame: Some(size),
+            order,
+            alias,
+            cull: cull && !no_cull,
+            merge,
+            inline,
+            memoryless,
+            features,
+        };
+        (Arc::new(planner), question)
+    }
+}
+
+/// The size that is drawn of a frame that may be made larger.
+fn drawn_px(settings: &Settings, size_px: [u32; 2]) -> [u32; 2] {
+    settings.upscale.map_or(size_px, |upscale| upscale.extent().texels(size_px))
+}
+
+/// A loop that writes down the times of its frames.
+fn frames(screen: &Screen, poison: bool) -> FrameLoop<World> {
+    let execute = ExecutorOptions { trace: true, poison, ..ExecutorOptions::default() };
+    FrameLoop::with(&screen.gpu, Options::default(), execute)
+}

@@ -1,0 +1,234 @@
+//! The scene: where it comes from, its animation, its cameras, what it is made of and with which materials.
+
+use crate::live::Live;
+use egui::{CollapsingHeader, ComboBox, Grid, RichText, ScrollArea, Slider, TextEdit, Ui};
+use framegraph_scene::builtin::NAMES;
+use framegraph_scene::{Camera, Material, Scene};
+use std::path::Path;
+
+/// Names of files that are offered at most.
+const OFFERED: usize = 12;
+/// Endings of scenes, and of pictures of light.
+const ENDINGS: [&str; 6] = ["gltf", "glb", "hdr", "exr", "ktx", "ktx2"];
+
+/// Shows the scene; loads another one, moves it, looks from one of its cameras.
+pub fn scene(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::app::Session) {
+    open(ui, live, path, session);
+    ui.separator();
+    let Some(running) = &live.running else { return };
+    let loaded = &running.loaded;
+    let scene = &loaded.scene;
+    ui.label(format!(
+        "{}: {} instances, {} triangles, {} materials, {} lights",
+        loaded.name,
+        scene.instances.len(),
+        scene.triangle_count(),
+        scene.materials.len(),
+        loaded.lights.len()
+    ));
+    animation(ui, live);
+    cameras(ui, live);
+    ui.separator();
+    let Some(running) = &live.running else { return };
+    hierarchy(ui, &running.loaded.scene);
+}
+
+/// A path with what there is in its folder, and the built-in scenes.
+fn open(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::app::Session) {
+    ui.horizontal(|ui| {
+        let width = (ui.available_width() - 130.0).max(60.0);
+        let edit = ui.add(TextEdit::singleline(path).hint_text("SCENE.gltf, .glb or light.hdr").desired_width(width));
+        let enter = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+        let tip = "loads it; files can be dropped onto the window too";
+        if (ui.button("Load").on_hover_text(tip).clicked() || enter)
+            && !path.trim().is_empty()
+            && !live.open(Path::new(path.trim()), session)
+        {
+            live.load(path.trim());
+        }
+        ComboBox::from_id_salt("built-in")
+            .selected_text("built-in")
+            .width(60.0)
+            .show_ui(ui, |ui| {
+                for name in NAMES {
+                    if ui.selectable_label(false, name).clicked() {
+                        live.load(name);
+                    }
+                }
+            })
+            .response
+            .on_hover_text("scenes that the program makes itself");
+    });
+    let offered = if path.is_empty() { Vec::new() } else { completions(path) };
+    if !offered.is_empty() {
+        ui.horizontal_wrapped(|ui| {
+            for name in offered {
+                if ui.small_button(RichText::new(&name).size(11.0)).clicked() {
+                    let folder = path.rfind('/').map_or("", |slash| &path[..=slash]);
+                    *path = format!("{folder}{name}");
+                }
+            }
+        });
+    }
+}
+
+/// Folders and files that a path may go on with: scenes and pictures of light, in their order.
+pub(super) fn completions(path: &str) -> Vec<String> {
+    let (folder, begun) = path
+        .rsplit_once('/')
+        .map_or((".", path), |(folder, begun)| (if folder.is_empty() { "/" } else { folder }, begun));
+    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
+    let mut names: Vec<String> = entries
+        .flatten()
+        .filter_map(|entry| {
+            let name = entry.file_name().into_string().ok()?;
+            let is_folder = entry.path().is_dir();
+            let ending = Path::new(&name).extension().map(|e| e.to_string_lossy().to_lowercase());
+            let fits = is_folder || ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str()));
+            let begins = name.starts_with(begun) && name != begun && (!name.starts_with('.') || begun.starts_with('.'));
+            (fits && begins).then(|| if is_folder { format!("{name}/") } else { name })
+        })
+        .collect();
+    names.sort_unstable();
+    names.truncate(OFFERED);
+    names
+}
+
+fn animation(ui: &mut Ui, live: &mut Live) {
+    let Some(running) = &live.running else { return };
+    let animations = &running.loaded.scene.motion.animations;
+    if animations.is_empty() {
+        return;
+    }
+    let named = |number: usize| match animations[number].name.as_str() {
+        "" => format!("animation {number}"),
+        name => name.to_owned(),
+    };
+    let mut document = live.document().clone();
+    let chosen = document.look.animation.filter(|number| *number < animations.len());
+    let length_s = chosen.map_or(0.0, |number| animations[number].duration_s());
+    ui.horizontal(|ui| {
+        let text = chosen.map_or("at rest".into(), named);
+        ComboBox::from_id_salt("animation")
+            .selected_text(text)
+            .show_ui(ui, |ui| {
+                ui.selectable_value(&mut document.look.animation, None, "at rest");
+                for number in 0..animations.len() {
+                    ui.selectable_value(&mut document.look.animation, Some(number), named(number));
+                }
+            })
+            .response
+            .on_hover_text("which animation of the scene");
+        if chosen.is_some() {
+            ui.checkbox(&mut live.asked.playing, "play");
+        }
+    });
+    if chosen.is_some() {
+        let slider =
+            Slider::new(&mut live.asked.time_s, 0.0..=length_s.max(1e-3)).suffix(" s").max_decimals(3).text("time");
+        if ui.add(slider).changed() {
+            live.again();
+        }
+    } else {
+        live.asked.playing = false;
+    }
+    if document != *live.document() {
+        live.set(document, false);
+    }
+}
+
+fn cameras(ui: &mut Ui, live: &mut Live) {
+    let Some(running) = &mut live.running else { return };
+    let cameras: Vec<Camera> = running.loaded.scene.cameras.clone();
+    if cameras.is_empty() {
+        return;
+    }
+    let mut taken = false;
+    ui.horizontal_wrapped(|ui| {
+        ui.label("cameras:");
+        for (number, camera) in cameras.iter().enumerate() {
+            let name = if camera.name.is_empty() { number.to_string() } else { camera.name.clone() };
+            if ui.small_button(name).on_hover_text("looks from there").clicked() {
+                running.rig.take(camera);
+                taken = true;
+            }
+        }
+    });
+    if taken {
+        live.again();
+    }
+}
+
+/// Instances under their nodes, each with its material.
+fn hierarchy(ui: &mut Ui, scene: &Scene) {
+    ScrollArea::vertical().auto_shrink(false).show_rows(ui, 22.0, scene.instances.len(), |ui, rows| {
+        for number in rows {
+            let instance = &scene.instances[number];
+            let name = if instance.name.is_empty() { format!("instance {number}") } else { instance.name.clone() };
+            let depth = depth(scene, number);
+            let material = &scene.materials[instance.material.index()];
+            ui.horizontal(|ui| {
+                ui.add_space(10.0 * depth as f32);
+                let place = instance.world_from_model.w_axis;
+                ui.label(name).on_hover_text(format!(
+                    "at {:.3} {:.3} {:.3} m, {} triangles",
+                    place.x,
+                    place.y,
+                    place.z,
+                    scene.meshes[instance.mesh.index()].triangle_count()
+                ));
+                let named = if material.name.is_empty() { "(no name)" } else { &material.name };
+                ui.menu_button(RichText::new(named).size(11.0), |ui| self::material(ui, material));
+            });
+        }
+    });
+}
+
+/// How many nodes stand above that of an instance.
+fn depth(scene: &Scene, instance: usize) -> usize {
+    let mut node = scene.motion.instance_nodes.get(instance).copied();
+    let mut depth = 0;
+    while let Some(parent) = node.and_then(|node| scene.motion.nodes.get(node)).and_then(|node| node.parent) {
+        (node, depth) = (Some(parent), depth + 1);
+        if depth > 64 {
+            break;
+        }
+    }
+    depth
+}
+
+/// What a material is.
+fn material(ui: &mut Ui, material: &Material) {
+    let texture = |there: bool| if there { ", textured" } else { "" };
+    CollapsingHeader::new(&material.name).default_open(true).show(ui, |ui| {
+        Grid::new("material").num_columns(2).striped(true).show(ui, |ui| {
+            let mut row = |name: &str, text: String| {
+                ui.label(name);
+                ui.label(text);
+                ui.end_row();
+            };
+            row("base color", format!("{:.3}{}", material.base_color, texture(material.base_color_texture.is_some())));
+            let surface = texture(material.metallic_roughness_texture.is_some());
+            row("metallic", format!("{:.3}{surface}", material.metallic));
+            row("roughness", format!("{:.3}{surface}", material.roughness));
+            row("normals", if material.normal_texture.is_some() { "textured" } else { "of the mesh" }.into());
+            row("emissive", format!("{:.2}{}", material.emissive, texture(material.emissive_texture.is_some())));
+            row("alpha", format!("{:?}", material.alpha));
+            row("sides", if material.double_sided { "both" } else { "front" }.into());
+            let lobes: Vec<String> = material.lobes().iter().map(|lobe| format!("{lobe:?}")).collect();
+            row("lobes", if lobes.is_empty() { "-".into() } else { lobes.join(", ") });
+        });
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_go_on_with_what_is_there() {
+        assert!(completions("src/li").contains(&"live/".to_owned()) && completions("no/such/fold").is_empty());
+        let light = completions("../../tests/assets/hdri/ven");
+        assert!(light.iter().all(|name| name.starts_with("ven")) && !light.is_empty(), "{light:?}");
+    }
+}

@@ -1,0 +1,109 @@
+//! The settings of the frame: presets, files, undo, and every field.
+
+use super::fields::Fields;
+use super::{goes_on, tone};
+use crate::live::Live;
+use crate::settings::{Node, settings, tree};
+use egui::{RichText, ScrollArea, TextEdit, Ui};
+use framegraph_passes::{FrameSettings, Preset};
+use std::path::PathBuf;
+
+/// What the panel keeps.
+#[derive(Clone, Debug, Default)]
+pub struct SettingsPanel {
+    /// The settings as a tree, and what it was made of.
+    tree: Option<(FrameSettings, Node)>,
+    /// Why what was asked last is not shown.
+    refused: Option<String>,
+    search: String,
+}
+
+impl SettingsPanel {
+    /// Shows the settings, and changes them.
+    pub fn show(ui: &mut Ui, live: &mut Live) {
+        bar(ui, live);
+        let mut panel = std::mem::take(&mut live.settings);
+        let width = ui.available_width();
+        ui.add(TextEdit::singleline(&mut panel.search).hint_text("search fields").desired_width(width - 12.0));
+        if let Some(refused) = &panel.refused {
+            ui.label(RichText::new(refused).color(ui.visuals().error_fg_color));
+        }
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            tone::curve(ui, &live.document().frame.settings.post);
+            panel.fields(ui, live);
+        });
+        live.settings = panel;
+    }
+
+    fn fields(&mut self, ui: &mut Ui, live: &mut Live) {
+        let frame = live.document().frame;
+        if self.tree.as_ref().is_none_or(|(of, _)| *of != frame) {
+            match tree(&frame) {
+                Ok(node) => self.tree = Some((frame, node)),
+                Err(error) => self.refused = Some(error),
+            }
+        }
+        let Some((_, node)) = &self.tree else { return };
+        let mut changed = node.clone();
+        let ranges = frame.ranges();
+        let ranges: Vec<_> = ranges.into_iter().collect();
+        Fields { ranges: &ranges, search: &self.search }.children(ui, "", &mut changed);
+        if changed == *node {
+            if !goes_on(ui.ctx()) {
+                live.history.finish();
+            }
+            return;
+        }
+        match settings(&changed) {
+            Ok(frame) => {
+                self.refused = None;
+                let mut document = live.document().clone();
+                document.frame = frame;
+                live.set(document, goes_on(ui.ctx()));
+            }
+            Err(error) => self.refused = Some(error),
+        }
+    }
+}
+
+/// Presets, undo and redo, files.
+fn bar(ui: &mut Ui, live: &mut Live) {
+    ui.horizontal_wrapped(|ui| {
+        for preset in Preset::ALL {
+            let is = live.document().frame == preset.frame();
+            if ui.selectable_label(is, preset.name()).on_hover_text("the whole frame of this preset").clicked() {
+                let mut document = live.document().clone();
+                document.frame = preset.frame();
+                live.set(document, false);
+            }
+        }
+        let [undo, redo] = live.history.steps().map(|steps| steps > 0);
+        if ui.add_enabled(undo, egui::Button::new("Undo")).on_hover_text("Ctrl+Z").clicked() && live.history.undo() {
+            live.again();
+        }
+        if ui.add_enabled(redo, egui::Button::new("Redo")).on_hover_text("Ctrl+Y").clicked() && live.history.redo() {
+            live.again();
+        }
+    });
+    ui.horizontal(|ui| {
+        let width = (ui.available_width() - 122.0).max(40.0);
+        ui.add(TextEdit::singleline(&mut live.path).hint_text("SETTINGS.ron").desired_width(width));
+        let path = PathBuf::from(live.path.trim());
+        let named = !live.path.trim().is_empty();
+        if ui.add_enabled(named, egui::Button::new("Load")).on_hover_text("docs/settings.md").clicked() {
+            let read = crate::standard_frame::settings(live.path.trim());
+            live.settings.refused = match read {
+                Ok(frame) => {
+                    let mut document = live.document().clone();
+                    document.frame = frame;
+                    live.set(document, false);
+                    None
+                }
+                Err(error) => Some(error),
+            };
+        }
+        if ui.add_enabled(named, egui::Button::new("Save")).on_hover_text("every field, as RON").clicked() {
+            live.settings.refused = live.save(&path).err();
+        }
+    });
+}

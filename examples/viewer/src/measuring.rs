@@ -1,0 +1,144 @@
+//! What the panels cost: time to lay out a large graph, to scroll it, and to show each panel of the standard frame.
+
+use crate::app::{Pane, Session, Viewer};
+use crate::offscreen::Offscreen;
+use crate::plan_data::PlanData;
+use crate::standard_frame::StandardFrame;
+use crate::view::{View, graph};
+use crate::what_if::WhatIf;
+use egui::{Context, Event, MouseWheelUnit, RawInput, Rect, TouchPhase, Vec2, pos2, vec2};
+use framegraph::{Caps, Entry, Exit, Extent, Format, Graph, Intent, Options, Plan, Scratch, TextureDesc, compile};
+use std::fmt::Write;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Size of the window, in points and pixels.
+const SIZE: [u32; 2] = [1280, 720];
+/// Frames that are measured of each thing.
+const FRAMES: usize = 40;
+
+/// The plan of a graph of so many passes and 40 more, each of which reads some of those before it.
+///
+/// # Errors
+/// None that is known: what the compiler refuses.
+pub fn large(passes: usize) -> Result<PlanData, String> {
+    let mut graph = Graph::new();
+    let desc = |format| TextureDesc::new(Extent::FRAME, format);
+    let mut screen = graph.import_texture("screen", desc(Format::Rgba8Unorm), Entry::Defined, Exit::Keep);
+    let mut made = Vec::new();
+    for pass in 0..passes {
+        let written = graph.texture(&format!("texture {pass}"), desc(Format::R8Unorm));
+        // Readers of the one before, of one long ago, and now and then of the very first.
+        let read = [pass.checked_sub(1), pass.checked_sub(37), (pass % 100 == 99).then_some(0)];
+        let read: Vec<_> = read.into_iter().flatten().filter_map(|before| made.get(before).copied()).collect();
+        let declared = graph.add_fn(&format!("pass {pass}"), |builder| {
+            read.into_iter().try_for_each(|texture| builder.sampled(texture).map(drop))?;
+            builder.color(written, Intent::Overwrite)
+        });
+        made.push(declared.map_err(|e| e.to_string())?);
+    }
+    for last in made.iter().rev().take(40).copied().collect::<Vec<_>>() {
+        let name = format!("show {}", graph.passes().len());
+        let shown = graph.add_fn(&name, |builder| {
+            builder.sampled(last)?;
+            builder.color(screen, Intent::Modify)
+        });
+        screen = shown.map_err(|e| e.to_string())?;
+    }
+    let mut plan = Plan::new();
+    compile(&graph, &Caps::desktop(), &Options::for_frame(64, 64), &mut Scratch::new(), &mut plan)
+        .map_err(|e| e.to_string())?;
+    PlanData::of(&plan, "large").map_err(|e| e.to_string())
+}
+
+/// Measures, and returns a table in Markdown.
+///
+/// # Errors
+/// What the standard frame or the device refuses.
+pub fn table() -> Result<String, String> {
+    let profile = if cfg!(debug_assertions) { "not optimized" } else { "optimized" };
+    let mut rows = vec![("what".to_owned(), format!("median, ms ({profile})"))];
+    let plan = large(2000)?;
+    let (passes, begun) = (plan.form.passes.len(), Instant::now());
+    let drawing = graph::drawing(&plan, None);
+    rows.push((format!("layout of a graph of {passes} passes"), ms(begun.elapsed())));
+    drop(drawing);
+
+    let mut session = Session::new(WhatIf::on(Caps::wgpu()), || {});
+    session.show_plan(plan);
+    let mut viewer = Viewer::new(session);
+    let (shown, idle) = frames(&mut viewer, true);
+    rows.push((format!("a frame of its window while it is scrolled, CPU of {passes} passes"), ms(shown)));
+    rows.push(("asks for another frame when nothing happens".into(), if idle { "no" } else { "yes" }.into()));
+    match Offscreen::open() {
+        Ok(mut screen) => {
+            let mut took = Vec::new();
+            for _ in 0..3 {
+                let begun = Instant::now();
+                screen.picture(SIZE, 1.0, crate::drawing::Theme::Light, |ui| viewer.show(ui))?;
+                took.push(begun.elapsed() / 4);
+            }
+            took.sort_unstable();
+            rows.push((format!("a quarter of a picture of that on {}", screen.gpu().describe()), ms(took[1])));
+        }
+        Err(error) => rows.push(("no device".into(), error)),
+    }
+
+    let mut session = Session::new(WhatIf::on(Caps::wgpu()), || {});
+    session.show(Arc::new(StandardFrame::open("high")?));
+    session.settle(Duration::from_secs(60));
+    let mut viewer = Viewer::new(session);
+    let panes = View::ALL.into_iter().filter(|view| view.is_of_a_plan()).map(Pane::View);
+    for pane in panes.chain([Pane::WhatIf]) {
+        viewer.turn_to(pane);
+        rows.push((
+            format!("panels of the standard frame, {} in front, CPU", pane.word()),
+            ms(frames(&mut viewer, false).0),
+        ));
+    }
+    let mut text = String::new();
+    for (index, (what, number)) in rows.iter().enumerate() {
+        let _ = writeln!(text, "| {what} | {number} |");
+        if index == 0 {
+            text.push_str("| --- | ---: |\n");
+        }
+    }
+    Ok(text)
+}
+
+/// The median time that a frame takes without drawing it, and whether none follows when nothing happens.
+fn frames(viewer: &mut Viewer, scrolls: bool) -> (Duration, bool) {
+    let ctx = Context::default();
+    let (mut took, mut idle) = (Vec::new(), false);
+    let size = vec2(SIZE[0] as f32, SIZE[1] as f32);
+    for frame in 0..FRAMES + 40 {
+        let mut input = RawInput {
+            screen_rect: Some(Rect::from_min_size(pos2(0.0, 0.0), size)),
+            time: Some(frame as f64 / 60.0),
+            ..RawInput::default()
+        };
+        if scrolls && frame < FRAMES {
+            let delta = Vec2::new(-30.0, if frame % 20 < 10 { -12.0 } else { 12.0 });
+            let (unit, phase, modifiers) = (MouseWheelUnit::Point, TouchPhase::Move, egui::Modifiers::NONE);
+            let source = egui::MouseWheelSource::Wheel;
+            input.events.push(Event::PointerMoved(pos2(size.x / 2.0, size.y / 2.0)));
+            input.events.push(Event::MouseWheel { unit, delta, phase, source, modifiers });
+        }
+        let begun = Instant::now();
+        let mut output = ctx.run_ui(input, |ui| viewer.show(ui));
+        let triangles = ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
+        if (4..FRAMES).contains(&frame) {
+            took.push(begun.elapsed());
+        }
+        drop(triangles);
+        // Nobody draws it.
+        output.textures_delta.clear();
+        idle = output.viewport_output.values().all(|viewport| viewport.repaint_delay > Duration::from_secs(3600));
+    }
+    took.sort_unstable();
+    (took[took.len() / 2], idle)
+}
+
+fn ms(time: Duration) -> String {
+    format!("{:.2}", time.as_secs_f64() * 1e3)
+}

@@ -1,0 +1,120 @@
+//! Error over cost, a plot a technique: choices that none beats are joined by a line.
+
+use crate::accuracy_data::{AccuracyData, Technique, Unit};
+use crate::drawing::{Align, Drawing, Ink, letters_in, shortened, wrapped};
+
+/// Size of a plot, without its words.
+const PLOT: [f32; 2] = [230.0, 130.0];
+/// From one plot to the next.
+const STEP: [f32; 2] = [320.0, 264.0];
+/// Plots in a row.
+const COLUMNS: usize = 3;
+/// Where the first plot begins.
+const TOP: f32 = 44.0;
+/// Half the side of a mark.
+const MARK: f32 = 4.0;
+
+/// Draws the techniques. Where `more_ms` is given, the most accurate choice is framed that takes at most so much more than the fastest.
+pub fn drawing(data: Option<&AccuracyData>, more_ms: f64) -> Drawing {
+    let mut drawing = Drawing::default();
+    let Some(data) = data else {
+        let text = "no accuracy: open one that `accuracy` wrote, such as docs/accuracy.json";
+        drawing.text([0.0, 10.0], 12.0, Ink::Faint, text);
+        return drawing;
+    };
+    let [width, height] = data.size_px;
+    let head = format!(
+        "{} techniques, error over cost; frames of {width}x{height} on {}",
+        data.techniques.len(),
+        data.adapter
+    );
+    drawing.text([0.0, 10.0], 14.0, Ink::Text, head);
+    let key = format!(
+        "joined: no other is cheaper and as accurate;  framed: the most accurate within {more_ms:.1} ms of the fastest"
+    );
+    drawing.text([0.0, 28.0], 11.0, Ink::Faint, key);
+    for (index, technique) in data.techniques.iter().enumerate() {
+        let at = [STEP[0] * (index % COLUMNS) as f32, TOP + STEP[1] * (index / COLUMNS) as f32];
+        plot(&mut drawing, technique, at, more_ms);
+    }
+    drawing
+}
+
+/// One technique, with its left top there.
+fn plot(drawing: &mut Drawing, technique: &Technique, [left, top]: [f32; 2], more_ms: f64) {
+    drawing.text([left, top + 8.0], 13.0, Ink::Text, technique.name.clone());
+    for (line, text) in wrapped(&technique.what, letters_in(STEP[0] - 20.0, 10.0)).into_iter().take(3).enumerate() {
+        drawing.text([left, top + 24.0 + 12.0 * line as f32], 10.0, Ink::Faint, text);
+    }
+    let (x0, y0) = (left + 20.0, top + 76.0);
+    let (x1, y1) = (x0 + PLOT[0], y0 + PLOT[1]);
+    drawing.rect([x0, y0, x1, y1], None, Ink::Grid);
+    let (unit, cost_of) = (technique.unit_of_cost(), |choice| technique.cost(choice));
+    let costs: Vec<f64> = technique.choices.iter().map(cost_of).collect();
+    let most_error = technique.choices.iter().map(|choice| choice.error).fold(0.0, f64::max);
+    let (low, high) = (costs.iter().copied().fold(f64::INFINITY, f64::min), costs.iter().copied().fold(0.0, f64::max));
+    // A tenth of the span is left free on both sides, so that no mark lies on the edge.
+    let span = if high > low { high - low } else { 1.0 };
+    let x_of = |cost: f64| x0 + PLOT[0] * (0.1 + 0.8 * (cost - low) / span) as f32;
+    let y_of = |error: f64| y1 - PLOT[1] * (0.08 + 0.84 * error / most_error.max(f64::MIN_POSITIVE)) as f32;
+    let front = technique.front();
+    let chosen = technique.within(more_ms);
+    let mut joined: Vec<[f32; 2]> = technique
+        .choices
+        .iter()
+        .zip(&front)
+        .filter(|(_, kept)| **kept)
+        .map(|(choice, _)| [x_of(technique.cost(choice)), y_of(choice.error)])
+        .collect();
+    joined.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    if joined.len() > 1 {
+        drawing.line(joined, Ink::Flow, 1.5);
+    }
+    for (index, choice) in technique.choices.iter().enumerate() {
+        let (x, y) = (x_of(technique.cost(choice)), y_of(choice.error));
+        if let Some(ms) = choice.ms.filter(|_| unit == Unit::Ms) {
+            let ends = [ms.low, ms.high].map(|ms| x_of(ms).clamp(x0, x1));
+            drawing.line(vec![[ends[0], y], [ends[1], y]], Ink::Faint, 1.0);
+        }
+        if front[index] {
+            drawing.rect([x - MARK, y - MARK, x + MARK, y + MARK], Ink::Store, Ink::Text);
+        } else {
+            drawing.triangle([[x - MARK, y + MARK], [x + MARK, y + MARK], [x, y - MARK]], Ink::Ghost);
+        }
+        if chosen == Some(index) {
+            drawing.rect([x - 8.0, y - 8.0, x + 8.0, y + 8.0], None, Ink::Peak);
+        }
+        let right = x > x0 + 0.6 * PLOT[0];
+        let (align, beside) = if right { (Align::Right, x - 10.0) } else { (Align::Left, x + 10.0) };
+        let letters = letters_in(if right { beside - x0 } else { x1 - beside }, 9.0);
+        // Names of marks that lie beside each other stand above and below them.
+        let above = [-8.0, 8.0, -18.0, 18.0][index % 4];
+        let beside_y = (y + above).clamp(y0 + 6.0, y1 - 6.0);
+        drawing.aligned([beside, beside_y], 9.0, align, Ink::Text, shortened(&choice.name, letters));
+        let cost = match unit {
+            Unit::Ms => format!("{:.2} ms", technique.cost(choice)),
+            Unit::Operations => format!("{:.0} operations", technique.cost(choice)),
+            Unit::Nothing => "not timed".into(),
+        };
+        let presets =
+            if choice.presets.is_empty() { String::new() } else { format!("; {}", choice.presets.join(", ")) };
+        let tip = format!("{}: {:.4} {}, {cost}{presets}", choice.name, choice.error, technique.unit);
+        drawing.hit([x - 8.0, y - 8.0, x + 8.0, y + 8.0], None, tip);
+    }
+    drawing.text([x0, y0 - 7.0], 9.0, Ink::Faint, format!("{most_error:.3} {}", technique.unit));
+    let (name, from, to) = match unit {
+        Unit::Ms => ("ms", format!("{low:.1}"), format!("{high:.1} ms")),
+        Unit::Operations => ("operations", format!("{low:.0}"), format!("{high:.0} operations")),
+        Unit::Nothing => ("cost unknown", String::new(), String::new()),
+    };
+    drawing.aligned(
+        [x_of(low), y1 + 9.0],
+        9.0,
+        Align::Center,
+        Ink::Faint,
+        if from.is_empty() { name.into() } else { from },
+    );
+    if high > low {
+        drawing.aligned([x_of(high), y1 + 9.0], 9.0, Align::Center, Ink::Faint, to);
+    }
+}
