@@ -57,7 +57,6 @@ pub enum Background {
 
 impl Background {
     /// A clear sky, to be seen. Its ground is lit by the sun that belongs to it.
-    #[must_use]
     pub fn clear_sky(sky: &Sky) -> Self {
         let sun_lux = sun_light(sky.toward_sun, sky.turbidity)
             .map_or(DVec3::ZERO, |sun| sun.color.as_dvec3() * f64::from(illuminance_lux(&sun)));

@@ -3,11 +3,10 @@
 #[cfg(feature = "window")]
 mod export;
 mod panes;
-mod session;
 mod shortcuts;
 
+pub use crate::session::{Role, Session};
 pub use panes::Pane;
-pub use session::{Role, Session};
 pub use shortcuts::SHORTCUTS;
 
 use crate::drawing::{Drawing, Item};

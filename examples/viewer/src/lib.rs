@@ -28,6 +28,7 @@ pub mod offscreen;
 pub mod open;
 pub mod panel;
 pub mod plan_data;
+mod session;
 pub mod settings;
 pub mod standard_frame;
 pub mod trace_data;

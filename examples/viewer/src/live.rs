@@ -6,6 +6,7 @@
 //! | `loading.rs` | a scene and its light, on a thread of its own |
 //! | `look.rs`, `camera.rs` | what goes beside settings; a camera that is moved by hand |
 //! | `frame.rs` | the frame, executed again and again |
+//! | `shown.rs` | what the panel of settings keeps |
 //! | `times.rs` | its times, as views show them |
 //! | `preview.rs`, `bisecting.rs` | textures of it; which liberty of the compiler changes it |
 //! | `panel/` | what is seen of all this |
@@ -18,12 +19,13 @@ pub mod look;
 pub mod panel;
 pub mod preview;
 pub mod screen;
+pub mod shown;
 mod times;
 
-use crate::app::Session;
 use crate::history::History;
 use crate::job::Job;
 use crate::plan_data::PlanData;
+use crate::session::Session;
 use bisecting::Bisecting;
 use frame::{Asked, Running};
 use loading::{Around, Lit, Loaded};
@@ -67,7 +69,7 @@ pub struct Live {
     /// The file of settings that is opened or written next, as it is typed.
     pub path: String,
     /// What the panel of settings holds.
-    pub settings: panel::SettingsPanel,
+    pub settings: shown::SettingsPanel,
     loading: Option<Job<Brought<(Loaded, Vec<String>)>>>,
     relighting: Option<Job<Brought<Lit>>>,
     wanted: Around,
@@ -103,7 +105,7 @@ impl Live {
             bisecting: None,
             budget: String::new(),
             path: String::new(),
-            settings: panel::SettingsPanel::default(),
+            settings: shown::SettingsPanel::default(),
             loading: None,
             relighting: None,
             wanted,

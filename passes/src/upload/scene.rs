@@ -3,16 +3,14 @@
 use std::borrow::Cow;
 use std::num::NonZeroU64;
 
-use bytemuck::cast_slice;
 use framegraph_scene::{Image, Lobes, MaterialId, Memory, MeshId, ProgressFn, Scene};
-use framegraph_shaders::layout::{MaterialUniforms, VertexAttributes, VertexPosition};
-use framegraph_wgpu::{Binding, DeviceError, Gpu};
+use framegraph_shaders::layout::MaterialUniforms;
+use framegraph_wgpu::{Binding, Gpu};
 
 use super::buffers;
 use super::error::UploadError;
 use super::instances::InstanceDraw;
 use super::mesh_range::MeshRange;
-use super::pack::{vertex_attributes, vertex_positions};
 use super::textures::{Images, MaterialTextures};
 
 /// A scene's resources on one device. Dropping it frees them once no submitted work needs them.
@@ -105,27 +103,6 @@ impl GpuScene {
             meshes,
             textures,
             surfaces: scene.materials.iter().map(|m| Surface { name: m.name.clone(), lobes: m.lobes() }).collect(),
-        })
-    }
-
-    /// Writes the vertices of a mesh again, which were moved ([`Scene::pose`]); their number stays.
-    ///
-    /// # Errors
-    ///
-    /// When the device fails.
-    ///
-    /// # Panics
-    ///
-    /// For a mesh of another, larger scene.
-    pub fn write_mesh(&self, gpu: &Gpu, scene: &Scene, mesh: MeshId) -> Result<(), DeviceError> {
-        let first = self.meshes[mesh.index()].base_vertex as u64;
-        let mesh = &scene.meshes[mesh.index()];
-        let positions: Vec<VertexPosition> = vertex_positions(mesh).collect();
-        let attributes: Vec<VertexAttributes> = vertex_attributes(mesh).collect();
-        gpu.guard("writing moved vertices", || {
-            let at = |bytes: usize| first * bytes as u64;
-            gpu.queue.write_buffer(&self.positions, at(size_of::<VertexPosition>()), cast_slice(&positions));
-            gpu.queue.write_buffer(&self.attributes, at(size_of::<VertexAttributes>()), cast_slice(&attributes));
         })
     }
 

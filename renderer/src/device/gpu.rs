@@ -5,8 +5,7 @@ use crate::device::caps::caps_of;
 use crate::device::error::{DeviceError, DeviceErrors, ErrorScopes};
 use crate::device::format::texture_format;
 use framegraph::{Caps, Format};
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, OnceLock, atomic};
 use wgpu::{
     Adapter, AdapterInfo, Backend, Backends, Device, DownlevelFlags, Features, Instance, Limits, Queue,
     TextureFormatFeatureFlags, TextureFormatFeatures, TextureUsages,
@@ -36,7 +35,7 @@ pub struct Gpu {
     adapter: Adapter,
     info: AdapterInfo,
     errors: Arc<DeviceErrors>,
-    waits: Arc<AtomicU64>,
+    waits: Arc<atomic::AtomicU64>,
     view_formats: bool,
     formats: Arc<[OnceLock<TextureFormatFeatures>; Format::ALL.len()]>,
     pub(super) attached_layers: Arc<OnceLock<u32>>,
@@ -188,8 +187,7 @@ impl Gpu {
         }
     }
 
-    /// What a device is opened with to have all that frames can use of an adapter: for an application whose toolkit opens the
-    /// device, to be [wrapped](Gpu::wrap) afterwards.
+    /// What a toolkit is to open the device with that is [wrapped](Gpu::wrap), for all that frames can use of an adapter.
     pub fn descriptor(adapter: &Adapter) -> wgpu::DeviceDescriptor<'static> {
         // The adapter that does nothing claims everything: formats then have no use at all, and limits overflow inside wgpu.
         let noop = adapter.get_info().backend == Backend::Noop;
@@ -296,13 +294,13 @@ impl Gpu {
     /// # Errors
     /// When the device is lost.
     pub fn wait(&self) -> Result<(), DeviceError> {
-        self.waits.fetch_add(1, Ordering::Relaxed);
+        self.waits.fetch_add(1, atomic::Ordering::Relaxed);
         self.poll_as(wgpu::PollType::wait_indefinitely(), "waiting for submitted work")
     }
 
     /// How often anything has waited for this device by [`Gpu::wait`]: a frame loop that never stalls adds nothing to it.
     pub fn waits(&self) -> u64 {
-        self.waits.load(Ordering::Relaxed)
+        self.waits.load(atomic::Ordering::Relaxed)
     }
 
     fn poll_as(&self, kind: wgpu::PollType, doing: &'static str) -> Result<(), DeviceError> {

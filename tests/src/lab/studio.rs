@@ -7,6 +7,7 @@ use crate::reference::picture::Picture;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
 use framegraph_passes::facts::{Around, Survey, decide};
 use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::measure::Measurement;
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{
@@ -309,6 +310,7 @@ impl Ready {
             settings: &self.settings.for_scene(&self.scene, self.moment.size_px),
             forced: EffectSet::NONE,
             most_codes: FactInput::MOST_CODES,
+            measured: Measurement::Off,
         };
         decide(&input, &mut FactMemory::default())
     }

@@ -10,12 +10,11 @@ use super::occlusion;
 use super::picture::Picture;
 use super::temporal;
 use crate::filtered::filtered;
-use framegraph::{Options, Plan, Scratch, Target, Texture, compile};
+use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
 use framegraph_passes::fxaa::Fxaa;
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::occlusion::OcclusionSettings;
-use framegraph_passes::program::Programs;
 use framegraph_passes::reflection::ReflectionSettings;
 use framegraph_passes::shading::{LightSettings, SpecularAa};
 use framegraph_passes::shadow::{ContactShadows, Fit, MOST_CASCADES, ShadowBias, ShadowFilter, ShadowSettings, Splits};
@@ -32,8 +31,6 @@ use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Executor, Gpu, Imports, Pixels, read_texture};
 use glam::{DVec3, DVec4, Vec3};
 use std::error::Error;
-use wgpu::util::{DeviceExt, TextureDataOrder};
-use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
 
 /// Texels across a shadow map where a statement does not say: Filament's number.
 const SHADOW_MAP_TEXELS: u32 = 1024;

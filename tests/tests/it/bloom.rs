@@ -131,7 +131,7 @@ fn flare_is_ghosts_and_a_halo_of_what_glows() -> TestResult {
     let less = whole.texels.iter().zip(&rays.texels).all(|(whole, rays)| rays.cmple(*whole + 1e-3).all());
     assert!(less && rays.mean().max_element() < 0.95 * whole.mean().max_element(), "rays only take");
     // Their noise is by a sine that drivers round otherwise: it is nearer to the mirror's than to that of any other turn.
-    let turn = camera()?.world_from_view.transpose().col(2).element_sum();
+    let turn = (camera()?.world_from_view.inverse() * DVec3::Z).element_sum();
     let apart = |turn: f64| {
         let share = |i: usize| {
             let at = DVec2::new((i as u32 % whole.size[0]).into(), (i as u32 / whole.size[0]).into());

@@ -1,7 +1,7 @@
 //! Frames that are drawn smaller than they are shown: what they load and store, and the filters against their mirrors.
 
 use crate::stage::{self, Shot, gpu, picture};
-use framegraph::{Caps, Counts, Options, Target};
+use framegraph::{Caps, Counts, Extent, Options, Target};
 use framegraph_passes::program::Programs;
 use framegraph_passes::sharpen::Sharpen;
 use framegraph_passes::upscale::{DynamicResolution, Enlarge, UpscaleFilter};

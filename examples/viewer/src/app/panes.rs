@@ -1,8 +1,8 @@
 //! The panes and how they are arranged.
 
-use super::session::Session;
 use crate::drawing::{Drawing, Item};
 use crate::panel::{self, Canvas, Clicked, List, Shown};
+use crate::session::Session;
 use crate::view::{self, View};
 use egui::{Ui, WidgetText};
 use egui_tiles::{Behavior, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
@@ -172,7 +172,7 @@ impl Panes<'_> {
         let Some(drawn) = &mut *self.live else { return };
         match pane {
             Pane::Viewport => live::viewport(ui, drawn, self.session),
-            Pane::Settings => live::SettingsPanel::show(ui, drawn),
+            Pane::Settings => live::settings(ui, drawn),
             Pane::Effects => live::effects(ui, drawn),
             Pane::Lens => live::lens(ui, drawn, light),
             Pane::Scene => live::scene(ui, drawn, scene, self.session),

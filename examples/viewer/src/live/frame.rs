@@ -9,6 +9,7 @@ use crate::what_if::WhatIf;
 use egui::TextureId;
 use framegraph::{Options, Plan};
 use framegraph_passes::facts::{Around, decide};
+use framegraph_passes::measure::Measurement;
 use framegraph_passes::shadow::{ShadowSettings, local_layers, local_maps};
 use framegraph_passes::sun::has_sun;
 use framegraph_passes::view::{Background, ViewSettings};
@@ -149,9 +150,7 @@ impl Running {
         }
         let Loaded { scene, prepared, world, .. } = &mut self.loaded;
         let posed = scene.pose(animation, time_s).map_err(|e| e.to_string());
-        for body in &scene.motion.bodies {
-            world.scene.write_mesh(&self.screen.gpu, scene, body.mesh).map_err(|e| e.to_string())?;
-        }
+        world.scene.repose(&self.screen.gpu, scene).map_err(|e| e.to_string())?;
         prepared.update(scene, &(0..scene.instances.len()).collect::<Vec<_>>());
         self.posed = moment;
         posed
@@ -199,6 +198,7 @@ impl Running {
                 background: &loaded.background(look.behind),
                 views: std::slice::from_ref(&seen),
                 settings: &settings,
+                measured: Measurement::Off,
                 forced: shown.collect::<EffectSet>(),
                 most_codes: FactInput::MOST_CODES,
             },

@@ -15,7 +15,7 @@ pub use effects::effects;
 pub use lens::lens;
 pub use preview::preview;
 pub use scene::scene;
-pub use settings::SettingsPanel;
+pub use settings::settings;
 pub use viewport::viewport;
 
 use egui::{ColorImage, Context, TextureHandle, TextureOptions};

@@ -114,8 +114,8 @@ fn a_live_frame_is_drawn_in_a_window() {
     let name = "a_live_frame_is_drawn_in_a_window";
     let Some(display) = Display::open() else { return test_report::skip(name, "there is no Xvfb to open a window on") };
     let args = ["--live", "spheres", "--settings", "low", "--frames", "60"];
-    let mut program = display.program(&args).spawn().expect("the program starts");
-    let (x, screen) = RustConnection::connect(Some(&display.1)).expect("a display");
+    let program = program(&display, &args).spawn().expect("the program starts");
+    let (x, screen) = RustConnection::connect(Some(&display.name)).expect("a display");
     let root = x.setup().roots[screen].root;
     // Resized while it draws.
     if let Some(window) = window(&x, root) {
@@ -123,7 +123,7 @@ fn a_live_frame_is_drawn_in_a_window() {
         let _ = x.configure_window(window, &ConfigureWindowAux::new().width(700).height(420));
         let _ = x.flush();
     }
-    let Output { status, stdout, stderr } = program_output(&mut program);
+    let Output { status, stdout, stderr } = program.wait_with_output().expect("a program");
     let (out, told) = (String::from_utf8_lossy(&stdout), String::from_utf8_lossy(&stderr));
     if !skipped(name, &told) {
         let frames = out.split_once(" frames").and_then(|(count, _)| count.parse::<u32>().ok());
@@ -133,12 +133,4 @@ fn a_live_frame_is_drawn_in_a_window() {
         assert!(drawn >= Some(55), "the scene is drawn in each of them: {out}{told}");
         assert!(!told.contains("refused") && !told.contains("panicked"), "{told}");
     }
-}
-
-/// What a program wrote until it ended.
-fn program_output(program: &mut Child) -> Output {
-    let (mut stdout, mut stderr) = (Vec::new(), Vec::new());
-    program.stdout.take().map(|mut out| out.read_to_end(&mut stdout));
-    program.stderr.take().map(|mut err| err.read_to_end(&mut stderr));
-    Output { status: program.wait().expect("a program"), stdout, stderr }
 }

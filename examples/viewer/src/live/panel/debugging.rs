@@ -1,11 +1,11 @@
 //! Switches to find a fault with, which of them changes the picture, and limits on what the frame may cost.
 
 use super::texture;
-use crate::app::Session;
 use crate::drawing::Ink;
 use crate::live::Live;
 use crate::live::bisecting::Bisecting;
 use crate::panel::{color, theme};
+use crate::session::Session;
 use egui::{Grid, RichText, ScrollArea, TextEdit, Ui, vec2};
 use framegraph_wgpu::debug::Mode;
 use program::budget::Budget;

@@ -1,10 +1,10 @@
 //! The contents of a texture: which version and part, how it is shown, the histogram, and the numbers under the pointer.
 
 use super::texture;
-use crate::app::Session;
 use crate::drawing::Item;
 use crate::live::Live;
 use crate::live::preview::{CHANNELS, Found, Preview};
+use crate::session::Session;
 use egui::{Color32, ComboBox, DragValue, Pos2, Rect, Sense, Ui, pos2, vec2};
 use framegraph_wgpu::inspect::{Channel, DisplayMode, InspectTarget};
 

@@ -12,7 +12,7 @@ const OFFERED: usize = 12;
 const ENDINGS: [&str; 6] = ["gltf", "glb", "hdr", "exr", "ktx", "ktx2"];
 
 /// Shows the scene; loads another one, moves it, looks from one of its cameras.
-pub fn scene(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::app::Session) {
+pub fn scene(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::session::Session) {
     open(ui, live, path, session);
     ui.separator();
     let Some(running) = &live.running else { return };
@@ -34,7 +34,7 @@ pub fn scene(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crat
 }
 
 /// A path with what there is in its folder, and the built-in scenes.
-fn open(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::app::Session) {
+fn open(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::session::Session) {
     ui.horizontal(|ui| {
         let width = (ui.available_width() - 130.0).max(60.0);
         let edit = ui.add(TextEdit::singleline(path).hint_text("SCENE.gltf, .glb or light.hdr").desired_width(width));

@@ -3,69 +3,57 @@
 use super::fields::Fields;
 use super::{goes_on, tone};
 use crate::live::Live;
-use crate::settings::{Node, settings, tree};
+use crate::live::shown::SettingsPanel;
+use crate::settings::{settings as as_settings, tree};
 use egui::{RichText, ScrollArea, TextEdit, Ui};
-use framegraph_passes::{FrameSettings, Preset};
+use framegraph_passes::Preset;
 use std::path::PathBuf;
 
-/// What the panel keeps.
-#[derive(Clone, Debug, Default)]
-pub struct SettingsPanel {
-    /// The settings as a tree, and what it was made of.
-    tree: Option<(FrameSettings, Node)>,
-    /// Why what was asked last is not shown.
-    refused: Option<String>,
-    search: String,
+/// Shows the settings, and changes them.
+pub fn settings(ui: &mut Ui, live: &mut Live) {
+    bar(ui, live);
+    let mut panel = std::mem::take(&mut live.settings);
+    let width = ui.available_width();
+    ui.add(TextEdit::singleline(&mut panel.search).hint_text("search fields").desired_width(width - 12.0));
+    if let Some(refused) = &panel.refused {
+        ui.label(RichText::new(refused).color(ui.visuals().error_fg_color));
+    }
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        tone::curve(ui, &live.document().frame.settings.post);
+        fields(&mut panel, ui, live);
+    });
+    live.settings = panel;
 }
 
-impl SettingsPanel {
-    /// Shows the settings, and changes them.
-    pub fn show(ui: &mut Ui, live: &mut Live) {
-        bar(ui, live);
-        let mut panel = std::mem::take(&mut live.settings);
-        let width = ui.available_width();
-        ui.add(TextEdit::singleline(&mut panel.search).hint_text("search fields").desired_width(width - 12.0));
-        if let Some(refused) = &panel.refused {
-            ui.label(RichText::new(refused).color(ui.visuals().error_fg_color));
+fn fields(panel: &mut SettingsPanel, ui: &mut Ui, live: &mut Live) {
+    let frame = live.document().frame;
+    if panel.tree.as_ref().is_none_or(|(of, _)| *of != frame) {
+        match tree(&frame) {
+            Ok(node) => panel.tree = Some((frame, node)),
+            Err(error) => panel.refused = Some(error),
         }
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            tone::curve(ui, &live.document().frame.settings.post);
-            panel.fields(ui, live);
-        });
-        live.settings = panel;
     }
-
-    fn fields(&mut self, ui: &mut Ui, live: &mut Live) {
-        let frame = live.document().frame;
-        if self.tree.as_ref().is_none_or(|(of, _)| *of != frame) {
-            match tree(&frame) {
-                Ok(node) => self.tree = Some((frame, node)),
-                Err(error) => self.refused = Some(error),
-            }
+    let Some((_, node)) = &panel.tree else { return };
+    let mut changed = node.clone();
+    let ranges = frame.ranges();
+    let ranges: Vec<_> = ranges.into_iter().collect();
+    Fields { ranges: &ranges, search: &panel.search }.children(ui, "", &mut changed);
+    if changed == *node {
+        if !goes_on(ui.ctx()) {
+            live.history.finish();
         }
-        let Some((_, node)) = &self.tree else { return };
-        let mut changed = node.clone();
-        let ranges = frame.ranges();
-        let ranges: Vec<_> = ranges.into_iter().collect();
-        Fields { ranges: &ranges, search: &self.search }.children(ui, "", &mut changed);
-        if changed == *node {
-            if !goes_on(ui.ctx()) {
-                live.history.finish();
-            }
-            return;
+        return;
+    }
+    match as_settings(&changed) {
+        Ok(frame) => {
+            panel.refused = None;
+            let mut document = live.document().clone();
+            document.frame = frame;
+            live.set(document, goes_on(ui.ctx()));
         }
-        match settings(&changed) {
-            Ok(frame) => {
-                self.refused = None;
-                let mut document = live.document().clone();
-                document.frame = frame;
-                live.set(document, goes_on(ui.ctx()));
-            }
-            Err(error) => self.refused = Some(error),
-        }
+        Err(error) => panel.refused = Some(error),
     }
 }
-
 /// Presets, undo and redo, files.
 fn bar(ui: &mut Ui, live: &mut Live) {
     ui.horizontal_wrapped(|ui| {

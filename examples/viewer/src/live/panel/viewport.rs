@@ -1,8 +1,8 @@
 //! The frame itself: drawn as large as there is room, the camera moved by pointer and keys.
 
-use crate::app::Session;
 use crate::live::Live;
 use crate::live::camera::{Mode, Moves};
+use crate::session::Session;
 use egui::{Color32, Key, PointerButton, Rect, Sense, Ui, pos2, vec2};
 use glam::{DVec2, DVec3};
 
