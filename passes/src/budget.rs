@@ -3,7 +3,7 @@
 //!
 //! [`GROUPS`] are the choices, each with its options from the cheapest to the finest; the frame with the finest of each is the
 //! *reference*. [`Measured`] says what each option takes and how far its picture is from the reference's.
-//! [`Offers::within_ms`] and [`Offers::within_codes`] choose, [`settle`] tries what was chosen and learns from how it
+//! [`Offers::within_ms`] and [`Offers::within_codes`] choose, [`settle()`] tries what was chosen and learns from how it
 //! turned out, and [`FrameRate`] goes up and down between chosen sets while an application runs. Nothing here draws:
 //! the caller does, and tells times and errors.
 

@@ -8,7 +8,7 @@
 //!   image into the layout in which wgpu believes it to be (its *home*). Its old contents are dropped.
 //! - After its last use, wgpu puts it back into its home.
 //! - wgpu hoists the transition of a texture's first use in a command buffer to before that buffer. So a command buffer ends
-//!   wherever memory changes hands ([`activations`]), and the barriers stand between.
+//!   wherever memory changes hands ([`activations`](activation::activations)), and the barriers stand between.
 //!
 //! What is placed is never zero-filled by wgpu, so such a texture is not discarded where wgpu would fill it afterwards
 //! (`execute/attachments.rs`), and one that takes wgpu's own clear is not placed (`resources/requests.rs`).

@@ -215,7 +215,7 @@ impl Arenas {
         self.arenas.iter().map(|arena| arena.allocated_bytes).sum()
     }
 
-    /// Whether memory changes hands without a word ([`Arenas::leave_out_hand_overs`]).
+    /// Whether memory changes hands without a word, as a test may ask for.
     pub(crate) fn leaves_out_hand_overs(&self) -> bool {
         self.broken
     }

@@ -14,13 +14,20 @@ pub enum Node {
 }
 
 /// A text that is no tree.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the settings cannot be read at letter {at}: {why}")]
 pub struct TreeError {
     /// Where, in bytes.
     pub at: usize,
     /// What was expected.
     pub why: &'static str,
+}
+
+impl std::fmt::Debug for TreeError {
+    /// The sentence, since that is what an `unwrap` shows.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl Node {

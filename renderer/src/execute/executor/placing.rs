@@ -32,7 +32,7 @@ impl Executor {
     /// ```
     ///
     /// # Errors
-    /// As [`framegraph::compile`].
+    /// As [`framegraph::compile()`].
     pub fn compile(
         &mut self,
         graph: &Graph,
