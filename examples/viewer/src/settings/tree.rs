@@ -23,10 +23,10 @@ pub struct TreeError {
     pub why: &'static str,
 }
 
-impl std::fmt::Debug for TreeError {
+impl fmt::Debug for TreeError {
     /// The sentence, since that is what an `unwrap` shows.
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        std::fmt::Display::fmt(self, f)
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
     }
 }
 
