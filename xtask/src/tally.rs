@@ -87,7 +87,7 @@ struct Known {
 }
 
 /// Every skip that is known. `cargo xtask test` fails for any other, and where no test named an adapter.
-const KNOWN: [Known; 13] = [
+const KNOWN: [Known; 14] = [
     Known { test: "a_window_", reason: "there is no Xvfb" },
     Known { test: "a_live_frame_is_drawn_in_a_window", reason: "there is no Xvfb" },
     Known { test: "several_layers_are_drawn_into_at_once", reason: "does not draw into several layers" },
@@ -101,7 +101,9 @@ const KNOWN: [Known; 13] = [
     // The record in the repository was made before the frame as a whole was measured.
     Known { test: "chosen_sets_fit_their_budgets", reason: "has no budget yet" },
     Known { test: "no_swap_of_a_chosen_frame_errs_less", reason: "has no budget yet" },
-    Known { test: "the_layers_are_silent_about_what_is_placed", reason: "layers" },
+    Known { test: "the_layers_are_silent_about_what_is_placed", reason: "no validation layers that find hand-overs" },
+    // Textures are placed on Vulkan alone.
+    Known { test: "", reason: "places no textures; only Vulkan does" },
     // Half floats in shaders are a feature of the device, and the figures in the document are of one device.
     Known { test: "", reason: "half" },
 ];

@@ -153,8 +153,9 @@ impl Group {
         self.options.iter().find(|option| option.name == name)
     }
 
-    /// Whether nothing that it is about is left of the reference, because the scene has no use for it: then every option is
-    /// the same frame, which costs and errs nothing. Facts without a row were not asked for, and leave out nothing.
+    /// Whether nothing that it is about is left of the reference: each effect was not asked for, so that facts have no row of it,
+    /// or the scene has no use for it. Then every option is the same frame, which costs and errs nothing. Facts without any row
+    /// decide nothing.
     pub fn is_dropped(&self, of_reference: &Facts) -> bool {
         let gone = |effect: &Effect| of_reference.of(*effect).is_none_or(|fact| fact.decision == Decision::Dropped);
         !of_reference.rows.is_empty() && !self.effects.is_empty() && self.effects.iter().all(gone)

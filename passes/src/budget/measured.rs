@@ -182,6 +182,8 @@ mod tests {
         let left = measured().choices(&facts, |_| true).expect("known names");
         assert!(left.len() == GROUPS.len() - 1 && left.iter().all(|(group, _)| group.name != "occlusion"));
         assert!(measured().offers(&left, 10.0, 20.0).pairs.is_empty(), "its pair is out of the question");
+        facts.rows = vec![row(Effect::Msaa, Decision::Dropped)];
+        assert!(Group::of("edges").is_some_and(|edges| edges.is_dropped(&facts)), "the other was not asked for");
         facts.rows = without(Effect::Fxaa);
         assert_eq!(
             measured().choices(&facts, |_| true).expect("known names").len(),

@@ -31,11 +31,11 @@ impl FrameCommands {
         if !apart {
             return queue.submit(before.into_iter().chain(buffers).chain(last).chain(behind));
         }
-        queue.submit(before);
+        let mut before = Some(before);
         for buffer in buffers {
-            queue.submit([buffer]);
+            queue.submit(before.take().into_iter().flatten().chain([buffer]));
         }
-        queue.submit(last.into_iter().chain(behind))
+        queue.submit(before.into_iter().flatten().chain(last).chain(behind))
     }
 
     /// How many command buffers they are.

@@ -4,9 +4,9 @@
 use crate::device::gpu::Gpu;
 use crate::execute::error::ExecuteError;
 use crate::named::Named;
-use crate::placed::driver::{Driver, Needs, Object};
+use crate::placed::driver::{Driver, Object};
 use crate::placed::not_placed::NotPlaced;
-use crate::placed::shape::Shape;
+use crate::placed::shape::{Needs, Shape};
 use crate::resources::physical::PhysicalTextureDesc;
 use crate::resources::requests::{PlacedRequest, Requests, shaped};
 use crate::resources::support::{Unsupported, check_buffer, check_texture};

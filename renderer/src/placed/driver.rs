@@ -10,7 +10,7 @@ use crate::device::format::{both_forms, texture_format};
 use crate::device::gpu::Gpu;
 use crate::placed::home::{buffer_uses, home, texture_uses};
 use crate::placed::not_placed::NotPlaced;
-use crate::placed::shape::Shape;
+use crate::placed::shape::{Needs, Shape};
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use ash::vk;
 use framegraph::Dimension;
@@ -18,17 +18,6 @@ use std::sync::Arc;
 use wgpu::hal::api::Vulkan;
 use wgpu::hal::vulkan::{Buffer as HalBuffer, TextureMemory, conv};
 use wgpu::{Buffer, CommandBuffer, Extent3d, Texture, TextureDimension, TextureUses};
-
-/// What the driver asks for an image or buffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Needs {
-    /// Size, padding included.
-    pub(crate) bytes: u64,
-    /// What its offset must be a multiple of; a power of two.
-    pub(crate) alignment: u64,
-    /// The kinds of memory that it may lie in, as bits.
-    pub(crate) memory_types: u32,
-}
 
 /// A placed image or buffer, as wgpu knows it.
 #[derive(Debug)]

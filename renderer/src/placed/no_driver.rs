@@ -2,7 +2,7 @@
 
 use crate::device::gpu::Gpu;
 use crate::placed::not_placed::NotPlaced;
-use crate::placed::shape::Shape;
+use crate::placed::shape::{Needs, Shape};
 use wgpu::{Buffer, CommandBuffer, Texture, TextureUses};
 
 /// No value.
@@ -12,14 +12,6 @@ pub(crate) enum Driver {}
 /// No value.
 #[derive(Debug)]
 pub(crate) enum PlacedTexture {}
-
-/// What a driver asks for an image or buffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Needs {
-    pub(crate) bytes: u64,
-    pub(crate) alignment: u64,
-    pub(crate) memory_types: u32,
-}
 
 /// An image or buffer.
 #[derive(Debug)]

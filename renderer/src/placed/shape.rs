@@ -1,4 +1,4 @@
-//! What a heap holds.
+//! What a heap holds, and what that takes.
 
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 
@@ -7,4 +7,15 @@ use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 pub(crate) enum Shape {
     Texture(PhysicalTextureDesc),
     Buffer(PhysicalBufferDesc),
+}
+
+/// What the driver asks for an image or buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Needs {
+    /// Size, padding included.
+    pub(crate) bytes: u64,
+    /// What its offset must be a multiple of; a power of two.
+    pub(crate) alignment: u64,
+    /// The kinds of memory that it may lie in, as bits.
+    pub(crate) memory_types: u32,
 }

@@ -1,6 +1,6 @@
 //! Textures and buffers that share one block of memory: contents, bytes, fallbacks, and what the validation layers say.
 
-use crate::bench::{GREEN, TestResult, fill_full, on_adapter, skip};
+use crate::bench::{GREEN, TestResult, draw_of, fill_full, on_adapter, skip};
 use framegraph::{
     Alias, ClearValue, DeclareError, Extent, Format, Intent, Options, PassBuilder, Placement, Plan, Scratch, Texture,
     TextureDesc, View,
@@ -35,16 +35,8 @@ fn chain(frame: &mut Frame, length: u32) -> Result<Texture, DeclareError> {
             // Everything beside the copied texels is cleared.
             Ok((view, p.color(next, Intent::Clear(ClearValue::Color([1.0, 0.0, 0.0, 1.0])))?))
         };
-        (_, last) = frame.add_fn("copy", declare, |(view, _): &(View, Texture), _, cx| {
-            let pipeline = cx.raster_pipeline(&Raster::new(COPY))?;
-            let image = cx.view(*view)?;
-            let group = cx.bind_group(pipeline.group(0), &[(0, image.into())]);
-            let pass = cx.render_pass()?;
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.draw(0..3, 0..1);
-            Ok(())
-        })?;
+        (_, last) = frame
+            .add_fn("copy", declare, |(view, _): &(View, Texture), _, cx| draw_of(cx, &Raster::new(COPY), *view))?;
     }
     frame.graph_mut().readback(last)?;
     Ok(last)

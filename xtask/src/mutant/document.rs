@@ -34,12 +34,13 @@ impl Tried {
 pub fn document(rooms: &[Tried]) -> String {
     let mut text = format!(
         "# Planted faults\n\n\
-         Printed by `cargo xtask mutants --out docs/mutants.md`: operators, comparisons, constants and channels are changed and\n\
-         statements left out, one at a time, and tests run: each alone, those alone that compile the faulty line, the likeliest\n\
+         Printed by `cargo xtask mutants{named} --out docs/mutants.md`: operators, comparisons, constants and channels\n\
+         are changed and statements left out, one at a time, and tests run: each alone, those alone that compile the faulty line, the likeliest\n\
          first, until one falls: those of up to {quick} seconds of processor time, and where all of those pass longer ones, each\n\
          kind for up to {asked} seconds. A fault that the compiler refuses does not count. Faults are tried in the order of a\n\
          hash of file, line and faulty line (FNV-1a), so that a sample is even, and the same one each time; `--all` tries every\n\
          one, `--count N` as many as that. A room that is not here was not asked about; `cargo xtask mutants --help` has all.\n",
+        named = rooms.iter().map(|room| format!(" {}", room.name)).collect::<String>(),
         quick = judge::QUICK,
         asked = judge::ASKED,
     );

@@ -21,7 +21,8 @@ BUDGET
                        shading, precision, radiance, reflections and glass are chosen by what they were measured to take and
                        to err by, tried on this scene, and compared with the finest frame (docs/accuracy.md)
   --max-error X        the fastest frame that is no farther than X from the finest: root mean square in codes of 255
-  --record FILE.json   what was measured, by the program `accuracy`; without it, the record of the repository
+  --record FILE.json   what was measured, by `accuracy --technique budget`; without it, the record of the repository, which
+                       holds no frame as a whole yet, so that one must be given
 ";
 
 /// What was measured in the repository.
@@ -81,7 +82,9 @@ fn record(file: Option<&PathBuf>) -> Result<(Measured, String), String> {
             "it is {schema} of version {version}, and framegraph-accuracy of version 2 is read"
         )));
     }
-    let budget = budget.ok_or_else(|| told(&"it has no `budget`; run `accuracy` to its end"))?;
+    let budget = budget.ok_or_else(|| {
+        told(&"it has no `budget`; run `accuracy --technique budget` and give its record with --record")
+    })?;
     Ok((budget, adapter.unwrap_or_default()))
 }
 
