@@ -32,9 +32,10 @@ pub(crate) static SKY_SHADER: Module<'static> = library::pass("pass/sky.wgsl").u
 pub static SURFACE: Interface =
     Interface { groups: &[FRAME_BINDINGS, &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &CONSTANTS };
 
-/// Those of shading, and whether ambient occlusion has bent normals.
-const CONSTANTS: [&str; Shading::CONSTANTS.len() + 1] = {
-    let mut names = ["BENT_NORMALS"; Shading::CONSTANTS.len() + 1];
+/// Those of shading, whether ambient occlusion has bent normals, and the steps of contact shadows.
+const CONSTANTS: [&str; Shading::CONSTANTS.len() + 2] = {
+    let mut names = ["BENT_NORMALS"; Shading::CONSTANTS.len() + 2];
+    names[Shading::CONSTANTS.len() + 1] = "CONTACT_STEPS";
     let mut index = 0;
     while index < Shading::CONSTANTS.len() {
         names[index] = Shading::CONSTANTS[index];
@@ -145,6 +146,8 @@ pub(crate) struct SurfaceBindings {
     transmits: bool,
     /// Ambient occlusion has the mean open direction.
     bent_normals: bool,
+    /// Steps of the ray of contact shadows.
+    contact_steps: u32,
     /// What the plan inlined into the pass.
     pub epilogue: Epilogue,
 }
@@ -206,6 +209,7 @@ impl SurfaceBindings {
             bands: lighting.image.bands,
             transmits: inputs.scene.is_some(),
             bent_normals: inputs.occlusion.is_some_and(|input| input.bent_normals),
+            contact_steps: shadows.contact_steps,
             epilogue,
         })
     }
@@ -229,7 +233,7 @@ impl SurfaceBindings {
     pub fn constants(&self, alpha: AlphaUse) -> Vec<f64> {
         let effects = self.epilogue.constants.iter().map(|(_, value)| *value);
         let shading = self.shading.constants(alpha, self.bands).into_iter();
-        shading.chain([f64::from(self.bent_normals)]).chain(effects).collect()
+        shading.chain([f64::from(self.bent_normals), self.contact_steps.into()]).chain(effects).collect()
     }
 }
 

@@ -3,6 +3,7 @@
 mod bad_input;
 mod lighting;
 mod looking;
+mod memory;
 mod outputs;
 mod scene_files;
 mod stages;

@@ -10,15 +10,16 @@ use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Textur
 use framegraph_shaders::layout::DofUniforms;
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Record, RecordError, SamplerDesc};
-use glam::Vec3;
 
 static SHADER: Module<'static> = library::pass("pass/dof.wgsl").unwrap();
 
 /// What a step reads, by the names of the shader, after the settings and the sampler.
 const READ: [&str; 5] = ["hdr", "scene_depth", "field", "tiles", "gathered"];
 
-static INTERFACE: Interface =
-    Interface { groups: &[&["dof", "field_sampler", READ[0], READ[1], READ[2], READ[3], READ[4]]], constants: &[] };
+static INTERFACE: Interface = Interface {
+    groups: &[&["dof", "field_sampler", READ[0], READ[1], READ[2], READ[3], READ[4]]],
+    constants: &["TEXEL_PX", "RINGS_BEFORE", "RINGS_BEHIND", "RINGS_EVEN"],
+};
 
 /// Pixels of the picture to a tile; the shader dilates by two of them, which is the largest radius.
 const TILE_PX: u16 = 16;
@@ -185,7 +186,8 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for DofPass {
         let own = &self.settings;
         let (focus_m, scale_px) = own.lens(&projection, height);
         let texel_px = own.resolution.texel_px();
-        let rings = [own.rings_before, own.rings_behind, own.rings_even].map(|rings| f32::from(rings.clamp(3, 17)));
+        let rings = |rings: u8| f64::from(rings.clamp(3, 17));
+        let constants = [texel_px.into(), rings(own.rings_before), rings(own.rings_behind), rings(own.rings_even)];
         let most_px = [own.most_before_px, own.most_behind_px].map(|most| most.clamp(0.0, 2.0 * f32::from(TILE_PX)));
         let uniforms = DofUniforms {
             depth_row: projection.depth,
@@ -193,9 +195,7 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for DofPass {
             per_px: [width, height].map(|side| (side.max(1) as f32).recip()),
             focus_m,
             scale_px,
-            texel_px: texel_px as f32,
             tile_texels: f32::from(TILE_PX) / texel_px as f32,
-            rings: Vec3::from_array(rings),
             last_level: f32::from(self.levels.max(1) - 1),
         };
         let sampler = SamplerDesc { mipmap: wgpu::MipmapFilterMode::Nearest, ..SamplerDesc::LINEAR };
@@ -204,7 +204,7 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for DofPass {
             provided.push(view.map(|view| cx.view(view)).transpose()?.map(Into::into));
         }
         let program = ProgramDesc { fragment: Some(self.step.fragment()), ..ProgramDesc::new(&SHADER, &INTERFACE) };
-        FullScreen::new(program, &[&provided]).draw(world.as_ref(), cx)
+        FullScreen { constants: &constants, ..FullScreen::new(program, &[&provided]) }.draw(world.as_ref(), cx)
     }
 }
 

@@ -12,7 +12,8 @@ use glam::{IVec2, Vec4};
 
 static SHADER: Module<'static> = library::pass("pass/bilateral.wgsl").unwrap();
 
-static INTERFACE: Interface = Interface { groups: &[&["bilateral", "occlusion_in", "structure"]], constants: &[] };
+static INTERFACE: Interface =
+    Interface { groups: &[&["bilateral", "occlusion_in", "structure"]], constants: &["REACH"] };
 
 /// A direction of the blur.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,13 +72,15 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for OcclusionBlur {
                 Axis::Across => IVec2::new(stride, 0),
                 Axis::Down => IVec2::new(0, stride),
             },
-            reach: reach as i32,
             threshold_m,
+            _pad: 0.0,
             weights: weights(&self.blur),
         };
         let provided = [cx.uniform(&settings), cx.view(io.occlusion)?.into(), cx.view(io.structure)?.into()];
         let program = ProgramDesc::new(&SHADER, &INTERFACE);
-        FullScreen::new(program, &[&provided.map(Some)]).draw(world.as_ref(), cx)
+        let constants = [f64::from(reach)];
+        FullScreen { constants: &constants, ..FullScreen::new(program, &[&provided.map(Some)]) }
+            .draw(world.as_ref(), cx)
     }
 }
 

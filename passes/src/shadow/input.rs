@@ -29,6 +29,8 @@ pub(crate) struct ShadowBindings {
     /// In the order of [`ShadowBindings::NAMES`].
     pub bindings: [Option<Binding>; Self::NAMES.len()],
     pub features: Features,
+    /// Steps of the ray of contact shadows, where the settings have them.
+    pub contact_steps: u32,
 }
 
 impl ShadowBindings {
@@ -55,6 +57,7 @@ impl ShadowBindings {
             texture.clone(),
             texture,
         ];
-        Ok(Self { bindings: bindings.map(Some), features: Features::NONE.with(feature) })
+        let contact_steps = shadows.settings.contact.map_or(0, |contact| contact.steps.max(1));
+        Ok(Self { bindings: bindings.map(Some), features: Features::NONE.with(feature), contact_steps })
     }
 }

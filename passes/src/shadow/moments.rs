@@ -13,7 +13,7 @@ use glam::IVec2;
 
 static SHADER: Module<'static> = library::pass("pass/shadow_blur.wgsl").unwrap();
 
-static INTERFACE: Interface = Interface { groups: &[&["shadow_blur", "moments"]], constants: &[] };
+static INTERFACE: Interface = Interface { groups: &[&["shadow_blur", "moments"]], constants: &["REACH"] };
 
 /// Which step of making a layer of moments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,9 +93,10 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for ShadowBlur {
             confine(map, cx)?;
             let first = IVec2::from(map.place.corner.map(|texel| texel as i32));
             let last = first + map.place.texels as i32 - 1;
-            let uniforms = ShadowBlurUniforms { step, reach, falloff: -0.5 / (sigma * sigma), first, last };
+            let uniforms = ShadowBlurUniforms { step, falloff: -0.5 / (sigma * sigma), _pad: 0.0, first, last };
             let provided = [cx.uniform(&uniforms), cx.view(io.source)?.into()].map(Some);
-            FullScreen::new(program, &[&provided]).draw(programs, cx)?;
+            FullScreen { constants: &[f64::from(reach)], ..FullScreen::new(program, &[&provided]) }
+                .draw(programs, cx)?;
         }
         Ok(())
     }

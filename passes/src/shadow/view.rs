@@ -83,9 +83,8 @@ impl ViewShadows {
             variance_floor: (moments.min_variance_scale * 0.01 * exponent).powi(2),
             bleed: moments.bleed,
             show_cascades: u32::from(settings.show_cascades),
-            contact_steps: settings.contact.map_or(0, |contact| contact.steps.max(1)),
             contact_m: settings.contact.map_or(0.0, |contact| contact.distance_m),
-            _pad: 0.0,
+            _pad: [0.0; 2],
         };
         Self { uniforms, maps: fitted.into_iter().enumerate().map(map).collect(), keys, of_lights, settings: *settings }
     }

@@ -1,7 +1,7 @@
 //! Mirror of `wgsl/pass/dof.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Vec3, Vec4};
+use glam::Vec4;
 
 /// Lens and steps of depth of field.
 #[repr(C)]
@@ -17,27 +17,13 @@ pub struct DofUniforms {
     pub focus_m: f32,
     /// Diameter of what is infinitely far away, in pixels.
     pub scale_px: f32,
-    /// Pixels of the picture to a texel of the gather: 1 or 2.
-    pub texel_px: f32,
     /// Texels of the gather to a tile.
     pub tile_texels: f32,
-    /// Rings of taps before what is in focus, behind it, and where all has one radius.
-    pub rings: Vec3,
     /// The last level there is.
     pub last_level: f32,
 }
 
 #[cfg(test)]
 pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
-    vec![layout_of!(DofUniforms {
-        depth_row,
-        most_px,
-        per_px,
-        focus_m,
-        scale_px,
-        texel_px,
-        tile_texels,
-        rings,
-        last_level,
-    })]
+    vec![layout_of!(DofUniforms { depth_row, most_px, per_px, focus_m, scale_px, tile_texels, last_level })]
 }

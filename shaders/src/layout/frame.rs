@@ -10,10 +10,10 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct FrameUniforms {
+    /// Clip space to world.
+    pub world_from_clip: Mat4,
     /// World to clip space, reversed-Z.
     pub clip_from_world: Mat4,
-    /// Inverse of the above.
-    pub world_from_clip: Mat4,
     /// View to world space.
     pub world_from_view: Mat4,
     /// Perspective: (position in m, 1). Orthographic: (unit vector toward the viewer, 0).
@@ -46,8 +46,8 @@ pub struct FrameUniforms {
 #[cfg(test)]
 pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
     vec![layout_of!(FrameUniforms {
-        clip_from_world,
         world_from_clip,
+        clip_from_world,
         world_from_view,
         camera,
         sun_direction,

@@ -106,10 +106,10 @@ pub struct BilateralUniforms {
     pub depth: Vec4,
     /// Texels from sample to sample.
     pub axis: IVec2,
-    /// Samples on either side, at most 12.
-    pub reach: i32,
     /// Distance between surfaces, in m, from which on one does not count for the other.
     pub threshold_m: f32,
+    /// Padding to 16 bytes; zero.
+    pub _pad: f32,
     /// Weight of the middle, then of the samples away from it.
     pub weights: [Vec4; 4],
 }
@@ -138,6 +138,6 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             cone,
         }),
         layout_of!(ConeUniforms { reach_m, tangent, contact_m, bias_m, slope_bias_m, intensity, steps, rays }),
-        layout_of!(BilateralUniforms { depth, axis, reach, threshold_m, weights }),
+        layout_of!(BilateralUniforms { depth, axis, threshold_m, _pad, weights }),
     ]
 }

@@ -27,12 +27,10 @@ pub struct ShadowUniforms {
     pub bleed: f32,
     /// Not 0: tint what is lit by the number of its cascade.
     pub show_cascades: u32,
-    /// Steps of a contact shadow's ray.
-    pub contact_steps: u32,
-    /// Its length in m.
+    /// Length of a contact shadow's ray in m.
     pub contact_m: f32,
     /// Padding to 16 bytes; zero.
-    pub _pad: f32,
+    pub _pad: [f32; 2],
 }
 
 /// One shadow map as shaders read it.
@@ -93,10 +91,10 @@ pub struct ShadowViewUniforms {
 pub struct ShadowBlurUniforms {
     /// One texel along the axis: (1, 0) or (0, 1).
     pub step: IVec2,
-    /// Taps on each side.
-    pub reach: i32,
     /// -1 / (2 σ²) of the Gaussian, σ in texels.
     pub falloff: f32,
+    /// Padding to 8 bytes; zero.
+    pub _pad: f32,
     /// First and last texel of the map: beyond lies its edge.
     pub first: IVec2,
     /// See `first`.
@@ -117,7 +115,6 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             variance_floor,
             bleed,
             show_cascades,
-            contact_steps,
             contact_m,
             _pad,
         }),
@@ -139,7 +136,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             warped,
             _pad,
         }),
-        layout_of!(ShadowBlurUniforms { step, reach, falloff, first, last }),
+        layout_of!(ShadowBlurUniforms { step, falloff, _pad, first, last }),
         layout_of!(ShadowViewUniforms { clip_from_world, linear_depth, exponent, _pad }),
     ]
 }

@@ -9,10 +9,11 @@
 
 /// View, sun and ambient light of the frame. Mirrored by `layout::FrameUniforms`.
 struct FrameUniforms {
+    /// Clip space to world. First, since fragments are not shaded with it: see
+    /// examples/tests/it/memory.rs.
+    world_from_clip: mat4x4<f32>,
     /// World to clip space, reversed-Z: depth 1 at the near plane, 0 at the far plane.
     clip_from_world: mat4x4<f32>,
-    /// Inverse of the above.
-    world_from_clip: mat4x4<f32>,
     /// View to world space; the camera looks along -Z of view space.
     world_from_view: mat4x4<f32>,
     /// Perspective: (position in m, 1). Orthographic: (unit vector toward the viewer, 0).

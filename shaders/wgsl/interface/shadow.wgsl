@@ -25,9 +25,7 @@ struct ShadowUniforms {
     bleed: f32,
     /// Not 0: tint what is lit by the number of its cascade.
     show_cascades: u32,
-    /// Steps of a contact shadow's ray.
-    contact_steps: u32,
-    /// Its length in m.
+    /// Length of a contact shadow's ray in m.
     contact_m: f32,
 }
 

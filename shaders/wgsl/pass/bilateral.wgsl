@@ -17,13 +17,14 @@ struct BilateralUniforms {
     depth: vec4<f32>,
     /// Texels from sample to sample.
     axis: vec2<i32>,
-    /// Samples on either side, at most 12.
-    reach: i32,
     /// Distance between surfaces, in m, from which on one does not count for the other.
     threshold_m: f32,
     /// Weight of the middle, then of the samples away from it.
     weights: array<vec4<f32>, 4>,
 }
+
+/// Samples on either side, at most 12.
+override REACH: i32 = 6;
 
 @group(0) @binding(0) var<uniform> bilateral: BilateralUniforms;
 /// Visibility in red; loaded.
@@ -54,7 +55,7 @@ fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let step = slope(texel, here);
     var sum = middle * bilateral.weights[0].x;
     var total = bilateral.weights[0].x;
-    for (var i = 1; i <= bilateral.reach; i++) {
+    for (var i = 1; i <= REACH; i++) {
         let weight = bilateral.weights[i >> 2u][i & 3];
         for (var side = -1; side <= 1; side += 2) {
             let at = texel + side * i * bilateral.axis;

@@ -23,15 +23,18 @@ struct DofUniforms {
     focus_m: f32,
     /// Diameter of what is infinitely far away, in pixels.
     scale_px: f32,
-    /// Pixels of the picture to a texel of the gather: 1 or 2.
-    texel_px: f32,
     /// Texels of the gather to a tile.
     tile_texels: f32,
-    /// Rings of taps before what is in focus, behind it, and where all has one radius.
-    rings: vec3<f32>,
     /// The last level there is.
     last_level: f32,
 }
+
+/// Pixels of the picture to a texel of the gather: 1 or 2.
+override TEXEL_PX: f32 = 1.0;
+/// Rings of taps before what is in focus, behind it, and where all has one radius.
+override RINGS_BEFORE: f32 = 5.0;
+override RINGS_BEHIND: f32 = 5.0;
+override RINGS_EVEN: f32 = 5.0;
 
 @group(0) @binding(0) var<uniform> dof: DofUniforms;
 /// Pre-exposed radiance, of one sample per texel.
@@ -65,7 +68,7 @@ fn brightness(color: vec3<f32>) -> f32 {
 /// Radiance and radius. At half the size the nearest of four counts, and bright texels less.
 @fragment
 fn fs_coc(vertex: DofVertex) -> @location(0) vec4<f32> {
-    let side = i32(dof.texel_px);
+    let side = i32(TEXEL_PX);
     let last = vec2<i32>(textureDimensions(hdr, 0)) - 1;
     var nearest = dof.most_px.y;
     var sum = vec3<f32>(0.0);
@@ -143,7 +146,7 @@ fn tap(uv: vec2<f32>, level: i32) -> vec4<f32> {
 }
 
 fn level_of(rings: f32, radius_px: f32) -> i32 {
-    return i32(min(ring_level(rings, radius_px / dof.texel_px), dof.last_level));
+    return i32(min(ring_level(rings, radius_px / TEXEL_PX), dof.last_level));
 }
 
 /// Place `number` of ring `ring`, 1…, in rings: eight more to each, every second ring turned.
@@ -154,7 +157,7 @@ fn on_ring(ring: f32, number: f32) -> vec2<f32> {
 
 /// All taps within one radius count alike.
 fn gather_even(uv: vec2<f32>, radius: f32, noise: vec2<f32>) -> vec4<f32> {
-    let rings = dof.rings.z;
+    let rings = RINGS_EVEN;
     let level = f32(level_of(rings, radius));
     let step = dof.per_px * (radius / (rings - 0.5));
     var sum = textureSampleLevel(field, field_sampler, uv + noise * step, level).rgb;
@@ -173,10 +176,10 @@ fn gather_even(uv: vec2<f32>, radius: f32, noise: vec2<f32>) -> vec4<f32> {
 /// What is before what is in focus: two layers, the nearer over the other. Of two taps opposite one
 /// another the nearer speaks for both, which guesses what it hides.
 fn gather_before(uv: vec2<f32>, tile: vec2<f32>, noise: vec2<f32>) -> vec4<f32> {
-    let rings = dof.rings.x;
+    let rings = RINGS_BEFORE;
     let radius = -tile.x;
     let level = level_of(rings, radius);
-    let size = dof.texel_px * exp2(f32(level));
+    let size = TEXEL_PX * exp2(f32(level));
     let step = radius / (rings - 0.5);
     var front = vec4<f32>(0.0);
     var back = vec4<f32>(0.0);
@@ -218,10 +221,10 @@ struct Ring {
 /// What is behind what is in focus, from the outer ring inward: a ring hides those behind it by as
 /// much as it is nearer and covers.
 fn gather_behind(uv: vec2<f32>, noise: vec2<f32>) -> vec4<f32> {
-    let rings = dof.rings.y;
+    let rings = RINGS_BEHIND;
     let radius = abs(tap(uv, 0).a);
     let level = level_of(rings, radius);
-    let size = dof.texel_px * exp2(f32(level));
+    let size = TEXEL_PX * exp2(f32(level));
     let step = radius / (rings - 0.5);
     var all = Ring(vec3<f32>(0.0), 0.0, 0.0, 0.0);
     for (var index = 0.0; index < rings; index += 1.0) {

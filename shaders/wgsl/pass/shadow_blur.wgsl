@@ -6,8 +6,6 @@ import package::lib::fullscreen::fullscreen_position;
 struct ShadowBlurUniforms {
     /// One texel along the axis: (1, 0) or (0, 1).
     step: vec2<i32>,
-    /// Taps on each side.
-    reach: i32,
     /// -1 / (2 σ²) of the Gaussian, σ in texels.
     falloff: f32,
     /// First and last texel of the map: beyond lies its edge.
@@ -15,6 +13,9 @@ struct ShadowBlurUniforms {
     /// See `first`.
     last: vec2<i32>,
 }
+
+/// Taps on each side.
+override REACH: i32 = 1;
 
 @group(0) @binding(0) var<uniform> shadow_blur: ShadowBlurUniforms;
 /// A layer, a level of it.
@@ -31,7 +32,7 @@ fn fs_blur(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     let center = vec2<i32>(at.xy);
     var sum = vec2<f32>(0.0);
     var weights = 0.0;
-    for (var i = -shadow_blur.reach; i <= shadow_blur.reach; i++) {
+    for (var i = -REACH; i <= REACH; i++) {
         let weight = exp(shadow_blur.falloff * f32(i * i));
         let texel = clamp(center + shadow_blur.step * i, shadow_blur.first, shadow_blur.last);
         sum += textureLoad(moments, texel, 0).xy * weight;

@@ -10,6 +10,9 @@ import package::lib::dither::interleaved_gradient_noise;
 import package::lib::fullscreen::uv_from_clip;
 import package::shading::shadow_map::Receiver;
 
+/// Steps of the ray.
+override CONTACT_STEPS: u32 = 8u;
+
 /// (u, v, depth) of the picture.
 fn screen_uvz(clip: vec4<f32>) -> vec3<f32> {
     return vec3<f32>(uv_from_clip(clip.xy / clip.w), clip.z / clip.w);
@@ -30,11 +33,11 @@ fn contact_visibility(receiver: Receiver) -> f32 {
     }
     let start = screen_uvz(start_clip);
     let ray = screen_uvz(end_clip) - start;
-    let step = 1.0 / f32(shadow.contact_steps);
+    let step = 1.0 / f32(CONTACT_STEPS);
     let tolerance = abs(nearer_clip.z / nearer_clip.w - start.z) * step;
     let size = vec2<f32>(textureDimensions(structure));
     var t = step * (interleaved_gradient_noise(receiver.pixel, 0u) + 0.5);
-    for (var i = 0u; i < shadow.contact_steps; i++) {
+    for (var i = 0u; i < CONTACT_STEPS; i++) {
         let at = start + ray * t;
         let texel = vec2<i32>(clamp(at.xy * size, vec2<f32>(0.0), size - 1.0));
         if contact_hides(textureLoad(structure, texel, 0).r, at.z, tolerance) {
