@@ -33,7 +33,7 @@ fn contact_visibility(receiver: Receiver) -> f32 {
     }
     let start = screen_uvz(start_clip);
     let ray = screen_uvz(end_clip) - start;
-    let step = 1.0 / f32(CONTACT_STEPS);
+    let step = 1.0 / f32(max(CONTACT_STEPS, 1u));
     let tolerance = abs(nearer_clip.z / nearer_clip.w - start.z) * step;
     let size = vec2<f32>(textureDimensions(structure));
     var t = step * (interleaved_gradient_noise(receiver.pixel, 0u) + 0.5);
