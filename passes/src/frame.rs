@@ -12,6 +12,7 @@
 //! | `color` | `color` | depth, shadow maps, structure, ambient occlusion, reflections | radiance |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
+//! | `resolve` | `tone_resolve` | samples of radiance | radiance |
 //! | `taa` | `depth_resolve`, `taa`, `taa_sharpen` | radiance, depth, what the frames before came to | radiance |
 //! | `measure` | `measure/light`, `measure/depth`, `measure/smaller` | radiance, depth | what is read back of them |
 //! | `dof` | `dof/coc`, `dof/level`…, `dof/tiles`, `dof/dilate`, `dof/gather`, `dof/median`, `dof/combine` | radiance, depth | radiance |
@@ -45,6 +46,7 @@ use crate::stages::{Handles, Slot, Stage, StageError, Stages};
 use crate::structure::{Resolution, structure_levels};
 use crate::surface::HDR_FORMAT;
 use crate::taa::{TaaSettings, temporal};
+use crate::tone_resolve::ToneResolve;
 use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent, scene_levels};
 use crate::upload::GpuScene;
 use crate::upscale::{Upscale, enlarge};
@@ -81,6 +83,9 @@ impl<W> StandardWorld for W where
 pub struct Settings {
     /// Samples per texel of the color pass: 1 or 4.
     pub samples: u8,
+    /// Samples are averaged as a display would show them, by a pass of its own ([`ToneResolve`]): edges before what is bright are
+    /// smooth where something reads radiance before it is graded. Off as in Filament.
+    pub tone_resolve: bool,
     /// How surfaces are shaded.
     pub shading: Shading,
     /// How shadows are made, if any are.
@@ -157,6 +162,7 @@ impl Settings {
     /// One sample per texel, shadows, the ACES curve, FXAA, and the high quality of shading.
     pub const DEFAULT: Self = Self {
         samples: 1,
+        tone_resolve: false,
         shading: Quality::High.shading(),
         shadows: Some(ShadowSettings::DEFAULT),
         occlusion: None,
@@ -261,6 +267,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
         Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
+        Stage::new("resolve", move |frame, handles| resolve(frame, handles, s.tone_resolve && s.samples > 1)),
         Stage::new("taa", move |frame, handles| s.taa.as_ref().map_or(Ok(()), |own| temporal(frame, handles, own))),
         Stage::new("measure", move |frame, handles| measure(frame, handles, s.measure)),
         Stage::new("dof", move |frame, handles| dof(frame, handles, s.dof, s.size_texels)),
@@ -362,6 +369,14 @@ fn transparent<W: StandardWorld + ?Sized>(
             handles.set(Slot::HDR_SAMPLES, io.samples);
         }
         handles.set(Slot::DEPTH, io.depth);
+    }
+    Ok(())
+}
+
+fn resolve<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, wanted: bool) -> Declared {
+    if wanted {
+        let samples = handles.get(Slot::HDR_SAMPLES)?;
+        handles.set(Slot::HDR, frame.add("tone_resolve", ToneResolve { samples })?.hdr);
     }
     Ok(())
 }

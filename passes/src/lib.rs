@@ -68,6 +68,7 @@ pub mod structure;
 pub mod sun;
 pub mod surface;
 pub mod taa;
+pub mod tone_resolve;
 pub mod transmission;
 pub mod upload;
 pub mod upscale;

@@ -24,6 +24,7 @@ const ENTRY_POINTS: &[(&str, &[&str])] = &[
     ("flare", &["vs_main", "fs_flare", "fs_blur"]),
     ("upscale", &["vs_main", "fs_bilinear", "fs_edges"]),
     ("sharpen", &["vs_main", "fs_main"]),
+    ("tone_resolve", &["vs_main", "fs_main"]),
     ("measure", &["vs_main", "fs_light", "fs_depth", "fs_smaller"]),
     ("velocity", &["vs_main", "fs_opaque", "fs_mask"]),
     ("sky", &["vs_main", "fs_environment", "fs_procedural", "fs_constant", "fs_black"]),

@@ -248,7 +248,7 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     var radiance = add_layers(surface, normal, view, below, visibility);
     let sun = frame.sun_illuminance * reflect_surface(surface, real3(frame.sun_direction))
         * micro_visibility(vertex.uv, dot(normal, frame.sun_direction));
-    let receiver = Receiver(vertex.world, geometric, vertex.position.xy);
+    let receiver = Receiver(vertex.world, geometric, vertex.position.xy, slope);
     if any(sun > vec3<f32>(0.0)) {
         radiance += sun * sun_visibility(receiver) * contact_visibility(receiver);
     }

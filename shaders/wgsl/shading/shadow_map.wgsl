@@ -8,6 +8,8 @@ struct Receiver {
     world: vec3<f32>,
     normal: vec3<f32>,
     pixel: vec2<f32>,
+    /// Change of depth from pixel to pixel.
+    slope: vec2<f32>,
 }
 
 /// Distance ahead of the eye in m.

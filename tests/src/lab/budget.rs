@@ -1,6 +1,6 @@
 //! Frames within a budget: what the options of the frame's groups take and err by, and how the sets that are chosen turn out.
 
-use super::run::{TIMED, WARM_UP};
+use super::record::Rounds;
 use super::statistics::quantile;
 use super::studio::{Ready, Setup, Studio, codes};
 use super::technique::Outcome;
@@ -109,12 +109,12 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// What the device refuses.
     pub fn ms(&mut self, scene: &'static str, frame: &FrameSettings) -> Outcome<f64> {
-        let gpu = self.studio.gpu;
+        let (gpu, Rounds { warm_up, timed }) = (self.studio.gpu, self.studio.rounds);
         let ready = self.ready(scene, frame)?;
         let mut took = Vec::new();
-        for index in 0..WARM_UP + TIMED {
+        for index in 0..warm_up + timed {
             let ms = ready.draw(gpu)?;
-            took.extend((index >= WARM_UP).then_some(ms));
+            took.extend((index >= warm_up).then_some(ms));
         }
         program::interrupt::check()?;
         took.sort_by(f64::total_cmp);
@@ -171,7 +171,7 @@ impl<'a> Bench<'a> {
     /// they compile for each executor, and one for each frame would take gigabytes.
     fn timed(&mut self, frames: &[(&'static str, FrameSettings)]) -> Outcome<Vec<f64>> {
         const ROUNDS: u32 = 3;
-        let gpu = self.studio.gpu;
+        let (gpu, Rounds { warm_up, timed }) = (self.studio.gpu, self.studio.rounds);
         let mut took = vec![Vec::new(); frames.len()];
         for round in 0..ROUNDS {
             for step in 0..frames.len() {
@@ -180,9 +180,9 @@ impl<'a> Bench<'a> {
                 let at = if round % 2 == 1 { frames.len() - 1 - at } else { at };
                 let (scene, frame) = &frames[at];
                 let ready = self.ready(scene, frame)?;
-                for index in 0..WARM_UP.div_ceil(ROUNDS) + TIMED.div_ceil(ROUNDS) {
+                for index in 0..warm_up.div_ceil(ROUNDS) + timed.div_ceil(ROUNDS) {
                     let ms = ready.draw(gpu)?;
-                    took[at].extend((index >= WARM_UP.div_ceil(ROUNDS)).then_some(ms));
+                    took[at].extend((index >= warm_up.div_ceil(ROUNDS)).then_some(ms));
                 }
                 program::interrupt::check()?;
             }

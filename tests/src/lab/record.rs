@@ -11,6 +11,22 @@ pub const SCHEMA: &str = "framegraph-accuracy";
 /// Its `version`: another one is not read.
 pub const VERSION: u32 = 2;
 
+/// How often each choice is drawn to be timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rounds {
+    /// Frames before any is timed.
+    pub warm_up: u32,
+    /// Timed frames.
+    pub timed: u32,
+}
+
+impl Rounds {
+    /// Those of a record that others are to rely on.
+    pub const FULL: Self = Self { warm_up: 10, timed: 31 };
+    /// Those of the short run: the order of options that differ by a tenth or more.
+    pub const QUICK: Self = Self { warm_up: 3, timed: 11 };
+}
+
 /// All that was measured in one place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -140,6 +156,11 @@ impl TechniqueRecord {
 }
 
 impl Record {
+    /// How often its choices were drawn.
+    pub fn rounds(&self) -> Rounds {
+        Rounds { warm_up: self.warm_up, timed: self.repeats }
+    }
+
     /// Reads one.
     ///
     /// # Errors

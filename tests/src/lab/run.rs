@@ -10,11 +10,6 @@ use framegraph_shaders::reference::cases;
 use framegraph_shaders::reflect::Operations;
 use std::path::Path;
 
-/// Frames of each choice that are drawn before any is timed.
-pub const WARM_UP: u32 = 10;
-/// Timed frames of each choice.
-pub const TIMED: u32 = 31;
-
 /// Measures a technique; pictures go into `pictures`, a file a choice.
 ///
 /// # Errors
@@ -36,7 +31,7 @@ pub fn measure(studio: &Studio<'_>, technique: &Technique, pictures: &Path) -> O
         choices.push(record);
         program::interrupt::check()?;
     }
-    let times = times(studio.gpu, &mut ready, WARM_UP, TIMED)?;
+    let times = times(studio.gpu, &mut ready, studio.rounds)?;
     for ((index, times), mut ready) in timed.into_iter().zip(times).zip(ready) {
         (choices[index].ms, choices[index].steps) = (Some(times), ready.steps()?);
     }

@@ -23,7 +23,7 @@ use std::cell::RefCell;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use super::record::{PictureRecord, StepRecord};
+use super::record::{PictureRecord, Rounds, StepRecord};
 
 /// A frame to be drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +62,8 @@ pub struct Studio<'a> {
     pub size_px: [u32; 2],
     /// Where light that was made is kept.
     pub light: PathBuf,
+    /// How often choices are drawn.
+    pub rounds: Rounds,
     /// Truths that were drawn, which techniques share.
     truths: RefCell<Vec<(Truth, (Picture, f64))>>,
 }
@@ -87,8 +89,8 @@ const TREMBLING: u32 = 16;
 
 impl<'a> Studio<'a> {
     /// Pictures of a size, in pixels; light that is made is kept in a folder.
-    pub fn new(gpu: &'a Gpu, size_px: [u32; 2], light: PathBuf) -> Self {
-        Self { gpu, size_px, light, truths: RefCell::default() }
+    pub fn new(gpu: &'a Gpu, size_px: [u32; 2], light: PathBuf, rounds: Rounds) -> Self {
+        Self { gpu, size_px, light, rounds, truths: RefCell::default() }
     }
 
     /// Makes everything that a setup needs.
@@ -224,18 +226,18 @@ impl<'a> Studio<'a> {
 ///
 /// # Errors
 /// What the device refuses.
-pub fn times(gpu: &Gpu, ready: &mut [Ready], warm_up: u32, repeats: u32) -> Outcome<Vec<Times>> {
+pub fn times(gpu: &Gpu, ready: &mut [Ready], rounds: Rounds) -> Outcome<Vec<Times>> {
     let mut measured = vec![Vec::new(); ready.len()];
     let mut order: Vec<usize> = (0..ready.len()).collect();
     let mut state = 0x9e37_79b9_u32;
-    for round in 0..warm_up + repeats {
+    for round in 0..rounds.warm_up + rounds.timed {
         for at in (1..order.len()).rev() {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             order.swap(at, (state >> 8) as usize % (at + 1));
         }
         for index in &order {
             let ms = ready[*index].draw(gpu)?;
-            if round >= warm_up {
+            if round >= rounds.warm_up {
                 measured[*index].push(ms);
             }
         }

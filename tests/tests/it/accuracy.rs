@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 use tests::lab::budget::{Bench, verify};
 use tests::lab::markdown::document;
-use tests::lab::record::Record;
+use tests::lab::record::{Record, Rounds};
 use tests::lab::studio::Studio;
 
 const DOCUMENT: &str = include_str!("../../../docs/accuracy.md");
@@ -73,7 +73,7 @@ fn no_swap_of_a_chosen_frame_errs_less() -> Result<(), Box<dyn std::error::Error
         return Ok(());
     };
     let folder = std::env::temp_dir().join(format!("accuracy-light-{}", std::process::id()));
-    let studio = Studio::new(&gpu, record.size_px, folder.clone());
+    let studio = Studio::new(&gpu, record.size_px, folder.clone(), Rounds::QUICK);
     let mut bench = Bench::new(&studio);
     let verified = |bench: &mut Bench<'_>, measured: &Measured| {
         verify(bench, measured, 3, &mut |_, _, given, set| Ok(given.predicted(set).ms), &mut |_| ())

@@ -51,6 +51,7 @@ mod soak;
 mod stage;
 mod supply;
 mod taa;
+mod tone_resolve;
 mod transmission;
 mod upscale;
 mod velocity;

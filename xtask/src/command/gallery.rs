@@ -31,7 +31,7 @@ const MOST_BYTES: u64 = 60_000;
 const HELMET: &str = "tests/assets/models/FlightHelmet/FlightHelmet.gltf";
 
 /// The pictures: a name, what is rendered, and under which light.
-const PICTURES: [(&str, Model, &str); 21] = [
+const PICTURES: [(&str, Model, &str); 28] = [
     ("balls-studio", Model::Balls, "--environment tests/assets/hdri/studio.hdr"),
     ("balls-sunset", Model::Balls, "--environment tests/assets/hdri/sunset.hdr"),
     ("balls-aces", Model::Balls, "--environment tests/assets/hdri/sunset.hdr --tone-map aces"),
@@ -53,6 +53,13 @@ const PICTURES: [(&str, Model, &str); 21] = [
     ("spheres-reflections", Model::Spheres, "--ssr on"),
     ("glass-one-layer", Model::Glass, "--glass-layers 1"),
     ("glass-layers", Model::Glass, "--glass-layers 3"),
+    ("columns-clear", Model::Aisle, "--fog off"),
+    ("columns-fog", Model::Aisle, "--fog on:density=0.15,falloff=0.6,sharp=40"),
+    ("balls-bloom", Model::Lamps, "--bloom on:strength=0.15"),
+    ("balls-flare", Model::Lamps, "--bloom on:strength=0.2,dirt=30,flare=on --dirt tests/assets/lens_dirt.png"),
+    ("balls-focus", Model::Near, "--dof on:focus=2.4,aperture=1.4,focal=0.085"),
+    ("edges-fxaa", Model::Edges, "--msaa 1"),
+    ("edges-taa", Model::Edges, "--msaa 1 --no-fxaa --taa on --frames 32"),
     ("helmet-studio", Model::Helmet, "--environment tests/assets/hdri/studio.hdr"),
     ("helmet-sunset", Model::Helmet, "--environment tests/assets/hdri/sunset.hdr"),
     ("helmet-venice", Model::Helmet, "--environment tests/assets/hdri/venice.hdr"),
@@ -66,6 +73,10 @@ enum Model {
     Columns,
     Spheres,
     Glass,
+    Aisle,
+    Lamps,
+    Near,
+    Edges,
     Helmet,
 }
 
@@ -76,6 +87,10 @@ impl Model {
             Self::Columns => "columns --size 368x207",
             Self::Spheres => "spheres --camera 0,1.3,6.4:-2.3,0.25,2:30 --size 336x189",
             Self::Glass => "glass --camera 2.1,0.75,3.1:1.5,0.42,0:36 --size 256x144",
+            Self::Aisle => "columns --size 368x207 --camera 0.5,1.2,6:0,1.2,-4:45",
+            Self::Lamps => "balls --camera wide --size 368x207 --environment tests/assets/hdri/studio.hdr",
+            Self::Near => "balls --camera 2.2,0.8,1.6:-1,0.3,-0.4:30 --size 368x207",
+            Self::Edges => "columns --size 184x104",
             Self::Helmet => "tests/assets/models/FlightHelmet/FlightHelmet.gltf --size 168x198",
         }
     }
@@ -83,8 +98,8 @@ impl Model {
     /// The file it is in; none if it is built in.
     fn file(self) -> Option<&'static str> {
         match self {
-            Self::Balls | Self::Columns | Self::Spheres | Self::Glass => None,
             Self::Helmet => Some(HELMET),
+            _ => None,
         }
     }
 }
@@ -92,7 +107,9 @@ impl Model {
 /// All words of `render` for a picture, as the document states them.
 fn words((name, model, light): (&str, Model, &str)) -> String {
     let model = model.words();
-    format!("{model} {light} --dither 0 --frames 1 --out {FOLDER}/{name}.png --plan {PLANS}/{name}.txt")
+    // What is added up over frames is shown after some.
+    let frames = if light.contains("--frames") { "" } else { " --frames 1" };
+    format!("{model} {light} --dither 0{frames} --out {FOLDER}/{name}.png --plan {PLANS}/{name}.txt")
 }
 
 fn run(options: &Options) -> Result<(), Failure> {

@@ -344,7 +344,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 37] = [
+        let cases: [(&[&str], &str); 38] = [
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),
@@ -369,6 +369,7 @@ mod tests {
             (&["--ssr", "on:stride=0"], "--ssr stride=0"),
             (&["--fog", "on:density=x"], "--fog density=x"),
             (&["--taa", "on:feedback=2"], "--taa feedback=2"),
+            (&["--dynamic-resolution", "9:10"], "--dynamic-resolution 9:10"),
             (&["--time", "-1"], "--time -1"),
             (&["--budget-ms", "0"], "--budget-ms 0"),
             (&["--max-error", "NaN"], "--max-error NaN"),

@@ -1,7 +1,7 @@
 //! What post-processing costs: at the end of the color pass's shader, in one full-screen pass, in a pass for each effect.
 
 use crate::args::Args;
-use crate::keep::declare;
+use crate::keep::{Own, declare};
 use crate::load;
 use crate::run::{Failure, Frames, WARM_UP, device, executed, input, open, settings};
 use crate::table::{aligned, mebibytes, milliseconds};
@@ -62,7 +62,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     for samples in [1, 4] {
         for (name, inline, split_post) in WAYS {
             let settings = Settings { samples, split_post, post: every, ..asked };
-            let (frame, ..) = declare(&settings, &Facts::default(), false, None)?;
+            let (frame, ..) = declare(&settings, &Facts::default(), false, Own::default())?;
             let mut plan = Plan::new();
             let options = Options { inline, ..Options::for_frame(args.size_px[0], args.size_px[1]) };
             compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;

@@ -164,8 +164,11 @@ impl Args {
             (settings.samples, settings.shading, settings.post, settings.fxaa);
         (self.shadows, self.grade) = (Shadows::with(settings.shadows), Grade::with(&settings.post));
         self.split_post = settings.split_post;
-        let Settings { occlusion, reflections, taa, upscale, dof, bloom, fog, glass_layers, .. } = settings;
-        self.effects = Effects { occlusion, reflections, taa, upscale, dof, bloom, fog, glass_layers };
+        let Settings { occlusion, reflections, tone_resolve, taa, upscale, dof, bloom, fog, glass_layers, .. } =
+            settings;
+        let own = Effects::default();
+        self.effects =
+            Effects { occlusion, reflections, tone_resolve, taa, upscale, dof, bloom, fog, glass_layers, ..own };
     }
 }
 

@@ -3,11 +3,12 @@
 
 use crate::look::number;
 use framegraph_passes::transmission::MOST_GLASS_LAYERS;
-use framegraph_passes::upscale::UpscaleFilter;
+use framegraph_passes::upscale::{DynamicResolution, UpscaleFilter};
 use framegraph_passes::{
     BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, TaaSettings, Upscale,
 };
 use lexopt::Parser;
+use std::path::PathBuf;
 
 /// What `render --help` prints of them.
 pub const HELP: &str = "
@@ -32,6 +33,8 @@ pub const HELP: &str = "
                        flare=on|off (of the lens, off), and with it starburst=on|off (on), aberration=X (0.005),
                        ghosts=N (4), ghost-spacing=X (0.6), ghost-at=X (10), halo=X (thickness, 0.1), halo-radius=X (0.4),
                        halo-at=X (10)
+  --dirt FILE          a PNG or JPEG picture of dirt on the lens, laid over the frame, through which bloom is seen; goes
+                       together with bloom
   --dof off|on[:KEY=X,...]  what is out of focus is blurred as by a lens (off). focus=M (5), aperture=F (f-number, 2.8),
                        focal=M|view (length, of the view's angle on film of 24 mm), scale=X (of circles, 1),
                        resolution=full|half (half), before=PX, behind=PX (largest radii, 32), rings-before=N, rings-behind=N,
@@ -42,14 +45,18 @@ pub const HELP: &str = "
                        (deviations, 1), filter-history=on|off, filter-input=on|off, ycocg=on|off, steady=on|off (against
                        flickering), reproject=on|off, sharpness=X (afterwards, 0), converge=on|off
                        (while nothing moves, to the mean of all frames)
+  --resolve linear|tone  the mean of a texel's samples: of light, or as a display shows them, which keeps edges before what
+                       is bright smooth where bloom, --dof or --taa read the radiance (linear)
   --scale X            draw X times as wide and high as shown, 0.25 to 1 (1)
   --upscale bilinear|fsr  how the picture is made larger then (fsr)
   --sharpness X        how much it is sharpened then, 0 to 1 (0.9)
+  --dynamic-resolution MS[:LEAST]  in --turntable and --sequence, draw each frame as large as those before let it be, so that
+                       it takes MS milliseconds; no smaller than LEAST percent of its sides, 25 to 100 (50)
   --glass-layers N     layers of glass that is seen through glass, 1 to 4; 1 shows what is opaque alone (1)
 ";
 
 /// What was asked for.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Effects {
     /// Ambient occlusion.
     pub occlusion: Option<OcclusionSettings>,
@@ -59,12 +66,18 @@ pub struct Effects {
     pub dof: Option<DofSettings>,
     /// Bloom and lens flare.
     pub bloom: Option<BloomSettings>,
+    /// The picture of dirt on the lens.
+    pub dirt: Option<PathBuf>,
     /// Fog.
     pub fog: Option<FogSettings>,
     /// Anti-aliasing over time.
     pub taa: Option<TaaSettings>,
+    /// Samples are averaged as a display shows them.
+    pub tone_resolve: bool,
     /// Drawn smaller than shown.
     pub upscale: Option<Upscale>,
+    /// Drawn as large as a time lets it be.
+    pub dynamic: Option<DynamicResolution>,
     /// Layers of glass.
     pub glass_layers: u8,
 }
@@ -76,9 +89,12 @@ impl Default for Effects {
             occlusion: None,
             reflections: None,
             taa: None,
+            tone_resolve: false,
             upscale: None,
+            dynamic: None,
             dof: None,
             bloom: None,
+            dirt: None,
             fog: None,
             glass_layers: 1,
         }
@@ -96,6 +112,10 @@ impl Effects {
     /// # Errors
     /// One line that names the option and what it takes.
     pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
+        if name == "dirt" {
+            self.dirt = Some(parser.value().map_err(|_| "--dirt: a file is missing")?.into());
+            return Ok(true);
+        }
         let mut value = || {
             let value = parser.value().map_err(|_| format!("--{name}: a value is missing"))?;
             value.into_string().map_err(|v| format!("--{name} {v:?}: the value is not Unicode"))
@@ -124,6 +144,14 @@ impl Effects {
             "sharpness" => {
                 self.upscale.get_or_insert_default().sharpness = number("--sharpness", &value()?, 0.0..=1.0)?;
             }
+            "resolve" => {
+                self.tone_resolve = match value()?.as_str() {
+                    "linear" => false,
+                    "tone" => true,
+                    other => return Err(format!("--resolve {other}: `linear` or `tone` is needed")),
+                }
+            }
+            "dynamic-resolution" => self.dynamic = Some(dynamic(&value()?)?),
             "glass-layers" => {
                 let text = value()?;
                 let wrong = || format!("--glass-layers {text}: a number from 1 to {MOST_GLASS_LAYERS} is needed");
@@ -133,5 +161,19 @@ impl Effects {
             _ => return Ok(false),
         }
         Ok(true)
+    }
+}
+
+/// A time in ms, and behind a colon the least share of the sides in percent.
+fn dynamic(text: &str) -> Result<DynamicResolution, String> {
+    let (target, least) = text.split_once(':').unwrap_or((text, "50"));
+    let of = |part: &str, most: f64| part.parse::<f64>().ok().filter(|x| *x > 0.0 && *x <= most);
+    match (of(target, 1e6), of(least, 100.0).filter(|least| *least >= 25.0)) {
+        (Some(target_ms), Some(least_percent)) => {
+            Ok(DynamicResolution { target_ms, least_percent, ..DynamicResolution::DEFAULT })
+        }
+        _ => Err(format!(
+            "--dynamic-resolution {text}: milliseconds above 0 are needed, and behind a colon 25 to 100 percent"
+        )),
     }
 }

@@ -34,7 +34,7 @@ const OF_MANY: [&str; 4] = ["compare-post", "bisect", "turntable", "sequence"];
 const REPEATED: [&str; 2] = ["enable", "disable"];
 
 /// An option with others that it leaves nothing to do, and why.
-const AGAINST: [(&str, &[&str], &str); 14] = [
+const AGAINST: [(&str, &[&str], &str); 15] = [
     ("budget-ms", &["max-error"], "a frame is held to one of both"),
     ("budget-ms", &CHOSEN, "it chooses that itself; --preset and --settings are what it begins with"),
     ("max-error", &CHOSEN, "it chooses that itself; --preset and --settings are what it begins with"),
@@ -63,16 +63,18 @@ const AGAINST: [(&str, &[&str], &str); 14] = [
         &["bisect", "timing", "debug", "msaa", "inline", "round-hdr", "split-post"],
         "it goes through all ways of post-processing itself",
     ),
+    ("dynamic-resolution", &["scale"], "it finds the scale"),
     ("bisect", &OF_ONE_FRAME, "it compares pictures and keeps none"),
     ("bisect", &["timing", "what-it-costs"], "it measures nothing"),
 ];
 
 /// An option that means something only beside one of others.
-const BESIDE: [(&str, &[&str]); 7] = [
+const BESIDE: [(&str, &[&str]); 8] = [
     ("record", &["budget-ms", "max-error"]),
     ("animation", &["time"]),
-    ("upscale", &["scale"]),
-    ("sharpness", &["scale"]),
+    ("dynamic-resolution", &["turntable", "sequence"]),
+    ("upscale", &["scale", "dynamic-resolution"]),
+    ("sharpness", &["scale", "dynamic-resolution"]),
     ("inspect-out", &["inspect"]),
     ("inspect-sample", &["inspect"]),
     ("inspect-mode", &["inspect", "inspect-all"]),
@@ -154,6 +156,7 @@ mod tests {
             ("--max-error 1 --ao gtao", "--ao does not go together with --max-error"),
             ("--budget-ms 9 --bisect", "--bisect does not go together with --budget-ms"),
             ("--record a.json", "--record goes together with --budget-ms or --max-error only"),
+            ("--dynamic-resolution 9", "--dynamic-resolution goes together with --turntable or --sequence only"),
             ("--sun in-map", "--sun in-map goes together with --environment FILE only"),
             ("--no-fxaa --no-fxaa", "--no-fxaa: it is given twice"),
         ] {

@@ -1,6 +1,7 @@
 //! Shadow maps that are kept over the frames of a run: a first frame draws them, and the others draw what is due.
 
 use crate::args::Args;
+use crate::dirt::Dirt;
 use crate::run::{Failure, Frames, Prepared, device, input, render};
 use framegraph::{Extent, Format, Plan, Scratch, Target, TextureDesc};
 use framegraph_passes::measure::MeasuredTextures;
@@ -32,20 +33,27 @@ impl Kept {
 /// A frame with what it imports.
 pub type Declared = (Frame<World>, FrameIo, Imports);
 
-/// The standard frame with its picture read back, and the linear radiance too if it is asked for; over maps that are kept,
-/// if there are. What facts left out is noted in the graph.
+/// What a frame is drawn over, of this application's own.
+#[derive(Default)]
+pub struct Own<'a> {
+    /// Shadow maps that are kept.
+    pub kept: Option<(&'a Gpu, &'a mut Kept, &'a ViewShadows)>,
+    /// Dirt on the lens.
+    pub dirt: Option<&'a Dirt>,
+}
+
+/// The standard frame with its picture read back, and the linear radiance too if it is asked for. What facts left out is noted
+/// in the graph.
 ///
 /// # Errors
 /// What a pass refuses, or the device.
-pub fn declare(
-    settings: &Settings,
-    facts: &Facts,
-    linear: bool,
-    kept: Option<(&Gpu, &mut Kept, &ViewShadows)>,
-) -> Result<Declared, Failure> {
+pub fn declare(settings: &Settings, facts: &Facts, linear: bool, own: Own<'_>) -> Result<Declared, Failure> {
     let (mut frame, mut imports, mut handles) = (Frame::new(), Imports::new(), Handles::default());
     facts.note(frame.graph_mut());
-    if let Some((gpu, kept, shadows)) = kept {
+    if let Some(dirt) = own.dirt.filter(|_| settings.bloom.is_some()) {
+        handles = dirt.declare(&mut frame, handles, &mut imports);
+    }
+    if let Some((gpu, kept, shadows)) = own.kept {
         kept.due = (kept.maps.due(shadows), shadows.maps.len());
         if let Some(maps) = kept.maps.declare(gpu, &mut frame, ViewId::MAIN, shadows).map_err(device)? {
             kept.maps.import(maps, &mut imports);
@@ -94,9 +102,9 @@ impl Prepared {
     /// # Errors
     /// One line, by whose fault it is.
     pub fn declare(&mut self, args: &Args) -> Result<Declared, Failure> {
-        let Self { gpu, kept, world, settings, facts, .. } = self;
+        let Self { gpu, kept, world, settings, facts, dirt, .. } = self;
         let view = &world.views.get(ViewId::MAIN).map_err(device)?.view;
         let kept = kept.as_mut().zip(view.shadows.as_ref()).map(|(kept, shadows)| (&*gpu, kept, shadows));
-        declare(settings, facts, args.linear_out.is_some(), kept)
+        declare(settings, facts, args.linear_out.is_some(), Own { kept, dirt: dirt.as_ref() })
     }
 }

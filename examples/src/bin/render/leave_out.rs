@@ -1,7 +1,7 @@
 //! What each effect takes: the frame with it and without it, in turns.
 
 use crate::args::Args;
-use crate::keep::declare;
+use crate::keep::{Own, declare};
 use crate::run::{Failure, Frames, Prepared, WARM_UP, device, executed, input};
 use crate::table::{aligned, mebibytes};
 use framegraph::{Plan, Scratch, compile};
@@ -26,7 +26,7 @@ impl Way {
     fn new(args: &Args, prepared: &Prepared, settings: &Settings) -> Result<Self, Failure> {
         let (options, execute) = prepared.options(args);
         let Prepared { gpu, facts, loaded, seen, world, .. } = prepared;
-        let (frame, _, imports) = declare(settings, facts, false, None)?;
+        let (frame, _, imports) = declare(settings, facts, false, Own { kept: None, dirt: prepared.dirt.as_ref() })?;
         let mut plan = Plan::new();
         compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;
         let seen = ViewSettings { shadows: settings.shadows, ..seen.clone() };

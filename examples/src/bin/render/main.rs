@@ -7,6 +7,7 @@ mod budget;
 mod compare;
 mod debug;
 mod decide;
+mod dirt;
 mod effects;
 mod given;
 mod grade;

@@ -4,7 +4,8 @@ use crate::args::Args;
 use crate::budget;
 use crate::debug::report;
 use crate::decide::Deciding;
-use crate::keep::{Kept, declare, first_frame};
+use crate::dirt::Dirt;
+use crate::keep::{Kept, Own, declare, first_frame};
 use crate::leave_out;
 use crate::light::Around;
 use crate::load::{self, Loaded};
@@ -59,6 +60,8 @@ pub struct Prepared {
     pub imports: Imports,
     /// Shadow maps that are kept, if they are.
     pub kept: Option<Kept>,
+    /// Dirt on the lens, if there is some.
+    pub dirt: Option<Dirt>,
     /// Distance of the camera's near plane in meters.
     pub near_m: f32,
     /// The frame as it is asked for; `settings` has what facts leave of it.
@@ -95,7 +98,7 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     for file in &loaded.scene.files {
         outputs.reads(file).map_err(input)?;
     }
-    for file in args.grade.colors.iter().chain(&args.settings) {
+    for file in args.grade.colors.iter().chain(&args.settings).chain(&args.effects.dirt) {
         outputs.reads(file).map_err(input)?;
     }
     let colors = load::colors(args).map_err(input)?;
@@ -127,13 +130,18 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
         program::note(format_args!("the adapter binds too few storage buffers for lists: all lights are looked at"));
     }
     let mut kept = moment.shadows.as_ref().filter(|_| args.shadows.keep).map(|_| Kept::default());
+    if asked.bloom.is_none() && args.effects.dirt.is_some() {
+        return Err(input("--dirt: it goes together with bloom only; `--bloom on` asks for that"));
+    }
+    let dirt = args.effects.dirt.as_deref().map(|file| Dirt::load(&gpu, file)).transpose()?;
     let given = kept.as_mut().zip(moment.shadows.as_ref()).map(|(kept, shadows)| (&gpu, kept, shadows));
-    let (frame, io, imports) = declare(&settings, &facts, args.linear_out.is_some(), given)?;
+    let own = Own { kept: given, dirt: dirt.as_ref() };
+    let (frame, io, imports) = declare(&settings, &facts, args.linear_out.is_some(), own)?;
     let near_m = seen.camera.projection.near_m() as f32;
     let mut world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
     world.grading.set_colors(colors);
     let mut prepared =
-        Prepared { gpu, settings, frame, io, world, imports, kept, near_m, asked, facts, deciding, loaded, seen };
+        Prepared { gpu, settings, frame, io, world, imports, kept, dirt, near_m, asked, facts, deciding, loaded, seen };
     first_frame(args, &mut prepared)?;
     Ok(prepared)
 }
@@ -325,6 +333,7 @@ pub fn settings(args: &Args, loaded: &Loaded, seen: &ViewSettings) -> Settings {
         shadows: seen.shadows,
         occlusion: args.effects.occlusion,
         reflections: args.effects.reflections,
+        tone_resolve: args.effects.tone_resolve,
         dof: args.effects.dof,
         bloom: args.effects.bloom,
         fog: args.effects.fog,

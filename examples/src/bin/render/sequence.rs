@@ -2,12 +2,13 @@
 
 use crate::args::Args;
 use crate::decide::Sequence;
-use crate::keep::declare;
+use crate::keep::{Own, declare};
 use crate::run::{Failure, Prepared, device, executed, input};
 use framegraph::{Plan, Scratch};
 use framegraph_passes::measure::Measuring;
+use framegraph_passes::upscale::DynamicResolution;
 use framegraph_passes::view::ViewSettings;
-use framegraph_passes::{CameraView, FrameIndex, ViewId};
+use framegraph_passes::{CameraView, FrameIndex, Upscale, ViewId};
 use framegraph_scene::picture::encode_png;
 use framegraph_wgpu::{Executor, read_texture};
 use glam::{DQuat, DVec3};
@@ -16,6 +17,7 @@ use program::outputs::Outputs;
 use program::progress::Shown;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
+use std::time::Instant;
 
 /// The files of a sequence.
 pub fn files(sequence: &Sequence) -> impl Iterator<Item = PathBuf> {
@@ -25,7 +27,8 @@ pub fn files(sequence: &Sequence) -> impl Iterator<Item = PathBuf> {
 }
 
 /// Renders the pictures and puts them into `outputs`. Facts are decided for each, with what the frames before decided and were
-/// measured to have; where the camera turns or an animation plays, what adds frames up is told what moved.
+/// measured to have; where the camera turns or an animation plays, what adds frames up is told what moved. With a time that
+/// frames are to keep, each is drawn as large as those before let it be.
 ///
 /// # Errors
 /// One line, by whose fault it is, or that a signal asked to stop.
@@ -36,9 +39,18 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
     let mut shown = Shown::default();
     let center = prepared.loaded.scene.bounds_above_ground().center();
     let (mut plans, mut planned, mut measuring) = (0_u32, None, Measuring::new());
+    let (mut percents, mut times_ms) = (Vec::new(), Vec::new());
     for (path, index) in files(sequence).zip(0..) {
         let turned = if sequence.turns { f64::from(index) / f64::from(sequence.frames) * TAU } else { 0.0 };
-        let seen = around(&prepared.seen, center, turned);
+        let mut seen = around(&prepared.seen, center, turned);
+        if let Some(dynamic) = &args.effects.dynamic {
+            let next = dynamic.next_percent(percents.last().copied().unwrap_or(dynamic.most_percent), &times_ms);
+            let asked = args.effects.upscale.unwrap_or_default();
+            let smaller = Upscale { percent: next.round() as u16, ..asked };
+            prepared.asked.upscale = (smaller.percent < 100).then_some(smaller);
+            seen.size_px = smaller.extent().texels(args.size_px);
+            percents.push(next);
+        }
         let plays = args.moment.plays() && !sequence.turns && index > 0;
         if plays {
             args.moment.apply(&mut prepared.loaded.scene, f64::from(index) / sequence.per_second).map_err(input)?;
@@ -50,7 +62,7 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         let mut settings = facts.apply(&prepared.asked);
         let seen = ViewSettings { shadows: settings.shadows, ..seen };
         let view = CameraView::new(&prepared.loaded.scene, light, &prepared.loaded.background, &seen);
-        let Prepared { gpu, world, loaded, .. } = &mut *prepared;
+        let Prepared { gpu, world, loaded, dirt, .. } = &mut *prepared;
         // What is found in the frame before is found from where that was seen.
         let before = &world.views.get(ViewId::MAIN).map_err(device)?.view;
         let mut view = if index == 0 { view } else { view.after(before) };
@@ -64,10 +76,16 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         let stand = view.stand();
         world.set_view(gpu, ViewId::MAIN, view).map_err(device)?;
         world.frame_index = FrameIndex(index);
-        let (frame, io, imports) = declare(&settings, &facts, false, None)?;
+        let own = Own { kept: None, dirt: dirt.as_ref() };
+        let (frame, io, imports) = declare(&settings, &facts, false, own)?;
         executor.compile(frame.graph(), &options, &mut scratch, &mut plan).map_err(input)?;
         plans += u32::from(planned.replace(settings) != Some(settings));
+        let begun = Instant::now();
         executor.execute(&plan, &frame, world, &imports).map_err(executed)?;
+        if args.effects.dynamic.is_some() {
+            gpu.wait().map_err(device)?;
+            times_ms.push(begun.elapsed().as_secs_f64() * 1e3);
+        }
         measuring.begin(gpu, (&executor, &plan), io.measured, stand).map_err(device)?;
         let texture = executor.texture(&plan, io.output).ok_or_else(|| device("the frame left no picture"))?;
         let picture = read_texture(gpu, texture).map_err(device)?.rgba8();
@@ -76,8 +94,24 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         interrupt::check().map_err(device)?;
     }
     shown.clear();
+    if let Some(dynamic) = &args.effects.dynamic {
+        program::line(held(dynamic, &percents, times_ms));
+    }
     program::line(format_args!("{} pictures, of {plans} frames that differ by their effects", sequence.frames));
     Ok(())
+}
+
+/// How large frames were drawn, and whether they took what they were to take.
+fn held(dynamic: &DynamicResolution, percents: &[f64], mut times_ms: Vec<f64>) -> String {
+    times_ms.sort_by(f64::total_cmp);
+    let median = times_ms.get(times_ms.len() / 2).copied().unwrap_or(0.0);
+    let (least, most) = percents.iter().fold((100.0_f64, 0.0_f64), |(least, most), p| (least.min(*p), most.max(*p)));
+    let last = percents.last().copied().unwrap_or(100.0);
+    format!(
+        "drawn at {least:.0} to {most:.0} % of the sides, the last at {last:.0} %; half of the frames took at most {median:.1} ms \
+         of {:.1} ms",
+        dynamic.target_ms
+    )
 }
 
 /// A view turned about the vertical through a place.

@@ -18,7 +18,8 @@ was), then accuracy.md and accuracy.html. Each option is timed 31 times after 10
 that do not count. Times say something about this adapter alone; nothing else
 should run beside it.
 
-  --quick            pictures of 96 × 64 pixels instead of 192 × 128
+  --quick            pictures of 96 × 64 pixels instead of 192 × 128, each
+                     option timed 11 times after 3 that do not count
   --technique NAME   only this one, measured anew; may be given several times.
                      `budget` is what options take as parts of one frame
   --scene NAME       a built-in scene for all pictures, instead of one that calls

@@ -45,7 +45,7 @@ pub fn chosen(record: &Record, bound: Bound) -> Outcome<()> {
 pub fn verified(args: &Args, record: &Record, count: usize) -> Outcome<()> {
     program::interrupt::watch();
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
-    let studio = Studio::new(&gpu, record.size_px, args.out.join("light"));
+    let studio = Studio::new(&gpu, record.size_px, args.out.join("light"), record.rounds());
     let mut shown = Shown::default();
     let found = verify(
         &mut Bench::new(&studio),

@@ -13,8 +13,8 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 use tests::lab::budget::Bench;
-use tests::lab::record::{Record, SCHEMA, VERSION};
-use tests::lab::run::{TIMED, WARM_UP, measure};
+use tests::lab::record::{Record, Rounds, SCHEMA, VERSION};
+use tests::lab::run::measure;
 use tests::lab::studio::Studio;
 use tests::lab::technique::Outcome;
 use tests::lab::{html, markdown, techniques};
@@ -62,7 +62,7 @@ fn measured(args: &Args, file: &Path) -> Outcome<()> {
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
     let pictures = args.out.join("pictures");
     std::fs::create_dir_all(&pictures).map_err(|e| format!("{}: {e}", pictures.display()))?;
-    let size_px = if args.quick { [96, 64] } else { [192, 128] };
+    let (size_px, rounds) = if args.quick { ([96, 64], Rounds::QUICK) } else { ([192, 128], Rounds::FULL) };
     let processors = std::thread::available_parallelism().map_or(1.0, |n| n.get() as f64);
     let fresh = Record {
         schema: SCHEMA.to_owned(),
@@ -70,8 +70,8 @@ fn measured(args: &Args, file: &Path) -> Outcome<()> {
         adapter: gpu.describe(),
         size_px,
         load: [processors, load()],
-        warm_up: WARM_UP,
-        repeats: TIMED,
+        warm_up: rounds.warm_up,
+        repeats: rounds.timed,
         scene: args.scene.map(str::to_owned),
         quick: args.quick,
         optimized: !cfg!(debug_assertions),
@@ -83,7 +83,7 @@ fn measured(args: &Args, file: &Path) -> Outcome<()> {
         Ok(found) if !args.again && found.is_of_the_kind_of(&fresh) => found,
         _ => fresh,
     };
-    let studio = Studio::new(&gpu, size_px, args.out.join("light"));
+    let studio = Studio::new(&gpu, size_px, args.out.join("light"), rounds);
     let mut all = techniques::all(&gpu);
     if let Some(scene) = args.scene {
         all.iter_mut().for_each(|technique| technique.show(scene));

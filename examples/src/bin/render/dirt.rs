@@ -1,0 +1,54 @@
+//! Dirt on the lens: a picture that bloom is seen through.
+
+use crate::run::{Failure, input};
+use framegraph::{Entry, Exit, Extent, Format, Texture, TextureDesc};
+use framegraph_passes::{Handles, Slot, World};
+use framegraph_scene::picture::read_rgba8;
+use framegraph_wgpu::{Frame, Gpu, Imports};
+use std::path::Path;
+
+/// A picture on the device, laid over the whole frame.
+#[derive(Clone, Debug)]
+pub struct Dirt(wgpu::Texture);
+
+impl Dirt {
+    /// Reads a PNG or JPEG picture: what is white lets all of the glow light up, what is black none.
+    ///
+    /// # Errors
+    /// One line that names the file and the reason.
+    pub fn load(gpu: &Gpu, file: &Path) -> Result<Self, Failure> {
+        let (size, rgba8) = read_rgba8(file).map_err(|error| input(format!("--dirt: {error}")))?;
+        let most = gpu.caps().max_texture_texels;
+        if size.into_iter().any(|side| side > most) {
+            let [width, height] = size;
+            return Err(input(format!(
+                "--dirt {}: it has {width}x{height} texels; the adapter's limit is {most}x{most}",
+                file.display()
+            )));
+        }
+        let [width, height] = size;
+        let extent = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("lens_dirt"),
+            size: extent,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8UnormSrgb,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let layout = wgpu::TexelCopyBufferLayout { bytes_per_row: Some(4 * width), ..Default::default() };
+        gpu.queue.write_texture(texture.as_image_copy(), &rgba8, layout, extent);
+        Ok(Self(texture))
+    }
+
+    /// Declares it as what the frame's bloom is seen through.
+    pub fn declare(&self, frame: &mut Frame<World>, handles: Handles, imports: &mut Imports) -> Handles {
+        let extent = Extent::absolute(self.0.width(), self.0.height());
+        let desc = TextureDesc::new(extent, Format::Rgba8UnormSrgb);
+        let dirt: Texture = frame.graph_mut().import_texture("lens_dirt", desc, Entry::Defined, Exit::Keep);
+        imports.texture(dirt, &self.0);
+        handles.with(Slot::LENS_DIRT, dirt)
+    }
+}

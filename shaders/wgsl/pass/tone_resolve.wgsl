@@ -1,0 +1,32 @@
+// Averages the samples of radiance as a display would show them: a sample counts the less the
+// brighter it is, so that an edge before something bright is as smooth as any (Karis, "Tone
+// mapping", 2013; Filament's custom resolve). Samples that are alike stay what they are.
+
+import package::lib::bloom::firefly_weight;
+import package::lib::fullscreen::fullscreen_position;
+import package::lib::numerics::saturate_half3;
+
+@group(0) @binding(0) var hdr_samples: texture_multisampled_2d<f32>;
+
+@vertex
+fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
+    return fullscreen_position(vertex, 0.0);
+}
+
+@fragment
+fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let texel = vec2<i32>(position.xy);
+    let samples = i32(textureNumSamples(hdr_samples));
+    var sum = vec3<f32>(0.0);
+    var whole = 0.0;
+    var alpha = 0.0;
+    for (var i = 0; i < samples; i++) {
+        let found = textureLoad(hdr_samples, texel, i);
+        let color = saturate_half3(found.rgb);
+        let weight = firefly_weight(color);
+        sum += weight * color;
+        whole += weight;
+        alpha += found.a;
+    }
+    return vec4<f32>(sum / whole, alpha / f32(samples));
+}
