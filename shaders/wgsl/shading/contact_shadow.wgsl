@@ -21,7 +21,7 @@ fn screen_uvz(clip: vec4<f32>) -> vec3<f32> {
 /// Share of the sun that no surface close by hides, 0…1. The ray is marched in steps of equal
 /// length in the picture, with a tolerance as deep as a step toward the viewer would be. A texel has
 /// the depth of its middle, so the ray's is taken there too, along the slope of the receiver: its own
-/// surface hides nothing, however large texels are.
+/// surface hides nothing, however large texels are. Nor does what else is in its own texel.
 @if(CONTACT_SHADOWS)
 fn contact_visibility(receiver: Receiver) -> f32 {
     let way = frame.sun_direction * shadow.contact_m;
@@ -39,13 +39,15 @@ fn contact_visibility(receiver: Receiver) -> f32 {
     let tolerance = abs(nearer_clip.z / nearer_clip.w - start.z) * step;
     let size = vec2<f32>(textureDimensions(structure));
     let pixels = frame.viewport_size_px / size;
+    let own = vec2<i32>(receiver.pixel / pixels);
     var t = step * (interleaved_gradient_noise(receiver.pixel, 0u) + 0.5);
     for (var i = 0u; i < CONTACT_STEPS; i++) {
         let at = start + ray * t;
         let texel = vec2<i32>(clamp(at.xy * size, vec2<f32>(0.0), size - 1.0));
         let aside = (vec2<f32>(texel) + 0.5) * pixels - at.xy * frame.viewport_size_px;
         let depth = at.z + dot(receiver.slope, aside);
-        if contact_hides(textureLoad(structure, texel, 0).r, depth, tolerance) {
+        let hides = contact_hides(textureLoad(structure, texel, 0).r, depth, tolerance);
+        if hides && any(texel != own) {
             return 1.0 - contact_fade(at.xy);
         }
         t += step;
