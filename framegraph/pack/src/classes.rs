@@ -39,7 +39,7 @@ impl Classes {
 
     /// Forgets all shapes. The table stays as large as they needed it.
     pub fn clear(&mut self) {
-        let enough = (self.classes.len() * 8).next_power_of_two().max(Self::LEAST);
+        let enough = (self.classes.len() * 4).next_power_of_two().max(Self::LEAST);
         self.table.truncate(enough);
         self.table.fill(NIL);
         if self.table.is_empty() {

@@ -74,12 +74,16 @@ pub(crate) fn cull(
             keep_inputs(parts, needs, pass, accesses, &mut after[span]);
         }
     }
-    order.drain(..first_kept);
-    dropped.sort_unstable();
-    decisions.extend(dropped.iter().map(|(pass, id)| {
-        let reason = Reason::ResolveDropped(graph.accesses[id.index()].resource);
-        Decision { subject: Subject::Pass(*pass), reason }
-    }));
+    if first_kept != 0 {
+        order.drain(..first_kept);
+    }
+    if !dropped.is_empty() {
+        dropped.sort_unstable();
+        decisions.extend(dropped.iter().map(|(pass, id)| {
+            let reason = Reason::ResolveDropped(graph.accesses[id.index()].resource);
+            Decision { subject: Subject::Pass(*pass), reason }
+        }));
+    }
 }
 
 /// As [`keep_inputs`], where passes resolve: those resolves of which nothing is needed are dropped. They write nothing, and

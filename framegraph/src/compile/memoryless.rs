@@ -18,6 +18,8 @@ pub(crate) fn memoryless(
     resources: &mut [Planned],
     decisions: &mut Vec<Decision>,
 ) {
+    // Rows of one resource: one check of its number serves for both.
+    let resources = &mut resources[..graph.resources.len()];
     for attachment in attachments {
         let row = &mut resources[attachment.resource.index()];
         // The step that attaches it is one that touches it, so this is that step.

@@ -24,6 +24,10 @@ pub(crate) fn place(
     for (index, row) in resources.iter_mut().enumerate() {
         // There are no more resources than versions, and those were counted.
         let resource = ResourceId::unchecked(index);
+        // Nearly all resources share memory.
+        if matches!(row.placement, Placement::Unused) && !row.first.is_none() {
+            continue;
+        }
         let reason = match row.placement {
             Placement::External => Reason::External,
             Placement::Own => Reason::Persistent,

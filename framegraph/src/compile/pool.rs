@@ -92,8 +92,10 @@ pub(crate) fn pool(
     scratch.tenancies.clear();
     enlist(graph, measures, steps, share, resources, scratch, &mut tally);
     let PoolScratch { classes, tenants, lists, tenancies } = scratch;
-    // Rows of one resource: one check of its number serves for both.
-    let tenants = &mut tenants[..resources.len()];
+    let alone = if share { Reason::SlotFirst } else { Reason::AliasingOff };
+    // Rows of one resource: one check of its number serves for all.
+    let count = resources.len();
+    let (tenants, declared, measures) = (&mut tenants[..count], &graph.resources[..count], &measures[..count]);
     for (step, heads) in lists.iter().enumerate() {
         let mut at = heads.start;
         while at != NIL {
@@ -108,10 +110,9 @@ pub(crate) fn pool(
                 }
                 None => {
                     tally.take(row.bytes);
-                    open_slot(&graph.resources[resource.index()].desc, row, &measures[resource.index()], slots);
+                    open_slot(&declared[resource.index()].desc, row, &measures[resource.index()], slots);
                     tenancies.push(Tenancy::first(resource, row, tenant));
-                    let reason = if share { Reason::SlotFirst } else { Reason::AliasingOff };
-                    (slots.len() as u32 - 1, reason)
+                    (slots.len() as u32 - 1, alone)
                 }
             };
             row.placement = Placement::Slot(SlotId::unchecked(slot as usize));
@@ -177,7 +178,7 @@ fn reformatted(layout: Layout, format: Format) -> Layout {
 }
 
 /// Adds the slot that a resource is the first tenant of: size and levels counted out.
-#[inline(never)]
+#[inline]
 fn open_slot(declared: &Desc, row: &Planned, measured: &Measured, slots: &mut Vec<Slot>) {
     let (usage, bytes) = (row.usage, row.bytes);
     match declared {
