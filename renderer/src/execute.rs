@@ -15,6 +15,7 @@ pub(crate) mod object_counts;
 pub(crate) mod part;
 pub(crate) mod prepared;
 pub(crate) mod recording;
+pub(crate) mod remembered;
 pub(crate) mod segments;
 pub(crate) mod steps;
 pub(crate) mod targets;
