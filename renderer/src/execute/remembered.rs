@@ -64,3 +64,29 @@ impl Remembered {
         &mut self.steps[self.current]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Requests of a steady frame take no more memory the longer it runs, and steps do not share what they remember.
+    #[test]
+    fn a_step_that_begins_anew_goes_through_the_same_requests() {
+        let mut remembered = Remembered::default();
+        for _ in 0..3 {
+            for (step, requests) in [(StepId::at(1), 2), (StepId::at(0), 3)] {
+                remembered.begin(step);
+                for _ in 0..requests {
+                    remembered.step().views.next();
+                    remembered.step().groups.next();
+                    remembered.step().rasters.next();
+                    remembered.step().computes.next();
+                }
+            }
+        }
+        let lengths = |s: &RememberedStep| [s.views.last.len(), s.groups.last.len(), s.rasters.last.len()];
+        let computes: Vec<_> = remembered.steps.iter().map(|s| s.computes.last.len()).collect();
+        assert_eq!(remembered.steps.iter().map(lengths).collect::<Vec<_>>(), [[3; 3], [2; 3]]);
+        assert_eq!(computes, [3, 2]);
+    }
+}
