@@ -1,5 +1,6 @@
 //! Executing a plan: its steps as render and compute passes, and what recorders work with.
 
+pub(crate) mod attached;
 pub(crate) mod attachments;
 pub(crate) mod blame;
 pub(crate) mod clear;

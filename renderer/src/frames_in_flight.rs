@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use std::num::NonZeroU32;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
-use wgpu::SubmissionIndex;
+use wgpu::{PollType, SubmissionIndex};
 
 /// The frames that were submitted and that the device is not done with. [`FrameLoop`](crate::FrameLoop) has one; a loop of one's
 /// own calls [`FramesInFlight::begin`] before it looks at the input, and [`FramesInFlight::submitted`] behind its submission.
@@ -74,7 +74,8 @@ impl FramesInFlight {
         let Self { gpu, most, queued, waits, latency, .. } = self;
         let wait = |oldest: &Queued| {
             *waits += 1;
-            gpu.wait_for(oldest.submission.clone())
+            let oldest = PollType::Wait { submission_index: Some(oldest.submission.clone()), timeout: None };
+            gpu.poll_as(oldest, "waiting for an older frame")
         };
         make_room(queued, *most, wait, |done| latency.push(done.ms()))?;
         self.begun = Some(Instant::now());

@@ -298,18 +298,12 @@ impl Gpu {
         self.poll_as(wgpu::PollType::wait_indefinitely(), "waiting for submitted work")
     }
 
-    /// Waits until that submission is done, and those before it.
-    pub(crate) fn wait_for(&self, submission: wgpu::SubmissionIndex) -> Result<(), DeviceError> {
-        let kind = wgpu::PollType::Wait { submission_index: Some(submission), timeout: None };
-        self.poll_as(kind, "waiting for an older frame")
-    }
-
     /// How often anything has waited for this device by [`Gpu::wait`]: a frame loop that never stalls adds nothing to it.
     pub fn waits(&self) -> u64 {
         self.waits.load(atomic::Ordering::Relaxed)
     }
 
-    fn poll_as(&self, kind: wgpu::PollType, doing: &'static str) -> Result<(), DeviceError> {
+    pub(crate) fn poll_as(&self, kind: wgpu::PollType, doing: &'static str) -> Result<(), DeviceError> {
         self.errors.check(doing)?;
         // wgpu 30 panics when the device is lost during the wait itself (`handle_error_fatal` in `Device::poll`).
         let polled = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| self.device.poll(kind)));

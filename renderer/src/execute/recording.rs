@@ -1,6 +1,6 @@
 //! What recording writes, beside commands: the constants, counts and times of the steps that one thread records.
 
-use crate::execute::attachments::Attached;
+use crate::execute::attached::Attached;
 use crate::execute::error::RecordError;
 use crate::execute::remembered::Remembered;
 use crate::execute::uniforms::Uniforms;
