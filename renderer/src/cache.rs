@@ -2,11 +2,12 @@
 //!
 //! Threads that record share a cache by reference. What earlier frames made is found without a lock and without an
 //! allocation; what this frame makes is put aside behind a lock, and joins the rest when the next frame begins.
+//! Who asks for the same in each frame keeps what it got ([`Last`]), and finds it again without a hash.
 
 use crate::hash::Keyed;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// Hits and misses of a cache, since it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -30,7 +31,7 @@ pub(crate) struct Cache<K, V> {
 }
 
 /// By hash, so that a description need not be owned to be looked up; equal hashes are told apart by comparing.
-type Table<K, V> = HashMap<u64, Vec<Entry<K, V>>, Keyed>;
+type Table<K, V> = HashMap<u64, Vec<Arc<Entry<K, V>>>, Keyed>;
 
 #[derive(Debug)]
 struct Entry<K, V> {
@@ -38,6 +39,16 @@ struct Entry<K, V> {
     value: V,
     /// The frame that asked for it last.
     used: AtomicU64,
+}
+
+/// What a request got last. It keeps nothing alive: what the cache drops is gone, and asked for anew.
+#[derive(Debug)]
+pub(crate) struct Last<K, V>(Weak<Entry<K, V>>);
+
+impl<K, V> Default for Last<K, V> {
+    fn default() -> Self {
+        Self(Weak::new())
+    }
 }
 
 impl<K, V> Default for Cache<K, V> {
@@ -68,28 +79,63 @@ impl<K, V: Clone> Cache<K, V> {
         is: impl Fn(&K) -> bool,
         make: impl FnOnce() -> Result<(K, V), E>,
     ) -> Result<V, E> {
-        if let Some(value) = self.find(&self.known, hash, &is) {
-            return Ok(value);
+        self.entry(hash, &is, make).map(|entry| entry.value.clone())
+    }
+
+    /// As [`Cache::get`], by one that asks in each frame: where `is` still holds of what it got `last`, nothing is hashed.
+    ///
+    /// # Errors
+    /// As [`Cache::get`].
+    pub(crate) fn again<E>(
+        &self,
+        last: &mut Last<K, V>,
+        hash: impl FnOnce() -> u64,
+        is: impl Fn(&K) -> bool,
+        make: impl FnOnce() -> Result<(K, V), E>,
+    ) -> Result<V, E> {
+        if let Some(entry) = last.0.upgrade().filter(|entry| is(&entry.key)) {
+            self.note(&entry);
+            return Ok(entry.value.clone());
+        }
+        let entry = self.entry(hash(), &is, make)?;
+        last.0 = Arc::downgrade(&entry);
+        Ok(entry.value.clone())
+    }
+
+    fn entry<E>(
+        &self,
+        hash: u64,
+        is: &impl Fn(&K) -> bool,
+        make: impl FnOnce() -> Result<(K, V), E>,
+    ) -> Result<Arc<Entry<K, V>>, E> {
+        if let Some(entry) = self.find(&self.known, hash, is) {
+            return Ok(entry);
         }
         // Held while the object is made: two threads that ask for one description get one object.
         let mut fresh = self.fresh.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(value) = self.find(&fresh, hash, &is) {
-            return Ok(value);
+        if let Some(entry) = self.find(&fresh, hash, is) {
+            return Ok(entry);
         }
         let (key, value) = make()?;
         self.created.fetch_add(1, Ordering::Relaxed);
-        fresh.entry(hash).or_default().push(Entry { key, value: value.clone(), used: self.frame.into() });
-        Ok(value)
+        let entry = Arc::new(Entry { key, value, used: self.frame.into() });
+        fresh.entry(hash).or_default().push(Arc::clone(&entry));
+        Ok(entry)
     }
 
-    fn find(&self, table: &Table<K, V>, hash: u64, is: impl Fn(&K) -> bool) -> Option<V> {
+    fn find(&self, table: &Table<K, V>, hash: u64, is: &impl Fn(&K) -> bool) -> Option<Arc<Entry<K, V>>> {
         let entry = table.get(&hash)?.iter().find(|entry| is(&entry.key))?;
+        self.note(entry);
+        Some(Arc::clone(entry))
+    }
+
+    /// Notes that a frame asked for it.
+    fn note(&self, entry: &Entry<K, V>) {
         // Only the first request of a frame writes to the entry.
         if entry.used.load(Ordering::Relaxed) != self.frame {
             entry.used.store(self.frame, Ordering::Relaxed);
         }
         self.hits.fetch_add(1, Ordering::Relaxed);
-        Some(entry.value.clone())
     }
 
     /// Begins a frame, and now and then drops objects that no frame asked for during `max_age` frames.
@@ -129,8 +175,10 @@ impl<K, V: Clone> Cache<K, V> {
     /// Puts what [`Cache::remade`] returned in the place of what was there.
     pub(crate) fn replace(&mut self, remade: Vec<(u64, usize, V)>) {
         for (hash, index, value) in remade {
-            if let Some(entry) = self.known.get_mut(&hash).and_then(|entries| entries.get_mut(index)) {
-                entry.value = value;
+            let Some(entries) = self.known.get_mut(&hash).filter(|entries| index < entries.len()) else { continue };
+            // Another entry, so that nobody finds the old value as the last that it got. No thread holds one meanwhile.
+            if let Some(Entry { key, used, .. }) = Arc::into_inner(entries.remove(index)) {
+                entries.insert(index, Arc::new(Entry { key, value, used }));
             }
         }
     }
@@ -149,7 +197,7 @@ impl<K, V: Clone> Cache<K, V> {
 
     fn retain_entries(&mut self, stays: impl Fn(&Entry<K, V>) -> bool) {
         self.known.retain(|_, entries| {
-            entries.retain(&stays);
+            entries.retain(|entry| stays(entry));
             !entries.is_empty()
         });
     }
@@ -182,6 +230,39 @@ mod tests {
         assert_eq!([get(&cache, "a"), get(&cache, "b")], [3, 2]);
         cache.clear();
         assert_eq!(get(&cache, "b"), 4);
+    }
+
+    /// As `get`, with what it got last; a hash of its own tells whether it was hashed for.
+    fn again(cache: &Cache<String, usize>, last: &mut Last<String, usize>, word: &str) -> (usize, bool) {
+        let mut hashed = false;
+        let hash = || {
+            hashed = true;
+            word.len() as u64
+        };
+        let make = || Ok::<_, Infallible>((word.to_owned(), cache.counts().created as usize));
+        let got = cache.again(last, hash, |known| known == word, make).unwrap_or_else(|never| match never {});
+        (got, hashed)
+    }
+
+    #[test]
+    fn who_asks_again_needs_no_hash_until_it_asks_for_another_or_the_object_is_gone() {
+        let (mut cache, mut last) = (Cache::default(), Last::default());
+        assert_eq!(again(&cache, &mut last, "a"), (0, true), "made");
+        assert_eq!(again(&cache, &mut last, "a"), (0, false));
+        assert_eq!(again(&cache, &mut last, "b"), (1, true), "another");
+        assert_eq!(again(&cache, &mut last, "b"), (1, false));
+        assert_eq!(cache.counts(), CacheCounts { hits: 2, created: 2 });
+        for _ in 0..3 {
+            cache.begin_frame(1);
+            assert_eq!(again(&cache, &mut last, "b"), (1, false), "asking keeps it young");
+        }
+        assert_eq!(get(&cache, "a"), 2, "nobody asked for the other");
+        let remade =
+            cache.remade(|word| word == "b", |_| Ok::<_, Infallible>(9)).unwrap_or_else(|never| match never {});
+        cache.replace(remade);
+        assert_eq!(again(&cache, &mut last, "b"), (9, true), "replaced");
+        cache.clear();
+        assert_eq!(again(&cache, &mut last, "b"), (3, true), "dropped");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Executing a plan: its steps as render and compute passes, and what recorders work with.
 
+pub(crate) mod attached;
 pub(crate) mod attachments;
 pub(crate) mod blame;
 pub(crate) mod clear;
@@ -15,6 +16,7 @@ pub(crate) mod object_counts;
 pub(crate) mod part;
 pub(crate) mod prepared;
 pub(crate) mod recording;
+pub(crate) mod remembered;
 pub(crate) mod segments;
 pub(crate) mod steps;
 pub(crate) mod targets;

@@ -5,6 +5,7 @@ use crate::execute::commands::FrameCommands;
 use crate::execute::error::ExecuteError;
 use crate::execute::executor::{Executor, ExecutorOptions, WarmUp};
 use crate::frame::Frame;
+use crate::frames_in_flight::FramesInFlight;
 use crate::resources::imports::Imports;
 use framegraph::{CompileErrors, DeclareError, Options, Plan, Scratch};
 use std::fmt;
@@ -42,6 +43,7 @@ pub struct FrameLoop<W: ?Sized + 'static = ()> {
     options: Options,
     imports: Imports,
     executor: Executor,
+    flight: FramesInFlight,
 }
 
 /// A frame that was executed.
@@ -91,11 +93,13 @@ impl<W: ?Sized + 'static> FrameLoop<W> {
             options,
             imports: Imports::new(),
             executor: Executor::with(gpu, executor),
+            flight: FramesInFlight::new(gpu),
         }
     }
 
     /// Declares, compiles and executes a frame of `size` texels: `declare` is given the empty frame, and binds what stands
-    /// for its imports. A size of 0 in either direction skips the frame.
+    /// for its imports. A size of 0 in either direction skips the frame. Before, it waits while as many frames are queued as
+    /// may be ([`FrameLoop::frames_in_flight_mut`]).
     ///
     /// # Errors
     /// [`FrameError`]. Nothing of the frame reached the GPU then.
@@ -120,8 +124,13 @@ impl<W: ?Sized + 'static> FrameLoop<W> {
         declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
         submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
     ) -> Result<Option<Ran<T>>, FrameError<E>> {
+        if size.contains(&0) {
+            return Ok(None);
+        }
+        self.flight.begin().map_err(ExecuteError::Device)?;
         let Some(io) = self.declare(size, declare)? else { return Ok(None) };
         let submission = self.executor.execute_with(&self.plan, &self.frame, world, &self.imports, submit)?;
+        self.flight.submitted(submission.clone());
         Ok(Some(Ran { io, submission }))
     }
 
@@ -171,6 +180,16 @@ impl<W: ?Sized + 'static> FrameLoop<W> {
     /// How frames are compiled; a change holds from the next one on.
     pub fn options_mut(&mut self) -> &mut Options {
         &mut self.options
+    }
+
+    /// The frames that the device is not done with, and how long frames take from their begin until it is.
+    pub fn frames_in_flight(&self) -> &FramesInFlight {
+        &self.flight
+    }
+
+    /// As [`FrameLoop::frames_in_flight`], to set how many there may be.
+    pub fn frames_in_flight_mut(&mut self) -> &mut FramesInFlight {
+        &mut self.flight
     }
 
     /// Who executes them.

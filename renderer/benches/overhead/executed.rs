@@ -5,7 +5,7 @@ use framegraph::{
     ClearValue, DeclareError, Extent, Format, Intent, Options, Pass, PassBuilder, Plan, Scratch, Texture, TextureDesc,
     View, recompile,
 };
-use framegraph_wgpu::{Cx, Executor, Frame, Gpu, Imports, Raster, Record, RecordError};
+use framegraph_wgpu::{Cx, Executor, ExecutorOptions, Frame, Gpu, Imports, Raster, Record, RecordError};
 use std::error::Error;
 
 struct Draw {
@@ -53,7 +53,7 @@ pub struct Executed {
 
 impl Executed {
     /// Declares and plans it.
-    pub fn new(gpu: &Gpu, case: Case) -> Result<Self, Box<dyn Error>> {
+    pub fn new(gpu: &Gpu, case: Case, timing: bool) -> Result<Self, Box<dyn Error>> {
         let mut frame = Frame::<()>::new();
         let mut before = None;
         for _ in 0..case.passes {
@@ -63,7 +63,8 @@ impl Executed {
         let (mut plan, options) = (Plan::new(), Options::for_frame(TEXELS, TEXELS));
         recompile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
         assert_eq!(plan.counts().steps as usize, case.passes, "what is compared is a step a pass");
-        Ok(Self { frame, plan, executor: Executor::new(gpu) })
+        let executor = Executor::with(gpu, ExecutorOptions { timing, ..ExecutorOptions::default() });
+        Ok(Self { frame, plan, executor })
     }
 
     /// One more frame.

@@ -1,7 +1,8 @@
 //! What executing a plan adds to the same calls made by hand: time side by side in one process, and instructions.
 //!
 //! On wgpu's device that validates and draws nothing. With `--count WHO PASSES DRAWS FRAMES` it does nothing but run frames,
-//! for a profiler that counts instructions.
+//! for a profiler that counts instructions. By hand no times are taken, so that the executor takes none either; `timed` is an
+//! executor that measures its steps, as it does by default.
 
 mod by_hand;
 mod executed;
@@ -27,14 +28,18 @@ fn main() -> Result<(), Box<dyn Error>> {
         return run_counted(who, case, frames.parse()?);
     }
     println!("### Over wgpu\n");
-    println!("| passes × draws | by hand, µs | executed, µs | ratio | by hand, instr. | executed, instr. | ratio |");
-    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    println!(
+        "| passes × draws | by hand, µs | executed, µs | ratio | by hand, instr. | executed, instr. | ratio | timed, instr. | ratio |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     for case in CASES {
         let (hand, own) = side_by_side(case)?;
-        let counts = [instructions("hand", case), instructions("executor", case)];
+        let counts = ["hand", "executor", "timed"].map(|who| instructions(who, case));
         let counted = match counts {
-            [Ok(hand), Ok(own)] => format!("{hand:.0} | {own:.0} | {:.2}", own / hand),
-            [Err(why), _] | [_, Err(why)] => format!("{why} | |"),
+            [Ok(hand), Ok(own), Ok(timed)] => {
+                format!("{hand:.0} | {own:.0} | {:.2} | {timed:.0} | {:.2}", own / hand, timed / hand)
+            }
+            [Err(why), ..] | [_, Err(why), _] | [.., Err(why)] => format!("{why} | | | |"),
         };
         let Case { passes, draws } = case;
         println!("| {passes} × {draws} | {hand:.1} | {own:.1} | {:.2} | {counted} |", own / hand);
@@ -46,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Medians of frames in turns, in µs.
 fn side_by_side(case: Case) -> Result<(f64, f64), Box<dyn Error>> {
     let gpu = Gpu::noop()?;
-    let (mut hand, mut own) = (ByHand::new(&gpu, case), Executed::new(&gpu, case)?);
+    let (mut hand, mut own) = (ByHand::new(&gpu, case), Executed::new(&gpu, case, false)?);
     let (mut of_hand, mut of_own) = (Vec::new(), Vec::new());
     for frame in 0..400 + WARM_UP {
         let start = Instant::now();
@@ -72,7 +77,7 @@ fn run_counted(who: &str, case: Case, frames: usize) -> Result<(), Box<dyn Error
         (0..WARM_UP).try_for_each(|_| hand.frame())?;
         (0..frames).try_for_each(|_| counted_hand(&mut hand))
     } else {
-        let mut own = Executed::new(&gpu, case)?;
+        let mut own = Executed::new(&gpu, case, who == "timed")?;
         (0..WARM_UP).try_for_each(|_| own.frame())?;
         (0..frames).try_for_each(|_| counted_executor(&mut own))
     }
@@ -96,7 +101,7 @@ fn instructions(who: &str, case: Case) -> Result<f64, String> {
     let program = std::env::current_exe().map_err(|error| error.to_string())?;
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null", "--collect-atstart=no"])
-        .arg(format!("--toggle-collect=*counted_{who}*"))
+        .arg(format!("--toggle-collect=*counted_{}*", if who == "hand" { who } else { "executor" }))
         .arg(program)
         .args(["--count", who, &case.passes.to_string(), &case.draws.to_string(), &FRAMES.to_string()])
         .output()

@@ -11,7 +11,7 @@
 //! filling takes is left alone.
 
 use crate::device::gpu::Gpu;
-use crate::execute::attachments::Attached;
+use crate::execute::attached::Attached;
 use crate::execute::clear::{Values, fill_view};
 use crate::execute::prepared::Prepared;
 use crate::execute::targets::Targets;

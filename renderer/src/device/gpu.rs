@@ -303,7 +303,7 @@ impl Gpu {
         self.waits.load(atomic::Ordering::Relaxed)
     }
 
-    fn poll_as(&self, kind: wgpu::PollType, doing: &'static str) -> Result<(), DeviceError> {
+    pub(crate) fn poll_as(&self, kind: wgpu::PollType, doing: &'static str) -> Result<(), DeviceError> {
         self.errors.check(doing)?;
         // wgpu 30 panics when the device is lost during the wait itself (`handle_error_fatal` in `Device::poll`).
         let polled = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| self.device.poll(kind)));

@@ -1,65 +1,45 @@
 //! Attachments of one step, from the plan's to wgpu's: views, operations, resolve targets.
 
 use crate::device::format::texture_format;
+use crate::execute::attached::{Attached, ColorTarget, DepthTarget};
 use crate::execute::error::ExecuteError;
 use crate::execute::load_store::{color_ops, depth_ops};
 use crate::execute::prepared::Prepared;
+use crate::execute::remembered::Remembered;
 use crate::named::Named;
 use crate::resources::realize::Physical;
 use crate::resources::views::ViewDesc;
-use framegraph::{
-    Attachment, ClearValue, Counts, Dimension, Format, LoadOp, MAX_COLORS, Range, ResolveMode, Role, StepId, StoreOp,
-    Usage,
-};
-use wgpu::{
-    Color, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureUsages, TextureView,
-};
-
-/// The attachments of one render pass, owned.
-#[derive(Debug, Default)]
-pub(crate) struct Attached {
-    pub(crate) colors: [Option<ColorTarget>; MAX_COLORS as usize],
-    pub(crate) depth: Option<DepthTarget>,
-}
-
-/// One color attachment.
-#[derive(Clone, Debug)]
-pub(crate) struct ColorTarget {
-    pub(crate) view: TextureView,
-    pub(crate) resolve: Option<TextureView>,
-    pub(crate) ops: Operations<Color>,
-    pub(crate) depth_slice: Option<u32>,
-}
-
-/// The depth-stencil attachment; a plane without operations is read only.
-#[derive(Clone, Debug)]
-pub(crate) struct DepthTarget {
-    pub(crate) view: TextureView,
-    pub(crate) depth: Option<Operations<f32>>,
-    pub(crate) stencil: Option<Operations<u32>>,
-}
+use framegraph::{Attachment, ClearValue, Dimension, Format, Range, ResolveMode, Role, StepId, StoreOp, Usage};
+use wgpu::{TextureUsages, TextureView};
 
 impl Attached {
-    /// The attachments of `step`.
+    /// Takes the attachments of `step` in the place of what is here.
     ///
     /// # Errors
     /// When more layers are attached at once than the device offers, and for resolves in the store that wgpu has not.
-    pub(crate) fn of(frame: &Prepared<'_>, step: StepId) -> Result<Self, ExecuteError> {
+    pub(crate) fn gather(
+        &mut self,
+        frame: &Prepared<'_>,
+        step: StepId,
+        remembered: &mut Remembered,
+    ) -> Result<(), ExecuteError> {
+        self.clear();
         let plan = frame.plan;
-        let mut attached = Self::default();
         for attachment in plan.attachments_of(step) {
-            let (view, depth_slice) = view_of(frame, attachment)?;
+            let (view, depth_slice) = view_of(frame, attachment, remembered)?;
             let attachment = &kept_initialized(frame, step, attachment);
             let clear = plan.graph().clears().get(attachment.clear as usize).copied().unwrap_or(ClearValue::Zero);
             match attachment.role {
                 Role::Color(slot) => {
-                    let ops = color_ops(attachment, clear);
-                    attached.colors[usize::from(slot)] = Some(ColorTarget { view, resolve: None, ops, depth_slice });
+                    let (slot, ops) = (usize::from(slot), color_ops(attachment, clear));
+                    let slots = self.colors.len().max(slot + 1);
+                    self.colors.resize_with(slots, || None);
+                    self.colors[slot] = Some(ColorTarget { view, resolve: None, ops, depth_slice });
                 }
                 // wgpu always stores a resolve target, so one that no later pass reads is left out.
                 Role::ResolveTarget(..) if attachment.store == StoreOp::Discard => {}
                 Role::ResolveTarget(slot, ResolveMode::Average) => {
-                    if let Some(color) = &mut attached.colors[usize::from(slot)] {
+                    if let Some(Some(color)) = self.colors.get_mut(usize::from(slot)) {
                         color.resolve = Some(view);
                     }
                 }
@@ -70,67 +50,11 @@ impl Attached {
                 Role::Depth | Role::DepthReadOnly => {
                     let format = plan.format(attachment.resource).unwrap_or(Format::Depth32Float);
                     let (depth, stencil) = depth_ops(attachment, format, clear);
-                    attached.depth = Some(DepthTarget { view, depth, stencil });
+                    self.depth = Some(DepthTarget { view, depth, stencil });
                 }
             }
         }
-        Ok(attached)
-    }
-
-    /// Calls `begin` with the descriptor's parts, which borrow from here.
-    pub(crate) fn with_descriptor<T>(
-        &self,
-        begin: impl FnOnce(&[Option<RenderPassColorAttachment<'_>>], Option<RenderPassDepthStencilAttachment<'_>>) -> T,
-    ) -> T {
-        let last = self.colors.iter().rposition(Option::is_some).map_or(0, |slot| slot + 1);
-        let colors = self.colors.each_ref().map(|c| {
-            c.as_ref().map(|c| RenderPassColorAttachment {
-                view: &c.view,
-                depth_slice: c.depth_slice,
-                resolve_target: c.resolve.as_ref(),
-                ops: c.ops,
-            })
-        });
-        let depth = self.depth.as_ref().map(|d| RenderPassDepthStencilAttachment {
-            view: &d.view,
-            depth_ops: d.depth,
-            stencil_ops: d.stencil,
-        });
-        begin(&colors[..last], depth)
-    }
-
-    /// Adds the operations of the descriptor to the counts of what was executed.
-    pub(crate) fn count(&self, counts: &mut Counts) {
-        counts.render_passes += 1;
-        self.with_descriptor(|colors, depth| {
-            for color in colors.iter().flatten() {
-                counts.unresolves += u32::from(matches!(color.ops.load, wgpu::LoadOp::Load));
-                counts.clears += u32::from(matches!(color.ops.load, wgpu::LoadOp::Clear(_)));
-                counts.resolves += u32::from(color.ops.store == wgpu::StoreOp::Store);
-                counts.discards += u32::from(color.ops.store == wgpu::StoreOp::Discard);
-                counts.resolves += u32::from(color.resolve_target.is_some());
-                counts.multisample_resolves += u32::from(color.resolve_target.is_some());
-            }
-            if let Some(depth) = depth {
-                let loads = [depth.depth_ops.map(|o| kind(&o.load)), depth.stencil_ops.map(|o| kind(&o.load))];
-                let stores = [depth.depth_ops.map(|o| o.store), depth.stencil_ops.map(|o| o.store)];
-                let any_load = |wanted| loads.iter().flatten().any(|l| *l == wanted);
-                let read_only = stores.iter().all(Option::is_none);
-                let stored = stores.iter().flatten().any(|s| *s == wgpu::StoreOp::Store);
-                counts.unresolves += u32::from(read_only || any_load(LoadOp::Load));
-                counts.clears += u32::from(any_load(LoadOp::Clear));
-                counts.resolves += u32::from(stored);
-                counts.discards += u32::from(!read_only && !stored);
-            }
-        });
-    }
-}
-
-const fn kind<V>(op: &wgpu::LoadOp<V>) -> LoadOp {
-    match op {
-        wgpu::LoadOp::Load => LoadOp::Load,
-        wgpu::LoadOp::Clear(_) => LoadOp::Clear,
-        wgpu::LoadOp::DontCare(_) => LoadOp::DontCare,
+        Ok(())
     }
 }
 
@@ -150,7 +74,11 @@ fn kept_initialized(frame: &Prepared<'_>, step: StepId, attachment: &Attachment)
 }
 
 /// The view to attach, and the slice of a three-dimensional texture.
-fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView, Option<u32>), ExecuteError> {
+fn view_of(
+    frame: &Prepared<'_>,
+    attachment: &Attachment,
+    remembered: &mut Remembered,
+) -> Result<(TextureView, Option<u32>), ExecuteError> {
     let Prepared { plan, gpu, realized, caches, .. } = *frame;
     let Physical::Texture { texture, shape, .. } = realized.get(attachment.resource) else {
         unreachable!("the plan attaches `{}`, which has no texture", Named::resource(plan, attachment.resource));
@@ -174,5 +102,6 @@ fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView
     };
     let slice = (shape.dimension == Dimension::D3).then_some(0);
     let name = plan.graph().resource_name(attachment.resource);
-    Ok((caches.views.get(&gpu.device, texture, view, name)?, slice))
+    let last = remembered.step().views.next();
+    Ok((caches.views.again(last, &gpu.device, texture, view, name)?, slice))
 }

@@ -150,9 +150,11 @@ impl<'a> Cx<'a> {
     /// its recorder returns, with the names of shader, group, binding and variable ([`RecordError::Binding`]).
     pub fn bind_group<'l>(&mut self, group: impl Into<Group<'l>>, bindings: &[(u32, Binding)]) -> BindGroup {
         let (group, device) = (group.into(), &self.frame.gpu.device);
-        let label = || format!("{}: group {} of {}", self.pass_name(), group.index(), group.shader());
+        let (frame, pass) = (self.frame, self.pass_name());
+        let label = || format!("{pass}: group {} of {}", group.index(), group.shader());
+        let last = self.recording.remembered.step().groups.next();
         let made = match group.layout() {
-            Ok(layout) => self.frame.caches.groups.get(device, layout, bindings, label),
+            Ok(layout) => frame.caches.groups.get(last, device, layout, bindings, label),
             Err(error) => return self.no_group(error.into()),
         };
         match made {
@@ -178,7 +180,8 @@ impl<'a> Cx<'a> {
     pub fn raster_pipeline(&mut self, raster: &Raster<'_>) -> Result<RasterPipeline, RecordError> {
         let own = self.graph().accesses_of(self.pass).iter().filter(|a| a.kind == AccessKind::Color);
         let own_slots = own.fold(0u8, |slots, access| slots | 1 << access.slot);
-        Ok(self.frame.caches.pipelines.raster(&self.frame.gpu.device, raster, self.targets, own_slots)?)
+        let last = self.recording.remembered.step().rasters.next();
+        Ok(self.frame.caches.pipelines.raster(last, &self.frame.gpu.device, raster, self.targets, own_slots)?)
     }
 
     /// The compute pipeline.
@@ -186,7 +189,8 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// As [`Cx::raster_pipeline`].
     pub fn compute_pipeline(&mut self, compute: &Compute<'_>) -> Result<ComputePipeline, RecordError> {
-        Ok(self.frame.caches.pipelines.compute(&self.frame.gpu.device, compute)?)
+        let last = self.recording.remembered.step().computes.next();
+        Ok(self.frame.caches.pipelines.compute(last, &self.frame.gpu.device, compute)?)
     }
 
     /// The passes that became epilogues of this pass's shader, in order; they record nothing themselves. A recorder whose

@@ -29,7 +29,6 @@ use crate::resources::pool::{Limits, Pool};
 use crate::resources::realize::{Realized, Sources};
 use framegraph::{Counts, Kind, Plan, ResourceId, StepId};
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 use wgpu::SubmissionIndex;
 
 /// Options of an executor.
@@ -45,7 +44,8 @@ pub struct ExecutorOptions {
     /// Frames after which a pipeline and a shader module that no frame asked for are dropped; 36,000 by default, ten minutes
     /// at 60 frames a second.
     pub max_pipeline_age: u64,
-    /// Measure GPU times, where the device can.
+    /// Measure the times of steps: on the CPU, and on the GPU where the device can. Without it, and without `trace`, the CPU
+    /// time of whole frames is all that is measured, and a frame asks the clock twice.
     pub timing: bool,
     /// Write down the times of every frame ([`Timing::trace`]), beside the statistics.
     pub trace: bool,
@@ -115,7 +115,7 @@ impl Executor {
             gpu: gpu.clone(),
             options,
             caches: Caches::default(),
-            recording: Recording::new(&gpu.device),
+            recording: Recording::new(&gpu.device, options.timing || options.trace),
             textures: Pool::new(limits),
             buffers: Pool::new(limits),
             histories: Histories::default(),
@@ -201,12 +201,12 @@ impl Executor {
         submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
     ) -> Result<SubmissionIndex, ExecuteError> {
         let commands = self.record(plan, passes, imports, &mut |_, _| ())?;
-        let begun = Instant::now();
+        let begun = self.recording.now();
         let scopes = ErrorScopes::open(&self.gpu.device);
         self.recording.uniforms.upload(&self.gpu.queue);
         let index = submit(commands);
         let caught = self.caught(scopes, "submitting a frame");
-        self.recording.in_wgpu += begun.elapsed();
+        self.recording.took_in_wgpu(begun);
         if let Err(error) = caught {
             self.forget_frame();
             return Err(self.told(plan, error));
@@ -231,13 +231,12 @@ impl Executor {
         self.executed = Counts::default();
         self.timing.begin_frame(&self.gpu, plan);
 
-        let begun = Instant::now();
-        let scopes = ErrorScopes::open(&self.gpu.device);
-        self.recording.in_wgpu += begun.elapsed();
+        let device = &self.gpu.device;
+        let scopes = self.recording.in_wgpu(|| ErrorScopes::open(device));
         let ran = self.prepare(plan, imports).and_then(|()| self.record_steps(plan, passes, recorded));
-        let begun = Instant::now();
+        let begun = self.recording.now();
         let caught = self.caught(scopes, "a frame");
-        self.recording.in_wgpu += begun.elapsed();
+        self.recording.took_in_wgpu(begun);
         match (ran, caught) {
             (ran, Ok(())) => ran,
             (Err(said), Err(error)) => {

@@ -224,7 +224,8 @@ impl<'a> Cx<'a> {
             view = view.used_as(shape.view_usages(format));
         }
         let name = self.graph().resource_name(access.resource);
-        self.frame.caches.views.get(&self.frame.gpu.device, texture, view, name).map_err(|error| match error {
+        let last = self.recording.remembered.step().views.next();
+        self.frame.caches.views.again(last, &self.frame.gpu.device, texture, view, name).map_err(|error| match error {
             DeviceError::Refused { message, .. } => {
                 RecordError::View { resource: Named::resource(self.frame.plan, access.resource), message }
             }

@@ -1,6 +1,8 @@
 //! What recording writes, beside commands: the constants, counts and times of the steps that one thread records.
 
+use crate::execute::attached::Attached;
 use crate::execute::error::RecordError;
+use crate::execute::remembered::Remembered;
 use crate::execute::uniforms::Uniforms;
 use framegraph::{Counts, PassId, StepId};
 use std::time::{Duration, Instant};
@@ -10,13 +12,19 @@ use wgpu::Device;
 #[derive(Debug)]
 pub(crate) struct Recording {
     pub(crate) uniforms: Uniforms,
+    /// What its steps asked of the caches, for the next frame.
+    pub(crate) remembered: Remembered,
+    /// What the step that is being opened attaches.
+    pub(crate) attached: Attached,
+    /// Whether times are taken: reading the clock costs as much as opening a pass.
+    timed: bool,
     /// Steps, passes and operations recorded so far.
     pub(crate) executed: Counts,
     /// Fills that poisoning added.
     pub(crate) poisoned: u32,
-    /// When each step was recorded.
+    /// When each step was recorded, where times are taken.
     pub(crate) steps: Vec<StepTime>,
-    /// Time spent inside of wgpu's calls to open, close and finish.
+    /// Time spent inside of wgpu's calls to open, close and finish, where times are taken.
     pub(crate) in_wgpu: Duration,
     /// The passes of the open step that became part of the shader of another one.
     pub(crate) inlined: Vec<PassId>,
@@ -33,10 +41,10 @@ pub(crate) struct StepTime {
 }
 
 impl Recording {
-    pub(crate) fn new(device: &Device) -> Self {
-        let (executed, in_wgpu) = (Counts::default(), Duration::ZERO);
-        let (uniforms, steps, inlined) = (Uniforms::new(device), Vec::new(), Vec::new());
-        Self { uniforms, executed, poisoned: 0, steps, in_wgpu, inlined, refused: None }
+    pub(crate) fn new(device: &Device, timed: bool) -> Self {
+        let (executed, in_wgpu, remembered) = (Counts::default(), Duration::ZERO, Remembered::default());
+        let (uniforms, steps, inlined, attached) = (Uniforms::new(device), Vec::new(), Vec::new(), Attached::default());
+        Self { uniforms, remembered, attached, timed, executed, poisoned: 0, steps, in_wgpu, inlined, refused: None }
     }
 
     /// Begins a frame: everything recorded before is forgotten.
@@ -44,15 +52,33 @@ impl Recording {
         self.uniforms.begin_frame();
         (self.executed, self.poisoned, self.in_wgpu) = (Counts::default(), 0, Duration::ZERO);
         self.steps.clear();
+        self.attached.clear();
         self.inlined.clear();
         self.refused = None;
     }
 
     /// Runs `call`, whose time is wgpu's.
     pub(crate) fn in_wgpu<T>(&mut self, call: impl FnOnce() -> T) -> T {
-        let begun = Instant::now();
+        let begun = self.now();
         let out = call();
-        self.in_wgpu += begun.elapsed();
+        self.took_in_wgpu(begun);
         out
+    }
+
+    /// What the clock says, where times are taken.
+    pub(crate) fn now(&self) -> Option<Instant> {
+        self.timed.then(Instant::now)
+    }
+
+    /// The time since `begun` is wgpu's.
+    pub(crate) fn took_in_wgpu(&mut self, begun: Option<Instant>) {
+        self.in_wgpu += begun.map_or(Duration::ZERO, |begun| begun.elapsed());
+    }
+
+    /// Ends a step, or the part of one, that was begun then and spent its time since `closing` inside of wgpu.
+    pub(crate) fn end_step(&mut self, step: StepId, begun: Option<Instant>, closing: Option<Instant>) {
+        let (Some(begun), Some(closing), Some(ended)) = (begun, closing, self.now()) else { return };
+        self.in_wgpu += ended.duration_since(closing);
+        self.steps.push(StepTime { step, begun, ended });
     }
 }

@@ -1,22 +1,20 @@
 //! Recording one step of a plan: its attachments, its passes in order, and the end of the pass.
 
 use crate::debug::poison;
-use crate::execute::attachments::Attached;
 use crate::execute::clear::clear_stored;
 use crate::execute::cx::{Cx, Open};
 use crate::execute::epilogue::{Inlined, inlined_after};
 use crate::execute::error::{ExecuteError, RecordError};
 use crate::execute::full_screen_resolve;
 use crate::execute::prepared::Prepared;
-use crate::execute::recording::{Recording, StepTime};
+use crate::execute::recording::Recording;
 use crate::execute::targets::Targets;
 use crate::frame::Frame;
 use crate::measure::timing::TimestampWrites;
 use crate::named::Named;
 use framegraph::{
-    AccessKind, Attachment, Format, Join, PassFlags, PassId, PassKind, Plan, Range, Role, StepId, StepPass,
+    AccessKind, Attachment, Format, Join, MAX_COLORS, PassFlags, PassId, PassKind, Plan, Range, Role, StepId, StepPass,
 };
-use std::time::Instant;
 use wgpu::{
     CommandEncoder, ComputePassDescriptor, ComputePassTimestampWrites, RenderPass, RenderPassDescriptor,
     RenderPassTimestampWrites,
@@ -65,33 +63,39 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
 ) -> Result<(), ExecuteError> {
     let plan = frame.plan;
     let targets = Targets::of(plan, step);
+    recording.remembered.begin(step);
     if frame.poison {
         recording.poisoned += poison::at_first_use(frame, step, encoder);
     }
     clear_stored(frame, step, encoder)?;
-    let begun = Instant::now();
+    let begun = recording.now();
     let timestamps = frame.timing.writes(step);
-    let mut open = open(frame, step, &targets, timestamps.as_ref(), recording, encoder)?;
+    attach(frame, step, &targets, recording)?;
+    let mut open = open(frame, step, &targets, timestamps.as_ref(), recording, encoder);
+    recording.attached.clear();
     recording.executed.steps += 1;
     for member in recorded_members(plan, step).take(count) {
         record_pass(frame, passes, (step, *member), &targets, recording, encoder, &mut open)?;
     }
     // Dropping the pass ends it, and has wgpu look at everything that was recorded into it.
     let is_copy = matches!(open, Open::Copy);
-    recording.in_wgpu(|| drop(open));
+    let closing = recording.now();
+    drop(open);
     if let (true, Some(timestamps)) = (is_copy, &timestamps) {
         encoder.write_timestamp(&timestamps.queries, timestamps.end);
     }
-    recording.steps.push(StepTime { step, begun, ended: Instant::now() });
+    recording.end_step(step, begun, closing);
     if frame.poison {
         recording.poisoned += poison::at_end(frame, step, encoder);
     }
     // Two passes that draw into one target both take what comes after them.
-    recording.inlined.sort_unstable();
-    recording.inlined.dedup();
-    recording.executed.inlined += recording.inlined.len() as u32;
-    recording.executed.passes += recording.inlined.len() as u32;
-    recording.inlined.clear();
+    if !recording.inlined.is_empty() {
+        recording.inlined.sort_unstable();
+        recording.inlined.dedup();
+        recording.executed.inlined += recording.inlined.len() as u32;
+        recording.executed.passes += recording.inlined.len() as u32;
+        recording.inlined.clear();
+    }
     Ok(())
 }
 
@@ -103,10 +107,42 @@ fn open(
     timestamps: Option<&TimestampWrites>,
     recording: &mut Recording,
     encoder: &mut CommandEncoder,
-) -> Result<Open, ExecuteError> {
+) -> Open {
     let label = Some(label(frame.plan, step));
     match frame.plan.steps()[step.index()].kind {
-        PassKind::Raster => open_raster(frame, step, targets, timestamps, recording, encoder),
+        PassKind::Raster => {
+            let timestamp_writes = timestamps.map(|t| RenderPassTimestampWrites {
+                query_set: &t.queries,
+                beginning_of_pass_write_index: Some(t.begin),
+                end_of_pass_write_index: Some(t.end),
+            });
+            let attached = &recording.attached;
+            // One color is what most passes have, and eight are long.
+            let (one, all);
+            let color_attachments: &[_] = match attached.colors.len() {
+                0 => &[],
+                1 => {
+                    one = [attached.color(0)];
+                    &one
+                }
+                count => {
+                    all = std::array::from_fn::<_, { MAX_COLORS as usize }, _>(|slot| attached.color(slot));
+                    &all[..count]
+                }
+            };
+            let descriptor = RenderPassDescriptor {
+                label,
+                color_attachments,
+                depth_stencil_attachment: attached.depth(),
+                timestamp_writes,
+                multiview_mask: targets.multiview_mask(),
+                ..Default::default()
+            };
+            let begun = recording.now();
+            let pass = encoder.begin_render_pass(&descriptor).forget_lifetime();
+            recording.took_in_wgpu(begun);
+            Open::Raster(pass)
+        }
         PassKind::Compute => {
             let timestamp_writes = timestamps.map(|t| ComputePassTimestampWrites {
                 query_set: &t.queries,
@@ -114,26 +150,28 @@ fn open(
                 end_of_pass_write_index: Some(t.end),
             });
             let descriptor = ComputePassDescriptor { label, timestamp_writes };
-            Ok(Open::Compute(recording.in_wgpu(|| encoder.begin_compute_pass(&descriptor).forget_lifetime())))
+            Open::Compute(recording.in_wgpu(|| encoder.begin_compute_pass(&descriptor).forget_lifetime()))
         }
         PassKind::Copy => {
             if let Some(timestamps) = timestamps {
                 encoder.write_timestamp(&timestamps.queries, timestamps.begin);
             }
-            Ok(Open::Copy)
+            Open::Copy
         }
     }
 }
 
-fn open_raster(
+/// Gathers what a step attaches.
+fn attach(
     frame: &Prepared<'_>,
     step: StepId,
     targets: &Targets,
-    timestamps: Option<&TimestampWrites>,
     recording: &mut Recording,
-    encoder: &mut CommandEncoder,
-) -> Result<Open, ExecuteError> {
+) -> Result<(), ExecuteError> {
     let plan = frame.plan;
+    if plan.steps()[step.index()].kind != PassKind::Raster {
+        return Ok(());
+    }
     if plan.attachments_of(step).is_empty() {
         let pass = Named::pass(plan, plan.passes_of(step)[0].pass);
         return Err(ExecuteError::NoAttachment { pass });
@@ -143,30 +181,13 @@ fn open_raster(
         let resource = Named::resource(plan, attachment.resource);
         return Err(ExecuteError::Planes { resource });
     }
-    let mut attached = Attached::of(frame, step)?;
-    attached.count(&mut recording.executed);
+    let Recording { attached, remembered, executed, poisoned, .. } = recording;
+    attached.gather(frame, step, remembered)?;
+    attached.count(executed);
     if frame.poison {
-        recording.poisoned += poison::at_start(&mut attached, targets);
+        *poisoned += poison::at_start(attached, targets);
     }
-    let timestamp_writes = timestamps.map(|t| RenderPassTimestampWrites {
-        query_set: &t.queries,
-        beginning_of_pass_write_index: Some(t.begin),
-        end_of_pass_write_index: Some(t.end),
-    });
-    let pass = recording.in_wgpu(|| {
-        attached.with_descriptor(|color_attachments, depth_stencil_attachment| {
-            let descriptor = RenderPassDescriptor {
-                label: Some(label(plan, step)),
-                color_attachments,
-                depth_stencil_attachment,
-                timestamp_writes,
-                multiview_mask: targets.multiview_mask(),
-                ..Default::default()
-            };
-            encoder.begin_render_pass(&descriptor).forget_lifetime()
-        })
-    });
-    Ok(Open::Raster(pass))
+    Ok(())
 }
 
 fn record_pass<W: ?Sized + 'static>(

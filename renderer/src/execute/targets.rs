@@ -44,11 +44,6 @@ impl Targets {
         targets
     }
 
-    /// wgpu's formats of the color attachments by slot.
-    pub(crate) fn color_formats(&self) -> [Option<TextureFormat>; MAX_COLORS as usize] {
-        self.colors.map(|c| c.map(texture_format))
-    }
-
     /// wgpu's set of the layers that are drawn into at once; none for a single layer.
     pub(crate) fn multiview_mask(&self) -> Option<NonZeroU32> {
         NonZeroU32::new(u32::MAX.unbounded_shr(u32::BITS - self.layers.min(u32::BITS))).filter(|_| self.layers > 1)

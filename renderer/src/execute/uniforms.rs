@@ -67,9 +67,8 @@ impl Uniforms {
         }
         let chunk = &mut self.chunks[self.current];
         let offset = (chunk.bytes.len() as u64).next_multiple_of(self.alignment);
-        chunk.bytes.resize(offset as usize, 0);
-        chunk.bytes.extend_from_slice(bytes);
         chunk.bytes.resize((offset + length) as usize, 0);
+        chunk.bytes[offset as usize..][..bytes.len()].copy_from_slice(bytes);
         let bound = if bytes.is_empty() { length } else { bytes.len() as u64 };
         Binding::Buffer { buffer: chunk.buffer.clone(), offset, bytes: NonZeroU64::new(bound) }
     }

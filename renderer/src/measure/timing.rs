@@ -63,8 +63,8 @@ impl Timing {
     /// Frames left out after the steps change: they compile shaders and fill caches.
     pub const WARM_UP: u32 = 4;
 
-    /// Measures where the device can, if `enabled`; CPU times are taken in any case. With `trace`, every frame is written
-    /// down.
+    /// Measures where the device can, if `enabled`; the CPU times of frames are taken in any case. With `trace`, every frame is
+    /// written down.
     pub(crate) fn new(enabled: bool, trace: bool) -> Self {
         Self {
             slots: Vec::new(),
@@ -92,7 +92,7 @@ impl Timing {
     }
 
     /// CPU time of a frame that was spent inside of wgpu's calls to open and close passes, to finish, submit and poll, and
-    /// to upload; what recorders call themselves is not in it.
+    /// to upload; what recorders call themselves is not in it. None where the times of steps are not measured.
     pub fn wgpu(&self) -> Option<Summary> {
         self.wgpu.summary()
     }
@@ -179,7 +179,9 @@ impl Timing {
         }
         if let (Some(begun), 0) = (self.begun.take(), self.warm_up_left) {
             self.frame.cpu.push(ms(begun.elapsed()));
-            self.wgpu.push(ms(recording.in_wgpu));
+            if self.enabled || self.trace.is_some() {
+                self.wgpu.push(ms(recording.in_wgpu));
+            }
         }
         self.warm_up_left = self.warm_up_left.saturating_sub(1);
     }

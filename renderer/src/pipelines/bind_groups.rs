@@ -1,6 +1,6 @@
 //! Bind groups, made once for each layout and set of resources and kept while recorders ask for them.
 
-use crate::cache::{Cache, CacheCounts};
+use crate::cache::{Cache, CacheCounts, Last};
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::hash::Keyed;
 use std::hash::BuildHasher;
@@ -58,9 +58,15 @@ impl Binding {
     }
 }
 
+/// What a bind group was made from.
+type Bound = (BindGroupLayout, Box<[(u32, Binding)]>);
+
+/// The bind group that a request got last.
+pub(crate) type LastGroup = Last<Bound, BindGroup>;
+
 /// Bind groups in use. See the [module](self).
 #[derive(Debug, Default)]
-pub(crate) struct BindGroupCache(Cache<(BindGroupLayout, Box<[(u32, Binding)]>), BindGroup>);
+pub(crate) struct BindGroupCache(Cache<Bound, BindGroup>);
 
 impl BindGroupCache {
     /// Hits and creations since the cache was made.
@@ -69,19 +75,21 @@ impl BindGroupCache {
     }
 
     /// The group of that layout with `bindings`, each beside its `@binding` number. Cloning a group is cheap. `label` names
-    /// it for debuggers and errors when it has to be made.
+    /// it for debuggers and errors when it has to be made. `last` is what this request got in the frame before.
     ///
     /// # Errors
     /// wgpu's reason; nothing is kept then.
     pub(crate) fn get(
         &self,
+        last: &mut LastGroup,
         device: &Device,
         layout: &BindGroupLayout,
         bindings: &[(u32, Binding)],
         label: impl FnOnce() -> String,
     ) -> Result<BindGroup, DeviceError> {
-        self.0.get(
-            Keyed::default().hash_one((layout, bindings)),
+        self.0.again(
+            last,
+            || Keyed::default().hash_one((layout, bindings)),
             |(of, bound)| of == layout && **bound == *bindings,
             || {
                 let entries: Vec<_> = bindings
@@ -142,7 +150,7 @@ mod tests {
         let (a, b) = (gpu.device.create_buffer(&size), gpu.device.create_buffer(&size));
         let mut cache = BindGroupCache::default();
         let get = |cache: &BindGroupCache, binding: Binding| {
-            cache.get(&gpu.device, &layout, &[(3, binding)], || "group".to_owned())
+            cache.get(&mut LastGroup::default(), &gpu.device, &layout, &[(3, binding)], || "group".to_owned())
         };
         let first = get(&cache, a.clone().into())?;
         assert_eq!(get(&cache, a.clone().into())?, first);

@@ -1,6 +1,6 @@
 //! Pipelines, made once for each combination of shader, state and targets, and kept while frames ask for them.
 
-use crate::cache::{Cache, CacheCounts};
+use crate::cache::{Cache, CacheCounts, Last};
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::execute::targets::Targets;
 use crate::hash::Keyed;
@@ -13,6 +13,12 @@ use wgpu::{
     BindGroupLayout, Device, MultisampleState, PipelineCache, PipelineCompilationOptions, PipelineLayout,
     PipelineLayoutDescriptor, VertexBufferLayout,
 };
+
+/// The raster pipeline that a request got last.
+pub(crate) type LastRaster = Last<RasterKey, RasterPipeline>;
+
+/// The compute pipeline that a request got last.
+pub(crate) type LastCompute = Last<StagesKey, ComputePipeline>;
 
 /// All pipelines and shader modules that were asked for. See the [module](self).
 #[derive(Debug, Default)]
@@ -53,38 +59,44 @@ impl Pipelines {
     }
 
     /// The raster pipeline for these targets; `own_slots` are the color slots that the pass declares, the others are left
-    /// alone.
+    /// alone. `last` is what this request got in the frame before.
     ///
     /// # Errors
     /// [`ShaderError`], with the shader's name.
     pub(crate) fn raster(
         &self,
+        last: &mut LastRaster,
         device: &Device,
         raster: &Raster<'_>,
         targets: &Targets,
         own_slots: u8,
     ) -> Result<RasterPipeline, ShaderError> {
-        let fixed = fixed(raster, targets, own_slots);
-        let hash = Keyed::default().hash_one((raster, &fixed));
+        let hash = || Keyed::default().hash_one((raster, &fixed(raster, targets, own_slots)));
         let make = || {
+            let fixed = fixed(raster, targets, own_slots);
             let made = self.make_raster(device, raster, &self.modules.get(device, &raster.shader)?, &fixed)?;
-            Ok((RasterKey::new(raster, fixed.clone()), made))
+            Ok((RasterKey::new(raster, fixed), made))
         };
-        self.raster.get(hash, |key| key.is(raster, &fixed), make)
+        self.raster.again(last, hash, |key| key.is(raster, targets, own_slots), make)
     }
 
-    /// The compute pipeline.
+    /// The compute pipeline. `last` is what this request got in the frame before.
     ///
     /// # Errors
     /// [`ShaderError`], with the shader's name.
-    pub(crate) fn compute(&self, device: &Device, compute: &Compute<'_>) -> Result<ComputePipeline, ShaderError> {
+    pub(crate) fn compute(
+        &self,
+        last: &mut LastCompute,
+        device: &Device,
+        compute: &Compute<'_>,
+    ) -> Result<ComputePipeline, ShaderError> {
         let Compute { shader, entry, constants, groups } = *compute;
         let make = || {
             let made = self.make_compute(device, compute, &self.modules.get(device, &shader)?)?;
             Ok((StagesKey::new(&shader, entry, constants, groups), made))
         };
         let is = |key: &StagesKey| key.is(&shader, entry, constants, groups);
-        self.compute.get(Keyed::default().hash_one(compute), is, make)
+        self.compute.again(last, || Keyed::default().hash_one(compute), is, make)
     }
 
     /// Gives `shader` another text, and makes its pipelines anew; returns how many. Nothing changes when one is refused.
@@ -243,15 +255,16 @@ mod tests {
     fn one_pipeline_for_one_combination() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
         let pipelines = Pipelines::default();
-        let get = |format| pipelines.raster(&gpu.device, &Raster::new(FILL), &targets(format), 1);
+        let get =
+            |format| pipelines.raster(&mut LastRaster::default(), &gpu.device, &Raster::new(FILL), &targets(format), 1);
         let first = get(Format::Rgba8Unorm)?;
         let again = get(Format::Rgba8Unorm)?;
         assert_eq!(*first, *again);
         let layout = |pipeline: &RasterPipeline| pipeline.group(0).layout().ok().cloned();
         assert_eq!(layout(&first), layout(&again), "one layout, so that bind groups made with it are found again");
         assert_ne!(*get(Format::Rgba16Float)?, *first);
-        let compute = pipelines.compute(&gpu.device, &Compute::new(FILL))?;
-        assert_eq!(*compute, *pipelines.compute(&gpu.device, &Compute::new(FILL))?);
+        let compute = || pipelines.compute(&mut LastCompute::default(), &gpu.device, &Compute::new(FILL));
+        assert_eq!(*compute()?, *compute()?);
         assert_eq!(pipelines.counts(), CacheCounts { hits: 2, created: 3 });
         assert_eq!(pipelines.modules().created(), 1);
         Ok(())
@@ -261,7 +274,8 @@ mod tests {
     fn a_refusal_names_shader_and_entry_points() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
         let wrong = Raster { fragment: Some("fs_missing"), ..Raster::new(FILL) };
-        let refused = Pipelines::default().raster(&gpu.device, &wrong, &targets(Format::Rgba8Unorm), 1);
+        let (pipelines, targets) = (Pipelines::default(), targets(Format::Rgba8Unorm));
+        let refused = pipelines.raster(&mut LastRaster::default(), &gpu.device, &wrong, &targets, 1);
         let told = refused.map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
         assert!(told.contains("`fill`") && told.contains("fs_missing"), "{told}");
         Ok(())

@@ -1,8 +1,10 @@
 //! The keys of the pipeline cache: the recorder's description together with the targets of the step.
 
+use crate::device::format::texture_format;
 use crate::execute::targets::Targets;
 use crate::pipelines::shader::Shader;
 use crate::pipelines::state::{Compute, Constants, Depth, Output, Raster, VertexBuffer};
+use framegraph::Format;
 use std::num::NonZeroU32;
 use wgpu::{
     BindGroupLayout, ColorTargetState, ColorWrites, DepthStencilState, PrimitiveState, StencilState, VertexAttribute,
@@ -110,14 +112,16 @@ impl RasterKey {
         })
     }
 
-    pub(crate) fn is(&self, raster: &Raster<'_>, fixed: &Fixed) -> bool {
-        let Self { stages, fragment, buffers, primitive, fixed: own } = self;
+    /// Whether it is the key of this description with these targets. Nothing is made to be compared: this is asked for each
+    /// pipeline of each frame.
+    pub(crate) fn is(&self, raster: &Raster<'_>, targets: &Targets, own_slots: u8) -> bool {
+        let Self { stages, fragment, buffers, primitive, fixed } = self;
         let same =
             |((stride, step, attributes), b): (&(u64, VertexStepMode, Vec<VertexAttribute>), &VertexBuffer<'_>)| {
                 *stride == b.stride_bytes && *step == b.step && attributes == b.attributes
             };
         *primitive == raster.primitive
-            && own == fixed
+            && fixed.is(raster, targets, own_slots)
             && fragment.as_deref() == raster.fragment
             && buffers.len() == raster.buffers.len()
             && buffers.iter().zip(raster.buffers).all(same)
@@ -127,29 +131,56 @@ impl RasterKey {
 
 /// Combines what the recorder wants with the targets that there are.
 pub(crate) fn fixed(raster: &Raster<'_>, targets: &Targets, own_slots: u8) -> Fixed {
-    let mut colors = [const { None }; 8];
-    for (slot, (state, format)) in colors.iter_mut().zip(targets.color_formats()).enumerate() {
-        let wanted = raster.colors.get(slot).copied().unwrap_or(Output::REPLACE);
-        let own = own_slots & (1 << slot) != 0 && raster.fragment.is_some();
-        let Output { blend, write } = if own { wanted } else { Output { blend: None, write: ColorWrites::empty() } };
-        *state = format.map(|format| ColorTargetState { format, blend, write_mask: write });
+    let colors = std::array::from_fn(|slot| color_state(raster, targets, own_slots, slot));
+    let (samples, multiview_mask) = (targets.samples, targets.multiview_mask());
+    let alpha_to_coverage = covers(raster, targets);
+    Fixed { colors, depth: depth_state(raster, targets), samples, multiview_mask, alpha_to_coverage }
+}
+
+impl Fixed {
+    /// Whether it is what [`fixed`] makes of these.
+    fn is(&self, raster: &Raster<'_>, targets: &Targets, own_slots: u8) -> bool {
+        let Self { colors, depth, samples, multiview_mask, alpha_to_coverage } = self;
+        let same = |(slot, (own, format)): (usize, (&Option<ColorTargetState>, &Option<Format>))| match (own, format) {
+            (None, None) => true,
+            (Some(_), Some(_)) => *own == color_state(raster, targets, own_slots, slot),
+            _ => false,
+        };
+        *samples == targets.samples
+            && *multiview_mask == targets.multiview_mask()
+            && *alpha_to_coverage == covers(raster, targets)
+            && colors.iter().zip(&targets.colors).enumerate().all(same)
+            && *depth == depth_state(raster, targets)
     }
+}
+
+fn covers(raster: &Raster<'_>, targets: &Targets) -> bool {
+    raster.alpha_to_coverage && targets.samples > 1
+}
+
+fn color_state(raster: &Raster<'_>, targets: &Targets, own_slots: u8, slot: usize) -> Option<ColorTargetState> {
+    let format = texture_format(targets.colors[slot]?);
+    let wanted = raster.colors.get(slot).copied().unwrap_or(Output::REPLACE);
+    let own = own_slots & (1 << slot) != 0 && raster.fragment.is_some();
+    let Output { blend, write } = if own { wanted } else { Output { blend: None, write: ColorWrites::empty() } };
+    Some(ColorTargetState { format, blend, write_mask: write })
+}
+
+fn depth_state(raster: &Raster<'_>, targets: &Targets) -> Option<DepthStencilState> {
+    let format = targets.depth_format()?;
     let Depth { compare, write, bias, stencil } = raster.depth.clone();
-    let depth = targets.depth_format().map(|format| DepthStencilState {
+    Some(DepthStencilState {
         format,
         depth_write_enabled: format.has_depth_aspect().then_some(write),
         depth_compare: format.has_depth_aspect().then_some(compare),
         stencil: if format.has_stencil_aspect() { stencil } else { StencilState::default() },
         bias,
-    });
-    let (samples, multiview_mask) = (targets.samples, targets.multiview_mask());
-    Fixed { colors, depth, samples, multiview_mask, alpha_to_coverage: raster.alpha_to_coverage && samples > 1 }
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use framegraph::Format;
     use wgpu::{BlendState, CompareFunction, TextureFormat};
 
     const SHADER: Shader<'static> = Shader::new("s", "text");
@@ -182,7 +213,8 @@ mod tests {
         let base = Raster::new(SHADER);
         let state = fixed(&base, &targets(), 1);
         let key = RasterKey::new(&base, state.clone());
-        assert!(key.is(&base, &state));
+        let is = |raster: &Raster<'_>| key.is(raster, &targets(), 1);
+        assert!(is(&base));
         let values = [("A", 1.0)];
         let attributes = wgpu::vertex_attr_array![0 => Float32x3];
         let buffers = [VertexBuffer { stride_bytes: 12, step: VertexStepMode::Vertex, attributes: &attributes }];
@@ -198,12 +230,24 @@ mod tests {
             culled,
         ];
         for other in &others {
-            assert!(!key.is(other, &state), "{other:?}");
+            assert!(!is(other), "{other:?}");
         }
-        let written = fixed(&Raster { depth: Depth::NEARER, ..base.clone() }, &targets(), 1);
-        assert!(!key.is(&base, &written));
+        let blended = [Output { blend: Some(BlendState::ALPHA_BLENDING), ..Output::REPLACE }];
+        assert!(!is(&Raster { depth: Depth::NEARER, ..base.clone() }));
+        assert!(!is(&Raster { colors: &blended, ..base.clone() }));
+        assert!(!is(&Raster { alpha_to_coverage: true, ..base.clone() }));
+        let mut fewer = targets();
+        fewer.colors[2] = None;
+        let others = [Targets { samples: 1, ..targets() }, Targets { layers: 2, ..targets() }, fewer];
+        let others = others.into_iter().chain([Targets { depth: None, ..targets() }]);
+        others.for_each(|other| assert!(!key.is(&base, &other, 1), "{other:?}"));
+        assert!(!key.is(&base, &targets(), 0b100), "the pass declares another slot");
+        assert!(key.is(&base, &Targets { extent: [9, 9], ..targets() }, 1), "of any size");
         let negative = [("A", -0.0)];
-        let zero = RasterKey::new(&Raster { constants: Constants(&[("A", 0.0)]), ..base.clone() }, state.clone());
-        assert!(!zero.is(&Raster { constants: Constants(&negative), ..base }, &state), "constants compare by bits");
+        let zero = RasterKey::new(&Raster { constants: Constants(&[("A", 0.0)]), ..base.clone() }, state);
+        assert!(
+            !zero.is(&Raster { constants: Constants(&negative), ..base }, &targets(), 1),
+            "constants compare by bits"
+        );
     }
 }

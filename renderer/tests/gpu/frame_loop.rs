@@ -2,7 +2,8 @@
 
 use crate::bench::{GREEN, RED, TestResult, fill_full, on_every_device};
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Intent, TextureDesc};
-use framegraph_wgpu::{Frame, FrameError, FrameLoop, Imports, read_texture};
+use framegraph_wgpu::{Frame, FrameError, FrameLoop, FramesInFlight, Imports, read_texture};
+use std::num::NonZeroU32;
 
 /// A chain of two passes into a texture of the caller's.
 fn declare(frame: &mut Frame<[f32; 4]>, imports: &mut Imports, image: &wgpu::Texture) -> Result<(), DeclareError> {
@@ -69,5 +70,40 @@ fn a_loop_draws_skips_and_goes_on_after_errors() -> TestResult {
         assert!(matches!(told, Err(FrameError::Compile(_))));
         shows(&mut frames, &small, RED)?;
         shows(&mut frames, &large, GREEN)
+    })
+}
+
+/// However long the device takes, no more frames are queued than may be, and each frame that is done is counted once.
+#[test]
+fn a_loop_queues_no_more_frames_than_it_may() -> TestResult {
+    on_every_device("a_loop_queues_no_more_frames_than_it_may", |gpu, _| {
+        let mut frames = FrameLoop::<()>::new(gpu);
+        assert_eq!(frames.frames_in_flight().most(), FramesInFlight::DEFAULT);
+        assert!(frames.frames_in_flight().latency().is_none());
+        let run = |frames: &mut FrameLoop<()>, size| {
+            frames.run(size, &(), |frame, _| {
+                let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+                let sky = frame.graph_mut().texture("sky", desc);
+                let sky = frame.add_fn("sky", |p| p.color(sky, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
+                frame.graph_mut().export(sky)?;
+                Ok::<_, DeclareError>(())
+            })
+        };
+        let mut ran = 0;
+        for most in [2, 1, 3] {
+            frames.frames_in_flight_mut().set_most(NonZeroU32::new(most).ok_or("none")?);
+            for _ in 0..6 {
+                run(&mut frames, [512, 512])?;
+                ran += 1;
+                assert!(frames.frames_in_flight().queued() <= most as usize, "{most}");
+                assert!(run(&mut frames, [0, 0])?.is_none(), "a skipped frame is not queued");
+            }
+        }
+        gpu.wait()?;
+        frames.frames_in_flight_mut().begin()?;
+        let flight = frames.frames_in_flight();
+        assert_eq!((flight.queued(), flight.latency().map(|l| l.count)), (0, Some(ran)));
+        assert!(flight.waits() <= ran as u64, "one for each frame at most");
+        Ok(())
     })
 }

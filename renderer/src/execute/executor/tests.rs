@@ -70,7 +70,7 @@ fn two_threads_record_two_steps_of_one_frame() -> TestResult {
     expected.execute(&plan, &frame, &(), &imports)?;
 
     let mut executor = Executor::with(&gpu, ExecutorOptions { timing: false, ..ExecutorOptions::default() });
-    let mut recordings = [Recording::new(&gpu.device), Recording::new(&gpu.device)];
+    let mut recordings = [Recording::new(&gpu.device, false), Recording::new(&gpu.device, false)];
     let passes = Passes { frame: &frame, world: &(), extra: None };
     for _ in 0..3 {
         executor.caches.begin_frame(30, 30);
