@@ -55,8 +55,8 @@ const PICTURES: [(&str, Model, &str); 28] = [
     ("glass-layers", Model::Glass, "--glass-layers 3"),
     ("columns-clear", Model::Aisle, "--fog off"),
     ("columns-fog", Model::Aisle, "--fog on:density=0.15,falloff=0.6,sharp=40"),
-    ("balls-bloom", Model::Lamps, "--bloom on:strength=0.15"),
-    ("balls-flare", Model::Lamps, "--bloom on:strength=0.2,dirt=30,flare=on --dirt tests/assets/lens_dirt.png"),
+    ("balls-bloom", Model::Lamps, "--bloom on:strength=0.25"),
+    ("balls-flare", Model::Lamps, "--bloom on:strength=0.25,dirt=12,flare=on --dirt tests/assets/lens_dirt.png"),
     ("balls-focus", Model::Near, "--dof on:focus=2.4,aperture=1.4,focal=0.085"),
     ("edges-fxaa", Model::Edges, "--msaa 1"),
     ("edges-taa", Model::Edges, "--msaa 1 --no-fxaa --taa on --frames 32"),
@@ -88,7 +88,9 @@ impl Model {
             Self::Spheres => "spheres --camera 0,1.3,6.4:-2.3,0.25,2:30 --size 336x189",
             Self::Glass => "glass --camera 2.1,0.75,3.1:1.5,0.42,0:36 --size 256x144",
             Self::Aisle => "columns --size 368x207 --camera 0.5,1.2,6:0,1.2,-4:45",
-            Self::Lamps => "balls --camera wide --size 368x207 --environment tests/assets/hdri/studio.hdr",
+            Self::Lamps => {
+                "balls --camera -1.3,0.5,3.2:-1.3,0.33,0:34 --size 272x153 --environment tests/assets/hdri/studio.hdr --compensation 1 --resolve tone"
+            }
             Self::Near => "balls --camera 2.2,0.8,1.6:-1,0.3,-0.4:30 --size 368x207",
             Self::Edges => "columns --size 184x104",
             Self::Helmet => "tests/assets/models/FlightHelmet/FlightHelmet.gltf --size 168x198",
