@@ -87,7 +87,7 @@ struct Known {
 }
 
 /// Every skip that is known. `cargo xtask test` fails for any other, and where no test named an adapter.
-const KNOWN: [Known; 14] = [
+const KNOWN: [Known; 12] = [
     Known { test: "a_window_", reason: "there is no Xvfb" },
     Known { test: "a_live_frame_is_drawn_in_a_window", reason: "there is no Xvfb" },
     Known { test: "several_layers_are_drawn_into_at_once", reason: "does not draw into several layers" },
@@ -98,9 +98,6 @@ const KNOWN: [Known; 14] = [
     Known { test: "inline, Rg11b10Ufloat", reason: "cannot draw into it" },
     Known { test: "steps_are_timed_on_both_sides", reason: "has no timestamps" },
     Known { test: "a_trace_is_json_with_nested_events_on_both_sides", reason: "has no timestamps" },
-    // The record in the repository was made before the frame as a whole was measured.
-    Known { test: "chosen_sets_fit_their_budgets", reason: "has no budget yet" },
-    Known { test: "no_swap_of_a_chosen_frame_errs_less", reason: "has no budget yet" },
     Known { test: "the_layers_are_silent_about_what_is_placed", reason: "no validation layers that find hand-overs" },
     // Textures are placed on Vulkan alone.
     Known { test: "", reason: "places no textures; only Vulkan does" },

@@ -1,20 +1,81 @@
 //! What each choice of the frame errs by and takes, as the lab of accuracy writes it (`accuracy.json`, `docs/accuracy.md`).
 
+use framegraph_passes::Facts;
+use framegraph_passes::budget::{Choices, Measured, Offers};
 use serde::Deserialize;
+use std::path::PathBuf;
 
 /// The file's `schema`.
 pub const SCHEMA: &str = "framegraph-accuracy";
+/// The `version` that is read.
+pub const VERSION: u32 = 2;
 
-/// All that was measured in one place. Fields that no view shows are not read, so files of later versions open too.
+/// All that was measured in one place. Fields that no view shows are not read.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct AccuracyData {
-    schema: String,
     /// Adapter, driver and interface.
     pub adapter: String,
     /// Pictures whose frames were timed, in pixels.
     pub size_px: [u32; 2],
     /// In the order of their list.
     pub techniques: Vec<Technique>,
+    /// What frames are chosen from within a time; none where that was not measured.
+    #[serde(default)]
+    pub budget: Option<Measured>,
+    /// The folder of pictures beside the file, if there is one.
+    #[serde(skip)]
+    pub pictures: Option<PathBuf>,
+}
+
+/// What every version begins with.
+#[derive(Deserialize)]
+struct Head {
+    schema: String,
+    version: u32,
+}
+
+/// The most accurate frame within a time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChosenFrame {
+    /// Each choice of the frame with its option.
+    pub options: Vec<[&'static str; 2]>,
+    /// Time of the frame in ms.
+    pub ms: f64,
+    /// Root mean square difference from the finest frame, in codes of 255.
+    pub codes: f64,
+}
+
+impl AccuracyData {
+    /// What frames are chosen from: the selector of `render --budget-ms` ([`framegraph_passes::budget`]), of a scene that calls
+    /// for everything.
+    fn offers(&self) -> Option<(Choices, Offers)> {
+        let measured = self.budget.as_ref()?;
+        let choices = measured.choices(&Facts::default(), |_| true).ok()?;
+        let offers = measured.offers(&choices, measured.fastest_ms, measured.reference_ms);
+        Some((choices, offers))
+    }
+
+    /// Times of the fastest and of the finest frame in ms; none where frames were not measured as a whole.
+    pub fn span_ms(&self) -> Option<[f64; 2]> {
+        let (_, offers) = self.offers()?;
+        Some([offers.fastest(), offers.finest()].map(|set| offers.predicted(&set).ms))
+    }
+
+    /// The most accurate frame that takes no more; where none does, the fastest. None where frames were not measured.
+    pub fn within(&self, most_ms: f64) -> Option<ChosenFrame> {
+        let (choices, offers) = self.offers()?;
+        let set = offers.within_ms(most_ms).unwrap_or_else(|| offers.predicted(&offers.fastest()));
+        let named = choices.iter().zip(&set.options);
+        let options = named.map(|((group, options), index)| [group.name, options[*index].name]).collect();
+        Some(ChosenFrame { options, ms: set.ms, codes: set.codes() })
+    }
+
+    /// The picture of a choice, reference, choice and sixteen times their difference side by side: where the lab puts it.
+    pub fn picture(&self, technique: &Technique, choice: &Choice) -> Option<PathBuf> {
+        let letter = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
+        let name: String = choice.name.chars().map(letter).collect();
+        Some(self.pictures.as_ref()?.join(format!("{}.{name}.png", technique.name))).filter(|file| file.is_file())
+    }
 }
 
 /// A choice of the frame.
@@ -100,31 +161,25 @@ impl Technique {
         let beats = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
         points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect()
     }
-
-    /// The most accurate choice that takes at most so many milliseconds more than the fastest, of those that are as accurate the
-    /// fastest; none where choices are not timed.
-    pub fn within(&self, more_ms: f64) -> Option<usize> {
-        let timed = || self.choices.iter().enumerate().filter_map(|(i, c)| Some((i, c.error, c.ms?.median)));
-        if self.unit_of_cost() != Unit::Ms {
-            return None;
-        }
-        let least = timed().map(|(.., ms)| ms).fold(f64::INFINITY, f64::min);
-        let fits = timed().filter(|(.., ms)| *ms <= least + more_ms);
-        fits.min_by(|a, b| a.1.total_cmp(&b.1).then(a.2.total_cmp(&b.2))).map(|(index, ..)| index)
-    }
 }
 
 /// Reads a file.
 ///
 /// # Errors
-/// A sentence: no JSON, or not what the lab writes.
+/// A sentence: no JSON, of another version, or not what the lab writes.
 pub fn read(text: &[u8]) -> Result<AccuracyData, String> {
-    let data: AccuracyData = serde_json::from_slice(text).map_err(|e| format!("the accuracy cannot be read: {e}"))?;
-    if data.schema != SCHEMA {
+    let told = |error| format!("the accuracy cannot be read: {error}");
+    // The version first: another one has other fields.
+    let Head { schema, version } = serde_json::from_slice(text).map_err(told)?;
+    if (schema.as_str(), version) != (SCHEMA, VERSION) {
         return Err(format!(
-            "it is `{}`, and `{SCHEMA}` is read; `accuracy` writes it (docs/accuracy.md)",
-            data.schema
+            "it is `{schema}` of version {version}, and `{SCHEMA}` of version {VERSION} is read; measure anew with `accuracy` \
+             (docs/accuracy.md)"
         ));
+    }
+    let data: AccuracyData = serde_json::from_slice(text).map_err(told)?;
+    if let Some(measured) = &data.budget {
+        measured.choices(&Facts::default(), |_| true).map_err(|error| format!("its `budget`: {error}"))?;
     }
     let finite = |x: f64| x.is_finite() && x >= 0.0;
     let is_sound = |choice: &Choice| finite(choice.error) && choice.ms.is_none_or(|ms| finite(ms.median));

@@ -4,6 +4,7 @@
 mod export;
 mod panes;
 mod shortcuts;
+mod strip;
 
 pub use crate::session::{Role, Session};
 pub use panes::Pane;
@@ -33,6 +34,8 @@ pub struct Viewer {
     /// The pictures, made once for each state of the session.
     drawings: BTreeMap<View, Drawing>,
     drawn: [u64; 2],
+    /// The picture of an option.
+    strip: strip::Strip,
     /// A frame that is drawn beside its plan.
     #[cfg(feature = "window")]
     pub live: Option<crate::live::Live>,
@@ -55,6 +58,7 @@ impl Viewer {
             canvases: BTreeMap::new(),
             drawings: BTreeMap::new(),
             drawn: [0; 2],
+            strip: strip::Strip::default(),
             #[cfg(feature = "window")]
             live: None,
             #[cfg(feature = "window")]
@@ -94,12 +98,13 @@ impl Viewer {
         if !self.session.messages.is_empty() {
             Panel::top("messages").show(ui, |ui| self.messages(ui));
         }
-        let Self { session, tiles, list, canvases, drawings, .. } = self;
+        let Self { session, tiles, list, canvases, drawings, strip, .. } = self;
         let mut behavior = panes::Panes {
             session,
             list,
             canvases,
             drawings,
+            strip,
             #[cfg(feature = "window")]
             live: &mut self.live,
             #[cfg(feature = "window")]

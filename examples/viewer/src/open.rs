@@ -50,8 +50,9 @@ pub fn open(path: &Path, handle: &Handle) -> Result<Opened, String> {
             .map_err(|e| format!("{shown}: {e}"));
     }
     if String::from_utf8_lossy(head).contains(crate::accuracy_data::SCHEMA) {
-        let read = crate::accuracy_data::read(&bytes);
-        return read.map(|a| Opened::Accuracy(Arc::new(a))).map_err(|e| format!("{shown}: {e}"));
+        let mut read = crate::accuracy_data::read(&bytes).map_err(|e| format!("{shown}: {e}"))?;
+        read.pictures = path.parent().map(|folder| folder.join("pictures")).filter(|folder| folder.is_dir());
+        return Ok(Opened::Accuracy(Arc::new(read)));
     }
     plan_data::read(&bytes).map(|p| Opened::Plan(Arc::new(p))).map_err(|e| format!("{shown}: {e}"))
 }

@@ -47,8 +47,8 @@ pub struct Session {
     pub trace: Option<Arc<TraceData>>,
     /// What techniques err by and take.
     pub accuracy: Option<Arc<AccuracyData>>,
-    /// What each of them may take beyond its fastest choice, in ms.
-    pub more_ms: f64,
+    /// What a frame that is chosen of them may take, in ms.
+    pub budget_ms: f64,
     /// What is asked; none where nobody can plan anew, as of a saved plan.
     pub questions: Option<Questions>,
     /// What is selected.
@@ -80,7 +80,7 @@ impl Session {
             plan: None,
             trace: None,
             accuracy: None,
-            more_ms: 0.0,
+            budget_ms: 0.0,
             questions: None,
             selected: None,
             messages: Vec::new(),
@@ -99,16 +99,16 @@ impl Session {
         }
     }
 
-    /// Lets techniques take so many milliseconds beyond their fastest choice.
-    pub fn allow_ms(&mut self, more_ms: f64) {
-        self.generation += u64::from(self.more_ms != more_ms);
-        self.more_ms = more_ms;
+    /// Lets a chosen frame take so many milliseconds.
+    pub fn allow_ms(&mut self, budget_ms: f64) {
+        self.generation += u64::from(self.budget_ms != budget_ms);
+        self.budget_ms = budget_ms;
     }
 
     /// What views look at beside the plan.
     pub fn beside(&self) -> Beside<'_> {
         let (accuracy, trace) = (self.accuracy.as_deref(), self.trace.as_deref());
-        Beside { against: self.against(), trace, accuracy, more_ms: self.more_ms, selected: self.selected }
+        Beside { against: self.against(), trace, accuracy, budget_ms: self.budget_ms, selected: self.selected }
     }
 
     /// Counts the changes of what is shown.
@@ -337,6 +337,8 @@ impl Session {
                 self.generation += 1;
             }
             (Opened::Accuracy(accuracy), _) => {
+                // From the finest frame down.
+                self.budget_ms = accuracy.span_ms().map_or(0.0, |[_, finest]| finest);
                 self.accuracy = Some(accuracy);
                 self.generation += 1;
             }

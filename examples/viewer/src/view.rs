@@ -81,8 +81,8 @@ pub struct Beside<'a> {
     pub trace: Option<&'a TraceData>,
     /// What techniques err by and take.
     pub accuracy: Option<&'a AccuracyData>,
-    /// What each of them may take beyond its fastest choice, in ms.
-    pub more_ms: f64,
+    /// What a frame that is chosen of them may take, in ms.
+    pub budget_ms: f64,
     /// What is selected.
     pub selected: Option<Item>,
 }
@@ -97,6 +97,6 @@ pub fn drawing(view: View, plan: &PlanData, beside: Beside<'_>, letters: usize) 
         View::Inspector => facts::drawing(&facts::sections(plan, beside.selected), letters),
         View::Diff => diff::drawing(beside.against, plan),
         View::Trace => trace::drawing(beside.trace),
-        View::Accuracy => accuracy::drawing(beside.accuracy, beside.more_ms),
+        View::Accuracy => accuracy::drawing(beside.accuracy, beside.budget_ms),
     }
 }

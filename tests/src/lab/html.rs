@@ -24,7 +24,7 @@ pub fn strip(ours: &Picture, truth: &Picture) -> Outcome<Vec<u8>> {
         pixels.extend(truth.encoded[row.clone()].iter().flatten().map(|c| code(*c)));
         pixels.extend(ours.encoded[row.clone()].iter().flatten().map(|c| code(*c)));
         let pairs = ours.encoded[row.clone()].iter().flatten().zip(truth.encoded[row].iter().flatten());
-        pixels.extend(pairs.map(|(a, b)| code(0.5 + 8.0 * (a - b))));
+        pixels.extend(pairs.map(|(a, b)| code(0.5 + 16.0 * (a - b))));
     }
     let mut file = Vec::new();
     PngEncoder::new(&mut file).write_image(&pixels, 3 * width, height, image::ExtendedColorType::Rgb8)?;

@@ -21,8 +21,8 @@ BUDGET
                        shading, precision, radiance, reflections and glass are chosen by what they were measured to take and
                        to err by, tried on this scene, and compared with the finest frame (docs/accuracy.md)
   --max-error X        the fastest frame that is no farther than X from the finest: root mean square in codes of 255
-  --record FILE.json   what was measured, by `accuracy --technique budget`; without it, the record of the repository, which
-                       holds no frame as a whole yet, so that one must be given
+  --record FILE.json   what was measured, by `accuracy --technique budget`; without it, the record of the repository
+                       (docs/accuracy.json), which was made with a software driver
 ";
 
 /// What was measured in the repository.

@@ -1,5 +1,6 @@
 //! The panes and how they are arranged.
 
+use super::strip::Strip;
 use crate::drawing::{Drawing, Item};
 use crate::panel::{self, Canvas, Clicked, List, Shown};
 use crate::session::Session;
@@ -107,6 +108,7 @@ pub(super) struct Panes<'a> {
     pub list: &'a mut List,
     pub canvases: &'a mut BTreeMap<View, Canvas>,
     pub drawings: &'a BTreeMap<View, Drawing>,
+    pub strip: &'a mut Strip,
     #[cfg(feature = "window")]
     pub live: &'a mut Option<crate::live::Live>,
     /// Paths of a scene and of a picture of light, as they are typed.
@@ -147,14 +149,23 @@ impl Panes<'_> {
             if ui.small_button("SVG").on_hover_text("copies the picture as an SVG document").clicked() {
                 ui.ctx().copy_text(crate::drawing::svg(drawing, panel::theme(ui)));
             }
-            if view == View::Accuracy {
-                let mut more_ms = self.session.more_ms;
-                let slider = egui::Slider::new(&mut more_ms, 0.0..=200.0).suffix(" ms").text("beyond the fastest");
-                ui.add(slider)
-                    .on_hover_text("of each technique, the most accurate choice that takes so much more is framed");
-                self.session.allow_ms(more_ms);
+            if view == View::Accuracy
+                && let Some(data) = self.session.accuracy.clone()
+            {
+                if let Some([fastest, finest]) = data.span_ms() {
+                    let mut budget_ms = self.session.budget_ms;
+                    let slider = egui::Slider::new(&mut budget_ms, fastest..=finest).suffix(" ms").text("a frame");
+                    ui.add(slider).on_hover_text(
+                        "the most accurate frame within that time is chosen, as `render --budget-ms` does",
+                    );
+                    self.session.allow_ms(budget_ms);
+                }
+                self.strip.choose(ui, &data);
             }
         });
+        if view == View::Accuracy {
+            self.strip.show(ui);
+        }
         let lit = self.session.lit();
         let canvas = self.canvases.entry(view).or_default();
         match canvas.show(ui, view.word(), drawing, &lit) {

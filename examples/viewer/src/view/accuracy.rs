@@ -9,13 +9,14 @@ const PLOT: [f32; 2] = [230.0, 130.0];
 const STEP: [f32; 2] = [320.0, 264.0];
 /// Plots in a row.
 const COLUMNS: usize = 3;
-/// Where the first plot begins.
+/// Where the first plot begins where no frame was chosen, and what each line of a chosen one adds.
 const TOP: f32 = 44.0;
+const LINE: f32 = 15.0;
 /// Half the side of a mark.
 const MARK: f32 = 4.0;
 
-/// Draws the techniques. Where `more_ms` is given, the most accurate choice is framed that takes at most so much more than the fastest.
-pub fn drawing(data: Option<&AccuracyData>, more_ms: f64) -> Drawing {
+/// Draws the techniques below the most accurate frame that takes at most `budget_ms`.
+pub fn drawing(data: Option<&AccuracyData>, budget_ms: f64) -> Drawing {
     let mut drawing = Drawing::default();
     let Some(data) = data else {
         let text = "no accuracy: open one that `accuracy` wrote, such as docs/accuracy.json";
@@ -29,19 +30,38 @@ pub fn drawing(data: Option<&AccuracyData>, more_ms: f64) -> Drawing {
         data.adapter
     );
     drawing.text([0.0, 10.0], 14.0, Ink::Text, head);
-    let key = format!(
-        "joined: no other is cheaper and as accurate;  framed: the most accurate within {more_ms:.1} ms of the fastest"
-    );
-    drawing.text([0.0, 28.0], 11.0, Ink::Faint, key);
+    drawing.text([0.0, 28.0], 11.0, Ink::Faint, "joined: no other is cheaper and as accurate");
+    let top = frame(&mut drawing, data, budget_ms);
     for (index, technique) in data.techniques.iter().enumerate() {
-        let at = [STEP[0] * (index % COLUMNS) as f32, TOP + STEP[1] * (index / COLUMNS) as f32];
-        plot(&mut drawing, technique, at, more_ms);
+        let at = [STEP[0] * (index % COLUMNS) as f32, top + STEP[1] * (index / COLUMNS) as f32];
+        plot(&mut drawing, technique, at);
     }
     drawing
 }
 
+/// The frame that is chosen within a time, a choice a line; returns where what follows begins.
+fn frame(drawing: &mut Drawing, data: &AccuracyData, budget_ms: f64) -> f32 {
+    let Some(chosen) = data.within(budget_ms) else {
+        let text = "no frame is chosen within a time: `accuracy --technique budget` measures what that needs";
+        drawing.text([0.0, TOP + 2.0], 11.0, Ink::Faint, text);
+        return TOP + 1.5 * LINE;
+    };
+    let head = format!(
+        "the most accurate frame within {budget_ms:.1} ms takes {:.1} ms and is {:.2} codes from the finest:",
+        chosen.ms, chosen.codes
+    );
+    drawing.text([0.0, TOP + 2.0], 12.0, Ink::Text, head);
+    let rows = chosen.options.len().div_ceil(COLUMNS);
+    for (index, [group, option]) in chosen.options.iter().enumerate() {
+        let at = [STEP[0] * (index / rows) as f32, TOP + 2.0 + LINE * (index % rows + 1) as f32];
+        let text = shortened(&format!("{group}: {option}"), letters_in(STEP[0] - 10.0, 11.0));
+        drawing.text(at, 11.0, Ink::Text, text);
+    }
+    TOP + LINE * (rows as f32 + 1.5)
+}
+
 /// One technique, with its left top there.
-fn plot(drawing: &mut Drawing, technique: &Technique, [left, top]: [f32; 2], more_ms: f64) {
+fn plot(drawing: &mut Drawing, technique: &Technique, [left, top]: [f32; 2]) {
     drawing.text([left, top + 8.0], 13.0, Ink::Text, technique.name.clone());
     for (line, text) in wrapped(&technique.what, letters_in(STEP[0] - 20.0, 10.0)).into_iter().take(3).enumerate() {
         drawing.text([left, top + 24.0 + 12.0 * line as f32], 10.0, Ink::Faint, text);
@@ -58,7 +78,6 @@ fn plot(drawing: &mut Drawing, technique: &Technique, [left, top]: [f32; 2], mor
     let x_of = |cost: f64| x0 + PLOT[0] * (0.1 + 0.8 * (cost - low) / span) as f32;
     let y_of = |error: f64| y1 - PLOT[1] * (0.08 + 0.84 * error / most_error.max(f64::MIN_POSITIVE)) as f32;
     let front = technique.front();
-    let chosen = technique.within(more_ms);
     let mut joined: Vec<[f32; 2]> = technique
         .choices
         .iter()
@@ -80,9 +99,6 @@ fn plot(drawing: &mut Drawing, technique: &Technique, [left, top]: [f32; 2], mor
             drawing.rect([x - MARK, y - MARK, x + MARK, y + MARK], Ink::Store, Ink::Text);
         } else {
             drawing.triangle([[x - MARK, y + MARK], [x + MARK, y + MARK], [x, y - MARK]], Ink::Ghost);
-        }
-        if chosen == Some(index) {
-            drawing.rect([x - 8.0, y - 8.0, x + 8.0, y + 8.0], None, Ink::Peak);
         }
         let right = x > x0 + 0.6 * PLOT[0];
         let (align, beside) = if right { (Align::Right, x - 10.0) } else { (Align::Left, x + 10.0) };

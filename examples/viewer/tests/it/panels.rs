@@ -179,3 +179,39 @@ fn nothing_is_drawn_while_nothing_happens() {
     harness.step();
     assert_eq!(harness.state().session.doing(), None);
 }
+
+/// The slider chooses frames, the list below it shows the pictures of options; without a folder of pictures there is none.
+#[test]
+fn a_frame_is_chosen_within_a_time_and_an_option_is_seen() {
+    let folder = folder("accuracy_panel");
+    let pictures = folder.join("pictures");
+    std::fs::create_dir_all(&pictures).expect("a folder");
+    std::fs::copy("tests/it/accuracy.json", folder.join("accuracy.json")).expect("the sample");
+    std::fs::copy("../../docs/viewer/graph.png", pictures.join("shadow-filter.pcss.png")).expect("a picture");
+    std::fs::write(pictures.join("shadow-filter.vsm.png"), "no picture").expect("a file");
+    let mut harness = shown("filament");
+    harness.state_mut().session.open(&folder.join("accuracy.json"), viewer::app::Role::Shown);
+    settled(&mut harness);
+    harness.state_mut().turn_to(viewer::app::Pane::View(View::Accuracy));
+    harness.run();
+    let data = harness.state().session.accuracy.clone().expect("it is open");
+    let [fastest, finest] = data.span_ms().expect("frames were measured");
+    assert_eq!(harness.state().session.budget_ms, finest, "it begins with the finest frame");
+    harness.state_mut().session.allow_ms(fastest);
+    harness.run();
+    harness.get_by_label("picture").click();
+    harness.run();
+    assert!(harness.query_by_label("shadow-filter: DPCF").is_none(), "there is no picture of it");
+    harness.get_by_label("shadow-filter: PCSS").click();
+    harness.run();
+    harness.get_by_label_contains("reference, option, and sixteen times");
+    harness.get_by_label("picture").click();
+    harness.run();
+    harness.get_by_label("shadow-filter: VSM").click();
+    harness.run();
+    harness.get_by_label_contains("shadow-filter.vsm.png");
+    std::fs::remove_dir_all(&pictures).expect("it is there");
+    harness.state_mut().session.open(&folder.join("accuracy.json"), viewer::app::Role::Shown);
+    settled(&mut harness);
+    assert!(harness.query_by_label("picture").is_none());
+}

@@ -64,7 +64,7 @@ fn shown(view: View) -> (Viewer, Option<Item>) {
     if view == View::Accuracy {
         viewer.session.open(Path::new("tests/it/accuracy.json"), viewer::app::Role::Shown);
         assert!(viewer.session.settle(Duration::from_secs(60)));
-        viewer.session.allow_ms(20.0);
+        viewer.session.allow_ms(120.0);
     }
     (viewer, selected)
 }
