@@ -9,7 +9,7 @@ use framegraph_wgpu::{Cx, Record, RecordError};
 
 static SHADER: Module<'static> = library::pass("pass/tone_resolve.wgsl").unwrap();
 
-static INTERFACE: Interface = Interface { groups: &[&["hdr_samples"]], constants: &[] };
+static INTERFACE: Interface = Interface { groups: &[&["hdr_samples"]], constants: &["SAMPLES"] };
 
 /// Resolves radiance of several samples, each weighted by one over one and its brightest channel (Karis, "Tone mapping",
 /// 2013): the mean of what is shown rather than of light, so that an edge before a lamp is as smooth as any. Needs no more of
@@ -27,6 +27,7 @@ pub struct ToneResolve {
 #[derive(Clone, Copy, Debug)]
 pub struct ToneResolveIo {
     samples: View,
+    count: u8,
     /// Radiance, of one sample and the same size and format.
     pub hdr: Texture,
 }
@@ -41,14 +42,15 @@ impl Pass for ToneResolve {
         }
         let samples = pass.sampled(self.samples)?;
         let hdr = pass.texture("hdr", TextureDesc::new(desc.extent, desc.format));
-        Ok(ToneResolveIo { samples, hdr: pass.color(hdr, Intent::Overwrite)? })
+        Ok(ToneResolveIo { samples, count: desc.samples, hdr: pass.color(hdr, Intent::Overwrite)? })
     }
 }
 
 impl<W: AsRef<Programs> + ?Sized> Record<W> for ToneResolve {
     fn record(&self, io: &ToneResolveIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        can_read_samples(2, cx.gpu())?;
+        can_read_samples(io.count, cx.gpu())?;
         let provided = [Some(cx.view(io.samples)?.into())];
-        FullScreen::new(ProgramDesc::new(&SHADER, &INTERFACE), &[&provided]).draw(world.as_ref(), cx)
+        let draw = FullScreen::new(ProgramDesc::new(&SHADER, &INTERFACE), &[]);
+        FullScreen { constants: &[f64::from(io.count)], groups: &[&provided], ..draw }.draw(world.as_ref(), cx)
     }
 }

@@ -19,9 +19,9 @@ fn screen_uvz(clip: vec4<f32>) -> vec3<f32> {
 }
 
 /// Share of the sun that no surface close by hides, 0…1. The ray is marched in steps of equal
-/// length in the picture, with a tolerance as deep as a step toward the viewer would be. A texel has
-/// the depth of its middle, so the ray's is taken there too, along the slope of the receiver: its own
-/// surface hides nothing, however large texels are. Nor does what else is in its own texel.
+/// length in the picture, with a tolerance as deep as a step toward the viewer would be. A texel
+/// has the depth of its middle, so the ray's is taken there too, along the slope of the receiver:
+/// its own surface hides nothing, however large texels are. Nor does what else is in its texel.
 @if(CONTACT_SHADOWS)
 fn contact_visibility(receiver: Receiver) -> f32 {
     let way = frame.sun_direction * shadow.contact_m;

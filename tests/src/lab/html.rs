@@ -50,7 +50,10 @@ pub fn page(record: &Record, pictures: &Path) -> String {
         size_px[0],
         size_px[1]
     );
-    let _ = write!(text, "<p>{}</p>", escaped(&answers::taps(record)).replace("**", ""));
+    // The same sentence as in the document, without Markdown's marks and its link.
+    let taps = answers::taps(record).replace(['*', '`'], "");
+    let taps = taps.split(" More under").next().unwrap_or_default();
+    let _ = write!(text, "<p>{}</p>", escaped(taps));
     if let Some(measured) = &record.budget {
         text.push_str(&budget(measured));
     }
