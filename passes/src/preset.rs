@@ -1,56 +1,16 @@
-//! The whole frame as data: settings with what goes beside them, and presets.
+//! Presets: the frames that a record of measurements chooses within four shares of the finest frame's time.
 //!
-//! | | low | medium | high | ultra |
-//! | --- | --- | --- | --- | --- |
-//! | shading and light ([`Quality`]) | low | high | high | ultra |
-//! | samples a texel | 1 | 1 | 4 | 4 |
-//! | edges | FXAA | FXAA | FXAA, which facts leave out after samples | the same |
-//! | the sun's maps | 1 of 1024² texels, PCF | 1 of 2048², PCF | 3 of 2048², PCF | 4 of 2048², PCSS, contact |
-//! | maps of lamps | 0 | 6 | 12 | 24 |
-//! | ambient occlusion | none | SAO at half the size | SAO | GTAO |
-//! | reflections of the picture | none | none | none | yes |
-//! | glass through glass | 1 layer | 1 | 1 | 3 |
-//! | radiance | `Rg11b10Ufloat` | `Rgba16Float` | `Rgba16Float` | `Rgba16Float` |
+//! Each is the most accurate set of options of [`GROUPS`](crate::budget::GROUPS) that takes no more than its share
+//! ([`Preset::share`]) of what the finest frame takes beyond the fastest: [`Preset::choose`] finds it in any record, and
+//! [`Preset::frame`] has what it found in the record of this repository, `docs/accuracy.json`. Lamps have no part in that
+//! record; how many cast shadows is set by hand.
 
-use crate::frame::Settings;
-use crate::occlusion::{OcclusionSettings, SaoQuality};
-use crate::punctual::{FroxelSettings, LightSearch};
-use crate::reflection::ReflectionSettings;
-use crate::shading::Quality;
-use crate::shadow::{ContactShadows, ShadowFilter, ShadowSettings, Splits};
-use crate::structure::Resolution;
-use framegraph::Format;
+mod chosen;
 
-/// A frame without its scene and camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
-pub struct FrameSettings {
-    /// How fine light from all around is made; `settings.shading` says how it is used.
-    pub quality: Quality,
-    /// How shading finds the lights that reach a place.
-    pub lights: LightSearch,
-    /// Post-processing goes into the color pass's shader where that is sound.
-    pub inline: bool,
-    /// The frame.
-    pub settings: Settings,
-}
-
-impl Default for FrameSettings {
-    /// [`FrameSettings::DEFAULT`].
-    fn default() -> Self {
-        Self::DEFAULT
-    }
-}
-
-impl FrameSettings {
-    /// The default settings, in high quality.
-    pub const DEFAULT: Self = Self {
-        quality: Quality::High,
-        lights: LightSearch::Auto(FroxelSettings::DEFAULT),
-        inline: true,
-        settings: Settings::DEFAULT,
-    };
-}
+use crate::budget::{FrameOption, Group, Measured, MeasuredError};
+use crate::facts::Facts;
+use crate::frame_settings::FrameSettings;
+use crate::shadow::ShadowSettings;
 
 /// Frames that go from the cheapest to the finest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -84,59 +44,113 @@ impl Preset {
         Self::ALL.into_iter().find(|preset| preset.name() == name)
     }
 
-    /// What it chooses.
-    pub const fn frame(self) -> FrameSettings {
-        let quality = match self {
-            Self::Low => Quality::Low,
-            Self::Medium | Self::High => Quality::High,
-            Self::Ultra => Quality::Ultra,
-        };
-        let (map_texels, cascades, local_maps) = match self {
-            Self::Low => (1024, 1, 0),
-            Self::Medium => (2048, 1, 6),
-            Self::High => (2048, 3, 12),
-            Self::Ultra => (2048, 4, 24),
-        };
-        let ultra = matches!(self, Self::Ultra);
-        let shadows = ShadowSettings {
-            map_texels,
-            cascades,
-            local_maps,
-            splits: if cascades > 1 { Splits::Practical(0.8) } else { ShadowSettings::DEFAULT.splits },
-            filter: if ultra { ShadowFilter::Pcss } else { ShadowFilter::Pcf },
-            contact: if ultra { Some(ContactShadows::FILAMENT) } else { None },
-            ..ShadowSettings::DEFAULT
-        };
-        let occlusion = match self {
-            Self::Low => None,
-            Self::Medium => Some(OcclusionSettings { resolution: Resolution::Half, ..OcclusionSettings::SAO }),
-            Self::High => Some(OcclusionSettings::sao(SaoQuality::High)),
-            Self::Ultra => Some(OcclusionSettings::GTAO),
-        };
-        let settings = Settings {
-            samples: if matches!(self, Self::High | Self::Ultra) { 4 } else { 1 },
-            shading: quality.shading(),
-            shadows: Some(shadows),
-            occlusion,
-            reflections: if ultra { Some(ReflectionSettings::DEFAULT) } else { None },
-            glass_layers: if ultra { 3 } else { 1 },
-            hdr_format: if matches!(self, Self::Low) { Format::Rg11b10Ufloat } else { Settings::DEFAULT.hdr_format },
-            ..Settings::DEFAULT
-        };
-        FrameSettings { quality, settings, ..FrameSettings::DEFAULT }
+    /// The part that it may take, 0 to 1, of the time that the finest frame takes beyond the fastest.
+    pub const fn share(self) -> f64 {
+        match self {
+            Self::Low => 1.0 / 7.0,
+            Self::Medium => 1.0 / 3.0,
+            Self::High => 0.75,
+            Self::Ultra => 1.0,
+        }
     }
+
+    /// What a record chooses: of each group that it has, the option; of those that `has` says the device can draw.
+    ///
+    /// # Errors
+    /// [`MeasuredError`].
+    pub fn choose(
+        self,
+        measured: &Measured,
+        has: impl Fn(&FrameOption) -> bool,
+    ) -> Result<Vec<(&'static Group, &'static FrameOption)>, MeasuredError> {
+        let choices = measured.choices(&Facts::default(), has)?;
+        let offers = measured.offers(&choices, measured.fastest_ms, measured.reference_ms);
+        let [fastest, finest] = [offers.fastest(), offers.finest()].map(|set| offers.predicted(&set).ms);
+        let most_ms = fastest + self.share() * (finest - fastest);
+        // A rounding is no reason to leave out the finest.
+        let set = offers.within_ms(most_ms * (1.0 + 1e-9)).map_or_else(|| offers.fastest(), |set| set.options);
+        Ok(choices.into_iter().zip(set).map(|((group, options), index)| (group, options[index])).collect())
+    }
+
+    /// Its frame, as a record chooses it.
+    ///
+    /// # Errors
+    /// [`MeasuredError`].
+    pub fn measured(
+        self,
+        measured: &Measured,
+        has: impl Fn(&FrameOption) -> bool,
+    ) -> Result<FrameSettings, MeasuredError> {
+        let mut frame = self.frame();
+        self.choose(measured, has)?.into_iter().for_each(|(_, option)| (option.apply)(&mut frame));
+        Ok(frame)
+    }
+
+    /// Its frame.
+    pub fn frame(self) -> FrameSettings {
+        let local_maps = match self {
+            Self::Low => 0,
+            Self::Medium => 6,
+            Self::High => 12,
+            Self::Ultra => 24,
+        };
+        let mut frame = FrameSettings::DEFAULT;
+        frame.settings.shadows = Some(ShadowSettings { local_maps, ..ShadowSettings::DEFAULT });
+        for (group, options) in chosen::CHOSEN {
+            if let Some(option) = Group::of(group).and_then(|group| group.option(options[self as usize])) {
+                (option.apply)(&mut frame);
+            }
+        }
+        frame
+    }
+}
+
+/// The source text of the table that [`Preset::frame`] has, as a record chooses it.
+///
+/// # Errors
+/// [`MeasuredError`].
+pub fn source(measured: &Measured) -> Result<String, MeasuredError> {
+    let mut chosen = Vec::new();
+    for preset in Preset::ALL {
+        chosen.push(preset.choose(measured, |_| true)?);
+    }
+    let row = |index: usize| {
+        let options: Vec<_> = chosen.iter().map(|preset| format!("\"{}\"", preset[index].1.name)).collect();
+        format!("    (\"{}\", [{}]),\n", chosen[0][index].0.name, options.join(", "))
+    };
+    let rows: String = (0..chosen[0].len()).map(row).collect();
+    Ok(format!(
+        "//! What presets have, chosen from docs/accuracy.json; renewed by\n\
+        //! `cargo run -p tests --bin accuracy -- --out docs --presets passes/src/preset/chosen.rs`.\n\n\
+        /// Each group with its option in low, medium, high and ultra.\n\
+        #[rustfmt::skip]\n\
+        pub const CHOSEN: [(&str, [&str; 4]); {}] = [\n{rows}];\n",
+        chosen[0].len()
+    ))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::budget::GROUPS;
 
     #[test]
     fn presets_have_names_and_differ() {
         for (i, preset) in Preset::ALL.into_iter().enumerate() {
             assert_eq!(Preset::from_name(preset.name()), Some(preset));
             assert!(Preset::ALL[..i].iter().all(|other| other.frame() != preset.frame()), "{preset:?}");
+            assert!(Preset::ALL[..i].iter().all(|other| other.share() < preset.share()), "{preset:?}");
         }
         assert_eq!(Preset::from_name("best"), None);
+    }
+
+    #[test]
+    fn presets_choose_of_every_group_what_there_is() {
+        assert_eq!(chosen::CHOSEN.map(|(group, _)| group), GROUPS.map(|group| group.name));
+        for (group, options) in chosen::CHOSEN {
+            let group = Group::of(group).expect("a group");
+            assert!(options.iter().all(|name| group.option(name).is_some()), "{}: {options:?}", group.name);
+            assert_eq!(options.last(), group.options.last().map(|option| &option.name), "ultra is the finest");
+        }
     }
 }

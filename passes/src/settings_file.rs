@@ -2,8 +2,8 @@
 
 mod lens;
 
+use crate::frame_settings::FrameSettings;
 use crate::occlusion::Method;
-use crate::preset::FrameSettings;
 use framegraph::Format;
 use framegraph::file::{FileErrors, document, to_document};
 use std::fmt::Debug;

@@ -1,9 +1,9 @@
 //! Choices of the frame that cost time, with their options.
 
 use crate::facts::{Decision, Effect, Facts};
+use crate::frame_settings::FrameSettings;
 use crate::occlusion::{OcclusionSettings, SaoQuality};
 use crate::precision::Precision;
-use crate::preset::FrameSettings;
 use crate::reflection::ReflectionSettings;
 use crate::shading::Quality;
 use crate::shadow::{ContactShadows, ShadowFilter, ShadowSettings, Splits};
@@ -175,7 +175,6 @@ pub fn reference(frame: &FrameSettings) -> FrameSettings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preset::Preset;
 
     #[test]
     fn options_make_other_frames_and_stay_what_they_are() {
@@ -197,13 +196,5 @@ mod tests {
             assert!(Group::of(group.name).is_some_and(|found| found.option(group.options[0].name).is_some()));
         }
         assert!(Group::of("sepia").is_none());
-    }
-
-    /// The finest preset is the reference but for what no group is about, and four samples make its edge filter no edges.
-    #[test]
-    fn ultra_is_the_reference() {
-        let mut ultra = Preset::Ultra.frame();
-        ultra.settings.fxaa = false;
-        assert_eq!(reference(&ultra), ultra);
     }
 }

@@ -54,14 +54,11 @@ pub fn presets(record: &Record) -> String {
 
 /// The option that a frame has of each group; none where it has one of its own.
 fn set_of(choices: &Choices, frame: &FrameSettings) -> Vec<Option<usize>> {
-    let mut frame = *frame;
-    // Facts leave the edge filter out after samples.
-    frame.settings.fxaa &= frame.settings.samples == 1;
     let has = |options: &Vec<&framegraph_passes::budget::FrameOption>| {
         options.iter().position(|option| {
-            let mut changed = frame;
+            let mut changed = *frame;
             (option.apply)(&mut changed);
-            changed == frame
+            changed == *frame
         })
     };
     choices.iter().map(|(_, options)| has(options)).collect()

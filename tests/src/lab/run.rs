@@ -5,7 +5,6 @@ use super::record::{ChoiceRecord, TechniqueRecord};
 use super::studio::{Ready, Studio, compared, times};
 use super::technique::{Choice, Measured, Outcome, Subject, Technique};
 use crate::reference::picture::Picture;
-use framegraph_passes::Preset;
 use framegraph_shaders::reference::cases;
 use framegraph_shaders::reflect::Operations;
 use std::path::Path;
@@ -26,8 +25,6 @@ pub fn measure(studio: &Studio<'_>, technique: &Technique, pictures: &Path) -> O
         let drawn = ready.last_mut().filter(|_| choice.setup.is_some());
         let mut record = judged(studio, technique, choice, drawn, truth.as_ref(), pictures)?;
         record.operations = operations(choice);
-        let presets = Preset::ALL.into_iter().filter(|preset| (choice.is_in)(&preset.frame()));
-        record.presets = presets.map(|preset| preset.name().to_owned()).collect();
         choices.push(record);
         program::interrupt::check()?;
     }
@@ -36,7 +33,10 @@ pub fn measure(studio: &Studio<'_>, technique: &Technique, pictures: &Path) -> O
         (choices[index].ms, choices[index].steps) = (Some(times), ready.steps()?);
     }
     let Technique { name, what, truth, unit, .. } = technique;
-    Ok(TechniqueRecord { name: name.clone(), what: what.clone(), truth: truth.clone(), unit: unit.clone(), choices })
+    let mut record =
+        TechniqueRecord { name: name.clone(), what: what.clone(), truth: truth.clone(), unit: unit.clone(), choices };
+    technique.note_presets(&mut record);
+    Ok(record)
 }
 
 fn judged(

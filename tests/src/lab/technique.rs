@@ -1,7 +1,8 @@
 //! What is measured: a choice with its options, its truth, its metric.
 
+use super::record::TechniqueRecord;
 use super::studio::{Setup, Truth};
-use framegraph_passes::FrameSettings;
+use framegraph_passes::{FrameSettings, Preset};
 use framegraph_wgpu::Gpu;
 use std::error::Error;
 use std::fmt;
@@ -85,5 +86,14 @@ impl Technique {
             setup.scene = scene;
         }
         self.choices.iter_mut().filter_map(|choice| choice.setup.as_mut()).for_each(|setup| setup.scene = scene);
+    }
+
+    /// Notes in what was measured which presets have each option.
+    pub fn note_presets(&self, record: &mut TechniqueRecord) {
+        for found in &mut record.choices {
+            let own = self.choices.iter().find(|choice| choice.name == found.name);
+            let has = |preset: &Preset| own.is_some_and(|choice| (choice.is_in)(&preset.frame()));
+            found.presets = Preset::ALL.into_iter().filter(has).map(|preset| preset.name().to_owned()).collect();
+        }
     }
 }

@@ -1,8 +1,9 @@
 //! The lab's document is that of its record, and its program says what is wrong with what it is asked.
 
 use crate::stage::gpu;
-use framegraph_passes::Facts;
 use framegraph_passes::budget::Measured;
+use framegraph_passes::preset::source;
+use framegraph_passes::{Facts, Preset};
 use std::path::Path;
 use std::process::{Command, Output};
 use tests::lab::budget::{Bench, verify};
@@ -11,6 +12,7 @@ use tests::lab::record::{Record, Rounds};
 use tests::lab::studio::Studio;
 
 const DOCUMENT: &str = include_str!("../../../docs/accuracy.md");
+const CHOSEN: &str = include_str!("../../../passes/src/preset/chosen.rs");
 
 fn record() -> Record {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/accuracy.json");
@@ -33,6 +35,20 @@ fn the_document_is_that_of_its_record() {
     assert!(of("7 ").error > of("16 ").error && of("7 ").ms.is_some() && of("16 ").presets == ["high"]);
     record.techniques[0].choices[0].error += 1.0;
     assert_ne!(DOCUMENT, document(&record), "another error is another document");
+}
+
+/// What presets have is what the committed record chooses, and another record chooses otherwise.
+#[test]
+fn presets_are_those_of_the_record() {
+    let mut measured = record().budget.expect("docs/accuracy.json has what frames are chosen from");
+    let renew = "renew them: cargo run -p tests --bin accuracy -- --out docs --presets passes/src/preset/chosen.rs";
+    assert_eq!(CHOSEN, source(&measured).expect("options that there are"), "{renew}");
+    for preset in Preset::ALL {
+        assert_eq!(preset.measured(&measured, |_| true).expect("options that there are"), preset.frame(), "{renew}");
+    }
+    let edges = measured.groups.iter_mut().find(|group| group.name == "edges").expect("a group");
+    edges.options.iter_mut().for_each(|option| option.ms = 1.0);
+    assert_ne!(CHOSEN, source(&measured).expect("options that there are"), "samples that cost nothing are taken");
 }
 
 /// Chosen sets of the record are within a hundred budgets, and no swap of one option within the budget errs less, as far as

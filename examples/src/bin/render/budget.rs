@@ -11,7 +11,7 @@ use framegraph_wgpu::{Executor, read_texture};
 use lexopt::Parser;
 use program::outputs::Outputs;
 use serde::Deserialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// What `render --help` prints of them.
@@ -22,7 +22,8 @@ BUDGET
                        to err by, tried on this scene, and compared with the finest frame (docs/accuracy.md)
   --max-error X        the fastest frame that is no farther than X from the finest: root mean square in codes of 255
   --record FILE.json   what was measured, by `accuracy --technique budget`; without it, the record of the repository
-                       (docs/accuracy.json), which was made with a software driver
+                       (docs/accuracy.json), which was made with a software driver. With --preset, the preset's options are
+                       chosen from it
 ";
 
 /// What was measured in the repository.
@@ -69,7 +70,7 @@ struct Record {
 }
 
 /// What was measured, and on which adapter.
-fn record(file: Option<&PathBuf>) -> Result<(Measured, String), String> {
+pub fn record(file: Option<&Path>) -> Result<(Measured, String), String> {
     let shown = file.map_or_else(|| "docs/accuracy.json".into(), |file| file.to_string_lossy());
     let told = |what: &dyn std::fmt::Display| format!("--record {shown}: {what}");
     let text = match file {
@@ -100,7 +101,7 @@ struct Tried {
 /// # Errors
 /// One line, by whose fault it is.
 pub fn choose(args: &Args, bound: Bound) -> Result<Args, Failure> {
-    let (measured, adapter) = record(args.budget.record.as_ref()).map_err(input)?;
+    let (measured, adapter) = record(args.budget.record.as_deref()).map_err(input)?;
     let base = args.frame();
     let finest = reference(&base);
     let truth = attempt(&args.with(&finest))?;

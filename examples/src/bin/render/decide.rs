@@ -12,12 +12,13 @@ use framegraph_passes::view::ViewSettings;
 use framegraph_passes::{Effect, EffectSet, FactInput, FactMemory, Facts, FrameSettings, Preset, Settings};
 use lexopt::Parser;
 use std::ffi::{OsStr, OsString};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What `render --help` prints of them.
 pub const HELP: &str = "
 FRAME
-  --preset NAME        the whole frame: low, medium, high or ultra (docs/settings.md); other options change it
+  --preset NAME        the whole frame: low, medium, high or ultra (docs/settings.md); other options change it;
+                       with --record, what that record chooses for it
   --settings FILE.ron  the whole frame from a file (docs/settings.md); other options change it
   --enable EFFECT      the effect in its default strength, whatever the scene calls for; may be given again
   --disable EFFECT     not the effect, whatever the scene calls for; may be given again. EFFECT is NAMES
@@ -137,7 +138,11 @@ pub fn base(args: &[OsString]) -> Result<(Option<FrameSettings>, Option<PathBuf>
             let name = name.to_string_lossy();
             let known = || Preset::ALL.map(Preset::name).join(", ");
             let unknown = || format!("--preset {name}: unknown preset; there are {}", known());
-            Ok((Some(Preset::from_name(&name).ok_or_else(unknown)?.frame()), None))
+            let preset = Preset::from_name(&name).ok_or_else(unknown)?;
+            let Some(record) = value(args, "--record") else { return Ok((Some(preset.frame()), None)) };
+            let (measured, _) = crate::budget::record(Some(Path::new(&record)))?;
+            let frame = preset.measured(&measured, |_| true).map_err(|error| format!("--record: {error}"))?;
+            Ok((Some(frame), None))
         }
         (None, Some(path)) => {
             let shown = path.to_string_lossy();
@@ -235,6 +240,7 @@ mod tests {
         }
         for (line, named) in [
             ("--preset best", "--preset best: unknown preset; there are low, medium, high, ultra"),
+            ("--preset low --record no/such.json", "--record no/such.json: "),
             ("--preset low --settings a.ron", "--settings does not go together with --preset"),
             ("--settings no/such.ron", "--settings no/such.ron: "),
         ] {

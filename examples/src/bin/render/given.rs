@@ -70,7 +70,7 @@ const AGAINST: [(&str, &[&str], &str); 15] = [
 
 /// An option that means something only beside one of others.
 const BESIDE: [(&str, &[&str]); 8] = [
-    ("record", &["budget-ms", "max-error"]),
+    ("record", &["budget-ms", "max-error", "preset"]),
     ("animation", &["time"]),
     ("dynamic-resolution", &["turntable", "sequence"]),
     ("upscale", &["scale", "dynamic-resolution"]),
@@ -155,7 +155,7 @@ mod tests {
             ("--budget-ms 9 --max-error 1", "--max-error does not go together with --budget-ms"),
             ("--max-error 1 --ao gtao", "--ao does not go together with --max-error"),
             ("--budget-ms 9 --bisect", "--bisect does not go together with --budget-ms"),
-            ("--record a.json", "--record goes together with --budget-ms or --max-error only"),
+            ("--record a.json", "--record goes together with --budget-ms or --max-error or --preset only"),
             ("--dynamic-resolution 9", "--dynamic-resolution goes together with --turntable or --sequence only"),
             ("--sun in-map", "--sun in-map goes together with --environment FILE only"),
             ("--no-fxaa --no-fxaa", "--no-fxaa: it is given twice"),

@@ -11,7 +11,7 @@ Measures what each approximation of the frame errs by and costs on this adapter.
 
     accuracy [--quick] [--technique NAME]… [--scene NAME] [--again] [--out DIR]
     accuracy [--out DIR] --budget-ms MS | --max-error CODES | --verify N
-    accuracy [--out DIR] --document
+    accuracy [--out DIR] --document | --presets FILE.rs
 
 Writes accuracy.json after each technique (an interrupted run goes on where it
 was), then accuracy.md and accuracy.html. Each option is timed 31 times after 10
@@ -32,11 +32,13 @@ should run beside it.
   --verify N         choose for N random budgets, draw and time what was chosen,
                      and each swap of one option: must the chosen frames fit?
   --document         print accuracy.md of the accuracy.json that is there
+  --presets FILE.rs  write what presets have, chosen from the record, as the source
+                     text that `framegraph-passes` is built with
   -h, --help         print this
 ";
 
 /// What to do.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Wanted {
     /// Print how it is called.
     Help,
@@ -44,6 +46,8 @@ pub enum Wanted {
     Measure,
     /// Print the document of the record.
     Document,
+    /// Write what presets have, as source text.
+    Presets(PathBuf),
     /// Choose within a time or an error.
     Budget(Bound),
     /// Choose for so many random budgets, and draw what was chosen.
@@ -97,6 +101,7 @@ impl Args {
                 Long("verify") => args.wanted = Wanted::Verify(parser.value()?.parse()?),
                 Long("scene") => args.scene = Some(scene(&parser.value()?.string()?)?),
                 Long("document") => args.wanted = Wanted::Document,
+                Long("presets") => args.wanted = Wanted::Presets(parser.value()?.into()),
                 Long("help") | Short('h') => args.wanted = Wanted::Help,
                 other => return Err(other.unexpected()),
             }

@@ -14,7 +14,8 @@ use tests::lab::technique::Outcome;
 /// The share of budgets that chosen frames must be within.
 const ENOUGH: f64 = 0.95;
 
-fn measured(record: &Record) -> Outcome<&Measured> {
+/// What the record has for it.
+pub fn measured(record: &Record) -> Outcome<&Measured> {
     record.budget.as_ref().ok_or_else(|| "the record has no `budget` yet: run it to the end".into())
 }
 

@@ -6,6 +6,7 @@ mod args;
 mod budget;
 
 use args::{Args, Wanted};
+use framegraph_passes::preset;
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use program::outputs::Outputs;
 use program::progress::Shown;
@@ -41,7 +42,7 @@ fn main() -> ExitCode {
 
 fn run(args: &Args) -> Outcome<()> {
     let file = args.out.join("accuracy.json");
-    match args.wanted {
+    match &args.wanted {
         Wanted::Help => {
             program::print(args::HELP);
             Ok(())
@@ -51,8 +52,12 @@ fn run(args: &Args) -> Outcome<()> {
             program::print(markdown::document(&Record::read(&file)?));
             Ok(())
         }
-        Wanted::Budget(bound) => budget::chosen(&Record::read(&file)?, bound),
-        Wanted::Verify(count) => budget::verified(args, &Record::read(&file)?, count),
+        Wanted::Budget(bound) => budget::chosen(&Record::read(&file)?, *bound),
+        Wanted::Verify(count) => budget::verified(args, &Record::read(&file)?, *count),
+        Wanted::Presets(source) => {
+            let chosen = preset::source(budget::measured(&Record::read(&file)?)?)?;
+            Ok(Outputs::one(source, chosen.as_bytes())?)
+        }
     }
 }
 
@@ -85,6 +90,11 @@ fn measured(args: &Args, file: &Path) -> Outcome<()> {
     };
     let studio = Studio::new(&gpu, size_px, args.out.join("light"), rounds);
     let mut all = techniques::all(&gpu);
+    for found in &mut record.techniques {
+        if let Some(technique) = all.iter().find(|technique| technique.name == found.name) {
+            technique.note_presets(found);
+        }
+    }
     if let Some(scene) = args.scene {
         all.iter_mut().for_each(|technique| technique.show(scene));
     }
@@ -118,6 +128,7 @@ fn measured(args: &Args, file: &Path) -> Outcome<()> {
         Outputs::one(file, record.json()?.as_bytes())?;
     }
     progress.clear();
+    Outputs::one(file, record.json()?.as_bytes())?;
     Outputs::one(&args.out.join("accuracy.md"), markdown::document(&record).as_bytes())?;
     Outputs::one(&args.out.join("accuracy.html"), html::page(&record, &pictures).as_bytes())?;
     program::line(format_args!("{} techniques in {}", record.techniques.len(), args.out.display()));

@@ -4,6 +4,7 @@ use super::TestResult;
 use crate::stage::declared;
 use framegraph::file::{GraphFile, to_ron};
 use framegraph::{Caps, Options, Plan, Scratch, compile, dump};
+use framegraph_passes::budget::GROUPS;
 use framegraph_passes::{FrameSettings, Preset, Settings};
 
 const DOCUMENT: &str = include_str!("../../../../docs/settings.md");
@@ -42,14 +43,15 @@ fn the_document_has_the_presets() {
         line.trim_matches('|').split('|').skip(1).map(|cell| cell.trim().to_owned()).collect::<Vec<_>>()
     };
     for (column, preset) in Preset::ALL.into_iter().enumerate() {
-        let settings = preset.frame().settings;
-        let shadows = settings.shadows.expect("every preset has shadows");
-        assert_eq!(row("samples a texel")[column], settings.samples.to_string());
+        let frame = preset.frame();
+        let shadows = frame.settings.shadows.expect("every preset has shadows");
         assert_eq!(row("maps of lamps")[column], shadows.local_maps.to_string());
-        let maps = format!("{} of {}²", shadows.cascades, shadows.map_texels);
-        assert!(row("the sun's maps")[column].starts_with(&maps), "{preset:?}");
-        assert_eq!(row("reflections of the picture")[column] == "yes", settings.reflections.is_some());
-        assert_eq!(row("ambient occlusion")[column] == "none", settings.occlusion.is_none());
+        for group in &GROUPS {
+            let option = group.option(&row(group.name)[column]).expect("an option of the group");
+            let mut same = frame;
+            (option.apply)(&mut same);
+            assert_eq!(same, frame, "{preset:?}: {} is not {}", group.name, option.name);
+        }
     }
 }
 

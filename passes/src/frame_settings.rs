@@ -1,0 +1,36 @@
+//! The whole frame as data: settings with what goes beside them.
+
+use crate::frame::Settings;
+use crate::punctual::{FroxelSettings, LightSearch};
+use crate::shading::Quality;
+
+/// A frame without its scene and camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+pub struct FrameSettings {
+    /// How fine light from all around is made; `settings.shading` says how it is used.
+    pub quality: Quality,
+    /// How shading finds the lights that reach a place.
+    pub lights: LightSearch,
+    /// Post-processing goes into the color pass's shader where that is sound.
+    pub inline: bool,
+    /// The frame.
+    pub settings: Settings,
+}
+
+impl Default for FrameSettings {
+    /// [`FrameSettings::DEFAULT`].
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl FrameSettings {
+    /// The default settings, in high quality.
+    pub const DEFAULT: Self = Self {
+        quality: Quality::High,
+        lights: LightSearch::Auto(FroxelSettings::DEFAULT),
+        inline: true,
+        settings: Settings::DEFAULT,
+    };
+}
