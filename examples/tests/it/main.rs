@@ -1,6 +1,7 @@
 //! The programs as their users run them.
 
 mod bad_input;
+mod lens;
 mod lighting;
 mod looking;
 mod memory;

@@ -83,12 +83,17 @@ fn a_resolve_by_a_pass_takes_the_place_of_the_devices() {
         let settings = Settings { samples, tone_resolve, bloom, ..Settings::DEFAULT };
         let plan = plan(&settings, &Caps::wgpu(), &Options::for_frame(1280, 720));
         let names: Vec<_> = plan.graph().pass_ids().map(|pass| plan.graph().pass_name(pass).to_owned()).collect();
-        (plan.counts(), names.contains(&"tone_resolve".to_owned()))
+        (plan.counts(), plan.traffic([1280, 720]), names.contains(&"tone_resolve".to_owned()))
     };
-    let (devices, _) = counts(4, false, true);
-    let (own, declared) = counts(4, true, true);
+    let (devices, devices_bytes, _) = counts(4, false, true);
+    let (own, own_bytes, declared) = counts(4, true, true);
     assert!(declared);
     // The samples and what is made of them are stored, where the mean alone was.
     assert_eq!((own.passes, own.steps, own.resolves), (devices.passes + 1, devices.steps + 1, devices.resolves + 1));
+    assert_eq!((own.multisample_resolves, own.unresolves), (devices.multisample_resolves - 1, devices.unresolves));
+    // Half floats of four channels: four samples a texel are stored and loaded again, and the mean is stored as before.
+    let texels = 1280 * 720;
+    assert_eq!(own_bytes.stored_bytes - devices_bytes.stored_bytes, 4 * 8 * texels);
+    assert_eq!(devices_bytes.multisample_resolve_bytes - own_bytes.multisample_resolve_bytes, 8 * texels);
     assert_eq!(counts(1, true, true), counts(1, false, true), "a frame of one sample has nothing to average");
 }

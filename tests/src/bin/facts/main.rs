@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p tests --bin facts` prints the tables of `docs/facts.md`; with `--every-mask` it draws all 4096
 //! combinations of twelve effects in each of six small scenes, as asked for and as decided, and compares; with `--masks N`
-//! N of them, spread over all.
+//! N of them, spread over all; with `--scene NAME` behind either, in that scene alone.
 
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
@@ -21,12 +21,21 @@ fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = args.iter().map(String::as_str).collect();
     let number = |text: &str| text.parse().ok().filter(|count| (1..=ALL_MASKS).contains(count));
-    let masks = match words[..] {
-        [] => None,
+    let names = cases().map(|case| case.name);
+    let (rest, scene) = match words[..] {
+        [ref rest @ .., "--scene", name] if names.contains(&name) => (rest, Some(name)),
+        ref rest => (rest, None),
+    };
+    let masks = match rest {
+        [] if scene.is_none() => None,
         ["--every-mask"] => Some(ALL_MASKS),
         ["--masks", count] if number(count).is_some() => number(count),
         _ => {
-            let told = "there are --every-mask, and --masks N with a number from 1 to 4096";
+            let told = format!(
+                "there are --every-mask, and --masks N with a number from 1 to 4096, and behind either --scene NAME with \
+                 one of {}",
+                names.join(", ")
+            );
             program::error(format_args!("facts {}: {told}", words.join(" ")));
             return program::exit(2);
         }
@@ -34,7 +43,7 @@ fn main() -> ExitCode {
     let done = Gpu::open(&AdapterRequest::from_env()).map_err(Box::from).and_then(|gpu| {
         program::line(format_args!("adapter: {}", gpu.describe()));
         match masks {
-            Some(count) => draw_masks(&gpu, count),
+            Some(count) => draw_masks(&gpu, count, scene),
             None => print(&gpu),
         }
     });
@@ -66,11 +75,11 @@ fn print(gpu: &Gpu) -> Outcome {
 /// Combinations of what may be left out.
 const ALL_MASKS: u32 = 1 << MASKED.len();
 
-fn draw_masks(gpu: &Gpu, count: u32) -> Outcome {
+fn draw_masks(gpu: &Gpu, count: u32, scene: Option<&str>) -> Outcome {
     let mut easel = Easel::new(gpu);
     program::line("| scene | masks | pictures that differ | largest difference, codes | beyond their bounds | s |");
     program::line("| --- | --- | --- | --- | --- | --- |");
-    for case in cases() {
+    for case in cases().into_iter().filter(|case| scene.is_none_or(|name| name == case.name)) {
         let mut drawn = Drawn::new(gpu, case, &Cache::from_env())?;
         let (mut shown, begun) = (Shown::default(), Instant::now());
         let (mut differ, mut largest, mut beyond) = (0, 0, 0);
