@@ -1,6 +1,10 @@
 //! The application: panes in tiles around one [`Session`].
 
 #[cfg(feature = "window")]
+mod chosen;
+#[cfg(feature = "window")]
+pub mod dialog;
+#[cfg(feature = "window")]
 mod export;
 mod panes;
 mod shortcuts;
@@ -39,6 +43,9 @@ pub struct Viewer {
     /// A frame that is drawn beside its plan.
     #[cfg(feature = "window")]
     pub live: Option<crate::live::Live>,
+    /// A dialog for a file.
+    #[cfg(feature = "window")]
+    dialog: dialog::Dialog,
     /// Paths of a scene and of a picture of light, and the file that a view goes to, as they are typed.
     #[cfg(feature = "window")]
     typed: ([String; 2], String),
@@ -61,6 +68,8 @@ impl Viewer {
             strip: strip::Strip::default(),
             #[cfg(feature = "window")]
             live: None,
+            #[cfg(feature = "window")]
+            dialog: dialog::Dialog::default(),
             #[cfg(feature = "window")]
             typed: Default::default(),
             path: String::new(),
@@ -91,6 +100,8 @@ impl Viewer {
         }
         self.refresh();
         self.dropped(ui.ctx());
+        #[cfg(feature = "window")]
+        self.dialogs(ui);
         for asked in shortcuts::asked(ui.ctx()) {
             self.act(asked);
         }
@@ -228,6 +239,10 @@ impl Viewer {
             if (open || against) && !self.path.trim().is_empty() {
                 let path = std::path::PathBuf::from(self.path.trim());
                 self.open(&path, if against { Role::Against } else { Role::Shown });
+            }
+            #[cfg(feature = "window")]
+            for (name, role) in [("Open…", Role::Shown), ("Compare with…", Role::Against)] {
+                self.ask_button(ui, name, dialog::Purpose::Open(role));
             }
             if self.session.has_against() && ui.button("Compare with nothing").clicked() {
                 self.session.forget_against();

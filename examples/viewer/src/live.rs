@@ -4,15 +4,17 @@
 //! | --- | --- |
 //! | `screen.rs` | the device, and where egui finds textures of it |
 //! | `loading.rs` | a scene and its light, on a thread of its own |
-//! | `look.rs`, `camera.rs` | what goes beside settings; a camera that is moved by hand |
+//! | `look.rs`, `factors.rs`, `camera.rs` | what goes beside settings; materials that are changed; a camera that is moved by hand |
 //! | `frame.rs` | the frame, executed again and again |
-//! | `shown.rs` | what the panel of settings keeps |
+//! | `shown.rs`, `asked_file.rs` | what the panel of settings keeps; what panels ask a file for |
 //! | `times.rs` | its times, as views show them |
 //! | `preview.rs`, `bisecting.rs` | textures of it; which liberty of the compiler changes it |
 //! | `panel/` | what is seen of all this |
 
+pub mod asked_file;
 pub mod bisecting;
 pub mod camera;
+pub mod factors;
 pub mod frame;
 pub mod loading;
 pub mod look;
@@ -26,10 +28,11 @@ use crate::history::History;
 use crate::job::Job;
 use crate::plan_data::PlanData;
 use crate::session::Session;
+use asked_file::AskedFile;
 use bisecting::Bisecting;
 use frame::{Asked, Running};
 use loading::{Around, Lit, Loaded};
-use look::{Document, Look, Sun};
+use look::{Document, Sun};
 use preview::Preview;
 use screen::Screen;
 use std::path::{Path, PathBuf};
@@ -62,6 +65,10 @@ pub struct Live {
     pub share: f32,
     /// A texture that is looked at.
     pub preview: Preview,
+    /// A file that a panel asks for, by a dialog of the desktop.
+    pub asks_file: Option<AskedFile>,
+    /// The material that is looked at.
+    pub material: Option<usize>,
     /// Debug modes that are tried one after the other.
     pub bisecting: Option<Bisecting>,
     /// The limits that are watched, as they are typed.
@@ -102,6 +109,8 @@ impl Live {
             continuous: false,
             share: 1.0,
             preview: Preview::default(),
+            asks_file: None,
+            material: None,
             bisecting: None,
             budget: String::new(),
             path: String::new(),
@@ -208,7 +217,9 @@ impl Live {
                     self.wanted = loaded.around.clone();
                     let mut look = self.document().look;
                     look.animation = None;
-                    self.history.set(Document { look, ..self.document().clone() }, false);
+                    let materials = std::collections::BTreeMap::new();
+                    self.history.set(Document { look, materials, ..self.document().clone() }, false);
+                    self.material = None;
                     self.asked.playing = false;
                     self.running = Some(Running::new(&self.screen, loaded));
                     self.told = 0;
@@ -351,11 +362,6 @@ impl Live {
         self.again();
     }
 
-    /// The largest side of a texture, in texels.
-    pub fn most_px(&self) -> u32 {
-        self.screen.gpu.caps().max_texture_texels
-    }
-
     /// Notes the size of the viewport; returns whether it is another one.
     pub fn take_size(&mut self, size_px: [u32; 2]) -> bool {
         std::mem::replace(&mut self.size_px, size_px) != size_px
@@ -387,10 +393,5 @@ impl Live {
     pub fn set_around(&mut self, path: Option<PathBuf>) {
         self.wanted = path.map_or(Around::Sky(None), Around::File);
         self.again();
-    }
-
-    /// The look as it is.
-    pub fn look(&self) -> Look {
-        self.document().look
     }
 }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use viewer::app::{Pane, Role, Session, Viewer};
 use viewer::drawing::Theme;
 use viewer::live::Live;
-use viewer::live::look::{Document, Look};
+use viewer::live::look::Document;
 use viewer::live::screen::Screen;
 use viewer::view::View;
 
@@ -88,7 +88,7 @@ fn document(args: &Args) -> Result<Option<Document>, Failure> {
     }
     let which = args.settings.as_deref().unwrap_or("high");
     let frame = viewer::standard_frame::settings(which).map_err(|e| Failure::Input(format!("--settings: {e}")))?;
-    Ok(Some(Document { frame, look: Look::default() }))
+    Ok(Some(Document { frame, ..Document::default() }))
 }
 
 /// `viewer/panes.json` in the user's folder of states (XDG Base Directory Specification 0.8), or of settings elsewhere.

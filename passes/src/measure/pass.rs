@@ -107,3 +107,37 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for MeasurePass {
         FullScreen::new(program, &[&provided]).draw(world.as_ref(), cx)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use framegraph::{Caps, Desc, Options, Plan, Scratch, compile};
+
+    /// What remains at the edge of a picture has a texel of its own, whether the size is the frame's or the picture's.
+    #[test]
+    fn no_texel_of_the_edge_is_left_out() -> Result<(), Box<dyn std::error::Error>> {
+        for extent in [Extent::FRAME, Extent::absolute(75, 41)] {
+            for (eighths, expected) in [(1, [10, 6]), (2, [2, 1])] {
+                let mut frame = framegraph_wgpu::Frame::<Programs>::new();
+                let hdr = frame.graph_mut().import_texture(
+                    "hdr",
+                    TextureDesc::new(extent, Format::Rgba16Float),
+                    framegraph::Entry::Defined,
+                    framegraph::Exit::Keep,
+                );
+                let step = MeasureStep::Light { hdr };
+                let result = frame.add(step.name(), MeasurePass { step, extent, eighths })?.result;
+                frame.graph_mut().readback(result)?;
+                let mut plan = Plan::new();
+                let options = Options::for_frame(75, 41);
+                compile(frame.graph(), &Caps::wgpu(), &options, &mut Scratch::new(), &mut plan)?;
+                let graph = plan.graph();
+                let made = graph.resource_ids().find(|id| graph.resource_name(*id).ends_with("measured"));
+                let made = made.ok_or("it is declared")?;
+                let Desc::Texture(desc) = graph.resources()[made.index()].desc else { return Err("a buffer".into()) };
+                assert_eq!(desc.extent.texels([75, 41]), expected, "{extent:?}");
+            }
+        }
+        Ok(())
+    }
+}

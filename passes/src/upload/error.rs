@@ -13,6 +13,16 @@ pub enum UploadError {
     /// The device refused, ran out of memory, or was lost.
     #[error(transparent)]
     Device(#[from] DeviceError),
+    /// What is written over a material is drawn by another shader than it.
+    #[error(
+        "material {number} `{name}` has other lobes than the one that was uploaded, or there was none; upload the scene anew"
+    )]
+    OtherMaterial {
+        /// Its name.
+        name: String,
+        /// Its number.
+        number: usize,
+    },
 }
 
 impl std::fmt::Debug for UploadError {

@@ -3,13 +3,14 @@
 use std::borrow::Cow;
 use std::num::NonZeroU64;
 
-use framegraph_scene::{Image, Lobes, MaterialId, Memory, MeshId, ProgressFn, Scene};
+use framegraph_scene::{Image, Lobes, Material, MaterialId, Memory, MeshId, ProgressFn, Scene};
 use framegraph_shaders::layout::MaterialUniforms;
 use framegraph_wgpu::{Binding, Gpu};
 
 use super::buffers;
 use super::error::UploadError;
 use super::instances::InstanceDraw;
+use super::material::material_uniforms;
 use super::mesh_range::MeshRange;
 use super::textures::{Images, MaterialTextures};
 
@@ -134,6 +135,24 @@ impl GpuScene {
     #[must_use]
     pub fn material_name(&self, material: MaterialId) -> &str {
         &self.surfaces[material.index()].name
+    }
+
+    /// Writes the factors of a material anew, for what is submitted from then on. Its textures stay, and its lobes must: they
+    /// choose the shader. Views of a scene whose facts or draws depend on a factor (alpha, emission) are the caller's to make
+    /// anew.
+    ///
+    /// # Errors
+    ///
+    /// When the material has other lobes than the one that was uploaded, or there was none of that number.
+    pub fn write_material(&self, gpu: &Gpu, id: MaterialId, material: &Material) -> Result<(), UploadError> {
+        let surface = self.surfaces.get(id.index());
+        if surface.is_none_or(|surface| surface.lobes != material.lobes()) {
+            let (name, number) = (material.name.clone(), id.index());
+            return Err(UploadError::OtherMaterial { name, number });
+        }
+        let offset = id.index() as u64 * self.material_stride_bytes;
+        gpu.queue.write_buffer(&self.materials, offset, bytemuck::bytes_of(&material_uniforms(material)));
+        Ok(())
     }
 
     /// What to bind to a variable of a material, by its index in [`MATERIAL_BINDINGS`](super::MATERIAL_BINDINGS). A material

@@ -1,18 +1,20 @@
-//! Views and plans as files, from the menu of the window.
+//! Views, plans and times of frames as files, from the menu of the window.
 
 use super::Viewer;
+use super::dialog::Purpose;
 use crate::drawing::{Drawing, Theme, svg};
 use crate::offscreen::{Offscreen, own_size_px};
 use crate::plan_data::PlanData;
 use crate::view::View;
 use egui::{TextEdit, Ui};
 use framegraph::dump;
-use std::path::Path;
+use framegraph::file::to_ron;
+use std::path::{Path, PathBuf};
 
 /// Pixels for each point of a view in a PNG.
 const SCALE: f32 = 2.0;
 
-/// A file by its ending: a view as `.svg`, `.png` or `.txt`, the plan as `.json`, `.dot` or `.mmd`.
+/// A file by its ending: a view as `.svg`, `.png` or `.txt`; the plan as `.json`, `.dot` or `.mmd`, its graph as `.ron`.
 ///
 /// # Errors
 /// One line that names the file.
@@ -33,11 +35,12 @@ pub(super) fn write(
         "txt" => drawing()?.words().into_bytes(),
         "png" => png(drawing()?, theme)?,
         "json" => dump::json(live()?, name()).into_bytes(),
+        "ron" => to_ron(live()?.graph(), name(), live()?.frame()).into_bytes(),
         "dot" => dump::dot(live()?).into_bytes(),
         "mmd" => dump::mermaid(live()?).into_bytes(),
         _ => {
             return Err(format!(
-                "{shown}: the ending is none of svg, png, txt (of a view), json, dot, mmd (of the plan)"
+                "{shown}: the ending is none of svg, png, txt (of a view), json, ron, dot, mmd (of the plan)"
             ));
         }
     };
@@ -59,17 +62,50 @@ impl Viewer {
     pub(super) fn export_menu(&mut self, ui: &mut Ui) {
         let theme = crate::panel::theme(ui);
         ui.menu_button("Export", |ui| {
-            ui.label("a view as .svg, .png or .txt; the plan as .json, .dot or .mmd");
+            ui.label("a view as .svg, .png or .txt; the plan as .json, .dot or .mmd, its graph as .ron");
             ui.add(TextEdit::singleline(&mut self.typed.1).hint_text("FILE.svg").desired_width(220.0));
+            let typed = PathBuf::from(self.typed.1.trim());
+            let named = |otherwise: String| if typed.as_os_str().is_empty() { otherwise.into() } else { typed.clone() };
             for view in View::ALL.into_iter().filter(|view| *view != View::Inspector) {
-                if ui.button(view.word()).clicked() {
-                    let typed = self.typed.1.trim();
-                    let path = if typed.is_empty() { format!("{}.svg", view.word()) } else { typed.to_owned() };
-                    let done = write(Path::new(&path), self.drawings.get(&view), self.session.plan.as_deref(), theme);
-                    self.session.say(done.map_or_else(|error| error, |()| format!("wrote {path}")));
-                    ui.close();
-                }
+                ui.horizontal(|ui| {
+                    if ui.button(view.word()).clicked() {
+                        self.chosen(Purpose::Export(view), &named(format!("{}.svg", view.word())), theme);
+                        ui.close();
+                    }
+                    self.ask_button(ui, "…", Purpose::Export(view));
+                });
+            }
+            if self.live.is_some() {
+                ui.separator();
+                ui.horizontal(|ui| {
+                    let tip = "every frame with its steps on CPU and GPU, for Perfetto or chrome://tracing";
+                    if ui.button("times").on_hover_text(tip).clicked() {
+                        self.chosen(Purpose::Trace, &named("trace.json".into()), theme);
+                        ui.close();
+                    }
+                    self.ask_button(ui, "…", Purpose::Trace);
+                });
             }
         });
+    }
+
+    /// Writes a view, or by the ending of the file the plan.
+    ///
+    /// # Errors
+    /// One line that names the file.
+    pub(super) fn export(&self, view: View, path: &Path, theme: Theme) -> Result<(), String> {
+        write(path, self.drawings.get(&view), self.session.plan.as_deref(), theme)
+    }
+
+    /// Writes the times of the frames that were drawn in the trace event format.
+    ///
+    /// # Errors
+    /// One line that names the file.
+    pub(super) fn export_trace(&self, path: &Path) -> Result<(), String> {
+        let shown = path.display();
+        let running = self.live.as_ref().and_then(|live| live.running.as_ref());
+        let trace = running.and_then(|running| running.frames().executor().timing().trace());
+        let trace = trace.ok_or_else(|| format!("{shown}: no frame is drawn"))?;
+        std::fs::write(path, trace.chrome_json()).map_err(|e| format!("{shown}: cannot be written: {e}"))
     }
 }

@@ -1,6 +1,7 @@
 //! The standard frame of a scene, executed again and again into a texture that egui shows.
 
 use super::camera::Rig;
+use super::factors::Factors;
 use super::loading::Loaded;
 use super::look::{Document, Look};
 use super::screen::Screen;
@@ -8,7 +9,7 @@ use crate::standard_frame::{StandardFrame, declare};
 use crate::what_if::WhatIf;
 use egui::TextureId;
 use framegraph::{Options, Plan};
-use framegraph_passes::facts::{Around, decide};
+use framegraph_passes::facts::{Around, Survey, decide};
 use framegraph_passes::measure::Measurement;
 use framegraph_passes::shadow::{ShadowSettings, local_layers, local_maps};
 use framegraph_passes::sun::has_sun;
@@ -16,10 +17,11 @@ use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{
     CameraView, Effect, EffectSet, FactInput, FactMemory, Facts, FrameIndex, FrameSettings, Settings, ViewId, World,
 };
-use framegraph_scene::{Camera, Scene};
+use framegraph_scene::{Camera, Material, MaterialId, Scene};
 use framegraph_wgpu::debug::{Mode, Modes};
 use framegraph_wgpu::{ExecutorOptions, FrameLoop};
 use glam::{DVec2, Vec2};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// What the frame is asked for, beside size and document.
@@ -68,6 +70,10 @@ pub struct Running {
     memory: FactMemory,
     stand: Option<Stand>,
     posed: Option<(usize, f64)>,
+    /// Materials as the scene has them.
+    materials: Vec<Material>,
+    /// Which of them are drawn otherwise.
+    painted: BTreeMap<usize, Factors>,
     asked: Settings,
     /// Counts changes of light.
     light: u64,
@@ -82,6 +88,8 @@ impl Running {
         Self {
             screen: screen.clone(),
             rig: Rig::new(&loaded.scene, 16.0 / 9.0),
+            materials: loaded.scene.materials.clone(),
+            painted: BTreeMap::new(),
             loaded,
             facts: Facts::default(),
             frames: frames(screen, false),
@@ -111,6 +119,7 @@ impl Running {
     pub fn draw(&mut self, size_px: [u32; 2], document: &Document, asked: &Asked) -> Result<(), String> {
         document.frame.settings.shading.precision.check(&self.screen.gpu).map_err(|e| e.to_string())?;
         self.pose(document.look.animation, asked.time_s)?;
+        self.paint(&document.materials)?;
         let settings = self.settings(size_px, document, asked);
         self.look(size_px, document, &settings)?;
         let mut options = Options { inline: document.frame.inline, ..Options::for_frame(size_px[0], size_px[1]) };
@@ -154,6 +163,30 @@ impl Running {
         prepared.update(scene, &(0..scene.instances.len()).collect::<Vec<_>>());
         self.posed = moment;
         posed
+    }
+
+    /// A material as the scene has it.
+    pub fn material(&self, number: usize) -> Option<&Material> {
+        self.materials.get(number)
+    }
+
+    /// Gives materials other factors, and those that were given some before their own.
+    fn paint(&mut self, wanted: &BTreeMap<usize, Factors>) -> Result<(), String> {
+        if self.painted == *wanted {
+            return Ok(());
+        }
+        let Loaded { scene, world, survey, .. } = &mut self.loaded;
+        for (number, own) in self.materials.iter().enumerate() {
+            if self.painted.get(&number) != wanted.get(&number) {
+                let material = wanted.get(&number).map_or_else(|| own.clone(), |factors| factors.on(own));
+                let written = world.scene.write_material(&self.screen.gpu, MaterialId::new(number), &material);
+                written.map_err(|error| error.to_string())?;
+                scene.materials[number] = material;
+            }
+        }
+        *survey = Arc::new(Survey::new(scene));
+        (self.painted, self.stand) = (wanted.clone(), None);
+        Ok(())
     }
 
     /// What is drawn of the settings: what the scene has nothing for, and what facts leave out, is not.

@@ -1,9 +1,11 @@
 //! What goes beside the settings of a frame: exposure, lens, light from all around, sun, moment of an animation.
 
+use super::factors::Factors;
 use framegraph_passes::FrameSettings;
 use framegraph_scene::camera::ev100_from_settings;
 use framegraph_scene::{Light, LightKind};
 use glam::{DQuat, DVec3, Vec3};
+use std::collections::BTreeMap;
 
 /// Height of a full-frame sensor, in millimeters: what focal lengths are given for.
 pub const SENSOR_MM: f64 = 24.0;
@@ -159,6 +161,8 @@ pub struct Document {
     pub frame: FrameSettings,
     /// What goes beside them.
     pub look: Look,
+    /// Materials of the scene that are not as it has them, by their numbers.
+    pub materials: BTreeMap<usize, Factors>,
 }
 
 #[cfg(test)]

@@ -1,9 +1,11 @@
 //! Panels of the frame that is drawn.
 
+mod curves;
 mod debugging;
 mod effects;
 mod fields;
 mod lens;
+mod material;
 mod preview;
 mod scene;
 mod settings;
@@ -18,7 +20,17 @@ pub use scene::scene;
 pub use settings::settings;
 pub use viewport::viewport;
 
-use egui::{ColorImage, Context, TextureHandle, TextureOptions};
+use super::Live;
+use super::asked_file::AskedFile;
+use egui::{ColorImage, Context, TextureHandle, TextureOptions, Ui};
+
+/// A button that asks for a file by a dialog of the desktop.
+fn ask(ui: &mut Ui, live: &mut Live, wanted: AskedFile, tip: &str) {
+    let name = if wanted == AskedFile::Open { "Open…" } else { "Save…" };
+    if ui.button(name).on_hover_text(tip).clicked() {
+        live.asks_file = Some(wanted);
+    }
+}
 
 /// Whether a change goes on: the pointer is held, as while a slider is dragged, or a text is typed.
 fn goes_on(ctx: &Context) -> bool {

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use viewer::app::{Pane, Session, Viewer};
 use viewer::live::Live;
-use viewer::live::look::{Document, Look};
+use viewer::live::look::Document;
 use viewer::live::screen::Screen;
 use viewer::plan_data::PlanData;
 use viewer::what_if::WhatIf;
@@ -23,7 +23,7 @@ const PATIENCE: Duration = Duration::from_secs(300);
 pub fn document() -> Document {
     let mut frame = Preset::Low.frame();
     frame.settings = Settings::with(frame.settings, Effect::Occlusion);
-    Document { frame, look: Look::default() }
+    Document { frame, ..Document::default() }
 }
 
 /// A viewer with a frame of `spheres`, on this device.
@@ -38,7 +38,7 @@ pub fn viewer(screen: &Screen, document: Document, scene: &str) -> Viewer {
 }
 
 /// The same in a window that nobody draws; none where there is no device.
-fn harness(name: &str, scene: &str) -> Option<Harness<'static, Viewer>> {
+pub fn harness(name: &str, scene: &str) -> Option<Harness<'static, Viewer>> {
     let gpu = match Gpu::open(&AdapterRequest::from_env()) {
         Ok(gpu) => gpu,
         Err(error) => {
@@ -57,16 +57,16 @@ fn harness(name: &str, scene: &str) -> Option<Harness<'static, Viewer>> {
     Some(harness)
 }
 
-fn live<'a>(harness: &'a mut Harness<'_, Viewer>) -> &'a mut Live {
+pub fn live<'a>(harness: &'a mut Harness<'_, Viewer>) -> &'a mut Live {
     harness.state_mut().live.as_mut().expect("a frame is drawn")
 }
 
-fn plan(harness: &Harness<'_, Viewer>) -> Arc<PlanData> {
+pub fn plan(harness: &Harness<'_, Viewer>) -> Arc<PlanData> {
     harness.state().session.plan.clone().expect("a plan")
 }
 
 /// Shows what has changed until nothing does.
-fn settled(harness: &mut Harness<'_, Viewer>) {
+pub fn settled(harness: &mut Harness<'_, Viewer>) {
     let viewer = harness.state_mut();
     let Viewer { live, session, .. } = viewer;
     assert!(live.as_mut().expect("a frame").settle(session, PATIENCE) && session.settle(PATIENCE));

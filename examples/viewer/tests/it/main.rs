@@ -1,6 +1,7 @@
 //! Tests of the viewer: what it reads, what it draws, what its panels do, and its window.
 
 mod changes;
+mod editing;
 mod live;
 mod live_pictures;
 mod panels;

@@ -1,13 +1,17 @@
 //! Facts that only the GPU knows: they come some frames late, no frame waits for them, and nothing flickers.
 
 use super::TestResult;
-use crate::stage::{LIGHT, gpu};
+use crate::stage::{LIGHT, gpu, plan};
+use framegraph::{Caps, Desc, Entry, Exit, Extent, Format, Options, Plan, Scratch, TextureDesc, compile};
+use framegraph_passes::bloom::{Blend, Threshold};
 use framegraph_passes::facts::{Decision, Effect, Proof};
 use framegraph_passes::ibl::cache::Cache;
-use framegraph_passes::measure::{Measure, Measurement};
+use framegraph_passes::measure::{Measure, MeasurePass, MeasureStep, Measurement};
+use framegraph_passes::program::Programs;
 use framegraph_passes::view::ViewSettings;
 use framegraph_passes::{BloomSettings, DofSettings, Settings};
-use framegraph_wgpu::Gpu;
+use framegraph_scene::Projection;
+use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
 use tests::measure::facts::late::InARow;
 use tests::measure::facts::{Drawn, SIZE_PX, cases};
 
@@ -57,6 +61,120 @@ fn light_and_distances_are_measured() -> TestResult {
     Ok(())
 }
 
+/// What was measured counts its frames, and is unknown once it is older than eight, or forgotten.
+#[test]
+fn what_is_old_or_forgotten_is_unknown() -> TestResult {
+    let Some(gpu) = gpu("what_is_old_or_forgotten_is_unknown") else { return Ok(()) };
+    let mut row = row(&gpu, "ball")?;
+    let seen = lit(&row, 1.0);
+    row.next(&glowing(), &seen)?;
+    row.show()?;
+    gpu.wait()?;
+    for frames in 1..=10 {
+        let known = row.measuring.known(&gpu)?;
+        match known {
+            Measurement::Known(found) => assert!(found.frames_ago == frames && frames <= 8, "{frames}: {found:?}"),
+            _ => assert!(frames > 8, "{frames}: {known:?}"),
+        }
+        // A frame that measures nothing.
+        row.next(&BARE, &seen)?;
+    }
+    row.next(&glowing(), &seen)?;
+    row.show()?;
+    gpu.wait()?;
+    assert!(matches!(row.measuring.known(&gpu)?, Measurement::Known(_)));
+    row.measuring.forget();
+    assert_eq!(row.measuring.known(&gpu)?, Measurement::Unknown);
+    Ok(())
+}
+
+/// Bloom that has no threshold or takes the picture's place glows in the dark too, and through a parallel projection
+/// depth is no distance from the eye.
+#[test]
+fn what_no_measure_decides_is_kept() -> TestResult {
+    let Some(gpu) = gpu("what_no_measure_decides_is_kept") else { return Ok(()) };
+    let mut row = row(&gpu, "ball")?;
+    let dark = lit(&row, 0.01);
+    for own in [
+        BloomSettings { threshold: Threshold::None, ..BloomSettings::DEFAULT },
+        BloomSettings { blend: Blend::Interpolate, ..BloomSettings::DEFAULT },
+    ] {
+        let asked = Settings { bloom: Some(own), ..BARE };
+        for _ in 0..2 {
+            let (facts, _) = row.next(&asked, &dark)?;
+            assert_eq!(facts.of(Effect::Bloom).ok_or("bloom")?.decision, Decision::Kept, "{own:?}");
+            assert!(!facts.measure.light, "{own:?}");
+            row.show()?;
+            gpu.wait()?;
+            row.forget();
+        }
+    }
+    let asked = Settings { dof: Some(DofSettings::DEFAULT), ..BARE };
+    let mut parallel = lit(&row, 1.0);
+    parallel.camera.projection =
+        Projection::Orthographic { half_width_m: None, half_height_m: 2.0, near_m: 0.1, far_m: 50.0 };
+    row.next(&asked, &parallel)?;
+    row.show()?;
+    gpu.wait()?;
+    let known = row.measuring.known(&gpu)?;
+    assert!(!matches!(known, Measurement::Known(found) if found.distances_m.is_some()), "{known:?}");
+    Ok(())
+}
+
+/// A NaN counts as black, an infinity as the most that half floats hold, as for bloom.
+#[test]
+fn what_is_no_number_is_measured_as_bloom_takes_it() -> TestResult {
+    let Some(gpu) = gpu("what_is_no_number_is_measured_as_bloom_takes_it") else { return Ok(()) };
+    for (bits, most) in [(0x7e00_u16, 1.5), (0x7c00, 65504.0), (0xfc00, 1.5)] {
+        let size = wgpu::Extent3d { width: 8, height: 8, depth_or_array_layers: 1 };
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("hdr"),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba16Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let texel = |at: usize| if at == 27 { [bits; 4] } else { [0x3e00_u16; 4] };
+        let bytes: Vec<u8> = (0..64).flat_map(texel).flat_map(u16::to_le_bytes).collect();
+        let layout = wgpu::TexelCopyBufferLayout { bytes_per_row: Some(64), ..Default::default() };
+        gpu.queue.write_texture(texture.as_image_copy(), &bytes, layout, size);
+        let (mut frame, mut imports) = (Frame::<Programs>::new(), Imports::new());
+        let desc = TextureDesc::new(Extent::absolute(8, 8), Format::Rgba16Float);
+        let hdr = frame.graph_mut().import_texture("hdr", desc, Entry::Defined, Exit::Keep);
+        imports.texture(hdr, &texture);
+        let step = MeasurePass { step: MeasureStep::Light { hdr }, extent: Extent::absolute(8, 8), eighths: 1 };
+        let result = frame.add("light", step)?.result;
+        frame.graph_mut().readback(result)?;
+        let mut plan = Plan::new();
+        compile(frame.graph(), &gpu.caps(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan)?;
+        let mut executor = Executor::new(&gpu);
+        executor.execute(&plan, &frame, &Programs::new(), &imports)?;
+        let found = read_texture(&gpu, executor.texture(&plan, result).ok_or("nothing was measured")?)?.rgba();
+        assert_eq!(found[0][0], most, "{bits:04x}");
+    }
+    Ok(())
+}
+
+/// What is copied to the CPU is a 64th as wide and high.
+#[test]
+fn what_is_read_back_is_small() -> TestResult {
+    let settings = Settings { measure: Measure { light: true, depth: true }, ..glowing() };
+    let plan = plan(&settings, &Caps::wgpu(), &Options::for_frame(1920, 1080));
+    let graph = plan.graph();
+    let measured = graph.resource_ids().filter(|id| graph.resource_name(*id).ends_with("measured"));
+    let sizes: Vec<[u32; 2]> = measured
+        .filter_map(|id| match graph.resources()[id.index()].desc {
+            Desc::Texture(desc) => Some(desc.extent.texels([1920, 1080])),
+            Desc::Buffer(_) => None,
+        })
+        .collect();
+    assert_eq!(sizes, [[240, 135], [30, 17], [240, 135], [30, 17]]);
+    Ok(())
+}
+
 /// Bloom goes where twice the light is below its threshold, and the picture keeps every bit; it stays where it is not.
 #[test]
 fn bloom_goes_where_nothing_was_bright() -> TestResult {
@@ -91,7 +209,8 @@ fn depth_of_field_goes_where_all_was_in_focus() -> TestResult {
     let Some(gpu) = gpu("depth_of_field_goes_where_all_was_in_focus") else { return Ok(()) };
     for (f_number, decision) in [(64.0, Decision::Dropped), (1.0, Decision::Kept)] {
         let mut row = row(&gpu, "floor")?;
-        let seen = row.case().view(&BARE, SIZE_PX);
+        // Eight divides neither side: what is beyond the edge is no depth.
+        let seen = row.case().view(&BARE, [75, 41]);
         // Close to what is seen, so that the sky, by its bound, is out of focus at either aperture.
         let focal_length_m = Some(0.2);
         let own = DofSettings { focus_m: 2.1, f_number, focal_length_m, ..DofSettings::DEFAULT };

@@ -3,10 +3,10 @@
 use framegraph_passes::facts::{
     Around, Decision, Effect, EffectSet, FactInput, FactMemory, Facts, Proof, Survey, decide,
 };
-use framegraph_passes::measure::Measurement;
+use framegraph_passes::measure::{Measured, Measurement};
 use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings};
+use framegraph_passes::{BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, Settings};
 use framegraph_scene::environment::ShBands;
 use framegraph_scene::geometry::{cuboid, sphere};
 use framegraph_scene::{AlphaMode, Light, LightKind, Material, TextureId, TextureSlot, Transmission, UvTransform};
@@ -31,6 +31,16 @@ impl Stage {
     }
 
     fn facts_with(&self, view: ViewSettings, memory: &mut FactMemory) -> Facts {
+        self.facts_of(&[view], Measurement::Off, EffectSet::NONE, memory)
+    }
+
+    fn facts_of(
+        &self,
+        views: &[ViewSettings],
+        measured: Measurement,
+        forced: EffectSet,
+        memory: &mut FactMemory,
+    ) -> Facts {
         let Self { case, sh, sun, luminance_nits } = self;
         let around =
             Around { irradiance: sh, bands: ShBands::Three, luminance_nits: *luminance_nits, sun: sun.as_ref() };
@@ -39,10 +49,10 @@ impl Stage {
             survey: &Survey::new(&case.scene),
             around,
             background: &case.background,
-            views: &[view],
+            views,
             settings: &case.asked,
-            forced: EffectSet::NONE,
-            measured: Measurement::Off,
+            forced,
+            measured,
             most_codes: FactInput::MOST_CODES,
         };
         decide(&input, memory)
@@ -295,6 +305,31 @@ fn air_and_lens_are_left_out_where_they_do_nothing() {
 }
 
 /// What is forced stays, and a drop that is bounded by more than the tolerance is not made.
+/// What was measured counts for one view, unless the effect is forced, and the nearest counts as well as the farthest.
+#[test]
+fn measures_are_of_one_view_and_of_both_ends() {
+    let mut stage = Stage::of("ball");
+    let dof = DofSettings { focus_m: 3.0, f_number: 1.0, focal_length_m: Some(0.2), ..DofSettings::DEFAULT };
+    let bloom = Some(BloomSettings::DEFAULT);
+    stage.case.asked = Settings { dof: Some(dof), bloom, ..stage.case.asked };
+    let view = ViewSettings { environment_intensity: 2.0, ..stage.case.view(&stage.case.asked, SIZE_PX) };
+    let dropped = |views: &[ViewSettings], distances_m: [f64; 2], forced: EffectSet| {
+        let measured = Measured { most_nits: Some(0.0), distances_m: Some(distances_m), frames_ago: 1 };
+        let facts = stage.facts_of(views, Measurement::Known(measured), forced, &mut FactMemory::default());
+        [Effect::Bloom, Effect::DepthOfField]
+            .map(|effect| facts.of(effect).is_some_and(|fact| fact.decision == Decision::Dropped))
+    };
+    let one = [view];
+    let two = [one[0].clone(), one[0].clone()];
+    assert_eq!(dropped(&one, [3.0, 3.0], EffectSet::NONE), [true, true]);
+    assert_eq!(dropped(&two, [3.0, 3.0], EffectSet::NONE), [false, false], "the other view was not measured");
+    for ends in [[1.0, 3.0], [3.0, 9.0]] {
+        assert_eq!(dropped(&one, ends, EffectSet::NONE), [true, false], "{ends:?}: one end is out of focus");
+    }
+    let forced = EffectSet::NONE.with(Effect::Bloom).with(Effect::DepthOfField);
+    assert_eq!(dropped(&one, [3.0, 3.0], forced), [false, false]);
+}
+
 #[test]
 fn forced_effects_stay() {
     let floor = Stage::of("floor");

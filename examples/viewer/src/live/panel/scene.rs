@@ -1,9 +1,10 @@
 //! The scene: where it comes from, its animation, its cameras, what it is made of and with which materials.
 
 use crate::live::Live;
-use egui::{CollapsingHeader, ComboBox, Grid, RichText, ScrollArea, Slider, TextEdit, Ui};
+use crate::live::asked_file::AskedFile;
+use egui::{Button, ComboBox, RichText, ScrollArea, Slider, TextEdit, Ui};
 use framegraph_scene::builtin::NAMES;
-use framegraph_scene::{Camera, Material, Scene};
+use framegraph_scene::{Camera, Scene};
 use std::path::Path;
 
 /// Names of files that are offered at most.
@@ -28,15 +29,16 @@ pub fn scene(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crat
     ));
     animation(ui, live);
     cameras(ui, live);
+    super::material::material(ui, live);
     ui.separator();
     let Some(running) = &live.running else { return };
-    hierarchy(ui, &running.loaded.scene);
+    hierarchy(ui, &running.loaded.scene, &mut live.material);
 }
 
 /// A path with what there is in its folder, and the built-in scenes.
 fn open(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::session::Session) {
     ui.horizontal(|ui| {
-        let width = (ui.available_width() - 130.0).max(60.0);
+        let width = (ui.available_width() - 192.0).max(60.0);
         let edit = ui.add(TextEdit::singleline(path).hint_text("SCENE.gltf, .glb or light.hdr").desired_width(width));
         let enter = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         let tip = "loads it; files can be dropped onto the window too";
@@ -46,6 +48,7 @@ fn open(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::se
         {
             live.load(path.trim());
         }
+        super::ask(ui, live, AskedFile::Open, "loads a scene, or light from all around");
         ComboBox::from_id_salt("built-in")
             .selected_text("built-in")
             .width(60.0)
@@ -160,7 +163,7 @@ fn cameras(ui: &mut Ui, live: &mut Live) {
 }
 
 /// Instances under their nodes, each with its material.
-fn hierarchy(ui: &mut Ui, scene: &Scene) {
+fn hierarchy(ui: &mut Ui, scene: &Scene, chosen: &mut Option<usize>) {
     ScrollArea::vertical().auto_shrink(false).show_rows(ui, 22.0, scene.instances.len(), |ui, rows| {
         for number in rows {
             let instance = &scene.instances[number];
@@ -178,7 +181,12 @@ fn hierarchy(ui: &mut Ui, scene: &Scene) {
                     scene.meshes[instance.mesh.index()].triangle_count()
                 ));
                 let named = if material.name.is_empty() { "(no name)" } else { &material.name };
-                ui.menu_button(RichText::new(named).size(11.0), |ui| self::material(ui, material));
+                let number = instance.material.index();
+                let shown = *chosen == Some(number);
+                let button = Button::selectable(shown, RichText::new(named).size(11.0));
+                if ui.add(button).on_hover_text("shows the material, and changes it").clicked() {
+                    *chosen = (!shown).then_some(number);
+                }
             });
         }
     });
@@ -195,30 +203,6 @@ fn depth(scene: &Scene, instance: usize) -> usize {
         }
     }
     depth
-}
-
-/// What a material is.
-fn material(ui: &mut Ui, material: &Material) {
-    let texture = |there: bool| if there { ", textured" } else { "" };
-    CollapsingHeader::new(&material.name).default_open(true).show(ui, |ui| {
-        Grid::new("material").num_columns(2).striped(true).show(ui, |ui| {
-            let mut row = |name: &str, text: String| {
-                ui.label(name);
-                ui.label(text);
-                ui.end_row();
-            };
-            row("base color", format!("{:.3}{}", material.base_color, texture(material.base_color_texture.is_some())));
-            let surface = texture(material.metallic_roughness_texture.is_some());
-            row("metallic", format!("{:.3}{surface}", material.metallic));
-            row("roughness", format!("{:.3}{surface}", material.roughness));
-            row("normals", if material.normal_texture.is_some() { "textured" } else { "of the mesh" }.into());
-            row("emissive", format!("{:.2}{}", material.emissive, texture(material.emissive_texture.is_some())));
-            row("alpha", format!("{:?}", material.alpha));
-            row("sides", if material.double_sided { "both" } else { "front" }.into());
-            let lobes: Vec<String> = material.lobes().iter().map(|lobe| format!("{lobe:?}")).collect();
-            row("lobes", if lobes.is_empty() { "-".into() } else { lobes.join(", ") });
-        });
-    });
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! The settings of the frame: presets, files, undo, and every field.
 
 use super::fields::Fields;
-use super::{goes_on, tone};
+use super::{curves, goes_on, tone};
 use crate::live::Live;
+use crate::live::asked_file::AskedFile;
 use crate::live::shown::SettingsPanel;
 use crate::settings::{settings as as_settings, tree};
 use egui::{RichText, ScrollArea, TextEdit, Ui};
@@ -19,7 +20,12 @@ pub fn settings(ui: &mut Ui, live: &mut Live) {
         ui.label(RichText::new(refused).color(ui.visuals().error_fg_color));
     }
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        tone::curve(ui, &live.document().frame.settings.post);
+        let mut document = live.document().clone();
+        let post = &mut document.frame.settings.post;
+        tone::curve(ui, post);
+        if curves::curves(ui, &mut post.look.grading) {
+            live.set(document, goes_on(ui.ctx()));
+        }
         fields(&mut panel, ui, live);
     });
     live.settings = panel;
@@ -74,7 +80,7 @@ fn bar(ui: &mut Ui, live: &mut Live) {
         }
     });
     ui.horizontal(|ui| {
-        let width = (ui.available_width() - 122.0).max(40.0);
+        let width = (ui.available_width() - 186.0).max(40.0);
         ui.add(TextEdit::singleline(&mut live.path).hint_text("SETTINGS.ron").desired_width(width));
         let path = PathBuf::from(live.path.trim());
         let named = !live.path.trim().is_empty();
@@ -93,5 +99,7 @@ fn bar(ui: &mut Ui, live: &mut Live) {
         if ui.add_enabled(named, egui::Button::new("Save")).on_hover_text("every field, as RON").clicked() {
             live.settings.refused = live.save(&path).err();
         }
+        super::ask(ui, live, AskedFile::Open, "opens a file of settings");
+        super::ask(ui, live, AskedFile::SaveSettings, "saves them as a file");
     });
 }

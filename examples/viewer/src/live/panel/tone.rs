@@ -41,7 +41,7 @@ pub(super) fn curve(ui: &mut Ui, post: &PostSettings) {
             .map(|index| low + (high - low) * index as f64 / (POINTS - 1) as f64)
             .filter_map(|stops| Some((stops, codes(post, stops)?)))
             .collect();
-        for (channel, [r, g, b]) in [(0, [213, 94, 0]), (1, [0, 158, 115]), (2, [0, 114, 178])] {
+        for (channel, [r, g, b]) in super::curves::CHANNELS.into_iter().enumerate() {
             let points: Vec<Pos2> = found.iter().map(|(stops, codes)| at(*stops, codes[channel])).collect();
             painter.add(Shape::line(points, Stroke::new(1.5, egui::Color32::from_rgb(r, g, b))));
         }

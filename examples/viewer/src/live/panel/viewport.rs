@@ -20,7 +20,7 @@ pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "viewport"));
     steer(ui, live, &response, rect);
     let scale = ui.ctx().pixels_per_point() * live.share.clamp(0.1, 1.0);
-    let most = live.most_px().min(MOST_PX) as f32;
+    let most = live.screen.gpu.caps().max_texture_texels.min(MOST_PX) as f32;
     let size_px = [rect.width(), rect.height()].map(|side| (side * scale).round().clamp(1.0, most) as u32);
     if live.take_size(size_px) {
         live.again();
