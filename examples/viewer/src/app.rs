@@ -91,7 +91,8 @@ impl Viewer {
         false
     }
 
-    /// Shows everything. Nothing is worked out anew unless something changed.
+    /// Shows everything, before the background that `ui` has, which should be the one that [`panel::dress`] sets.
+    /// Nothing is worked out anew unless something changed.
     pub fn show(&mut self, ui: &mut Ui) {
         self.session.poll();
         #[cfg(feature = "window")]
@@ -121,7 +122,9 @@ impl Viewer {
             #[cfg(feature = "window")]
             typed: &mut self.typed.0,
         };
-        egui::CentralPanel::default().show(ui, |ui| tiles.ui(&mut behavior, ui));
+        // What is behind is the window's color already: filling it again is most of what a software driver does.
+        let frame = egui::Frame::central_panel(ui.style()).fill(egui::Color32::TRANSPARENT);
+        egui::CentralPanel::default().frame(frame).show(ui, |ui| tiles.ui(&mut behavior, ui));
         if self.help {
             self.help = shortcuts::list(ui.ctx());
         }

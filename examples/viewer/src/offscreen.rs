@@ -32,6 +32,17 @@ impl Offscreen {
         Ok(Self::on(gpu))
     }
 
+    /// The same, drawing as windows are drawn: faster, and not the same pixels on every driver.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn as_windows() -> Result<Self, String> {
+        let mut screen = Self::open()?;
+        let renderer = Renderer::new(&screen.gpu.device, FORMAT, RendererOptions::default());
+        screen.renderer = Arc::new(RwLock::new(renderer));
+        Ok(screen)
+    }
+
     /// Draws with a device that is open.
     pub fn on(gpu: Gpu) -> Self {
         // The same pixels on every driver, as far as that can be had.
@@ -78,8 +89,22 @@ impl Offscreen {
             self.take_textures(&mut next);
             output = Some(next);
         }
-        let output = output.unwrap_or_default();
-        self.paint(&ctx, output, size_px)
+        let texture = self.paint(&ctx, output.unwrap_or_default(), size_px);
+        let pixels = read_texture(&self.gpu, &texture).map_err(|e| e.to_string())?;
+        let mut rgba = pixels.rgba8();
+        // A window has no alpha.
+        rgba.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 255);
+        Ok(rgba)
+    }
+
+    /// Draws a frame of egui as a window would, and waits until it is drawn.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn frame(&mut self, ctx: &Context, mut output: FullOutput, size_px: [u32; 2]) -> Result<(), String> {
+        self.take_textures(&mut output);
+        self.paint(ctx, output, size_px);
+        self.gpu.wait().map_err(|e| e.to_string())
     }
 
     /// Textures that a frame made or changed.
@@ -96,7 +121,7 @@ impl Offscreen {
     }
 
     /// Draws the shapes of a frame whose textures were taken.
-    fn paint(&mut self, ctx: &Context, output: FullOutput, size_px: [u32; 2]) -> Result<Vec<u8>, String> {
+    fn paint(&mut self, ctx: &Context, output: FullOutput, size_px: [u32; 2]) -> wgpu::Texture {
         let [width, height] = size_px.map(|side| side.clamp(1, MOST_PX));
         let device = &self.gpu.device;
         let texture = device.create_texture(&wgpu::TextureDescriptor {
@@ -110,6 +135,7 @@ impl Offscreen {
             view_formats: &[],
         });
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let [r, g, b, a] = ctx.global_style().visuals.panel_fill.to_normalized_gamma_f32().map(f64::from);
         let screen = ScreenDescriptor { size_in_pixels: [width, height], pixels_per_point: output.pixels_per_point };
         let triangles = ctx.tessellate(output.shapes, output.pixels_per_point);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
@@ -122,7 +148,7 @@ impl Offscreen {
                     view: &view,
                     resolve_target: None,
                     ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a }),
                         store: wgpu::StoreOp::Store,
                     },
                     depth_slice: None,
@@ -133,11 +159,7 @@ impl Offscreen {
         self.renderer.write().render(&mut pass, &triangles, &screen);
         drop(pass);
         queue.submit(before.into_iter().chain([encoder.finish()]));
-        let pixels = read_texture(&self.gpu, &texture).map_err(|e| e.to_string())?;
-        let mut rgba = pixels.rgba8();
-        // A window has no alpha.
-        rgba.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 255);
-        Ok(rgba)
+        texture
     }
 
     /// A drawing alone, whole, as a picture of that size in pixels.

@@ -43,10 +43,12 @@ pub fn theme(ui: &Ui) -> Theme {
     if ui.visuals().dark_mode { Theme::Dark } else { Theme::Light }
 }
 
-/// Makes words of egui as dark as those of the pictures: they are read, not skimmed. To be called once.
+/// Gives egui the background of the pictures, and makes its words as dark as theirs: they are read, not skimmed. To be called
+/// once.
 pub fn dress(ctx: &egui::Context) {
     for (theme, shown) in [(Theme::Light, egui::Theme::Light), (Theme::Dark, egui::Theme::Dark)] {
         ctx.style_mut_of(shown, |style| {
+            style.visuals.panel_fill = color(Ink::Background, theme);
             style.visuals.widgets.noninteractive.fg_stroke.color = color(Ink::Text, theme);
         });
     }

@@ -101,6 +101,10 @@ fn kept(live: bool) -> Option<PathBuf> {
 }
 
 impl App for Program {
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut Frame) {
         let session = &mut self.viewer.session;
         session.poll();

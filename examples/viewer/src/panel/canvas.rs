@@ -79,7 +79,6 @@ impl Canvas {
         let to_screen = TSTransform::from_translation(panel.min.to_vec2()) * view;
         self.last = (panel, to_screen);
         let theme = theme(ui);
-        painter.rect_filled(panel, 0.0, super::color(crate::drawing::Ink::Background, theme));
         paint::paint(&painter, drawing, to_screen, theme, lit);
         paint::frame(&painter, drawing, to_screen, theme, lit);
         let under = |pos: Pos2| {

@@ -33,18 +33,16 @@ pub(super) fn paint(painter: &Painter, drawing: &Drawing, to_screen: TSTransform
                 }
             }
             Shape::Line { points, ink, width, dashed } => {
-                let points: Vec<Pos2> = points.iter().map(|p| at(*p)).collect();
-                if !Rect::from_points(&points).intersects(seen) {
-                    continue;
-                }
                 let bright = bright.contains(&index);
                 let ink = if bright { crate::drawing::Ink::Selected } else { *ink };
                 let width = (width * zoom).clamp(0.6, 3.0) + if bright { 1.5 } else { 0.0 };
                 let stroke = Stroke::new(width, color(ink, theme));
-                if *dashed {
-                    painter.extend(egui::Shape::dashed_line(&points, stroke, 4.0, 3.0));
-                } else {
-                    painter.add(egui::Shape::line(points, stroke));
+                for run in runs(points.iter().map(|p| at(*p)), seen.expand(width)) {
+                    if *dashed {
+                        painter.extend(egui::Shape::dashed_line(&run, stroke, 4.0, 3.0));
+                    } else {
+                        painter.add(egui::Shape::line(run, stroke));
+                    }
                 }
             }
             Shape::Triangle { points, ink } => {
@@ -83,6 +81,23 @@ pub(super) fn paint(painter: &Painter, drawing: &Drawing, to_screen: TSTransform
     }
 }
 
+/// Those parts of a line that can be seen: a line from one end of a long frame to the other has thousands of points. A part
+/// begins and ends with the points beyond the edge.
+fn runs(points: impl Iterator<Item = Pos2>, seen: Rect) -> Vec<Vec<Pos2>> {
+    let mut runs: Vec<Vec<Pos2>> = Vec::new();
+    let mut last: Option<(Pos2, bool)> = None;
+    for point in points {
+        let drawn = last.is_some_and(|(before, _)| Rect::from_two_pos(before, point).intersects(seen));
+        match (last, drawn) {
+            (Some((_, true)), true) => runs.last_mut().into_iter().for_each(|run| run.push(point)),
+            (Some((before, false)), true) => runs.push(vec![before, point]),
+            _ => {}
+        }
+        last = Some((point, drawn));
+    }
+    runs
+}
+
 /// Frames the places of lit items; of places within one another, the first.
 pub(super) fn frame(painter: &Painter, drawing: &Drawing, to_screen: TSTransform, theme: Theme, lit: &[Item]) {
     let seen = painter.clip_rect().expand(2.0);
@@ -104,5 +119,23 @@ pub(super) fn frame(painter: &Painter, drawing: &Drawing, to_screen: TSTransform
                 painter.rect_stroke(rect.expand(1.0), 0.0, stroke, StrokeKind::Middle);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_keep_what_is_seen_of_them() {
+        let seen = Rect::from_min_max(pos2(0.0, 0.0), pos2(10.0, 10.0));
+        let line = |xs: &[f32]| runs(xs.iter().map(|x| pos2(*x, 5.0)), seen);
+        let xs = |run: &[Pos2]| run.iter().map(|p| p.x).collect::<Vec<_>>();
+        let all: Vec<_> = line(&[-30.0, -20.0, -5.0, 5.0, 15.0, 30.0, 40.0]).iter().map(|run| xs(run)).collect();
+        assert_eq!(all, [[-5.0, 5.0, 15.0]]);
+        let twice: Vec<_> = line(&[-5.0, 5.0, 15.0, 20.0, 15.0, 5.0]).iter().map(|run| xs(run)).collect();
+        assert_eq!(twice, [vec![-5.0, 5.0, 15.0], vec![15.0, 5.0]]);
+        assert_eq!(line(&[-5.0, 15.0]).len(), 1, "it goes across without a point inside");
+        assert!(line(&[-9.0, -5.0]).is_empty() && line(&[5.0]).is_empty());
     }
 }

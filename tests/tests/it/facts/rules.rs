@@ -3,7 +3,7 @@
 use framegraph_passes::facts::{
     Around, Decision, Effect, EffectSet, FactInput, FactMemory, Facts, Proof, Survey, decide,
 };
-use framegraph_passes::measure::{Measured, Measurement};
+use framegraph_passes::measure::{Measure, Measured, Measurement};
 use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, Settings};
@@ -328,6 +328,8 @@ fn measures_are_of_one_view_and_of_both_ends() {
     }
     let forced = EffectSet::NONE.with(Effect::Bloom).with(Effect::DepthOfField);
     assert_eq!(dropped(&one, [3.0, 3.0], forced), [false, false]);
+    let facts = stage.facts_of(&one, Measurement::Unknown, forced, &mut FactMemory::default());
+    assert_eq!(facts.measure, Measure::NONE, "nothing is decided by it");
 }
 
 #[test]

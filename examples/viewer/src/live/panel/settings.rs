@@ -78,9 +78,11 @@ fn bar(ui: &mut Ui, live: &mut Live) {
         if ui.add_enabled(redo, egui::Button::new("Redo")).on_hover_text("Ctrl+Y").clicked() && live.history.redo() {
             live.again();
         }
+        super::ask(ui, live, AskedFile::Open, "opens a file of settings");
+        super::ask(ui, live, AskedFile::SaveSettings, "saves them as a file");
     });
     ui.horizontal(|ui| {
-        let width = (ui.available_width() - 186.0).max(40.0);
+        let width = (ui.available_width() - 122.0).max(40.0);
         ui.add(TextEdit::singleline(&mut live.path).hint_text("SETTINGS.ron").desired_width(width));
         let path = PathBuf::from(live.path.trim());
         let named = !live.path.trim().is_empty();
@@ -99,7 +101,5 @@ fn bar(ui: &mut Ui, live: &mut Live) {
         if ui.add_enabled(named, egui::Button::new("Save")).on_hover_text("every field, as RON").clicked() {
             live.settings.refused = live.save(&path).err();
         }
-        super::ask(ui, live, AskedFile::Open, "opens a file of settings");
-        super::ask(ui, live, AskedFile::SaveSettings, "saves them as a file");
     });
 }
