@@ -49,6 +49,8 @@ pub fn dress(ctx: &egui::Context) {
     for (theme, shown) in [(Theme::Light, egui::Theme::Light), (Theme::Dark, egui::Theme::Dark)] {
         ctx.style_mut_of(shown, |style| {
             style.visuals.panel_fill = color(Ink::Background, theme);
+            // Fields stand out from it.
+            style.visuals.text_edit_bg_color = Some(color(Ink::Grid, theme));
             style.visuals.widgets.noninteractive.fg_stroke.color = color(Ink::Text, theme);
         });
     }
