@@ -1,5 +1,7 @@
 //! Ambient occlusion of analytic scenes on a device: a depth given by a formula, and what the passes make of it.
 
+pub mod mirror;
+
 use crate::truth::occlusion as truth;
 use framegraph::{Entry, Exit, Extent, Format, Intent, Options, Plan, Scratch, Texture, TextureDesc, compile};
 use framegraph_passes::occlusion::{AmbientOcclusion, Axis, OcclusionBlur, OcclusionSettings};

@@ -15,6 +15,18 @@ pub struct Explained {
 /// All of them, by file.
 pub const EXPLAINED: &[Explained] = &[
     Explained {
+        file: "shaders/wgsl/pass/occlusion.wgsl",
+        before: "var right = vec3<f32>(0.0);",
+        after: "var right = vec3<f32>(0.1);",
+        why: "Both branches that follow give it another value.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/occlusion.wgsl",
+        before: "let aside = normalize_or(vec3<f32>(way.y, -way.x, 0.0), vec3<f32>(0.0)).xy;",
+        after: "let aside = normalize_or(vec3<f32>(way.y, -way.x, 0.0), vec3<f32>(0.1)).xy;",
+        why: "It stands in where the way has no length, and is multiplied by that length.",
+    },
+    Explained {
         file: "shaders/wgsl/pass/flare.wgsl",
         before: "textureSampleLevel(glow, glow_sampler, uv + d, 0.0).r,",
         after: "textureSampleLevel(glow, glow_sampler, uv + d, 0.1).r,",
