@@ -117,10 +117,11 @@ impl SurfaceDraw<'_> {
         pass.set_vertex_buffer(STREAM_ATTRIBUTES, scene.attributes.slice(..));
         pass.set_vertex_buffer(STREAM_INSTANCE, numbers.slice(..));
         pass.set_vertex_buffer(STREAM_EARLIER, scene.earlier_positions().slice(..));
-        pass.set_index_buffer(scene.indices.slice(..), wgpu::IndexFormat::Uint32);
         let mut states: Vec<SharedState> = Vec::new();
         // Index of the state that is set, and the material.
         let (mut set, mut bound): (Option<usize>, Option<MaterialId>) = (None, None);
+        // Whether the indices that are set are short.
+        let mut indexed: Option<bool> = None;
         for batch in batches {
             let number = batch.instance as usize;
             let instance = &scene.instances[number];
@@ -154,7 +155,15 @@ impl SurfaceDraw<'_> {
                 }
             }
             let mesh = scene.mesh(instance.mesh);
-            cx.render_pass()?.draw_indexed(mesh.indices(), mesh.base_vertex, batch.range());
+            let pass = cx.render_pass()?;
+            if indexed.replace(mesh.short) != Some(mesh.short) {
+                let (of, format) = match mesh.short {
+                    true => (scene.indices.slice(scene.short_indices_at..), wgpu::IndexFormat::Uint16),
+                    false => (scene.indices.slice(..scene.short_indices_at), wgpu::IndexFormat::Uint32),
+                };
+                pass.set_index_buffer(of, format);
+            }
+            pass.draw_indexed(mesh.indices(), mesh.base_vertex, batch.range());
         }
         Ok(())
     }

@@ -4,6 +4,7 @@ mod bench;
 mod circles;
 mod demo;
 mod documents;
+mod frames;
 mod gallery;
 mod mutants;
 mod prove;

@@ -41,7 +41,12 @@ struct Own {
     commands: &'static [&'static str],
 }
 
-const OWN: [Own; 7] = [
+const OWN: [Own; 12] = [
+    Own { name: "--frames", valued: false, commands: &["bench"] },
+    Own { name: "--scene", valued: true, commands: &["bench"] },
+    Own { name: "--preset", valued: true, commands: &["bench"] },
+    Own { name: "--size", valued: true, commands: &["bench"] },
+    Own { name: "--beside", valued: true, commands: &["bench"] },
     Own { name: "--build", valued: false, commands: &["rooms"] },
     Own { name: "--quick", valued: false, commands: &["prove"] },
     Own { name: "--dsa", valued: true, commands: &["prove"] },
@@ -136,6 +141,8 @@ Options:
                 of `prove`: see `cargo xtask prove --help`
   --all, --count N, --list, --out FILE
                 of `mutants`: see `cargo xtask mutants --help`
+  --frames, --scene NAME, --preset NAME, --size WxH, --beside COMMAND
+                of `bench`: see `cargo xtask bench --help`
   --build       of `rooms`: see `cargo xtask rooms --help`
   -h, --help    print help
 ";

@@ -20,6 +20,8 @@ pub(super) struct Vertices {
     pub positions: Buffer,
     pub attributes: Buffer,
     pub indices: Buffer,
+    /// Bytes of the indices that have 32 bits: behind them those that have 16.
+    pub short_indices_at: u64,
 }
 
 /// Lays all meshes one after another.
@@ -37,17 +39,26 @@ pub(super) fn vertices(
     }
     let mut positions: Vec<VertexPosition> = Vec::with_capacity(vertex_count);
     let mut attributes: Vec<VertexAttributes> = Vec::with_capacity(vertex_count);
-    let mut indices: Vec<u32> = Vec::with_capacity(index_count);
+    // Half the bytes where 16 bits are enough; those with 32 come first.
+    let is_short = |mesh: &framegraph_scene::Mesh| mesh.vertex_count() <= 1 << 16;
+    let long_count: usize = scene.meshes.iter().filter(|mesh| !is_short(mesh)).map(|mesh| mesh.indices.len()).sum();
+    let mut long: Vec<u32> = Vec::with_capacity(long_count);
+    let mut short: Vec<u16> = Vec::with_capacity(index_count - long_count);
     let mut ranges = Vec::with_capacity(scene.meshes.len());
     for (index, mesh) in scene.meshes.iter().enumerate() {
         ranges.push(MeshRange {
-            first_index: indices.len() as u32,
+            short: is_short(mesh),
+            first_index: if is_short(mesh) { short.len() } else { long.len() } as u32,
             index_count: mesh.indices.len() as u32,
             base_vertex: positions.len() as i32,
         });
         positions.extend(vertex_positions(mesh));
         attributes.extend(vertex_attributes(mesh));
-        indices.extend(&mesh.indices);
+        if is_short(mesh) {
+            short.extend(mesh.indices.iter().map(|index| *index as u16));
+        } else {
+            long.extend(&mesh.indices);
+        }
         if colors_are_cut(mesh) {
             warnings
                 .push(format!("{}: vertex colors of mesh {:?} outside 0…65504 were clamped", scene.name, mesh.name));
@@ -55,10 +66,15 @@ pub(super) fn vertices(
         let step = Progress { stage: Stage::Vertices, done: index + 1, total: scene.meshes.len(), item: &mesh.name };
         report(progress, Path::new(&scene.name), step)?;
     }
+    let mut bytes: Vec<u8> = cast_slice(&long).to_vec();
+    bytes.extend_from_slice(cast_slice(&short));
+    // Buffers are written by fours.
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
     let vertices = Vertices {
         positions: filled(gpu, scene, "positions", BufferUsages::VERTEX, &positions)?,
         attributes: filled(gpu, scene, "attributes", BufferUsages::VERTEX, &attributes)?,
-        indices: filled(gpu, scene, "indices", BufferUsages::INDEX, &indices)?,
+        indices: filled(gpu, scene, "indices", BufferUsages::INDEX, &bytes)?,
+        short_indices_at: 4 * long.len() as u64,
     };
     Ok((vertices, ranges))
 }

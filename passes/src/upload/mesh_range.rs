@@ -3,7 +3,9 @@
 /// The part of the shared buffers that holds a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeshRange {
-    /// First index of the mesh in [`GpuScene::indices`](super::GpuScene::indices).
+    /// Whether its indices have 16 bits: it has 65,536 vertices at most. Others have 32.
+    pub short: bool,
+    /// First index of the mesh among those of its kind in [`GpuScene::indices`](super::GpuScene::indices).
     pub first_index: u32,
     /// Number of indices: three a triangle.
     pub index_count: u32,

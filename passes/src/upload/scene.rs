@@ -21,8 +21,10 @@ pub struct GpuScene {
     pub positions: wgpu::Buffer,
     /// Vertex buffer of `layout::VertexAttributes`, all meshes.
     pub attributes: wgpu::Buffer,
-    /// 32-bit indices of all meshes.
+    /// Indices of all meshes: those of 32 bits, and behind them those of 16 ([`MeshRange::short`]).
     pub indices: wgpu::Buffer,
+    /// Where those of 16 bits begin, in bytes.
+    pub short_indices_at: u64,
     /// `layout::MaterialUniforms` of all materials, `material_stride_bytes` apart.
     pub materials: wgpu::Buffer,
     /// From one material to the next; a multiple of the device's offset alignment.
@@ -95,6 +97,7 @@ impl GpuScene {
             positions: vertices.positions,
             attributes: vertices.attributes,
             indices: vertices.indices,
+            short_indices_at: vertices.short_indices_at,
             materials,
             material_stride_bytes,
             warnings,

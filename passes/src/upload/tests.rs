@@ -30,12 +30,14 @@ fn built_in_scenes_upload_without_complaint() {
         let vertices: u64 = scene.meshes.iter().map(|m| m.vertex_count() as u64).sum();
         assert_eq!(uploaded.positions.size(), vertices * 12);
         assert_eq!(uploaded.attributes.size(), vertices * size_of::<VertexAttributes>() as u64);
-        let mut first = 0;
+        let mut first = [0; 2];
         for (i, mesh) in scene.meshes.iter().enumerate() {
             let range = uploaded.mesh(MeshId::new(i));
-            assert_eq!(range.first_index, first);
+            assert_eq!(range.short, mesh.vertex_count() <= 65_536);
+            let first = &mut first[usize::from(range.short)];
+            assert_eq!(range.first_index, *first);
             assert_eq!(range.indices().len(), mesh.indices.len());
-            first += range.index_count;
+            *first += range.index_count;
         }
         for i in 0..scene.materials.len() {
             let material = MaterialId::new(i);
@@ -142,8 +144,11 @@ fn buffers_and_textures_hold_what_was_sent() {
     let sent = scene.meshes.iter().flat_map(|m| &m.positions);
     assert!(positions.iter().zip(sent).all(|(a, b)| a.position == b.to_array()));
     let bytes = read_buffer(&gpu, &uploaded.indices, uploaded.indices.size()).expect("the buffer can be copied");
-    let indices: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
-    assert_eq!(indices[..6], scene.meshes[0].indices[..6]);
+    let indices: Vec<u16> = bytemuck::pod_collect_to_vec(&bytes);
+    assert!(
+        uploaded.short_indices_at == 0
+            && indices[..6].iter().zip(&scene.meshes[0].indices).all(|(a, b)| u32::from(*a) == *b)
+    );
 
     let occlusion = MATERIAL_BINDINGS.iter().position(|name| *name == "occlusion_texture").expect("it is listed");
     let Some(Binding::View(occlusion)) = uploaded.material_binding(MaterialId::new(0), occlusion) else {

@@ -51,6 +51,41 @@ fn draw(gpu: &Gpu, world: &World, settings: &Settings, options: &Options) -> Res
     Ok(read_texture(gpu, picture)?.rgba8())
 }
 
+/// A mesh of more than 65,536 vertices has indices of 32 bits, others of 16, in one buffer: the same bytes of a picture whether
+/// vertices that nothing uses make none, one or all meshes so large.
+#[test]
+fn short_and_long_indices_draw_the_same_picture() -> TestResult {
+    let Some(gpu) = gpu("short_and_long_indices_draw_the_same_picture") else { return Ok(()) };
+    let settings = Settings { shadows: Some(ShadowSettings::texels(128)), ..Settings::DEFAULT };
+    let shot = Shot { size_px: [96, 64], options: Options::for_frame(96, 64), ..Shot::small(settings) };
+    let environment = Sky::default().environment(128)?;
+    let picture = |long: fn(usize) -> bool| {
+        let mut scene = crowd();
+        for (_, mesh) in scene.meshes.iter_mut().enumerate().filter(|(index, _)| long(*index)) {
+            let count = (1 << 16) + 1;
+            mesh.positions.resize(count, Vec3::ZERO);
+            mesh.normals.resize(count, Vec3::Y);
+            let grow = |of: &mut Vec<glam::Vec2>| (!of.is_empty()).then(|| of.resize(count, glam::Vec2::ZERO));
+            let _ = (grow(&mut mesh.uv0), grow(&mut mesh.uv1));
+            for of in [&mut mesh.tangents, &mut mesh.colors].into_iter().filter(|of| !of.is_empty()) {
+                of.resize(count, glam::Vec4::ONE);
+            }
+        }
+        let settings = settings.for_scene(&scene, shot.size_px);
+        let lighting = lighting(&gpu, &environment, &settings.shading)?;
+        let view = view_of(&scene, &lighting.image, &Background::Environment, &shot);
+        let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;
+        let found: Vec<bool> =
+            (0..scene.meshes.len()).map(|mesh| world.scene.mesh(framegraph_scene::MeshId::new(mesh)).short).collect();
+        assert!(found.iter().enumerate().all(|(index, short)| *short != long(index)), "{found:?}");
+        draw(&gpu, &world, &settings, &shot.options)
+    };
+    let short = picture(|_| false)?;
+    assert!(short == picture(|index| index == 1)?, "indices of both kinds draw another picture");
+    assert!(short == picture(|_| true)?, "indices of 32 bits draw another picture");
+    Ok(())
+}
+
 /// Moments as a shadow map, which unlike depth show the order of equally near ones; masked, blended and transmissive surfaces, mirrored ones: the same bytes from instanced
 /// draws as from a draw for each. What moves is where a scene prepared anew has it, in the buffers too.
 #[test]

@@ -1,6 +1,6 @@
 //! `cargo xtask bench`: what compiling costs, beside a peer, and what executing costs the CPU.
 
-use super::Command;
+use super::{Command, frames};
 use crate::options::Options;
 use crate::{Failure, stage, workspace};
 
@@ -23,11 +23,27 @@ All print sections in Markdown, of which docs/performance.md is made. The peer
 asks for a newer compiler than the workspace and is built with
 --ignore-rust-version. Nothing is asserted: times depend on the machine and on
 what else it does.
+
+With --frames instead, whole frames: each preset over six built-in scenes at
+1280x720 and 1920x1080, as it is and without dropping, merging, inlining and
+aliasing. An hour on a software driver; less of it by
+  --scene NAME      one scene: a built-in one, or a file
+  --preset NAME     one preset
+  --size WxH        one size
+  --beside COMMAND  in turns with a command of another renderer, of whose output
+                    the last number before `ms` is its time
 ",
     run,
 };
 
-fn run(_: &Options) -> Result<(), Failure> {
+fn run(options: &Options) -> Result<(), Failure> {
+    if options.has("--frames") {
+        return frames::run(options);
+    }
+    let own = ["--scene", "--preset", "--size", "--beside"];
+    if let Some(name) = own.into_iter().find(|name| options.has(name)) {
+        return Err(Failure::Usage(format!("`{name}` goes together with `--frames` only")));
+    }
     let compile = stage::run("compile", &mut workspace::cargo(&["bench", "--quiet", "--package", "framegraph"]));
     let peers = ["run", "--quiet", "--profile", "bench", "--ignore-rust-version", "-p", "peers", "-F", "peer"];
     let peers = stage::run("peers", &mut workspace::cargo(&peers));
