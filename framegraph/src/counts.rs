@@ -10,6 +10,7 @@ use crate::format::Aspect;
 use crate::graph::PassKind;
 use crate::id::StepId;
 use crate::plan::{Attachment, Join, LoadOp, Placement, Plan, StoreOp};
+use std::ops::AddAssign;
 
 /// Counts over a plan, or one step of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,6 +40,22 @@ pub struct Counts {
     pub culled: u32,
 }
 
+impl AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.unresolves += other.unresolves;
+        self.resolves += other.resolves;
+        self.clears += other.clears;
+        self.discards += other.discards;
+        self.multisample_resolves += other.multisample_resolves;
+        self.memoryless += other.memoryless;
+        self.inlined += other.inlined;
+        self.steps += other.steps;
+        self.render_passes += other.render_passes;
+        self.passes += other.passes;
+        self.culled += other.culled;
+    }
+}
+
 /// Bytes that move between tile and memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
@@ -63,15 +80,7 @@ impl Plan {
     pub fn counts(&self) -> Counts {
         let mut counts = Counts::default();
         for step in self.step_ids() {
-            let of_step = self.step_counts(step);
-            counts.unresolves += of_step.unresolves;
-            counts.resolves += of_step.resolves;
-            counts.clears += of_step.clears;
-            counts.discards += of_step.discards;
-            counts.multisample_resolves += of_step.multisample_resolves;
-            counts.steps += 1;
-            counts.render_passes += of_step.render_passes;
-            counts.passes += of_step.passes;
+            counts += self.step_counts(step);
         }
         let placed = |wanted| self.resources().iter().filter(|r| r.placement == wanted).count() as u32;
         counts.memoryless = placed(Placement::Memoryless);

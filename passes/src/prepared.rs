@@ -3,11 +3,14 @@
 use crate::upload::pack::object_uniforms;
 use framegraph_scene::{Instance, Renderables, Scene};
 use framegraph_shaders::layout::ObjectUniforms;
+use framegraph_wgpu::Workers;
 use glam::DMat4;
 use std::sync::Arc;
 
 /// Instances whose placement is uploaded together: a hundred kilobytes.
 pub(crate) const CHUNK: usize = 1024;
+/// Instances for which another thread is worth waking: their view takes some 50 µs.
+const WORTH_A_THREAD: usize = 4096;
 
 /// A scene's instances as views take them.
 ///
@@ -35,15 +38,15 @@ pub(crate) const CHUNK: usize = 1024;
 pub struct PreparedScene {
     renderables: Renderables,
     placements: Placements,
-    /// On how many threads large scenes are culled; zero counts as one.
-    pub threads: usize,
+    /// Threads on which views are made, beside the caller's.
+    pub workers: Option<Workers>,
 }
 
 impl PreparedScene {
-    /// That of `scene`, culled on one thread.
+    /// That of `scene`, of which one thread makes views.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        Self { renderables: Renderables::new(scene), placements: Placements::new(scene), threads: 1 }
+        Self { renderables: Renderables::new(scene), placements: Placements::new(scene), workers: None }
     }
 
     /// Takes over where the instances `moved` stand. Number, meshes and materials of instances are what they were; a scene of
@@ -57,6 +60,27 @@ impl PreparedScene {
             let chunk = Arc::make_mut(&mut self.placements.0[number / CHUNK]);
             chunk.objects[number % CHUNK] = object_uniforms(&scene.instances[number]);
             chunk.world_from_model[number % CHUNK] = scene.instances[number].world_from_model;
+        }
+    }
+
+    /// The threads beside the caller's.
+    pub(crate) fn pool(&self) -> Option<&rayon::ThreadPool> {
+        self.workers.as_ref().and_then(Workers::pool)
+    }
+
+    /// What `here` and `there` return, of which the second runs on another thread where there is one and the scene is large.
+    pub(crate) fn both<A, B: Send>(&self, here: impl FnOnce() -> A, there: impl FnOnce() -> B + Send) -> (A, B) {
+        match self.pool().filter(|_| self.placements.count() >= WORTH_A_THREAD) {
+            Some(pool) => {
+                let mut other = None;
+                let own = pool.in_place_scope(|scope| {
+                    scope.spawn(|_| other = Some(there()));
+                    here()
+                });
+                // The scope ends when both have.
+                (own, other.unwrap_or_else(|| unreachable!("a scope waits for what it spawned")))
+            }
+            None => (here(), there()),
         }
     }
 

@@ -7,6 +7,7 @@
 //! meshes, materials and textures are the scene's and shared.
 
 mod gpu;
+mod motion;
 
 pub use gpu::{GpuView, ViewId, Views};
 
@@ -18,6 +19,7 @@ use crate::shadow::{FitCamera, ShadowSettings, ViewShadows};
 use crate::stand::Stand;
 use crate::sun::{angular_radius_rad, illuminance_lux, sun_of};
 use crate::upload::pack::light_uniforms;
+use crate::view::motion::Moment;
 use framegraph_scene::camera::exposure_from_ev100;
 use framegraph_scene::environment::{Sky, sun_light};
 use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene};
@@ -159,24 +161,36 @@ impl CameraView {
 
     /// The surfaces of a scene that was prepared, without any light.
     pub fn unlit(prepared: &PreparedScene, settings: &ViewSettings) -> Self {
-        Self::empty(settings).with_surfaces(prepared, settings)
+        Self::empty(settings).with_surfaces(prepared, seen(prepared, settings), settings)
     }
 
     /// Puts what is seen into a view that has its shadows.
-    fn with_surfaces(self, prepared: &PreparedScene, settings: &ViewSettings) -> Self {
+    fn with_surfaces(self, prepared: &PreparedScene, visible: DrawLists, settings: &ViewSettings) -> Self {
         let (renderables, eye) = (prepared.renderables(), settings.camera.eye);
-        let visible = DrawLists::seen(renderables, &settings.camera, aspect(settings), prepared.threads);
         let from_eye = |origin: &DVec3| (*origin - eye).as_vec3().extend(0.0);
-        Self {
-            draws: ViewDraws::new(renderables, &visible, self.shadows.as_ref()),
-            visible,
-            origins: renderables.origins().iter().map(from_eye).collect(),
-            placements: prepared.placements().clone(),
-            ..self
-        }
+        let (draws, origins) = prepared.both(
+            || ViewDraws::new(renderables, &visible, self.shadows.as_ref()),
+            || renderables.origins().iter().map(from_eye).collect(),
+        );
+        Self { draws, visible, origins, placements: prepared.placements().clone(), ..self }
     }
 
+    /// What is seen and what lights it are found side by side.
     fn of(
+        scene: &Scene,
+        prepared: &PreparedScene,
+        light: &ImageLight,
+        background: &Background,
+        settings: &ViewSettings,
+        sharing: &[ViewSettings],
+    ) -> Self {
+        let lit = || Self::lit(scene, prepared, light, background, settings, sharing);
+        let (visible, lit) = prepared.both(|| seen(prepared, settings), lit);
+        lit.with_surfaces(prepared, visible, settings)
+    }
+
+    /// A view with its lights and shadows, and no surface.
+    fn lit(
         scene: &Scene,
         prepared: &PreparedScene,
         light: &ImageLight,
@@ -228,29 +242,27 @@ impl CameraView {
             shadows,
             ..empty
         }
-        .with_surfaces(prepared, settings)
     }
 
     /// The same view in a frame that follows one with the view `before`: passes that read the earlier picture find places in
     /// it. Without this, the frame before was seen from where this one is, which is so as long as nothing moves.
     #[must_use]
     pub fn after(self, before: &Self) -> Self {
-        let motions = motions(&self, before);
+        let motions = self.moment().motions_since(&before.moment());
         Self { earlier: Some(before.stand()), still_frames: 0, motions, ..self }
     }
 
     /// The same view with bodies of the scene that have another shape than in the frame before `before`
     /// ([`GpuScene::repose`](crate::upload::GpuScene::repose)), wherever they are.
     #[must_use]
-    pub fn deformed(mut self, before: &Self, scene: &Scene) -> Self {
-        for instance in scene.motion.bodies.iter().map(|body| body.instance) {
-            if let (Some(here), Some(there)) = (self.placements.of(instance), before.placements.of(instance)) {
-                let moved = motion(&self, before, here, there);
-                self.motions.resize(self.placements.count(), MotionUniforms::default());
-                self.motions[instance] = moved;
-            }
-        }
-        self
+    pub fn deformed(self, before: &Self, scene: &Scene) -> Self {
+        let bodies = scene.motion.bodies.iter().map(|body| body.instance);
+        let motions = self.moment().motions_of(bodies, &before.moment(), self.motions.clone());
+        Self { motions, ..self }
+    }
+
+    fn moment(&self) -> Moment<'_> {
+        Moment { clip_from_world: self.clip_from_world, eye: self.eye, placements: &self.placements }
     }
 
     /// Whether an instance has moved since the frame before.
@@ -262,11 +274,17 @@ impl CameraView {
     pub fn stand(&self) -> Stand {
         Stand {
             eye: self.eye,
-            clip_from_world: moved_by(self.jitter_px, self.frame.viewport_size_px) * self.clip_from_world,
+            clip_from_world: self.jittered(),
             steady_clip_from_world: self.clip_from_world,
             world_from_view: self.frame.world_from_view.as_dmat4(),
             exposure: self.frame.exposure,
         }
+    }
+
+    /// Clip space from the world about the eye, moved by the jitter.
+    fn jittered(&self) -> DMat4 {
+        let by = 2.0 * self.jitter_px / self.frame.viewport_size_px.as_dvec2().max(DVec2::ONE);
+        DMat4::from_translation(by.extend(0.0)) * self.clip_from_world
     }
 
     /// Moves everything by so many pixels to the right and up, instead of what it was moved by before: anti-aliasing over
@@ -274,7 +292,7 @@ impl CameraView {
     /// picture's border half a pixel may lack.
     pub fn jitter(&mut self, jitter_px: DVec2) {
         self.jitter_px = jitter_px;
-        let clip_from_world = self.stand().clip_from_world;
+        let clip_from_world = self.jittered();
         self.frame.clip_from_world = clip_from_world.as_mat4();
         self.frame.world_from_clip = inverse(clip_from_world).as_mat4();
     }
@@ -314,6 +332,11 @@ impl CameraView {
     }
 }
 
+/// What its camera may see.
+fn seen(prepared: &PreparedScene, settings: &ViewSettings) -> DrawLists {
+    DrawLists::seen(prepared.renderables(), &settings.camera, aspect(settings), prepared.pool())
+}
+
 fn aspect(settings: &ViewSettings) -> f64 {
     let [width, height] = settings.size_px;
     f64::from(width.max(1)) / f64::from(height.max(1))
@@ -329,29 +352,6 @@ fn eye_or_direction(camera: &Camera) -> Vec4 {
         Projection::Perspective { .. } => Vec4::W,
         Projection::Orthographic { .. } => (-camera.forward()).as_vec3().extend(0.0),
     }
-}
-
-/// Where instances of `now` are and were in clip space, joined in f64; empty where none has moved.
-fn motions(now: &CameraView, before: &CameraView) -> Vec<MotionUniforms> {
-    let mut motions = Vec::new();
-    for (number, here, there) in now.placements.moved_since(&before.placements) {
-        motions.resize(now.placements.count(), MotionUniforms::default());
-        motions[number] = motion(now, before, here, there);
-    }
-    motions
-}
-
-/// Where an instance is and was in clip space, from where it is and was in the world.
-fn motion(now: &CameraView, before: &CameraView, here: &DMat4, there: &DMat4) -> MotionUniforms {
-    let clip = |view: &CameraView, placed: &DMat4| {
-        (view.clip_from_world * DMat4::from_translation(-view.eye) * *placed).as_mat4()
-    };
-    MotionUniforms { clip_from_model: clip(now, here), earlier_clip_from_model: clip(before, there) }
-}
-
-/// What moves a picture of this size by so many pixels to the right and up, in clip space.
-fn moved_by(jitter_px: DVec2, size_px: Vec2) -> DMat4 {
-    DMat4::from_translation((2.0 * jitter_px / size_px.as_dvec2().max(DVec2::ONE)).extend(0.0))
 }
 
 /// The inverse, by whole-matrix inversion in f64; an infinite far plane has one too.

@@ -18,6 +18,8 @@ pub(crate) mod prepared;
 pub(crate) mod recording;
 pub(crate) mod remembered;
 pub(crate) mod segments;
+pub(crate) mod share;
 pub(crate) mod steps;
 pub(crate) mod targets;
+pub(crate) mod threads;
 pub(crate) mod uniforms;

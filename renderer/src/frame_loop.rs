@@ -78,7 +78,7 @@ where
     }
 }
 
-impl<W: ?Sized + 'static> FrameLoop<W> {
+impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
     /// With the default options of compiler and executor.
     pub fn new(gpu: &Gpu) -> Self {
         Self::with(gpu, Options::default(), ExecutorOptions::default())

@@ -94,7 +94,7 @@ impl Inspector {
     ///
     /// # Errors
     /// [`InspectError`]; a name that is not there comes with those that are.
-    pub fn inspect<W: ?Sized + 'static>(
+    pub fn inspect<W: ?Sized + Sync + 'static>(
         &mut self,
         executor: &Executor,
         plan: &Plan,
@@ -110,7 +110,7 @@ impl Inspector {
     ///
     /// # Errors
     /// As [`Inspector::inspect`].
-    pub fn inspect_target<W: ?Sized + 'static>(
+    pub fn inspect_target<W: ?Sized + Sync + 'static>(
         &mut self,
         executor: &Executor,
         plan: &Plan,

@@ -79,6 +79,11 @@ mod recorders;
 mod resources;
 #[cfg(feature = "testing")]
 pub mod stand_in;
+#[cfg(feature = "threads")]
+mod workers;
+#[cfg(not(feature = "threads"))]
+#[path = "no_workers.rs"]
+mod workers;
 
 pub use ::wgpu;
 
@@ -119,3 +124,5 @@ pub use resources::imports::{ImportError, ImportMismatch, Imports};
 pub use resources::no_memory::NoMemory;
 pub use resources::pool::PoolCounts;
 pub use resources::support::{Unsupported, UnsupportedReason, supported_format};
+#[cfg(feature = "threads")]
+pub use workers::{Workers, WorkersError};

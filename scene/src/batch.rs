@@ -67,9 +67,16 @@ impl Groups {
             }
             return batches;
         }
+        if self.count == 1 {
+            let instance = list.first().copied();
+            batches.extend(instance.map(|instance| Batch { instance, first: base, count: list.len() as u32 }));
+            numbers.extend_from_slice(list);
+            return batches;
+        }
+        let groups: Vec<u32> = list.iter().map(|instance| self.of[*instance as usize]).collect();
         let mut counts = vec![0_u32; self.count as usize];
-        for instance in list {
-            counts[group(*instance)] += 1;
+        for group in &groups {
+            counts[*group as usize] += 1;
         }
         // Where the next instance of each group goes; at first none has a place.
         const NO_PLACE: u32 = u32::MAX;
@@ -84,8 +91,8 @@ impl Groups {
             (0..counts.len()).filter(|group| counts[*group] > 0).for_each(|group| open(group, &mut places));
         }
         numbers.resize(numbers.len() + list.len(), 0);
-        for instance in list {
-            let group = group(*instance);
+        for (instance, group) in list.iter().zip(&groups) {
+            let group = *group as usize;
             if places[group] == NO_PLACE {
                 open(group, &mut places);
             }
@@ -118,6 +125,9 @@ mod tests {
         assert_eq!(drawn(BatchOrder::Kept), [vec![5], vec![3], vec![0, 2], vec![4]]);
         assert_eq!(drawn(BatchOrder::FirstFirst), [vec![5, 0, 2], vec![3], vec![4]]);
         assert_eq!(drawn(BatchOrder::ByGroup), [vec![4], vec![5, 0, 2], vec![3]]);
+        let alike = Groups::new(&[7; 6]).batches(&list, BatchOrder::FirstFirst, &mut vec![1, 2]);
+        assert_eq!(alike, [Batch { instance: 5, first: 2, count: 5 }]);
+        assert_eq!(Groups::new(&[7; 6]).batches(&[], BatchOrder::ByGroup, &mut Vec::new()), []);
         assert_eq!(Groups::default().batches(&[], BatchOrder::ByGroup, &mut Vec::new()), []);
     }
 }

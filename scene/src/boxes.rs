@@ -1,7 +1,6 @@
 //! Bounding boxes as arrays of coordinates, and which of many lie within planes: arithmetic that compilers turn into SIMD.
 
 use std::ops::Range;
-use std::thread;
 
 use glam::{DVec3, DVec4};
 
@@ -13,10 +12,11 @@ const BLOCK: usize = 64;
 const NOWHERE: f32 = -1e30;
 /// What f32 may be off by in the sum that is compared, over the largest of its terms: some ten roundings of 2⁻²⁴ each.
 const SLACK: f64 = 1.0 / (1 << 20) as f64;
-/// Boxes for which another thread is worth starting: testing them takes some ten times as long.
-const WORTH_A_THREAD: usize = 1 << 17;
+/// Boxes for which another thread is worth waking: testing them takes some ten times as long.
+const WORTH_A_THREAD: usize = 1 << 15;
 
-/// Boxes by number, an array a coordinate, in f32 about a point amid them: 24 bytes a box.
+/// Boxes by number, an array a coordinate, in f32 about a point amid them: 24 bytes a box. Of each 64 in a row there is what
+/// encloses them all, so that where neighbors in number are neighbors in space, most are settled together.
 #[derive(Clone, Debug, Default)]
 pub struct BoxArrays {
     about: DVec3,
@@ -26,6 +26,24 @@ pub struct BoxArrays {
     /// Middles and half sizes, x, y, z each; padded to whole blocks with boxes that are nowhere.
     middle: [Vec<f32>; 3],
     half: [Vec<f32>; 3],
+    blocks: Vec<Block>,
+}
+
+/// What encloses the boxes of a block.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    /// No number where a box is not finite, which no comparison settles then.
+    middle: [f32; 3],
+    half: [f32; 3],
+    /// Whether all are boxes: of these, all are seen if what encloses them is.
+    full: bool,
+}
+
+/// How boxes lie to planes.
+enum Seen {
+    All,
+    None,
+    Some,
 }
 
 impl BoxArrays {
@@ -40,18 +58,55 @@ impl BoxArrays {
             len: bounds.len(),
             middle: std::array::from_fn(|_| vec![0.0; padded]),
             half: std::array::from_fn(|_| vec![NOWHERE; padded]),
+            blocks: vec![Block { middle: [0.0; 3], half: [NOWHERE; 3], full: false }; padded / BLOCK],
         };
-        for (number, bounds) in bounds.iter().enumerate() {
-            arrays.set(number, bounds);
-        }
+        arrays.replace(bounds.iter().enumerate());
         arrays
     }
 
-    /// Replaces a box.
+    /// Replaces boxes of these numbers; in the order of their numbers is fastest.
     ///
     /// # Panics
     /// When there is no such box.
-    pub fn set(&mut self, number: usize, bounds: &Aabb) {
+    pub fn replace<'a>(&mut self, boxes: impl Iterator<Item = (usize, &'a Aabb)>) {
+        let mut touched = None;
+        for (number, bounds) in boxes {
+            self.set(number, bounds);
+            let block = Some(number / BLOCK);
+            if touched != block {
+                touched.into_iter().for_each(|block| self.enclose(block));
+                touched = block;
+            }
+        }
+        touched.into_iter().for_each(|block| self.enclose(block));
+    }
+
+    /// Finds what encloses the boxes of a block.
+    fn enclose(&mut self, block: usize) {
+        let range = block * BLOCK..(block + 1) * BLOCK;
+        let mut own = Block { middle: [0.0; 3], half: [NOWHERE; 3], full: true };
+        for axis in 0..3 {
+            let (mut low, mut high, mut finite) = (f32::INFINITY, f32::NEG_INFINITY, true);
+            for (middle, half) in self.middle[axis][range.clone()].iter().zip(&self.half[axis][range.clone()]) {
+                finite &= middle.is_finite();
+                let is_box = *half >= 0.0;
+                own.full &= is_box;
+                if is_box {
+                    (low, high) = (low.min(middle - half), high.max(middle + half));
+                }
+            }
+            if !finite {
+                own.middle[axis] = f32::NAN;
+                own.half[axis] = 0.0;
+            } else if low <= high {
+                own.middle[axis] = 0.5 * low + 0.5 * high;
+                own.half[axis] = (high - own.middle[axis]).max(own.middle[axis] - low);
+            }
+        }
+        self.blocks[block] = own;
+    }
+
+    fn set(&mut self, number: usize, bounds: &Aabb) {
         assert!(number < self.len, "box {number} of {}", self.len);
         let (middle, half) = match (bounds.is_empty(), is_finite(bounds)) {
             (true, _) => (DVec3::ZERO, DVec3::splat(NOWHERE.into())),
@@ -73,33 +128,23 @@ impl BoxArrays {
     ///
     /// What is left out certainly lies outside of one plane. What is kept may miss the planes by what f32 cannot tell, a
     /// millionth of the scene's size, and may lie beyond an edge where two of them meet. An empty box is left out, one that
-    /// is not finite is kept. Many boxes are tested on as many as `threads` threads.
-    pub fn reaching(&self, eye: DVec3, planes: &[DVec4], threads: usize, found: &mut Vec<u32>) {
+    /// is not finite is kept. Many boxes are tested on the threads of `pool` too.
+    pub fn reaching(&self, eye: DVec3, planes: &[DVec4], pool: Option<&rayon::ThreadPool>, found: &mut Vec<u32>) {
         let planes: Vec<Half> = planes.iter().map(|plane| self.half_space(eye, *plane)).collect();
-        let blocks = self.middle[0].len() / BLOCK;
-        let threads = threads.min(self.len / WORTH_A_THREAD).max(1);
-        let share = blocks.div_ceil(threads).max(1);
-        if threads == 1 {
-            self.blocks(0..blocks, &planes, found);
-            return;
-        }
-        let planes = &planes;
-        thread::scope(|scope| {
-            let others: Vec<_> = (1..threads)
-                .map(|i| {
-                    scope.spawn(move || {
-                        let mut found = Vec::new();
-                        self.blocks(i * share..((i + 1) * share).min(blocks), planes, &mut found);
-                        found
-                    })
-                })
-                .collect();
-            self.blocks(0..share, planes, found);
-            for other in others {
-                // A thread ends without a result only by a panic of the arithmetic above, which has none.
-                found.extend(other.join().unwrap_or_default());
+        let threads = pool.map_or(1, |pool| pool.current_num_threads() + 1).min(self.len / WORTH_A_THREAD);
+        let Some(pool) = pool.filter(|_| threads > 1) else {
+            return self.test(0..self.blocks.len(), &planes, found);
+        };
+        let share = self.blocks.len().div_ceil(threads);
+        let mut others = vec![Vec::new(); threads - 1];
+        pool.in_place_scope(|scope| {
+            let planes = &planes;
+            for (i, found) in (1..).zip(&mut others) {
+                scope.spawn(move |_| self.test(i * share..((i + 1) * share).min(self.blocks.len()), planes, found));
             }
+            self.test(0..share, planes, found);
         });
+        others.iter().for_each(|other| found.extend_from_slice(other));
     }
 
     fn half_space(&self, eye: DVec3, plane: DVec4) -> Half {
@@ -109,11 +154,19 @@ impl BoxArrays {
         Half { normal: normal.to_array().map(|x| x as f32), least: -(w + slack) as f32 }
     }
 
-    fn blocks(&self, blocks: Range<usize>, planes: &[Half], found: &mut Vec<u32>) {
+    fn test(&self, blocks: Range<usize>, planes: &[Half], found: &mut Vec<u32>) {
         found.reserve(blocks.len() * BLOCK);
         let [x, y, z] = self.middle.each_ref().map(|axis| axis.as_chunks::<BLOCK>().0);
         let [a, b, c] = self.half.each_ref().map(|axis| axis.as_chunks::<BLOCK>().0);
         for block in blocks {
+            match self.blocks[block].seen(planes) {
+                Seen::None => continue,
+                Seen::All => {
+                    found.extend((block * BLOCK) as u32..((block + 1) * BLOCK) as u32);
+                    continue;
+                }
+                Seen::Some => {}
+            }
             let mut outside = [0_u32; BLOCK];
             for Half { normal: [nx, ny, nz], least } in planes {
                 let (x, y, z, a, b, c) = (&x[block], &y[block], &z[block], &a[block], &b[block], &c[block]);
@@ -130,6 +183,25 @@ impl BoxArrays {
             }
             found.extend_from_slice(&numbers[..count]);
         }
+    }
+}
+
+impl Block {
+    /// Which of its boxes reach into all half spaces, as far as what encloses them tells.
+    fn seen(&self, planes: &[Half]) -> Seen {
+        let mut all = self.full;
+        for Half { normal, least } in planes {
+            let (mut middle, mut reach) = (0.0, 0.0);
+            for (normal, (center, half)) in normal.iter().zip(self.middle.iter().zip(&self.half)) {
+                middle += normal * center;
+                reach += normal.abs() * half;
+            }
+            if middle + reach < *least {
+                return Seen::None;
+            }
+            all &= middle - reach >= *least;
+        }
+        if all { Seen::All } else { Seen::Some }
     }
 }
 
@@ -178,7 +250,7 @@ mod tests {
                 let camera = Camera::look_at(eye, middle, DVec3::Y, projection)?;
                 let frustum = Frustum::of_camera(&camera, 1.5);
                 let mut found = Vec::new();
-                arrays.reaching(eye, frustum.planes(), 1, &mut found);
+                arrays.reaching(eye, frustum.planes(), None, &mut found);
                 let exact: Vec<u32> = (0..3000).filter(|i| frustum.may_see(&boxes[*i as usize])).collect();
                 assert!(exact.iter().all(|i| found.binary_search(i).is_ok()), "{middle} {fov}");
                 assert!(exact.len() > 10 && found.len() <= exact.len() + 2, "{} for {}", found.len(), exact.len());
@@ -186,9 +258,10 @@ mod tests {
         }
         let boxes = random_boxes(4 * WORTH_A_THREAD + 77, 20.0, DVec3::ZERO);
         let (arrays, planes) = (BoxArrays::new(&boxes), [DVec4::new(0.6, 0.0, 0.8, 1.0)]);
-        let [one, many] = [1, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build()?;
+        let [one, many] = [None, Some(&pool)].map(|pool| {
             let mut found = vec![9];
-            arrays.reaching(DVec3::X, &planes, threads, &mut found);
+            arrays.reaching(DVec3::X, &planes, pool, &mut found);
             found
         });
         assert!(one == many && one.len() > 1000);
@@ -204,11 +277,59 @@ mod tests {
         let mut arrays = BoxArrays::new(&[Aabb::EMPTY, endless, far]);
         let seen = |arrays: &BoxArrays| {
             let mut found = Vec::new();
-            arrays.reaching(DVec3::ZERO, &planes, 1, &mut found);
+            arrays.reaching(DVec3::ZERO, &planes, None, &mut found);
             found
         };
         assert!(unknown.is_empty() && seen(&arrays) == [1]);
-        arrays.set(2, &Aabb { min: DVec3::ONE, max: DVec3::ONE * 2.0 });
+        let near = Aabb { min: DVec3::ONE, max: DVec3::ONE * 2.0 };
+        arrays.replace([(2, &near)].into_iter());
         assert_eq!(seen(&arrays), [1, 2]);
+        // Amid blocks that are seen, and not seen, as a whole.
+        for (other, kept) in [(near, 191), (far, 1)] {
+            let mut boxes = [other; 192];
+            (boxes[70], boxes[71]) = (Aabb::EMPTY, endless);
+            assert_eq!(seen(&BoxArrays::new(&boxes)).len(), kept);
+        }
+    }
+
+    /// Boxes that neighbors in number have beside them are settled in blocks, and the outcome is that of each alone: all blocks' boxes
+    /// are mixed for the comparison, so that no block is settled.
+    #[test]
+    fn blocks_settle_what_boxes_would() -> Result<(), Box<dyn std::error::Error>> {
+        let count = 64 * 64;
+        let row = |i: usize| {
+            // Tiles of 8 × 8.
+            let [x, y] = [i % 8 + i / 64 % 8 * 8, i / 8 % 8 + i / 512 * 8];
+            let at = DVec3::new(x as f64, y as f64, 0.3 * (i % 7) as f64);
+            Aabb { min: at, max: at + 0.5 }
+        };
+        let boxes: Vec<Aabb> = (0..count).map(row).collect();
+        let stride = 1237;
+        let mixed: Vec<Aabb> = (0..count).map(|i| boxes[i * stride % count]).collect();
+        let (mut apart, together) = (BoxArrays::new(&boxes), BoxArrays::new(&mixed));
+        let mut settled = [0; 3];
+        for turn in 0..40 {
+            let eye = DVec3::new(30.0 + f64::from(turn), 31.0, 9.0 - 0.2 * f64::from(turn));
+            let toward = DVec3::new(f64::from(turn * 13 % 64), f64::from(turn * 29 % 64), 0.0);
+            let camera = Camera::look_at(eye, toward, DVec3::Y, Projection::perspective(0.9, 0.1))?;
+            let frustum = Frustum::of_camera(&camera, 1.5);
+            let (mut one, mut other) = (Vec::new(), Vec::new());
+            apart.reaching(eye, frustum.planes(), None, &mut one);
+            together.reaching(eye, frustum.planes(), None, &mut other);
+            other.iter_mut().for_each(|i| *i = (*i as usize * stride % count) as u32);
+            other.sort_unstable();
+            assert!(one == other && one.len() > 10, "{} and {} boxes", one.len(), other.len());
+            let planes: Vec<_> = frustum.planes().iter().map(|plane| apart.half_space(eye, *plane)).collect();
+            for block in &apart.blocks {
+                settled[block.seen(&planes) as usize] += 1;
+            }
+        }
+        assert!(settled.iter().all(|count| *count > 100), "{settled:?}");
+        // What moves away takes its block with it.
+        let away = Aabb { min: DVec3::splat(900.0), max: DVec3::splat(901.0) };
+        apart.replace((0..count).map(|i| (i, &away)));
+        let fresh = BoxArrays::new(&vec![away; count]);
+        assert!(apart.blocks.iter().all(|block| block.middle[0] > 900.0 - 64.0) && fresh.blocks[0].full);
+        Ok(())
     }
 }

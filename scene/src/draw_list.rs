@@ -31,18 +31,18 @@ impl DrawLists {
     /// [`DrawLists::seen`] otherwise.
     #[must_use]
     pub fn for_camera(scene: &Scene, camera: &Camera, width_over_height: f64) -> Self {
-        Self::seen(&Renderables::new(scene), camera, width_over_height, 1)
+        Self::seen(&Renderables::new(scene), camera, width_over_height, None)
     }
 
-    /// The same of what was made of a scene before, on as many as `threads` threads.
+    /// The same of what was made of a scene before; many instances are culled on the threads of `pool` too.
     ///
     /// The distance is that of the bounds' center along the view direction. Blended surfaces that
     /// intersect have no right order; that is the usual limit of sorted blending.
     #[must_use]
-    pub fn seen(of: &Renderables, camera: &Camera, width_over_height: f64, threads: usize) -> Self {
+    pub fn seen(of: &Renderables, camera: &Camera, width_over_height: f64, pool: Option<&rayon::ThreadPool>) -> Self {
         let frustum = Frustum::of_camera(camera, width_over_height);
         let mut seen = Vec::new();
-        of.boxes().reaching(camera.eye, frustum.planes(), threads, &mut seen);
+        of.boxes().reaching(camera.eye, frustum.planes(), pool, &mut seen);
         let mut lists = Self::of_kinds(of, &seen);
         let forward = camera.forward();
         let distance = |i: u32| ((of.bounds()[i as usize].center() - camera.eye).dot(forward)) as f32;

@@ -95,10 +95,10 @@ impl Renderables {
         for &number in moved {
             let instance = &scene.instances[number];
             self.bounds[number] = instance.bounds;
-            self.boxes.set(number, &instance.bounds);
             self.origins[number] = instance.world_from_model.w_axis.truncate();
             self.stamps[number] = stamp(&instance.world_from_model);
         }
+        self.boxes.replace(moved.iter().map(|number| (*number, &scene.instances[*number].bounds)));
         self.sum_up();
     }
 

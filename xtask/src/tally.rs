@@ -93,7 +93,7 @@ const KNOWN: [Known; 12] = [
     Known { test: "several_layers_are_drawn_into_at_once", reason: "does not draw into several layers" },
     Known { test: "misuse_does_not_compile", reason: "the words are those of Rust" },
     // A model too large to be committed.
-    Known { test: "scene", reason: "tests/assets/models/FlightHelmet" },
+    Known { test: "", reason: "tests/assets/models/FlightHelmet" },
     Known { test: "one_depth_of_four_samples_is_that_asked_for", reason: "depth of several samples" },
     Known { test: "inline, Rg11b10Ufloat", reason: "cannot draw into it" },
     Known { test: "steps_are_timed_on_both_sides", reason: "has no timestamps" },

@@ -3,6 +3,7 @@
 use super::median_of;
 use super::workload::Workload;
 use framegraph_scene::{Aabb, BoxArrays, Frustum};
+use framegraph_wgpu::Workers;
 use glam::DVec3;
 use std::hint::black_box;
 use std::time::Instant;
@@ -33,16 +34,17 @@ pub fn print() {
             black_box(&found);
             1e3 * start.elapsed().as_secs_f64()
         });
-        let mut on = |threads| {
+        let workers = Workers::with_threads(2).ok();
+        let mut on = |pool| {
             median_of(runs, || {
                 let start = Instant::now();
                 found.clear();
-                arrays.reaching(camera.eye, frustum.planes(), threads, &mut found);
+                arrays.reaching(camera.eye, frustum.planes(), pool, &mut found);
                 black_box(&found);
                 1e3 * start.elapsed().as_secs_f64()
             })
         };
-        let (one, two) = (on(1), on(2));
+        let (one, two) = (on(None), on(workers.as_ref().and_then(Workers::pool)));
         let cell = |(median, least): (f64, f64)| format!("{median:.2} ({least:.2})");
         println!("| {count} | {} | {} | {} | {} |", found.len(), cell(exact), cell(one), cell(two));
     }

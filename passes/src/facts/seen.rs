@@ -24,7 +24,7 @@ impl<'a> Seen<'a> {
     pub fn new(scene: &'a Scene, survey: &'a Survey, views: &'a [ViewSettings]) -> Self {
         let aspect = |view: &ViewSettings| fit_camera(view).width_over_height;
         let renderables = Renderables::new(scene);
-        let seen_by = |v: &ViewSettings| DrawLists::seen(&renderables, &v.camera, aspect(v), 1);
+        let seen_by = |v: &ViewSettings| DrawLists::seen(&renderables, &v.camera, aspect(v), None);
         let lists: Vec<DrawLists> = views.iter().map(seen_by).collect();
         let all = lists.iter().flat_map(|l| [&l.opaque, &l.mask, &l.transmit, &l.blend]).flatten();
         let mut instances: Vec<usize> = all.map(|number| *number as usize).collect();

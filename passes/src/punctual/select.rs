@@ -106,7 +106,7 @@ impl Seen {
     fn new(scene: &Renderables, lights: usize, FitCamera { camera, width_over_height }: &FitCamera<'_>) -> Self {
         let frustum = Frustum::of_camera(camera, *width_over_height);
         let mut seen = Vec::new();
-        scene.boxes().reaching(camera.eye, frustum.planes(), 1, &mut seen);
+        scene.boxes().reaching(camera.eye, frustum.planes(), None, &mut seen);
         let bounds = seen.iter().map(|number| scene.bounds()[*number as usize]);
         let mut surfaces: Vec<Aabb> = bounds.filter(|bounds| frustum.may_see(bounds)).collect();
         if surfaces.len() * lights > MOST_TESTS {

@@ -116,7 +116,7 @@ impl<'a> SunScene<'a> {
     /// Instances that reach into half spaces of the world.
     fn reaching(&self, planes: &[DVec4]) -> Vec<u32> {
         let mut found = Vec::new();
-        self.scene.boxes().reaching(DVec3::ZERO, planes, 1, &mut found);
+        self.scene.boxes().reaching(DVec3::ZERO, planes, None, &mut found);
         found
     }
 

@@ -5,7 +5,7 @@ use framegraph::{
     ClearValue, DeclareError, Extent, Format, Intent, Options, Pass, PassBuilder, Plan, Scratch, Texture, TextureDesc,
     View, recompile,
 };
-use framegraph_wgpu::{Cx, Executor, ExecutorOptions, Frame, Gpu, Imports, Raster, Record, RecordError};
+use framegraph_wgpu::{Cx, Executor, ExecutorOptions, Frame, Gpu, Imports, Raster, Record, RecordError, Workers};
 use std::error::Error;
 
 struct Draw {
@@ -65,6 +65,21 @@ impl Executed {
         assert_eq!(plan.counts().steps as usize, case.passes, "what is compared is a step a pass");
         let executor = Executor::with(gpu, ExecutorOptions { timing, ..ExecutorOptions::default() });
         Ok(Self { frame, plan, executor })
+    }
+
+    /// Recorded on `threads` threads from now on: always, or where it is measured to be faster.
+    pub fn on_threads(mut self, threads: usize, always: bool) -> Result<Self, Box<dyn Error>> {
+        let workers = Workers::with_threads(threads)?;
+        match always {
+            true => self.executor.always_record_on(workers),
+            false => self.executor.record_on(Some(workers)),
+        }
+        Ok(self)
+    }
+
+    /// How many threads recorded the last frame.
+    pub fn threads(&self) -> usize {
+        self.executor.recording_threads()
     }
 
     /// One more frame.

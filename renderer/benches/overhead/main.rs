@@ -7,6 +7,7 @@
 mod by_hand;
 mod executed;
 mod shared;
+mod threads;
 
 use by_hand::ByHand;
 use executed::Executed;
@@ -45,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("| {passes} × {draws} | {hand:.1} | {own:.1} | {:.2} | {counted} |", own / hand);
     }
     println!();
-    Ok(())
+    threads::print()
 }
 
 /// Medians of frames in turns, in µs.

@@ -1,6 +1,8 @@
 //! Executing frames on a device, and everything that is kept from one to the next.
 
 mod placing;
+#[cfg(feature = "threads")]
+mod record_on;
 mod results;
 mod upkeep;
 mod warm_up;
@@ -18,6 +20,7 @@ use crate::execute::prepared::{Caches, Prepared};
 use crate::execute::recording::Recording;
 use crate::execute::segments::Segments;
 use crate::execute::steps::{Passes, record_step};
+use crate::execute::threads::Threads;
 use crate::frame::Frame;
 use crate::measure::timing::Timing;
 use crate::named::Named;
@@ -91,6 +94,7 @@ pub struct Executor {
     options: ExecutorOptions,
     caches: Caches,
     recording: Recording,
+    threads: Threads,
     textures: Pool<PhysicalTextureDesc>,
     buffers: Pool<PhysicalBufferDesc>,
     histories: Histories,
@@ -116,6 +120,7 @@ impl Executor {
             options,
             caches: Caches::default(),
             recording: Recording::new(&gpu.device, options.timing || options.trace),
+            threads: Threads::default(),
             textures: Pool::new(limits),
             buffers: Pool::new(limits),
             histories: Histories::default(),
@@ -141,7 +146,7 @@ impl Executor {
     /// # Errors
     /// [`ExecuteError`]. Nothing of the frame reached the GPU then, histories did not move, and the next frame starts
     /// clean.
-    pub fn execute<W: ?Sized + 'static>(
+    pub fn execute<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
         frame: &Frame<W>,
@@ -177,7 +182,7 @@ impl Executor {
     ///
     /// # Errors
     /// As [`Executor::execute`]; `submit` is not called when recording failed.
-    pub fn execute_with<W: ?Sized + 'static>(
+    pub fn execute_with<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
         frame: &Frame<W>,
@@ -193,17 +198,18 @@ impl Executor {
 
     /// As [`Executor::execute_with`], of a plan whose graph may have one pass more than the frame, and may lack others: that
     /// of an inspection.
-    pub(crate) fn run<W: ?Sized + 'static>(
+    pub(crate) fn run<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
         passes: &Passes<'_, W>,
         imports: &Imports,
         submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
     ) -> Result<SubmissionIndex, ExecuteError> {
-        let commands = self.record(plan, passes, imports, &mut |_, _| ())?;
+        let commands = self.record(plan, passes, imports, None)?;
         let begun = self.recording.now();
         let scopes = ErrorScopes::open(&self.gpu.device);
         self.recording.uniforms.upload(&self.gpu.queue);
+        self.threads.upload(&self.gpu.queue);
         let index = submit(commands);
         let caught = self.caught(scopes, "submitting a frame");
         self.recording.took_in_wgpu(begun);
@@ -217,25 +223,29 @@ impl Executor {
         Ok(index)
     }
 
-    /// Records a frame. `recorded` is told each step that is done, and how many pipelines were made until then.
-    fn record<W: ?Sized + 'static>(
+    /// Records a frame. `recorded` is told each step that is done, and how many pipelines were made until then; one thread
+    /// records all of them then.
+    fn record<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
         passes: &Passes<'_, W>,
         imports: &Imports,
-        recorded: &mut dyn FnMut(StepId, u64),
+        recorded: Option<&mut dyn FnMut(StepId, u64)>,
     ) -> Result<FrameCommands, ExecuteError> {
         self.gpu.poll()?;
         self.caches.begin_frame(self.options.max_age, self.options.max_pipeline_age);
-        self.recording.begin_frame();
         self.executed = Counts::default();
         self.timing.begin_frame(&self.gpu, plan);
+        let timed = self.threads.begin_frame(plan, self.timing.plan());
+        self.recording.begin_frame(timed);
 
         let device = &self.gpu.device;
         let scopes = self.recording.in_wgpu(|| ErrorScopes::open(device));
-        let ran = self.prepare(plan, imports).and_then(|()| self.record_steps(plan, passes, recorded));
+        let mut elsewhere = Ok(());
+        let prepared = self.prepare(plan, imports);
+        let ran = prepared.and_then(|()| self.record_steps(plan, passes, recorded, &mut elsewhere));
         let begun = self.recording.now();
-        let caught = self.caught(scopes, "a frame");
+        let caught = self.caught(scopes, "a frame").and(elsewhere);
         self.recording.took_in_wgpu(begun);
         match (ran, caught) {
             (ran, Ok(())) => ran,
@@ -266,7 +276,7 @@ impl Executor {
 
     /// The pass whose commands wgpu refused, found by recording the frame once more, pass by pass; nothing of it is
     /// submitted. None where the fault is not in one pass.
-    fn blame<W: ?Sized + 'static>(
+    fn blame<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
         passes: &Passes<'_, W>,
@@ -291,30 +301,34 @@ impl Executor {
         realized.realize(plan, &mut Sources { gpu, textures, buffers, histories, imports, arenas, poison })
     }
 
-    /// Records all steps.
-    fn record_steps<W: ?Sized + 'static>(
+    /// Records all steps. What wgpu refuses on other threads than this one is put into `elsewhere`.
+    fn record_steps<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
         passes: &Passes<'_, W>,
-        recorded: &mut dyn FnMut(StepId, u64),
+        recorded: Option<&mut dyn FnMut(StepId, u64)>,
+        elsewhere: &mut Result<(), DeviceError>,
     ) -> Result<FrameCommands, ExecuteError> {
-        let Self { gpu, caches, arenas, realized, timing, touched, options, recording, executed, .. } = self;
-        let mut segments = recording.in_wgpu(|| Segments::new(gpu, plan, realized, arenas));
+        let Self { gpu, caches, arenas, realized, timing, touched, options, recording, threads, executed, .. } = self;
         let frame = &Prepared { gpu, plan, realized, caches, timing, touched, poison: options.poison };
-        let all: Result<(), ExecuteError> = plan.step_ids().try_for_each(|step| {
-            segments.begin_step(step);
-            record_step(frame, passes, step, recording, &mut segments.encoder)?;
-            recorded(step, caches.pipelines.counts().created);
-            Ok(())
-        });
+        // Command buffers end where memory changes hands: such a frame is recorded on one thread.
+        let alone = recorded.is_some() || arenas.current().is_some();
+        let shared = if alone { None } else { threads.record(frame, passes, recording, elsewhere) };
+        let commands = match shared {
+            Some(buffers) => buffers.map(|buffers| FrameCommands::new(buffers, false)),
+            None => {
+                let segments = recording.in_wgpu(|| Segments::new(gpu, plan, realized, arenas));
+                record_alone(frame, passes, recording, segments, recorded)
+            }
+        };
+        if !alone {
+            threads.end_frame(recording);
+        }
         *executed = recording.executed;
         executed.memoryless = realized.memoryless();
-        all?;
+        let commands = commands?;
         executed.culled = plan.graph().passes().len() as u32 - executed.passes;
-        Ok(recording.in_wgpu(|| {
-            timing.resolve(&mut segments.encoder);
-            segments.finish()
-        }))
+        Ok(commands)
     }
 
     /// What a frame asks of the device's memory.
@@ -354,6 +368,27 @@ impl Executor {
     pub fn reset_histories(&mut self) {
         self.histories.reset_all();
     }
+}
+
+/// Records all steps on this thread.
+fn record_alone<W: ?Sized + 'static>(
+    frame: &Prepared<'_>,
+    passes: &Passes<'_, W>,
+    recording: &mut Recording,
+    mut segments: Segments<'_>,
+    mut recorded: Option<&mut dyn FnMut(StepId, u64)>,
+) -> Result<FrameCommands, ExecuteError> {
+    for step in frame.plan.step_ids() {
+        segments.begin_step(step);
+        record_step(frame, passes, step, recording, &mut segments.encoder)?;
+        if let Some(recorded) = &mut recorded {
+            recorded(step, frame.caches.pipelines.counts().created);
+        }
+    }
+    Ok(recording.in_wgpu(|| {
+        frame.timing.resolve(&mut segments.encoder);
+        segments.finish()
+    }))
 }
 
 /// Whether what was `said` while recording follows from the device's `error`, such as a view of a texture that there is no

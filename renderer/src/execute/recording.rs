@@ -16,7 +16,9 @@ pub(crate) struct Recording {
     pub(crate) remembered: Remembered,
     /// What the step that is being opened attaches.
     pub(crate) attached: Attached,
-    /// Whether times are taken: reading the clock costs as much as opening a pass.
+    /// Whether times are asked for.
+    measured: bool,
+    /// Whether times are taken in this frame: reading the clock costs as much as opening a pass.
     timed: bool,
     /// Steps, passes and operations recorded so far.
     pub(crate) executed: Counts,
@@ -41,20 +43,31 @@ pub(crate) struct StepTime {
 }
 
 impl Recording {
-    pub(crate) fn new(device: &Device, timed: bool) -> Self {
+    /// For a device; times are taken in each frame if they are `measured`.
+    pub(crate) fn new(device: &Device, measured: bool) -> Self {
         let (executed, in_wgpu, remembered) = (Counts::default(), Duration::ZERO, Remembered::default());
         let (uniforms, steps, inlined, attached) = (Uniforms::new(device), Vec::new(), Vec::new(), Attached::default());
-        Self { uniforms, remembered, attached, timed, executed, poisoned: 0, steps, in_wgpu, inlined, refused: None }
+        let (timed, poisoned, refused) = (measured, 0, None);
+        Self { uniforms, remembered, attached, measured, timed, executed, poisoned, steps, in_wgpu, inlined, refused }
     }
 
-    /// Begins a frame: everything recorded before is forgotten.
-    pub(crate) fn begin_frame(&mut self) {
+    /// Begins a frame: everything recorded before is forgotten. Its steps are `timed` even if nobody asks for times.
+    pub(crate) fn begin_frame(&mut self, timed: bool) {
         self.uniforms.begin_frame();
+        self.timed = self.measured || timed;
         (self.executed, self.poisoned, self.in_wgpu) = (Counts::default(), 0, Duration::ZERO);
         self.steps.clear();
         self.attached.clear();
         self.inlined.clear();
         self.refused = None;
+    }
+
+    /// Adds what another thread counted and timed, whose steps come behind these.
+    pub(crate) fn add(&mut self, other: &mut Self) {
+        self.executed += other.executed;
+        self.poisoned += other.poisoned;
+        self.in_wgpu += other.in_wgpu;
+        self.steps.append(&mut other.steps);
     }
 
     /// Runs `call`, whose time is wgpu's.

@@ -150,6 +150,11 @@ impl Timing {
         self.current = Some(index);
     }
 
+    /// The number of the plan that is executed: another one where its frame's size or the passes of its steps are others.
+    pub(crate) fn plan(&self) -> u64 {
+        self.generation
+    }
+
     /// Where a step writes its timestamps; none when it is not measured.
     pub(crate) fn writes(&self, step: StepId) -> Option<TimestampWrites> {
         let begin = (*self.queries.get(step.index())?)?;
@@ -172,7 +177,8 @@ impl Timing {
         if let Some(trace) = &mut self.trace {
             trace.end_frame(&recording.steps);
         }
-        for StepTime { step, begun, ended } in recording.steps.iter().filter(|_| self.warm_up_left == 0) {
+        let measured = self.warm_up_left == 0 && (self.enabled || self.trace.is_some());
+        for StepTime { step, begun, ended } in recording.steps.iter().filter(|_| measured) {
             if let Some(samples) = self.steps.get_mut(step.index()) {
                 samples.cpu.push(ms(ended.duration_since(*begun)));
             }

@@ -26,5 +26,6 @@ mod refusals;
 mod resolve;
 mod steady;
 mod submission;
+mod threads;
 mod timing;
 mod trace;

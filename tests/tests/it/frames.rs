@@ -8,7 +8,7 @@ use framegraph_passes::view::Background;
 use framegraph_passes::{Preset, Settings, ViewId, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
-use framegraph_wgpu::{Executor, Gpu, Imports, ObjectCounts, read_texture};
+use framegraph_wgpu::{Executor, Gpu, Imports, ObjectCounts, Workers, read_texture};
 use std::error::Error;
 
 /// A scene with all that one executor keeps from frame to frame.
@@ -111,7 +111,8 @@ fn ten_frames_with_a_resize_are_the_same_however_they_are_planned() -> Result<()
     Ok(())
 }
 
-/// With every effect and its histories, frame after frame: textures in one block of memory show what they show apart.
+/// With every effect and its histories, frame after frame: textures in one block of memory, recorded on one thread, show what
+/// they show apart, recorded on three.
 #[test]
 fn frames_in_one_block_of_memory_are_the_frames_apart() -> Result<(), Box<dyn Error>> {
     const NAME: &str = "frames_in_one_block_of_memory_are_the_frames_apart";
@@ -121,6 +122,7 @@ fn frames_in_one_block_of_memory_are_the_frames_apart() -> Result<(), Box<dyn Er
     let (mut films, mut pictures) = (Vec::new(), Vec::new());
     for alias in [Alias::Off, Alias::Heap] {
         let mut film = Film::new(&gpu, "spheres")?;
+        film.executor.always_record_on(Workers::with_threads(3)?);
         let shoot = |shot: Shot| film.shoot(&Shot { options: Options { alias, ..shot.options }, ..shot });
         pictures.push(shots.clone().map(shoot).collect::<Result<Vec<_>, _>>()?);
         films.push(film);
@@ -131,6 +133,7 @@ fn frames_in_one_block_of_memory_are_the_frames_apart() -> Result<(), Box<dyn Er
         return Ok(());
     }
     assert!(placed > 5 && is_picture(&pictures[0][0]), "{placed} textures are placed");
+    assert_eq!([0, 1].map(|film| films[film].executor.recording_threads()), [3, 1]);
     for (index, (apart, block)) in pictures[0].iter().zip(&pictures[1]).enumerate() {
         assert!(apart == block, "frame {index}");
     }
@@ -143,6 +146,8 @@ fn frames_in_one_block_of_memory_are_the_frames_apart() -> Result<(), Box<dyn Er
 fn toggles_and_odd_sizes_show_neither_black_nor_stale_frames() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu("toggles_and_odd_sizes_show_neither_black_nor_stale_frames") else { return Ok(()) };
     let mut film = Film::new(&gpu, "spheres")?;
+    // The frames that each is compared with are recorded on one thread.
+    film.executor.always_record_on(Workers::with_threads(2)?);
     let base = Settings { samples: 1, shadows: Some(ShadowSettings::texels(256)), ..Settings::default() };
     let sequence = [
         (base, [64, 36]),

@@ -11,7 +11,7 @@ use crate::look::{number, precision, quality, shading, switch};
 use crate::moment::{self, Moment};
 use crate::name::{plan_files, with_ending};
 use crate::shadows::{self, Shadows};
-use crate::values::{alias, camera, frames, memory, samples, size};
+use crate::values::{alias, camera, frames, memory, samples, size, threads};
 use framegraph::Alias;
 use framegraph_passes::PostSettings;
 use framegraph_passes::{Precision, Quality, Settings, Shading};
@@ -62,6 +62,7 @@ LIGHTING
   --inline on|off      post-processing at the end of the color pass's shader, where that is sound (on)
   --alias heap|pool|none  textures that live at other times share memory: at offsets of one block, whatever their shape
                        (Vulkan; elsewhere the pool serves); textures of one shape (pool); or not
+  --threads auto|N     threads that record a frame where that is measured to be faster (auto: as many as there are cores)
   --round-hdr          where it is inlined, round the radiance first as the device stores it: with --msaa 1 the same bits
                        as --inline off
   --split-post         a pass for each effect of post-processing
@@ -114,6 +115,8 @@ pub struct Args {
     /// Post-processing in the color pass's shader, where that is sound.
     pub inline: bool,
     pub alias: Alias,
+    /// 0 for as many as there are cores.
+    pub threads: usize,
     /// Round the radiance as the device stores it, where it is not stored.
     pub round_hdr: bool,
     /// A pass for each effect.
@@ -196,6 +199,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         grade: Grade::default(),
         inline: true,
         alias: Alias::Pool,
+        threads: 0,
         round_hdr: false,
         split_post: false,
         compare_post: false,
@@ -246,6 +250,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             }
             Long("dither") => found.post.dither = number("--dither", &text(&mut parser, "--dither")?, 0.0..=1.0)?,
             Long("alias") => found.alias = alias(&text(&mut parser, "--alias")?)?,
+            Long("threads") => found.threads = threads(&text(&mut parser, "--threads")?)?,
             Long("inline") => found.inline = switch("--inline", &text(&mut parser, "--inline")?)?,
             Long("round-hdr") => found.round_hdr = true,
             Long("split-post") => found.split_post = true,
@@ -344,7 +349,8 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 38] = [
+        let cases: [(&[&str], &str); 39] = [
+            (&["--threads", "0"], "--threads 0"),
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
             (&["--size", "-1x5"], "--size -1x5"),

@@ -7,7 +7,7 @@ use framegraph::{Plan, Scratch, compile};
 use framegraph_passes::FrameSettings;
 use framegraph_passes::budget::{Bound, Choices, GROUPS, Measured, Offers, Settled, Trial, reference, settle};
 use framegraph_passes::facts::{Decision, Facts};
-use framegraph_wgpu::{Executor, read_texture};
+use framegraph_wgpu::read_texture;
 use lexopt::Parser;
 use program::outputs::Outputs;
 use serde::Deserialize;
@@ -135,7 +135,7 @@ fn attempt(args: &Args) -> Result<Tried, Failure> {
     let (options, execute) = prepared.options(args);
     let mut plan = Plan::new();
     compile(prepared.frame.graph(), &prepared.gpu.caps(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;
-    let mut executor = Executor::with(&prepared.gpu, execute);
+    let mut executor = prepared.executor(args, execute)?;
     let mut shown = Frames::new(WARM_UP + args.frames);
     let mut took = Vec::new();
     for index in 0..WARM_UP + args.frames {

@@ -292,7 +292,7 @@ pub fn run_bisect(args: &Args) -> Result<(), Failure> {
         let (mut options, mut execute) = prepared.options(args);
         mode.iter().for_each(|mode| mode.apply(&mut options, &mut execute));
         let mut plan = Plan::new();
-        let mut executor = Executor::with(&prepared.gpu, execute);
+        let mut executor = prepared.executor(args, execute)?;
         executor.compile(prepared.frame.graph(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;
         render(&mut prepared, &plan, &mut executor, 0..WARM_UP, &mut Frames::new(WARM_UP))?;
         let texture = executor.texture(&plan, prepared.io.output).ok_or_else(|| device("the frame left no picture"))?;

@@ -7,7 +7,7 @@ use framegraph::{Extent, Format, Plan, Scratch, Target, TextureDesc};
 use framegraph_passes::measure::MeasuredTextures;
 use framegraph_passes::shadow::{KeptShadows, Redraw, ViewShadows, maps_slot};
 use framegraph_passes::{Facts, FrameIo, Handles, Settings, Slot, ViewId, World, stages};
-use framegraph_wgpu::{Executor, Frame, Gpu, Imports};
+use framegraph_wgpu::{Frame, Gpu, Imports};
 
 /// Shadow maps that outlive a frame.
 #[derive(Debug, Default)]
@@ -82,7 +82,7 @@ pub fn first_frame(args: &Args, prepared: &mut Prepared) -> Result<(), Failure> 
     program::line(format_args!("the first frame {}", kept.told()));
     let (options, execute) = prepared.options(args);
     let mut plan = Plan::new();
-    let mut executor = Executor::with(&prepared.gpu.clone(), execute);
+    let mut executor = prepared.executor(args, execute)?;
     executor.compile(prepared.frame.graph(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;
     render(prepared, &plan, &mut executor, 0..1, &mut Frames::new(1))?;
     let Prepared { kept, world, .. } = &mut *prepared;

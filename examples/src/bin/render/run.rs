@@ -22,7 +22,7 @@ use framegraph_passes::{CameraView, Facts, FrameIndex, FrameIo, Settings, ViewId
 use framegraph_scene::picture::{encode_exr, encode_png};
 use framegraph_wgpu::{
     AdapterRequest, ExecuteError, Executor, ExecutorOptions, Frame, Gpu, Imports, OpenError, Pixels, RecordError,
-    StoreRounding, Timing, read_texture,
+    StoreRounding, Timing, Workers, read_texture,
 };
 use program::interrupt;
 use program::outputs::{Outputs, check_folder};
@@ -84,6 +84,17 @@ impl Prepared {
         let mut execute = ExecutorOptions::default();
         args.debug.apply(&mut options, &mut execute);
         (options, execute)
+    }
+
+    /// Executes frames with these options, on as many threads as the command line says.
+    ///
+    /// # Errors
+    /// When the system refuses a thread.
+    pub fn executor(&self, args: &Args, options: ExecutorOptions) -> Result<Executor, Failure> {
+        let workers = if args.threads == 0 { Workers::new() } else { Workers::with_threads(args.threads) };
+        let mut executor = Executor::with(&self.gpu, options);
+        executor.record_on(Some(workers.map_err(device)?));
+        Ok(executor)
     }
 }
 
@@ -230,7 +241,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let (options, execute) = prepared.options(args);
     let mut plan = Plan::new();
-    let mut executor = Executor::with(&prepared.gpu, execute);
+    let mut executor = prepared.executor(args, execute)?;
     executor.compile(prepared.frame.graph(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;
     let caps = prepared.gpu.caps();
     let inspections = args.debug.wanted(&plan)?;

@@ -10,7 +10,7 @@ use framegraph_passes::upscale::DynamicResolution;
 use framegraph_passes::view::ViewSettings;
 use framegraph_passes::{CameraView, FrameIndex, Upscale, ViewId};
 use framegraph_scene::picture::encode_png;
-use framegraph_wgpu::{Executor, read_texture};
+use framegraph_wgpu::read_texture;
 use glam::{DQuat, DVec3};
 use program::interrupt;
 use program::outputs::Outputs;
@@ -35,7 +35,7 @@ pub fn files(sequence: &Sequence) -> impl Iterator<Item = PathBuf> {
 pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs: &mut Outputs) -> Result<(), Failure> {
     let (options, execute) = prepared.options(args);
     let (mut plan, mut scratch) = (Plan::new(), Scratch::new());
-    let mut executor = Executor::with(&prepared.gpu, execute);
+    let mut executor = prepared.executor(args, execute)?;
     let mut shown = Shown::default();
     let center = prepared.loaded.scene.bounds_above_ground().center();
     let (mut plans, mut planned, mut measuring) = (0_u32, None, Measuring::new());

@@ -61,6 +61,18 @@ pub fn camera(text: &str) -> Result<CameraChoice, String> {
     CameraChoice::from_str(text).map_err(|error| format!("--camera: {error}"))
 }
 
+/// Threads that record frames; 0 for as many as there are cores.
+///
+/// # Errors
+/// One line that names the option.
+pub fn threads(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        _ if text == "auto" => Ok(0),
+        Ok(threads @ 1..=256) => Ok(threads),
+        _ => Err(format!("--threads {text}: `auto` or a number from 1 to 256 is needed")),
+    }
+}
+
 /// Frames that are measured.
 ///
 /// # Errors

@@ -67,7 +67,7 @@ impl Executor {
             textures: self.textures.counts().created + self.arenas.created(),
             histories: self.histories.created(),
             buffers: self.buffers.counts().created,
-            uniform_buffers: self.recording.uniforms.created(),
+            uniform_buffers: self.recording.uniforms.created() + self.threads.uniform_buffers(),
             views: self.caches.views.counts().created,
             bind_groups: self.caches.groups.counts().created,
             samplers: self.caches.samplers.created(),

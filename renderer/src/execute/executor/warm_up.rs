@@ -51,7 +51,7 @@ impl Executor {
     ///
     /// # Errors
     /// As [`Executor::execute`].
-    pub fn warm_up<W: ?Sized + 'static>(
+    pub fn warm_up<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
         frame: &Frame<W>,
@@ -64,11 +64,16 @@ impl Executor {
         }
         let before = self.objects().pipelines;
         let (of, mut done) = (plan.steps().len(), 0);
-        let unsent = self.record(plan, &Passes { frame, world, extra: None }, imports, &mut |step, pipelines| {
-            done += 1;
-            let pass = plan.passes_of(step).first().map_or("", |m| plan.graph().pass_name(m.pass));
-            progress(WarmUp { done, of, pass, pipelines: pipelines - before });
-        })?;
+        let unsent = self.record(
+            plan,
+            &Passes { frame, world, extra: None },
+            imports,
+            Some(&mut |step, pipelines| {
+                done += 1;
+                let pass = plan.passes_of(step).first().map_or("", |m| plan.graph().pass_name(m.pass));
+                progress(WarmUp { done, of, pass, pipelines: pipelines - before });
+            }),
+        )?;
         drop(unsent);
         self.give_up();
         Ok(())

@@ -14,7 +14,7 @@ use framegraph::{
 };
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{
-    ExecuteError, Executor, ExecutorOptions, Gpu, Imports, buffer_usages, texture_format, texture_usages,
+    ExecuteError, Executor, ExecutorOptions, Gpu, Imports, Workers, buffer_usages, texture_format, texture_usages,
 };
 use wgpu::BufferUsages;
 
@@ -87,9 +87,12 @@ impl Runner {
         let stage = Stage::new(buffer("witness", PASSES * 4), buffer("notes", PASSES * NOTES as u64 * NOTE_BYTES));
         let executor =
             |poison| Executor::with(gpu, ExecutorOptions { poison, timing: false, ..ExecutorOptions::default() });
+        // One of the two records on several threads.
+        let mut threaded = executor(false);
+        threaded.always_record_on(Workers::with_threads(3)?);
         Ok(Self {
             gpu: gpu.clone(),
-            executors: [executor(false), executor(true)],
+            executors: [threaded, executor(true)],
             prelude: executor(false),
             probe: Probe::new(gpu),
             stage,

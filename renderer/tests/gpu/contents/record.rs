@@ -7,10 +7,9 @@ use framegraph::{Access, AccessKind, Aspect, Desc, Graph, PassId, PassKind};
 use framegraph_wgpu::{
     Binding, BoundBuffer, BoundResource, Compute, Cx, Depth, Output, Raster, RecordError, Shader, ViewPart,
 };
-use std::cell::RefCell;
 use std::collections::HashMap;
 use std::num::NonZeroU64;
-use std::rc::Rc;
+use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::{ColorWrites, CompareFunction, StencilFaceState, StencilOperation, StencilState, TextureViewDimension};
 
 /// What recorders share.
@@ -22,21 +21,18 @@ pub struct Stage {
     /// Where copy passes leave what nothing else takes, [`NOTE_BYTES`](super::copy::NOTE_BYTES) each.
     pub notes: wgpu::Buffer,
     /// Name and text of each shader.
-    shaders: RefCell<HashMap<Signature, Rc<(String, String)>>>,
+    shaders: Mutex<HashMap<Signature, Arc<(String, String)>>>,
 }
 
 impl Stage {
     pub fn new(witness: wgpu::Buffer, notes: wgpu::Buffer) -> Self {
-        Self { frame: 0, witness, notes, shaders: RefCell::default() }
+        Self { frame: 0, witness, notes, shaders: Mutex::default() }
     }
 
-    fn shader(&self, signature: &Signature) -> Rc<(String, String)> {
-        if let Some(known) = self.shaders.borrow().get(signature) {
-            return known.clone();
-        }
-        let made = Rc::new((signature.name(), signature.text()));
-        self.shaders.borrow_mut().insert(signature.clone(), made.clone());
-        made
+    fn shader(&self, signature: &Signature) -> Arc<(String, String)> {
+        let mut shaders = self.shaders.lock().unwrap_or_else(PoisonError::into_inner);
+        let made = || Arc::new((signature.name(), signature.text()));
+        shaders.entry(signature.clone()).or_insert_with(made).clone()
     }
 }
 

@@ -1,0 +1,258 @@
+//! Which steps of a frame go to which thread, and whether sharing them out pays.
+//!
+//! Whether it does is measured, not guessed: a few frames are recorded on one thread with a clock at each step, then as
+//! many with their steps shared out evenly by what they took, and the faster way stays until it is tried again. A frame
+//! that takes less than threads take to wake is not tried at all.
+
+use std::ops::Range;
+use std::time::Duration;
+
+/// Frames after a change that fill caches and are not measured.
+const WARM_UP: u32 = 3;
+/// Frames that are measured of each way.
+const MEASURED: u32 = 5;
+/// Frames from one trial to the next: what a trial of the slower way loses is less than a hundredth then.
+const HELD: u32 = 1000;
+/// Recording shorter than this is not shared out.
+const WORTH: Duration = Duration::from_micros(60);
+/// Sharing out stays only where it takes less than this part of the time on one thread.
+const GAIN: f64 = 0.95;
+
+/// How frames of one plan are recorded. See the [module](self).
+#[derive(Debug, Default)]
+pub(crate) struct Share {
+    /// The plan that all this is about.
+    plan: u64,
+    phase: Phase,
+    /// Frames of the phase so far.
+    frames: u32,
+    /// The least time that each step took on one thread.
+    steps: Vec<Duration>,
+    /// The least times on one thread, and shared out.
+    best: [Duration; 2],
+    /// Bounds of the parts, in steps.
+    parts: Vec<Range<u32>>,
+    /// All frames are shared out, whether it pays or not, by the number of steps.
+    always: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Phase {
+    /// On one thread, measured step by step.
+    #[default]
+    Alone,
+    /// Shared out, on trial.
+    Trial,
+    /// On one thread from now on.
+    StaysAlone,
+    /// Shared out from now on.
+    StaysShared,
+}
+
+impl Share {
+    /// Begins a frame of `plan`, told apart by its number, for so many threads; of each of its steps, whether a part may begin
+    /// with it, as the first may. Returns whether the steps are to be timed.
+    pub(crate) fn begin_frame(&mut self, plan: u64, may_begin: &[bool], threads: usize) -> bool {
+        if self.always {
+            self.parts = even_parts(&vec![Duration::from_secs(1); may_begin.len()], may_begin, threads);
+            self.phase = Phase::StaysShared;
+            return false;
+        }
+        let cut = |part: &Range<u32>| !may_begin.get(part.start as usize).is_some_and(|may| *may);
+        if self.plan != plan || self.steps.len() != may_begin.len() || self.parts.iter().any(cut) {
+            let steps = vec![Duration::MAX; may_begin.len()];
+            *self = Self { plan, steps, best: [Duration::MAX; 2], ..Self::default() };
+        }
+        let over = match self.phase {
+            Phase::Alone | Phase::Trial => WARM_UP + MEASURED,
+            Phase::StaysAlone | Phase::StaysShared => HELD,
+        };
+        if self.frames == over {
+            self.enter(self.next(threads), may_begin, threads);
+        }
+        self.phase == Phase::Alone
+    }
+
+    /// Shares all frames out, whatever it costs: for tests.
+    #[cfg(all(feature = "threads", any(test, feature = "testing")))]
+    pub(crate) fn always(&mut self) {
+        self.always = true;
+    }
+
+    /// The parts of the frame, one a thread, in order; empty where one thread records all of it.
+    pub(crate) fn parts(&self) -> &[Range<u32>] {
+        match self.phase {
+            Phase::Trial | Phase::StaysShared => &self.parts,
+            Phase::Alone | Phase::StaysAlone => &[],
+        }
+    }
+
+    /// Ends a frame that took so long to record, and its steps so long each where they were timed.
+    pub(crate) fn end_frame(&mut self, took: Duration, steps: impl Iterator<Item = (usize, Duration)>) {
+        self.frames += 1;
+        if self.frames <= WARM_UP {
+            return;
+        }
+        match self.phase {
+            Phase::Alone => {
+                self.best[0] = self.best[0].min(took);
+                for (step, took) in steps {
+                    self.steps[step] = self.steps[step].min(took);
+                }
+            }
+            Phase::Trial => self.best[1] = self.best[1].min(took),
+            Phase::StaysAlone | Phase::StaysShared => {}
+        }
+    }
+
+    fn next(&self, threads: usize) -> Phase {
+        match self.phase {
+            Phase::StaysAlone | Phase::StaysShared => Phase::Alone,
+            Phase::Alone if self.best[0] < WORTH || threads.min(self.steps.len()) < 2 => Phase::StaysAlone,
+            Phase::Alone => Phase::Trial,
+            Phase::Trial if self.best[1].as_secs_f64() < GAIN * self.best[0].as_secs_f64() => Phase::StaysShared,
+            Phase::Trial => Phase::StaysAlone,
+        }
+    }
+
+    fn enter(&mut self, phase: Phase, may_begin: &[bool], threads: usize) {
+        match phase {
+            Phase::Alone => {
+                self.steps.fill(Duration::MAX);
+                self.best = [Duration::MAX; 2];
+            }
+            Phase::Trial => {
+                self.best[1] = Duration::MAX;
+                self.steps.iter_mut().filter(|took| **took == Duration::MAX).for_each(|took| *took = Duration::ZERO);
+                let parts = even_parts(&self.steps, may_begin, threads);
+                // Those of the trial before are kept where they are nearly as even: what was recorded with them is known.
+                if !(self.parts.len() == parts.len()
+                    && longest(&self.parts, &self.steps) <= longest(&parts, &self.steps).mul_f64(1.1))
+                {
+                    self.parts = parts;
+                }
+            }
+            Phase::StaysAlone | Phase::StaysShared => {}
+        }
+        (self.phase, self.frames) = (phase, 0);
+    }
+}
+
+/// The time of the longest part.
+fn longest(parts: &[Range<u32>], steps: &[Duration]) -> Duration {
+    let time = |part: &Range<u32>| steps[part.start as usize..part.end as usize].iter().sum();
+    parts.iter().map(time).max().unwrap_or_default()
+}
+
+/// At most `count` parts in a row, of which the longest is as short as can be.
+fn even_parts(steps: &[Duration], may_begin: &[bool], count: usize) -> Vec<Range<u32>> {
+    // What cannot be cut is taken together.
+    let mut blocks: Vec<(Range<u32>, Duration)> = Vec::new();
+    for (step, (took, may)) in (0..).zip(steps.iter().zip(may_begin)) {
+        match blocks.last_mut().filter(|_| !may) {
+            Some((block, time)) => (block.end, *time) = (step + 1, *time + *took),
+            None => blocks.push((step..step + 1, *took)),
+        }
+    }
+    // The least bound that `count` parts keep, by bisection; filling each part as far as the bound goes is best for it.
+    let filled = |bound: Duration| {
+        let mut parts: Vec<(Range<u32>, Duration)> = Vec::new();
+        for (block, took) in &blocks {
+            match parts.last_mut().filter(|(_, time)| *time + *took <= bound) {
+                Some((part, time)) => (part.end, *time) = (block.end, *time + *took),
+                None => parts.push((block.clone(), *took)),
+            }
+        }
+        parts
+    };
+    let mut low = blocks.iter().map(|(_, took)| *took).max().unwrap_or_default();
+    let mut high: Duration = steps.iter().sum();
+    while high > low {
+        let middle = low + (high - low) / 2;
+        if filled(middle).len() <= count { high = middle } else { low = middle + Duration::from_nanos(1) }
+    }
+    filled(high).into_iter().map(|(part, _)| part).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const fn us(time: u64) -> Duration {
+        Duration::from_micros(time)
+    }
+
+    #[test]
+    fn parts_are_as_even_as_they_can_be() {
+        let steps = [5, 1, 1, 1, 8, 2, 2].map(us);
+        assert_eq!(even_parts(&steps, &[true; 7], 2), [0..4, 4..7]);
+        let may = [true, true, true, true, false, true, true];
+        assert_eq!(even_parts(&steps, &may, 2), [0..3, 3..7], "step 4 stays with step 3");
+        assert_eq!(longest(&even_parts(&steps, &may, 9), &steps), us(9), "nor than what stays together");
+        assert_eq!(even_parts(&steps, &[true; 7], 3), [0..4, 4..5, 5..7]);
+        assert_eq!(even_parts(&steps, &[true; 7], 1).len(), 1);
+        assert_eq!(
+            longest(&even_parts(&steps, &[true; 7], 20), &steps),
+            us(8),
+            "no part is shorter than the longest step"
+        );
+        assert_eq!(even_parts(&[Duration::ZERO; 3], &[true; 3], 2).len(), 1);
+        // Against all ways to cut into three.
+        let steps = [3, 9, 4, 4, 2, 7, 1, 6].map(us);
+        let sum = |range: Range<usize>| steps[range].iter().sum::<Duration>();
+        let all = (0..=8).flat_map(|a| (a..=8).map(move |b| (a, b)));
+        let least = all.map(|(a, b)| sum(0..a).max(sum(a..b)).max(sum(b..8))).min();
+        assert_eq!(Some(longest(&even_parts(&steps, &[true; 8], 3), &steps)), least);
+    }
+
+    /// Time of many frames, where one thread takes `alone` and the threads take `shared`.
+    fn simulated(alone: [Duration; 4], shared: Duration) -> (Duration, usize) {
+        let (mut share, mut spent, mut in_parts) = (Share::default(), Duration::ZERO, 0);
+        let one: Duration = alone.iter().sum();
+        for _ in 0..20_000 {
+            let timed = share.begin_frame(7, &[true; 4], 2);
+            let parts = share.parts();
+            assert!(parts.is_empty() || parts[0].start == 0 && parts.last().is_some_and(|part| part.end == 4));
+            let took = if parts.is_empty() { one } else { shared };
+            in_parts += usize::from(!parts.is_empty());
+            spent += took;
+            share.end_frame(took, alone.iter().copied().enumerate().filter(|_| timed));
+        }
+        (spent, in_parts)
+    }
+
+    /// Whatever sharing costs or wins, no more than 3 % is lost against the better of both ways.
+    #[test]
+    fn the_better_way_is_found_and_trials_cost_little() {
+        let alone = [20, 200, 100, 80].map(us);
+        for shared in [210, 300, 375, 400, 410, 800] {
+            let (spent, in_parts) = simulated(alone, us(shared));
+            let best = 20_000 * us(shared.min(400));
+            let allowed = if shared < 380 { 1.03 } else { 1.06 };
+            assert!(spent.as_secs_f64() <= allowed * best.as_secs_f64(), "{spent:?} for {best:?} at {shared} µs");
+            assert_eq!(in_parts > 15_000, shared < 380, "{in_parts} frames were shared out at {shared} µs");
+        }
+        let (_, in_parts) = simulated([5, 5, 5, 5].map(us), us(1));
+        assert_eq!(in_parts, 0, "what takes 20 µs is not tried");
+    }
+
+    #[test]
+    fn another_plan_is_measured_anew() {
+        let mut share = Share::default();
+        for frame in 0..30 {
+            share.begin_frame(1, &[true; 2], 2);
+            let took = if share.parts().is_empty() { us(400) } else { us(200) };
+            share.end_frame(took, [(0, us(200)), (1, us(200))].into_iter());
+            assert!(frame < 8 || share.parts() == [0..1, 1..2], "frame {frame}");
+        }
+        assert!(share.begin_frame(2, &[true; 2], 2) && share.parts().is_empty());
+        assert!(
+            !(0..50).any(|_| {
+                share.begin_frame(2, &[true; 2], 1);
+                share.end_frame(us(400), [(0, us(200)), (1, us(200))].into_iter());
+                !share.parts().is_empty()
+            }),
+            "one thread shares with nobody"
+        );
+    }
+}

@@ -1,0 +1,119 @@
+//! Threads that record the steps of a frame beside the thread that submits it.
+
+use std::fmt;
+use std::sync::Arc;
+
+/// A pool of threads, each pinned to a core of its own; one core is left to the thread that submits, which works too while
+/// it waits. Clones share the threads.
+///
+/// An executor records on them once it is given them ([`Executor::record_on`](crate::Executor::record_on)).
+///
+/// ```
+/// use framegraph_wgpu::{Executor, Gpu, Workers};
+///
+/// let gpu = Gpu::noop()?;
+/// let mut executor = Executor::new(&gpu);
+/// let workers = Workers::new()?;
+/// assert!(workers.threads() >= 1);
+/// executor.record_on(Some(workers));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone)]
+pub struct Workers {
+    /// None where one core is all there is.
+    pool: Option<Arc<rayon::ThreadPool>>,
+}
+
+/// The system refused to start a thread.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no threads to record on: {reason}; record on one")]
+pub struct WorkersError {
+    /// What the system said.
+    pub reason: String,
+}
+
+impl Workers {
+    /// As many threads as there are cores, with that of the caller.
+    ///
+    /// # Errors
+    /// When the system refuses a thread.
+    pub fn new() -> Result<Self, WorkersError> {
+        Self::with_threads(std::thread::available_parallelism().map_or(1, usize::from))
+    }
+
+    /// `threads` threads, with that of the caller: 0 and 1 start none. More than there are cores share them.
+    ///
+    /// # Errors
+    /// When the system refuses a thread.
+    pub fn with_threads(threads: usize) -> Result<Self, WorkersError> {
+        if threads < 2 {
+            return Ok(Self { pool: None });
+        }
+        let cores = core_affinity::get_core_ids().unwrap_or_default();
+        // The last core is the submitting thread's.
+        let cores = cores.split_last().map_or(Vec::new(), |(_, others)| others.to_vec());
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads - 1)
+            .thread_name(|index| format!("frame worker {index}"))
+            .start_handler(move |index| {
+                if let Some(core) = cores.get(index) {
+                    core_affinity::set_for_current(*core);
+                }
+            })
+            .build()
+            .map_err(|error| WorkersError { reason: error.to_string() })?;
+        Ok(Self { pool: Some(Arc::new(pool)) })
+    }
+
+    /// How many threads work, with that of the caller.
+    pub fn threads(&self) -> usize {
+        self.pool.as_ref().map_or(1, |pool| pool.current_num_threads() + 1)
+    }
+
+    /// The threads beside the caller's, for what else a frame asks of the CPU: by `in_place_scope` the caller works too.
+    pub fn pool(&self) -> Option<&rayon::ThreadPool> {
+        self.pool.as_deref()
+    }
+
+    /// Calls `work` for every item, the first on this thread and the others on the pool's, and returns when all are done.
+    pub(crate) fn for_each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Sync) {
+        let Some((pool, (first, others))) = self.pool.as_ref().zip(items.split_first_mut()) else {
+            return items.iter_mut().for_each(work);
+        };
+        pool.in_place_scope(|scope| {
+            let work = &work;
+            others.iter_mut().for_each(|item| scope.spawn(move |_| work(item)));
+            work(first);
+        });
+    }
+}
+
+impl fmt::Debug for Workers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Workers").field("threads", &self.threads()).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::thread::{self, ThreadId};
+
+    /// All items are worked on, the first by who asks.
+    #[test]
+    fn every_item_is_worked_on_once() -> Result<(), WorkersError> {
+        for threads in [0, 1, 2, 5] {
+            let workers = Workers::with_threads(threads)?;
+            assert_eq!(workers.threads(), threads.max(1));
+            let mut items: Vec<(u32, Option<ThreadId>)> = (0..40).map(|i| (i, None)).collect();
+            workers.for_each(&mut items, |(number, by)| {
+                *number += 100;
+                *by = Some(thread::current().id());
+            });
+            assert!(items.iter().zip(100..).all(|((number, by), i)| *number == i && by.is_some()), "{items:?}");
+            assert_eq!(items[0].1, Some(thread::current().id()));
+            assert_eq!(threads > 1, items[1].1 != items[0].1, "with {threads} threads");
+        }
+        Ok(())
+    }
+}
