@@ -55,9 +55,12 @@ impl Threads {
 
     /// Begins a frame of `plan`, told apart by its number; returns whether its steps are to be timed.
     pub(crate) fn begin_frame(&mut self, plan: &Plan, number: u64) -> bool {
-        self.others.iter_mut().for_each(|other| other.begin_frame(false));
         self.recorded = 1;
         let Some(workers) = &self.workers else { return false };
+        self.others.iter_mut().for_each(|other| other.begin_frame(false));
+        if self.share.rests(number, plan.steps().len()) {
+            return false;
+        }
         self.begun = Some(Instant::now());
         may_begin(plan, &mut self.may_begin);
         self.share.begin_frame(number, &self.may_begin, workers.threads())
