@@ -100,6 +100,31 @@ struct SharedState {
     pipeline: RasterPipeline,
     frame: wgpu::BindGroup,
     objects: wgpu::BindGroup,
+    /// By material, those that a draw asked for.
+    materials: Vec<Option<wgpu::BindGroup>>,
+}
+
+impl SharedState {
+    /// The bind group of a material; none where the program reads nothing of one.
+    fn material(
+        &mut self,
+        material: MaterialId,
+        scene: &GpuScene,
+        cx: &mut Cx<'_>,
+    ) -> Result<Option<&wgpu::BindGroup>, RecordError> {
+        if !self.program.has_group(1) {
+            return Ok(None);
+        }
+        let index = material.index();
+        if self.materials.len() <= index {
+            self.materials.resize(index + 1, None);
+        }
+        if self.materials[index].is_none() {
+            let binding = |slot| scene.material_binding(material, slot);
+            self.materials[index] = Some(self.program.bind(cx, &self.pipeline, 1, binding)?);
+        }
+        Ok(self.materials[index].as_ref())
+    }
 }
 
 impl SurfaceDraw<'_> {
@@ -145,13 +170,10 @@ impl SurfaceDraw<'_> {
                     at
                 }
             };
-            let SharedState { program, pipeline, .. } = &states[at];
             if bound != Some(instance.material) {
                 bound = Some(instance.material);
-                if program.has_group(1) {
-                    let binding = |slot| scene.material_binding(instance.material, slot);
-                    let material = program.bind(cx, pipeline, 1, binding)?;
-                    cx.render_pass()?.set_bind_group(1, &material, &[]);
+                if let Some(material) = states[at].material(instance.material, scene, cx)? {
+                    cx.render_pass()?.set_bind_group(1, material, &[]);
                 }
             }
             let mesh = scene.mesh(instance.mesh);
@@ -206,7 +228,7 @@ impl SurfaceDraw<'_> {
         let frame = program.bind(cx, &pipeline, 0, |slot| frame.get(slot).cloned().flatten())?;
         let placement = [from.objects, from.origins];
         let objects = program.bind(cx, &pipeline, 2, |slot| Some(placement.get(slot).copied()?.clone().into()))?;
-        Ok(SharedState { key, program, pipeline, frame, objects })
+        Ok(SharedState { key, program, pipeline, frame, objects, materials: Vec::new() })
     }
 }
 
