@@ -51,7 +51,7 @@ const OWN: [Own; 12] = [
     Own { name: "--quick", valued: false, commands: &["prove"] },
     Own { name: "--dsa", valued: true, commands: &["prove"] },
     Own { name: "--out", valued: true, commands: &["prove", "mutants"] },
-    Own { name: "--all", valued: false, commands: &["mutants"] },
+    Own { name: "--all", valued: false, commands: &["mutants", "test"] },
     Own { name: "--count", valued: true, commands: &["mutants"] },
     Own { name: "--list", valued: false, commands: &["mutants"] },
 ];
@@ -141,6 +141,7 @@ Options:
                 of `prove`: see `cargo xtask prove --help`
   --all, --count N, --list, --out FILE
                 of `mutants`: see `cargo xtask mutants --help`
+  --all         of `test`: see `cargo xtask test --help`
   --frames, --scene NAME, --preset NAME, --size WxH, --beside COMMAND
                 of `bench`: see `cargo xtask bench --help`
   --build       of `rooms`: see `cargo xtask rooms --help`

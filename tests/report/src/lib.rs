@@ -21,6 +21,16 @@ pub fn adapter(name: &str) {
     line(&format!("ADAPTER: {name}"));
 }
 
+/// The variable that asks for all cases of all tests: `all`.
+const CASES: &str = "FRAMEGRAPH_TESTS";
+
+/// Of the cases of a test that draws for long, those that run: the first of each three, or all of them where
+/// `FRAMEGRAPH_TESTS=all` asks for that, as `cargo xtask test --all` does.
+pub fn share<T>(cases: impl IntoIterator<Item = T>) -> Vec<T> {
+    let all = std::env::var_os(CASES).is_some_and(|cases| cases == "all");
+    cases.into_iter().step_by(if all { 1 } else { 3 }).collect()
+}
+
 fn line(text: &str) {
     println!("{text}");
     let Some(path) = std::env::var_os(LOG) else { return };

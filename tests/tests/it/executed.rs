@@ -185,7 +185,7 @@ fn no_mode_changes_what_a_frame_leaves_behind() -> TestResult {
     gpu.trust_attached_layers();
     let mut executors = Executors::Kept(Vec::new());
     let (mut compared, mut plain) = (0, 0);
-    for staged in staged() {
+    for staged in test_report::share(staged()) {
         check(&gpu, &staged, None, &mut executors)?;
         let apart = Staged { options: Options { inline: false, ..staged.options }, ..staged };
         let mut expected = None;
@@ -198,6 +198,6 @@ fn no_mode_changes_what_a_frame_leaves_behind() -> TestResult {
         }
     }
     println!("{compared} pictures were compared");
-    assert!(compared > 100 && plain * 4 < compared, "{compared} pictures, {plain} of them of one color");
+    assert!(compared > 30 && plain * 4 < compared, "{compared} pictures, {plain} of them of one color");
     Ok(())
 }

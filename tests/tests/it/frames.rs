@@ -93,7 +93,7 @@ fn ten_frames_with_a_resize_are_the_same_however_they_are_planned() -> Result<()
     ];
     let shots = ten(Settings { samples: 4, shadows: Some(ShadowSettings::texels(256)), ..Settings::default() });
     let mut expected: Vec<Vec<u8>> = Vec::new();
-    for options in ways {
+    for options in test_report::share(ways) {
         film.forget();
         for (index, shot) in shots.iter().enumerate() {
             let found = film.shoot(&Shot { options, ..*shot })?;
@@ -118,7 +118,9 @@ fn frames_in_one_block_of_memory_are_the_frames_apart() -> Result<(), Box<dyn Er
     const NAME: &str = "frames_in_one_block_of_memory_are_the_frames_apart";
     let Some(gpu) = gpu(NAME) else { return Ok(()) };
     let settings = Settings { shadows: Some(ShadowSettings::texels(256)), ..Preset::Ultra.frame().settings };
-    let shots = (0..24_u8).map(|index| Shot { ev100: 13.5 + f32::from(index) / 16.0, ..Shot::small(settings) });
+    let shots = test_report::share(0..24_u8)
+        .into_iter()
+        .map(|index| Shot { ev100: 13.5 + f32::from(index) / 16.0, ..Shot::small(settings) });
     let (mut films, mut pictures) = (Vec::new(), Vec::new());
     for alias in [Alias::Off, Alias::Heap] {
         let mut film = Film::new(&gpu, "spheres")?;

@@ -180,7 +180,7 @@ fn looks_are_computed_and_looked_up_as_on_the_cpu() -> TestResult {
     let extras = GradingTables::default();
     let extras = extras.extras();
     let codes_of = |picture: &Picture| -> [f64; 3] { std::array::from_fn(|c| f64::from(picture.codes[c])) };
-    for look in looks() {
+    for look in test_report::share(looks()) {
         let exact = look.function(extras)?(COLOR) * 255.0;
         for split in [false, true] {
             let found = codes_of(&of_color(&gpu, PostSettings { look, ..plain() }, true, split)?);

@@ -62,7 +62,7 @@ fn froxels_show_what_all_lights_show() -> TestResult {
     let half = Settings { shading: Shading { precision: Precision::Half, ..Shading::default() }, ..PLAIN };
     let shadows = ShadowSettings { cascades: 0, local_maps: 12, ..ShadowSettings::texels(256) };
     let shadowed = Settings { shadows: Some(shadows), ..PLAIN };
-    for (what, camera, size, settings) in [
+    for (what, camera, size, settings) in test_report::share([
         ("gate", own(0), [160, 90], PLAIN),
         ("ground", own(1), [161, 91], four),
         ("inside", inside, [96, 96], PLAIN),
@@ -71,7 +71,7 @@ fn froxels_show_what_all_lights_show() -> TestResult {
         ("a pixel", own(0), [1, 1], four),
         ("shadows", own(1), [96, 54], shadowed),
         ("half floats", own(1), [96, 54], half),
-    ] {
+    ]) {
         if let Err(error) = settings.shading.precision.check(&gpu) {
             test_report::skip(what, &error.to_string());
             continue;

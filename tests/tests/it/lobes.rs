@@ -220,7 +220,7 @@ fn every_choice_of_shading_shows() -> TestResult {
     let before = seen(&base)?;
     assert_eq!(seen(&base)?, before, "the same twice");
     let unlit = materials.len() * NOV.len() - NOV.len()..;
-    for (key, value) in [
+    for (key, value) in test_report::share([
         ("visibility", "fast"),
         ("table", "fast"),
         ("floor", "0.3"),
@@ -233,7 +233,7 @@ fn every_choice_of_shading_shows() -> TestResult {
         ("specular-occlusion", "off"),
         ("micro-shadows", "off"),
         ("fast-coat", "on"),
-    ] {
+    ]) {
         let mut shading = base;
         shading.set(key, value)?;
         let after = seen(&shading)?;

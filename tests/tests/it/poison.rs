@@ -149,7 +149,7 @@ fn a_poisoned_pixel_stays_where_it_is() -> TestResult {
     let shot = Shot { size_px, options, ..Shot::small(plain) };
     let set = Set::new(&gpu, "glass", &shot, &Background::Environment)?;
     let scene = Scene::open("glass", &mut progress::silent)?;
-    for Edge { lens: with_lens, stage, slot, at, reach, spoilt } in EDGES {
+    for Edge { lens: with_lens, stage, slot, at, reach, spoilt } in test_report::share(EDGES) {
         let settings = if with_lens { lens } else { plain }.for_scene(&scene, size_px);
         assert!(settings.scene_levels > 3, "a pyramid in which a pixel could spread");
         let shoot = |at, bits| -> Result<Vec<u8>, Box<dyn Error>> {

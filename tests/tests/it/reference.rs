@@ -107,7 +107,7 @@ const FRAMES: [&str; 17] = [
 fn whole_frames_that_are_built_pass() -> TestResult {
     let folder = references().with_file_name("filament_frame");
     let table = ("reference tests/references/filament_frame", folder.as_path());
-    pass(examined("whole_frames_that_are_built_pass", table, &FRAMES)?);
+    pass(examined("whole_frames_that_are_built_pass", table, &test_report::share(FRAMES))?);
     Ok(())
 }
 

@@ -284,7 +284,8 @@ fn hard_case_42_a_field_of_100_m_agrees_with_rays() -> TestResult {
     let steep = field()?;
     let grazing = Set::new(steep.scene.clone(), steep.camera.clone(), DVec3::new(0.7, 0.12, 0.5));
     let precisions = precisions("hard_case_42_a_field_of_100_m_agrees_with_rays", &gpu);
-    for (settings, precision) in kinds().into_iter().flat_map(|kind| precisions.iter().map(move |p| (kind, *p))) {
+    let all = kinds().into_iter().flat_map(|kind| precisions.iter().map(move |p| (kind, *p)));
+    for (settings, precision) in test_report::share(all) {
         for (set, most) in [(&steep, 1.0), (&grazing, 4.0)] {
             let set = Set { precision, ..set.clone() };
             let wrong = set.wrong(&gpu, settings, |distance_m| (0.01 * distance_m).max(0.05))?;

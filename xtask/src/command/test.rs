@@ -24,6 +24,11 @@ Stages, all of which run even if one fails:
   deny    deny.toml but for advisories, where cargo-deny is installed
   tests   unit, integration and documentation tests
 
+Tests of many cases that draw for long run a third of them, each of which stands
+for its neighbors; docs/time.md lists them.
+
+  --all         all of their cases, in release
+
 The summary counts the tests and repeats every test that skipped, with its
 reason. Exit code 1 if a stage failed, if no test ran, if none found an adapter,
 or if one skipped for a reason that is not among the known ones.
@@ -50,7 +55,7 @@ fn run(options: &Options) -> Result<(), Failure> {
         let check = ["deny", "--all-features", "check", "bans", "licenses", "sources"];
         outcomes.push(stage::run("deny", &mut workspace::cargo(&check)));
     }
-    let (outcome, totals, reported) = tests()?;
+    let (outcome, totals, reported) = tests(options.has("--all"))?;
     outcomes.push(outcome);
     program::print(summary(&outcomes, totals, &reported, &expected));
     verdict(&outcomes)
@@ -66,8 +71,8 @@ fn checking(what: &str, more: &[&str]) -> std::process::Command {
     command
 }
 
-/// Runs the tests, with a file for what they have to report.
-fn tests() -> Result<(Outcome, Totals, Reported), Failure> {
+/// Runs the tests, in all cases or with a share of some, with a file for what they have to report.
+fn tests(all: bool) -> Result<(Outcome, Totals, Reported), Failure> {
     let folder = workspace::root().join("target/xtask");
     let log = folder.join("skips.log");
     fs::create_dir_all(&folder)
@@ -75,6 +80,9 @@ fn tests() -> Result<(Outcome, Totals, Reported), Failure> {
         .map_err(|error| Failure::Failed(format!("{}: {error}", log.display())))?;
     let mut command = workspace::cargo(&["test", "--workspace", "--no-fail-fast"]);
     command.env(tally::SKIP_LOG, &log);
+    if all {
+        command.arg("--release").env("FRAMEGRAPH_TESTS", "all");
+    }
     let mut totals = Totals::default();
     let mut outcome = stage::run_reading("tests", &mut command, |line| totals.add(line));
     if outcome.result.is_ok() && totals.passed == 0 {

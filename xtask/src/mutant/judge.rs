@@ -162,7 +162,7 @@ fn run(
     let mut command = Command::new(program);
     command.args(["--exact", name]).current_dir(folder).env("NODEVICE_SELECT", "1").env("RUST_BACKTRACE", "0");
     // Mesa's software driver compiles a shader of a fault once: without optimization that takes half of the time.
-    command.env("GALLIVM_PERF", "nopt");
+    command.env("GALLIVM_PERF", "nopt").env("FRAMEGRAPH_TESTS", "all");
     if let Some((folder, _)) = replaced {
         command.env("FRAMEGRAPH_WGSL", folder);
     }

@@ -56,7 +56,7 @@ fn rays_of_every_kind_end() -> TestResult {
     parallel.projection =
         Projection::Orthographic { half_width_m: None, half_height_m: 1.0, near_m: 0.1, far_m: 100.0 };
     stages.push(("parallel", parallel));
-    for (what, stage) in &stages {
+    for (what, stage) in test_report::share(&stages) {
         for text in ["on", "on:bias=0,stride=1", "on:thickness=0", "on:distance=100000,thickness=10000"] {
             let settings = ReflectionSettings::from_text(text)?.ok_or("it is on")?;
             for resolution in [Resolution::Full, Resolution::Half] {
