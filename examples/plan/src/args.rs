@@ -1,6 +1,8 @@
 //! The command line of `plan`.
 
+use crate::queues;
 use framegraph::Order;
+use framegraph_queues::QueueLayout;
 use lexopt::{Arg, Parser, ValueExt};
 use program::budget::Budget;
 use std::ffi::OsString;
@@ -32,6 +34,9 @@ FRAME.ron is a graph; docs/graph-format.md documents its fields.
                         traffic   bytes loaded and stored
                       and B, kB, MB, GB (powers of 1000), KiB, MiB or GiB (of 1024) behind bytes:
                         --budget loads=0,stores=3,bytes=200MB
+  --queues LAYOUT     runs the frame on several queues where that is shorter: one, async-compute or async-compute-and-copy;
+                      prints what runs where, what waits for what, and the frame's time; text or svg
+  --costs FILE        what each pass costs there: lines `PASS,MICROSECONDS`; default: by the bytes that it touches
   --out FILE          where to write; default: standard output
   --offsets FILE.csv  packs intervals `id,lower,upper,size` into one heap and prints `id,lower,upper,size,offset`;
                       (MiniMalloc's form; an `end` in the place of `upper` is the last step itself, `start` and `begin`
@@ -66,6 +71,17 @@ pub struct Args {
     pub budget: Budget,
     /// Where to write.
     pub out: Option<PathBuf>,
+    /// The frame on several queues.
+    pub queues: Option<QueuesArgs>,
+}
+
+/// What `--queues` was asked for.
+#[derive(Clone, Debug)]
+pub struct QueuesArgs {
+    /// The queues.
+    pub layout: QueueLayout,
+    /// The costs of passes.
+    pub costs: Option<PathBuf>,
 }
 
 /// What `--offsets` was asked for.
@@ -124,6 +140,8 @@ struct Given {
     offsets: Option<PathBuf>,
     budget_steps: Option<u64>,
     seconds: Option<u32>,
+    queues: Option<QueueLayout>,
+    costs: Option<PathBuf>,
 }
 
 /// Steps of the search for offsets when nothing is said.
@@ -161,16 +179,30 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
 
 /// Reads the value of one option.
 fn take(parser: &mut Parser, option: &str, given: &mut Given) -> Result<(), String> {
-    let known =
-        ["caps", "size", "set", "order", "format", "diff", "budget", "out", "offsets", "budget-steps", "seconds"];
-    if !known.contains(&option) {
+    const KNOWN: [&str; 13] = [
+        "caps",
+        "size",
+        "set",
+        "order",
+        "format",
+        "diff",
+        "budget",
+        "out",
+        "offsets",
+        "budget-steps",
+        "seconds",
+        "queues",
+        "costs",
+    ];
+    if !KNOWN.contains(&option) {
         return Err(format!("there is no option `--{option}`; see --help"));
     }
     let value = parser.value().map_err(|_| format!("--{option} needs a value; see --help"))?;
-    if matches!(option, "diff" | "out" | "offsets") {
+    if matches!(option, "diff" | "out" | "offsets" | "costs") {
         let place = match option {
             "diff" => &mut given.diff,
             "out" => &mut given.out,
+            "costs" => &mut given.costs,
             _ => &mut given.offsets,
         };
         return set(place, value.into(), &format!("--{option}"));
@@ -211,6 +243,7 @@ fn take(parser: &mut Parser, option: &str, given: &mut Given) -> Result<(), Stri
             let budget = Budget::parse(&value).map_err(|e| format!("--budget: {e}"))?;
             set(&mut given.budget, budget, &name)
         }
+        "queues" => set(&mut given.queues, queues::layout(&value)?, &name),
         "seconds" => {
             let seconds = value.parse().map_err(|_| wrong("a whole number of seconds"))?;
             set(&mut given.seconds, seconds, &name)
@@ -248,7 +281,8 @@ fn switch(value: &str) -> Option<(String, bool)> {
 
 /// Checks what goes together.
 fn finish(given: Given) -> Result<Command, String> {
-    let Given { frame, caps, size_texels, switches, order, format, diff, budget, out, offsets, .. } = given;
+    let Given { frame, caps, size_texels, switches, order, format, diff, budget, out, offsets, queues, costs, .. } =
+        given;
     if let Some(file) = offsets {
         let alone = [
             (frame.is_some(), "FRAME.ron"),
@@ -259,6 +293,7 @@ fn finish(given: Given) -> Result<Command, String> {
             (format.is_some(), "--format"),
             (diff.is_some(), "--diff"),
             (budget.is_some(), "--budget"),
+            (queues.is_some(), "--queues"),
         ];
         if let Some((_, other)) = alone.into_iter().find(|(given, _)| *given) {
             return Err(format!("{other} does not go together with --offsets"));
@@ -272,6 +307,12 @@ fn finish(given: Given) -> Result<Command, String> {
         }
     }
     let format = format.unwrap_or(Format::Text);
+    if costs.is_some() && queues.is_none() {
+        return Err("--costs goes together with --queues only".into());
+    }
+    if queues.is_some() && (diff.is_some() || !matches!(format, Format::Text | Format::Svg)) {
+        return Err("--queues prints --format text or svg, of one frame".into());
+    }
     if diff.is_some() && !matches!(format, Format::Text | Format::Json) {
         return Err("--diff prints --format text or json".into());
     }
@@ -285,6 +326,7 @@ fn finish(given: Given) -> Result<Command, String> {
         diff,
         budget: budget.unwrap_or_default(),
         out,
+        queues: queues.map(|layout| QueuesArgs { layout, costs }),
     })))
 }
 
@@ -335,6 +377,9 @@ mod tests {
             ("a.ron --caps a --caps b", "--caps is given twice"),
             ("a.ron --diff b.ron --format svg", "--diff"),
             ("a.ron --budget-steps 3", "--offsets"),
+            ("a.ron --queues many", "`many` is not one, async-compute"),
+            ("a.ron --queues one --format dot", "--queues prints"),
+            ("a.ron --costs b.csv", "--costs goes together with --queues"),
             ("a.ron --offsets b.csv", "FRAME.ron does not go together"),
             ("--offsets b.csv --budget-steps x", "--budget-steps: `x`"),
         ] {

@@ -7,6 +7,7 @@ mod args;
 mod offsets;
 mod output;
 mod plugins;
+mod queues;
 mod run;
 
 use args::Command;

@@ -1,7 +1,7 @@
 //! From files to a plan, and from the plan to what was asked for.
 
 use crate::args::{Args, Format};
-use crate::output;
+use crate::{output, queues};
 use framegraph::file::{self, GraphFile, Included, Registry};
 use framegraph::{Alias, Caps, Graph, Options, Plan, Scratch, diff, dump};
 use std::fs::File;
@@ -38,17 +38,22 @@ pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
     let sources = sources.map_err(Failure::Input)?;
     let read = sources.iter().flat_map(|(path, _, included)| [path.as_str()].into_iter().chain(included.paths()));
     let device = args.caps.ends_with(".ron").then_some(args.caps.as_str());
-    let outputs = output::prepare(args.out.as_deref(), read.chain(device).map(Path::new)).map_err(Failure::Input)?;
+    let costs = args.queues.as_ref().and_then(|queues| queues.costs.as_deref());
+    let outputs =
+        output::prepare(args.out.as_deref(), read.chain(device).map(Path::new).chain(costs)).map_err(Failure::Input)?;
     let parsed = sources
         .iter()
         .map(|(path, text, included)| GraphFile::parse_with(path, text, included).map_err(|e| e.to_string()));
     let mut parsed = parsed.collect::<Result<Vec<_>, _>>().map_err(Failure::Input)?.into_iter();
     let (Some(frame), other) = (parsed.next(), parsed.next()) else { unreachable!("the frame is the first source") };
-    let plan = planned(args, registry, &frame, other.as_ref()).map_err(Failure::Input)?;
-    let text = match &other {
-        None => shown(&plan, frame.name(), args.format),
-        Some(other) => {
-            compared(&plan, &planned(args, registry, other, Some(&frame)).map_err(Failure::Input)?, args.format)
+    let one = |alias| planned(args, alias, registry, &frame, other.as_ref()).map_err(Failure::Input);
+    let plan = one(Alias::Heap)?;
+    let text = match (&other, &args.queues) {
+        (None, Some(own)) => queues::shown(own, args.format, &one(Alias::Off)?, &plan).map_err(Failure::Input)?,
+        (None, None) => shown(&plan, frame.name(), args.format),
+        (Some(other), _) => {
+            let other = planned(args, Alias::Heap, registry, other, Some(&frame)).map_err(Failure::Input)?;
+            compared(&plan, &other, args.format)
         }
     };
     output::write(outputs, args.out.as_deref(), &text).map_err(Failure::Input)?;
@@ -61,6 +66,7 @@ pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
 /// The plan of one file. A feature that is switched must be known here, or to the file that this one is compared with.
 fn planned(
     args: &Args,
+    alias: Alias,
     registry: &Registry<'_, Graph>,
     file: &GraphFile<'_>,
     other: Option<&GraphFile<'_>>,
@@ -72,7 +78,7 @@ fn planned(
     let options = Options {
         frame: args.size_texels.or(file.frame()).unwrap_or(FRAME),
         order: args.order,
-        alias: Alias::Heap,
+        alias,
         ..Options::default()
     };
     let (mut graph, mut plan) = (Graph::new(), Plan::new());

@@ -3,11 +3,12 @@
 use crate::cache::Cache;
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::hash::{FNV_START, fnv_append};
+use crate::pipelines::loops::endless_loop;
 use crate::pipelines::pipeline::Source;
 use std::collections::BTreeMap;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
-use wgpu::{Device, ShaderModule, ShaderModuleDescriptor, ShaderSource};
+use wgpu::{Device, ShaderModule, ShaderModuleDescriptor, ShaderRuntimeChecks, ShaderSource};
 
 /// A WGSL module with its name.
 ///
@@ -142,7 +143,7 @@ impl ShaderModules {
     pub(crate) fn compile(device: &Device, name: &str, text: &str) -> Result<Compiled, ShaderError> {
         let scopes = ErrorScopes::open(device);
         let source = ShaderSource::Wgsl(text.into());
-        let module = device.create_shader_module(ShaderModuleDescriptor { label: Some(name), source });
+        let module = create_module(device, ShaderModuleDescriptor { label: Some(name), source }, text);
         scopes.close("a shader").map_err(|error| match error {
             DeviceError::Refused { message, .. } => ShaderError::Module { name: name.to_owned(), message },
             other => ShaderError::Device(other),
@@ -154,6 +155,18 @@ impl ShaderModules {
     pub(crate) fn replace(&mut self, hash: u64, compiled: Compiled) {
         self.reloaded.insert(hash, compiled);
     }
+}
+
+/// A module in which loops are not counted if they are proved to end.
+#[allow(unsafe_code, reason = "wgpu takes the promise that loops end by a call of its own")]
+fn create_module(device: &Device, descriptor: ShaderModuleDescriptor<'_>, text: &str) -> ShaderModule {
+    if endless_loop(text).is_some() {
+        return device.create_shader_module(descriptor);
+    }
+    let checks = ShaderRuntimeChecks { force_loop_bounding: false, ..ShaderRuntimeChecks::checked() };
+    // SAFETY: all checks stay but one, which asks that no loop is endless; each was proved to end on the text that is compiled,
+    // and a text that cannot be read has no module.
+    unsafe { device.create_shader_module_trusted(descriptor, checks) }
 }
 
 #[cfg(test)]

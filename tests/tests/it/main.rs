@@ -30,6 +30,7 @@ mod light;
 mod light_document;
 mod lights;
 mod lobes;
+mod loops;
 mod mirrors;
 mod normals;
 mod occlusion;

@@ -79,7 +79,7 @@ fn ours([scene, preset, size]: [&str; 3], more: &[&str]) -> Result<f64, Failure>
     let program = root.join("target/release").join(format!("render{}", std::env::consts::EXE_SUFFIX));
     let out = root.join("target/xtask/bench.png");
     let mut command = Command::new(program);
-    command.args([scene, "--preset", preset, "--size", size, "--frames", "12", "--timing", "--out"]).arg(&out);
+    command.args([scene, "--preset", preset, "--size", size, "--frames", "6", "--timing", "--out"]).arg(&out);
     let text = output(command.args(more), &format!("render {scene} --preset {preset}"))?;
     frame_ms(&text).ok_or_else(|| Failure::Failed(format!("render {scene}: no row of the frame was printed")))
 }

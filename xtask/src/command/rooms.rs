@@ -63,6 +63,13 @@ const ROWS: &[Row] = &[
         before: ["-", "-", "-", "-", "-"],
     },
     Row {
+        name: "`framegraph/queues`: plans on several queues",
+        package: "framegraph-queues",
+        features: &[],
+        folder: Some("framegraph/queues"),
+        before: ["-", "-", "-", "-", "-"],
+    },
+    Row {
         name: "`renderer`: the executor",
         package: "framegraph-wgpu",
         features: &[],

@@ -1,0 +1,69 @@
+//! The plan on a device with several queues.
+
+use crate::args::{Format, QueuesArgs};
+use framegraph::Plan;
+use framegraph_queues::{QueueLayout, estimate_us, schedule, share_memory, svg, text};
+
+/// Bytes a microsecond where no costs are given: 100 GB/s, as mobile devices and small cards have.
+const BYTES_PER_US: f64 = 100_000.0;
+
+/// The schedule as text or as a picture. `plan` shares no memory; `heap` is the same frame for one queue.
+///
+/// # Errors
+/// One line that names the file of costs and what is wrong with it.
+pub fn shown(args: &QueuesArgs, format: Format, plan: &Plan, heap: &Plan) -> Result<String, String> {
+    let costs_us = match &args.costs {
+        Some(file) => costs(&file.display().to_string(), &crate::run::read(file)?, plan)?,
+        None => estimate_us(plan, BYTES_PER_US),
+    };
+    let found = schedule(plan, &args.layout, &costs_us).map_err(|error| error.to_string())?;
+    if format == Format::Svg {
+        return Ok(svg(plan, &found));
+    }
+    let memory = share_memory(plan, &found, plan.caps().texture_alignment_bytes.max(1));
+    let alone = heap.memory();
+    let by = if args.costs.is_some() { "as given" } else { "by bytes, at 100 GB/s" };
+    // A device that cannot place resources shares textures of one shape alone.
+    let pool = if heap.slots().is_empty() { "" } else { " in a pool" };
+    Ok(format!(
+        "costs: {by}\n{}\nmemory: {} B by this schedule, {} B on one queue{pool}, {} B unaliased\n",
+        text(plan, &found),
+        memory.bytes(),
+        alone.bytes,
+        memory.unaliased_bytes
+    ))
+}
+
+/// Of each step what its passes cost, from lines `PASS,MICROSECONDS`.
+fn costs(file: &str, text: &str, plan: &Plan) -> Result<Vec<f64>, String> {
+    let mut of_passes = vec![None; plan.graph().passes().len()];
+    for (number, line) in (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'))
+    {
+        let wrong = |what: String| format!("{file}:{number}: {what}; a line is `PASS,MICROSECONDS`");
+        let (pass, us) = line.rsplit_once(',').ok_or_else(|| wrong("there is no comma".into()))?;
+        let us: f64 = us.trim().parse().map_err(|_| wrong(format!("`{}` is no number", us.trim())))?;
+        if !(0.0..1e12).contains(&us) {
+            return Err(wrong(format!("{us} is no time")));
+        }
+        let pass = pass.trim();
+        let known = plan.graph().find_pass(pass).ok_or_else(|| wrong(format!("the frame has no pass `{pass}`")))?;
+        of_passes[known.index()] = Some(us);
+    }
+    let of_step = |step| {
+        let own = plan.passes_of(step).iter().map(|member| {
+            let name = plan.graph().pass_name(member.pass);
+            of_passes[member.pass.index()]
+                .ok_or_else(|| format!("{file}: there is no cost of pass `{name}`, which runs"))
+        });
+        own.sum::<Result<f64, String>>()
+    };
+    plan.step_ids().map(of_step).collect()
+}
+
+/// The layout of a name.
+///
+/// # Errors
+/// One line with the names there are.
+pub fn layout(name: &str) -> Result<QueueLayout, String> {
+    QueueLayout::named(name).ok_or_else(|| format!("--queues: `{name}` is not {}", QueueLayout::NAMES.join(", ")))
+}

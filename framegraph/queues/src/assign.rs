@@ -1,0 +1,82 @@
+//! Which step runs on which queue.
+
+use crate::layout::{QueueId, QueueLayout};
+use crate::simulate::simulate;
+use framegraph::{PassKind, Plan, StepId};
+
+/// Rounds of moves; each shortens the frame, and few are ever needed.
+const ROUNDS: usize = 8;
+
+/// Gives each step a queue, so that the frame is short: from all steps on the first, and from all that may leave on the last
+/// that runs them, steps and chains of them go to another queue wherever the frame gets shorter by it. The shorter frame is
+/// taken; of equal ones that with fewer steps elsewhere.
+pub fn assign(
+    plan: &Plan,
+    layout: &QueueLayout,
+    dependencies: &[Vec<u32>],
+    costs_us: &[f64],
+    may_leave: &dyn Fn(StepId) -> bool,
+) -> Vec<QueueId> {
+    let kind = |step: usize| plan.steps()[step].kind;
+    let movable = |step: usize| kind(step) != PassKind::Raster && may_leave(StepId::at(step));
+    let mut groups = chains(dependencies, &movable);
+    groups.extend((0..dependencies.len()).filter(|step| movable(*step)).map(|step| vec![step]));
+    let total_us = |lanes: &[QueueId]| simulate(layout, lanes, dependencies, costs_us).total_us;
+    let runs = |queue: QueueId, step: usize| layout.queues[queue.index()].runs(kind(step));
+    let last = |step: usize| layout.ids().rev().find(|queue| runs(*queue, step)).filter(|_| movable(step));
+    let starts = [
+        vec![QueueId::MAIN; dependencies.len()],
+        (0..dependencies.len()).map(|step| last(step).unwrap_or(QueueId::MAIN)).collect(),
+    ];
+    let found = starts.map(|mut lanes| {
+        let mut best_us = total_us(&lanes);
+        for _ in 0..ROUNDS {
+            let before_us = best_us;
+            for group in &groups {
+                for queue in layout.ids() {
+                    let there = group.iter().all(|step| lanes[*step] == queue);
+                    if there || !group.iter().all(|step| runs(queue, *step)) {
+                        continue;
+                    }
+                    let old: Vec<QueueId> = group.iter().map(|step| lanes[*step]).collect();
+                    group.iter().for_each(|step| lanes[*step] = queue);
+                    let found_us = total_us(&lanes);
+                    // What wins nothing stays on the first queue.
+                    if found_us < best_us || found_us == best_us && queue == QueueId::MAIN {
+                        best_us = found_us;
+                    } else {
+                        group.iter().zip(old).for_each(|(step, old)| lanes[*step] = old);
+                    }
+                }
+            }
+            if best_us >= before_us {
+                break;
+            }
+        }
+        (best_us, lanes)
+    });
+    let [(alone_us, alone), (apart_us, apart)] = found;
+    if apart_us < alone_us { apart } else { alone }
+}
+
+/// Movable steps that hang together by their dependencies: apart, each would take a semaphore to and fro.
+fn chains(dependencies: &[Vec<u32>], movable: &dyn Fn(usize) -> bool) -> Vec<Vec<usize>> {
+    let mut of: Vec<Option<usize>> = vec![None; dependencies.len()];
+    let mut chains: Vec<Vec<usize>> = Vec::new();
+    for step in (0..dependencies.len()).filter(|step| movable(*step)) {
+        let mut own = chains.len();
+        chains.push(vec![step]);
+        for before in dependencies[step].iter().filter_map(|before| of[*before as usize]).collect::<Vec<_>>() {
+            if before != own && !chains[before].is_empty() {
+                let moved = std::mem::take(&mut chains[own]);
+                moved.iter().for_each(|step| of[*step] = Some(before));
+                chains[before].extend(moved);
+                own = before;
+            }
+        }
+        of[step] = Some(own);
+    }
+    chains.retain(|chain| chain.len() > 1);
+    chains.iter_mut().for_each(|chain| chain.sort_unstable());
+    chains
+}

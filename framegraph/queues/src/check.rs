@@ -1,0 +1,236 @@
+//! A judge of schedules, which shares nothing with what makes them: what is ordered is found by walking, pair by pair.
+
+use crate::layout::QueueId;
+use crate::memory::SharedMemory;
+use crate::schedule::Schedule;
+use framegraph::{Access, Placement, Plan, ResourceId, StepId};
+use std::fmt;
+
+/// What is wrong with a schedule.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Violation {
+    /// It is not of this plan: another number of steps, or a queue that the layout has not.
+    OtherPlan,
+    /// A queue does not run steps of this kind.
+    WrongQueue {
+        /// The step.
+        step: StepId,
+    },
+    /// Two steps touch the same contents, one of them writes, and nothing orders them.
+    Unordered {
+        /// The earlier step of the plan.
+        first: StepId,
+        /// The later one.
+        second: StepId,
+        /// What they touch.
+        resource: ResourceId,
+    },
+    /// A step gets memory that another resource had, and nothing has it wait for a step that touched that one.
+    Memory {
+        /// The step that touched what was there.
+        first: StepId,
+        /// The step that gets the memory.
+        second: StepId,
+        /// What it puts there.
+        resource: ResourceId,
+    },
+    /// A step needs contents that another queue owns.
+    NotOwned {
+        /// The step.
+        step: StepId,
+        /// What it needs.
+        resource: ResourceId,
+    },
+    /// Nobody waits for a queue at the end of the frame.
+    NotJoined {
+        /// The queue.
+        queue: QueueId,
+    },
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OtherPlan => write!(f, "the schedule is of another plan"),
+            Self::WrongQueue { step } => write!(f, "step {} is on a queue that does not run its kind", step.index()),
+            Self::Unordered { first, second, resource } => {
+                write!(
+                    f,
+                    "steps {} and {} touch resource {} in no order",
+                    first.index(),
+                    second.index(),
+                    resource.index()
+                )
+            }
+            Self::Memory { first, second, resource } => write!(
+                f,
+                "step {} gets the memory of resource {} while step {} may still use it",
+                second.index(),
+                resource.index(),
+                first.index()
+            ),
+            Self::NotOwned { step, resource } => {
+                write!(f, "step {} needs resource {}, which another queue owns", step.index(), resource.index())
+            }
+            Self::NotJoined { queue } => write!(f, "the frame ends before queue {} is done", queue.index()),
+        }
+    }
+}
+
+/// Everything that is wrong with a schedule of `plan`; nothing of a sound one.
+#[must_use]
+pub fn check(plan: &Plan, schedule: &Schedule) -> Vec<Violation> {
+    let Schedule { layout, lanes, .. } = schedule;
+    if lanes.len() != plan.steps().len() || lanes.iter().any(|lane| lane.index() >= layout.queues.len()) {
+        return vec![Violation::OtherPlan];
+    }
+    let mut found = Vec::new();
+    for (step, lane) in plan.step_ids().zip(lanes) {
+        if !layout.queues[lane.index()].runs(plan.steps()[step.index()].kind) {
+            found.push(Violation::WrongQueue { step });
+        }
+    }
+    let reached = reached(schedule);
+    let ordered = |first: StepId, second: StepId| reached[first.index()][second.index()];
+    for second in plan.step_ids() {
+        for first in plan.step_ids().take(second.index()).filter(|first| !ordered(*first, second)) {
+            found.extend(touched_by_both(plan, first, second).map(|resource| Violation::Unordered {
+                first,
+                second,
+                resource,
+            }));
+            found.extend(memory_of_both(plan, first, second).map(|resource| Violation::Memory {
+                first,
+                second,
+                resource,
+            }));
+        }
+    }
+    found.extend(not_owned(plan, schedule));
+    for queue in layout.ids().skip(1) {
+        let last = lanes.iter().rposition(|lane| *lane == queue).map(StepId::at);
+        if last.is_some_and(|last| !schedule.joins.contains(&last)) {
+            found.push(Violation::NotJoined { queue });
+        }
+    }
+    found
+}
+
+/// Everything that is wrong with memory shared on several queues: resources that lie in one another while nothing orders all steps
+/// that touch the one before all that touch the other.
+#[must_use]
+pub fn check_memory(plan: &Plan, schedule: &Schedule, memory: &SharedMemory) -> Vec<Violation> {
+    let reached = reached(schedule);
+    let steps_of = |resource: ResourceId| -> Vec<StepId> {
+        plan.step_ids().filter(|step| accesses(plan, *step).any(|access| access.resource == resource)).collect()
+    };
+    let lies = |resource: ResourceId| {
+        let bytes = plan.resources()[resource.index()].bytes.max(1);
+        memory.offset(resource).map(|offset| offset..offset + bytes)
+    };
+    let is_texture = |resource: ResourceId| plan.graph().resources()[resource.index()].desc.texture().is_some();
+    let mut found = Vec::new();
+    for second in plan.graph().resource_ids() {
+        for first in plan.graph().resource_ids().take(second.index()) {
+            let (Some(a), Some(b)) = (lies(first), lies(second)) else { continue };
+            if is_texture(first) != is_texture(second) || a.end <= b.start || b.end <= a.start {
+                continue;
+            }
+            let [ours, theirs] = [steps_of(first), steps_of(second)];
+            let apart = |from: &[StepId], to: &[StepId]| {
+                from.iter().find_map(|a| to.iter().find(|b| !reached[a.index()][b.index()]).map(|b| (*a, *b)))
+            };
+            if let (Some((a, b)), Some(_)) = (apart(&ours, &theirs), apart(&theirs, &ours)) {
+                found.push(Violation::Memory { first: a, second: b, resource: second });
+            }
+        }
+    }
+    found
+}
+
+/// By step, whether each other begins only when it is over: along queues and semaphores, step by step.
+fn reached(schedule: &Schedule) -> Vec<Vec<bool>> {
+    let count = schedule.lanes.len();
+    let mut next: Vec<Vec<usize>> = vec![Vec::new(); count];
+    for (step, lane) in schedule.lanes.iter().enumerate() {
+        next[step].extend((step + 1..count).find(|other| schedule.lanes[*other] == *lane));
+    }
+    schedule.waits.iter().for_each(|wait| next[wait.after.index()].push(wait.before.index()));
+    let from = |start: usize| {
+        let (mut seen, mut open) = (vec![false; count], vec![start]);
+        while let Some(step) = open.pop() {
+            for other in &next[step] {
+                if !std::mem::replace(&mut seen[*other], true) {
+                    open.push(*other);
+                }
+            }
+        }
+        seen
+    };
+    (0..count).map(from).collect()
+}
+
+fn accesses(plan: &Plan, step: StepId) -> impl Iterator<Item = &Access> {
+    plan.passes_of(step).iter().flat_map(|member| plan.graph().accesses_of(member.pass))
+}
+
+fn touched_by_both(plan: &Plan, first: StepId, second: StepId) -> impl Iterator<Item = ResourceId> {
+    let conflict = move |a: &&Access| {
+        accesses(plan, second).any(|b| {
+            let same = a.resource == b.resource && plan.graph().overlap(a.resource, &a.range, &b.range);
+            same && (a.mode.writes() || b.mode.writes())
+        })
+    };
+    accesses(plan, first).filter(conflict).map(|access| access.resource)
+}
+
+fn memory_of_both(plan: &Plan, first: StepId, second: StepId) -> impl Iterator<Item = ResourceId> {
+    let kind = |r: ResourceId| plan.graph().resources()[r.index()].desc.texture().is_some();
+    let bytes = |r: ResourceId| match plan.resources()[r.index()].placement {
+        Placement::Heap { offset } => Some(offset..offset.saturating_add(plan.resources()[r.index()].bytes.max(1))),
+        _ => None,
+    };
+    let shares = move |a: ResourceId, b: ResourceId| {
+        let of = |r: ResourceId| plan.resources()[r.index()].placement;
+        match (of(a), of(b)) {
+            (Placement::Slot(a), Placement::Slot(b)) => a == b,
+            (Placement::Heap { .. }, Placement::Heap { .. }) if kind(a) == kind(b) => {
+                bytes(a).zip(bytes(b)).is_some_and(|(a, b)| a.start < b.end && b.start < a.end)
+            }
+            _ => false,
+        }
+    };
+    let taken =
+        move |b: &&Access| accesses(plan, first).any(|a| a.resource != b.resource && shares(a.resource, b.resource));
+    accesses(plan, second).filter(taken).map(|access| access.resource)
+}
+
+/// Follows each resource that one queue owns at a time from step to step.
+fn not_owned(plan: &Plan, schedule: &Schedule) -> Vec<Violation> {
+    let mut found = Vec::new();
+    for resource in plan.graph().resource_ids().filter(|r| !schedule.concurrent.contains(r)) {
+        let placement = plan.resources()[resource.index()].placement;
+        let lives_on = matches!(placement, Placement::Own | Placement::External);
+        if !lives_on && !matches!(placement, Placement::Slot(_) | Placement::Heap { .. }) {
+            continue;
+        }
+        let transfers = || schedule.transfers.iter().filter(|transfer| transfer.resource == resource);
+        let mut owner = lives_on.then_some(QueueId::MAIN);
+        for step in plan.step_ids() {
+            let lane = schedule.lanes[step.index()];
+            for access in accesses(plan, step).filter(|access| access.resource == resource) {
+                let keeps = access.mode.needs_contents() || access.range != framegraph::Range::ALL;
+                let moved = transfers().any(|t| t.to == (lane, Some(step)) && Some(t.from.0) == owner);
+                if keeps && owner.is_some_and(|owner| owner != lane) && !moved {
+                    found.push(Violation::NotOwned { step, resource });
+                }
+                owner = if access.mode.writes() || owner.is_some() { Some(lane) } else { owner };
+            }
+        }
+        let back = transfers().any(|transfer| transfer.to == (QueueId::MAIN, None));
+        if lives_on && owner != Some(QueueId::MAIN) && !back {
+            found.push(Violation::NotOwned { step: StepId::NONE, resource });
+        }
+    }
+    found
+}

@@ -1,0 +1,75 @@
+//! Memory that resources share on several queues: one gets what another had only if every step that touched that one is over
+//! before any that touches it begins.
+
+use crate::hazards::accesses_by_resource;
+use crate::schedule::Schedule;
+use framegraph::{Placement, Plan, ResourceId};
+
+/// Offsets of transient resources in two heaps, one of textures and one of buffers.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SharedMemory {
+    /// By resource: where it lies in the heap of its kind; none for what takes no transient memory.
+    pub offsets: Vec<Option<u64>>,
+    /// Bytes of the heap of textures, and of that of buffers.
+    pub heap_bytes: [u64; 2],
+    /// What they would take if nothing were shared.
+    pub unaliased_bytes: u64,
+}
+
+/// Places the transient resources of a plan that was compiled without aliasing ([`framegraph::Alias::Off`]), so that its schedule stays
+/// free of waits for memory. Offsets are multiples of `alignment`. The largest is placed first, each as low as it can lie.
+///
+/// # Panics
+/// When `schedule` is not of this plan, or `alignment` is 0.
+#[must_use]
+pub fn share_memory(plan: &Plan, schedule: &Schedule, alignment: u64) -> SharedMemory {
+    let touched = accesses_by_resource(plan);
+    let is_texture = |resource: usize| plan.graph().resources()[resource].desc.texture().is_some();
+    let is_transient =
+        |resource: &usize| matches!(plan.resources()[*resource].placement, Placement::Slot(_) | Placement::Heap { .. });
+    let bytes = |resource: usize| plan.resources()[resource].bytes.next_multiple_of(alignment);
+    let mut all: Vec<usize> = (0..touched.len()).filter(is_transient).collect();
+    all.sort_by_key(|resource| (std::cmp::Reverse(bytes(*resource)), *resource));
+    let over = |a: usize, b: usize| {
+        touched[a]
+            .iter()
+            .all(|(first, _)| touched[b].iter().all(|(second, _)| schedule.order.is_before(*first, *second)))
+    };
+    let mut shared = SharedMemory { offsets: vec![None; touched.len()], ..SharedMemory::default() };
+    for resource in &all {
+        let mut taken: Vec<(u64, u64)> = all
+            .iter()
+            .filter(|other| is_texture(**other) == is_texture(*resource))
+            .filter_map(|other| Some((*other, shared.offsets[*other]?)))
+            .filter(|(other, _)| !over(*other, *resource) && !over(*resource, *other))
+            .map(|(other, offset)| (offset, offset + bytes(other)))
+            .collect();
+        taken.sort_unstable();
+        let mut offset = 0;
+        for (begin, end) in taken {
+            if begin >= offset + bytes(*resource) {
+                break;
+            }
+            offset = offset.max(end);
+        }
+        shared.offsets[*resource] = Some(offset);
+        let heap = &mut shared.heap_bytes[usize::from(!is_texture(*resource))];
+        *heap = (*heap).max(offset + bytes(*resource));
+        shared.unaliased_bytes += bytes(*resource);
+    }
+    shared
+}
+
+impl SharedMemory {
+    /// Bytes of both heaps.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.heap_bytes.iter().sum()
+    }
+
+    /// Where a resource lies.
+    #[must_use]
+    pub fn offset(&self, resource: ResourceId) -> Option<u64> {
+        self.offsets.get(resource.index()).copied().flatten()
+    }
+}
