@@ -1,5 +1,6 @@
 //! A long run of the standard frame under everything that changes while an application runs: the size of its window, the
-//! effects that are on, the scene that is shown. What a run leaves behind is compared with a fresh one.
+//! effects that are on, the scene that is shown, the texts of its shaders, the device. What a run leaves behind is compared with a
+//! fresh one.
 
 use framegraph::{Extent, Format, Target, TextureDesc};
 use framegraph_passes::ibl::cache::Cache;
@@ -12,7 +13,7 @@ use framegraph_passes::{
     ViewId, World, standard,
 };
 use framegraph_scene::{Environment, Scene, progress};
-use framegraph_wgpu::{FrameLoop, Gpu, PoolCounts, read_texture};
+use framegraph_wgpu::{FrameLoop, Gpu, OpenError, PoolCounts, Workers, read_texture};
 use glam::{DVec3, Vec3};
 use std::error::Error;
 
@@ -41,6 +42,21 @@ pub struct Held {
     pub textures: PoolCounts,
     /// Resident memory of the program in bytes; zero where the system does not say.
     pub resident_bytes: u64,
+    /// Shaders that were replaced until then.
+    pub reloaded: usize,
+    /// Devices that were lost until then, and made anew.
+    pub lost: usize,
+}
+
+/// What happens on the way beside changes of the frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Trouble {
+    /// All shaders are replaced by another text of the same meaning each time so many frames were drawn.
+    pub reload_every: usize,
+    /// The device is lost each time so many frames were drawn, and everything made anew.
+    pub lose_every: usize,
+    /// Opens a device in its place.
+    pub open: fn() -> Result<Gpu, OpenError>,
 }
 
 struct Stage {
@@ -56,6 +72,9 @@ pub struct Soak {
     stages: Vec<Stage>,
     state: u64,
     largest_px: u32,
+    trouble: Option<Trouble>,
+    reloaded: usize,
+    lost: usize,
 }
 
 /// Effects in different combinations; all of them leave shaders as simple as software drivers want them.
@@ -77,9 +96,14 @@ impl Soak {
     /// # Errors
     /// When a scene cannot be set up.
     pub fn new(gpu: &Gpu, largest_px: u32) -> Result<Self, Box<dyn Error>> {
-        let stages = ["spheres", "lamps:3"].map(|name| Stage::new(gpu, name));
-        let stages = stages.into_iter().collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { gpu: gpu.clone(), frames: FrameLoop::new(gpu), stages, state: 1, largest_px })
+        let (stages, frames) = (stages(gpu)?, frames(gpu)?);
+        Ok(Self { gpu: gpu.clone(), frames, stages, state: 1, largest_px, trouble: None, reloaded: 0, lost: 0 })
+    }
+
+    /// The same run, with that on the way.
+    #[must_use]
+    pub fn with(self, trouble: Trouble) -> Self {
+        Self { trouble: Some(trouble), ..self }
     }
 
     fn random(&mut self, below: u32) -> u32 {
@@ -121,13 +145,40 @@ impl Soak {
             }
             left -= 1;
             self.draw(state).map_err(|error| format!("frame {number}, {state:?}: {error}"))?;
+            if let Some(trouble) = self.trouble {
+                self.suffer(trouble, number + 1, state).map_err(|error| format!("behind frame {number}: {error}"))?;
+            }
             if (number + 1) % every == 0 {
                 self.gpu.wait()?;
                 let textures = self.frames.executor().texture_pool();
-                told(Held { frames: number + 1, textures, resident_bytes: resident_bytes() });
+                let (reloaded, lost) = (self.reloaded, self.lost);
+                told(Held { frames: number + 1, textures, resident_bytes: resident_bytes(), reloaded, lost });
             }
         }
         self.draw(LAST)
+    }
+
+    fn suffer(&mut self, trouble: Trouble, drawn: usize, state: State) -> Result<(), Box<dyn Error>> {
+        if drawn.is_multiple_of(trouble.reload_every.max(1)) {
+            for program in self.stages[state.scene].world.programs.made() {
+                let shader = program.shader();
+                let text = format!("{}\n// Replaced behind frame {drawn}.", shader.text());
+                self.frames.executor_mut().reload_shader(&shader, &text)?;
+                self.reloaded += 1;
+            }
+        }
+        if drawn.is_multiple_of(trouble.lose_every.max(1)) {
+            self.gpu.device.destroy();
+            // It is told of once nothing is in flight; until then frames may still be taken.
+            let told = (0..50).find_map(|_| self.draw(state).err()).ok_or("a lost device was not told of")?;
+            if !told.to_string().contains("the device was lost") {
+                return Err(format!("of a lost device this was told: {told}").into());
+            }
+            self.gpu = (trouble.open)()?;
+            (self.stages, self.frames) = (stages(&self.gpu)?, frames(&self.gpu)?);
+            self.lost += 1;
+        }
+        Ok(())
     }
 
     /// What a fresh run draws in the last state.
@@ -157,6 +208,18 @@ impl Soak {
         let picture = ran.and_then(|ran| self.frames.executor().texture(self.frames.plan(), ran.io));
         Ok(read_texture(&self.gpu, picture.ok_or("the frame left no picture")?)?.rgba8())
     }
+}
+
+/// The scenes, on a device.
+fn stages(gpu: &Gpu) -> Result<Vec<Stage>, Box<dyn Error>> {
+    ["spheres", "lamps:3"].into_iter().map(|name| Stage::new(gpu, name)).collect()
+}
+
+/// Frames that are recorded on all cores where that is faster.
+fn frames(gpu: &Gpu) -> Result<FrameLoop<World>, Box<dyn Error>> {
+    let mut frames = FrameLoop::new(gpu);
+    frames.executor_mut().record_on(Some(Workers::new()?));
+    Ok(frames)
 }
 
 impl Stage {

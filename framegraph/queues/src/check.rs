@@ -194,7 +194,7 @@ fn memory_of_both(plan: &Plan, first: StepId, second: StepId) -> impl Iterator<I
         let of = |r: ResourceId| plan.resources()[r.index()].placement;
         match (of(a), of(b)) {
             (Placement::Slot(a), Placement::Slot(b)) => a == b,
-            (Placement::Heap { .. }, Placement::Heap { .. }) if kind(a) == kind(b) => {
+            (Placement::Heap { .. }, Placement::Heap { .. }) if kind(a) == kind(b) || !plan.caps().separate_heaps => {
                 bytes(a).zip(bytes(b)).is_some_and(|(a, b)| a.start < b.end && b.start < a.end)
             }
             _ => false,

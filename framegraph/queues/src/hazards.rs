@@ -51,14 +51,14 @@ fn share_memory(plan: &Plan, touched: &[Vec<(u32, Access)>], found: &mut [Vec<u3
             Placement::Heap { offset } => [offset, offset.saturating_add(row.bytes.max(1))],
             _ => continue,
         };
-        // Textures and buffers lie in heaps of their own, and slots of one are no slots of the other.
         placed.push((resource, begin, end));
     }
     placed.sort_unstable_by_key(|(resource, ..)| plan.resources()[*resource].first);
     let is_buffer = |resource: usize| plan.graph().resources()[resource].desc.texture().is_none();
     for (at, (later, begin, end)) in placed.iter().enumerate() {
         for (earlier, other_begin, other_end) in &placed[..at] {
-            let apart = end <= other_begin || other_end <= begin || is_buffer(*later) != is_buffer(*earlier);
+            let other_heap = plan.caps().separate_heaps && is_buffer(*later) != is_buffer(*earlier);
+            let apart = end <= other_begin || other_end <= begin || other_heap;
             if apart {
                 continue;
             }

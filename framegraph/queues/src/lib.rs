@@ -9,6 +9,8 @@
 //! [`framegraph::Alias::Off`], and [`share_memory()`] by the schedule. [`check()`] and [`check_memory()`] judge both without the analysis that
 //! made them.
 //!
+//! [`stream()`] is all of it, and the plan, as commands in order.
+//!
 //! ```
 //! use framegraph::{Caps, Extent, Format, Graph, Intent, Options, Plan, Scratch, TextureDesc, compile};
 //! use framegraph_queues::{QueueLayout, schedule};
@@ -44,6 +46,7 @@ mod layout;
 mod memory;
 mod schedule;
 mod simulate;
+mod stream;
 mod text;
 mod transfers;
 
@@ -52,5 +55,6 @@ pub use estimate::estimate_us;
 pub use layout::{Queue, QueueId, QueueLayout};
 pub use memory::{SharedMemory, share_memory};
 pub use schedule::{QueueError, Schedule, Wait, schedule, schedule_with};
+pub use stream::{Command, Memory, stream};
 pub use text::{svg, text};
 pub use transfers::Transfer;

@@ -23,14 +23,15 @@ fn costs(plan: &Plan, seed: u64) -> Vec<f64> {
         .collect()
 }
 
-/// Plans of random graphs under all options in turn.
+/// Plans of random graphs under all options, for three kinds of devices in turn: memory is shared in slots and in heaps.
 fn plans(count: u64) -> impl Iterator<Item = (u64, Plan)> {
     let mut scratch = Scratch::new();
     (0..count).filter_map(move |seed| {
         let graph = generate::graph(&mut Entropy::seeded(seed), &Profile::default());
         let mut plan = Plan::new();
         let options = generate::options_of(seed as u32 % 64);
-        compile(&graph, &Caps::wgpu(), &options, &mut scratch, &mut plan).ok()?;
+        let caps = [Caps::wgpu(), Caps::desktop(), Caps { separate_heaps: true, ..Caps::tiler() }];
+        compile(&graph, &caps[seed as usize % 3], &options, &mut scratch, &mut plan).ok()?;
         Some((seed, plan))
     })
 }

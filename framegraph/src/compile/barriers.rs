@@ -161,7 +161,8 @@ fn is_silent(graph: &Tables, resources: &[Planned], barrier: &Barrier) -> bool {
     barrier.after.is_none() && buffer && resources[resource].placement != Placement::External
 }
 
-/// The uses that one step makes of each part, joined: attachments win over reads of the same part.
+/// The uses that one step makes of each part, joined: attachments win over reads of the same part, and of reads those as
+/// storage, whose layout serves the others too (`VK_IMAGE_LAYOUT_GENERAL`).
 fn gather(parts: &Parts, members: Members<'_>, attachments: &[Attachment], now: &mut Vec<Use>) {
     now.clear();
     let format = |a: &Attachment| members.graph.resources[a.resource.index()].desc.texture().map(|t| t.format);
@@ -190,7 +191,7 @@ fn gather(parts: &Parts, members: Members<'_>, attachments: &[Attachment], now: 
             }
         }
     }
-    now.sort_unstable_by_key(|u| (u.part, !u.writes, u.state));
+    now.sort_unstable_by_key(|u| (u.part, !u.writes, u.state != State::Storage, u.state));
     now.dedup_by(|next, kept| {
         let same = next.part == kept.part;
         if same {

@@ -71,6 +71,23 @@ fn two_reads_of_one_kind_need_one_barrier_and_the_next_write_waits_for_both() {
     assert_eq!(found, [(1, 0), (3, 2)]);
 }
 
+/// Sampled and read as storage in one step: the layout is that in which a storage image may be, which can be sampled too.
+#[test]
+fn what_is_sampled_and_storage_at_once_is_in_the_layout_of_storage() {
+    let mut g = Graph::new();
+    let [read, out] = ["read", "out"].map(|name| g.texture(name, hdr()));
+    let read = g.add_fn("draw", |p| p.color(read, BLACK)).unwrap();
+    let both = g.add_fn("both", |p| {
+        p.sampled(read)?;
+        p.storage_read(read)?;
+        p.color(out, Intent::Overwrite)
+    });
+    g.export(both.unwrap()).unwrap();
+    let p = plan(&g, &explicit());
+    let states: Vec<_> = of(&p, "read").iter().map(|b| (b.from, b.to)).collect();
+    assert_eq!(states, [(State::Undefined, State::ColorAttachment), (State::ColorAttachment, State::Storage)]);
+}
+
 #[test]
 fn levels_change_apart() {
     let mut g = Graph::new();

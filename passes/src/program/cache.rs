@@ -52,6 +52,15 @@ impl Programs {
         bucket.push(Known { features: desc.features.clone(), addresses, program: Arc::clone(&program) });
         Ok(program)
     }
+
+    /// All that were made so far, ordered by the hashes of their shaders: for who reloads them
+    /// ([`Executor::reload_shader`](framegraph_wgpu::Executor::reload_shader)).
+    pub fn made(&self) -> Vec<Arc<Program>> {
+        let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
+        let mut made: Vec<_> = known.values().flatten().map(|known| Arc::clone(&known.program)).collect();
+        made.sort_by_key(|program| program.shader().hash());
+        made
+    }
 }
 
 /// Passes that need no more than programs are executed with them alone.
@@ -85,6 +94,8 @@ mod tests {
         let [red, blue] = [&IN_RED, &IN_BLUE].map(|shader| programs.get(&ProgramDesc::new(shader, &NOTHING)));
         let (red, blue) = (red?, blue?);
         assert!(red.text.contains("1.0, 0.0, 0.0") && blue.text.contains("0.0, 0.0, 1.0"));
+        let made = programs.made();
+        assert!(made.len() == 2 && [&red, &blue].iter().all(|own| made.iter().any(|other| Arc::ptr_eq(own, other))));
         assert!(Arc::ptr_eq(&red, &programs.get(&ProgramDesc::new(&IN_RED, &NOTHING))?));
         Ok(())
     }

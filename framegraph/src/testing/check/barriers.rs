@@ -160,7 +160,9 @@ fn needs(case: &Case<'_>, step: StepId) -> Vec<Need> {
         let writes = touch.access.mode.writes();
         for part in case.parts.covered(touch.resource, touch.range) {
             let need = needs.entry(part).or_insert(Need { part, resource: touch.resource, state, stages, writes });
-            if (!writes, state) < (!need.writes, need.state) {
+            // A storage texture has the layout in which it can be sampled as well.
+            let rank = |writes: bool, state: State| (!writes, state != State::Storage, state);
+            if rank(writes, state) < rank(need.writes, need.state) {
                 need.state = state;
             }
             need.stages = need.stages.union(stages);

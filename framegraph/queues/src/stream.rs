@@ -1,0 +1,179 @@
+//! A plan as a stream of commands, in the terms of Vulkan: what a back end that knows nothing of graphs does, in order.
+
+use crate::layout::QueueId;
+use crate::schedule::{Schedule, Wait};
+use framegraph::{Join, PassId, Placement, Plan, ResourceId, SlotId, StepId};
+
+/// Where the memory of a resource comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Memory {
+    /// In the heap of its kind ([`Command::Heap`]), at this offset in bytes.
+    Heap {
+        /// Bytes from the begin of the heap.
+        offset: u64,
+    },
+    /// It is this texture or buffer of the pool ([`framegraph::Plan::slots`]), which other resources are at other times.
+    Slot(SlotId),
+    /// Memory of its own that outlives the frame.
+    Own,
+    /// In the tile alone: lazily allocated, or none.
+    Tile,
+    /// It is there before the frame: imported.
+    External,
+}
+
+/// One thing to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Command {
+    /// Allocate a heap.
+    Heap {
+        /// It is that of buffers; of a plan with one heap for all, both are that of textures.
+        of_buffers: bool,
+        /// Its size.
+        bytes: u64,
+    },
+    /// Make a texture or buffer, with the usage and the shape that the plan says ([`framegraph::Plan::resources`]).
+    Create {
+        /// Which.
+        resource: ResourceId,
+        /// From what.
+        memory: Memory,
+    },
+    /// The queue waits until a semaphore is signalled.
+    Wait {
+        /// The queue that waits.
+        queue: QueueId,
+        /// Counted from 0.
+        semaphore: u32,
+    },
+    /// The queue gets a resource that another released: the second half of a transfer of ownership.
+    Acquire {
+        /// The queue that gets it.
+        queue: QueueId,
+        /// Index into [`Schedule::transfers`].
+        transfer: u32,
+    },
+    /// A barrier: layout transition, hand-over of memory, or wait.
+    Barrier {
+        /// Where it is recorded.
+        queue: QueueId,
+        /// Index into [`framegraph::Plan::barriers`].
+        barrier: u32,
+        /// What it waits for was on another queue: a semaphore has waited for it, and it names no stages of its own before.
+        behind_semaphore: bool,
+    },
+    /// Begin a render pass with the step's attachments, or compute or copy work.
+    Begin {
+        /// Where it runs.
+        queue: QueueId,
+        /// The step.
+        step: StepId,
+    },
+    /// Record a pass.
+    Pass {
+        /// Where it runs.
+        queue: QueueId,
+        /// The pass.
+        pass: PassId,
+        /// How it came into its step; what is [inlined](Join::Inlined) is part of the shader before it and not here.
+        join: Join,
+    },
+    /// End what was begun.
+    End {
+        /// Where it runs.
+        queue: QueueId,
+        /// The step.
+        step: StepId,
+    },
+    /// The first half of a transfer of ownership.
+    Release {
+        /// The queue that gives it.
+        queue: QueueId,
+        /// Index into [`Schedule::transfers`].
+        transfer: u32,
+    },
+    /// Signal a semaphore behind everything that the queue was given.
+    Signal {
+        /// The queue that signals.
+        queue: QueueId,
+        /// Counted from 0.
+        semaphore: u32,
+    },
+}
+
+/// The commands of a frame: on one queue, or as `schedule` has it. Those of one queue are to be recorded in their order; semaphores
+/// are all that orders those of different queues. Barriers are there if the plan was made for a device that asks for them
+/// ([`framegraph::Caps::explicit_barriers`]).
+///
+/// # Panics
+/// When `schedule` is of another plan.
+#[must_use]
+pub fn stream(plan: &Plan, schedule: Option<&Schedule>) -> Vec<Command> {
+    let mut commands = memory(plan);
+    let queue_of = |step: StepId| schedule.map_or(QueueId::MAIN, |schedule| schedule.lanes[step.index()]);
+    // One semaphore a wait, and one for the end of each other queue.
+    let waits: &[Wait] = schedule.map_or(&[], |schedule| &schedule.waits);
+    let joins: &[StepId] = schedule.map_or(&[], |schedule| &schedule.joins);
+    let transfers = schedule.map_or(&[][..], |schedule| &schedule.transfers);
+    let numbered = || (0_u32..).zip(transfers);
+    commands.extend(
+        numbered()
+            .filter(|(_, t)| t.from.1.is_none())
+            .map(|(transfer, t)| Command::Release { queue: t.from.0, transfer }),
+    );
+    let mut barriers = (0_u32..).zip(plan.barriers()).peekable();
+    for step in plan.step_ids() {
+        let queue = queue_of(step);
+        let waited = (0_u32..).zip(waits).filter(|(_, wait)| wait.before == step);
+        commands.extend(waited.map(|(semaphore, _)| Command::Wait { queue, semaphore }));
+        let acquired = numbered().filter(|(_, t)| t.to.1 == Some(step));
+        commands.extend(acquired.map(|(transfer, _)| Command::Acquire { queue, transfer }));
+        while let Some((barrier, row)) = barriers.next_if(|(_, row)| row.before == step) {
+            let behind_semaphore = !row.after.is_none() && queue_of(row.after) != queue;
+            commands.push(Command::Barrier { queue, barrier, behind_semaphore });
+        }
+        commands.push(Command::Begin { queue, step });
+        let members = plan.passes_of(step).iter().filter(|member| member.join != Join::Inlined);
+        commands.extend(members.map(|member| Command::Pass { queue, pass: member.pass, join: member.join }));
+        commands.push(Command::End { queue, step });
+        let released = numbered().filter(|(_, t)| t.from.1 == Some(step));
+        commands.extend(released.map(|(transfer, _)| Command::Release { queue, transfer }));
+        let signalled = (0_u32..).zip(waits).filter(|(_, wait)| wait.after == step);
+        commands.extend(signalled.map(|(semaphore, _)| Command::Signal { queue, semaphore }));
+    }
+    let ends = (waits.len() as u32..).zip(joins);
+    commands.extend(ends.clone().map(|(semaphore, last)| Command::Signal { queue: queue_of(*last), semaphore }));
+    commands.extend(ends.map(|(semaphore, _)| Command::Wait { queue: QueueId::MAIN, semaphore }));
+    let back = numbered().filter(|(_, t)| t.to.1.is_none());
+    commands.extend(back.map(|(transfer, t)| Command::Acquire { queue: t.to.0, transfer }));
+    commands
+}
+
+/// Heaps, and everything that lies in them or elsewhere.
+fn memory(plan: &Plan) -> Vec<Command> {
+    let is_buffer = |resource: ResourceId| plan.graph().resources()[resource.index()].desc.texture().is_none();
+    let mut commands = Vec::new();
+    for of_buffers in [false, true] {
+        let own = |resource: &ResourceId| (is_buffer(*resource) && plan.caps().separate_heaps) == of_buffers;
+        let end = plan.graph().resource_ids().filter(own).filter_map(|resource| {
+            let row = &plan.resources()[resource.index()];
+            match row.placement {
+                Placement::Heap { offset } => Some(offset + row.bytes),
+                _ => None,
+            }
+        });
+        commands.extend(end.max().map(|bytes| Command::Heap { of_buffers, bytes }));
+    }
+    for resource in plan.graph().resource_ids() {
+        let memory = match plan.resources()[resource.index()].placement {
+            Placement::Unused | Placement::Inlined => continue,
+            Placement::Memoryless => Memory::Tile,
+            Placement::Slot(slot) => Memory::Slot(slot),
+            Placement::Heap { offset } => Memory::Heap { offset },
+            Placement::External => Memory::External,
+            Placement::Own => Memory::Own,
+        };
+        commands.push(Command::Create { resource, memory });
+    }
+    commands
+}

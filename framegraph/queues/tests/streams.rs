@@ -1,0 +1,209 @@
+//! Streams of random plans, run by a machine that knows nothing but the stream and the tables: every part is in the state that
+//! each pass needs, memory is handed over before it is used, semaphores are signalled before they are waited for, and each queue
+//! owns what it touches.
+
+use framegraph::testing::generate::{self, Entropy, Profile};
+use framegraph::{
+    Access, AccessKind, Alias, Caps, Join, Options, PassKind, Placement, Plan, ResourceId, Scratch, State, compile,
+};
+use framegraph_queues::{Command, Memory, QueueId, QueueLayout, Schedule, schedule, stream};
+use std::collections::{BTreeMap, BTreeSet};
+
+type TestResult = Result<(), Box<dyn std::error::Error>>;
+
+/// What the machine knows.
+struct Machine<'a> {
+    plan: &'a Plan,
+    schedule: Option<&'a Schedule>,
+    created: BTreeMap<ResourceId, Memory>,
+    /// The state of each part of each resource.
+    states: BTreeMap<(ResourceId, u32), State>,
+    /// Who has had the memory of whom.
+    handed: BTreeSet<ResourceId>,
+    signalled: BTreeSet<u32>,
+    open: BTreeMap<QueueId, u32>,
+    ran: Vec<u32>,
+}
+
+impl Machine<'_> {
+    fn run(&mut self, command: &Command) -> Result<(), String> {
+        match *command {
+            Command::Heap { bytes, .. } if bytes == 0 => Err("a heap of nothing".into()),
+            Command::Heap { .. } => Ok(()),
+            Command::Create { resource, memory } => match self.created.insert(resource, memory) {
+                None => Ok(()),
+                Some(_) => Err(format!("resource {} is made twice", resource.index())),
+            },
+            Command::Signal { semaphore, .. } => match self.signalled.insert(semaphore) {
+                true => Ok(()),
+                false => Err(format!("semaphore {semaphore} is signalled twice")),
+            },
+            Command::Wait { semaphore, .. } => match self.signalled.contains(&semaphore) {
+                true => Ok(()),
+                false => Err(format!("semaphore {semaphore} is not signalled before it is waited for")),
+            },
+            Command::Release { .. } | Command::Acquire { .. } => Ok(()),
+            Command::Barrier { barrier, .. } => {
+                let row = &self.plan.barriers()[barrier as usize];
+                for part in row.first_part..row.first_part + row.parts {
+                    let state = self.states.entry((row.resource, part)).or_insert(row.from);
+                    if row.from != State::Undefined && *state != row.from {
+                        return Err(format!("barrier {barrier} is from {}, and the part is {}", row.from, *state));
+                    }
+                    *state = row.to;
+                }
+                self.handed.insert(row.resource);
+                Ok(())
+            }
+            Command::Begin { queue, step } => {
+                self.ran.push(step.index() as u32);
+                match self.open.insert(queue, step.index() as u32) {
+                    None => Ok(()),
+                    Some(other) => Err(format!("step {other} is still open")),
+                }
+            }
+            Command::End { queue, step } => match self.open.remove(&queue) {
+                Some(open) if open == step.index() as u32 => Ok(()),
+                other => Err(format!("step {} ends, {other:?} is open", step.index())),
+            },
+            Command::Pass { queue, pass, join } => {
+                let step = *self.open.get(&queue).ok_or("a pass outside of a step")?;
+                if self.plan.pass_steps()[pass.index()].index() as u32 != step && join != Join::Resolve {
+                    return Err(format!("pass {} is not of step {step}", pass.index()));
+                }
+                if self.schedule.is_some_and(|schedule| schedule.lanes[step as usize] != queue) {
+                    return Err(format!("step {step} is on another queue"));
+                }
+                let kind = self.plan.steps()[step as usize].kind;
+                self.plan.graph().accesses_of(pass).iter().try_for_each(|access| self.touch(access, kind, join))
+            }
+        }
+    }
+
+    /// A pass touches a resource: it is there, and its first part is in the state of the access.
+    fn touch(&self, access: &Access, kind: PassKind, join: Join) -> Result<(), String> {
+        let placement = self.plan.resources()[access.resource.index()].placement;
+        if matches!(placement, Placement::Inlined | Placement::Unused) || join != Join::First {
+            return Ok(());
+        }
+        if !self.created.contains_key(&access.resource) {
+            return Err(format!("resource {} is not made", access.resource.index()));
+        }
+        let is_texture = self.plan.graph().resources()[access.resource.index()].desc.texture().is_some();
+        // What is resolved by a step of its own is another pass's target, and lives in the tile: both have no state here.
+        if !is_texture || access.kind == AccessKind::Resolve || placement == Placement::Memoryless {
+            return Ok(());
+        }
+        let wanted: &[State] = match access.kind {
+            AccessKind::Color => &[State::ColorAttachment],
+            AccessKind::Depth => &[State::DepthAttachment],
+            AccessKind::DepthReadOnly => &[State::DepthReadOnly, State::DepthAttachment],
+            AccessKind::SamePixel => &[
+                State::InputAttachment,
+                State::Sampled,
+                State::Storage,
+                State::ColorAttachment,
+                State::DepthReadOnly,
+                State::DepthAttachment,
+            ],
+            AccessKind::Sampled => &[State::Sampled, State::DepthReadOnly, State::Storage],
+            AccessKind::StorageRead | AccessKind::StorageWrite => &[State::Storage],
+            AccessKind::CopySource => &[State::CopySource],
+            AccessKind::CopyTarget => &[State::CopyTarget],
+            _ => return Ok(()),
+        };
+        let found: Vec<State> = self
+            .states
+            .iter()
+            .filter(|((resource, _), _)| *resource == access.resource)
+            .map(|(_, state)| *state)
+            .collect();
+        if !found.iter().any(|state| wanted.contains(state)) {
+            return Err(format!(
+                "resource {} is accessed as {} by {kind:?} work in {found:?}",
+                access.resource.index(),
+                access.kind
+            ));
+        }
+        Ok(())
+    }
+}
+
+fn run(plan: &Plan, schedule: Option<&Schedule>, commands: &[Command]) -> Result<Vec<u32>, String> {
+    let mut machine = Machine {
+        plan,
+        schedule,
+        created: BTreeMap::new(),
+        states: BTreeMap::new(),
+        handed: BTreeSet::new(),
+        signalled: BTreeSet::new(),
+        open: BTreeMap::new(),
+        ran: Vec::new(),
+    };
+    for (number, command) in commands.iter().enumerate() {
+        machine.run(command).map_err(|error| format!("command {number}: {error}"))?;
+    }
+    Ok(machine.ran)
+}
+
+fn planned(seed: u64, alias: Alias) -> Option<Plan> {
+    let graph = generate::graph(&mut Entropy::seeded(seed), &Profile::default());
+    let mut plan = Plan::new();
+    let options = Options { alias, ..generate::options_of(seed as u32 % 64) };
+    let caps = [Caps::desktop(), Caps::tiler()];
+    compile(&graph, &caps[seed as usize % 2], &options, &mut Scratch::new(), &mut plan).ok()?;
+    Some(plan)
+}
+
+#[test]
+fn a_machine_runs_streams_on_one_queue() -> TestResult {
+    let (mut ran, mut barriers, mut heaps, mut noticed) = (0, 0, 0, 0);
+    for seed in 0..400 {
+        let Some(plan) = planned(seed, Alias::Heap) else { continue };
+        let commands = stream(&plan, None);
+        let steps =
+            run(&plan, None, &commands).map_err(|e| format!("seed {seed}: {e}\n{}", framegraph::dump::text(&plan)))?;
+        assert!(steps.iter().copied().eq(0..plan.steps().len() as u32), "seed {seed}");
+        let count = |is: fn(&Command) -> bool| commands.iter().filter(|command| is(command)).count();
+        assert_eq!(count(|c| matches!(c, Command::Barrier { .. })), plan.barriers().len(), "seed {seed}");
+        assert_eq!(count(|c| matches!(c, Command::Wait { .. } | Command::Signal { .. })), 0);
+        barriers += plan.barriers().len();
+        heaps += count(|c| matches!(c, Command::Heap { .. }));
+        ran += 1;
+        // Without its barriers it does not run.
+        let bare: Vec<_> = commands.iter().copied().filter(|c| !matches!(c, Command::Barrier { .. })).collect();
+        noticed += usize::from(run(&plan, None, &bare).is_err());
+    }
+    println!("{ran} streams, {barriers} barriers, {heaps} heaps; {noticed} do not run without barriers");
+    assert!(ran > 200 && barriers > 1000 && heaps > 50 && noticed > 150, "{ran} {barriers} {heaps} {noticed}");
+    Ok(())
+}
+
+#[test]
+fn a_machine_runs_streams_on_several_queues() -> TestResult {
+    let (mut semaphores, mut moved, mut late) = (0, 0, 0);
+    for seed in 0..400 {
+        let Some(plan) = planned(seed, Alias::Off) else { continue };
+        let costs: Vec<f64> =
+            (0..plan.steps().len()).map(|step| (seed as usize * 37 + step * 101) as f64 % 400.0).collect();
+        let found = schedule(&plan, &QueueLayout::async_compute(), &costs)?;
+        let commands = stream(&plan, Some(&found));
+        run(&plan, Some(&found), &commands).map_err(|e| format!("seed {seed}: {e}"))?;
+        let count = |is: fn(&Command) -> bool| commands.iter().filter(|command| is(command)).count();
+        let waits = count(|c| matches!(c, Command::Wait { .. }));
+        assert_eq!(waits, found.waits.len() + found.joins.len(), "seed {seed}");
+        assert_eq!(
+            waits,
+            count(|c| matches!(c, Command::Signal { .. })),
+            "seed {seed}: each is signalled once and waited for once"
+        );
+        let halves = [count(|c| matches!(c, Command::Release { .. })), count(|c| matches!(c, Command::Acquire { .. }))];
+        assert_eq!(halves, [found.transfers.len(); 2], "seed {seed}");
+        late += count(|c| matches!(c, Command::Barrier { behind_semaphore: true, .. }));
+        semaphores += waits;
+        moved += found.lanes.iter().filter(|lane| **lane != QueueId::MAIN).count();
+    }
+    println!("{semaphores} semaphores, {moved} steps on the second queue, {late} barriers behind semaphores");
+    assert!(semaphores > 50 && moved > 50 && late > 10, "{semaphores} {moved} {late}");
+    Ok(())
+}
