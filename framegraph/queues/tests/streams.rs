@@ -28,7 +28,7 @@ struct Machine<'a> {
 impl Machine<'_> {
     fn run(&mut self, command: &Command) -> Result<(), String> {
         match *command {
-            Command::Heap { bytes, .. } if bytes == 0 => Err("a heap of nothing".into()),
+            Command::Heap { bytes: 0, .. } => Err("a heap of nothing".into()),
             Command::Heap { .. } => Ok(()),
             Command::Create { resource, memory } => match self.created.insert(resource, memory) {
                 None => Ok(()),
