@@ -25,11 +25,17 @@ pub struct Workers {
 }
 
 /// The system refused to start a thread.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("no threads to record on: {reason}; record on one")]
 pub struct WorkersError {
     /// What the system said.
     pub reason: String,
+}
+
+impl fmt::Debug for WorkersError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 impl Workers {

@@ -57,7 +57,7 @@ impl Schedule {
 }
 
 /// Why there is no schedule.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub enum QueueError {
     /// Costs are not those of the plan's steps.
     #[error("{given} costs were given for a plan of {steps} steps; give one for each, in their order")]
@@ -78,6 +78,12 @@ pub enum QueueError {
     /// The layout has no queue that runs everything.
     #[error("the first of the queues must run raster, compute and copy steps, and there may be 255 at the most")]
     Layout,
+}
+
+impl std::fmt::Debug for QueueError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 /// The schedule of `plan` on the queues of `layout`, by what each step costs in microseconds. The order of steps on one queue is
