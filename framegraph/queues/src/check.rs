@@ -16,7 +16,7 @@ pub enum Violation {
         /// The step.
         step: StepId,
     },
-    /// Two steps touch the same contents, one of them writes, and nothing orders them.
+    /// Two steps touch the same contents, one of them writes or puts them into another layout, and nothing orders them.
     Unordered {
         /// The earlier step of the plan.
         first: StepId,
@@ -178,7 +178,10 @@ fn touched_by_both(plan: &Plan, first: StepId, second: StepId) -> impl Iterator<
     let conflict = move |a: &&Access| {
         accesses(plan, second).any(|b| {
             let same = a.resource == b.resource && plan.graph().overlap(a.resource, &a.range, &b.range);
-            same && (a.mode.writes() || b.mode.writes())
+            // A transition of its layout is a write of it.
+            let moves =
+                |step| plan.barriers().iter().any(|x| (x.before, x.resource) == (step, a.resource) && x.from != x.to);
+            same && (a.mode.writes() || b.mode.writes() || moves(first) || moves(second))
         })
     };
     accesses(plan, first).filter(conflict).map(|access| access.resource)

@@ -1,20 +1,23 @@
 //! Which steps of a plan must be over before which: for contents, and for memory that resources share.
 
 use framegraph::{Access, Placement, Plan, ResourceId};
+use std::collections::HashSet;
 
 /// Of each step, the earlier steps that it depends on, the latest first; more than need be said, since some follow from others.
 pub fn dependencies(plan: &Plan) -> Vec<Vec<u32>> {
     let mut found = vec![Vec::new(); plan.steps().len()];
     let touched = accesses_by_resource(plan);
+    let moved = moved(plan);
     for (resource, accesses) in touched.iter().enumerate() {
         let resource = ResourceId::at(resource);
+        let changes = |step: u32, access: &Access| access.mode.writes() || moved.contains(&(step, resource));
         for (later, (step, access)) in accesses.iter().enumerate() {
             for (earlier, other) in accesses[..later].iter().rev() {
-                let writes = access.mode.writes() || other.mode.writes();
-                if earlier != step && writes && plan.graph().overlap(resource, &access.range, &other.range) {
+                let ordered = changes(*step, access) || changes(*earlier, other);
+                if earlier != step && ordered && plan.graph().overlap(resource, &access.range, &other.range) {
                     found[*step as usize].push(*earlier);
-                    // Whoever was before a write of all of it is waited for by that write.
-                    if other.mode.writes() && other.range == access.range {
+                    // Whoever was before a change of all of it is waited for by that change.
+                    if changes(*earlier, other) && other.range == access.range {
                         break;
                     }
                 }
@@ -27,6 +30,13 @@ pub fn dependencies(plan: &Plan) -> Vec<Vec<u32>> {
         earlier.dedup();
     }
     found
+}
+
+/// The textures whose layout changes in front of a step: whoever reads them before and after must be ordered too, since a
+/// transition is a write (Vulkan 1.3, 7.7.4).
+fn moved(plan: &Plan) -> HashSet<(u32, ResourceId)> {
+    let rows = plan.barriers().iter().filter(|row| row.from != row.to);
+    rows.map(|row| (row.before.index() as u32, row.resource)).collect()
 }
 
 /// Of each resource, the steps that access it, in order, with how.

@@ -57,3 +57,4 @@ mod transmission;
 mod upscale;
 mod velocity;
 mod views;
+mod vulkan;
