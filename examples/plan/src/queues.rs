@@ -2,16 +2,17 @@
 
 use crate::args::{Format, QueuesArgs};
 use framegraph::Plan;
-use framegraph_queues::{QueueLayout, estimate_us, schedule, share_memory, svg, text};
+use framegraph_queues::{QueueLayout, estimate_us, replan, schedule, share_memory, svg, text};
 
 /// Bytes a microsecond where no costs are given: 100 GB/s, as mobile devices and small cards have.
 const BYTES_PER_US: f64 = 100_000.0;
 
-/// The schedule as text or as a picture. `plan` shares no memory; `heap` is the same frame for one queue.
+/// The schedule of a frame as text or as a picture; `heap` is its plan for one queue.
 ///
 /// # Errors
 /// One line that names the file of costs and what is wrong with it.
-pub fn shown(args: &QueuesArgs, format: Format, plan: &Plan, heap: &Plan) -> Result<String, String> {
+pub fn shown(args: &QueuesArgs, format: Format, heap: &Plan) -> Result<String, String> {
+    let plan = &replan(heap).map_err(|error| error.to_string())?;
     let costs_us = match &args.costs {
         Some(file) => costs(&file.display().to_string(), &crate::run::read(file)?, plan)?,
         None => estimate_us(plan, BYTES_PER_US),

@@ -46,13 +46,12 @@ pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
         .map(|(path, text, included)| GraphFile::parse_with(path, text, included).map_err(|e| e.to_string()));
     let mut parsed = parsed.collect::<Result<Vec<_>, _>>().map_err(Failure::Input)?.into_iter();
     let (Some(frame), other) = (parsed.next(), parsed.next()) else { unreachable!("the frame is the first source") };
-    let one = |alias| planned(args, alias, registry, &frame, other.as_ref()).map_err(Failure::Input);
-    let plan = one(Alias::Heap)?;
+    let plan = planned(args, registry, &frame, other.as_ref()).map_err(Failure::Input)?;
     let text = match (&other, &args.queues) {
-        (None, Some(own)) => queues::shown(own, args.format, &one(Alias::Off)?, &plan).map_err(Failure::Input)?,
+        (None, Some(own)) => queues::shown(own, args.format, &plan).map_err(Failure::Input)?,
         (None, None) => shown(&plan, frame.name(), args.format),
         (Some(other), _) => {
-            let other = planned(args, Alias::Heap, registry, other, Some(&frame)).map_err(Failure::Input)?;
+            let other = planned(args, registry, other, Some(&frame)).map_err(Failure::Input)?;
             compared(&plan, &other, args.format)
         }
     };
@@ -66,7 +65,6 @@ pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
 /// The plan of one file. A feature that is switched must be known here, or to the file that this one is compared with.
 fn planned(
     args: &Args,
-    alias: Alias,
     registry: &Registry<'_, Graph>,
     file: &GraphFile<'_>,
     other: Option<&GraphFile<'_>>,
@@ -78,7 +76,7 @@ fn planned(
     let options = Options {
         frame: args.size_texels.or(file.frame()).unwrap_or(FRAME),
         order: args.order,
-        alias,
+        alias: Alias::Heap,
         ..Options::default()
     };
     let (mut graph, mut plan) = (Graph::new(), Plan::new());

@@ -171,7 +171,7 @@ impl Viewer {
         // Where times alone have changed, views without any stay.
         let only_times = self.drawn[0] == drawn[0] && !self.drawings.is_empty();
         self.drawn = drawn;
-        let timed = |view: &View| matches!(view, View::Timeline | View::Trace);
+        let timed = |view: &View| matches!(view, View::Timeline | View::Trace | View::Queues);
         self.drawings.retain(|view, _| only_times && !timed(view));
         let none = PlanData::default();
         let plan = self.session.plan.as_deref();

@@ -35,7 +35,8 @@ planned anew when it changes, or a trace (`render --trace`). docs/viewer.md show
                       switches a feature of the graph; may be given several times
   --order WHICH       declared (default) or optimized
   --select NAME       selects a pass or a resource
-  --view VIEW         graph (default), timeline, memory, bandwidth, inspector, diff, trace or accuracy
+  --view VIEW         graph (default), timeline, memory, bandwidth, inspector, diff, trace,
+                      accuracy or queues
   --theme WHICH       light or dark; default: what the desktop says, light without a window
   --scale X           pixels per point, 0.5 to 4 (1)
   --headless          no window: writes --out and ends

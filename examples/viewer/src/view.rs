@@ -7,6 +7,7 @@ pub mod facts;
 pub mod graph;
 mod heads;
 pub mod memory;
+pub mod queues;
 pub mod timeline;
 pub mod trace;
 mod words;
@@ -37,11 +38,13 @@ pub enum View {
     Trace,
     /// Error over cost of each technique.
     Accuracy,
+    /// The frame on several queues.
+    Queues,
 }
 
 impl View {
     /// All of them, in the order of the tabs.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Graph,
         Self::Timeline,
         Self::Memory,
@@ -50,6 +53,7 @@ impl View {
         Self::Diff,
         Self::Trace,
         Self::Accuracy,
+        Self::Queues,
     ];
 
     /// Whether it shows a plan, and not a file of another kind.
@@ -68,6 +72,7 @@ impl View {
             Self::Diff => "diff",
             Self::Trace => "trace",
             Self::Accuracy => "accuracy",
+            Self::Queues => "queues",
         }
     }
 }
@@ -98,5 +103,6 @@ pub fn drawing(view: View, plan: &PlanData, beside: Beside<'_>, letters: usize) 
         View::Diff => diff::drawing(beside.against, plan),
         View::Trace => trace::drawing(beside.trace),
         View::Accuracy => accuracy::drawing(beside.accuracy, beside.budget_ms),
+        View::Queues => queues::drawing(plan, beside.trace),
     }
 }

@@ -5,8 +5,8 @@
 //! measured or said to cost; the order within a queue stays that of the plan. What a back end has to say is in the [`Schedule`]:
 //! semaphores ([`Wait`]), transfers of ownership between queue families ([`Transfer`]), and the resources that several queues read
 //! at once. Memory that resources share counts as a dependency: who gets it waits for all who had it.
-//! So a plan whose memory is shared for one queue leaves little to run side by side: compile it with
-//! [`framegraph::Alias::Off`], and [`share_memory()`] by the schedule. [`check()`] and [`check_memory()`] judge both without the analysis that
+//! So a plan whose memory is shared for one queue leaves little to run side by side: [`replan()`] it without, and
+//! [`share_memory()`] by the schedule. [`check()`] and [`check_memory()`] judge both without the analysis that
 //! made them.
 //!
 //! [`stream()`] is all of it, and the plan, as commands in order.
@@ -44,6 +44,7 @@ mod estimate;
 mod hazards;
 mod layout;
 mod memory;
+mod replan;
 mod schedule;
 mod simulate;
 mod stream;
@@ -54,6 +55,7 @@ pub use check::{Violation, check, check_memory};
 pub use estimate::estimate_us;
 pub use layout::{Queue, QueueId, QueueLayout};
 pub use memory::{SharedMemory, share_memory};
+pub use replan::replan;
 pub use schedule::{QueueError, Schedule, Wait, schedule, schedule_with};
 pub use stream::{Command, Memory, stream};
 pub use text::{svg, text};

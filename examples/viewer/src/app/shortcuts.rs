@@ -45,7 +45,7 @@ pub(super) fn asked(ctx: &Context) -> Vec<Asked> {
     if pressed(Modifiers::COMMAND, Key::F) {
         asked.push(Asked::Search);
     }
-    let numbers = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8];
+    let numbers = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
     asked.extend(
         numbers
             .into_iter()

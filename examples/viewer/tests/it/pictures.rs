@@ -36,9 +36,13 @@ fn write(path: &Path, rgba: &[u8]) {
     encoder.write_image(&rgb, SIZE[0], SIZE[1], ExtendedColorType::Rgb8).expect("a picture");
 }
 
-/// Filament's frame on a tiler, with what the view is about.
+/// A frame on a tiler, Filament's but for queues, with what the view is about.
 fn shown(view: View) -> (Viewer, Option<Item>) {
-    let mut session = session_of(&case("filament"), &["shadows", "sao"]);
+    // Nothing of Filament's frame leaves for another queue.
+    let mut session = match view {
+        View::Queues => session_of(&case("deferred"), &[]),
+        _ => session_of(&case("filament"), &["shadows", "sao"]),
+    };
     let plan = session.plan.clone().expect("a plan");
     if matches!(view, View::Timeline | View::Trace) {
         session.trace = Some(Arc::new(read(trace_of(&plan, 120, 77).as_bytes()).expect("a trace")));
@@ -59,6 +63,7 @@ fn shown(view: View) -> (Viewer, Option<Item>) {
         View::Graph => plan.resource("shadow").map(Item::Resource),
         View::Timeline => plan.pass("grade").map(Item::Pass),
         View::Memory => plan.resource("structure").map(Item::Resource),
+        View::Queues => plan.pass("lighting").map(Item::Pass),
         _ => None,
     };
     if view == View::Accuracy {

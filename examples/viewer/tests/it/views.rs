@@ -144,6 +144,34 @@ fn the_heap_map_shows_each_resource_where_it_lies() {
 }
 
 #[test]
+fn lanes_are_those_of_the_schedule() {
+    let plan = planned("deferred", &Caps::desktop(), &[]);
+    let words = |beside: Beside<'_>| drawing(View::Queues, &plan, beside, 80).words();
+    let own = framegraph_queues::replan(plan.plan.as_ref().expect("it was planned here")).expect("a plan");
+    let costs_us = framegraph_queues::estimate_us(&own, 100_000.0);
+    let layout = framegraph_queues::QueueLayout::async_compute();
+    let found = framegraph_queues::schedule(&own, &layout, &costs_us).expect("a schedule");
+    let head = format!("graphics + compute: {:.0} µs, {:.0} µs on one queue", found.total_us, found.alone_us);
+    assert!(found.total_us < found.alone_us && words(Beside::default()).contains(&head), "{head}");
+    // A box a step in each of two layouts, those of the second queue below the others.
+    let drawn = drawing(View::Queues, &plan, Beside::default(), 80);
+    let boxes = |step: usize| drawn.hits.iter().filter(move |hit| hit.item == Some(Item::Step(step)));
+    assert!((0..own.steps().len()).all(|step| boxes(step).count() == 2));
+    let top = |step: usize| boxes(step).next().expect("a box").bounds[1];
+    for (step, lane) in found.lanes.iter().enumerate() {
+        assert_eq!(top(step) > top(0), lane.index() > 0, "step {step}");
+    }
+    // With a trace of the frame, times are its medians.
+    let trace = read(trace_of(&plan, 12, 6).as_bytes()).expect("a trace");
+    let traced = words(Beside { trace: Some(&trace), ..Beside::default() });
+    assert!(traced.contains("the median of each") && !traced.contains(&head), "{traced}");
+    // A saved plan has no graph.
+    let mut saved = plan.clone();
+    saved.plan = None;
+    assert!(drawing(View::Queues, &saved, Beside::default(), 80).words().contains("a saved plan holds no graph"));
+}
+
+#[test]
 fn a_trace_gives_quartiles_and_stutters() {
     let plan = planned("filament", &Caps::tiler(), &[]);
     let trace = read(trace_of(&plan, 12, 6).as_bytes()).expect("a trace");
