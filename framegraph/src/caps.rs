@@ -65,6 +65,10 @@ pub struct Caps {
     pub buffer_alignment_bytes: u64,
     /// The back end needs to be told about layout transitions and hand-overs.
     pub explicit_barriers: bool,
+    /// A queue for compute and copies runs beside the first.
+    pub compute_queue: bool,
+    /// So does one for copies.
+    pub copy_queue: bool,
 }
 
 impl Caps {
@@ -98,6 +102,8 @@ impl Caps {
             texture_alignment_bytes: 65536,
             buffer_alignment_bytes: 256,
             explicit_barriers: true,
+            compute_queue: true,
+            copy_queue: true,
         }
     }
 
@@ -114,6 +120,7 @@ impl Caps {
             same_pixel: true,
             tile_bytes_per_pixel: 128,
             texture_alignment_bytes: 4096,
+            copy_queue: false,
             ..Self::desktop()
         }
     }
@@ -135,6 +142,8 @@ impl Caps {
             depth_resolves: ResolveModes::NONE,
             placed: false,
             explicit_barriers: false,
+            compute_queue: false,
+            copy_queue: false,
             ..Self::desktop()
         }
     }

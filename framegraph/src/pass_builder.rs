@@ -174,6 +174,12 @@ impl<'g> PassBuilder<'g> {
         self.flag(PassFlags::NEVER_MERGE);
     }
 
+    /// The pass must run on the first queue, whatever others a device has (`framegraph-queues`).
+    #[inline]
+    pub fn main_queue(&mut self) {
+        self.flag(PassFlags::MAIN_QUEUE);
+    }
+
     /// Names the kind of the pass, instead of leaving it to its accesses (attachments, same-pixel reads, vertices and
     /// indices make a raster pass, nothing but copies a copy, all else is compute).
     ///

@@ -34,7 +34,8 @@ FRAME.ron is a graph; docs/graph-format.md documents its fields.
                         traffic   bytes loaded and stored
                       and B, kB, MB, GB (powers of 1000), KiB, MiB or GiB (of 1024) behind bytes:
                         --budget loads=0,stores=3,bytes=200MB
-  --queues LAYOUT     runs the frame on several queues where that is shorter: one, async-compute or async-compute-and-copy;
+  --queues LAYOUT     runs the frame on several queues where that is shorter: one, async-compute, async-compute-and-copy,
+                      or device for those that --caps has;
                       prints what runs where, what waits for what, and the frame's time; text or svg
   --costs FILE        what each pass costs there: lines `PASS,MICROSECONDS`; default: by the bytes that it touches
   --out FILE          where to write; default: standard output
@@ -78,8 +79,8 @@ pub struct Args {
 /// What `--queues` was asked for.
 #[derive(Clone, Debug)]
 pub struct QueuesArgs {
-    /// The queues.
-    pub layout: QueueLayout,
+    /// The queues; none for those of the device.
+    pub layout: Option<QueueLayout>,
     /// The costs of passes.
     pub costs: Option<PathBuf>,
 }
@@ -140,7 +141,7 @@ struct Given {
     offsets: Option<PathBuf>,
     budget_steps: Option<u64>,
     seconds: Option<u32>,
-    queues: Option<QueueLayout>,
+    queues: Option<Option<QueueLayout>>,
     costs: Option<PathBuf>,
 }
 
@@ -377,7 +378,7 @@ mod tests {
             ("a.ron --caps a --caps b", "--caps is given twice"),
             ("a.ron --diff b.ron --format svg", "--diff"),
             ("a.ron --budget-steps 3", "--offsets"),
-            ("a.ron --queues many", "`many` is not one, async-compute"),
+            ("a.ron --queues many", "`many` is not device, one, async-compute"),
             ("a.ron --queues one --format dot", "--queues prints"),
             ("a.ron --costs b.csv", "--costs goes together with --queues"),
             ("a.ron --offsets b.csv", "FRAME.ron does not go together"),

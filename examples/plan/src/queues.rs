@@ -17,7 +17,8 @@ pub fn shown(args: &QueuesArgs, format: Format, heap: &Plan) -> Result<String, S
         Some(file) => costs(&file.display().to_string(), &crate::run::read(file)?, plan)?,
         None => estimate_us(plan, BYTES_PER_US),
     };
-    let found = schedule(plan, &args.layout, &costs_us).map_err(|error| error.to_string())?;
+    let layout = args.layout.clone().unwrap_or_else(|| QueueLayout::of_device(plan.caps()));
+    let found = schedule(plan, &layout, &costs_us).map_err(|error| error.to_string())?;
     if format == Format::Svg {
         return Ok(svg(plan, &found));
     }
@@ -61,10 +62,11 @@ fn costs(file: &str, text: &str, plan: &Plan) -> Result<Vec<f64>, String> {
     plan.step_ids().map(of_step).collect()
 }
 
-/// The layout of a name.
+/// The layout of a name; none for that of the device.
 ///
 /// # Errors
 /// One line with the names there are.
-pub fn layout(name: &str) -> Result<QueueLayout, String> {
-    QueueLayout::named(name).ok_or_else(|| format!("--queues: `{name}` is not {}", QueueLayout::NAMES.join(", ")))
+pub fn layout(name: &str) -> Result<Option<QueueLayout>, String> {
+    let found = QueueLayout::named(name).map(Some).or_else(|| (name == "device").then_some(None));
+    found.ok_or_else(|| format!("--queues: `{name}` is not device, {}", QueueLayout::NAMES.join(", ")))
 }

@@ -2,7 +2,7 @@
 
 use crate::layout::{QueueId, QueueLayout};
 use crate::simulate::simulate;
-use framegraph::{PassKind, Plan, StepId};
+use framegraph::{PassFlags, PassKind, Plan, StepId, StepPass};
 
 /// Rounds of moves; each shortens the frame, and few are ever needed.
 const ROUNDS: usize = 8;
@@ -18,7 +18,9 @@ pub fn assign(
     may_leave: &dyn Fn(StepId) -> bool,
 ) -> Vec<QueueId> {
     let kind = |step: usize| plan.steps()[step].kind;
-    let movable = |step: usize| kind(step) != PassKind::Raster && may_leave(StepId::at(step));
+    let asks_to_stay = |member: &StepPass| plan.graph().passes()[member.pass.index()].flags.has(PassFlags::MAIN_QUEUE);
+    let stays = |step: usize| plan.passes_of(StepId::at(step)).iter().any(asks_to_stay);
+    let movable = |step: usize| kind(step) != PassKind::Raster && !stays(step) && may_leave(StepId::at(step));
     let mut groups = chains(dependencies, &movable);
     groups.extend((0..dependencies.len()).filter(|step| movable(*step)).map(|step| vec![step]));
     let total_us = |lanes: &[QueueId]| simulate(layout, lanes, dependencies, costs_us).total_us;

@@ -3,7 +3,7 @@
 use crate::layout::QueueId;
 use crate::memory::SharedMemory;
 use crate::schedule::Schedule;
-use framegraph::{Access, Placement, Plan, ResourceId, StepId};
+use framegraph::{Access, PassFlags, Placement, Plan, ResourceId, StepId, StepPass};
 use std::fmt;
 
 /// What is wrong with a schedule.
@@ -11,7 +11,7 @@ use std::fmt;
 pub enum Violation {
     /// It is not of this plan: another number of steps, or a queue that the layout has not.
     OtherPlan,
-    /// A queue does not run steps of this kind.
+    /// A queue does not run steps of this kind, or a pass of it asks for the first.
     WrongQueue {
         /// The step.
         step: StepId,
@@ -52,7 +52,7 @@ impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::OtherPlan => write!(f, "the schedule is of another plan"),
-            Self::WrongQueue { step } => write!(f, "step {} is on a queue that does not run its kind", step.index()),
+            Self::WrongQueue { step } => write!(f, "step {} is on a queue where it may not run", step.index()),
             Self::Unordered { first, second, resource } => {
                 write!(
                     f,
@@ -86,7 +86,9 @@ pub fn check(plan: &Plan, schedule: &Schedule) -> Vec<Violation> {
     }
     let mut found = Vec::new();
     for (step, lane) in plan.step_ids().zip(lanes) {
-        if !layout.queues[lane.index()].runs(plan.steps()[step.index()].kind) {
+        let asks = |member: &StepPass| plan.graph().passes()[member.pass.index()].flags.has(PassFlags::MAIN_QUEUE);
+        let asked = *lane != QueueId::MAIN && plan.passes_of(step).iter().any(asks);
+        if asked || !layout.queues[lane.index()].runs(plan.steps()[step.index()].kind) {
             found.push(Violation::WrongQueue { step });
         }
     }

@@ -1,6 +1,6 @@
 //! The queues of a device.
 
-use framegraph::PassKind;
+use framegraph::{Caps, PassKind};
 use std::fmt;
 
 /// A queue by its place in the layout.
@@ -85,6 +85,17 @@ impl QueueLayout {
     #[must_use]
     pub fn async_compute_and_copy() -> Self {
         Self::of(&["graphics", "compute", "copy"])
+    }
+
+    /// What the device says that it has.
+    #[must_use]
+    pub fn of_device(caps: &Caps) -> Self {
+        match (caps.compute_queue, caps.copy_queue) {
+            (false, false) => Self::one(),
+            (true, false) => Self::async_compute(),
+            (false, true) => Self::of(&["graphics", "copy"]),
+            (true, true) => Self::async_compute_and_copy(),
+        }
     }
 
     /// The layout of that name ([`QueueLayout::NAMES`]).

@@ -95,7 +95,8 @@ pub fn schedule(plan: &Plan, layout: &QueueLayout, costs_us: &[f64]) -> Result<S
     schedule_with(plan, layout, costs_us, &|_| true)
 }
 
-/// As [`schedule()`]; `may_leave` says which steps may run elsewhere than on the first queue at all.
+/// As [`schedule()`]; `may_leave` says which steps may run elsewhere than on the first queue, of those whose passes do not ask to stay
+/// there ([`framegraph::PassBuilder::main_queue`]).
 ///
 /// # Errors
 /// As [`schedule()`].

@@ -6,7 +6,8 @@ use framegraph::{
     Alias, Caps, Extent, Format, Graph, Intent, Options, PassKind, Plan, Scratch, StepId, TextureDesc, compile,
 };
 use framegraph_queues::{
-    QueueError, QueueId, QueueLayout, Violation, check, check_memory, schedule, schedule_with, share_memory, svg, text,
+    QueueError, QueueId, QueueLayout, Violation, check, check_memory, replan, schedule, schedule_with, share_memory,
+    svg, text,
 };
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
@@ -274,5 +275,44 @@ fn what_cannot_be_scheduled_is_told() -> TestResult {
     no_raster.queues.remove(0);
     assert_eq!(schedule(&plan, &no_raster, &[1.0; 5]), Err(QueueError::Layout));
     assert_eq!(schedule(&plan, &QueueLayout { queues: vec![], ..layout }, &[1.0; 5]), Err(QueueError::Layout));
+    Ok(())
+}
+
+#[test]
+fn a_pass_that_asks_for_the_first_queue_stays_there() -> TestResult {
+    let planned = |stays: bool| -> Result<Plan, Box<dyn std::error::Error>> {
+        let mut graph = Graph::new();
+        let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+        let [map, fog, picture] = ["map", "fog", "picture"].map(|name| graph.texture(name, desc));
+        let map = graph.add_fn("shadow", |p| p.color(map, Intent::Overwrite))?;
+        let fog = graph.add_fn("fog", |p| {
+            if stays {
+                p.main_queue();
+            }
+            p.storage_write(fog, Intent::Overwrite)
+        })?;
+        let picture = graph.add_fn("color", |p| {
+            p.sampled(map)?;
+            p.sampled(fog)?;
+            p.color(picture, Intent::Overwrite)
+        })?;
+        graph.export(picture)?;
+        let mut plan = Plan::new();
+        compile(&graph, &Caps::desktop(), &Options::for_frame(64, 64), &mut Scratch::new(), &mut plan)?;
+        Ok(replan(&plan)?)
+    };
+    let costs_us = [400.0, 300.0, 900.0];
+    let (free, staying) = (planned(false)?, planned(true)?);
+    let layout = QueueLayout::of_device(free.caps());
+    assert_eq!(layout, QueueLayout::async_compute_and_copy());
+    assert_eq!(QueueLayout::of_device(&Caps::tiler()), QueueLayout::async_compute());
+    assert_eq!(QueueLayout::of_device(&Caps::wgpu()), QueueLayout::one());
+    let left = schedule(&free, &layout, &costs_us)?;
+    let stayed = schedule(&staying, &layout, &costs_us)?;
+    assert_eq!((left.total_us, stayed.total_us), (1300.0, 1600.0));
+    assert!(stayed.lanes.iter().all(|lane| *lane == QueueId::MAIN));
+    // The judge holds the wish against a schedule that does not know of it.
+    assert!(check(&free, &left).is_empty() && check(&staying, &stayed).is_empty());
+    assert!(check(&staying, &left).iter().any(|found| matches!(found, Violation::WrongQueue { .. })));
     Ok(())
 }

@@ -39,6 +39,7 @@ caps_form! {
     tile_bytes_per_pixel: u32, sample_read_only_depth: bool, separate_planes: bool, color_resolves: ResolveModes,
     depth_resolves: ResolveModes, placed: bool, placed_histories: bool, separate_heaps: bool,
     texture_alignment_bytes: u64, buffer_alignment_bytes: u64, explicit_barriers: bool,
+    compute_queue: bool, copy_queue: bool,
 }
 
 /// Reads a device from `text`; `path` is what errors call it. Fields that are left out are those of the preset named by

@@ -272,16 +272,18 @@ pub(super) enum Flag {
     Blends,
     NeverMerge,
     TakesEpilogue,
+    MainQueue,
 }
 
 impl Flag {
     /// Every flag with what it stands for.
-    pub(super) const ALL: [(Self, PassFlags); 5] = [
+    pub(super) const ALL: [(Self, PassFlags); 6] = [
         (Self::SideEffect, PassFlags::SIDE_EFFECT),
         (Self::Pointwise, PassFlags::POINTWISE),
         (Self::Blends, PassFlags::BLENDS),
         (Self::NeverMerge, PassFlags::NEVER_MERGE),
         (Self::TakesEpilogue, PassFlags::TAKES_EPILOGUE),
+        (Self::MainQueue, PassFlags::MAIN_QUEUE),
     ];
 }
 

@@ -97,6 +97,7 @@ fn set(pass: &mut PassBuilder<'_>, flag: Flag) {
         Flag::Blends => pass.blends(),
         Flag::NeverMerge => pass.never_merge(),
         Flag::TakesEpilogue => pass.takes_epilogue(),
+        Flag::MainQueue => pass.main_queue(),
     }
 }
 

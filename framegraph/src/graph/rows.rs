@@ -35,6 +35,8 @@ impl PassFlags {
     pub const NEVER_MERGE: Self = Self(8);
     /// Its shader can take a point-wise epilogue.
     pub const TAKES_EPILOGUE: Self = Self(16);
+    /// Must run on the first queue of a device with several.
+    pub const MAIN_QUEUE: Self = Self(128);
     /// Averages multisampled attachments: what its accesses tell, at hand.
     pub(crate) const RESOLVES: Self = Self(32);
     /// Clears something: what its accesses tell, at hand.
