@@ -92,3 +92,21 @@ impl Default for Grading {
         Self::NEUTRAL
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Filament's `ColorGrading::Builder`: what each number is that changes nothing, and the ranges of its default.
+    #[test]
+    fn neutral_settings_are_filaments() {
+        let n = Grading::NEUTRAL;
+        assert_eq!([n.exposure_ev, n.night, n.temperature, n.tint], [0.0; 4]);
+        assert_eq!(n.mixer, [Vec3::X, Vec3::Y, Vec3::Z]);
+        assert_eq!([n.shadows, n.midtones, n.highlights], [Vec4::new(1.0, 1.0, 1.0, 0.0); 3]);
+        assert_eq!(n.ranges, Vec4::new(0.0, 0.333, 0.55, 1.0));
+        assert_eq!([n.slope, n.offset, n.power], [Vec3::ONE, Vec3::ZERO, Vec3::ONE]);
+        assert_eq!([n.contrast, n.vibrance, n.saturation], [1.0; 3]);
+        assert_eq!([n.shadow_gamma, n.middle, n.highlight_scale], [Vec3::ONE; 3]);
+    }
+}

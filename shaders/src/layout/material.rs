@@ -259,6 +259,15 @@ mod tests {
         (translation * rotation * scale * uv.extend(1.0)).truncate()
     }
 
+    /// glTF 2.0, 5.19 and 5.22 to 5.24, and KHR_materials_ior; metallic is 0 where an importer says nothing.
+    #[test]
+    fn defaults_are_those_of_gltf() {
+        let m = MaterialUniforms::default();
+        assert_eq!((m.base_color, m.emissive, m.emissive_exposure_weight), (Vec4::ONE, Vec3::ZERO, 0.0));
+        assert_eq!([m.metallic, m.roughness, m.normal_scale, m.occlusion_strength], [0.0, 1.0, 1.0, 1.0]);
+        assert_eq!((m.alpha_cutoff, m.dielectric_f0, m.flags), (0.5, 0.04, 0));
+    }
+
     #[test]
     fn texture_transforms_follow_the_extension() {
         let (offset, rotation, scale) = (Vec2::new(0.2, -0.4), 0.9, Vec2::new(2.0, 0.5));

@@ -122,6 +122,17 @@ mod tests {
         }
     }
 
+    /// So that half floats hold them, whichever axis is the longest.
+    #[test]
+    fn the_largest_entry_of_the_normal_matrix_is_one() {
+        for scale in [[1.0, 2.0, 3.0], [3.0, 1.0, 2.0], [2.0, 3.0, 1.0], [1e4, 1e-4, 1.0], [1e-4, 1.0, 1e4]] {
+            let o = ObjectUniforms::new(Mat4::from_scale(Vec3::from(scale)));
+            let columns = [o.normal_column_x, o.normal_column_y, o.normal_column_z];
+            let largest = columns.iter().map(|column| column.abs().max_element()).fold(0.0, f32::max);
+            assert!((largest - 1.0).abs() < 1e-6, "{scale:?}: {largest}");
+        }
+    }
+
     #[test]
     fn a_flattened_object_keeps_the_normal_of_its_plane() {
         let m = Mat4::from_scale(Vec3::new(1.0, 1.0, 0.0));

@@ -52,3 +52,25 @@ impl SkyUniforms {
 pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
     vec![layout_of!(SkyUniforms { perez, zenith, sun_disc, ground, _pad0, toward_sun, _pad1 })]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    /// Exposure is a factor on the luminance Y and on the ground, and turns no color.
+    #[test]
+    fn exposure_scales_radiance_alone() {
+        let sky = Preetham {
+            perez: [DVec3::new(0.1, 0.2, 0.3); 5],
+            zenith: DVec3::new(0.25, 0.5, 1000.0),
+            ground: DVec3::new(10.0, 20.0, 40.0),
+            to_sun: DVec3::Y,
+        };
+        let packed = SkyUniforms::new(&sky, 0.125, true);
+        assert_eq!(packed.zenith, Vec3::new(0.25, 0.5, 125.0));
+        assert_eq!(packed.ground, Vec3::new(1.25, 2.5, 5.0));
+        assert_eq!((packed.perez, packed.toward_sun), ([Vec4::new(0.1, 0.2, 0.3, 0.0); 5], Vec3::Y));
+        assert_eq!((packed.sun_disc, SkyUniforms::new(&sky, 0.125, false).sun_disc), (1.0, 0.0));
+    }
+}

@@ -148,3 +148,26 @@ impl ToneMap {
         Self::ALL.into_iter().find(|curve| curve.name() == name)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_a_curve_stay_in_their_ranges() {
+        let contrast = |contrast| GenericCurve { contrast, ..GenericCurve::DEFAULT }.numbers().x;
+        assert_eq!([-1.0, 0.0, 4.0, 4.2, 100.0].map(contrast), [1e-5, 1e-5, 4.0, 4.0, 4.0]);
+        assert_eq!(contrast(2.0), 2.0);
+        // The curve goes through its middle and its white: y = x^c s / (x^c + t) in the form of the shader.
+        let of = |curve: GenericCurve, x: f64| {
+            let [contrast, input, output] = curve.numbers().to_array();
+            let power = x.powf(contrast);
+            output * power / (power + input)
+        };
+        for (middle_in, middle_out, white) in [(0.18_f32, 0.215_f32, 10.0_f32), (0.3, 0.4, 4.0), (0.1, 0.1, 100.0)] {
+            let curve = GenericCurve { middle_in, middle_out, white, ..GenericCurve::DEFAULT };
+            assert!((of(curve, middle_in.into()) - f64::from(middle_out)).abs() < 1e-6, "{curve:?}");
+            assert!((of(curve, white.into()) - 1.0).abs() < 1e-6, "{curve:?}");
+        }
+    }
+}

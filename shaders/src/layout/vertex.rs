@@ -132,6 +132,13 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_a_mesh_has_not_is_absent() {
+        let absent = VertexAttributes::default();
+        assert_eq!((absent.normal, absent.tangent), ([0.0; 3], [0.0, 0.0, 0.0, 1.0]));
+        assert_eq!((absent.uv0, absent.uv1, absent.color), ([0.0; 2], [0.0; 2], [f16::ONE; 4]));
+    }
+
+    #[test]
     fn attributes_fill_their_streams_without_gap_or_overlap() {
         for stream in [STREAM_POSITION, STREAM_ATTRIBUTES, STREAM_INSTANCE, STREAM_EARLIER] {
             let mut end_bytes = 0;
