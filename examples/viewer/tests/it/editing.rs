@@ -26,7 +26,7 @@ fn picture(harness: &mut Harness<'_, Viewer>) -> Vec<u8> {
 
 #[test]
 fn a_material_is_changed_and_comes_back() {
-    let Some(mut harness) = harness("a_material_is_changed_and_comes_back", "spheres") else { return };
+    let Some(mut harness) = harness("a_material_is_changed_and_comes_back", "columns") else { return };
     // Dither is another one in each frame.
     let mut document = live(&mut harness).document().clone();
     document.frame.settings.post.dither = 0.0;
@@ -51,7 +51,7 @@ fn a_material_is_changed_and_comes_back() {
     document.materials = BTreeMap::from([(number, red)]);
     live(&mut harness).set(document, false);
     let painted = picture(&mut harness);
-    assert!(painted != before, "the sphere is red");
+    assert!(painted != before, "the ground is red");
     let survey = |harness: &mut Harness<'_, Viewer>| {
         live(harness).running.as_ref().map(|r| r.loaded.scene.materials[number].metallic).expect("a frame")
     };
@@ -65,14 +65,14 @@ fn a_material_is_changed_and_comes_back() {
     live(&mut harness).again();
     assert!(picture(&mut harness) == painted, "undo paints it again");
     // Another scene has materials of its own.
-    live(&mut harness).load("lobes");
+    live(&mut harness).load("glass");
     settled(&mut harness);
     assert!(live(&mut harness).document().materials.is_empty() && live(&mut harness).material.is_none());
 }
 
 #[test]
 fn a_curve_is_dragged_by_its_handle() {
-    let Some(mut harness) = harness("a_curve_is_dragged_by_its_handle", "spheres") else { return };
+    let Some(mut harness) = harness("a_curve_is_dragged_by_its_handle", "columns") else { return };
     harness.state_mut().turn_to(Pane::Settings);
     harness.run();
     harness.get_by_label("curves").click();
@@ -98,7 +98,7 @@ fn a_curve_is_dragged_by_its_handle() {
 
 #[test]
 fn plans_graphs_and_times_are_written_and_read_again() {
-    let Some(mut harness) = harness("plans_graphs_and_times_are_written_and_read_again", "spheres") else { return };
+    let Some(mut harness) = harness("plans_graphs_and_times_are_written_and_read_again", "columns") else { return };
     let shown = plan(&harness);
     let place = folder("live_export");
     let write = |harness: &mut Harness<'_, Viewer>, purpose, name: &str| {

@@ -78,7 +78,7 @@ pub fn settled(harness: &mut Harness<'_, Viewer>) {
 #[test]
 fn an_effect_that_is_switched_off_is_not_drawn_and_undo_draws_it_again() {
     let name = "an_effect_that_is_switched_off_is_not_drawn_and_undo_draws_it_again";
-    let Some(mut harness) = harness(name, "spheres") else { return };
+    let Some(mut harness) = harness(name, "columns") else { return };
     let before = plan(&harness);
     let made: Vec<_> = before.form.passes.iter().map(|p| p.name.clone()).filter(|p| p.contains("occlusion")).collect();
     assert!(made.len() > 2, "{made:?}");
@@ -112,14 +112,15 @@ fn an_effect_that_is_switched_off_is_not_drawn_and_undo_draws_it_again() {
 #[test]
 fn what_facts_drop_is_told_beside_its_switch() {
     let name = "what_facts_drop_is_told_beside_its_switch";
-    let Some(mut harness) = harness(name, "spheres") else { return };
+    let Some(mut harness) = harness(name, "columns") else { return };
     live(&mut harness).asked.forced = false;
     live(&mut harness).again();
     harness.run();
     harness.state_mut().turn_to(Pane::Effects);
     harness.run();
     let facts = live(&mut harness).running.as_ref().expect("a frame").facts.clone();
-    let row = facts.rows.iter().find(|row| facts.dropped().contains(row.effect)).expect("spheres need not everything");
+    let row =
+        facts.rows.iter().find(|row| facts.dropped().contains(row.effect)).expect("the scene needs not everything");
     let told = format!("dropped because {}", row.reason);
     assert!(harness.query_all_by_label_contains(&told).count() > 0, "{told}");
 }
@@ -127,7 +128,7 @@ fn what_facts_drop_is_told_beside_its_switch() {
 #[test]
 fn four_k_is_asked_of_the_frame_that_is_drawn() {
     let name = "four_k_is_asked_of_the_frame_that_is_drawn";
-    let Some(mut harness) = harness(name, "spheres") else { return };
+    let Some(mut harness) = harness(name, "columns") else { return };
     let before = plan(&harness).form.clone();
     harness.state_mut().turn_to(Pane::WhatIf);
     harness.run();
@@ -150,7 +151,7 @@ fn four_k_is_asked_of_the_frame_that_is_drawn() {
 #[test]
 fn a_bad_file_keeps_the_scene() {
     let name = "a_bad_file_keeps_the_scene";
-    let Some(mut harness) = harness(name, "spheres") else { return };
+    let Some(mut harness) = harness(name, "columns") else { return };
     let place = folder("live_bad");
     let (gltf, hdr) = (place.join("broken.gltf"), place.join("broken.hdr"));
     std::fs::write(&gltf, "{\"asset\": {").expect("a file");
@@ -161,21 +162,21 @@ fn a_bad_file_keeps_the_scene() {
         let named = path.file_name().expect("a name").to_string_lossy().into_owned();
         assert!(harness.query_all_by_label_contains(&named).count() > 0, "{named} is in a message");
         let loaded = &live(&mut harness).running.as_ref().expect("a scene").loaded;
-        assert_eq!(loaded.name, "spheres");
+        assert_eq!(loaded.name, "columns");
         assert!(matches!(loaded.around, viewer::live::loading::Around::Sky(_)));
         harness.get_by_label("Close").click();
         harness.run();
     }
     // And a good one takes its place.
-    live(&mut harness).load("lobes");
+    live(&mut harness).load("glass");
     settled(&mut harness);
-    assert_eq!(live(&mut harness).running.as_ref().expect("a scene").loaded.name, "lobes");
+    assert_eq!(live(&mut harness).running.as_ref().expect("a scene").loaded.name, "glass");
 }
 
 #[test]
 fn looking_at_textures_changes_no_count() {
     let name = "looking_at_textures_changes_no_count";
-    let Some(mut harness) = harness(name, "spheres") else { return };
+    let Some(mut harness) = harness(name, "columns") else { return };
     let before = plan(&harness);
     harness.state_mut().turn_to(Pane::Preview);
     harness.run();
@@ -206,7 +207,7 @@ fn looking_at_textures_changes_no_count() {
 #[test]
 fn debug_modes_are_executed_and_compared() {
     let name = "debug_modes_are_executed_and_compared";
-    let Some(mut harness) = harness(name, "spheres") else { return };
+    let Some(mut harness) = harness(name, "columns") else { return };
     let before = plan(&harness);
     live(&mut harness).asked.modes = Modes(vec![Mode::Immediate]);
     live(&mut harness).again();
@@ -235,7 +236,7 @@ fn debug_modes_are_executed_and_compared() {
 #[test]
 fn settings_go_to_a_file_and_come_back() {
     let name = "settings_go_to_a_file_and_come_back";
-    let Some(mut harness) = harness(name, "spheres") else { return };
+    let Some(mut harness) = harness(name, "columns") else { return };
     let path = folder("live_settings").join("own.ron");
     let document = live(&mut harness).document().clone();
     live(&mut harness).save(&path).expect("a file");
@@ -252,7 +253,7 @@ fn settings_go_to_a_file_and_come_back() {
 #[test]
 fn a_frame_that_stands_still_is_not_drawn() {
     let name = "a_frame_that_stands_still_is_not_drawn";
-    let Some(mut harness) = harness(name, "spheres") else { return };
+    let Some(mut harness) = harness(name, "columns") else { return };
     harness.run();
     let drawn = live(&mut harness).running.as_ref().expect("a frame").drawn();
     let idle = harness.output().viewport_output.values().map(|viewport| viewport.repaint_delay).min();
