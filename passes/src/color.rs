@@ -1,5 +1,8 @@
 //! The color pass: opaque and masked surfaces, the sky behind them, blended surfaces in front.
 //!
+//! Over a depth prepass it shades what that found nearest, each pixel once. Without one it finds the nearest itself and may shade a
+//! pixel several times; the picture is the same to the bit, since the last of equally near surfaces is seen either way.
+//!
 //! Where the plan inlines point-wise passes that read the radiance, every draw of this pass ends with what they do, and
 //! the radiance is never written.
 
@@ -8,23 +11,26 @@ use crate::draw::SurfaceDraw;
 use crate::error::PassError;
 use crate::fog::FogSettings;
 use crate::lighting::Lighting;
+use crate::prepass::new_depth;
 use crate::program::Programs;
 use crate::shading::{AlphaUse, Shading};
 use crate::shadow::ShadowInput;
 use crate::surface::{HDR_FORMAT, OcclusionInput, SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
-use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
+use framegraph::{
+    ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View,
+};
 use framegraph_scene::Lobes;
 use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError};
 
-/// Shades what the prepass found nearest.
+/// Shades what is nearest.
 #[derive(Clone, Copy, Debug)]
 pub struct Color {
     /// The view that is drawn: that of the depth.
     pub view: ViewId,
-    /// Depth of the nearest surfaces; the radiance gets its size.
-    pub depth: Texture,
+    /// Where depth comes from; the radiance gets its size.
+    pub depth: ColorDepth,
     /// The shadow maps of the view, depth or moments; without them nothing casts.
     pub shadow: Option<Texture>,
     /// Ambient occlusion of what does not blend: visibility in red, and where it is of the format Rgba16Float the mean open
@@ -57,13 +63,22 @@ pub struct Color {
     pub fog: Option<FogSettings>,
 }
 
+/// Where the depth comes from that the color pass tests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColorDepth {
+    /// From a [`Prepass`](crate::prepass::Prepass): the nearest surfaces, which are shaded where depth is equal.
+    Prepass(Texture),
+    /// From the color pass itself, of this size.
+    Own(Extent),
+}
+
 impl Color {
-    /// The main view over this depth: one sample per texel, no shadow map, no ambient occlusion, nothing that blends, no fog, half floats. Other fields
+    /// The main view over the depth of a prepass: one sample per texel, no shadow map, no ambient occlusion, nothing that blends, no fog, half floats. Other fields
     /// are set in a struct expression that ends with `..Color::new(depth)`.
     pub fn new(depth: Texture) -> Self {
         Self {
             view: ViewId::MAIN,
-            depth,
+            depth: ColorDepth::Prepass(depth),
             shadow: None,
             occlusion: None,
             structure: None,
@@ -88,6 +103,8 @@ pub struct ColorIo {
     contact: Option<View>,
     occlusion: Option<OcclusionInput>,
     reflections: Option<[View; 2]>,
+    /// Depth of the nearest surfaces, reversed.
+    pub depth: Texture,
     /// Scene-referred radiance times exposure, linear Rec.709, single-sampled.
     pub hdr: Texture,
     /// The same, of each sample; `hdr` itself at one sample per texel.
@@ -99,12 +116,17 @@ impl Pass for Color {
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<ColorIo, DeclareError> {
         pass.takes_epilogue();
-        let extent = pass.desc(self.depth)?.extent;
-        pass.depth_read_only(self.depth)?;
+        let (extent, depth) = match self.depth {
+            ColorDepth::Prepass(depth) => {
+                pass.depth_read_only(depth)?;
+                (pass.desc(depth)?.extent, depth)
+            }
+            ColorDepth::Own(extent) => (extent, new_depth(pass, extent, self.samples)?),
+        };
         let shadow = ShadowInput::declare(self.shadow, pass)?;
         let shown = self.structure.filter(|_| self.contact_shadows);
         let contact = shown.map(|structure| pass.sampled(structure.mip(0))).transpose()?;
-        let occlusion = self.occlusion.map(|picture| self.occlusion_input(picture, pass)).transpose()?;
+        let occlusion = self.occlusion.map(|picture| self.occlusion_input(picture, extent, pass)).transpose()?;
         let reflections = match self.reflections {
             Some([picture, ways]) => Some([pass.sampled(picture)?, pass.sampled(ways)?]),
             None => None,
@@ -119,11 +141,12 @@ impl Pass for Color {
         let black = Intent::Clear(ClearValue::BLACK);
         if self.samples == 1 {
             let hdr = pass.color(hdr, black)?;
-            return Ok(ColorIo { shadow, contact, occlusion, reflections, hdr, samples: hdr });
+            return Ok(ColorIo { shadow, contact, occlusion, reflections, depth, hdr, samples: hdr });
         }
         let samples = pass.texture("hdr_samples", desc.samples(self.samples));
         let samples = pass.color(samples, black)?;
-        Ok(ColorIo { shadow, contact, occlusion, reflections, hdr: pass.resolve(samples, hdr.texture())?, samples })
+        let hdr = pass.resolve(samples, hdr.texture())?;
+        Ok(ColorIo { shadow, contact, occlusion, reflections, depth, hdr, samples })
     }
 }
 
@@ -137,10 +160,15 @@ where
 }
 
 impl Color {
-    fn occlusion_input(&self, picture: Texture, pass: &mut PassBuilder<'_>) -> Result<OcclusionInput, DeclareError> {
-        let (desc, depth) = (pass.desc(picture)?, pass.desc(self.depth)?);
+    fn occlusion_input(
+        &self,
+        picture: Texture,
+        extent: Extent,
+        pass: &mut PassBuilder<'_>,
+    ) -> Result<OcclusionInput, DeclareError> {
+        let desc = pass.desc(picture)?;
         let structure = match self.structure {
-            _ if desc.extent == depth.extent => None,
+            _ if desc.extent == extent => None,
             Some(structure) => Some(pass.sampled(structure.mip(0))?),
             None => {
                 let hint = "give the color pass the structure that it was made of";
@@ -165,16 +193,20 @@ impl Color {
             SurfaceInputs { contact, occlusion, reflections, fog: self.fog, ..SurfaceInputs::shadowed(shadow) };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, epilogue, cx)?;
         let program = |lobes: Lobes| bindings.program(world.programs, lobes);
-        // The prepass has cut the holes of masked surfaces: both kinds are drawn where depth is equal.
-        let opaque = SurfaceDraw {
-            program: &program,
-            frame: &bindings.frame,
-            constants: &bindings.constants(AlphaUse::None),
-            depth: Depth::EQUAL,
-            colors: &[],
+        // A prepass has cut the holes of masked surfaces, but something else may be as near there.
+        let depth = match self.depth {
+            ColorDepth::Prepass(_) => Depth::EQUAL,
+            ColorDepth::Own(_) => Depth::NEARER,
         };
-        for batches in &world.view.view.draws.surfaces {
-            opaque.draw(batches, world.instances(), cx)?;
+        for (batches, alpha) in world.view.view.draws.surfaces.iter().zip([AlphaUse::None, AlphaUse::Mask]) {
+            let surfaces = SurfaceDraw {
+                program: &program,
+                frame: &bindings.frame,
+                constants: &bindings.constants(alpha),
+                depth: depth.clone(),
+                colors: &[],
+            };
+            surfaces.draw(batches, world.instances(), cx)?;
         }
         if self.sky {
             draw_background(world, &bindings, cx)?;

@@ -13,7 +13,7 @@
 //! | `case.rs`, `decided.rs` | what rules look at; what they decide |
 //! | `survey.rs` | what is known of meshes and materials whatever the camera is |
 //! | `seen.rs`, `cover.rs` | what cameras may see; what covers the whole picture |
-//! | `shadows.rs`, `shading.rs`, `screen.rs`, `picture.rs`, `lens.rs`, `late.rs` | the rules |
+//! | `shadows.rs`, `shading.rs`, `screen.rs`, `picture.rs`, `lens.rs`, `overdraw.rs`, `late.rs` | the rules |
 //! | `memory.rs` | effects do not flicker at thresholds |
 //! | `apply.rs` | facts into settings |
 //! | `savings.rs`, `told.rs` | what each drop saves; text and JSON |
@@ -31,6 +31,7 @@ mod fact;
 mod late;
 mod lens;
 mod memory;
+mod overdraw;
 mod picture;
 mod savings;
 mod screen;
@@ -61,6 +62,7 @@ pub fn decide(input: &FactInput<'_>, memory: &mut FactMemory) -> Facts {
     shading::rules(&case, &mut facts);
     picture::rules(&case, &mut facts);
     lens::rules(&case, &mut facts);
+    overdraw::rules(&case, &mut facts);
     facts.rows.sort_by_key(|row| row.effect);
     let unneeded = facts.dropped();
     for row in &mut facts.rows {

@@ -8,8 +8,8 @@
 //! | `shadow` | `shadow`, or a pass a layer of maps; `structure` for contact shadows | | shadow maps, structure |
 //! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
 //! | `reflection` | `structure`, `reflection_depth`, `reflection`, `reflection_level`… | the radiance of the frame before | structure, reflections, where radiance goes |
-//! | `prepass` | `prepass`, `velocity` | | depth, velocity |
-//! | `color` | `color` | depth, shadow maps, structure, ambient occlusion, reflections | radiance |
+//! | `prepass` | `prepass`, `velocity`, where they are drawn | | depth, velocity |
+//! | `color` | `color` | depth if it was drawn, shadow maps, structure, ambient occlusion, reflections | radiance, depth |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
 //! | `transparent` | `transparent` | all of these | radiance, depth |
 //! | `resolve` | `tone_resolve` | samples of radiance | radiance |
@@ -24,12 +24,13 @@
 //! All stages are there whatever the settings are; one that a frame does not need declares nothing.
 
 mod before;
+mod glass;
 mod lens;
 mod picture;
 mod shadows;
 
 use crate::bloom::BloomSettings;
-use crate::color::Color;
+use crate::color::{Color, ColorDepth};
 use crate::dof::DofSettings;
 use crate::fog::FogSettings;
 use crate::frame_index::FrameIndex;
@@ -47,14 +48,15 @@ use crate::structure::{Resolution, structure_levels};
 use crate::surface::HDR_FORMAT;
 use crate::taa::{TaaSettings, temporal};
 use crate::tone_resolve::ToneResolve;
-use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent, scene_levels};
+use crate::transmission::{MOST_GLASS_LAYERS, scene_levels};
 use crate::upload::GpuScene;
 use crate::upscale::{Upscale, enlarge};
 use crate::view::{ViewId, Views};
 use before::{occlusion, prepass, reflection};
-use framegraph::{AccessKind, Extent, Format, Target, Texture};
+use framegraph::{Extent, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
 use framegraph_wgpu::{Frame, StoreRounding};
+use glass::{Glass, scene, transparent};
 use lens::{bloom, dof, mix_of};
 use picture::{PostWay, fxaa};
 use shadows::{maps_of, shadow};
@@ -123,6 +125,9 @@ pub struct Settings {
     /// Layers of glass that is seen through glass, 1 to [`MOST_GLASS_LAYERS`]: in 1 all glass shows what is opaque alone. What
     /// lies farther back than there are layers is in the last of them.
     pub glass_layers: u8,
+    /// Depth is drawn before surfaces are shaded, so that each pixel is shaded once. Without, what overlaps is shaded several times, and
+    /// triangles are drawn once less; where velocity is drawn, over the depth, there is a prepass anyway. The picture is the same.
+    pub prepass: bool,
     /// Draw what stands behind everything; without it, what no surface covers is black.
     pub sky: bool,
     /// Frames are added up; who makes the view jitters it ([`TaaSettings::jitter_px`]). Off as in Filament. Views of one graph
@@ -178,6 +183,7 @@ impl Settings {
         glass_layers: 1,
         moving: false,
         measure: Measure::NONE,
+        prepass: true,
         sky: true,
         taa: None,
         fxaa: true,
@@ -201,6 +207,16 @@ impl Settings {
             structure_levels: self.occlusion.map_or(1, |o| structure_levels(size_texels, o.resolution)),
             ..self
         }
+    }
+
+    /// Whether velocity of what moves is drawn.
+    pub(crate) fn draws_velocity(&self) -> bool {
+        self.moving && self.taa.is_some()
+    }
+
+    /// Whether depth is drawn before the color pass.
+    fn draws_prepass(&self) -> bool {
+        self.prepass || self.draws_velocity()
     }
 
     /// Size and levels of the structure: those that ambient occlusion wants, which shares it with what needs any.
@@ -254,6 +270,8 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Some(own) => Stage::picture("upscale", move |frame, handles| enlarge(frame, handles, &own)),
         None => Stage::new("upscale", |_, _| Ok(())),
     };
+    let Settings { samples, scene_levels, glass_layers, shading, fog, .. } = s;
+    let glass = Glass { levels: scene_levels, layers: glass_layers, samples, shading, fog };
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, s.shadows, s.structure())),
         // Before the prepass, so that nothing comes between that and the color pass: they share a step.
@@ -263,10 +281,12 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("reflection", move |frame, handles| {
             reflection(frame, handles, s.reflections, s.structure(), (s.reflection_levels, s.hdr_format))
         }),
-        Stage::new("prepass", move |frame, handles| prepass(frame, handles, s.samples, s.moving && s.taa.is_some())),
+        Stage::new("prepass", move |frame, handles| {
+            prepass(frame, handles, s.samples, [s.draws_prepass(), s.draws_velocity()])
+        }),
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
-        Stage::new("scene", move |frame, handles| scene(frame, handles, &s)),
-        Stage::new("transparent", move |frame, handles| transparent(frame, handles, &s)),
+        Stage::new("scene", move |frame, handles| scene(frame, handles, s.scene_levels)),
+        Stage::new("transparent", move |frame, handles| transparent(frame, handles, &glass)),
         Stage::new("resolve", move |frame, handles| resolve(frame, handles, s.tone_resolve && s.samples > 1)),
         Stage::new("taa", move |frame, handles| s.taa.as_ref().map_or(Ok(()), |own| temporal(frame, handles, own))),
         Stage::new("measure", move |frame, handles| measure(frame, handles, s.measure)),
@@ -285,7 +305,10 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
     let contact_shadows = settings.shadows.is_some_and(|shadows| shadows.contact.is_some());
     let pass = Color {
         view: handles.view(),
-        depth: handles.get(Slot::DEPTH)?,
+        depth: match settings.draws_prepass() {
+            true => ColorDepth::Prepass(handles.get(Slot::DEPTH)?),
+            false => ColorDepth::Own(handles.extent()),
+        },
         shadow: maps_of(handles),
         occlusion: handles.find(Slot::OCCLUSION),
         structure: handles.find(Slot::STRUCTURE),
@@ -304,71 +327,10 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         fog,
     };
     let io = frame.add("color", pass)?;
+    handles.set(Slot::DEPTH, io.depth);
     handles.set(Slot::HDR, io.hdr);
     if samples > 1 {
         handles.set(Slot::HDR_SAMPLES, io.samples);
-    }
-    Ok(())
-}
-
-/// The picture of what is behind transmissive surfaces: a pass a level.
-fn scene<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    let levels = settings.scene_levels;
-    if levels == 0 {
-        return Ok(());
-    }
-    let told = format_args!("surfaces of the scene transmit: what is behind them is copied, in {levels} levels");
-    frame.graph_mut().note("scene", told);
-    let copy =
-        SceneCopy { view: handles.view(), hdr: handles.get(Slot::HDR)?, depth: handles.get(Slot::DEPTH)?, levels };
-    let scene = frame.scope("scene", |frame| {
-        let mut scene = frame.add("copy", copy)?.scene;
-        for level in 1..levels {
-            scene = frame.add("level", SceneLevel { scene, level })?.scene;
-        }
-        Ok::<Texture, StageError>(scene)
-    })?;
-    handles.set(Slot::SCENE_LEVELS, scene);
-    Ok(())
-}
-
-/// Layer by layer from the back: the stage before made the picture of what is behind the first of them.
-fn transparent<W: StandardWorld + ?Sized>(
-    frame: &mut Frame<W>,
-    handles: &mut Handles,
-    settings: &Settings,
-) -> Declared {
-    if settings.scene_levels == 0 {
-        return Ok(());
-    }
-    let multisampled = settings.samples > 1;
-    for layer in Layer::all(settings.glass_layers.clamp(1, MOST_GLASS_LAYERS)) {
-        if !layer.last {
-            scene(frame, handles, settings)?;
-        }
-        let hdr = handles.get(Slot::HDR)?;
-        let samples = if multisampled { handles.get(Slot::HDR_SAMPLES)? } else { hdr };
-        let averaged = frame.graph().writer_of(hdr).is_some_and(|access| access.kind == AccessKind::Resolve);
-        if multisampled && !averaged {
-            return Err(handles.lost(Slot::HDR, Slot::HDR_SAMPLES));
-        }
-        let pass = Transparent {
-            view: handles.view(),
-            depth: handles.get(Slot::DEPTH)?,
-            scene: handles.get(Slot::SCENE_LEVELS)?,
-            hdr,
-            samples,
-            shadow: maps_of(handles),
-            layer,
-            shading: settings.shading,
-            fog: settings.fog,
-        };
-        let io = frame.add("transparent", pass)?;
-        handles.set(Slot::HDR, io.hdr);
-        if multisampled {
-            handles.set(Slot::HDR_SAMPLES, io.samples);
-        }
-        handles.set(Slot::DEPTH, io.depth);
     }
     Ok(())
 }

@@ -38,9 +38,14 @@ impl Pass for Prepass {
     type Io = Texture;
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Texture, DeclareError> {
-        let depth = pass.texture("depth", TextureDesc::new(self.extent, DEPTH_FORMAT).samples(self.samples));
-        pass.depth(depth, Intent::Clear(ClearValue::FAR_REVERSED))
+        new_depth(pass, self.extent, self.samples)
     }
+}
+
+/// A new depth texture that the pass draws into, cleared to the far plane.
+pub(crate) fn new_depth(pass: &mut PassBuilder<'_>, extent: Extent, samples: u8) -> Result<Texture, DeclareError> {
+    let depth = pass.texture("depth", TextureDesc::new(extent, DEPTH_FORMAT).samples(samples));
+    pass.depth(depth, Intent::Clear(ClearValue::FAR_REVERSED))
 }
 
 impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for Prepass {

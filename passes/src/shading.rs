@@ -67,7 +67,7 @@ impl SpecularAa {
 /// What alpha does to a surface: values of the shader's `ALPHA_MODE`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AlphaUse {
-    /// Nothing: the surface is opaque, or the depth prepass has cut what is masked.
+    /// Nothing: the surface is opaque.
     None = 0,
     /// Texels below the material's cutoff are not drawn.
     Mask = 1,

@@ -74,6 +74,7 @@ pub use material::{
 pub use memory::Memory;
 pub use mesh::{Mesh, MeshError, MeshId};
 pub use options::LoadOptions;
+pub use overlap::{SHADED_POINTS, shaded_at_points};
 pub use progress::{Progress, ProgressFn, Stage};
 pub use renderables::{DrawKind, Renderables};
 pub use scene::Scene;

@@ -1,6 +1,6 @@
 //! What lies over what in a picture: layers of boxes, from the nearest.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3, DVec4};
 
 use super::bounds::Aabb;
 use super::camera::Camera;
@@ -17,6 +17,61 @@ pub fn layers_from_front(bounds: &[Aabb], camera: &Camera, width_over_height: f6
         layers.push(before.map(|(_, layer)| layer.saturating_add(1)).max().unwrap_or(0));
     }
     layers
+}
+
+/// Points of the picture in each direction at which [`shaded_at_points`] looks.
+pub const SHADED_POINTS: u32 = 32;
+
+/// At how many of [`SHADED_POINTS`]² points of the picture a box is seen, and how often boxes drawn in this order are shaded there
+/// altogether: each that is nearer than those before it. Points are the centers of as many equal parts of the picture. What is in a box
+/// is taken to be as near as the box, and what is about the eye as far as its other side.
+#[must_use]
+pub fn shaded_at_points<'a>(
+    order: impl IntoIterator<Item = &'a Aabb>,
+    camera: &Camera,
+    width_over_height: f64,
+) -> [u32; 2] {
+    let side = SHADED_POINTS as usize;
+    let view_from_clip = camera.clip_from_view(width_over_height).inverse();
+    let ray = |at: usize| {
+        let ndc = [at % side, at / side].map(|i| (2 * i + 1) as f64 / side as f64 - 1.0);
+        // Depth is reversed: 1 is near.
+        let [from, to] = [1.0, 0.5].map(|z| {
+            let point = view_from_clip * DVec4::new(ndc[0], ndc[1], z, 1.0);
+            camera.world_from_view * (point.truncate() / point.w)
+        });
+        (camera.eye + from, to - from)
+    };
+    let rays: Vec<_> = (0..side * side).map(ray).collect();
+    let mut nearest = vec![f64::INFINITY; rays.len()];
+    let mut shaded = 0;
+    // Points from the first that is not before the edge to the last that is not beyond it.
+    let point = |ndc: f64| (ndc * 0.5 + 0.5) * f64::from(SHADED_POINTS) - 0.5;
+    let within = |min: f64, max: f64| {
+        let first = point(min).ceil().clamp(0.0, side as f64) as usize;
+        first..((point(max).floor() + 1.0).clamp(0.0, side as f64) as usize).max(first)
+    };
+    for bounds in order {
+        let own = Rectangle::of(bounds, camera, width_over_height);
+        for row in within(own.min.y, own.max.y) {
+            for at in within(own.min.x, own.max.x).map(|column| row * side + column) {
+                let (from, along) = rays[at];
+                let away = away(bounds, from, along).unwrap_or(f64::INFINITY);
+                if away < nearest[at] {
+                    (nearest[at], shaded) = (away, shaded + 1);
+                }
+            }
+        }
+    }
+    [nearest.iter().filter(|away| away.is_finite()).count() as u32, shaded]
+}
+
+/// How far along a ray a box begins, in lengths of `along`; where it ends, if the ray begins in it.
+fn away(bounds: &Aabb, from: DVec3, along: DVec3) -> Option<f64> {
+    let [a, b] = [bounds.min, bounds.max].map(|side| (side - from) / along);
+    let (near, far) = (a.min(b).max_element(), a.max(b).min_element());
+    let at = if near > 0.0 { near } else { far };
+    (near <= far && at > 0.0).then_some(at)
 }
 
 /// What a box covers of the picture at most, in normalized device coordinates.
@@ -60,6 +115,38 @@ mod tests {
     fn boxes(centers: &[[f64; 3]]) -> Vec<Aabb> {
         let half = DVec3::splat(0.25);
         centers.iter().map(|c| DVec3::from_array(*c)).map(|c| Aabb { min: c - half, max: c + half }).collect()
+    }
+
+    #[test]
+    fn what_is_nearer_than_what_was_drawn_before_is_shaded_again() {
+        let camera = Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, Projection::perspective(1.0, 0.1));
+        let camera = camera.expect("a camera");
+        let shaded = |centers: &[[f64; 3]]| shaded_at_points(&boxes(centers), &camera, 1.5);
+        // The near face, at 1.75, spans 0.25 / 0.956 of half the picture's height to either side, and two thirds of that across;
+        // centers of parts lie at odd numbers of thirty-seconds.
+        let half = 0.25 / (1.75 * 0.5_f64.tan());
+        let within = |half: f64| (0..32).filter(|i| (f64::from(2 * i + 1) / 32.0 - 1.0).abs() <= half).count() as u32;
+        let near = within(half) * within(half / 1.5);
+        let far = within(0.25 / (2.75 * 0.5_f64.tan())) * within(0.25 / (2.75 * 0.5_f64.tan()) / 1.5);
+        let (front, back) = ([0.0, 0.0, -2.0], [0.0, 0.0, -3.0]);
+        assert_eq!(shaded(&[front]), [near; 2]);
+        assert_eq!(shaded(&[front, back]), [near; 2], "nearest first");
+        assert_eq!(shaded(&[back, front]), [near, near + far], "farthest first");
+        assert_eq!(
+            shaded(&[front, front, [9.0, 0.0, -2.0]]),
+            [near; 2],
+            "what is as near or outside is not shaded again"
+        );
+        // A room about the eye is as far as its walls.
+        let all = SHADED_POINTS * SHADED_POINTS;
+        let room = Aabb { min: DVec3::splat(-5.0), max: DVec3::splat(5.0) };
+        let inner = boxes(&[front])[0];
+        assert_eq!(shaded_at_points([&room, &inner], &camera, 1.5), [all, all + near]);
+        assert_eq!(shaded_at_points([&inner, &room], &camera, 1.5), [all; 2]);
+        // A floor without height, seen from above it.
+        let floor = Aabb { min: DVec3::new(-9.0, -1.0, -9.0), max: DVec3::new(9.0, -1.0, 9.0) };
+        let [seen, again] = shaded_at_points([&floor, &inner], &camera, 1.5);
+        assert!(seen > all / 4 && again > seen, "{seen} {again}");
     }
 
     fn layers(centers: &[[f64; 3]]) -> Vec<u8> {

@@ -69,7 +69,7 @@ fn looking_changes_neither_the_picture_nor_its_plan() {
     let out = render(&folder, &[&looking[..], &more].concat()).unwrap_or_else(|e| panic!("{e}"));
     assert!(read("plain.png") == read("looked.png"), "another picture");
     assert_eq!(read("plain.plan.txt"), read("looked.plan.txt"));
-    assert!(out.contains("depth@prepass, sample 0, 48x27 Depth32Float"), "{out}");
+    assert!(out.contains("depth@color, sample 0, 48x27 Depth32Float"), "{out}");
     assert!(out.contains("made in 2 frames: 0 textures, "), "{out}");
     let held = out.lines().find_map(|line| line.strip_prefix("held by the pools: ")).expect("memory is told");
     let mebibytes: Vec<_> = held.split(" MiB").filter_map(|text| text.rsplit([' ', '(']).next()).collect();

@@ -91,6 +91,7 @@ impl Settings {
             Effect::Fog => s.fog = Some(FogSettings::DEFAULT),
             Effect::DepthOfField => s.dof = Some(DofSettings::DEFAULT),
             Effect::Bloom => s.bloom = Some(BloomSettings::DEFAULT),
+            Effect::Prepass => s.prepass = true,
             Effect::Transmission | Effect::Blending | Effect::Grading => {}
         }
         s
@@ -136,6 +137,7 @@ fn less(settings: Settings, effect: Effect, amounts: &Amounts) -> Settings {
         Effect::Fog => s.fog = None,
         Effect::DepthOfField => s.dof = None,
         Effect::Bloom => s.bloom = None,
+        Effect::Prepass => s.prepass = false,
     }
     s
 }

@@ -56,11 +56,13 @@ pub enum Effect {
     DepthOfField,
     /// What is bright glows.
     Bloom,
+    /// Depth drawn before surfaces are shaded.
+    Prepass,
 }
 
 impl Effect {
     /// All of them, in their order.
-    pub const ALL: [Self; 26] = [
+    pub const ALL: [Self; 27] = [
         Self::SunShadows,
         Self::LampShadows,
         Self::Cascades,
@@ -87,6 +89,7 @@ impl Effect {
         Self::Fog,
         Self::DepthOfField,
         Self::Bloom,
+        Self::Prepass,
     ];
 
     /// As it is asked for.
@@ -118,6 +121,7 @@ impl Effect {
             Self::Fog => "fog",
             Self::DepthOfField => "dof",
             Self::Bloom => "bloom",
+            Self::Prepass => "prepass",
         }
     }
 

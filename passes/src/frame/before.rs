@@ -13,13 +13,16 @@ use crate::view::Views;
 use framegraph::Format;
 use framegraph_wgpu::Frame;
 
-/// Depth of what is seen, of so many samples, and where what moves was.
+/// Depth of what is seen, if it is drawn before it is shaded, and where what moves was.
 pub(super) fn prepass<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     samples: u8,
-    moving: bool,
+    [drawn, moving]: [bool; 2],
 ) -> Result<(), StageError> {
+    if !drawn {
+        return Ok(());
+    }
     let depth = frame.add("prepass", Prepass { view: handles.view(), extent: handles.extent(), samples })?;
     handles.set(Slot::DEPTH, depth);
     if moving {

@@ -37,6 +37,7 @@ mod occlusion;
 mod parts;
 mod picture;
 mod poison;
+mod prepass;
 mod programs;
 mod proofs;
 mod readme;

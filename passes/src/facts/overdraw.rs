@@ -1,0 +1,56 @@
+//! Whether drawing depth before shading pays: triangles that are drawn once more against pixels that are shaded once less.
+//!
+//! What is shaded without it is estimated at points of the picture: boxes in the order of their draws, each shaded where it is nearer
+//! than those before it. A box is fuller than what is in it, so that less is shaded behind it and more in front.
+
+use super::case::Case;
+use super::decided::Facts;
+use super::effect::Effect;
+use super::fact::{Fact, Proof};
+use super::seen::fit_camera;
+use framegraph_scene::{BatchOrder, SHADED_POINTS, shaded_at_points};
+
+/// What drawing a triangle into depth takes, in times of shading a pixel: as measured (`docs/facts.md`).
+const TRIANGLE: f64 = 1.0;
+/// What drawing a pixel into depth takes, in times of shading it.
+const DEPTH_PIXEL: f64 = 0.02;
+/// Of more instances it is not known what they cover.
+const MOST_INSTANCES: usize = 2048;
+
+pub(super) fn rules(case: &Case<'_>, facts: &mut Facts) {
+    if !case.settings.prepass {
+        return;
+    }
+    let kept = |why: String| Fact::kept(Effect::Prepass, Proof::Exact, why);
+    if case.settings.draws_velocity() {
+        facts.rows.push(kept("velocity is drawn over its depth".into()));
+        return;
+    }
+    let most = case.seen.most(|lists| lists.opaque.len() + lists.mask.len());
+    if most > MOST_INSTANCES {
+        facts.rows.push(kept(format!("{most} instances are seen, and of more than {MOST_INSTANCES} nothing is known")));
+        return;
+    }
+    let (mut triangles, mut seen_px, mut saved_px) = (0, 0.0, 0.0);
+    let seen = case.input.views.iter().zip(&case.seen.lists);
+    for (view, lists) in seen.filter(|(_, lists)| lists.opaque.len() + lists.mask.len() > 0) {
+        let mut numbers = Vec::with_capacity(lists.opaque.len() + lists.mask.len());
+        for list in [&lists.opaque, &lists.mask] {
+            _ = case.seen.renderables.surfaces().batches(list, BatchOrder::FirstFirst, &mut numbers);
+        }
+        let drawn = numbers.iter().map(|number| &case.seen.scene.instances[*number as usize]);
+        triangles += drawn.clone().map(|instance| case.input.survey.shape(instance).triangles).sum::<usize>();
+        let bounds = drawn.map(|instance| &instance.bounds);
+        let [seen, shaded] = shaded_at_points(bounds, &view.camera, fit_camera(view).width_over_height);
+        let point_px = view.size_px.map(f64::from).iter().product::<f64>() / f64::from(SHADED_POINTS * SHADED_POINTS);
+        seen_px += f64::from(seen) * point_px;
+        saved_px += f64::from(shaded - seen) * point_px;
+    }
+    let cost_px = triangles as f64 * TRIANGLE + seen_px * DEPTH_PIXEL;
+    let told = format!(
+        "{triangles} triangles drawn once more cost as much as shading {:.0} thousand pixels, and it saves {:.0} thousand",
+        cost_px / 1e3,
+        saved_px / 1e3,
+    );
+    facts.rows.push(Fact::decide(Effect::Prepass, Proof::Exact, saved_px <= cost_px, told.clone(), told));
+}

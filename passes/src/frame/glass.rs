@@ -1,0 +1,92 @@
+//! Stages of what transmits: the picture of what is behind it, and its layers.
+
+use super::shadows::maps_of;
+use crate::fog::FogSettings;
+use crate::lighting::Lighting;
+use crate::program::Programs;
+use crate::shading::Shading;
+use crate::stages::{Handles, Slot, StageError};
+use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent};
+use crate::upload::GpuScene;
+use crate::view::Views;
+use framegraph::{AccessKind, Texture};
+use framegraph_wgpu::Frame;
+
+/// How what transmits is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Glass {
+    /// Levels of the picture of what is behind it; 0: nothing transmits.
+    pub levels: u8,
+    /// Layers of glass that is seen through glass.
+    pub layers: u8,
+    /// Samples per texel of the color pass.
+    pub samples: u8,
+    /// How surfaces are shaded.
+    pub shading: Shading,
+    /// Fog before them.
+    pub fog: Option<FogSettings>,
+}
+
+/// The picture of what is behind transmissive surfaces: a pass a level.
+pub(super) fn scene<W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static>(
+    frame: &mut Frame<W>,
+    handles: &mut Handles,
+    levels: u8,
+) -> Result<(), StageError> {
+    if levels == 0 {
+        return Ok(());
+    }
+    let told = format_args!("surfaces of the scene transmit: what is behind them is copied, in {levels} levels");
+    frame.graph_mut().note("scene", told);
+    let copy =
+        SceneCopy { view: handles.view(), hdr: handles.get(Slot::HDR)?, depth: handles.get(Slot::DEPTH)?, levels };
+    let scene = frame.scope("scene", |frame| {
+        let mut scene = frame.add("copy", copy)?.scene;
+        for level in 1..levels {
+            scene = frame.add("level", SceneLevel { scene, level })?.scene;
+        }
+        Ok::<Texture, StageError>(scene)
+    })?;
+    handles.set(Slot::SCENE_LEVELS, scene);
+    Ok(())
+}
+
+/// Layer by layer from the back: the stage before made the picture of what is behind the first of them.
+pub(super) fn transparent<W>(frame: &mut Frame<W>, handles: &mut Handles, glass: &Glass) -> Result<(), StageError>
+where
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized + 'static,
+{
+    if glass.levels == 0 {
+        return Ok(());
+    }
+    let multisampled = glass.samples > 1;
+    for layer in Layer::all(glass.layers.clamp(1, MOST_GLASS_LAYERS)) {
+        if !layer.last {
+            scene(frame, handles, glass.levels)?;
+        }
+        let hdr = handles.get(Slot::HDR)?;
+        let samples = if multisampled { handles.get(Slot::HDR_SAMPLES)? } else { hdr };
+        let averaged = frame.graph().writer_of(hdr).is_some_and(|access| access.kind == AccessKind::Resolve);
+        if multisampled && !averaged {
+            return Err(handles.lost(Slot::HDR, Slot::HDR_SAMPLES));
+        }
+        let pass = Transparent {
+            view: handles.view(),
+            depth: handles.get(Slot::DEPTH)?,
+            scene: handles.get(Slot::SCENE_LEVELS)?,
+            hdr,
+            samples,
+            shadow: maps_of(handles),
+            layer,
+            shading: glass.shading,
+            fog: glass.fog,
+        };
+        let io = frame.add("transparent", pass)?;
+        handles.set(Slot::HDR, io.hdr);
+        if multisampled {
+            handles.set(Slot::HDR_SAMPLES, io.samples);
+        }
+        handles.set(Slot::DEPTH, io.depth);
+    }
+    Ok(())
+}
