@@ -162,7 +162,7 @@ fn import_meshes(
             let at = format!("mesh {mesh_index} primitive {i}");
             let material = materials.import(primitive.material, &at, warnings)?;
             let surface = materials.get(material);
-            let key = GeometryKey::new(primitive, surface.tangent_uv_set(), node.index, node.skin.is_some());
+            let key = GeometryKey::new(primitive, surface, node.index, node.skin.is_some());
             let mesh_id = match built.get(&key) {
                 Some(id) => *id,
                 None => {

@@ -5,7 +5,6 @@ use glam::{Vec2, Vec3, Vec4};
 use super::bounds::Aabb;
 use super::id::Id;
 use crate::moves::Moves;
-#[cfg(feature = "gltf")]
 use crate::moves::gather;
 
 /// A mesh of a scene.
@@ -75,7 +74,6 @@ impl Mesh {
     /// # Panics
     ///
     /// When a source is not a vertex of this mesh.
-    #[cfg(feature = "gltf")]
     pub(crate) fn gather_vertices(&mut self, source: &[u32]) {
         gather(&mut self.positions, source);
         gather(&mut self.normals, source);
@@ -219,7 +217,6 @@ mod tests {
         }
     }
 
-    #[cfg(feature = "gltf")]
     #[test]
     fn gathering_copies_every_stream() {
         let mut mesh = triangle();

@@ -15,7 +15,6 @@ pub struct Moves {
 
 impl Moves {
     /// Replaces vertices by copies of `source[i]`, as `Mesh::gather_vertices` does.
-    #[cfg(feature = "gltf")]
     pub(crate) fn gather_vertices(&mut self, source: &[u32]) {
         gather(&mut self.joints, source);
         gather(&mut self.weights, source);
@@ -39,7 +38,6 @@ pub struct MorphTarget {
 }
 
 /// Copies of `source[i]`, of a stream that there is.
-#[cfg(feature = "gltf")]
 pub(crate) fn gather<T: Copy>(stream: &mut Vec<T>, source: &[u32]) {
     if !stream.is_empty() {
         *stream = source.iter().map(|&s| stream[s as usize]).collect();

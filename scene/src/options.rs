@@ -11,4 +11,7 @@ pub struct LoadOptions {
     pub memory: Arc<Memory>,
     /// Buffers and images of a scene may lie outside of the scene's folder.
     pub allow_outside: bool,
+    /// Triangles and vertices stay in the order of the file; otherwise meshes that do not blend get one that is drawn faster
+    /// ([`order_for_drawing`](crate::geometry::order_for_drawing)).
+    pub keep_order: bool,
 }

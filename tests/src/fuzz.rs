@@ -29,7 +29,7 @@ const MEMORY_BYTES: u64 = 16 << 20;
 
 /// Few bytes may claim to be much.
 fn options() -> LoadOptions {
-    LoadOptions { memory: Memory::new(MEMORY_BYTES).into(), allow_outside: false }
+    LoadOptions { memory: Memory::new(MEMORY_BYTES).into(), ..LoadOptions::default() }
 }
 
 /// A glTF or GLB file. Files beside it are not there.

@@ -11,7 +11,8 @@ use super::stream::{finite, stream};
 use super::topology::{Triangles, triangles};
 use crate::bounds::Aabb;
 use crate::error::{SceneError, one_line};
-use crate::geometry::{generate_tangents, make_flat, repair_tangents};
+use crate::geometry::{generate_tangents, make_flat, order_for_drawing, repair_tangents};
+use crate::material::{AlphaMode, Material};
 use crate::mesh::Mesh;
 
 /// What a mesh is made of: primitives with equal keys share one.
@@ -27,14 +28,16 @@ pub(super) struct GeometryKey {
     mode: Option<u32>,
     /// The texture coordinates that tangents are wanted for.
     tangent_uv: Option<u32>,
+    /// Triangles stay in their order, which shows where they blend.
+    blends: bool,
     /// What moves the vertices, if anything does.
     moves: Option<MovesKey>,
 }
 
 impl GeometryKey {
-    /// `tangent_uv` is the set that the material's tangents follow, if it asks for them.
+    /// The material says which texture coordinates tangents follow, if it asks for them, and whether the order of triangles shows.
     /// A mesh that `node` moves, which has a skin or not, is the node's own.
-    pub fn new(primitive: &Primitive, tangent_uv: Option<u32>, node: usize, skinned: bool) -> Self {
+    pub fn new(primitive: &Primitive, surface: &Material, node: usize, skinned: bool) -> Self {
         let accessor =
             |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
         Self {
@@ -48,7 +51,8 @@ impl GeometryKey {
                 Checked::Valid(mode) => Some(mode.as_gl_enum()),
                 Checked::Invalid => None,
             },
-            tangent_uv,
+            tangent_uv: surface.tangent_uv_set(),
+            blends: surface.alpha == AlphaMode::Blend,
             moves: MovesKey::new(primitive, node, skinned),
         }
     }
@@ -115,6 +119,9 @@ pub(super) fn build(
         generate_tangents(&mut mesh, uv_set);
     }
     mesh.check().map_err(|error| source.malformed(at, error.to_string()))?;
+    if !key.blends && !source.keep_order {
+        order_for_drawing(&mut mesh);
+    }
     Ok((mesh.triangle_count() > 0).then_some(mesh))
 }
 

@@ -23,6 +23,8 @@ pub(super) struct Source<'a> {
     /// The budget of everything that is decoded.
     pub memory: &'a Memory,
     allow_outside: bool,
+    /// Triangles stay in the order of the file.
+    pub keep_order: bool,
     /// For each image of the file the first that is the same.
     images: Vec<usize>,
     /// What was taken for the scene, which stays.
@@ -40,6 +42,7 @@ impl<'a> Source<'a> {
             buffers: Vec::new(),
             memory: &options.memory,
             allow_outside: options.allow_outside,
+            keep_order: options.keep_order,
             images: first_of_each(&root.images),
             kept_bytes: Cell::new(0),
             file_bytes: Cell::new(0),

@@ -5,6 +5,7 @@ mod bindings;
 mod effects;
 mod errors;
 mod mirror;
+mod operations;
 mod sources;
 mod validation;
 mod variants;

@@ -39,7 +39,7 @@ fn harmonics(radiance: impl Fn(DVec3) -> DVec3) -> Vec<DVec3> {
 }
 
 fn load(bytes: &[u8]) -> Result<Environment, String> {
-    let options = LoadOptions { memory: Memory::new(64 << 20).into(), allow_outside: false };
+    let options = LoadOptions { memory: Memory::new(64 << 20).into(), ..LoadOptions::default() };
     let loaded = Environment::load_bytes(Path::new("a/cube.ktx"), bytes, &options, &mut progress::silent);
     loaded.map_err(|error| error.to_string())
 }

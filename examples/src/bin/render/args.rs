@@ -163,7 +163,7 @@ impl Args {
     /// What loading may do. Everything that is loaded shares one budget: make them once.
     pub fn load_options(&self) -> LoadOptions {
         let memory = self.memory_bytes.map_or_else(Memory::default, Memory::new);
-        LoadOptions { memory: memory.into(), allow_outside: self.allow_outside }
+        LoadOptions { memory: memory.into(), allow_outside: self.allow_outside, keep_order: false }
     }
 }
 

@@ -39,6 +39,54 @@ fn every_index_type_and_none_at_all() {
     assert_eq!(fixture.load().expect("a good file").meshes[0].indices, [0, 1, 2]);
 }
 
+/// A strip of squares with its triangles in a scattered order: drawn in another one, unless the file's is asked for or shows, and then
+/// with vertices that are used in their order.
+#[test]
+fn triangles_are_ordered_where_their_order_does_not_show() {
+    let squares = 40_u16;
+    let corners: Vec<f32> = (0..2 * squares + 2).flat_map(|i| [f32::from(i / 2), f32::from(i % 2), 0.0]).collect();
+    let indices: Vec<u16> = (0..2 * squares)
+        .map(|i| i * 37 % (2 * squares))
+        .flat_map(|t| match t % 2 {
+            0 => [t, t + 2, t + 1],
+            _ => [t, t + 1, t + 2],
+        })
+        .collect();
+    let load = |alpha: &str, keep_order| {
+        let mut fixture = Fixture::new();
+        let (position, numbers) = (fixture.floats(3, &corners), fixture.shorts(&indices));
+        let normal = fixture.floats(3, &[0.0, 0.0, 1.0].repeat(corners.len() / 3));
+        let material = fixture.push("materials", json!({"alphaMode": alpha}));
+        let attributes = json!({"POSITION": position, "NORMAL": normal});
+        fixture.primitive(json!({"attributes": attributes, "indices": numbers, "material": material}));
+        let options = crate::LoadOptions { keep_order, ..crate::LoadOptions::default() };
+        let path = std::path::Path::new("fixture.glb");
+        let scene = super::super::load_bytes_with(path, &fixture.glb(), &options, &mut crate::progress::silent);
+        scene.expect("a good file").meshes.remove(0)
+    };
+    let file: Vec<u32> = indices.iter().map(|i| u32::from(*i)).collect();
+    for (alpha, keep_order) in [("BLEND", false), ("OPAQUE", true), ("MASK", true)] {
+        assert_eq!(load(alpha, keep_order).indices, file, "{alpha}, {keep_order}");
+    }
+    for alpha in ["OPAQUE", "MASK"] {
+        let (mesh, kept) = (load(alpha, false), load(alpha, true));
+        let [before, after] = [&kept, &mesh].map(crate::geometry::shaded_vertices);
+        assert!(after == kept.vertex_count() && before > 2 * after, "{before} to {after} vertices, {alpha}");
+        let area = |m: &crate::Mesh| {
+            let cross = |t: [usize; 3]| {
+                let [a, b, c] = t.map(|i| m.positions[i]);
+                (b - a).cross(c - a).z
+            };
+            m.triangles().map(cross).sum::<f32>()
+        };
+        assert_eq!(
+            (area(&mesh), mesh.bounds),
+            (2.0 * f32::from(squares), kept.bounds),
+            "every triangle faces as it did"
+        );
+    }
+}
+
 /// A square as list, strip and fan: the same two triangles up to rotation, the same winding.
 #[test]
 fn strips_and_fans_face_the_same_way_as_lists() {

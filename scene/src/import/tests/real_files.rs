@@ -3,11 +3,11 @@
 use glam::DVec3;
 
 use crate::camera::CameraChoice;
-use crate::import::load;
+use crate::import::{load, load_with};
 use crate::progress::silent;
 use crate::test_files::file;
 use crate::texture::TextureRole;
-use crate::{DrawLists, geometry};
+use crate::{DrawLists, LoadOptions, Mesh, geometry};
 
 #[test]
 fn flight_helmet_comes_in_whole() {
@@ -37,6 +37,27 @@ fn flight_helmet_comes_in_whole() {
     let lists = DrawLists::for_camera(&scene, &camera, 1.5);
     assert_eq!((lists.opaque.len() + lists.blend.len(), lists.culled), (6, 0));
     assert!(camera.eye.distance(DVec3::ZERO) < 3.0);
+}
+
+/// The row of `docs/performance.md`: vertices shaded for a triangle, in the order of the file and as drawn.
+#[test]
+fn flight_helmet_is_ordered_for_drawing() {
+    let Some(path) = file("assets/models/FlightHelmet/FlightHelmet.gltf") else {
+        return;
+    };
+    let load = |keep_order| {
+        let options = LoadOptions { keep_order, ..LoadOptions::default() };
+        load_with(&path, &options, &mut silent).expect("a good file").meshes
+    };
+    let sum = |meshes: &[Mesh], of: fn(&Mesh) -> usize| meshes.iter().map(of).sum::<usize>();
+    let (kept, ordered) = (load(true), load(false));
+    let triangles = sum(&kept, Mesh::triangle_count);
+    assert_eq!(triangles, sum(&ordered, Mesh::triangle_count));
+    let [before, after] = [&kept, &ordered].map(|meshes| sum(meshes, geometry::shaded_vertices) as f64);
+    let [before, after] = [before, after].map(|shaded| shaded / triangles as f64);
+    let row = format!("| FlightHelmet | {triangles} | {before:.3} | {after:.3} |");
+    println!("{row}");
+    assert!(include_str!("../../../../docs/performance.md").contains(&row), "docs/performance.md has no {row}");
 }
 
 /// Tangents of the file against generated ones: baked by another implementation of the same
