@@ -25,8 +25,8 @@ asks for a newer compiler than the workspace and is built with
 what else it does.
 
 With --frames instead, whole frames: each preset over six built-in scenes at
-1280x720 and 1920x1080, as it is and without dropping, merging, inlining and
-aliasing. Hours on a software driver; less of it by
+1280x720 and 1920x1080, as it is, with a depth prepass, and without dropping,
+merging, inlining and aliasing. Hours on a software driver; less of it by
   --scene NAME      one scene: a built-in one, or a file
   --preset NAME     one preset
   --size WxH        one size

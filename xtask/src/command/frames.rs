@@ -10,9 +10,10 @@ use std::process::Command;
 const SCENES: [&str; 6] = ["spheres", "columns", "materials", "glass", "lobes", "lamps:100"];
 const PRESETS: [&str; 4] = ["low", "medium", "high", "ultra"];
 const SIZES: [&str; 2] = ["1280x720", "1920x1080"];
-/// What is left out of the frame, with the options that do so; the first leaves out nothing.
-const WITHOUT: [(&str, &[&str]); 5] = [
+/// What is left out of the frame, or kept in it that it would leave out, with the options that do so; the first changes nothing.
+const WITHOUT: [(&str, &[&str]); 6] = [
     ("as it is", &[]),
+    ("a prepass", &["--enable", "prepass"]),
     ("no dropping", &["--force-effects"]),
     ("no merging", &["--debug", "no-merge"]),
     ("no inlining", &["--inline", "off"]),
