@@ -2,12 +2,16 @@
 
 use crate::stage::{Set, Shot, gpu};
 use framegraph::Options;
+use framegraph_passes::facts::{Around, Decision, Effect, EffectSet, FactInput, FactMemory, Survey, decide};
+use framegraph_passes::measure::Measurement;
 use framegraph_passes::shadow::ShadowSettings;
+use framegraph_passes::taa::TaaSettings;
 use framegraph_passes::view::Background;
-use framegraph_passes::{OcclusionSettings, Settings};
-use framegraph_scene::geometry::{cuboid, plane};
-use framegraph_scene::{AlphaMode, Material, Scene, progress};
-use glam::{DMat4, DVec3, Vec2, Vec3};
+use framegraph_passes::{LightSearch, OcclusionSettings, Settings, ViewSettings};
+use framegraph_scene::environment::ShBands;
+use framegraph_scene::geometry::{cuboid, plane, sphere};
+use framegraph_scene::{AlphaMode, Camera, Material, Mesh, Projection, Scene, progress};
+use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::error::Error;
 
 /// Boards and blocks with faces in one plane, of several colors and sides: of equally near ones the last is seen, unless it is masked
@@ -29,6 +33,71 @@ fn boards() -> Scene {
         scene.add_instance("block", block, material, DMat4::from_translation(at + DVec3::Y * 0.3));
     }
     scene
+}
+
+/// A floor of which the middle is `floor_z_m` away from the origin, toward the eye, and something over it that covers a part of it in the
+/// picture; and so many of the same beyond the view's far side.
+fn over_a_floor(mesh: Mesh, floor_z_m: f64, more: usize) -> Scene {
+    let mut scene = Scene::default();
+    let material = scene.add_material(Material::default());
+    let floor = scene.add_mesh(plane(Vec2::splat(9.0), 1, Vec2::ONE));
+    scene.add_instance("floor", floor, material, DMat4::from_translation(DVec3::Z * floor_z_m));
+    let mesh = scene.add_mesh(mesh);
+    for number in 0..=more {
+        let at = DVec3::new(0.0, 0.5, -0.01 * number as f64);
+        scene.add_instance("thing", mesh, material, DMat4::from_translation(at));
+    }
+    scene
+}
+
+/// Whether the fact drops the prepass, and why.
+fn decided(scene: &Scene, asked: Settings) -> (bool, String) {
+    let camera =
+        Camera::look_at(DVec3::new(0.2, 1.2, 3.2), DVec3::Y * 0.4, DVec3::Y, Projection::perspective(0.8, 0.1));
+    let view = ViewSettings {
+        camera: camera.expect("a camera"),
+        size_px: [64, 64],
+        ev100: 10.0,
+        environment_intensity: 1.0,
+        shadows: None,
+        lights: LightSearch::All,
+    };
+    let irradiance = &[Vec4::ONE; 18];
+    let input = FactInput {
+        scene,
+        survey: &Survey::new(scene),
+        around: Around { irradiance, bands: ShBands::Three, luminance_nits: 1.0, sun: None },
+        background: &Background::Environment,
+        views: &[view],
+        settings: &asked,
+        forced: EffectSet::NONE,
+        measured: Measurement::Off,
+        most_codes: FactInput::MOST_CODES,
+    };
+    let facts = decide(&input, &mut FactMemory::default());
+    let fact = facts.of(Effect::Prepass).expect("a prepass is asked for");
+    (fact.decision == Decision::Dropped, fact.reason.clone())
+}
+
+/// What is drawn over a floor that was drawn before it is shaded again, unless it has more triangles than that is worth; drawn before
+/// the floor it hides it.
+#[test]
+fn a_prepass_is_drawn_where_it_saves_more_than_it_costs() {
+    let plain = Settings { shadows: None, ..Settings::DEFAULT };
+    let block = || cuboid(Vec3::splat(0.5));
+    let cases = [
+        (over_a_floor(block(), 2.0, 0), false, "and it saves "),
+        (over_a_floor(block(), -4.0, 0), true, "and it saves 0 thousand"),
+        (over_a_floor(sphere(0.5, 96, 48), 2.0, 0), true, "and it saves "),
+        (over_a_floor(sphere(0.5, 96, 48), 2.0, 2048), false, "of more than 2048 nothing is known"),
+        (Scene::default(), true, "0 triangles"),
+    ];
+    for (scene, dropped, why) in cases {
+        let (found, reason) = decided(&scene, plain);
+        assert!(found == dropped && reason.contains(why), "{dropped}: {reason}");
+    }
+    let moving = Settings { moving: true, taa: Some(TaaSettings::DEFAULT), ..plain };
+    assert!(!decided(&Scene::default(), moving).0, "velocity is drawn over its depth");
 }
 
 #[test]
