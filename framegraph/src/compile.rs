@@ -43,6 +43,7 @@ use crate::options::{Options, Order};
 use crate::plan::{Memory, Plan};
 use cull::Culled;
 pub use phases::Scratch;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Compiles `graph` for a device and a frame into `plan`.
 ///
@@ -116,7 +117,7 @@ fn compile_keeping(
         ordered(&trimmed, caps, options, scratch, plan);
         scratch.trimmed = trimmed;
     }
-    plan.valid = true;
+    plan.number();
     Ok(())
 }
 
@@ -142,7 +143,7 @@ pub fn recompile(
     scratch: &mut Scratch,
     plan: &mut Plan,
 ) -> Result<bool, CompileErrors> {
-    if plan.valid && plan.options == *options && plan.caps == *caps && plan.graph.same_as(graph) {
+    if plan.compilation != 0 && plan.options == *options && plan.caps == *caps && plan.graph.same_as(graph) {
         plan.graph.share(graph);
         return Ok(false);
     }
@@ -150,13 +151,19 @@ pub fn recompile(
 }
 
 impl Plan {
+    /// Gives it a number that no other plan has.
+    pub(crate) fn number(&mut self) {
+        static COMPILATIONS: AtomicU64 = AtomicU64::new(1);
+        self.compilation = COMPILATIONS.fetch_add(1, Ordering::Relaxed);
+    }
+
     /// Empties the plan and notes what it will be made from.
     fn begin(&mut self, source: &Graph, for_caps: &Caps, with: &Options) {
         let Self {
             graph,
             caps,
             options,
-            valid,
+            compilation,
             pass_steps,
             steps,
             step_passes,
@@ -170,7 +177,7 @@ impl Plan {
         graph.share(source);
         caps.copy_from(for_caps);
         *options = *with;
-        *valid = false;
+        *compilation = 0;
         pass_steps.clear();
         steps.clear();
         step_passes.clear();

@@ -219,7 +219,8 @@ pub struct Plan {
     pub(crate) graph: Graph,
     pub(crate) caps: Caps,
     pub(crate) options: Options,
-    pub(crate) valid: bool,
+    /// 0 where nothing was compiled.
+    pub(crate) compilation: u64,
     pub(crate) pass_steps: Vec<StepId>,
     pub(crate) steps: Vec<Step>,
     pub(crate) step_passes: Vec<StepPass>,
@@ -250,6 +251,11 @@ impl Plan {
     /// The options it was compiled with.
     pub fn options(&self) -> &Options {
         &self.options
+    }
+
+    /// The number of the compilation that made it, from 1 in each process; 0 of an empty plan. Plans of one number are equal.
+    pub fn compilation(&self) -> u64 {
+        self.compilation
     }
 
     /// Width and height of the frame, in texels.

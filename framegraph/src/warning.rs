@@ -28,7 +28,7 @@ impl Warning {
 impl Plan {
     /// What is probably not meant.
     pub fn warnings(&self) -> impl Iterator<Item = Warning> {
-        let idle = self.valid && self.steps.is_empty() && !self.graph.passes().is_empty();
+        let idle = self.compilation != 0 && self.steps.is_empty() && !self.graph.passes().is_empty();
         idle.then_some(Warning::NothingRuns).into_iter()
     }
 }

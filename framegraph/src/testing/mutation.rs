@@ -74,7 +74,7 @@ impl MutationReport {
 /// Visits every mutant of a plan.
 pub fn mutants(plan: &Plan, visit: &mut dyn FnMut(Mutant)) {
     let mut mutator = Mutator { plan, visit };
-    mutator.with("valid", 0, |p| p.valid = false);
+    mutator.with("compilation", 0, |p| p.compilation = 0);
     steps::steps(&mut mutator);
     steps::attachments(&mut mutator);
     places::resources(&mut mutator);

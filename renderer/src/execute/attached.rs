@@ -47,9 +47,9 @@ impl Attached {
         Some(RenderPassDepthStencilAttachment { view, depth_ops: *depth, stencil_ops: *stencil })
     }
 
-    /// Adds the operations to the counts of what was executed.
-    pub(crate) fn count(&self, counts: &mut Counts) {
-        counts.render_passes += 1;
+    /// The operations of a render pass with these attachments.
+    pub(crate) fn counts(&self) -> Counts {
+        let mut counts = Counts { render_passes: 1, ..Counts::default() };
         for color in self.colors.iter().flatten() {
             counts.unresolves += u32::from(matches!(color.ops.load, wgpu::LoadOp::Load));
             counts.clears += u32::from(matches!(color.ops.load, wgpu::LoadOp::Clear(_)));
@@ -69,6 +69,7 @@ impl Attached {
             counts.resolves += u32::from(stored);
             counts.discards += u32::from(!read_only && !stored);
         }
+        counts
     }
 }
 

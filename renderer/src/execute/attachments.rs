@@ -5,7 +5,6 @@ use crate::execute::attached::{Attached, ColorTarget, DepthTarget};
 use crate::execute::error::ExecuteError;
 use crate::execute::load_store::{color_ops, depth_ops};
 use crate::execute::prepared::Prepared;
-use crate::execute::remembered::Remembered;
 use crate::named::Named;
 use crate::resources::realize::Physical;
 use crate::resources::views::ViewDesc;
@@ -13,20 +12,14 @@ use framegraph::{Attachment, ClearValue, Dimension, Format, Range, ResolveMode, 
 use wgpu::{TextureUsages, TextureView};
 
 impl Attached {
-    /// Takes the attachments of `step` in the place of what is here.
+    /// Takes the attachments of `step`; there are none here yet.
     ///
     /// # Errors
     /// When more layers are attached at once than the device offers, and for resolves in the store that wgpu has not.
-    pub(crate) fn gather(
-        &mut self,
-        frame: &Prepared<'_>,
-        step: StepId,
-        remembered: &mut Remembered,
-    ) -> Result<(), ExecuteError> {
-        self.clear();
+    pub(crate) fn gather(&mut self, frame: &Prepared<'_>, step: StepId) -> Result<(), ExecuteError> {
         let plan = frame.plan;
         for attachment in plan.attachments_of(step) {
-            let (view, depth_slice) = view_of(frame, attachment, remembered)?;
+            let (view, depth_slice) = view_of(frame, attachment)?;
             let attachment = &kept_initialized(frame, step, attachment);
             let clear = plan.graph().clears().get(attachment.clear as usize).copied().unwrap_or(ClearValue::Zero);
             match attachment.role {
@@ -74,11 +67,7 @@ fn kept_initialized(frame: &Prepared<'_>, step: StepId, attachment: &Attachment)
 }
 
 /// The view to attach, and the slice of a three-dimensional texture.
-fn view_of(
-    frame: &Prepared<'_>,
-    attachment: &Attachment,
-    remembered: &mut Remembered,
-) -> Result<(TextureView, Option<u32>), ExecuteError> {
+fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView, Option<u32>), ExecuteError> {
     let Prepared { plan, gpu, realized, caches, .. } = *frame;
     let Physical::Texture { texture, shape, .. } = realized.get(attachment.resource) else {
         unreachable!("the plan attaches `{}`, which has no texture", Named::resource(plan, attachment.resource));
@@ -102,6 +91,5 @@ fn view_of(
     };
     let slice = (shape.dimension == Dimension::D3).then_some(0);
     let name = plan.graph().resource_name(attachment.resource);
-    let last = remembered.step().views.next();
-    Ok((caches.views.again(last, &gpu.device, texture, view, name)?, slice))
+    Ok((caches.views.get(&gpu.device, texture, view, name)?, slice))
 }

@@ -5,11 +5,22 @@ use crate::execute::prepared::Prepared;
 use crate::named::Named;
 use crate::resources::realize::Physical;
 use crate::resources::views::ViewDesc;
-use framegraph::{Access, AccessKind, Aspect, ClearValue, Dimension, Format, Join, Mode, Range, StepId};
+use framegraph::{Access, AccessKind, Aspect, ClearValue, Dimension, Format, Join, Mode, Plan, Range, StepId};
 use wgpu::{
     Color, CommandEncoder, Features, ImageSubresourceRange, LoadOp, Operations, RenderPassColorAttachment,
     RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureUsages, TextureView,
 };
+
+/// Whether a pass of `step` declares something as cleared that it does not attach.
+pub(crate) fn clears_stored(plan: &Plan, step: StepId) -> bool {
+    stored_clears(plan, step).next().is_some()
+}
+
+fn stored_clears(plan: &Plan, step: StepId) -> impl Iterator<Item = &Access> {
+    let members = plan.passes_of(step).iter().filter(|m| !matches!(m.join, Join::Inlined | Join::Resolve));
+    let stored = |a: &&Access| matches!(a.kind, AccessKind::StorageWrite | AccessKind::CopyTarget);
+    members.flat_map(|member| plan.graph().accesses_of(member.pass)).filter(move |a| stored(a) && a.mode == Mode::Clear)
+}
 
 /// Clears everything that the passes of `step` declare as cleared and do not attach, before the step is opened.
 ///
@@ -22,27 +33,24 @@ pub(crate) fn clear_stored(
 ) -> Result<(), ExecuteError> {
     let Prepared { plan, realized, .. } = *frame;
     let graph = plan.graph();
-    for member in plan.passes_of(step).iter().filter(|m| !matches!(m.join, Join::Inlined | Join::Resolve)) {
-        let stored = |a: &&Access| matches!(a.kind, AccessKind::StorageWrite | AccessKind::CopyTarget);
-        for access in graph.accesses_of(member.pass).iter().filter(stored).filter(|a| a.mode == Mode::Clear) {
-            let value = graph.clears().get(access.clear as usize).copied().unwrap_or(ClearValue::Zero);
-            let filled = match realized.get(access.resource) {
-                Physical::Buffer { buffer, bytes } => {
-                    let whole = bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
-                    let (offset, bytes) = graph.bytes_of(access).map_or((0, whole), |b| (b.offset, b.bytes));
-                    let aligned = (offset | bytes) % wgpu::COPY_BUFFER_ALIGNMENT == 0;
-                    let can = is_zero(value) && aligned;
-                    if can {
-                        encoder.clear_buffer(buffer, offset, Some(bytes));
-                    }
-                    can
+    for access in stored_clears(plan, step) {
+        let value = graph.clears().get(access.clear as usize).copied().unwrap_or(ClearValue::Zero);
+        let filled = match realized.get(access.resource) {
+            Physical::Buffer { buffer, bytes } => {
+                let whole = bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+                let (offset, bytes) = graph.bytes_of(access).map_or((0, whole), |b| (b.offset, b.bytes));
+                let aligned = (offset | bytes) % wgpu::COPY_BUFFER_ALIGNMENT == 0;
+                let can = is_zero(value) && aligned;
+                if can {
+                    encoder.clear_buffer(buffer, offset, Some(bytes));
                 }
-                Physical::Texture { .. } => fill_texture(frame, access, value, encoder),
-                Physical::Absent(_) => true,
-            };
-            if !filled {
-                return Err(ExecuteError::Clear { resource: Named::resource(plan, access.resource) });
+                can
             }
+            Physical::Texture { .. } => fill_texture(frame, access, value, encoder),
+            Physical::Absent(_) => true,
+        };
+        if !filled {
+            return Err(ExecuteError::Clear { resource: Named::resource(plan, access.resource) });
         }
     }
     Ok(())

@@ -236,8 +236,8 @@ impl Executor {
         self.caches.begin_frame(self.options.max_age, self.options.max_pipeline_age);
         self.executed = Counts::default();
         self.timing.begin_frame(&self.gpu, plan);
-        let timed = self.threads.begin_frame(plan, self.timing.plan());
-        self.recording.begin_frame(timed);
+        let timed = self.threads.begin_frame(plan, self.timing.plan(), self.options.max_age);
+        self.recording.begin_frame(timed, self.options.max_age);
 
         let device = &self.gpu.device;
         let scopes = self.recording.in_wgpu(|| ErrorScopes::open(device));

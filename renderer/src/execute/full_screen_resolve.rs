@@ -34,7 +34,7 @@ pub(crate) fn record(cx: &mut Cx<'_>) -> Result<(), RecordError> {
         }
         let format = samples.range.view.or(plan.format(samples.resource)).unwrap_or(Format::Depth32Float);
         resolves.push(Fetched { number, format, slot: resolve.slot, mode: resolve.resolve });
-        bindings.push((number as u32, cx.view_at(samples, ViewPart::WHOLE)?.into()));
+        bindings.push((number as u32, cx.make_view(samples, ViewPart::WHOLE)?.into()));
         depth.write |= resolve.slot == Access::DEPTH;
     }
     let (name, text) = (format!("{}: resolve", cx.pass_name()), wgsl(&resolves));

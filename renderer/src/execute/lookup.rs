@@ -8,6 +8,7 @@ use crate::device::format::texture_format;
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
 use crate::execute::part::{BoundBuffer, BoundResource, HistoryImage, ViewPart};
+use crate::execute::remembered::LastView;
 use crate::named::Named;
 use crate::resources::no_memory::NoMemory;
 use crate::resources::physical::PhysicalTextureDesc;
@@ -64,7 +65,7 @@ impl<'a> Cx<'a> {
     /// As [`Cx::view`].
     pub fn texture(&mut self, view: View) -> Result<wgpu::Texture, RecordError> {
         let access = self.read(view)?;
-        self.physical_texture(access.resource).map(|(texture, _)| texture.clone())
+        self.physical_texture(access.1.resource).map(|(texture, _)| texture.clone())
     }
 
     /// The texture that this pass writes, for copies; `texture` is the handle that the write returned.
@@ -73,7 +74,7 @@ impl<'a> Cx<'a> {
     /// As [`Cx::view_of`].
     pub fn texture_of(&mut self, texture: Texture) -> Result<wgpu::Texture, RecordError> {
         let access = self.written(texture)?;
-        self.physical_texture(access.resource).map(|(texture, _)| texture.clone())
+        self.physical_texture(access.1.resource).map(|(texture, _)| texture.clone())
     }
 
     /// Width and height in texels of the first level of the part that a token names. That of a history's earlier image is
@@ -169,11 +170,11 @@ impl<'a> Cx<'a> {
     /// As [`Cx::resource`], and a level or layer that the pass did not declare.
     pub fn resource_part(&mut self, access: AccessId, part: ViewPart) -> Result<BoundResource, RecordError> {
         let access = self.graph().accesses().get(access.index()).ok_or(RecordError::Foreign)?;
-        self.touch(access)?;
+        let (index, access) = self.touch(access)?;
         if self.graph().resources()[access.resource.index()].desc.texture().is_none() {
             return self.physical_buffer(access).map(BoundResource::Buffer);
         }
-        let view = self.view_at(access, part)?;
+        let view = self.view_at((index, access), part)?;
         let texture = self.physical_texture(access.resource)?.0.clone();
         Ok(BoundResource::Texture { texture, view })
     }
@@ -182,28 +183,26 @@ impl<'a> Cx<'a> {
         self.frame.plan.graph()
     }
 
-    fn read(&mut self, view: View) -> Result<&'a Access, RecordError> {
+    fn read(&mut self, view: View) -> Result<(usize, &'a Access), RecordError> {
         let access = self.graph().access_of(view).ok_or(RecordError::Foreign)?;
-        self.touch(access)?;
-        Ok(access)
+        self.touch(access)
     }
 
-    fn written(&mut self, texture: Texture) -> Result<&'a Access, RecordError> {
+    fn written(&mut self, texture: Texture) -> Result<(usize, &'a Access), RecordError> {
         self.graph().resource_of(texture).ok_or(RecordError::Foreign)?;
         let access = self.graph().writer_of(texture).ok_or(RecordError::NotWritten)?;
-        self.touch(access)?;
-        Ok(access)
+        self.touch(access)
     }
 
-    /// Notes that the recorder uses `access`, which must be of its own pass.
-    fn touch(&mut self, access: &Access) -> Result<(), RecordError> {
+    /// Notes that the recorder uses `access`, which must be of its own pass, and returns it with its number.
+    fn touch<'g>(&self, access: &'g Access) -> Result<(usize, &'g Access), RecordError> {
         let own = self.graph().passes()[self.pass.index()].accesses.range();
         let index = own.clone().find(|a| std::ptr::eq(&self.graph().accesses()[*a], access));
         let Some(index) = index else {
             return Err(self.undeclared(access));
         };
         self.frame.touched[index].store(true, Ordering::Relaxed);
-        Ok(())
+        Ok((index, access))
     }
 
     fn undeclared(&self, access: &Access) -> RecordError {
@@ -211,7 +210,21 @@ impl<'a> Cx<'a> {
     }
 
     /// The view of a part of what an access names.
-    pub(super) fn view_at(&mut self, access: &Access, part: ViewPart) -> Result<TextureView, RecordError> {
+    fn view_at(&mut self, (index, access): (usize, &Access), part: ViewPart) -> Result<TextureView, RecordError> {
+        let stamp = self.frame.realized.stamp(access.resource);
+        let asked = stamp.map(|stamp| (index, part, stamp));
+        if let (Some(asked), LastView(Some((known, view)))) = (asked, self.recording.remembered.step().views.next())
+            && asked == *known
+        {
+            return Ok(view.clone());
+        }
+        let view = self.make_view(access, part)?;
+        let last = self.recording.remembered.step().views.last();
+        *last = LastView(asked.map(|asked| (asked, view.clone())));
+        Ok(view)
+    }
+
+    pub(super) fn make_view(&mut self, access: &Access, part: ViewPart) -> Result<TextureView, RecordError> {
         let realized = self.frame.realized;
         let (texture, shape) = physical_texture(realized, self.frame.plan, access.resource)?;
         let format = access.range.view.or(self.frame.plan.format(access.resource)).unwrap_or(shape.format);
@@ -224,8 +237,7 @@ impl<'a> Cx<'a> {
             view = view.used_as(shape.view_usages(format));
         }
         let name = self.graph().resource_name(access.resource);
-        let last = self.recording.remembered.step().views.next();
-        self.frame.caches.views.again(last, &self.frame.gpu.device, texture, view, name).map_err(|error| match error {
+        self.frame.caches.views.get(&self.frame.gpu.device, texture, view, name).map_err(|error| match error {
             DeviceError::Refused { message, .. } => {
                 RecordError::View { resource: Named::resource(self.frame.plan, access.resource), message }
             }

@@ -1,6 +1,5 @@
 //! What recording writes, beside commands: the constants, counts and times of the steps that one thread records.
 
-use crate::execute::attached::Attached;
 use crate::execute::error::RecordError;
 use crate::execute::remembered::Remembered;
 use crate::execute::uniforms::Uniforms;
@@ -14,8 +13,6 @@ pub(crate) struct Recording {
     pub(crate) uniforms: Uniforms,
     /// What its steps asked of the caches, for the next frame.
     pub(crate) remembered: Remembered,
-    /// What the step that is being opened attaches.
-    pub(crate) attached: Attached,
     /// Whether times are asked for.
     measured: bool,
     /// Whether times are taken in this frame: reading the clock costs as much as opening a pass.
@@ -46,18 +43,19 @@ impl Recording {
     /// For a device; times are taken in each frame if they are `measured`.
     pub(crate) fn new(device: &Device, measured: bool) -> Self {
         let (executed, in_wgpu, remembered) = (Counts::default(), Duration::ZERO, Remembered::default());
-        let (uniforms, steps, inlined, attached) = (Uniforms::new(device), Vec::new(), Vec::new(), Attached::default());
+        let (uniforms, steps, inlined) = (Uniforms::new(device), Vec::new(), Vec::new());
         let (timed, poisoned, refused) = (measured, 0, None);
-        Self { uniforms, remembered, attached, measured, timed, executed, poisoned, steps, in_wgpu, inlined, refused }
+        Self { uniforms, remembered, measured, timed, executed, poisoned, steps, in_wgpu, inlined, refused }
     }
 
-    /// Begins a frame: everything recorded before is forgotten. Its steps are `timed` even if nobody asks for times.
-    pub(crate) fn begin_frame(&mut self, timed: bool) {
+    /// Begins a frame: everything recorded before is forgotten. Its steps are `timed` even if nobody asks for times. Views are
+    /// asked for anew every `max_age` frames.
+    pub(crate) fn begin_frame(&mut self, timed: bool, max_age: u64) {
         self.uniforms.begin_frame();
+        self.remembered.begin_frame(max_age);
         self.timed = self.measured || timed;
         (self.executed, self.poisoned, self.in_wgpu) = (Counts::default(), 0, Duration::ZERO);
         self.steps.clear();
-        self.attached.clear();
         self.inlined.clear();
         self.refused = None;
     }

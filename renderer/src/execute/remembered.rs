@@ -1,20 +1,26 @@
-//! What the steps of a frame asked of the caches, in order, with what each request got: the same request of the next frame
-//! finds it by comparing alone.
+//! What the steps of a frame attached, and what they asked of the caches, in order, with what each request got: the same
+//! request of the next frame finds it by comparing alone.
 
-use crate::cache::Last;
+use crate::execute::opened::Opened;
+use crate::execute::part::ViewPart;
 use crate::pipelines::bind_groups::LastGroup;
 use crate::pipelines::cache::{LastCompute, LastRaster};
-use crate::resources::views::LastView;
 use framegraph::StepId;
+use wgpu::TextureView;
 
-/// The requests of one step, by kind.
+/// The attachments of one step, and its requests by kind.
 #[derive(Debug, Default)]
 pub(crate) struct RememberedStep {
+    pub(crate) opened: Opened,
     pub(crate) views: InOrder<LastView>,
     pub(crate) groups: InOrder<LastGroup>,
     pub(crate) rasters: InOrder<LastRaster>,
     pub(crate) computes: InOrder<LastCompute>,
 }
+
+/// The view that a request got last: of a part of an access, while the texture had that stamp.
+#[derive(Debug, Default)]
+pub(crate) struct LastView(pub(crate) Option<((usize, ViewPart, u64), TextureView)>);
 
 /// Requests of one kind. Where a frame asks for others, or in another order, they are only slower.
 #[derive(Debug)]
@@ -29,15 +35,20 @@ impl<T> Default for InOrder<T> {
     }
 }
 
-impl<K, V> InOrder<Last<K, V>> {
+impl<T: Default> InOrder<T> {
     /// What the request got last that is made now.
-    pub(crate) fn next(&mut self) -> &mut Last<K, V> {
+    pub(crate) fn next(&mut self) -> &mut T {
         let index = self.next;
         self.next += 1;
         if index == self.last.len() {
-            self.last.push(Last::default());
+            self.last.push(T::default());
         }
         &mut self.last[index]
+    }
+
+    /// What the request got last that was made last.
+    pub(crate) fn last(&mut self) -> &mut T {
+        &mut self.last[self.next - 1]
     }
 }
 
@@ -46,16 +57,37 @@ impl<K, V> InOrder<Last<K, V>> {
 pub(crate) struct Remembered {
     steps: Vec<RememberedStep>,
     current: usize,
+    /// Frames until views are let go of.
+    left: u64,
 }
 
 impl Remembered {
+    /// Begins a frame. Views are asked for anew every `max_age` frames, so that caches know what is in use.
+    pub(crate) fn begin_frame(&mut self, max_age: u64) {
+        match self.left.checked_sub(1) {
+            Some(left) => self.left = left,
+            None => {
+                self.let_go();
+                self.left = max_age.saturating_sub(1);
+            }
+        }
+    }
+
+    /// Lets go of all views.
+    pub(crate) fn let_go(&mut self) {
+        for step in &mut self.steps {
+            step.opened.let_go();
+            step.views.last.clear();
+        }
+    }
+
     /// Begins a step: its first request is its first of the frame before.
     pub(crate) fn begin(&mut self, step: StepId) {
         self.current = step.index();
         if self.steps.len() <= self.current {
             self.steps.resize_with(self.current + 1, RememberedStep::default);
         }
-        let RememberedStep { views, groups, rasters, computes } = self.step();
+        let RememberedStep { views, groups, rasters, computes, .. } = self.step();
         (views.next, groups.next, rasters.next, computes.next) = (0, 0, 0, 0);
     }
 

@@ -6,15 +6,14 @@ use crate::execute::cx::{Cx, Open};
 use crate::execute::epilogue::{Inlined, inlined_after};
 use crate::execute::error::{ExecuteError, RecordError};
 use crate::execute::full_screen_resolve;
+use crate::execute::opened::Opened;
 use crate::execute::prepared::Prepared;
 use crate::execute::recording::Recording;
 use crate::execute::targets::Targets;
 use crate::frame::Frame;
 use crate::measure::timing::TimestampWrites;
 use crate::named::Named;
-use framegraph::{
-    AccessKind, Attachment, Format, Join, MAX_COLORS, PassFlags, PassId, PassKind, Plan, Range, Role, StepId, StepPass,
-};
+use framegraph::{Join, MAX_COLORS, PassFlags, PassId, PassKind, Plan, StepId, StepPass};
 use wgpu::{
     CommandEncoder, ComputePassDescriptor, ComputePassTimestampWrites, RenderPass, RenderPassDescriptor,
     RenderPassTimestampWrites,
@@ -62,17 +61,21 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
     encoder: &mut CommandEncoder,
 ) -> Result<(), ExecuteError> {
     let plan = frame.plan;
-    let targets = Targets::of(plan, step);
     recording.remembered.begin(step);
     if frame.poison {
         recording.poisoned += poison::at_first_use(frame, step, encoder);
     }
-    clear_stored(frame, step, encoder)?;
+    let opened = &mut recording.remembered.step().opened;
+    let filled = opened.open(frame, step)?;
+    let targets = opened.targets;
+    if opened.clears_stored {
+        clear_stored(frame, step, encoder)?;
+    }
+    recording.poisoned += filled;
     let begun = recording.now();
     let timestamps = frame.timing.writes(step);
-    attach(frame, step, &targets, recording)?;
-    let mut open = open(frame, step, &targets, timestamps.as_ref(), recording, encoder);
-    recording.attached.clear();
+    let mut open = open(frame, step, timestamps.as_ref(), recording, encoder);
+    recording.remembered.step().opened.close();
     recording.executed.steps += 1;
     for member in recorded_members(plan, step).take(count) {
         record_pass(frame, passes, (step, *member), &targets, recording, encoder, &mut open)?;
@@ -103,7 +106,6 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
 fn open(
     frame: &Prepared<'_>,
     step: StepId,
-    targets: &Targets,
     timestamps: Option<&TimestampWrites>,
     recording: &mut Recording,
     encoder: &mut CommandEncoder,
@@ -116,7 +118,10 @@ fn open(
                 beginning_of_pass_write_index: Some(t.begin),
                 end_of_pass_write_index: Some(t.end),
             });
-            let attached = &recording.attached;
+            let begun = recording.now();
+            let Recording { remembered, executed, .. } = recording;
+            let Opened { attached, targets, counts, .. } = &remembered.step().opened;
+            *executed += *counts;
             // One color is what most passes have, and eight are long.
             let (one, all);
             let color_attachments: &[_] = match attached.colors.len() {
@@ -138,7 +143,6 @@ fn open(
                 multiview_mask: targets.multiview_mask(),
                 ..Default::default()
             };
-            let begun = recording.now();
             let pass = encoder.begin_render_pass(&descriptor).forget_lifetime();
             recording.took_in_wgpu(begun);
             Open::Raster(pass)
@@ -159,35 +163,6 @@ fn open(
             Open::Copy
         }
     }
-}
-
-/// Gathers what a step attaches.
-fn attach(
-    frame: &Prepared<'_>,
-    step: StepId,
-    targets: &Targets,
-    recording: &mut Recording,
-) -> Result<(), ExecuteError> {
-    let plan = frame.plan;
-    if plan.steps()[step.index()].kind != PassKind::Raster {
-        return Ok(());
-    }
-    if plan.attachments_of(step).is_empty() {
-        let pass = Named::pass(plan, plan.passes_of(step)[0].pass);
-        return Err(ExecuteError::NoAttachment { pass });
-    }
-    let both = |a: &&Attachment| a.role == Role::Depth && is_sampled(plan, step, a);
-    if let Some(attachment) = plan.attachments_of(step).iter().find(both) {
-        let resource = Named::resource(plan, attachment.resource);
-        return Err(ExecuteError::Planes { resource });
-    }
-    let Recording { attached, remembered, executed, poisoned, .. } = recording;
-    attached.gather(frame, step, remembered)?;
-    attached.count(executed);
-    if frame.poison {
-        *poisoned += poison::at_start(attached, targets);
-    }
-    Ok(())
 }
 
 fn record_pass<W: ?Sized + 'static>(
@@ -258,24 +233,6 @@ fn inlined_into<W: ?Sized + 'static>(
 /// What debuggers and errors call a step: its first pass.
 fn label(plan: &Plan, step: StepId) -> &str {
     plan.passes_of(step).first().map_or("", |m| plan.graph().pass_name(m.pass))
-}
-
-/// Whether a pass of the step reads the attached level and layers other than as an attachment, in whichever plane. What an
-/// inlined pass reads at the same pixel is no attachment any more.
-fn is_sampled(plan: &Plan, step: StepId, attachment: &Attachment) -> bool {
-    let Attachment { mip, layer, layers, .. } = *attachment;
-    let attached = Range { mip, mips: 1, layer, layers, ..Range::ALL };
-    let format = plan.format(attachment.resource).unwrap_or(Format::Depth32Float);
-    plan.passes_of(step).iter().any(|member| {
-        let (inlined, resolves) = (member.join == Join::Inlined, member.join == Join::Resolve);
-        let mut accesses = plan.graph().accesses_of(member.pass).iter();
-        accesses.any(|a| {
-            a.resource == attachment.resource
-                && a.range.overlaps(&attached, format)
-                && !a.kind.is_attachment()
-                && !(resolves || inlined && a.kind == AccessKind::SamePixel)
-        })
-    })
 }
 
 /// Undoes what an earlier pass of a merged step set.

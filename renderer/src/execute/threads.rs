@@ -54,10 +54,10 @@ impl Threads {
     }
 
     /// Begins a frame of `plan`, told apart by its number; returns whether its steps are to be timed.
-    pub(crate) fn begin_frame(&mut self, plan: &Plan, number: u64) -> bool {
+    pub(crate) fn begin_frame(&mut self, plan: &Plan, number: u64, max_age: u64) -> bool {
         self.recorded = 1;
         let Some(workers) = &self.workers else { return false };
-        self.others.iter_mut().for_each(|other| other.begin_frame(false));
+        self.others.iter_mut().for_each(|other| other.begin_frame(false, max_age));
         if self.share.rests(number, plan.steps().len()) {
             return false;
         }
@@ -83,6 +83,11 @@ impl Threads {
     /// Uniform buffers made by the other threads, since the beginning.
     pub(crate) fn uniform_buffers(&self) -> u64 {
         self.others.iter().map(|other| other.uniforms.created()).sum()
+    }
+
+    /// Lets go of all views that the other threads keep.
+    pub(crate) fn let_go(&mut self) {
+        self.others.iter_mut().for_each(|other| other.remembered.let_go());
     }
 
     /// Sends the constants of all other threads to the device.

@@ -71,11 +71,12 @@ impl Pipelines {
         targets: &Targets,
         own_slots: u8,
     ) -> Result<RasterPipeline, ShaderError> {
-        let hash = || Keyed::default().hash_one((raster, &fixed(raster, targets, own_slots)));
+        let Targets { colors, depth, samples, layers, .. } = targets;
+        let hash = || Keyed::default().hash_one((raster, colors, depth, samples, layers, own_slots));
         let make = || {
             let fixed = fixed(raster, targets, own_slots);
             let made = self.make_raster(device, raster, &self.modules.get(device, &raster.shader)?, &fixed)?;
-            Ok((RasterKey::new(raster, fixed), made))
+            Ok((RasterKey::new(raster, targets, own_slots), made))
         };
         self.raster.again(last, hash, |key| key.is(raster, targets, own_slots), make)
     }

@@ -4,7 +4,6 @@ use crate::device::format::texture_format;
 use crate::execute::targets::Targets;
 use crate::pipelines::shader::Shader;
 use crate::pipelines::state::{Compute, Constants, Depth, Output, Raster, VertexBuffer};
-use framegraph::Format;
 use std::num::NonZeroU32;
 use wgpu::{
     BindGroupLayout, ColorTargetState, ColorWrites, DepthStencilState, PrimitiveState, StencilState, VertexAttribute,
@@ -18,7 +17,12 @@ pub(crate) struct RasterKey {
     fragment: Option<String>,
     buffers: Vec<(u64, VertexStepMode, Vec<VertexAttribute>)>,
     primitive: PrimitiveState,
-    fixed: Fixed,
+    depth: Depth,
+    colors: Vec<Output>,
+    alpha_to_coverage: bool,
+    targets: Targets,
+    /// The color slots that the pass declares.
+    own_slots: u8,
 }
 
 /// The part of a key that raster and compute pipelines share.
@@ -76,20 +80,23 @@ impl StagesKey {
 }
 
 impl RasterKey {
-    pub(crate) fn new(raster: &Raster<'_>, fixed: Fixed) -> Self {
+    pub(crate) fn new(raster: &Raster<'_>, targets: &Targets, own_slots: u8) -> Self {
         Self {
             stages: StagesKey::new(&raster.shader, raster.vertex, raster.constants, raster.groups),
             fragment: raster.fragment.map(str::to_owned),
             buffers: raster.buffers.iter().map(|b| (b.stride_bytes, b.step, b.attributes.to_vec())).collect(),
             primitive: raster.primitive,
-            fixed,
+            depth: raster.depth.clone(),
+            colors: raster.colors.to_vec(),
+            alpha_to_coverage: raster.alpha_to_coverage,
+            targets: *targets,
+            own_slots,
         }
     }
 
-    /// Calls `make` with the description that the key was made from; what targets and description make together is in the
-    /// second argument alone.
+    /// Calls `make` with the description that the key was made from, and what it makes together with the targets.
     pub(crate) fn with<T>(&self, shader: Shader<'_>, make: impl FnOnce(&Raster<'_>, &Fixed) -> T) -> T {
-        let Self { stages, fragment, buffers, primitive, fixed } = self;
+        let Self { stages, fragment, buffers, primitive, depth, colors, alpha_to_coverage, targets, own_slots } = self;
         let buffers: Vec<_> = buffers
             .iter()
             .map(|(stride_bytes, step, attributes)| VertexBuffer {
@@ -106,22 +113,30 @@ impl RasterKey {
                 groups,
                 buffers: &buffers,
                 primitive: *primitive,
-                ..Raster::new(*shader)
+                depth: depth.clone(),
+                colors,
+                alpha_to_coverage: *alpha_to_coverage,
+                shader: *shader,
             };
-            make(&raster, fixed)
+            make(&raster, &fixed(&raster, targets, *own_slots))
         })
     }
 
     /// Whether it is the key of this description with these targets. Nothing is made to be compared: this is asked for each
     /// pipeline of each frame.
     pub(crate) fn is(&self, raster: &Raster<'_>, targets: &Targets, own_slots: u8) -> bool {
-        let Self { stages, fragment, buffers, primitive, fixed } = self;
+        let Self { stages, fragment, buffers, primitive, depth, colors, alpha_to_coverage, targets: own, .. } = self;
         let same =
             |((stride, step, attributes), b): (&(u64, VertexStepMode, Vec<VertexAttribute>), &VertexBuffer<'_>)| {
                 *stride == b.stride_bytes && *step == b.step && attributes == b.attributes
             };
-        *primitive == raster.primitive
-            && fixed.is(raster, targets, own_slots)
+        self.own_slots == own_slots
+            && (own.colors, own.depth) == (targets.colors, targets.depth)
+            && (own.samples, own.layers) == (targets.samples, targets.layers)
+            && *primitive == raster.primitive
+            && *depth == raster.depth
+            && colors == raster.colors
+            && *alpha_to_coverage == raster.alpha_to_coverage
             && fragment.as_deref() == raster.fragment
             && buffers.len() == raster.buffers.len()
             && buffers.iter().zip(raster.buffers).all(same)
@@ -135,23 +150,6 @@ pub(crate) fn fixed(raster: &Raster<'_>, targets: &Targets, own_slots: u8) -> Fi
     let (samples, multiview_mask) = (targets.samples, targets.multiview_mask());
     let alpha_to_coverage = covers(raster, targets);
     Fixed { colors, depth: depth_state(raster, targets), samples, multiview_mask, alpha_to_coverage }
-}
-
-impl Fixed {
-    /// Whether it is what [`fixed`] makes of these.
-    fn is(&self, raster: &Raster<'_>, targets: &Targets, own_slots: u8) -> bool {
-        let Self { colors, depth, samples, multiview_mask, alpha_to_coverage } = self;
-        let same = |(slot, (own, format)): (usize, (&Option<ColorTargetState>, &Option<Format>))| match (own, format) {
-            (None, None) => true,
-            (Some(_), Some(_)) => *own == color_state(raster, targets, own_slots, slot),
-            _ => false,
-        };
-        *samples == targets.samples
-            && *multiview_mask == targets.multiview_mask()
-            && *alpha_to_coverage == covers(raster, targets)
-            && colors.iter().zip(&targets.colors).enumerate().all(same)
-            && *depth == depth_state(raster, targets)
-    }
 }
 
 fn covers(raster: &Raster<'_>, targets: &Targets) -> bool {
@@ -181,6 +179,7 @@ fn depth_state(raster: &Raster<'_>, targets: &Targets) -> Option<DepthStencilSta
 #[cfg(test)]
 mod tests {
     use super::*;
+    use framegraph::Format;
     use wgpu::{BlendState, CompareFunction, TextureFormat};
 
     const SHADER: Shader<'static> = Shader::new("s", "text");
@@ -211,8 +210,7 @@ mod tests {
     #[test]
     fn keys_tell_every_part_apart() {
         let base = Raster::new(SHADER);
-        let state = fixed(&base, &targets(), 1);
-        let key = RasterKey::new(&base, state.clone());
+        let key = RasterKey::new(&base, &targets(), 1);
         let is = |raster: &Raster<'_>| key.is(raster, &targets(), 1);
         assert!(is(&base));
         let values = [("A", 1.0)];
@@ -244,7 +242,7 @@ mod tests {
         assert!(!key.is(&base, &targets(), 0b100), "the pass declares another slot");
         assert!(key.is(&base, &Targets { extent: [9, 9], ..targets() }, 1), "of any size");
         let negative = [("A", -0.0)];
-        let zero = RasterKey::new(&Raster { constants: Constants(&[("A", 0.0)]), ..base.clone() }, state);
+        let zero = RasterKey::new(&Raster { constants: Constants(&[("A", 0.0)]), ..base.clone() }, &targets(), 1);
         assert!(
             !zero.is(&Raster { constants: Constants(&negative), ..base }, &targets(), 1),
             "constants compare by bits"

@@ -79,8 +79,10 @@ pub struct Pool<S: Pooled> {
     /// Bytes that the last frames used, in a ring.
     recent: [u64; RECENT],
     counts: PoolCounts,
-    /// The entry of each request of the frame; kept for its memory.
+    /// The entry of each request of the frame.
     chosen: Vec<Option<usize>>,
+    /// They are all there, and no entry has moved since.
+    settled: bool,
 }
 
 #[derive(Debug)]
@@ -98,7 +100,7 @@ impl<S: Pooled> Pool<S> {
     /// An empty pool.
     pub fn new(limits: Limits) -> Self {
         let (recent, counts) = ([0; RECENT], PoolCounts::default());
-        Self { entries: Vec::new(), next: 0, frame: 0, limits, recent, counts, chosen: Vec::new() }
+        Self { entries: Vec::new(), next: 0, frame: 0, limits, recent, counts, chosen: Vec::new(), settled: false }
     }
 
     /// Hits, creations and evictions since the pool was made, and what it holds now.
@@ -128,19 +130,34 @@ impl<S: Pooled> Pool<S> {
         out: &mut Vec<S::Object>,
     ) -> Result<(), Unsupported> {
         out.clear();
+        self.settled = false;
         let mut chosen = std::mem::take(&mut self.chosen);
         chosen.clear();
         // Requests whose earlier object still fits come first, so that no other request takes it.
         chosen.extend(requests.iter().map(|r| self.take(r, |e| e.tenant == r.tenant && e.shape.serves(&r.shape))));
-        for (at, (request, index)) in requests.iter().zip(&chosen).enumerate() {
-            let index = match index.or_else(|| self.take(request, |e| e.shape.serves(&request.shape))) {
-                Some(index) => index,
+        for (at, (request, index)) in requests.iter().zip(&mut chosen).enumerate() {
+            let served = match index.or_else(|| self.take(request, |e| e.shape.serves(&request.shape))) {
+                Some(served) => served,
                 None => self.create(gpu, request, label(at))?,
             };
-            out.push(self.entries[index].object.clone());
+            out.push(self.entries[served].object.clone());
+            *index = Some(served);
         }
-        self.chosen = chosen;
+        (self.chosen, self.settled) = (chosen, true);
         Ok(())
+    }
+
+    /// Whether the requests of the frame before would be served as they were.
+    pub fn is_settled(&self) -> bool {
+        self.settled
+    }
+
+    /// Serves the requests of the frame before as they were. Only where the pool [is settled](Pool::is_settled).
+    pub fn acquire_again(&mut self) {
+        for index in self.chosen.iter().flatten() {
+            self.entries[*index].used = self.frame;
+        }
+        self.counts.hits += self.chosen.len() as u64;
     }
 
     /// Marks the best idle entry that fits as used.
@@ -203,7 +220,9 @@ impl<S: Pooled> Pool<S> {
             }
             stays
         });
-        self.counts.evicted += (before - self.entries.len()) as u64;
+        let gone = before - self.entries.len();
+        self.settled &= gone == 0;
+        self.counts.evicted += gone as u64;
     }
 }
 

@@ -23,11 +23,20 @@ pub(crate) enum Physical {
     Buffer { buffer: Buffer, bytes: u64 },
 }
 
-/// What stands behind all resources of a plan, and the memory to work it out.
+/// What stands behind all resources of a plan.
 #[derive(Debug, Default)]
 pub(crate) struct Realized {
     /// Parallel to the graph's resources.
-    pub(crate) resources: Vec<Physical>,
+    resources: Vec<Physical>,
+    /// For each resource a number, given once, that changes when another texture stands behind it; 0 where it is lent for
+    /// this frame alone.
+    stamps: Vec<u64>,
+    /// The last that was given.
+    last_stamp: u64,
+    /// What may be something else in each frame of one plan: imports and images of histories.
+    changing: Vec<ResourceId>,
+    /// The compilation of the plan that this is of; 0 of none.
+    compilation: u64,
     requests: Requests,
 }
 
@@ -46,7 +55,10 @@ pub(crate) struct Sources<'a> {
 impl Realized {
     /// Forgets everything, so that no object is kept alive.
     pub(crate) fn clear(&mut self) {
+        self.compilation = 0;
         self.resources.clear();
+        self.stamps.clear();
+        self.changing.clear();
         self.requests.clear();
     }
 
@@ -55,30 +67,94 @@ impl Realized {
         self.resources.get(resource.index()).unwrap_or(&Physical::Absent(NoMemory::NotRealized))
     }
 
-    /// Makes or finds everything that `plan` names.
+    /// A number that stays while a texture stands behind `resource`, and is never given to another one; none of what must not
+    /// be kept beyond this frame.
+    pub(crate) fn stamp(&self, resource: ResourceId) -> Option<u64> {
+        self.stamps.get(resource.index()).copied().filter(|stamp| *stamp != 0)
+    }
+
+    /// Lets go of what was lent for this frame alone, and calls `gone` for each.
+    pub(crate) fn end_loans(&mut self, mut gone: impl FnMut(&Texture)) {
+        for resource in &self.changing {
+            let physical = &mut self.resources[resource.index()];
+            if let Physical::Texture { texture, lifetime: Lifetime::Frame, .. } = physical {
+                gone(texture);
+                *physical = Physical::Absent(NoMemory::Lent);
+            }
+        }
+    }
+
+    /// Makes or finds everything that `plan` names. Of the plan of the frame before, only what may have changed is looked up.
     ///
     /// # Errors
     /// An import that is missing or different, or a shape that the device cannot make.
     pub(crate) fn realize(&mut self, plan: &Plan, from: &mut Sources<'_>) -> Result<(), ExecuteError> {
-        self.clear();
         from.textures.begin_frame();
         from.buffers.begin_frame();
         from.histories.begin_frame();
         from.arenas.begin_frame();
+        // Not of this plan before all of it is there.
+        let before = std::mem::take(&mut self.compilation);
+        let settled = from.textures.is_settled() && from.buffers.is_settled() && !self.shares_memory();
+        if before != 0 && before == plan.compilation() && settled {
+            from.textures.acquire_again();
+            from.buffers.acquire_again();
+        } else {
+            self.realize_anew(plan, from)?;
+        }
+        let changing = std::mem::take(&mut self.changing);
+        let earlier = |resource: &ResourceId| match plan.graph().resources()[resource.index()].kind {
+            Kind::HistoryPrevious { current, age } => Some((current, age)),
+            _ => None,
+        };
+        for resource in changing.iter().filter(|r| earlier(r).is_none()) {
+            let physical = self.place(plan, *resource, from)?;
+            self.set(*resource, physical);
+        }
+        // An earlier image is found once its history is declared, which may come later in the list.
+        for (resource, (current, age)) in changing.iter().filter_map(|r| Some((r, earlier(r)?))) {
+            let physical = self.previous(plan, current, age, from.histories);
+            self.set(*resource, physical);
+        }
+        (self.changing, self.compilation) = (changing, plan.compilation());
+        Ok(())
+    }
+
+    /// Asks for everything that the pools and heaps of a plan have, and notes what has to be looked up in each frame.
+    fn realize_anew(&mut self, plan: &Plan, from: &mut Sources<'_>) -> Result<(), ExecuteError> {
+        self.clear();
         self.requests.collect(plan, from.gpu, from.poison)?;
         self.requests.serve(from.gpu, plan, from.textures, from.buffers)?;
         from.arenas.acquire(from.gpu, plan, self.requests.placed())?;
+        let count = plan.resources().len();
+        self.resources.resize(count, Physical::Absent(NoMemory::NotRealized));
+        self.stamps.resize(count, 0);
         for resource in plan.graph().resource_ids() {
-            let physical = self.place(plan, resource, from)?;
-            self.resources.push(physical);
-        }
-        // An earlier image is found once its history is declared, which may come later in the list.
-        for resource in plan.graph().resource_ids() {
-            if let Kind::HistoryPrevious { current, age } = plan.graph().resources()[resource.index()].kind {
-                self.resources[resource.index()] = self.previous(plan, current, age, from.histories);
+            let kind = plan.graph().resources()[resource.index()].kind;
+            let is_history = matches!(kind, Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. });
+            if is_history || plan.resources()[resource.index()].placement == Placement::External {
+                self.changing.push(resource);
+            } else {
+                let physical = self.place(plan, resource, from)?;
+                self.set(resource, physical);
             }
         }
         Ok(())
+    }
+
+    /// Puts something behind a resource, under a new number unless it is the texture that stood there.
+    fn set(&mut self, resource: ResourceId, physical: Physical) {
+        let (known, stamp) = (&mut self.resources[resource.index()], &mut self.stamps[resource.index()]);
+        if let Physical::Texture { texture, shape, lifetime, .. } = &physical {
+            let same = matches!(&*known, Physical::Texture { texture: t, shape: s, .. } if t == texture && s == shape);
+            if *lifetime == Lifetime::Frame {
+                *stamp = 0;
+            } else if !same || *stamp == 0 {
+                self.last_stamp += 1;
+                *stamp = self.last_stamp;
+            }
+        }
+        *known = physical;
     }
 
     /// The number of a resource in its arena; none of what lies elsewhere.
@@ -109,10 +185,7 @@ impl Realized {
                 Kind::HistoryCurrent { frames } => {
                     return self.current(plan, resource, frames, from);
                 }
-                Kind::HistoryPrevious { .. } => {
-                    return Ok(Physical::Absent(NoMemory::NoHistory));
-                }
-                Kind::Transient | Kind::Imported { .. } => {}
+                Kind::Transient | Kind::Imported { .. } | Kind::HistoryPrevious { .. } => {}
             },
             Placement::External if !row.first.is_none() => {
                 return external(plan, resource, from.imports);

@@ -1,6 +1,6 @@
 //! Texture views, made once for each texture and part and kept while the texture is in use.
 
-use crate::cache::{Cache, CacheCounts, Last};
+use crate::cache::{Cache, CacheCounts};
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::format::{sampled_aspect, texture_aspect, texture_format};
 use crate::hash::Keyed;
@@ -56,9 +56,6 @@ impl ViewDesc {
     }
 }
 
-/// The view that a request got last.
-pub(crate) type LastView = Last<(Texture, ViewDesc), TextureView>;
-
 /// Views of all textures in use. See the [module](self).
 #[derive(Debug, Default)]
 pub(crate) struct ViewCache(Cache<(Texture, ViewDesc), TextureView>);
@@ -80,24 +77,9 @@ impl ViewCache {
         desc: ViewDesc,
         name: &str,
     ) -> Result<TextureView, DeviceError> {
-        self.again(&mut LastView::default(), device, texture, desc, name)
-    }
-
-    /// As [`ViewCache::get`], by one that asks in each frame.
-    ///
-    /// # Errors
-    /// As [`ViewCache::get`].
-    pub(crate) fn again(
-        &self,
-        last: &mut LastView,
-        device: &Device,
-        texture: &Texture,
-        desc: ViewDesc,
-        name: &str,
-    ) -> Result<TextureView, DeviceError> {
-        let hash = || Keyed::default().hash_one((texture, desc));
+        let hash = Keyed::default().hash_one((texture, desc));
         let is = |(of, known): &(Texture, ViewDesc)| of == texture && *known == desc;
-        self.0.again(last, hash, is, || {
+        self.0.get(hash, is, || {
             let scopes = ErrorScopes::open(device);
             let view = create(texture, desc, name);
             scopes.close("a view")?;

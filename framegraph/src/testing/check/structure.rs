@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 pub(super) fn structure(plan: &Plan, findings: &Findings<'_>) {
     let graph = plan.graph();
     let require = |holds: bool, why: std::fmt::Arguments<'_>| findings.require(holds, Rule::Structure, (), why);
-    require(plan.valid, format_args!("nothing was compiled into this plan"));
+    require(plan.compilation != 0, format_args!("nothing was compiled into this plan"));
     let lengths = [
         ("pass_steps", plan.pass_steps().len(), graph.passes().len()),
         ("resources", plan.resources().len(), graph.resources().len()),

@@ -26,6 +26,7 @@ impl Mutator<'_> {
     /// The plan with one change.
     pub(super) fn with(&mut self, field: &'static str, row: usize, edit: impl FnOnce(&mut Plan)) {
         let mut plan = self.plan.clone();
+        plan.number();
         edit(&mut plan);
         (self.visit)(Mutant { field, row, plan });
     }
