@@ -93,13 +93,19 @@ impl<K, V: Clone> Cache<K, V> {
         is: impl Fn(&K) -> bool,
         make: impl FnOnce() -> Result<(K, V), E>,
     ) -> Result<V, E> {
-        if let Some(entry) = last.0.upgrade().filter(|entry| is(&entry.key)) {
-            self.note(&entry);
-            return Ok(entry.value.clone());
+        if let Some(value) = self.last(last, &is) {
+            return Ok(value);
         }
         let entry = self.entry(hash(), &is, make)?;
         last.0 = Arc::downgrade(&entry);
         Ok(entry.value.clone())
+    }
+
+    /// What a request got last, where `is` holds of it.
+    pub(crate) fn last(&self, last: &Last<K, V>, is: impl Fn(&K) -> bool) -> Option<V> {
+        let entry = last.0.upgrade().filter(|entry| is(&entry.key))?;
+        self.note(&entry);
+        Some(entry.value.clone())
     }
 
     fn entry<E>(

@@ -7,8 +7,8 @@
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::execute::prepared::Prepared;
 use crate::execute::recording::Recording;
-use crate::execute::steps::{Passes, record_members, recorded_members};
-use framegraph::{PassId, StepId};
+use crate::execute::steps::{Passes, record_members};
+use framegraph::{Join, PassId, StepId, StepPass};
 use wgpu::CommandEncoderDescriptor;
 
 /// The first pass that wgpu refuses, with its reason; none when it refuses none of them alone.
@@ -17,18 +17,19 @@ pub(crate) fn refused_pass<W: ?Sized + 'static>(
     passes: &Passes<'_, W>,
     recording: &mut Recording,
 ) -> Option<(PassId, String)> {
-    let mut refused = |step: StepId, count: usize| {
+    let mut refused = |step: StepId, members: &[StepPass]| {
         let scopes = ErrorScopes::open(&frame.gpu.device);
         let descriptor = CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = frame.gpu.device.create_command_encoder(&descriptor);
-        let recorded = record_members(frame, passes, (step, count), recording, &mut encoder);
+        let recorded = record_members(frame, passes, (step, members), recording, &mut encoder);
         drop(encoder.finish());
         match (recorded, scopes.close("a pass")) {
             (Ok(()), Err(DeviceError::Refused { message, .. })) => Some(message),
             _ => None,
         }
     };
-    let step = frame.plan.step_ids().find(|step| refused(*step, usize::MAX).is_some())?;
-    let mut members = recorded_members(frame.plan, step).enumerate();
-    members.find_map(|(before, member)| refused(step, before + 1).map(|message| (member.pass, message)))
+    let members = |step: StepId| frame.plan.passes_of(step);
+    let step = frame.plan.step_ids().find(|step| refused(*step, members(*step)).is_some())?;
+    let mut recorded = members(step).iter().enumerate().filter(|(_, member)| member.join != Join::Inlined);
+    recorded.find_map(|(at, member)| refused(step, &members(step)[..=at]).map(|message| (member.pass, message)))
 }

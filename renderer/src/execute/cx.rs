@@ -178,10 +178,14 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// A shader that does not compile or does not fit, with its name.
     pub fn raster_pipeline(&mut self, raster: &Raster<'_>) -> Result<RasterPipeline, RecordError> {
-        let own = self.graph().accesses_of(self.pass).iter().filter(|a| a.kind == AccessKind::Color);
-        let own_slots = own.fold(0u8, |slots, access| slots | 1 << access.slot);
+        let Prepared { gpu, plan, caches, .. } = *self.frame;
+        let own_slots = || {
+            let own = plan.graph().accesses_of(self.pass).iter().filter(|a| a.kind == AccessKind::Color);
+            own.fold(0, |slots, access| slots | 1 << access.slot)
+        };
+        let targets = ((plan.compilation(), self.pass), self.targets);
         let last = self.recording.remembered.step().rasters.next();
-        Ok(self.frame.caches.pipelines.raster(last, &self.frame.gpu.device, raster, self.targets, own_slots)?)
+        Ok(caches.pipelines.raster(last, &gpu.device, raster, targets, own_slots)?)
     }
 
     /// The compute pipeline.

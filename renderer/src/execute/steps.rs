@@ -44,23 +44,17 @@ pub(crate) fn record_step<W: ?Sized + 'static>(
     recording: &mut Recording,
     encoder: &mut CommandEncoder,
 ) -> Result<(), ExecuteError> {
-    record_members(frame, passes, (step, usize::MAX), recording, encoder)
+    record_members(frame, passes, (step, frame.plan.passes_of(step)), recording, encoder)
 }
 
-/// The passes of a step that record something, in order.
-pub(crate) fn recorded_members(plan: &Plan, step: StepId) -> impl Iterator<Item = &StepPass> {
-    plan.passes_of(step).iter().filter(|m| m.join != Join::Inlined)
-}
-
-/// As [`record_step`], the first `count` of its passes that record something.
+/// As [`record_step`], the first of its passes.
 pub(crate) fn record_members<W: ?Sized + 'static>(
     frame: &Prepared<'_>,
     passes: &Passes<'_, W>,
-    (step, count): (StepId, usize),
+    (step, members): (StepId, &[StepPass]),
     recording: &mut Recording,
     encoder: &mut CommandEncoder,
 ) -> Result<(), ExecuteError> {
-    let plan = frame.plan;
     recording.remembered.begin(step);
     if frame.poison {
         recording.poisoned += poison::at_first_use(frame, step, encoder);
@@ -77,7 +71,7 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
     let mut open = open(frame, step, timestamps.as_ref(), recording, encoder);
     recording.remembered.step().opened.close();
     recording.executed.steps += 1;
-    for member in recorded_members(plan, step).take(count) {
+    for member in members.iter().filter(|m| m.join != Join::Inlined) {
         record_pass(frame, passes, (step, *member), &targets, recording, encoder, &mut open)?;
     }
     // Dropping the pass ends it, and has wgpu look at everything that was recorded into it.
@@ -103,6 +97,8 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
 }
 
 /// Opens the render or compute pass of a step. The encoder is not touched again before the pass is dropped.
+// A render pass is long, and copied where this is called.
+#[inline(always)]
 fn open(
     frame: &Prepared<'_>,
     step: StepId,
@@ -143,9 +139,9 @@ fn open(
                 multiview_mask: targets.multiview_mask(),
                 ..Default::default()
             };
-            let pass = encoder.begin_render_pass(&descriptor).forget_lifetime();
+            let open = Open::Raster(encoder.begin_render_pass(&descriptor).forget_lifetime());
             recording.took_in_wgpu(begun);
-            Open::Raster(pass)
+            open
         }
         PassKind::Compute => {
             let timestamp_writes = timestamps.map(|t| ComputePassTimestampWrites {

@@ -30,7 +30,7 @@ struct Chunk {
 impl Uniforms {
     /// For a device with these limits.
     pub fn new(device: &Device) -> Self {
-        let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment.max(16));
+        let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment.max(16)).next_power_of_two();
         Self { chunks: Vec::new(), current: 0, alignment, created: 0 }
     }
 
@@ -49,7 +49,10 @@ impl Uniforms {
     /// is larger is refused. An empty slice takes 16 bytes of zeros, because an empty binding does not exist.
     pub fn push(&mut self, device: &Device, bytes: &[u8]) -> Binding {
         let length = (bytes.len() as u64).max(1).next_multiple_of(16);
-        let fits = |c: &Chunk| (c.bytes.len() as u64).next_multiple_of(self.alignment) + length <= c.buffer.size();
+        // A power of two, as every limit of alignment.
+        let mask = self.alignment - 1;
+        let offset = |c: &Chunk| (c.bytes.len() as u64 + mask) & !mask;
+        let fits = |c: &Chunk| offset(c) + length <= c.buffer.size();
         while self.chunks.get(self.current).is_some_and(|c| !fits(c)) {
             self.current += 1;
         }
@@ -66,7 +69,7 @@ impl Uniforms {
             self.created += 1;
         }
         let chunk = &mut self.chunks[self.current];
-        let offset = (chunk.bytes.len() as u64).next_multiple_of(self.alignment);
+        let offset = offset(chunk);
         chunk.bytes.resize((offset + length) as usize, 0);
         chunk.bytes[offset as usize..][..bytes.len()].copy_from_slice(bytes);
         let bound = if bytes.is_empty() { length } else { bytes.len() as u64 };

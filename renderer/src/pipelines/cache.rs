@@ -8,6 +8,7 @@ use crate::pipelines::key::{Fixed, RasterKey, StagesKey, fixed};
 use crate::pipelines::pipeline::{ComputePipeline, Pipeline, RasterPipeline};
 use crate::pipelines::shader::{Compiled, Shader, ShaderError, ShaderModules};
 use crate::pipelines::state::{Compute, Raster};
+use framegraph::PassId;
 use std::hash::BuildHasher;
 use wgpu::{
     BindGroupLayout, Device, MultisampleState, PipelineCache, PipelineCompilationOptions, PipelineLayout,
@@ -15,7 +16,15 @@ use wgpu::{
 };
 
 /// The raster pipeline that a request got last.
-pub(crate) type LastRaster = Last<RasterKey, RasterPipeline>;
+#[derive(Debug, Default)]
+pub(crate) struct LastRaster {
+    last: Last<RasterKey, RasterPipeline>,
+    /// Where it was made: the same pass of one compilation has the same targets.
+    place: Option<Place>,
+}
+
+/// A pass of the plan that a compilation made.
+pub(crate) type Place = (u64, PassId);
 
 /// The compute pipeline that a request got last.
 pub(crate) type LastCompute = Last<StagesKey, ComputePipeline>;
@@ -58,8 +67,8 @@ impl Pipelines {
         self.driver_cache.as_ref()
     }
 
-    /// The raster pipeline for these targets; `own_slots` are the color slots that the pass declares, the others are left
-    /// alone. `last` is what this request got in the frame before.
+    /// The raster pipeline for the targets of a `place`; `own_slots` are the color slots that its pass declares, the others
+    /// are left alone. `last` is what this request got in the frame before.
     ///
     /// # Errors
     /// [`ShaderError`], with the shader's name.
@@ -68,9 +77,17 @@ impl Pipelines {
         last: &mut LastRaster,
         device: &Device,
         raster: &Raster<'_>,
-        targets: &Targets,
-        own_slots: u8,
+        (place, targets): (Place, &Targets),
+        own_slots: impl FnOnce() -> u8,
     ) -> Result<RasterPipeline, ShaderError> {
+        if last.place == Some(place)
+            && let Some(pipeline) = self.raster.last(&last.last, |key| key.describes(raster))
+        {
+            return Ok(pipeline);
+        }
+        // Not of this place before it is found.
+        last.place = None;
+        let own_slots = own_slots();
         let Targets { colors, depth, samples, layers, .. } = targets;
         let hash = || Keyed::default().hash_one((raster, colors, depth, samples, layers, own_slots));
         let make = || {
@@ -78,7 +95,10 @@ impl Pipelines {
             let made = self.make_raster(device, raster, &self.modules.get(device, &raster.shader)?, &fixed)?;
             Ok((RasterKey::new(raster, targets, own_slots), made))
         };
-        self.raster.again(last, hash, |key| key.is(raster, targets, own_slots), make)
+        let is = |key: &RasterKey| key.fits(targets, own_slots) && key.describes(raster);
+        let pipeline = self.raster.again(&mut last.last, hash, is, make)?;
+        last.place = Some(place);
+        Ok(pipeline)
     }
 
     /// The compute pipeline. `last` is what this request got in the frame before.
@@ -256,8 +276,15 @@ mod tests {
     fn one_pipeline_for_one_combination() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
         let pipelines = Pipelines::default();
-        let get =
-            |format| pipelines.raster(&mut LastRaster::default(), &gpu.device, &Raster::new(FILL), &targets(format), 1);
+        let get = |format| {
+            pipelines.raster(
+                &mut LastRaster::default(),
+                &gpu.device,
+                &Raster::new(FILL),
+                ((1, PassId::at(0)), &targets(format)),
+                || 1,
+            )
+        };
         let first = get(Format::Rgba8Unorm)?;
         let again = get(Format::Rgba8Unorm)?;
         assert_eq!(*first, *again);
@@ -276,7 +303,8 @@ mod tests {
         let gpu = Gpu::noop()?;
         let wrong = Raster { fragment: Some("fs_missing"), ..Raster::new(FILL) };
         let (pipelines, targets) = (Pipelines::default(), targets(Format::Rgba8Unorm));
-        let refused = pipelines.raster(&mut LastRaster::default(), &gpu.device, &wrong, &targets, 1);
+        let refused =
+            pipelines.raster(&mut LastRaster::default(), &gpu.device, &wrong, ((1, PassId::at(0)), &targets), || 1);
         let told = refused.map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
         assert!(told.contains("`fill`") && told.contains("fs_missing"), "{told}");
         Ok(())

@@ -122,18 +122,22 @@ impl RasterKey {
         })
     }
 
-    /// Whether it is the key of this description with these targets. Nothing is made to be compared: this is asked for each
-    /// pipeline of each frame.
-    pub(crate) fn is(&self, raster: &Raster<'_>, targets: &Targets, own_slots: u8) -> bool {
-        let Self { stages, fragment, buffers, primitive, depth, colors, alpha_to_coverage, targets: own, .. } = self;
+    /// Whether it is a key with these targets.
+    pub(crate) fn fits(&self, targets: &Targets, own_slots: u8) -> bool {
+        let own = &self.targets;
+        self.own_slots == own_slots
+            && (own.colors, own.depth) == (targets.colors, targets.depth)
+            && (own.samples, own.layers) == (targets.samples, targets.layers)
+    }
+
+    /// Whether it is a key of this description. Nothing is made to be compared: this is asked for each pipeline of each frame.
+    pub(crate) fn describes(&self, raster: &Raster<'_>) -> bool {
+        let Self { stages, fragment, buffers, primitive, depth, colors, alpha_to_coverage, .. } = self;
         let same =
             |((stride, step, attributes), b): (&(u64, VertexStepMode, Vec<VertexAttribute>), &VertexBuffer<'_>)| {
                 *stride == b.stride_bytes && *step == b.step && attributes == b.attributes
             };
-        self.own_slots == own_slots
-            && (own.colors, own.depth) == (targets.colors, targets.depth)
-            && (own.samples, own.layers) == (targets.samples, targets.layers)
-            && *primitive == raster.primitive
+        *primitive == raster.primitive
             && *depth == raster.depth
             && colors == raster.colors
             && *alpha_to_coverage == raster.alpha_to_coverage
@@ -211,7 +215,7 @@ mod tests {
     fn keys_tell_every_part_apart() {
         let base = Raster::new(SHADER);
         let key = RasterKey::new(&base, &targets(), 1);
-        let is = |raster: &Raster<'_>| key.is(raster, &targets(), 1);
+        let is = |raster: &Raster<'_>| key.describes(raster);
         assert!(is(&base));
         let values = [("A", 1.0)];
         let attributes = wgpu::vertex_attr_array![0 => Float32x3];
@@ -238,14 +242,12 @@ mod tests {
         fewer.colors[2] = None;
         let others = [Targets { samples: 1, ..targets() }, Targets { layers: 2, ..targets() }, fewer];
         let others = others.into_iter().chain([Targets { depth: None, ..targets() }]);
-        others.for_each(|other| assert!(!key.is(&base, &other, 1), "{other:?}"));
-        assert!(!key.is(&base, &targets(), 0b100), "the pass declares another slot");
-        assert!(key.is(&base, &Targets { extent: [9, 9], ..targets() }, 1), "of any size");
+        others.for_each(|other| assert!(!key.fits(&other, 1), "{other:?}"));
+        assert!(key.fits(&targets(), 1));
+        assert!(!key.fits(&targets(), 0b100), "the pass declares another slot");
+        assert!(key.fits(&Targets { extent: [9, 9], ..targets() }, 1), "of any size");
         let negative = [("A", -0.0)];
         let zero = RasterKey::new(&Raster { constants: Constants(&[("A", 0.0)]), ..base.clone() }, &targets(), 1);
-        assert!(
-            !zero.is(&Raster { constants: Constants(&negative), ..base }, &targets(), 1),
-            "constants compare by bits"
-        );
+        assert!(!zero.describes(&Raster { constants: Constants(&negative), ..base }), "constants compare by bits");
     }
 }

@@ -90,6 +90,7 @@ struct Entry<S: Pooled> {
     /// Never given twice: the older of two equal fits is taken.
     id: u64,
     shape: S,
+    bytes: u64,
     object: S::Object,
     tenant: u64,
     /// The frame that used it last.
@@ -109,7 +110,7 @@ impl<S: Pooled> Pool<S> {
     }
 
     fn bytes(&self, counted: impl Fn(&Entry<S>) -> bool) -> u64 {
-        self.entries.iter().filter(|e| counted(e)).map(|e| e.shape.bytes()).sum()
+        self.entries.iter().filter(|e| counted(e)).map(|e| e.bytes).sum()
     }
 
     /// Begins a frame: everything is idle again.
@@ -176,7 +177,7 @@ impl<S: Pooled> Pool<S> {
         let id = self.next;
         self.next += 1;
         self.counts.created += 1;
-        self.entries.push(Entry { id, shape, object, tenant, used: self.frame });
+        self.entries.push(Entry { id, shape, bytes: shape.bytes(), object, tenant, used: self.frame });
         Ok(self.entries.len() - 1)
     }
 
@@ -191,7 +192,7 @@ impl<S: Pooled> Pool<S> {
         let mut bytes = self.bytes(|_| true);
         while bytes > budget_bytes {
             let idle = self.entries.iter().filter(|e| e.used + 1 < frame);
-            let Some((id, freed)) = idle.min_by_key(|e| (e.used, e.id)).map(|e| (e.id, e.shape.bytes())) else { break };
+            let Some((id, freed)) = idle.min_by_key(|e| (e.used, e.id)).map(|e| (e.id, e.bytes)) else { break };
             self.retain(|e| e.id != id, &mut gone);
             bytes -= freed;
         }

@@ -10,7 +10,7 @@ use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::Pool;
 use crate::resources::requests::{Requests, offered, shaped};
 use framegraph::{Desc, Kind, Placement, Plan, ResourceId, Usage};
-use wgpu::{Buffer, Texture, TextureUsages};
+use wgpu::{Buffer, Texture};
 
 /// What stands behind one resource in this frame.
 #[derive(Clone, Debug)]
@@ -35,6 +35,8 @@ pub(crate) struct Realized {
     last_stamp: u64,
     /// What may be something else in each frame of one plan: imports and images of histories.
     changing: Vec<ResourceId>,
+    /// Resources behind which there is a texture that takes no memory where the device has tiles.
+    memoryless: u32,
     /// The compilation of the plan that this is of; 0 of none.
     compilation: u64,
     requests: Requests,
@@ -139,6 +141,8 @@ impl Realized {
                 self.set(resource, physical);
             }
         }
+        let transient = |p: &&Physical| matches!(p, Physical::Texture { shape, .. } if shape.is_memoryless());
+        self.memoryless = self.resources.iter().filter(transient).count() as u32;
         Ok(())
     }
 
@@ -169,11 +173,7 @@ impl Realized {
 
     /// Resources behind which there is a texture that takes no memory where the device has tiles.
     pub(crate) fn memoryless(&self) -> u32 {
-        let transient = |p: &&Physical| match p {
-            Physical::Texture { texture, .. } => texture.usage().contains(TextureUsages::TRANSIENT_ATTACHMENT),
-            Physical::Buffer { .. } | Physical::Absent(_) => false,
-        };
-        self.resources.iter().filter(transient).count() as u32
+        self.memoryless
     }
 
     /// What stands behind one resource, now that the pools have served.
