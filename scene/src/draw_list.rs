@@ -66,17 +66,21 @@ impl DrawLists {
     /// The instances of `list` by how they are drawn, in its order; all others count as culled.
     #[must_use]
     pub fn of_kinds(of: &Renderables, list: &[u32]) -> Self {
-        let opaque = Vec::with_capacity(list.len());
-        let mut lists = Self { opaque, culled: of.kinds().len() - list.len(), ..Self::default() };
-        for &i in list {
-            match of.kinds()[i as usize] {
-                DrawKind::Opaque => lists.opaque.push(i),
-                DrawKind::Mask => lists.mask.push(i),
-                DrawKind::Transmit => lists.transmit.push(i),
-                DrawKind::Blend => lists.blend.push(i),
+        let kind = |i: &u32| of.kinds()[*i as usize];
+        let mut counts = [0; 4];
+        list.iter().for_each(|i| counts[kind(i) as usize] += 1);
+        let drawn = |wanted: DrawKind| match counts[wanted as usize] {
+            0 => Vec::new(),
+            all if all == list.len() => list.to_vec(),
+            count => {
+                let mut own = Vec::with_capacity(count);
+                own.extend(list.iter().filter(|i| kind(i) == wanted));
+                own
             }
-        }
-        lists
+        };
+        let [opaque, mask, transmit, blend] =
+            [DrawKind::Opaque, DrawKind::Mask, DrawKind::Transmit, DrawKind::Blend].map(drawn);
+        Self { opaque, mask, transmit, blend, culled: of.kinds().len() - list.len(), ..Self::default() }
     }
 }
 

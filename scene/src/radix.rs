@@ -22,14 +22,18 @@ pub fn sort_upper_halves(keys: &mut Vec<u64>, spare: &mut Vec<u64>) {
         keys.sort_unstable();
         return;
     }
-    spare.clear();
+    // What is longer holds what the first turn writes over.
     spare.resize(keys.len(), 0);
-    for shift in [32, 32 + DIGIT_BITS, 32 + 2 * DIGIT_BITS] {
-        let digit = |key: u64| (key >> shift) as usize & (DIGITS - 1);
-        let mut places = [0_u32; DIGITS];
-        for key in keys.iter() {
-            places[digit(*key)] += 1;
+    const SHIFTS: [u32; 3] = [32, 32 + DIGIT_BITS, 32 + 2 * DIGIT_BITS];
+    let digit_at = |key: u64, shift: u32| (key >> shift) as usize & (DIGITS - 1);
+    let mut counts = [[0_u32; DIGITS]; SHIFTS.len()];
+    for key in keys.iter() {
+        for (places, shift) in counts.iter_mut().zip(SHIFTS) {
+            places[digit_at(*key, shift)] += 1;
         }
+    }
+    for (mut places, shift) in counts.into_iter().zip(SHIFTS) {
+        let digit = |key: u64| digit_at(key, shift);
         if places[digit(keys[0])] as usize == keys.len() {
             continue;
         }

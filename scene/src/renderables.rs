@@ -30,6 +30,9 @@ impl DrawKind {
     }
 }
 
+/// Instances in a row around which there is a box.
+const BLOCK: usize = 64;
+
 /// The instances of a scene as culling, sorting and drawing read them; see the [module](self).
 ///
 /// A scene that stays as it is needs this once. Of one that moves, [`Renderables::update`] takes what moved; other changes
@@ -38,6 +41,8 @@ impl DrawKind {
 pub struct Renderables {
     bounds: Vec<Aabb>,
     whole: Aabb,
+    /// Around each [`BLOCK`] instances.
+    blocks: Vec<Aabb>,
     boxes: BoxArrays,
     origins: Vec<DVec3>,
     stamps: Vec<u64>,
@@ -104,7 +109,9 @@ impl Renderables {
 
     /// What is known of all boxes together.
     fn sum_up(&mut self) {
-        self.whole = self.bounds.iter().fold(Aabb::EMPTY, |all, own| all.union(*own));
+        self.blocks.clear();
+        self.blocks.extend(self.bounds.chunks(BLOCK).map(around));
+        self.whole = around(&self.blocks);
         self.flat.clear();
         self.solid_casters = Aabb::EMPTY;
         for (number, (bounds, kind)) in (0..).zip(self.bounds.iter().zip(&self.kinds)) {
@@ -135,6 +142,30 @@ impl Renderables {
     #[must_use]
     pub fn whole(&self) -> Aabb {
         self.whole
+    }
+
+    /// Instances in a row, by the number of the first and their boxes, and the box around each row.
+    pub fn rows(&self) -> impl Iterator<Item = (u32, &[Aabb], &Aabb)> {
+        let firsts = (0..).step_by(BLOCK);
+        firsts.zip(self.bounds.chunks(BLOCK).zip(&self.blocks)).map(|(first, (row, around))| (first, row, around))
+    }
+
+    /// The box around these instances, whose numbers rise.
+    ///
+    /// # Panics
+    /// When there is no such instance.
+    #[must_use]
+    pub fn around(&self, mut numbers: &[u32]) -> Aabb {
+        let mut all = Aabb::EMPTY;
+        while let [first, rest @ ..] = numbers {
+            let at = *first as usize;
+            let whole = at.is_multiple_of(BLOCK) && numbers.get(BLOCK - 1) == Some(&(first + BLOCK as u32 - 1));
+            (all, numbers) = match whole {
+                true => (all.union(self.blocks[at / BLOCK]), &numbers[BLOCK..]),
+                false => (all.union(self.bounds[at]), rest),
+            };
+        }
+        all
     }
 
     /// Where the zero point of each instance's mesh is, in m, world space.
@@ -178,6 +209,10 @@ impl Renderables {
     pub fn depths(&self) -> &Groups {
         &self.depths
     }
+}
+
+fn around(boxes: &[Aabb]) -> Aabb {
+    boxes.iter().fold(Aabb::EMPTY, |all, own| all.union(*own))
 }
 
 fn surface_key(scene: &Scene, instance: &Instance) -> SurfaceKey {
@@ -239,6 +274,27 @@ mod tests {
         }
         assert_eq!(own.kinds()[4..], [DrawKind::Opaque, DrawKind::Mask]);
         assert_eq!((own.flat(), own.solid_casters().max.x), (&[(5, 1)][..], 10.0));
+    }
+
+    /// Whether rows are taken whole, in part or not at all.
+    #[test]
+    fn the_box_around_some_is_that_of_each() {
+        let at = |i: usize| DMat4::from_translation(DVec3::new((i * 37 % 200) as f64, (i * 91 % 300) as f64, i as f64));
+        let instances = (0..3 * BLOCK + 7).map(|i| placed(0, 0, at(i))).collect();
+        let mut scene = Scene { materials: vec![Material::default()], instances, ..Scene::default() };
+        let mut own = Renderables::new(&scene);
+        for _ in 0..2 {
+            let lists = [0..0, 0..3 * BLOCK + 7, 5..2 * BLOCK, BLOCK..2 * BLOCK, BLOCK + 1..2 * BLOCK];
+            let lists = lists.map(|range| range.map(|i| i as u32).collect::<Vec<_>>());
+            for list in lists.into_iter().chain([(0..150).filter(|i| i % 3 > 0).collect()]) {
+                let each: Vec<Aabb> = list.iter().map(|i| own.bounds()[*i as usize]).collect();
+                assert_eq!(own.around(&list), around(&each), "{list:?}");
+            }
+            assert!(own.rows().all(|(first, row, own)| *own == around(row) && first as usize % BLOCK == 0));
+            assert_eq!(own.rows().map(|(_, row, _)| row.len()).collect::<Vec<_>>(), [BLOCK, BLOCK, BLOCK, 7]);
+            scene.instances[BLOCK + 9] = placed(0, 0, at(5000));
+            own.update(&scene, &[BLOCK + 9]);
+        }
     }
 
     /// What moved is where it would be had all been made anew, and nothing else changes its stamp.

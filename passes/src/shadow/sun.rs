@@ -37,7 +37,7 @@ impl LightAxes {
         DVec3::from_array(self.0.map(|axis| axis.dot(point)))
     }
 
-    fn bounds(&self, points: impl IntoIterator<Item = DVec3>) -> Aabb {
+    pub fn bounds(&self, points: impl IntoIterator<Item = DVec3>) -> Aabb {
         points.into_iter().fold(Aabb::EMPTY, |all, point| all.including(self.of(point)))
     }
 
@@ -108,9 +108,16 @@ impl<'a> SunScene<'a> {
     }
 
     /// What all that casts takes along the light's axes.
-    fn cast(&self, axes: &LightAxes) -> Aabb {
-        let boxes = (0..).zip(self.scene.bounds()).filter(|(number, _)| self.casts(*number));
-        boxes.fold(Aabb::EMPTY, |all, (_, bounds)| all.union(axes.of_box(bounds)))
+    pub(super) fn cast(&self, axes: &LightAxes) -> Aabb {
+        let mut all = Aabb::EMPTY;
+        for (first, row, around) in self.scene.rows() {
+            // Rows that change nothing are most.
+            if all.union(axes.of_box(around)) != all {
+                let casting = (first..).zip(row).filter(|(number, _)| self.casts(*number));
+                all = casting.fold(all, |all, (_, bounds)| all.union(axes.of_box(bounds)));
+            }
+        }
+        all
     }
 
     /// Instances that reach into half spaces of the world.
@@ -278,8 +285,10 @@ impl<'a> SunScene<'a> {
 
     /// The boxes of these instances, or the box around them if they are many.
     fn boxes(&self, numbers: &[u32]) -> Vec<Aabb> {
-        let boxes = numbers.iter().map(|number| self.scene.bounds()[*number as usize]);
-        if numbers.len() <= MOST_BOXES { boxes.collect() } else { vec![boxes.fold(Aabb::EMPTY, Aabb::union)] }
+        if numbers.len() > MOST_BOXES {
+            return vec![self.scene.around(numbers)];
+        }
+        numbers.iter().map(|number| self.scene.bounds()[*number as usize]).collect()
     }
 
     /// From the farthest receiver to the nearest caster over the receivers, along the axis toward the sun.

@@ -7,7 +7,7 @@ use super::sun::{LightAxes, SunMaps, SunScene};
 use super::view::local_layers;
 use super::volume::FitCamera;
 use framegraph_scene::geometry::cuboid;
-use framegraph_scene::{Camera, Light, LightKind, Material, Projection, Renderables, Scene};
+use framegraph_scene::{AlphaMode, Camera, Light, LightKind, Material, Projection, Renderables, Scene};
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec3};
 
 const ASPECT: f64 = 16.0 / 9.0;
@@ -49,6 +49,22 @@ const TOWARD: DVec3 = DVec3::new(0.4, 0.8, 0.3);
 fn all_fits() -> impl Iterator<Item = ShadowSettings> {
     let fits = [Fit::Tight { lispsm: true }, Fit::Tight { lispsm: false }, Fit::Stable];
     fits.into_iter().flat_map(|fit| [1, 4].map(|cascades| ShadowSettings { fit, cascades, ..ShadowSettings::DEFAULT }))
+}
+
+/// Of many casters, the corners of each; what blends casts nothing, however large it is.
+#[test]
+fn what_casts_is_known_of_each() {
+    let at = |i: usize| [(i * 37 % 200) as f64, (i * 91 % 150) as f64, (i * 53 % 170) as f64];
+    let mut scene = scene(&(0..300).map(|i| (at(i), [0.5, 1.0, 2.0])).collect::<Vec<_>>());
+    let pane = scene.add_material(Material { alpha: AlphaMode::Blend, ..Material::default() });
+    let mesh = scene.add_mesh(cuboid(Vec3::splat(500.0)));
+    scene.add_instance("pane", mesh, pane, DMat4::IDENTITY);
+    let (renderables, settings) = (Renderables::new(&scene), ShadowSettings::DEFAULT);
+    let axes = LightAxes::new(TOWARD.normalize(), None);
+    let cast = SunScene::new(&renderables, &[], TOWARD, &settings).cast(&axes);
+    let corners = scene.instances[..300].iter().flat_map(|instance| instance.bounds.corners());
+    let expected = axes.bounds(corners);
+    assert!(cast.min.abs_diff_eq(expected.min, 1e-9) && cast.max.abs_diff_eq(expected.max, 1e-9), "{cast:?}");
 }
 
 /// What a camera sees and something can shadow lies in the map of its cascade, and nearer to the sun means more depth.
