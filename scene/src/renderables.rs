@@ -290,7 +290,7 @@ mod tests {
                 let each: Vec<Aabb> = list.iter().map(|i| own.bounds()[*i as usize]).collect();
                 assert_eq!(own.around(&list), around(&each), "{list:?}");
             }
-            assert!(own.rows().all(|(first, row, own)| *own == around(row) && first as usize % BLOCK == 0));
+            assert!(own.rows().all(|(first, row, own)| *own == around(row) && first.is_multiple_of(BLOCK as u32)));
             assert_eq!(own.rows().map(|(_, row, _)| row.len()).collect::<Vec<_>>(), [BLOCK, BLOCK, BLOCK, 7]);
             scene.instances[BLOCK + 9] = placed(0, 0, at(5000));
             own.update(&scene, &[BLOCK + 9]);

@@ -150,8 +150,11 @@ impl<'a> Cx<'a> {
     /// its recorder returns, with the names of shader, group, binding and variable ([`RecordError::Binding`]).
     pub fn bind_group<'l>(&mut self, group: impl Into<Group<'l>>, bindings: &[(u32, Binding)]) -> BindGroup {
         let (group, device) = (group.into(), &self.frame.gpu.device);
-        let (frame, pass) = (self.frame, self.pass_name());
-        let label = || format!("{pass}: group {} of {}", group.index(), group.shader());
+        let (frame, pass) = (self.frame, self.pass);
+        let label = || {
+            let pass = frame.plan.graph().pass_name(pass);
+            format!("{pass}: group {} of {}", group.index(), group.shader())
+        };
         let last = self.recording.remembered.step().groups.next();
         let made = match group.layout() {
             Ok(layout) => frame.caches.groups.get(last, device, layout, bindings, label),

@@ -213,10 +213,13 @@ impl<'a> Cx<'a> {
     fn view_at(&mut self, (index, access): (usize, &Access), part: ViewPart) -> Result<TextureView, RecordError> {
         let stamp = self.frame.realized.stamp(access.resource);
         let asked = stamp.map(|stamp| (index, part, stamp));
-        if let (Some(asked), LastView(Some((known, view)))) = (asked, self.recording.remembered.step().views.next())
+        let last = self.recording.remembered.step().views.next();
+        if let (Some(asked), LastView(Some((known, view)))) = (asked, last)
             && asked == *known
         {
-            return Ok(view.clone());
+            let view = view.clone();
+            self.recording.remembered.views_found += 1;
+            return Ok(view);
         }
         let view = self.make_view(access, part)?;
         let last = self.recording.remembered.step().views.last();

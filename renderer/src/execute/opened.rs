@@ -20,6 +20,8 @@ pub(crate) struct Opened {
     pub(crate) attached: Attached,
     /// What opening it adds to the counts of what was executed.
     pub(crate) counts: Counts,
+    /// Planes that are filled because their contents may be anything.
+    pub(crate) poisoned: u32,
     /// A pass declares something as cleared that it does not attach.
     pub(crate) clears_stored: bool,
 }
@@ -31,11 +33,11 @@ impl Opened {
         self.attached.clear();
     }
 
-    /// Makes it that of `step`. Where contents are poisoned, returns how many attachments are filled.
+    /// Makes it that of `step`, and returns how many views are those of before.
     ///
     /// # Errors
     /// What cannot be attached.
-    pub(crate) fn open(&mut self, frame: &Prepared<'_>, step: StepId) -> Result<u32, ExecuteError> {
+    pub(crate) fn open(&mut self, frame: &Prepared<'_>, step: StepId) -> Result<usize, ExecuteError> {
         let plan = frame.plan;
         if self.compilation == 0 || self.compilation != plan.compilation() {
             self.let_go();
@@ -53,13 +55,14 @@ impl Opened {
             attachments.iter().zip(stamps).all(same)
         });
         if known {
-            return Ok(0);
+            return Ok(attachments.len());
         }
         self.let_go();
         self.attached.gather(frame, step)?;
         self.counts = self.attached.counts();
         if frame.poison {
-            return Ok(poison::at_start(&mut self.attached, &self.targets));
+            self.poisoned = poison::at_start(&mut self.attached, &self.targets);
+            return Ok(0);
         }
         self.stamps = attachments.iter().map(|a| frame.realized.stamp(a.resource)).collect();
         Ok(0)

@@ -59,6 +59,8 @@ pub(crate) struct Remembered {
     current: usize,
     /// Frames until views are let go of.
     left: u64,
+    /// Views that were found here, since the beginning.
+    pub(crate) views_found: u64,
 }
 
 impl Remembered {

@@ -60,24 +60,26 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
         recording.poisoned += poison::at_first_use(frame, step, encoder);
     }
     let opened = &mut recording.remembered.step().opened;
-    let filled = opened.open(frame, step)?;
-    let targets = opened.targets;
-    if opened.clears_stored {
+    let found = opened.open(frame, step)?;
+    let Opened { targets, poisoned, clears_stored: clears, .. } = *opened;
+    recording.remembered.views_found += found as u64;
+    recording.poisoned += poisoned;
+    if clears {
         clear_stored(frame, step, encoder)?;
     }
-    recording.poisoned += filled;
     let begun = recording.now();
     let timestamps = frame.timing.writes(step);
-    let mut open = open(frame, step, timestamps.as_ref(), recording, encoder);
-    recording.remembered.step().opened.close();
-    recording.executed.steps += 1;
-    for member in members.iter().filter(|m| m.join != Join::Inlined) {
-        record_pass(frame, passes, (step, *member), &targets, recording, encoder, &mut open)?;
-    }
-    // Dropping the pass ends it, and has wgpu look at everything that was recorded into it.
-    let is_copy = matches!(open, Open::Copy);
-    let closing = recording.now();
-    drop(open);
+    let closing = {
+        let mut open = open(frame, step, timestamps.as_ref(), recording, encoder);
+        recording.remembered.step().opened.close();
+        recording.executed.steps += 1;
+        for member in members.iter().filter(|m| m.join != Join::Inlined) {
+            record_pass(frame, passes, (step, *member), &targets, recording, encoder, &mut open)?;
+        }
+        // Here the pass ends, where it lies, and wgpu looks at everything that was recorded into it.
+        recording.now()
+    };
+    let is_copy = frame.plan.steps()[step.index()].kind == PassKind::Copy;
     if let (true, Some(timestamps)) = (is_copy, &timestamps) {
         encoder.write_timestamp(&timestamps.queries, timestamps.end);
     }
@@ -174,11 +176,18 @@ fn record_pass<W: ?Sized + 'static>(
     if let (Open::Raster(raster), true) = (&mut *open, frame.plan.passes_of(step)[0].pass != pass) {
         reset_state(raster, targets.extent);
     }
-    let (inlined, asked_inlined) = (&[][..], false);
-    let mut cx = Cx { frame, step, pass, targets, recording, encoder, open, inlined, asked_inlined };
     let resolves = join == Join::Resolve;
-    let inlined = if resolves { Vec::new() } else { inlined_into(&mut cx, declared, world)? };
-    let mut cx = Cx { inlined: &inlined, ..cx };
+    let takes_epilogue = frame.plan.graph().passes()[pass.index()].flags.has(PassFlags::TAKES_EPILOGUE);
+    let mut inlined = Vec::new();
+    if takes_epilogue && !resolves {
+        let (inlined_yet, asked_inlined) = (&[][..], false);
+        let (recording, encoder, open) = (&mut *recording, &mut *encoder, &mut *open);
+        let mut cx = Cx { frame, step, pass, targets, recording, encoder, open, inlined: inlined_yet, asked_inlined };
+        inlined = inlined_into(&mut cx, declared, world)?;
+    }
+    let (own, asked_inlined) = (&*inlined, false);
+    let mut cx =
+        Cx { frame, step, pass, targets, recording: &mut *recording, encoder, open, inlined: own, asked_inlined };
     let recorded = match extra {
         _ if resolves => Some(full_screen_resolve::record(&mut cx)),
         Some(extra) if extra.pass == pass => Some((extra.record)(&mut cx)),
@@ -187,10 +196,7 @@ fn record_pass<W: ?Sized + 'static>(
     let asked = cx.asked_inlined;
     let name = || Named::pass(frame.plan, pass);
     // What was refused while recording is nearer to the cause than what the recorder made of it.
-    let recorded = match recording.refused.take() {
-        Some(error) => Some(Err(error)),
-        None => recorded,
-    };
+    let recorded = if recording.refused.is_some() { recording.refused.take().map(Err) } else { recorded };
     match recorded {
         None => return Err(ExecuteError::NoRecorder { pass: name() }),
         Some(Err(RecordError::Device(error))) => return Err(ExecuteError::Device(error)),
@@ -210,9 +216,6 @@ fn inlined_into<W: ?Sized + 'static>(
     world: &W,
 ) -> Result<Vec<Inlined>, ExecuteError> {
     let (plan, producer) = (cx.frame.plan, cx.pass);
-    if !plan.graph().passes()[producer.index()].flags.has(PassFlags::TAKES_EPILOGUE) {
-        return Ok(Vec::new());
-    }
     let mut inlined = Vec::new();
     for (pass, slot) in inlined_after(plan, cx.step, producer) {
         cx.pass = pass;

@@ -85,6 +85,11 @@ impl Threads {
         self.others.iter().map(|other| other.uniforms.created()).sum()
     }
 
+    /// Views that the other threads found as they were, since the beginning.
+    pub(crate) fn views_found(&self) -> u64 {
+        self.others.iter().map(|other| other.remembered.views_found).sum()
+    }
+
     /// Lets go of all views that the other threads keep.
     pub(crate) fn let_go(&mut self) {
         self.others.iter_mut().for_each(|other| other.remembered.let_go());

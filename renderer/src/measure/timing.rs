@@ -29,6 +29,8 @@ pub struct Timing {
     steps: Vec<StepDurations>,
     frame: StepDurations,
     generation: u64,
+    /// The compilation whose plan was executed last.
+    compilation: u64,
     warm_up_left: u32,
     begun: Option<Instant>,
     wgpu: Durations,
@@ -73,6 +75,7 @@ impl Timing {
             steps: Vec::new(),
             frame: StepDurations::default(),
             generation: 0,
+            compilation: 0,
             warm_up_left: Self::WARM_UP,
             begun: None,
             wgpu: Durations::default(),
@@ -116,13 +119,17 @@ impl Timing {
     pub(crate) fn begin_frame(&mut self, gpu: &Gpu, plan: &Plan) {
         self.begun = Some(Instant::now());
         self.current = None;
-        let generation = fingerprint(plan);
-        if generation != self.generation {
-            self.generation = generation;
-            self.steps.clear();
-            self.steps.resize_with(plan.steps().len(), StepDurations::default);
-            self.reset();
+        if plan.compilation() == 0 || plan.compilation() != self.compilation {
+            self.compilation = plan.compilation();
+            let generation = fingerprint(plan);
+            if generation != self.generation {
+                self.generation = generation;
+                self.steps.clear();
+                self.steps.resize_with(plan.steps().len(), StepDurations::default);
+                self.reset();
+            }
         }
+        let generation = self.generation;
         self.collect(f64::from(gpu.queue.get_timestamp_period()));
         if let Some(trace) = &mut self.trace {
             trace.begin_frame(plan, generation, self.warm_up_left > 0);

@@ -138,7 +138,7 @@ impl RasterKey {
                 *stride == b.stride_bytes && *step == b.step && attributes == b.attributes
             };
         *primitive == raster.primitive
-            && *depth == raster.depth
+            && (self.targets.depth.is_none() || *depth == raster.depth)
             && colors == raster.colors
             && *alpha_to_coverage == raster.alpha_to_coverage
             && fragment.as_deref() == raster.fragment
@@ -236,6 +236,8 @@ mod tests {
         }
         let blended = [Output { blend: Some(BlendState::ALPHA_BLENDING), ..Output::REPLACE }];
         assert!(!is(&Raster { depth: Depth::NEARER, ..base.clone() }));
+        let without_depth = RasterKey::new(&base, &Targets { depth: None, ..targets() }, 1);
+        assert!(without_depth.describes(&Raster { depth: Depth::NEARER, ..base.clone() }), "there is none to test");
         assert!(!is(&Raster { colors: &blended, ..base.clone() }));
         assert!(!is(&Raster { alpha_to_coverage: true, ..base.clone() }));
         let mut fewer = targets();

@@ -1,8 +1,8 @@
 //! Textures and buffers of the caller's: drawn into, read, and refused when they are not what was declared.
 
-use crate::bench::{Bench, GREEN, TestResult, fill_corner, on_every_device};
+use crate::bench::{Bench, GREEN, SHOW, TestResult, draw_of, fill_corner, on_every_device};
 use framegraph::{Entry, Exit, Extent, Format, Intent, TextureDesc};
-use framegraph_wgpu::{Gpu, read_texture};
+use framegraph_wgpu::{Gpu, Raster, read_texture};
 use wgpu::{TextureFormat, TextureUsages};
 
 fn texture(gpu: &Gpu, side: u32, format: TextureFormat, usage: TextureUsages) -> wgpu::Texture {
@@ -44,6 +44,46 @@ fn an_import_keeps_what_it_held() -> TestResult {
                 (pixels.at(0, 7), pixels.at(7, 0)),
                 (Some([0, 255, 0, 255].as_slice()), Some([77; 4].as_slice()))
             );
+        }
+        Ok(())
+    })
+}
+
+/// Under one plan: what a step attaches, and what it samples, is what this frame imports.
+#[test]
+fn imports_change_from_frame_to_frame() -> TestResult {
+    on_every_device("imports_change_from_frame_to_frame", |gpu, drawn| {
+        let both = USES | TextureUsages::TEXTURE_BINDING;
+        let (mine, theirs) = ([(); 2].map(|()| texture(gpu, 8, TextureFormat::Rgba8Unorm, both)), [10, 200]);
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(32), rows_per_image: None };
+        for (texture, value) in mine.iter().zip(theirs) {
+            gpu.queue.write_texture(texture.as_image_copy(), &[value; 256], layout, texture.size());
+        }
+        let mut bench = Bench::new(gpu, 8, 8);
+        let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+        let (source, target) = bench.declare(|frame| {
+            let source = frame.graph_mut().import_texture("source", desc, Entry::Defined, Exit::Keep);
+            let target = frame.graph_mut().import_texture("target", desc, Entry::Undefined, Exit::Keep);
+            let declare =
+                |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(source)?, p.color(target, Intent::Overwrite)?));
+            frame.add_fn("show", declare, |(view, _), (), cx| draw_of(cx, &Raster::new(SHOW), *view))?;
+            Ok((source, target))
+        })?;
+        for frame in 0..8 {
+            // Twice each way in a row, so that some frames find all as it was.
+            let from = frame / 2 % 2;
+            let into = texture(gpu, 8, TextureFormat::Rgba8Unorm, both);
+            bench.imports.clear();
+            bench.imports.texture(source, &mine[from]);
+            match frame {
+                5.. => bench.imports.surface(target, &into),
+                _ => bench.imports.texture(target, &into),
+            };
+            bench.execute()?;
+            if drawn {
+                let at = read_texture(gpu, &into)?.at(3, 4).map(<[u8]>::to_vec);
+                assert_eq!(at, Some(vec![theirs[from]; 4]), "frame {frame}");
+            }
         }
         Ok(())
     })

@@ -94,7 +94,10 @@ impl Executor {
     /// Hits and creations of the caches of views, bind groups and pipelines.
     pub fn caches(&self) -> [(&'static str, CacheCounts); 3] {
         let Caches { views, groups, pipelines, .. } = &self.caches;
-        [("views", views.counts()), ("bind groups", groups.counts()), ("pipelines", pipelines.counts())]
+        let found = self.recording.remembered.views_found + self.threads.views_found();
+        let CacheCounts { hits, created } = views.counts();
+        let views = CacheCounts { hits: hits + found, created };
+        [("views", views), ("bind groups", groups.counts()), ("pipelines", pipelines.counts())]
     }
 
     /// Times of steps and frames.
