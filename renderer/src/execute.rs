@@ -13,6 +13,7 @@ pub(crate) mod full_screen_resolve;
 pub(crate) mod load_store;
 pub(crate) mod lookup;
 pub(crate) mod object_counts;
+pub(crate) mod open_step;
 pub(crate) mod opened;
 pub(crate) mod part;
 pub(crate) mod prepared;

@@ -1,0 +1,81 @@
+//! Opening a step: what it attaches, gathered where something is other than it was.
+
+use crate::debug::poison;
+use crate::execute::clear::clears_stored;
+use crate::execute::error::ExecuteError;
+use crate::execute::opened::Opened;
+use crate::execute::prepared::Prepared;
+use crate::execute::targets::Targets;
+use crate::named::Named;
+use framegraph::{AccessKind, Attachment, Format, Join, PassKind, Plan, Range, Role, StepId};
+
+impl Opened {
+    /// Makes it that of `step`, and returns how many views are those of before.
+    ///
+    /// # Errors
+    /// What cannot be attached.
+    pub(crate) fn open(&mut self, frame: &Prepared<'_>, step: StepId) -> Result<usize, ExecuteError> {
+        let plan = frame.plan;
+        if self.compilation == 0 || self.compilation != plan.compilation() {
+            self.let_go();
+            self.compilation = 0;
+            check(plan, step)?;
+            (self.targets, self.clears_stored) = (Targets::of(plan, step), clears_stored(plan, step));
+            self.compilation = plan.compilation();
+        }
+        if plan.steps()[step.index()].kind != PassKind::Raster {
+            return Ok(0);
+        }
+        let attachments = plan.attachments_of(step);
+        let known = self.stamps.as_ref().is_some_and(|stamps| {
+            let same = |(a, stamp): (&Attachment, &u64)| frame.realized.stamp(a.resource) == Some(*stamp);
+            attachments.iter().zip(stamps).all(same)
+        });
+        if known {
+            return Ok(attachments.len());
+        }
+        self.let_go();
+        self.attached.gather(frame, step)?;
+        self.counts = self.attached.counts();
+        if frame.poison {
+            self.poisoned = poison::at_start(&mut self.attached, &self.targets);
+            return Ok(0);
+        }
+        self.stamps = attachments.iter().map(|a| frame.realized.stamp(a.resource)).collect();
+        Ok(0)
+    }
+}
+
+/// Whether a raster step attaches something, and nothing that it samples too.
+fn check(plan: &Plan, step: StepId) -> Result<(), ExecuteError> {
+    if plan.steps()[step.index()].kind != PassKind::Raster {
+        return Ok(());
+    }
+    if plan.attachments_of(step).is_empty() {
+        let pass = Named::pass(plan, plan.passes_of(step)[0].pass);
+        return Err(ExecuteError::NoAttachment { pass });
+    }
+    let both = |a: &&Attachment| a.role == Role::Depth && is_sampled(plan, step, a);
+    match plan.attachments_of(step).iter().find(both) {
+        Some(attachment) => Err(ExecuteError::Planes { resource: Named::resource(plan, attachment.resource) }),
+        None => Ok(()),
+    }
+}
+
+/// Whether a pass of the step reads the attached level and layers other than as an attachment, in whichever plane. What an
+/// inlined pass reads at the same pixel is no attachment any more.
+fn is_sampled(plan: &Plan, step: StepId, attachment: &Attachment) -> bool {
+    let Attachment { mip, layer, layers, .. } = *attachment;
+    let attached = Range { mip, mips: 1, layer, layers, ..Range::ALL };
+    let format = plan.format(attachment.resource).unwrap_or(Format::Depth32Float);
+    plan.passes_of(step).iter().any(|member| {
+        let (inlined, resolves) = (member.join == Join::Inlined, member.join == Join::Resolve);
+        let mut accesses = plan.graph().accesses_of(member.pass).iter();
+        accesses.any(|a| {
+            a.resource == attachment.resource
+                && a.range.overlaps(&attached, format)
+                && !a.kind.is_attachment()
+                && !(resolves || inlined && a.kind == AccessKind::SamePixel)
+        })
+    })
+}
