@@ -185,13 +185,8 @@ impl Call<'_> {
 
     /// Where the result of a target slot goes, and what to call it if the plugin makes it.
     pub fn target(&self, slot: &str) -> (Target, Option<&str>) {
-        let Some(binding) = self.binding(slot) else {
-            return (Target::New, None);
-        };
-        match binding.handle {
-            Some(Handle::Texture(texture)) => (Target::Into(texture.into()), Some(binding.name)),
-            _ => (Target::New, Some(binding.name)),
-        }
+        let into = self.current(slot).map_or(Target::New, |texture| Target::Into(texture.into()));
+        (into, self.bound(slot))
     }
 
     /// The name that the file binds to a slot; none when it is left unbound.
@@ -210,8 +205,7 @@ impl Call<'_> {
     }
 
     fn put(&mut self, slot: &str, handle: Handle) {
-        let found = self.bindings.iter_mut().find(|b| b.slot.name == slot);
-        if let Some(binding) = found {
+        if let Some(binding) = self.bindings.iter_mut().find(|b| b.slot.name == slot) {
             binding.given = Some(handle);
         }
     }
