@@ -21,7 +21,6 @@ use crate::view::{ViewId, Views};
 use framegraph::{
     ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View,
 };
-use framegraph_scene::Lobes;
 use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError};
 
 /// Shades what is nearest.
@@ -192,7 +191,7 @@ impl Color {
         let inputs =
             SurfaceInputs { contact, occlusion, reflections, fog: self.fog, ..SurfaceInputs::shadowed(shadow) };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, epilogue, cx)?;
-        let program = |lobes: Lobes| bindings.program(world.programs, lobes);
+        let program = |variant| bindings.program(world.programs, variant);
         // A prepass has cut the holes of masked surfaces, but something else may be as near there.
         let depth = match self.depth {
             ColorDepth::Prepass(_) => Depth::EQUAL,

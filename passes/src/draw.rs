@@ -1,11 +1,12 @@
 //! Drawing batches of instances: one pipeline for each kind of surface, one bind group for each material, one draw for each
-//! batch.
+//! batch, or one indirect call for many ([`indirect`](crate::indirect)).
 //!
 //! A surface is of the kind of its lobes: each set of lobes has a shader of its own, which binds and computes nothing else.
 
 use crate::error::PassError;
+use crate::indirect::{ARGUMENTS_BYTES, DrawList, LEAST_RUN, draws_indirectly};
 use crate::program::{Interface, Program, ProgramDesc, Programs};
-use crate::upload::{GpuScene, InstanceDraw, features_of};
+use crate::upload::{GpuScene, InstanceDraw, MATERIAL_BINDINGS, features_of};
 use framegraph_scene::{Batch, Lobes, MaterialId};
 use framegraph_shaders::layout::{
     STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexFormat,
@@ -16,8 +17,17 @@ use framegraph_wgpu::{Binding, Constants, Cx, Depth, Output, Raster, RasterPipel
 use std::sync::Arc;
 use wgpu::{Buffer, Face, FrontFace, PrimitiveState, VertexAttribute, VertexStepMode};
 
-/// Finds the program for surfaces with a set of lobes.
-pub type ProgramOf<'a> = dyn Fn(Lobes) -> Result<Arc<Program>, PassError> + 'a;
+/// Which variant of a shader draws a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SurfaceVariant {
+    /// The lobes of its material.
+    pub lobes: Lobes,
+    /// Its material is taken from an array, where the shader can ([`Feature::MATERIAL_TABLE`]).
+    pub material_table: bool,
+}
+
+/// Finds the program for a variant.
+pub type ProgramOf<'a> = dyn Fn(SurfaceVariant) -> Result<Arc<Program>, PassError> + 'a;
 
 /// What instances are drawn from: the scene, and where a view has placed them.
 #[derive(Clone, Copy, Debug)]
@@ -30,11 +40,13 @@ pub struct InstanceSource<'a> {
     pub origins: &'a Buffer,
     /// Vertex buffer of instance numbers, of which batches are ranges.
     pub numbers: &'a Buffer,
+    /// Arguments of long lists of draws.
+    pub arguments: &'a Buffer,
 }
 
 /// How batches of instances are drawn.
 pub struct SurfaceDraw<'a> {
-    /// Shader and entry points, by the lobes of the material.
+    /// Shader and entry points, by variant.
     pub program: &'a ProgramOf<'a>,
     /// What the pass binds in group 0, in the order of its interface.
     pub frame: &'a [Option<Binding>],
@@ -57,7 +69,7 @@ pub struct DepthDraw<'a> {
     /// Depth test.
     pub depth: Depth,
     /// Opaque instances and masked ones, nearest first, so that depth rejects what is behind.
-    pub batches: &'a [Vec<Batch>; 2],
+    pub batches: &'a [DrawList; 2],
 }
 
 impl DepthDraw<'_> {
@@ -81,15 +93,17 @@ impl DepthDraw<'_> {
 /// What a pipeline depends on beside the pass.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct PipelineKey {
-    lobes: Lobes,
+    surface: SurfaceVariant,
     double_sided: bool,
     mirrored: bool,
 }
 
 impl PipelineKey {
-    fn of(index: usize, scene: &GpuScene) -> Self {
-        let InstanceDraw { double_sided, mirrored, material, .. } = scene.instances[index];
-        Self { lobes: scene.lobes(material), double_sided, mirrored }
+    /// That of an instance, `indirect` where many are drawn by one call.
+    fn of(instance: &InstanceDraw, indirect: bool, scene: &GpuScene) -> Self {
+        let InstanceDraw { double_sided, mirrored, material, .. } = *instance;
+        let material_table = indirect && scene.is_in_table(material);
+        Self { surface: SurfaceVariant { lobes: scene.lobes(material), material_table }, double_sided, mirrored }
     }
 }
 
@@ -100,41 +114,71 @@ struct SharedState {
     pipeline: RasterPipeline,
     frame: wgpu::BindGroup,
     objects: wgpu::BindGroup,
-    /// By material, those that a draw asked for.
-    materials: Vec<Option<wgpu::BindGroup>>,
+    materials: Materials,
+    /// By the number of [`Materials::group`], those that a draw asked for.
+    groups: Vec<Option<wgpu::BindGroup>>,
+}
+
+/// How a program reads materials.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Materials {
+    /// Not at all.
+    None,
+    /// From a bind group of their own.
+    Bound,
+    /// From an array.
+    Table,
+}
+
+impl Materials {
+    fn of(program: &Program) -> Self {
+        if program.binds(1, MATERIAL_BINDINGS.len() - 1) {
+            return Self::Table;
+        }
+        if program.has_group(1) { Self::Bound } else { Self::None }
+    }
+
+    /// A number that materials share which are bound by one group.
+    fn group(self, material: MaterialId) -> usize {
+        match self {
+            Self::None | Self::Table => 0,
+            Self::Bound => material.index(),
+        }
+    }
 }
 
 impl SharedState {
-    /// The bind group of a material; none where the program reads nothing of one.
+    /// The bind group of that number, made for a material of it; none where the program reads nothing of one.
     fn material(
         &mut self,
+        group: usize,
         material: MaterialId,
         scene: &GpuScene,
         cx: &mut Cx<'_>,
     ) -> Result<Option<&wgpu::BindGroup>, RecordError> {
-        if !self.program.has_group(1) {
+        if self.materials == Materials::None {
             return Ok(None);
         }
-        let index = material.index();
-        if self.materials.len() <= index {
-            self.materials.resize(index + 1, None);
+        if self.groups.len() <= group {
+            self.groups.resize(group + 1, None);
         }
-        if self.materials[index].is_none() {
+        if self.groups[group].is_none() {
             let binding = |slot| scene.material_binding(material, slot);
-            self.materials[index] = Some(self.program.bind(cx, &self.pipeline, 1, binding)?);
+            self.groups[group] = Some(self.program.bind(cx, &self.pipeline, 1, binding)?);
         }
-        Ok(self.materials[index].as_ref())
+        Ok(self.groups[group].as_ref())
     }
 }
 
 impl SurfaceDraw<'_> {
-    /// Draws `batches` of the scene's instances, in order. What a draw has in common with the one before it is not set again.
+    /// Draws a list of the scene's instances, in order. What a draw has in common with the one before it is not set again, and
+    /// batches in a row that differ in their arguments alone are one call.
     ///
     /// # Errors
     /// What the shader or the device refuses.
-    pub fn draw(&self, batches: &[Batch], from: InstanceSource<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let InstanceSource { scene, numbers, .. } = from;
-        if batches.is_empty() {
+    pub fn draw(&self, list: &DrawList, from: InstanceSource<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let InstanceSource { scene, numbers, arguments, .. } = from;
+        if list.is_empty() {
             return Ok(());
         }
         let pass = cx.render_pass()?;
@@ -142,50 +186,76 @@ impl SurfaceDraw<'_> {
         pass.set_vertex_buffer(STREAM_ATTRIBUTES, scene.attributes.slice(..));
         pass.set_vertex_buffer(STREAM_INSTANCE, numbers.slice(..));
         pass.set_vertex_buffer(STREAM_EARLIER, scene.earlier_positions().slice(..));
+        let first_arguments = list.first_arguments().filter(|_| draws_indirectly(cx.gpu()));
+        let indirect = first_arguments.is_some();
         let mut states: Vec<SharedState> = Vec::new();
-        // Index of the state that is set, and the material.
-        let (mut set, mut bound): (Option<usize>, Option<MaterialId>) = (None, None);
+        // Index of the state that is set, and the group of its materials.
+        let (mut set, mut bound): (Option<usize>, Option<usize>) = (None, None);
         // Whether the indices that are set are short.
         let mut indexed: Option<bool> = None;
-        for batch in batches {
-            let number = batch.instance as usize;
-            let instance = &scene.instances[number];
-            let key = PipelineKey::of(number, scene);
-            let at = match set {
-                Some(at) if states[at].key == key => at,
+        let mut at = 0;
+        while at < list.len() {
+            let instance = &scene.instances[list[at].instance as usize];
+            let key = PipelineKey::of(instance, indirect, scene);
+            let state = match set {
+                Some(state) if states[state].key == key => state,
                 _ => {
-                    let at = match states.iter().position(|state| state.key == key) {
-                        Some(at) => at,
+                    let state = match states.iter().position(|state| state.key == key) {
+                        Some(state) => state,
                         None => {
                             states.push(self.pipeline(key, instance.material, from, cx)?);
                             states.len() - 1
                         }
                     };
-                    let SharedState { pipeline, frame, objects, .. } = &states[at];
+                    let SharedState { pipeline, frame, objects, .. } = &states[state];
                     let pass = cx.render_pass()?;
                     pass.set_pipeline(pipeline);
                     pass.set_bind_group(0, frame, &[]);
                     pass.set_bind_group(2, objects, &[]);
-                    (set, bound) = (Some(at), None);
-                    at
+                    (set, bound) = (Some(state), None);
+                    state
                 }
             };
-            if bound != Some(instance.material) {
-                bound = Some(instance.material);
-                if let Some(material) = states[at].material(instance.material, scene, cx)? {
+            let materials = states[state].materials;
+            let group = materials.group(instance.material);
+            if bound != Some(group) {
+                bound = Some(group);
+                if let Some(material) = states[state].material(group, instance.material, scene, cx)? {
                     cx.render_pass()?.set_bind_group(1, material, &[]);
                 }
             }
-            let mesh = scene.mesh(instance.mesh);
+            let short = scene.mesh(instance.mesh).short;
             let pass = cx.render_pass()?;
-            if indexed.replace(mesh.short) != Some(mesh.short) {
-                let (of, format) = match mesh.short {
+            if indexed.replace(short) != Some(short) {
+                let (of, format) = match short {
                     true => (scene.indices.slice(scene.short_indices_at..), wgpu::IndexFormat::Uint16),
                     false => (scene.indices.slice(..scene.short_indices_at), wgpu::IndexFormat::Uint32),
                 };
                 pass.set_index_buffer(of, format);
             }
-            pass.draw_indexed(mesh.indices(), mesh.base_vertex, batch.range());
+            let goes_on = |batch: &&Batch| {
+                let other = &scene.instances[batch.instance as usize];
+                PipelineKey::of(other, indirect, scene) == key
+                    && materials.group(other.material) == group
+                    && scene.mesh(other.mesh).short == short
+            };
+            let run = match first_arguments {
+                Some(_) => 1 + list[at + 1..].iter().take_while(goes_on).count(),
+                None => 1,
+            };
+            match first_arguments {
+                Some(first) if run >= LEAST_RUN => {
+                    let offset = (u64::from(first) + at as u64) * ARGUMENTS_BYTES;
+                    pass.multi_draw_indexed_indirect(arguments, offset, run as u32);
+                }
+                _ => {
+                    for batch in &list[at..at + run] {
+                        let mesh = scene.mesh(scene.instances[batch.instance as usize].mesh);
+                        pass.draw_indexed(mesh.indices(), mesh.base_vertex, batch.range());
+                    }
+                }
+            }
+            at += run;
         }
         Ok(())
     }
@@ -199,8 +269,8 @@ impl SurfaceDraw<'_> {
         cx: &mut Cx<'_>,
     ) -> Result<SharedState, RecordError> {
         let Self { program, frame, constants, depth, colors, .. } = self;
-        let program = program(key.lobes)?;
-        fits(&program, key.lobes, from.scene.material_name(material), &cx.gpu().device.limits())?;
+        let program = program(key.surface)?;
+        fits(&program, key.surface.lobes, from.scene.material_name(material), &cx.gpu().device.limits())?;
         let buffers = vertex_buffers();
         let buffers: Vec<VertexBuffer<'_>> = buffers
             .iter()
@@ -228,7 +298,8 @@ impl SurfaceDraw<'_> {
         let frame = program.bind(cx, &pipeline, 0, |slot| frame.get(slot).cloned().flatten())?;
         let placement = [from.objects, from.origins];
         let objects = program.bind(cx, &pipeline, 2, |slot| Some(placement.get(slot).copied()?.clone().into()))?;
-        Ok(SharedState { key, program, pipeline, frame, objects, materials: Vec::new() })
+        let materials = Materials::of(&program);
+        Ok(SharedState { key, program, pipeline, frame, objects, materials, groups: Vec::new() })
     }
 }
 

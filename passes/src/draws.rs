@@ -1,6 +1,8 @@
 //! The instanced draws of a view.
 
+use crate::indirect::{Arguments, DrawList};
 use crate::shadow::ViewShadows;
+use crate::upload::MeshRange;
 use framegraph_scene::{Batch, BatchOrder, DrawLists, Renderables};
 
 /// What is drawn of a view, each list as the draws that make it up: all instances of one mesh and material are one draw where
@@ -10,16 +12,18 @@ pub struct ViewDraws {
     /// Numbers of instances; a draw takes a range of them.
     pub numbers: Vec<u32>,
     /// Depth of opaque surfaces and of masked ones: what has the nearest instance first.
-    pub depth: [Vec<Batch>; 2],
+    pub depth: [DrawList; 2],
     /// Opaque surfaces and masked ones over that depth, in the same order: of surfaces that lie in one another the last is seen, so
     /// order shows.
-    pub surfaces: [Vec<Batch>; 2],
+    pub surfaces: [DrawList; 2],
     /// What transmits, a draw each, nearest first.
     pub transmit: Vec<Batch>,
     /// What blends, farthest first; only neighbors in that order are one draw.
-    pub blend: Vec<Batch>,
+    pub blend: DrawList,
     /// Opaque and masked casters of each shadow map.
-    pub casters: Vec<[Vec<Batch>; 2]>,
+    pub casters: Vec<[DrawList; 2]>,
+    /// Arguments of the batches of long lists, for draws that take them from a buffer.
+    pub arguments: Vec<Arguments>,
 }
 
 impl ViewDraws {
@@ -27,8 +31,9 @@ impl ViewDraws {
     pub(crate) fn new(of: &Renderables, visible: &DrawLists, shadows: Option<&ViewShadows>) -> Self {
         let DrawLists { opaque, mask, transmit, blend, .. } = visible;
         let mut numbers = Vec::with_capacity(2 * (opaque.len() + mask.len()) + transmit.len() + blend.len());
-        let mut batches =
-            |groups: &framegraph_scene::Groups, order, list: &[u32]| groups.batches(list, order, &mut numbers);
+        let mut batches = |groups: &framegraph_scene::Groups, order, list: &[u32]| {
+            DrawList::from(groups.batches(list, order, &mut numbers))
+        };
         let (surfaces, depths) = (of.surfaces(), of.depths());
         let depth = [opaque, mask].map(|list| batches(depths, BatchOrder::FirstFirst, list));
         let shaded = [opaque, mask].map(|list| batches(surfaces, BatchOrder::FirstFirst, list));
@@ -40,29 +45,40 @@ impl ViewDraws {
         let first = numbers.len() as u32;
         numbers.extend_from_slice(transmit);
         let transmit = (first..).zip(transmit).map(|(first, instance)| Batch { instance: *instance, first, count: 1 });
-        Self { depth, surfaces: shaded, transmit: transmit.collect(), blend: blended, casters, numbers }
+        let transmit = transmit.collect();
+        Self { depth, surfaces: shaded, transmit, blend: blended, casters, numbers, arguments: Vec::new() }
     }
 
-    /// The same with a draw for each instance: the picture that instanced draws are compared with.
+    /// The same with arguments for long lists. `mesh` is that of an instance.
+    pub(crate) fn indirect(mut self, mesh: impl Fn(u32) -> MeshRange) -> Self {
+        let Self { depth, surfaces, blend, casters, arguments, .. } = &mut self;
+        for list in depth.iter_mut().chain(surfaces).chain([blend]).chain(casters.iter_mut().flatten()) {
+            list.argue(&mesh, arguments);
+        }
+        self
+    }
+
+    /// The same with a call for each instance: the picture that instanced and indirect draws are compared with.
     #[must_use]
     pub fn one_by_one(self) -> Self {
-        let Self { numbers, depth, surfaces, transmit, blend, casters } = self;
-        let each = |batches: Vec<Batch>| -> Vec<Batch> {
+        let Self { numbers, depth, surfaces, transmit, blend, casters, .. } = self;
+        let each = |batches: DrawList| {
             let alone = |first: u32| Batch { instance: numbers[first as usize], first, count: 1 };
-            batches.iter().flat_map(Batch::range).map(alone).collect()
+            DrawList::from(batches.iter().flat_map(Batch::range).map(alone).collect::<Vec<_>>())
         };
         Self {
             depth: depth.map(each),
             surfaces: surfaces.map(each),
-            transmit: each(transmit),
+            transmit,
             blend: each(blend),
             casters: casters.into_iter().map(|lists| lists.map(each)).collect(),
             numbers,
+            arguments: Vec::new(),
         }
     }
 
     /// Of some of these draws those parts whose instances are wanted.
-    pub(crate) fn only(&self, batches: &[Batch], wanted: impl Fn(u32) -> bool) -> Vec<Batch> {
+    pub(crate) fn only(&self, batches: &[Batch], wanted: impl Fn(u32) -> bool) -> DrawList {
         let mut parts: Vec<Batch> = Vec::new();
         for batch in batches {
             let start = parts.len();
@@ -73,13 +89,13 @@ impl ViewDraws {
                 }
             }
         }
-        parts
+        parts.into()
     }
 
     /// How many draws these are.
     #[must_use]
     pub fn count(&self) -> usize {
         let lists = self.depth.iter().chain(&self.surfaces).chain(self.casters.iter().flatten());
-        lists.chain([&self.transmit, &self.blend]).map(Vec::len).sum()
+        lists.chain([&self.blend]).map(|list| list.len()).sum::<usize>() + self.transmit.len()
     }
 }

@@ -45,6 +45,7 @@ pub mod full_screen;
 pub mod fxaa;
 pub mod grading;
 pub mod ibl;
+pub mod indirect;
 pub mod lighting;
 pub mod measure;
 pub mod occlusion;

@@ -1,5 +1,7 @@
 //! What of a scene's instances stays from view to view: made once, updated where something moves.
 
+use crate::upload::MeshRange;
+use crate::upload::mesh_range::mesh_ranges;
 use crate::upload::pack::object_uniforms;
 use framegraph_scene::{Instance, Renderables, Scene};
 use framegraph_shaders::layout::ObjectUniforms;
@@ -38,6 +40,8 @@ const WORTH_A_THREAD: usize = 4096;
 pub struct PreparedScene {
     renderables: Renderables,
     placements: Placements,
+    /// Where each instance's mesh lies.
+    ranges: Vec<MeshRange>,
     /// Threads on which views are made, beside the caller's.
     pub workers: Option<Workers>,
 }
@@ -46,7 +50,14 @@ impl PreparedScene {
     /// That of `scene`, of which one thread makes views.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        Self { renderables: Renderables::new(scene), placements: Placements::new(scene), workers: None }
+        let of_meshes = mesh_ranges(&scene.meshes);
+        let range = |instance: &Instance| of_meshes.get(instance.mesh.index()).copied().unwrap_or_default();
+        Self {
+            renderables: Renderables::new(scene),
+            placements: Placements::new(scene),
+            ranges: scene.instances.iter().map(range).collect(),
+            workers: None,
+        }
     }
 
     /// Takes over where the instances `moved` stand. Number, meshes and materials of instances are what they were; a scene of
@@ -61,6 +72,11 @@ impl PreparedScene {
             chunk.objects[number % CHUNK] = object_uniforms(&scene.instances[number]);
             chunk.world_from_model[number % CHUNK] = scene.instances[number].world_from_model;
         }
+    }
+
+    /// Where the mesh of an instance lies in the scene's buffers.
+    pub(crate) fn mesh(&self, instance: u32) -> MeshRange {
+        self.ranges[instance as usize]
     }
 
     /// The threads beside the caller's.

@@ -229,6 +229,11 @@ impl Program {
         self.sampled
     }
 
+    /// Whether the entry points reach the variable of index `provided` in the interface's group.
+    pub fn binds(&self, group: usize, provided: usize) -> bool {
+        self.groups.get(group).is_some_and(|slots| slots.iter().any(|slot| slot.provided == provided))
+    }
+
     /// Whether the entry points reach anything in bind group `group`.
     pub fn has_group(&self, group: usize) -> bool {
         self.groups.get(group).is_some_and(|g| !g.is_empty())

@@ -1,6 +1,6 @@
 //! What shading a surface binds: the interface of the color and sky shaders, and how passes fill it.
 
-use crate::draw::{InstanceSource, SurfaceDraw};
+use crate::draw::{InstanceSource, SurfaceDraw, SurfaceVariant};
 use crate::error::PassError;
 use crate::fog::FogSettings;
 use crate::lighting::Lighting;
@@ -12,8 +12,8 @@ use crate::shadow::{ShadowBindings, ShadowInput};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS, features_of};
 use crate::view::{GpuView, ViewId, Views};
 use framegraph::{Format, View};
+use framegraph_scene::Lobe;
 use framegraph_scene::environment::ShBands;
-use framegraph_scene::{Lobe, Lobes};
 use framegraph_shaders::{Feature, Features, Module, library};
 use framegraph_wgpu::{Binding, Cx, Depth, Epilogue, Output, RecordError, SamplerDesc};
 use std::sync::Arc;
@@ -214,13 +214,14 @@ impl SurfaceBindings {
         })
     }
 
-    /// The program of surfaces with these lobes.
-    pub fn program(&self, programs: &Programs, lobes: Lobes) -> Result<Arc<Program>, PassError> {
+    /// The program of a variant of surfaces.
+    pub fn program(&self, programs: &Programs, variant: SurfaceVariant) -> Result<Arc<Program>, PassError> {
+        let SurfaceVariant { lobes, material_table } = variant;
         if lobes.contains(Lobe::Transmission) && !self.transmits {
             return Err(PassError::TransmissionUndeclared);
         }
         let features = features_of(lobes).iter().fold(self.features.clone(), Features::with);
-        let features = &features;
+        let features = &features.with_if(Feature::MATERIAL_TABLE, material_table);
         programs.get(&ProgramDesc { features, epilogue: &self.epilogue, ..ProgramDesc::new(&SURFACE_SHADER, &SURFACE) })
     }
 
@@ -244,7 +245,7 @@ pub(crate) fn draw_blended(
     cx: &mut Cx<'_>,
 ) -> Result<(), RecordError> {
     let blended = SurfaceDraw {
-        program: &|lobes| bindings.program(world.programs, lobes),
+        program: &|variant| bindings.program(world.programs, variant),
         frame: &bindings.frame,
         constants: &bindings.constants(AlphaUse::Blend),
         depth: Depth { write: false, ..Depth::NEARER },
@@ -257,6 +258,7 @@ pub(crate) fn draw_blended(
 mod tests {
     use super::*;
     use crate::draw::fits;
+    use framegraph_scene::Lobes;
 
     fn color(features: &Features) -> Result<Program, PassError> {
         Program::new(&ProgramDesc { features, ..ProgramDesc::new(&SURFACE_SHADER, &SURFACE) })

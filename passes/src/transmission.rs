@@ -16,6 +16,7 @@ use crate::depth_resolve::can_read_samples;
 use crate::draw::SurfaceDraw;
 use crate::fog::FogSettings;
 use crate::full_screen::FullScreen;
+use crate::indirect::DrawList;
 use crate::lighting::Lighting;
 use crate::program::{Interface, ProgramDesc, Programs};
 use crate::shading::{AlphaUse, Shading};
@@ -24,7 +25,6 @@ use crate::surface::{SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended}
 use crate::upload::GpuScene;
 use crate::view::{CameraView, ViewId, Views};
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
-use framegraph_scene::{Batch, Lobes};
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError, SamplerDesc};
 
@@ -151,10 +151,10 @@ impl Layer {
     }
 
     /// The draws of this layer, nearest first.
-    fn of(self, view: &CameraView) -> Vec<Batch> {
+    fn of(self, view: &CameraView) -> DrawList {
         let is_own = |layer: u8| if self.last { layer >= self.before } else { layer == self.before };
         let draws = view.draws.transmit.iter().zip(&view.visible.transmit_layers);
-        draws.filter(|(_, layer)| is_own(**layer)).map(|(draw, _)| *draw).collect()
+        draws.filter(|(_, layer)| is_own(**layer)).map(|(draw, _)| *draw).collect::<Vec<_>>().into()
     }
 }
 
@@ -221,7 +221,7 @@ impl Transparent {
     fn draw(&self, io: &TransparentIo, world: &SurfaceWorld<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let inputs = SurfaceInputs { scene: Some(io.scene), fog: self.fog, ..SurfaceInputs::shadowed(io.shadow) };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, Epilogue::default(), cx)?;
-        let program = |lobes: Lobes| bindings.program(world.programs, lobes);
+        let program = |variant| bindings.program(world.programs, variant);
         // The prepass has not drawn these: masked ones are cut here, and the cutoff of opaque ones cuts nothing.
         let transmissive = SurfaceDraw {
             program: &program,

@@ -11,7 +11,7 @@ mod environment;
 mod error;
 mod instances;
 mod material;
-mod mesh_range;
+pub(crate) mod mesh_range;
 pub mod pack;
 mod scene;
 mod textures;

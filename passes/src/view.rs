@@ -169,7 +169,10 @@ impl CameraView {
         let (renderables, eye) = (prepared.renderables(), settings.camera.eye);
         let from_eye = |origin: &DVec3| (*origin - eye).as_vec3().extend(0.0);
         let (draws, origins) = prepared.both(
-            || ViewDraws::new(renderables, &visible, self.shadows.as_ref()),
+            || {
+                let draws = ViewDraws::new(renderables, &visible, self.shadows.as_ref());
+                draws.indirect(|instance| prepared.mesh(instance))
+            },
             || renderables.origins().iter().map(from_eye).collect(),
         );
         Self { draws, visible, origins, placements: prepared.placements().clone(), ..self }

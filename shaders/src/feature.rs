@@ -42,6 +42,8 @@ impl Feature {
     pub const TRANSMISSION: Self = Self("TRANSMISSION");
     /// Strength and tint of the dielectric specular reflection (KHR_materials_specular).
     pub const SPECULAR: Self = Self("SPECULAR");
+    /// Materials are elements of one array, each surface's by the number that its instance has; without it each is bound alone.
+    pub const MATERIAL_TABLE: Self = Self("MATERIAL_TABLE");
     /// Shading computes in f16 where that is safe; the device must have `SHADER_F16`.
     pub const HALF: Self = Self("HALF");
 
@@ -60,6 +62,7 @@ impl Feature {
         Self::FOG,
         Self::VELOCITY,
         Self::ENVIRONMENT_MAP,
+        Self::MATERIAL_TABLE,
         Self::HALF,
     ];
 

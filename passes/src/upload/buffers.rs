@@ -8,8 +8,9 @@ use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
 use super::error::UploadError;
 use super::material::material_uniforms;
-use super::mesh_range::MeshRange;
+use super::mesh_range::{MeshRange, mesh_ranges};
 use super::pack::{colors_are_cut, vertex_attributes, vertex_positions};
+use crate::indirect::{LEAST_BATCHES, binds_materials};
 use framegraph_scene::Scene;
 use framegraph_scene::error::{Quantity, SceneError};
 use framegraph_scene::progress::{Progress, ProgressFn, Stage, report};
@@ -39,22 +40,14 @@ pub(super) fn vertices(
     }
     let mut positions: Vec<VertexPosition> = Vec::with_capacity(vertex_count);
     let mut attributes: Vec<VertexAttributes> = Vec::with_capacity(vertex_count);
-    // Half the bytes where 16 bits are enough; those with 32 come first.
-    let is_short = |mesh: &framegraph_scene::Mesh| mesh.vertex_count() <= 1 << 16;
-    let long_count: usize = scene.meshes.iter().filter(|mesh| !is_short(mesh)).map(|mesh| mesh.indices.len()).sum();
+    let ranges = mesh_ranges(&scene.meshes);
+    let long_count: usize = ranges.iter().filter(|range| !range.short).map(|range| range.index_count as usize).sum();
     let mut long: Vec<u32> = Vec::with_capacity(long_count);
     let mut short: Vec<u16> = Vec::with_capacity(index_count - long_count);
-    let mut ranges = Vec::with_capacity(scene.meshes.len());
-    for (index, mesh) in scene.meshes.iter().enumerate() {
-        ranges.push(MeshRange {
-            short: is_short(mesh),
-            first_index: if is_short(mesh) { short.len() } else { long.len() } as u32,
-            index_count: mesh.indices.len() as u32,
-            base_vertex: positions.len() as i32,
-        });
+    for (index, (mesh, range)) in scene.meshes.iter().zip(&ranges).enumerate() {
         positions.extend(vertex_positions(mesh));
         attributes.extend(vertex_attributes(mesh));
-        if is_short(mesh) {
+        if range.short {
             short.extend(mesh.indices.iter().map(|index| *index as u16));
         } else {
             long.extend(&mesh.indices);
@@ -79,7 +72,17 @@ pub(super) fn vertices(
     Ok((vertices, ranges))
 }
 
-/// The factors of all materials and the distance between them.
+/// The factors of all materials as elements of an array, where draws may take them from one.
+pub(super) fn material_table(gpu: &Gpu, scene: &Scene) -> Result<Option<Buffer>, UploadError> {
+    // Shorter lists of draws have no arguments.
+    if scene.instances.len() < LEAST_BATCHES || !binds_materials(&gpu.device.limits()) {
+        return Ok(None);
+    }
+    let packed: Vec<MaterialUniforms> = scene.materials.iter().map(material_uniforms).collect();
+    Ok(Some(filled(gpu, scene, "material table", BufferUsages::STORAGE, &packed)?))
+}
+
+/// The factors of all materials, each to be bound alone, and the distance between them.
 pub(super) fn materials(gpu: &Gpu, scene: &Scene) -> Result<(Buffer, u64), UploadError> {
     let alignment = u64::from(gpu.device.limits().min_uniform_buffer_offset_alignment);
     let stride = (size_of::<MaterialUniforms>() as u64).next_multiple_of(alignment);

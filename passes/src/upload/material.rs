@@ -10,8 +10,8 @@ use framegraph_shaders::{Feature, Features};
 use glam::{Vec2, Vec3};
 
 /// The variables of `wgsl/interface/material.wgsl`, in the order in which [`GpuScene::material_binding`](super::GpuScene::material_binding) counts them: the
-/// factors, then for each of [`Material::slots`] its texture and its sampler.
-pub const MATERIAL_BINDINGS: [&str; 1 + 2 * SLOT_COUNT] = [
+/// factors, then for each of [`Material::slots`] its texture and its sampler, and the array of all factors.
+pub const MATERIAL_BINDINGS: [&str; 2 + 2 * SLOT_COUNT] = [
     "material",
     "base_color_texture",
     "base_color_sampler",
@@ -43,6 +43,7 @@ pub const MATERIAL_BINDINGS: [&str; 1 + 2 * SLOT_COUNT] = [
     "specular_sampler",
     "specular_color_texture",
     "specular_color_sampler",
+    "materials",
 ];
 
 /// The shader features that a material's lobes call for.

@@ -42,9 +42,10 @@ pub fn colors_are_cut(mesh: &Mesh) -> bool {
     mesh.colors.iter().any(|c| c.max_element() > MAX_HALF || c.min_element() < 0.0)
 }
 
-/// How an instance is turned and scaled. Where its zero point is depends on the eye and is no part of it.
+/// How an instance is turned and scaled, and of what material it is. Where its zero point is depends on the eye and is no part of it.
 pub fn object_uniforms(instance: &Instance) -> ObjectUniforms {
-    ObjectUniforms::new(Mat4::from_mat3(DMat3::from_mat4(instance.world_from_model).as_mat3()))
+    let turned = Mat4::from_mat3(DMat3::from_mat4(instance.world_from_model).as_mat3());
+    ObjectUniforms { material: instance.material.index() as u32, ..ObjectUniforms::new(turned) }
 }
 
 /// A light with `origin` as the zero point, multiplied with the exposure (in 1/nits).

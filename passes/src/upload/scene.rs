@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::num::NonZeroU64;
 
+use framegraph_scene::material::SLOT_COUNT;
 use framegraph_scene::{Image, Lobes, Material, MaterialId, Memory, MeshId, ProgressFn, Scene};
 use framegraph_shaders::layout::MaterialUniforms;
 use framegraph_wgpu::{Binding, Gpu};
@@ -29,6 +30,8 @@ pub struct GpuScene {
     pub materials: wgpu::Buffer,
     /// From one material to the next; a multiple of the device's offset alignment.
     pub material_stride_bytes: u64,
+    /// `layout::MaterialUniforms` of all materials, one after another; none where no list of draws is long enough to use it.
+    pub material_table: Option<wgpu::Buffer>,
     /// Values that were clamped, a line each.
     pub warnings: Vec<String>,
     /// Bytes of all buffers and textures, as their descriptors say.
@@ -47,6 +50,14 @@ pub struct GpuScene {
 struct Surface {
     name: String,
     lobes: Lobes,
+    textured: bool,
+}
+
+impl Surface {
+    fn of(material: &Material) -> Self {
+        let textured = material.slots().iter().any(Option::is_some);
+        Self { name: material.name.clone(), lobes: material.lobes(), textured }
+    }
 }
 
 impl GpuScene {
@@ -90,9 +101,11 @@ impl GpuScene {
         let mut warnings = Vec::new();
         let (vertices, meshes) = buffers::vertices(gpu, scene, &mut warnings, progress)?;
         let (materials, material_stride_bytes) = buffers::materials(gpu, scene)?;
+        let material_table = buffers::material_table(gpu, scene)?;
         let textures = MaterialTextures::upload(gpu, scene, images, memory, progress)?;
         let buffers = [&vertices.positions, &vertices.attributes, &vertices.indices, &materials];
-        let size_bytes = buffers.iter().map(|b| b.size()).sum::<u64>() + textures.size_bytes();
+        let buffers = buffers.into_iter().chain(&material_table);
+        let size_bytes = buffers.map(wgpu::Buffer::size).sum::<u64>() + textures.size_bytes();
         Ok(Self {
             positions: vertices.positions,
             attributes: vertices.attributes,
@@ -100,13 +113,14 @@ impl GpuScene {
             short_indices_at: vertices.short_indices_at,
             materials,
             material_stride_bytes,
+            material_table,
             warnings,
             size_bytes,
             instances: scene.instances.iter().map(|instance| InstanceDraw::new(scene, instance)).collect(),
             earlier: None,
             meshes,
             textures,
-            surfaces: scene.materials.iter().map(|m| Surface { name: m.name.clone(), lobes: m.lobes() }).collect(),
+            surfaces: scene.materials.iter().map(Surface::of).collect(),
         })
     }
 
@@ -128,6 +142,16 @@ impl GpuScene {
     #[must_use]
     pub fn lobes(&self, material: MaterialId) -> Lobes {
         self.surfaces[material.index()].lobes
+    }
+
+    /// Whether a material can be taken from the [table](Self::material_table): there is one, and it has no textures.
+    ///
+    /// # Panics
+    ///
+    /// For a material of another, larger scene.
+    #[must_use]
+    pub fn is_in_table(&self, material: MaterialId) -> bool {
+        self.material_table.is_some() && !self.surfaces[material.index()].textured
     }
 
     /// The name of a material, for messages; may be empty.
@@ -153,8 +177,12 @@ impl GpuScene {
             let (name, number) = (material.name.clone(), id.index());
             return Err(UploadError::OtherMaterial { name, number });
         }
-        let offset = id.index() as u64 * self.material_stride_bytes;
-        gpu.queue.write_buffer(&self.materials, offset, bytemuck::bytes_of(&material_uniforms(material)));
+        let (number, packed) = (id.index() as u64, material_uniforms(material));
+        gpu.queue.write_buffer(&self.materials, number * self.material_stride_bytes, bytemuck::bytes_of(&packed));
+        if let Some(table) = &self.material_table {
+            let offset = number * size_of::<MaterialUniforms>() as u64;
+            gpu.queue.write_buffer(table, offset, bytemuck::bytes_of(&packed));
+        }
         Ok(())
     }
 
@@ -173,7 +201,9 @@ impl GpuScene {
                 bytes: NonZeroU64::new(size_of::<MaterialUniforms>() as u64),
             });
         };
-        let (view, sampler) = self.textures.of_material(material).get(index / 2)?;
+        let Some((view, sampler)) = self.textures.of_material(material).get(index / 2) else {
+            return (index == 2 * SLOT_COUNT).then(|| self.material_table.clone().map(Binding::from))?;
+        };
         Some(if index.is_multiple_of(2) { view.clone().into() } else { sampler.clone().into() })
     }
 }

@@ -6,6 +6,7 @@
 use super::CameraView;
 use crate::draw::InstanceSource;
 use crate::error::PassError;
+use crate::indirect::draws_indirectly;
 use crate::prepared::Placements;
 use crate::shadow::ViewShadows;
 use crate::upload::GpuScene;
@@ -44,6 +45,8 @@ pub struct GpuView {
     origins: Buffer,
     /// Numbers of instances, as draws take them.
     numbers: Buffer,
+    /// Arguments of indirect draws.
+    arguments: Buffer,
     id: ViewId,
 }
 
@@ -56,6 +59,7 @@ impl GpuView {
             motions: storage("motions"),
             origins: storage("origins"),
             numbers: buffer(gpu, "instances", BufferUsages::VERTEX, 0),
+            arguments: buffer(gpu, "draws", BufferUsages::INDIRECT, 0),
             lights: storage("lights"),
             light_lists: storage("light lists"),
             shadow_maps: storage("shadow maps"),
@@ -85,6 +89,9 @@ impl GpuView {
         refill(gpu, &mut self.motions, "motions", storage, cast_slice(&view.motions));
         refill(gpu, &mut self.origins, "origins", storage, cast_slice(&view.origins));
         refill(gpu, &mut self.numbers, "instances", BufferUsages::VERTEX, cast_slice(&view.draws.numbers));
+        if draws_indirectly(gpu) {
+            refill(gpu, &mut self.arguments, "draws", BufferUsages::INDIRECT, cast_slice(&view.draws.arguments));
+        }
         refill(gpu, &mut self.lights, "lights", storage, cast_slice(&view.lights));
         refill(gpu, &mut self.light_lists, "light lists", storage, cast_slice(light_words));
         refill(gpu, &mut self.shadow_maps, "shadow maps", storage, cast_slice(&maps));
@@ -92,7 +99,8 @@ impl GpuView {
 
     /// Where its draws take instances from.
     pub fn instances<'a>(&'a self, scene: &'a GpuScene) -> InstanceSource<'a> {
-        InstanceSource { scene, objects: &self.objects, origins: &self.origins, numbers: &self.numbers }
+        let Self { objects, origins, numbers, arguments, .. } = self;
+        InstanceSource { scene, objects, origins, numbers, arguments }
     }
 
     /// The view's shadow maps for a frame that declares so many layers of them.

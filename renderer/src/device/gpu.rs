@@ -189,14 +189,14 @@ impl Gpu {
 
     /// What a toolkit is to open the device with that is [wrapped](Gpu::wrap), for all that frames can use of an adapter.
     pub fn descriptor(adapter: &Adapter) -> wgpu::DeviceDescriptor<'static> {
-        // The adapter that does nothing claims everything: formats then have no use at all, and limits overflow inside wgpu.
+        // The adapter that does nothing claims everything: formats then have no use at all.
         let noop = adapter.get_info().backend == Backend::Noop;
         let mut wanted = WANTED;
         wanted.set(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES, !noop);
         wgpu::DeviceDescriptor {
             label: Some("renderer"),
             required_features: adapter.features() & wanted,
-            required_limits: if noop { noop_limits(adapter) } else { adapter.limits() },
+            required_limits: adapter.limits(),
             ..Default::default()
         }
     }
@@ -337,6 +337,7 @@ fn enumerate(backends: Backends) -> Vec<Adapter> {
     descriptor.backends = backends;
     descriptor.backend_options = wgpu::BackendOptions::from_env_or_default();
     descriptor.backend_options.noop.enable = backends == Backends::NOOP;
+    descriptor.backend_options.noop.limits = Some(noop_limits());
     // The driver's own validation is for those who ask for it (WGPU_VALIDATION, WGPU_DEBUG); wgpu's is always on.
     descriptor.flags = wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL.with_env();
     pollster::block_on(Instance::new(descriptor).enumerate_adapters(backends))
@@ -346,10 +347,10 @@ fn open_device(adapter: &Adapter) -> Result<(Device, Queue), wgpu::RequestDevice
     pollster::block_on(adapter.request_device(&Gpu::descriptor(adapter)))
 }
 
-/// WebGPU's guaranteed limits, and several layers attached at once.
-fn noop_limits(adapter: &Adapter) -> Limits {
-    let max_multiview_view_count = adapter.limits().max_multiview_view_count.min(u32::BITS);
-    Limits { max_multiview_view_count, ..Limits::default() }
+/// WebGPU's guaranteed limits, and several layers attached at once: by itself the adapter that does nothing has no limits, which
+/// overflow inside wgpu.
+fn noop_limits() -> Limits {
+    Limits { max_multiview_view_count: u32::BITS, ..Limits::default() }
 }
 
 #[cfg(test)]

@@ -17,16 +17,16 @@ pub struct ObjectUniforms {
     pub handedness: f32,
     /// Second column of the normal matrix.
     pub normal_column_y: Vec3,
-    /// Padding to 16 bytes; zero.
-    pub _pad0: f32,
+    /// Number of the object's material among the scene's.
+    pub material: u32,
     /// Third column of the normal matrix.
     pub normal_column_z: Vec3,
     /// Padding to 16 bytes; zero.
-    pub _pad1: f32,
+    pub _pad: f32,
 }
 
 impl ObjectUniforms {
-    /// Packs a transform.
+    /// Packs a transform, with the material of number 0.
     ///
     /// Normals are carried by the cofactors of the upper 3×3, which exist where the inverse
     /// transpose does not (a flattened object keeps the normal of its plane). They are formed
@@ -44,9 +44,9 @@ impl ObjectUniforms {
             normal_column_x: normal.x_axis.as_vec3(),
             handedness: sign as f32,
             normal_column_y: normal.y_axis.as_vec3(),
-            _pad0: 0.0,
+            material: 0,
             normal_column_z: normal.z_axis.as_vec3(),
-            _pad1: 0.0,
+            _pad: 0.0,
         }
     }
 }
@@ -65,9 +65,9 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
         normal_column_x,
         handedness,
         normal_column_y,
-        _pad0,
+        material,
         normal_column_z,
-        _pad1,
+        _pad,
     })]
 }
 

@@ -68,7 +68,7 @@ fn the_color_pass_binds_frame_material_and_objects() {
 fn textures_of_the_material_are_followed_by_their_samplers() {
     let groups = color(Feature::all().collect());
     let [material, slots @ ..] = groups[GROUP_MATERIAL as usize].as_slice() else { panic!("nothing is bound") };
-    assert_eq!((material.binding.binding, material.binding.name.as_str()), (0, "material"));
+    assert_eq!((material.binding.binding, material.binding.name.as_str()), (0, "materials"));
     for (slot, pair) in slots.chunks(2).enumerate() {
         let [texture, sampler] = [&pair[0].binding, &pair[1].binding];
         assert_eq!([texture.binding, sampler.binding], [1 + 2 * slot as u32, 2 + 2 * slot as u32]);

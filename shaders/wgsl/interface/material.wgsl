@@ -2,6 +2,9 @@
 //
 // Slot i of `Material::slots` binds its texture at 1 + 2i and its sampler at 2 + 2i. The textures
 // of a lobe are there only under its feature.
+//
+// Under MATERIAL_TABLE the factors are copied from an array, before anything reads them: who draws
+// many materials binds no group for each.
 
 import package::lib::normal_map::unpack_normal;
 import package::lib::uv_transform::transform_uv;
@@ -116,6 +119,11 @@ struct MaterialUniforms {
 const MATERIAL_UNLIT: u32 = 1u;
 const MATERIAL_DOUBLE_SIDED: u32 = 2u;
 
+@if(MATERIAL_TABLE)
+@group(1) @binding(0) var<storage, read> materials: array<MaterialUniforms>;
+@if(MATERIAL_TABLE)
+var<private> material: MaterialUniforms;
+@else
 @group(1) @binding(0) var<uniform> material: MaterialUniforms;
 /// sRGB color and straight alpha.
 @group(1) @binding(1) var base_color_texture: texture_2d<f32>;

@@ -16,6 +16,8 @@ struct ObjectUniforms {
     /// Sign of the determinant, ±1: -1 for mirrored objects.
     handedness: f32,
     normal_column_y: vec3<f32>,
+    /// Number of its material.
+    material: u32,
     normal_column_z: vec3<f32>,
 }
 

@@ -12,12 +12,12 @@
 // ray through the scene's structure completes them), AMBIENT_OCCLUSION or OCCLUSION_UPSAMPLED (a
 // picture of it is read, interface/ambient_occlusion.wgsl), FROXELS (lights are found by lists),
 // REFLECTIONS (what rays found in the picture, interface/reflection.wgsl), FOG
-// (interface/fog.wgsl),
-// ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands of
-// spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
-// TRANSMISSION, SPECULAR. They change what is bound, so they are compiled in or out; what only
-// changes arithmetic is an `override`. HALF shades in half floats: what a surface is made of and
-// what it reflects of one light (lib/real.wgsl). Light itself, and everything that has a place,
+// (interface/fog.wgsl), MATERIAL_TABLE (materials lie in an array), ENVIRONMENT_MAP (lobes read the
+// prefiltered environment; without it they see three bands of spherical harmonics); and the lobes
+// of the material: CLEAR_COAT, SHEEN, ANISOTROPY, TRANSMISSION, SPECULAR. They change what is
+// bound, so they are compiled in or out; what only changes arithmetic is an `override`. HALF
+// shades in half floats: what a surface is made of and what it reflects of one light
+// (lib/real.wgsl). Light itself, and everything that has a place,
 // stays in f32.
 
 import package::interface::epilogue::epilogue;
@@ -27,6 +27,8 @@ import package::interface::frame::frame;
 import package::interface::material::{
     material, MATERIAL_UNLIT, base_color, metallic_roughness, emission, specular_factors,
 };
+@if(MATERIAL_TABLE)
+import package::interface::material::materials;
 @if(TRANSMISSION)
 import package::interface::scene::radiance_behind;
 @if(TRANSMISSION)
@@ -263,6 +265,7 @@ fn fs_main(
     vertex: SurfaceVertex,
     @builtin(front_facing) front_facing: bool,
 ) -> @location(0) vec4<f32> {
+    @if(MATERIAL_TABLE) material = materials[vertex.material];
     // Derivatives need every lane of the quad, so the discard comes last.
     let geometric = geometric_normal(vertex);
     let base = base_color(vertex.uv, vertex.color);

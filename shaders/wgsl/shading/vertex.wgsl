@@ -23,6 +23,9 @@ struct SurfaceVertex {
     /// Meters a unit of the mesh, the mean over its axes.
     @if(TRANSMISSION)
     @location(5) @interpolate(flat) scale_m: f32,
+    /// Number of the material.
+    @if(MATERIAL_TABLE)
+    @location(6) @interpolate(flat) material: u32,
 }
 
 /// What a vertex of a mesh hands on; `uv` has both sets.
@@ -44,6 +47,7 @@ fn surface_vertex(
     vertex.uv = uv;
     vertex.color = color;
     @if(TRANSMISSION) vertex.scale_m = mesh_scale_m(instance);
+    @if(MATERIAL_TABLE) vertex.material = objects[instance].material;
     return vertex;
 }
 

@@ -1,13 +1,15 @@
-//! Instanced draws: that they are few, and that the picture is that of a draw for each instance.
+//! Instanced and indirect draws: that they are few, and that the picture is that of a draw for each instance.
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Options, Plan, Scratch, compile};
+use framegraph_passes::indirect::{LEAST_BATCHES, draws_indirectly};
 use framegraph_passes::shadow::{MomentSettings, ShadowFilter, ShadowSettings};
 use framegraph_passes::view::Background;
 use framegraph_passes::{CameraView, PreparedScene, Settings, ViewId, ViewSettings, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::geometry::{cuboid, plane, sphere};
-use framegraph_scene::{AlphaMode, ClearCoat, Light, Material, Scene, Transmission, progress};
+use framegraph_scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
+use framegraph_scene::{AlphaMode, ClearCoat, Light, Material, MaterialId, Scene, Transmission, progress};
 use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
 use glam::{DMat4, DVec3, Vec3};
 use std::error::Error;
@@ -133,5 +135,73 @@ fn instanced_draws_are_the_same_picture() -> TestResult {
     world.set_view(&gpu, ViewId::MAIN, anew)?;
     assert!(updated == draw(&gpu, &world, &settings, &shot.options)?, "an update is not as preparing anew");
     assert_ne!(updated, first, "nothing moved");
+    Ok(())
+}
+
+/// A wall of boxes and balls, each with a material of its own: some masked, some coated, two thirds with a texture.
+fn wall(count: usize) -> Scene {
+    let mut scene = Scene::default();
+    let meshes = [cuboid(Vec3::splat(0.3)), sphere(0.35, 8, 6)].map(|mesh| scene.add_mesh(mesh));
+    let mut texture = |texel: [u8; 4]| {
+        let image = Image { name: "two.png".into(), width: 2, height: 1, rgba8: [texel, [255; 4]].concat() };
+        let texture = scene.add_texture(image, TextureRole::Color, Sampler::default());
+        Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() })
+    };
+    let textures = [None, texture([255, 90, 0, 255]), texture([0, 90, 255, 20])];
+    let side = (count as f64).sqrt().ceil() as usize;
+    for i in 0..count {
+        let hue = i as f32 / count as f32;
+        let material = scene.add_material(Material {
+            base_color_texture: textures[3 * i / count],
+            alpha: if i % 7 < 3 { AlphaMode::Mask { cutoff: 0.3 } } else { AlphaMode::Opaque },
+            clear_coat: (i % 29 == 0).then(|| ClearCoat { factor: 1.0, ..ClearCoat::default() }),
+            ..Material::dielectric("clay", Vec3::new(hue, 0.4, 1.0 - hue), 0.2 + 0.6 * hue)
+        });
+        let at = DVec3::new((i % side) as f64, (i / side) as f64, 0.0) - DVec3::new(0.5, 0.5, 0.0) * side as f64;
+        let turned = DMat4::from_translation(at) * DMat4::from_rotation_y(i as f64);
+        scene.add_instance("one", meshes[i % 2], material, turned);
+    }
+    scene.lights.push(Light::directional("sun", Vec3::new(-0.4, -0.8, -0.3).normalize(), 50_000.0));
+    scene
+}
+
+/// Opaque and masked lists that are long enough are drawn by arguments in a buffer, and what has no textures by materials in an array:
+/// the same bytes as from a call and a bind group for each. A material that is written anew is so in the array too.
+#[test]
+fn indirect_draws_are_the_same_picture() -> TestResult {
+    let Some(gpu) = gpu("indirect_draws_are_the_same_picture") else { return Ok(()) };
+    let count = 2 * LEAST_BATCHES + 400;
+    let scene = wall(count);
+    let settings = Settings { shadows: Some(ShadowSettings::texels(64)), ..Settings::DEFAULT };
+    let shot = Shot { size_px: [128, 96], options: Options::for_frame(128, 96), ..Shot::small(settings) };
+    let settings = settings.for_scene(&scene, shot.size_px);
+    let lighting = lighting(&gpu, &Sky::default().environment(128)?, &settings.shading)?;
+    let view = view_of(&scene, &lighting.image, &Background::Environment, &shot);
+    let indirect = view.draws.surfaces.iter().all(|list| list.first_arguments().is_some());
+    assert!(indirect && draws_indirectly(&gpu), "nothing is drawn indirectly here");
+    let apart = CameraView { draws: view.draws.clone().one_by_one(), ..view.clone() };
+    assert!(apart.draws.surfaces.iter().all(|list| list.first_arguments().is_none()));
+    let mut world = World::new(&gpu, &scene, lighting, [view.clone()], &mut progress::silent)?;
+    let first = draw(&gpu, &world, &settings, &shot.options)?;
+    world.set_view(&gpu, ViewId::MAIN, apart.clone())?;
+    assert!(first == draw(&gpu, &world, &settings, &shot.options)?, "calls for each draw another picture");
+    let variants = world
+        .programs
+        .made()
+        .iter()
+        .filter(|program| format!("{:?}", program.shader()).contains("MATERIAL_TABLE"))
+        .count();
+    assert!(variants >= 2, "{variants} shaders read materials from an array");
+
+    // Which are those in the middle of the picture.
+    for index in (count / 6..5 * count / 6).filter(|index| index % 29 != 0) {
+        let id = MaterialId::new(index);
+        let green = Material { base_color: glam::Vec4::new(0.0, 1.0, 0.0, 1.0), ..scene.materials[index].clone() };
+        world.scene.write_material(&gpu, id, &green)?;
+    }
+    let bound = draw(&gpu, &world, &settings, &shot.options)?;
+    world.set_view(&gpu, ViewId::MAIN, view)?;
+    assert!(bound == draw(&gpu, &world, &settings, &shot.options)?, "a written material differs in the array");
+    assert_ne!(bound, first, "no material was written");
     Ok(())
 }
