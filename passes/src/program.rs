@@ -106,13 +106,14 @@ impl ProgramDesc<'_> {
         let names = constants.iter().map(|(name, _)| name.text()).chain(bindings.iter().map(|(name, _)| name.text()));
         let address = |text: &'static str| (text.as_ptr() as usize, text.len());
         let shader = (std::ptr::from_ref(self.shader) as usize, 0);
-        let interface = (std::ptr::from_ref(self.interface) as usize, 0);
-        [shader, interface].into_iter().chain(entries.into_iter().chain(effects).chain(names).map(address))
+        let interface = (std::ptr::from_ref(self.interface) as usize, self.features.iter().count());
+        let features = self.features.iter().map(Feature::name);
+        let texts = features.chain(entries).chain(effects).chain(names);
+        [shader, interface].into_iter().chain(texts.map(address))
     }
 
     fn hash(&self) -> u64 {
         let mut state = DefaultHasher::new();
-        self.features.hash(&mut state);
         self.addresses().for_each(|address| address.hash(&mut state));
         state.finish()
     }

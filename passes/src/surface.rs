@@ -197,7 +197,7 @@ impl SurfaceBindings {
             frame: own.into_iter().chain(shadows.bindings).chain(effects).collect(),
             features: shadows
                 .features
-                .with(Feature::ENVIRONMENT_MAP)
+                .with_if(Feature::ENVIRONMENT_MAP, !lighting.image.is_even)
                 .with_if(Feature::CONTACT_SHADOWS, inputs.shadow.is_some() && inputs.contact.is_some())
                 .with_if(Feature::AMBIENT_OCCLUSION, inputs.occlusion.is_some_and(|input| input.structure.is_none()))
                 .with_if(Feature::OCCLUSION_UPSAMPLED, inputs.occlusion.is_some_and(|input| input.structure.is_some()))

@@ -364,40 +364,4 @@ fn inverse(matrix: DMat4) -> DMat4 {
 }
 
 #[cfg(all(test, feature = "ibl"))]
-mod tests {
-    use super::*;
-    use crate::ibl::IblSettings;
-    use crate::ibl::cache::Cache;
-    use framegraph_scene::environment::ShBands;
-    use framegraph_scene::{Environment, progress};
-    use framegraph_wgpu::Gpu;
-
-    /// Irradiance / π of an even light is its radiance, times intensity and exposure; bands that were left out are zero.
-    #[test]
-    fn ambient_light_is_scaled_and_padded() -> Result<(), Box<dyn std::error::Error>> {
-        let gpu = Gpu::noop()?;
-        let environment = Environment::uniform(DVec3::new(1.0, 2.0, 4.0))?;
-        let projection = Projection::perspective(1.0, 0.1);
-        let camera = Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, projection)?;
-        let (size_px, ev100) = ([16, 9], 0.0);
-        let settings = ViewSettings {
-            camera,
-            size_px,
-            ev100,
-            environment_intensity: 0.5,
-            shadows: None,
-            lights: LightSearch::All,
-        };
-        let exposure = CameraView::empty(&settings).frame.exposure;
-        for bands in [ShBands::Two, ShBands::Three, ShBands::Five] {
-            let ibl = IblSettings { cube_texels: 64, bands, ..IblSettings::default() };
-            let light = ImageLight::new(&gpu, &environment, &ibl, &Cache::off(), &mut progress::silent)?;
-            let sh = CameraView::new(&Scene::default(), &light, &Background::None, &settings).frame.sh;
-            let expected = Vec4::new(0.5, 1.0, 2.0, 0.0) * exposure;
-            assert!((sh[0] - expected).length() < 1e-6, "{:?} for {expected:?}", sh[0]);
-            assert_eq!(sh[8] == Vec4::ZERO, bands == ShBands::Two);
-            assert!(sh.iter().all(|c| c.w == 0.0));
-        }
-        Ok(())
-    }
-}
+mod tests;

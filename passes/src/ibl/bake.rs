@@ -91,6 +91,7 @@ impl ImageLight {
             texel_nits: light.texel_nits,
             luminance_nits: luminance_from_rec709(light.average) as f32,
             dominant_direction: light.sh.dominant_direction().map(|d| d.as_vec3()),
+            is_even: environment.filtered.is_none() && environment.map.is_even(),
             sun: environment.sun.clone(),
             from_cache,
             warnings,

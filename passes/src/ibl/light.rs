@@ -43,6 +43,8 @@ pub struct ImageLight {
     pub luminance_nits: f32,
     /// The unit vector toward where most light comes from; `None` for even light.
     pub dominant_direction: Option<Vec3>,
+    /// The environment is the same in all directions: lobes see what the harmonics say, and the cube is not read.
+    pub is_even: bool,
     /// The sun, where it is apart from the map.
     pub sun: Option<Light>,
     /// Whether the cube was found in a cache on disk rather than computed.

@@ -2,7 +2,6 @@
 
 use super::{Program, ProgramDesc};
 use crate::error::PassError;
-use framegraph_shaders::Features;
 use std::collections::HashMap;
 use std::sync::{Arc, PoisonError, RwLock};
 
@@ -16,7 +15,6 @@ pub struct Programs {
 /// A program with the description that it was made from.
 #[derive(Debug)]
 struct Known {
-    features: Features,
     addresses: Box<[(usize, usize)]>,
     program: Arc<Program>,
 }
@@ -33,8 +31,7 @@ impl Programs {
     /// As [`Program::new`].
     pub fn get(&self, desc: &ProgramDesc<'_>) -> Result<Arc<Program>, PassError> {
         let hash = desc.hash();
-        let same =
-            |known: &&Known| known.features == *desc.features && known.addresses.iter().copied().eq(desc.addresses());
+        let same = |known: &&Known| known.addresses.iter().copied().eq(desc.addresses());
         // A panic in another thread leaves the table as it was.
         let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = known.get(&hash).and_then(|bucket| bucket.iter().find(same)) {
@@ -49,7 +46,7 @@ impl Programs {
             return Ok(Arc::clone(&known.program));
         }
         let addresses = desc.addresses().collect();
-        bucket.push(Known { features: desc.features.clone(), addresses, program: Arc::clone(&program) });
+        bucket.push(Known { addresses, program: Arc::clone(&program) });
         Ok(program)
     }
 

@@ -38,6 +38,10 @@ struct Part<'a> {
 }
 
 impl Threads {
+    pub(crate) fn workers(&self) -> Option<&Workers> {
+        self.workers.as_ref()
+    }
+
     /// Those of `workers` from the next frame on; without, the submitting thread records alone.
     #[cfg(feature = "threads")]
     pub(crate) fn set(&mut self, workers: Option<Workers>, device: &Device, timed: bool) {

@@ -86,6 +86,12 @@ impl EquirectMap {
         &self.rgba
     }
 
+    /// Whether all texels are the same, to the bit.
+    #[must_use]
+    pub fn is_even(&self) -> bool {
+        self.rgba.iter().all(|texel| texel.map(f32::to_bits) == self.rgba[0].map(f32::to_bits))
+    }
+
     /// Calls `visit` with the direction, the solid angle in steradian and the radiance of each
     /// texel. The solid angles are exact and sum to 4π.
     pub fn for_each_texel(&self, mut visit: impl FnMut(DVec3, f64, DVec3)) {

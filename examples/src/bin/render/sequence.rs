@@ -8,9 +8,10 @@ use framegraph::{Plan, Scratch};
 use framegraph_passes::measure::Measuring;
 use framegraph_passes::upscale::DynamicResolution;
 use framegraph_passes::view::ViewSettings;
-use framegraph_passes::{CameraView, FrameIndex, Upscale, ViewId};
+use framegraph_passes::{CameraView, FrameIndex, PreparedScene, Upscale, ViewId};
+use framegraph_scene::Scene;
 use framegraph_scene::picture::encode_png;
-use framegraph_wgpu::read_texture;
+use framegraph_wgpu::{Executor, read_texture};
 use glam::{DQuat, DVec3};
 use program::interrupt;
 use program::outputs::Outputs;
@@ -38,6 +39,7 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
     let mut executor = prepared.executor(args, execute)?;
     let mut shown = Shown::default();
     let center = prepared.loaded.scene.bounds_above_ground().center();
+    let mut placed = placed_on(&executor, &prepared.loaded.scene);
     let (mut plans, mut planned, mut measuring) = (0_u32, None, Measuring::new());
     let (mut percents, mut times_ms) = (Vec::new(), Vec::new());
     for (path, index) in files(sequence).zip(0..) {
@@ -61,7 +63,10 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         let facts = prepared.deciding.facts(&prepared.loaded, light, &seen, &prepared.asked, measured);
         let mut settings = facts.apply(&prepared.asked);
         let seen = ViewSettings { shadows: settings.shadows, ..seen };
-        let view = CameraView::new(&prepared.loaded.scene, light, &prepared.loaded.background, &seen);
+        if plays {
+            placed = placed_on(&executor, &prepared.loaded.scene);
+        }
+        let view = CameraView::prepared(&prepared.loaded.scene, &placed, light, &prepared.loaded.background, &seen);
         let Prepared { gpu, world, loaded, dirt, .. } = &mut *prepared;
         // What is found in the frame before is found from where that was seen.
         let before = &world.views.get(ViewId::MAIN).map_err(device)?.view;
@@ -99,6 +104,13 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
     }
     program::line(format_args!("{} pictures, of {plans} frames that differ by their effects", sequence.frames));
     Ok(())
+}
+
+/// The scene as views take it, made on the threads that record.
+fn placed_on(executor: &Executor, scene: &Scene) -> PreparedScene {
+    let mut placed = PreparedScene::new(scene);
+    placed.workers = executor.workers().cloned();
+    placed
 }
 
 /// How large frames were drawn, and whether they took what they were to take.

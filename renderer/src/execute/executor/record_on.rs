@@ -13,6 +13,11 @@ impl Executor {
         self.threads.set(workers, &self.gpu.device, timed);
     }
 
+    /// The threads that it may record on, beside the caller's.
+    pub fn workers(&self) -> Option<&Workers> {
+        self.threads.workers()
+    }
+
     /// As [`Executor::record_on`], of every frame, whether it is faster or not: for tests and measurements.
     #[cfg(any(test, feature = "testing"))]
     pub fn always_record_on(&mut self, workers: Workers) {
