@@ -9,6 +9,7 @@ mod degenerate;
 mod documents;
 mod dof;
 mod errors;
+mod even_light;
 mod executed;
 mod facts;
 mod fog;

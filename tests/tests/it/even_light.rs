@@ -1,0 +1,48 @@
+//! Light that is the same from all sides.
+
+use crate::stage::{self, Shot};
+use framegraph::{Plan, Scratch, compile};
+use framegraph_passes::view::Background;
+use framegraph_passes::{Settings, World};
+use framegraph_scene::environment::EquirectMap;
+use framegraph_scene::{Environment, Scene, progress};
+use framegraph_wgpu::{Executor, Imports, read_texture};
+use glam::{DVec3, Vec3};
+use std::error::Error;
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+/// Where light is the same from all sides, shading reads no cube of it; the picture is that of a cube, which holds powers of two
+/// exactly, within a code.
+#[test]
+fn even_light_is_shaded_without_the_cube() -> TestResult {
+    let Some(gpu) = stage::gpu("even_light_is_shaded_without_the_cube") else { return Ok(()) };
+    let nits = DVec3::new(4096.0, 2048.0, 1024.0);
+    let shot = Shot { ev100: 11.0, ..Shot::small(Settings { shadows: None, ..Settings::DEFAULT }) };
+    let scene = Scene::open("spheres", &mut progress::silent)?;
+    let settings = shot.settings.for_scene(&scene, shot.size_px);
+    let picture = |environment: &Environment| -> Result<(Vec<u8>, bool), Box<dyn Error>> {
+        let lighting = stage::lighting(&gpu, environment, &settings.shading)?;
+        let view = stage::view_of(&scene, &lighting.image, &Background::Constant(Vec3::ONE), &shot);
+        let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;
+        let (frame, io) = stage::declared(&settings);
+        let mut plan = Plan::new();
+        compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
+        let mut executor = Executor::new(&gpu);
+        executor.execute(&plan, &frame, &world, &Imports::new())?;
+        let texture = executor.texture(&plan, io.output).ok_or("the frame left no picture")?;
+        let mapped =
+            world.programs.made().iter().any(|program| format!("{:?}", program.shader()).contains("ENVIRONMENT_MAP"));
+        Ok((read_texture(&gpu, texture)?.rgba8(), mapped))
+    };
+    let even = Environment::uniform(nits)?;
+    let mut texels = even.map.texels().to_vec();
+    texels[0][0] = f32::from_bits(texels[0][0].to_bits() + 1);
+    let nearly = Environment { map: EquirectMap::new(even.map.width(), even.map.height(), texels), ..even.clone() };
+    assert!(even.map.is_even() && !nearly.map.is_even());
+    let ((own, with_cube), (other, by_cube)) = (picture(&even)?, picture(&nearly)?);
+    assert!(!with_cube && by_cube);
+    let most = own.iter().zip(&other).map(|(a, b)| a.abs_diff(*b)).max();
+    assert!(most <= Some(1), "{most:?} codes apart");
+    Ok(())
+}
