@@ -5,8 +5,16 @@
 //! piece of work in the first. An engine that owns its device keeps its own handlers and forwards losses with
 //! [`DeviceErrors::report_lost`].
 
+use std::cell::Cell;
 use std::sync::Mutex;
 use wgpu::{Device, ErrorFilter, ErrorScopeGuard};
+
+thread_local! {
+    /// [`ErrorScopes`] that are open on this thread.
+    static OPEN: Cell<u32> = const { Cell::new(0) };
+    /// What a [`Watch`] of this thread does.
+    static DOING: Cell<Option<&'static str>> = const { Cell::new(None) };
+}
 
 /// What went wrong on the device.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
@@ -69,7 +77,8 @@ impl DeviceErrors {
 
     /// Notes an error that no scope caught; the first one stays until it is taken.
     pub(crate) fn uncaught(&self, error: &wgpu::Error) {
-        self.locked().uncaught.get_or_insert_with(|| from_wgpu(error, "something outside of a frame"));
+        let doing = DOING.get().unwrap_or("something outside of a frame");
+        self.locked().uncaught.get_or_insert_with(|| from_wgpu(error, doing));
     }
 
     /// Why the device was lost, if it was.
@@ -105,6 +114,7 @@ pub struct ErrorScopes {
 impl ErrorScopes {
     /// Opens the scopes: errors of this thread are caught from now on.
     pub fn open(device: &Device) -> Self {
+        OPEN.set(OPEN.get() + 1);
         let kinds = [ErrorFilter::Internal, ErrorFilter::OutOfMemory, ErrorFilter::Validation];
         Self { guards: kinds.map(|kind| device.push_error_scope(kind)) }
     }
@@ -114,11 +124,39 @@ impl ErrorScopes {
     /// # Errors
     /// The first error of the gravest kind that was caught: exhausted memory, then internal failure, then refusal.
     pub fn close(self, doing: &'static str) -> Result<(), DeviceError> {
+        OPEN.set(OPEN.get() - 1);
         let [internal, memory, validation] = self.guards;
         let validation = pollster::block_on(validation.pop());
         let memory = pollster::block_on(memory.pop());
         let internal = pollster::block_on(internal.pop());
         memory.or(internal).or(validation).map_or(Ok(()), |e| Err(from_wgpu(&e, doing)))
+    }
+}
+
+/// A part of a frame, whose errors are found when it ends. Opening and closing scopes takes wgpu 1,300 instructions, so they are opened
+/// only where errors would not come to the device's own handler: a device whose handler is not this crate's, or a thread with scopes
+/// around the frame.
+#[must_use = "errors are reported by `end`"]
+pub(crate) struct Watch {
+    scopes: Option<ErrorScopes>,
+    doing: &'static str,
+}
+
+impl Watch {
+    /// Begins: `handled` says that what no scope catches is noted in the errors that are handed to [`Watch::end`].
+    pub(crate) fn begin(device: &Device, handled: bool, doing: &'static str) -> Self {
+        let scopes = (!handled || OPEN.get() > 0).then(|| ErrorScopes::open(device));
+        DOING.set(Some(doing));
+        Self { scopes, doing }
+    }
+
+    /// Ends.
+    ///
+    /// # Errors
+    /// What was caught, or noted in `errors`.
+    pub(crate) fn end(self, errors: &DeviceErrors) -> Result<(), DeviceError> {
+        DOING.set(None);
+        self.scopes.map_or(Ok(()), |scopes| scopes.close(self.doing)).and_then(|()| errors.check(self.doing))
     }
 }
 

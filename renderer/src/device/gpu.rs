@@ -2,7 +2,7 @@
 
 use crate::device::adapter::{AdapterRequest, describe, is_software, may_have_hardware, rank};
 use crate::device::caps::caps_of;
-use crate::device::error::{DeviceError, DeviceErrors, ErrorScopes};
+use crate::device::error::{DeviceError, DeviceErrors, ErrorScopes, Watch};
 use crate::device::format::texture_format;
 use framegraph::{Caps, Format};
 use std::sync::{Arc, OnceLock, atomic};
@@ -35,6 +35,8 @@ pub struct Gpu {
     adapter: Adapter,
     info: AdapterInfo,
     errors: Arc<DeviceErrors>,
+    /// What no scope catches is noted in `errors`.
+    handled: bool,
     waits: Arc<atomic::AtomicU64>,
     view_formats: bool,
     formats: Arc<[OnceLock<TextureFormatFeatures>; Format::ALL.len()]>,
@@ -131,7 +133,8 @@ impl AdapterRequest {
 }
 
 impl Gpu {
-    /// Opens the best adapter that fits: hardware first, software otherwise. An adapter that refuses is passed over.
+    /// Opens the best adapter that fits: hardware first, software otherwise. An adapter that refuses is passed over. What wgpu
+    /// refuses outside of error scopes is noted for frames to report: open none of your own around a frame.
     ///
     /// # Errors
     /// [`OpenError`], with the adapters that there are and their reasons.
@@ -180,6 +183,7 @@ impl Gpu {
             info: adapter.get_info(),
             adapter: adapter.clone(),
             errors: Arc::default(),
+            handled: false,
             waits: Arc::default(),
             view_formats,
             formats,
@@ -202,7 +206,7 @@ impl Gpu {
     }
 
     fn owned(adapter: Adapter, device: Device, queue: Queue) -> Self {
-        let gpu = Self::wrap(&adapter, &device, &queue);
+        let gpu = Self { handled: true, ..Self::wrap(&adapter, &device, &queue) };
         let errors = gpu.errors.clone();
         device.on_uncaptured_error(Arc::new(move |error| errors.uncaught(&error)));
         let errors = gpu.errors.clone();
@@ -279,6 +283,11 @@ impl Gpu {
         scopes.close(doing)?;
         self.errors.check(doing)?;
         Ok(out)
+    }
+
+    /// Begins a part of a frame.
+    pub(crate) fn watch(&self, doing: &'static str) -> Watch {
+        Watch::begin(&self.device, self.handled, doing)
     }
 
     /// Runs callbacks of finished work without waiting.

@@ -15,16 +15,26 @@ use crate::pipelines::state::{Compute, Raster};
 use framegraph::{AccessKind, PassId, PassKind, Plan, StepId};
 use wgpu::{BindGroup, BindGroupDescriptor, BindGroupLayoutDescriptor, CommandEncoder, ComputePass, RenderPass};
 
-/// The step that commands go into.
+/// What the commands of a step go into. Passes are long, and not moved.
 #[derive(Debug)]
-#[allow(clippy::large_enum_variant, reason = "one exists at a time, and a box would be allocated for each step")]
-pub(crate) enum Open {
+pub(crate) enum Open<'a> {
     /// A render pass.
-    Raster(RenderPass<'static>),
+    Raster(&'a mut RenderPass<'static>),
     /// A compute pass.
-    Compute(ComputePass<'static>),
+    Compute(&'a mut ComputePass<'static>),
     /// The encoder itself, for copies.
-    Copy,
+    Copy(&'a mut CommandEncoder),
+}
+
+impl Open<'_> {
+    /// The same for one pass of the step.
+    pub(crate) fn again(&mut self) -> Open<'_> {
+        match self {
+            Open::Raster(pass) => Open::Raster(pass),
+            Open::Compute(pass) => Open::Compute(pass),
+            Open::Copy(encoder) => Open::Copy(encoder),
+        }
+    }
 }
 
 /// What the recorder of one pass works with: the open pass, views of declared resources, pipelines, bind groups. Everything it hands out is a cheap clone, so that the render pass can be borrowed
@@ -58,8 +68,7 @@ pub struct Cx<'a> {
     pub(crate) pass: PassId,
     pub(crate) targets: &'a Targets,
     pub(crate) recording: &'a mut Recording,
-    pub(crate) encoder: &'a mut CommandEncoder,
-    pub(crate) open: &'a mut Open,
+    pub(crate) open: Open<'a>,
     /// What the plan put at the end of this pass's fragment shader.
     pub(crate) inlined: &'a [Inlined],
     /// Whether the recorder asked for them.
@@ -98,10 +107,10 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// When the pass is no raster pass.
     pub fn render_pass(&mut self) -> Result<&mut RenderPass<'static>, RecordError> {
-        match self.open {
+        match &mut self.open {
             Open::Raster(pass) => Ok(pass),
             Open::Compute(_) => Err(wrong_kind(PassKind::Raster, PassKind::Compute)),
-            Open::Copy => Err(wrong_kind(PassKind::Raster, PassKind::Copy)),
+            Open::Copy(_) => Err(wrong_kind(PassKind::Raster, PassKind::Copy)),
         }
     }
 
@@ -110,10 +119,10 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// When the pass is no compute pass.
     pub fn compute_pass(&mut self) -> Result<&mut ComputePass<'static>, RecordError> {
-        match self.open {
+        match &mut self.open {
             Open::Compute(pass) => Ok(pass),
             Open::Raster(_) => Err(wrong_kind(PassKind::Compute, PassKind::Raster)),
-            Open::Copy => Err(wrong_kind(PassKind::Compute, PassKind::Copy)),
+            Open::Copy(_) => Err(wrong_kind(PassKind::Compute, PassKind::Copy)),
         }
     }
 
@@ -122,8 +131,8 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// When the pass is no copy pass: the encoder is locked while a render or compute pass is open.
     pub fn encoder(&mut self) -> Result<&mut CommandEncoder, RecordError> {
-        match self.open {
-            Open::Copy => Ok(self.encoder),
+        match &mut self.open {
+            Open::Copy(encoder) => Ok(encoder),
             Open::Raster(_) => Err(wrong_kind(PassKind::Copy, PassKind::Raster)),
             Open::Compute(_) => Err(wrong_kind(PassKind::Copy, PassKind::Compute)),
         }

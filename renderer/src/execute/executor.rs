@@ -207,11 +207,11 @@ impl Executor {
     ) -> Result<SubmissionIndex, ExecuteError> {
         let commands = self.record(plan, passes, imports, None)?;
         let begun = self.recording.now();
-        let scopes = ErrorScopes::open(&self.gpu.device);
+        let watch = self.gpu.watch("submitting a frame");
         self.recording.uniforms.upload(&self.gpu.queue);
         self.threads.upload(&self.gpu.queue);
         let index = submit(commands);
-        let caught = self.caught(scopes, "submitting a frame");
+        let caught = watch.end(self.gpu.errors());
         self.recording.took_in_wgpu(begun);
         if let Err(error) = caught {
             self.forget_frame();
@@ -232,20 +232,24 @@ impl Executor {
         imports: &Imports,
         recorded: Option<&mut dyn FnMut(StepId, u64)>,
     ) -> Result<FrameCommands, ExecuteError> {
-        self.gpu.poll()?;
+        // Submitting the frame before has looked for finished work already; times are read back.
+        if self.timing.is_enabled() {
+            self.gpu.poll()?;
+        } else {
+            self.gpu.errors().check("a frame")?;
+        }
         self.caches.begin_frame(self.options.max_age, self.options.max_pipeline_age);
         self.executed = Counts::default();
         self.timing.begin_frame(&self.gpu, plan);
         let timed = self.threads.begin_frame(plan, self.timing.plan(), self.options.max_age);
         self.recording.begin_frame(timed, self.options.max_age);
 
-        let device = &self.gpu.device;
-        let scopes = self.recording.in_wgpu(|| ErrorScopes::open(device));
+        let watch = self.recording.in_wgpu(|| self.gpu.watch("a frame"));
         let mut elsewhere = Ok(());
         let prepared = self.prepare(plan, imports);
         let ran = prepared.and_then(|()| self.record_steps(plan, passes, recorded, &mut elsewhere));
         let begun = self.recording.now();
-        let caught = self.caught(scopes, "a frame").and(elsewhere);
+        let caught = watch.end(self.gpu.errors()).and(elsewhere);
         self.recording.took_in_wgpu(begun);
         match (ran, caught) {
             (ran, Ok(())) => ran,
@@ -259,11 +263,6 @@ impl Executor {
                 Err(blamed.flatten().unwrap_or_else(|| self.told(plan, error)))
             }
         }
-    }
-
-    /// What wgpu reported since the scopes were opened.
-    fn caught(&self, scopes: ErrorScopes, doing: &'static str) -> Result<(), DeviceError> {
-        scopes.close(doing).and_then(|()| self.gpu.errors().check(doing))
     }
 
     /// What the device's error means for the frame.

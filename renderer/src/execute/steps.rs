@@ -69,20 +69,44 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
     }
     let begun = recording.now();
     let timestamps = frame.timing.writes(step);
-    let closing = {
-        let mut open = open(frame, step, timestamps.as_ref(), recording, encoder);
+    let each = |recording: &mut Recording, mut open: Open<'_>| {
+        recording.took_in_wgpu(begun);
         recording.remembered.step().opened.close();
         recording.executed.steps += 1;
-        for member in members.iter().filter(|m| m.join != Join::Inlined) {
-            record_pass(frame, passes, (step, *member), &targets, recording, encoder, &mut open)?;
-        }
+        let mut recorded = members.iter().filter(|m| m.join != Join::Inlined);
+        recorded
+            .try_for_each(|member| record_pass(frame, passes, (step, *member), &targets, recording, open.again()))?;
         // Here the pass ends, where it lies, and wgpu looks at everything that was recorded into it.
-        recording.now()
+        Ok::<_, ExecuteError>(recording.now())
     };
-    let is_copy = frame.plan.steps()[step.index()].kind == PassKind::Copy;
-    if let (true, Some(timestamps)) = (is_copy, &timestamps) {
-        encoder.write_timestamp(&timestamps.queries, timestamps.end);
-    }
+    let label = Some(label(frame.plan, step));
+    let closing = match frame.plan.steps()[step.index()].kind {
+        PassKind::Raster => {
+            let opened = &recording.remembered.step().opened;
+            let mut pass = begin_raster(opened, label, timestamps.as_ref(), encoder);
+            recording.executed += opened.counts;
+            each(recording, Open::Raster(&mut pass))?
+        }
+        PassKind::Compute => {
+            let timestamp_writes = timestamps.as_ref().map(|t| ComputePassTimestampWrites {
+                query_set: &t.queries,
+                beginning_of_pass_write_index: Some(t.begin),
+                end_of_pass_write_index: Some(t.end),
+            });
+            let mut pass =
+                encoder.begin_compute_pass(&ComputePassDescriptor { label, timestamp_writes }).forget_lifetime();
+            each(recording, Open::Compute(&mut pass))?
+        }
+        PassKind::Copy => {
+            let write = |encoder: &mut CommandEncoder, index: fn(&TimestampWrites) -> u32| {
+                timestamps.iter().for_each(|t| encoder.write_timestamp(&t.queries, index(t)));
+            };
+            write(encoder, |t| t.begin);
+            let closing = each(recording, Open::Copy(&mut *encoder))?;
+            write(encoder, |t| t.end);
+            closing
+        }
+    };
     recording.end_step(step, begun, closing);
     if frame.poison {
         recording.poisoned += poison::at_end(frame, step, encoder);
@@ -98,69 +122,42 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
     Ok(())
 }
 
-/// Opens the render or compute pass of a step. The encoder is not touched again before the pass is dropped.
+/// Opens the render pass of a step. The encoder is not touched again before the pass is dropped.
 // A render pass is long, and copied where this is called.
 #[inline(always)]
-fn open(
-    frame: &Prepared<'_>,
-    step: StepId,
+fn begin_raster(
+    Opened { attached, targets, .. }: &Opened,
+    label: Option<&str>,
     timestamps: Option<&TimestampWrites>,
-    recording: &mut Recording,
     encoder: &mut CommandEncoder,
-) -> Open {
-    let label = Some(label(frame.plan, step));
-    match frame.plan.steps()[step.index()].kind {
-        PassKind::Raster => {
-            let timestamp_writes = timestamps.map(|t| RenderPassTimestampWrites {
-                query_set: &t.queries,
-                beginning_of_pass_write_index: Some(t.begin),
-                end_of_pass_write_index: Some(t.end),
-            });
-            let begun = recording.now();
-            let Recording { remembered, executed, .. } = recording;
-            let Opened { attached, targets, counts, .. } = &remembered.step().opened;
-            *executed += *counts;
-            // One color is what most passes have, and eight are long.
-            let (one, all);
-            let color_attachments: &[_] = match attached.colors.len() {
-                0 => &[],
-                1 => {
-                    one = [attached.color(0)];
-                    &one
-                }
-                count => {
-                    all = std::array::from_fn::<_, { MAX_COLORS as usize }, _>(|slot| attached.color(slot));
-                    &all[..count]
-                }
-            };
-            let descriptor = RenderPassDescriptor {
-                label,
-                color_attachments,
-                depth_stencil_attachment: attached.depth(),
-                timestamp_writes,
-                multiview_mask: targets.multiview_mask(),
-                ..Default::default()
-            };
-            let open = Open::Raster(encoder.begin_render_pass(&descriptor).forget_lifetime());
-            recording.took_in_wgpu(begun);
-            open
+) -> RenderPass<'static> {
+    let timestamp_writes = timestamps.map(|t| RenderPassTimestampWrites {
+        query_set: &t.queries,
+        beginning_of_pass_write_index: Some(t.begin),
+        end_of_pass_write_index: Some(t.end),
+    });
+    // One color is what most passes have, and eight are long.
+    let (one, all);
+    let color_attachments: &[_] = match attached.colors.len() {
+        0 => &[],
+        1 => {
+            one = [attached.color(0)];
+            &one
         }
-        PassKind::Compute => {
-            let timestamp_writes = timestamps.map(|t| ComputePassTimestampWrites {
-                query_set: &t.queries,
-                beginning_of_pass_write_index: Some(t.begin),
-                end_of_pass_write_index: Some(t.end),
-            });
-            let descriptor = ComputePassDescriptor { label, timestamp_writes };
-            Open::Compute(recording.in_wgpu(|| encoder.begin_compute_pass(&descriptor).forget_lifetime()))
+        count => {
+            all = std::array::from_fn::<_, { MAX_COLORS as usize }, _>(|slot| attached.color(slot));
+            &all[..count]
         }
-        PassKind::Copy => {
-            if let Some(timestamps) = timestamps {
-                encoder.write_timestamp(&timestamps.queries, timestamps.begin);
-            }
-            Open::Copy
-        }
-    }
+    };
+    let descriptor = RenderPassDescriptor {
+        label,
+        color_attachments,
+        depth_stencil_attachment: attached.depth(),
+        timestamp_writes,
+        multiview_mask: targets.multiview_mask(),
+        ..Default::default()
+    };
+    encoder.begin_render_pass(&descriptor).forget_lifetime()
 }
 
 fn record_pass<W: ?Sized + 'static>(
@@ -169,11 +166,10 @@ fn record_pass<W: ?Sized + 'static>(
     (step, StepPass { pass, join }): (StepId, StepPass),
     targets: &Targets,
     recording: &mut Recording,
-    encoder: &mut CommandEncoder,
-    open: &mut Open,
+    mut open: Open<'_>,
 ) -> Result<(), ExecuteError> {
     let Passes { frame: declared, world, extra } = *passes;
-    if let (Open::Raster(raster), true) = (&mut *open, frame.plan.passes_of(step)[0].pass != pass) {
+    if let (Open::Raster(raster), true) = (&mut open, frame.plan.passes_of(step)[0].pass != pass) {
         reset_state(raster, targets.extent);
     }
     let resolves = join == Join::Resolve;
@@ -181,13 +177,12 @@ fn record_pass<W: ?Sized + 'static>(
     let mut inlined = Vec::new();
     if takes_epilogue && !resolves {
         let (inlined_yet, asked_inlined) = (&[][..], false);
-        let (recording, encoder, open) = (&mut *recording, &mut *encoder, &mut *open);
-        let mut cx = Cx { frame, step, pass, targets, recording, encoder, open, inlined: inlined_yet, asked_inlined };
+        let (recording, open) = (&mut *recording, open.again());
+        let mut cx = Cx { frame, step, pass, targets, recording, open, inlined: inlined_yet, asked_inlined };
         inlined = inlined_into(&mut cx, declared, world)?;
     }
     let (own, asked_inlined) = (&*inlined, false);
-    let mut cx =
-        Cx { frame, step, pass, targets, recording: &mut *recording, encoder, open, inlined: own, asked_inlined };
+    let mut cx = Cx { frame, step, pass, targets, recording: &mut *recording, open, inlined: own, asked_inlined };
     let recorded = match extra {
         _ if resolves => Some(full_screen_resolve::record(&mut cx)),
         Some(extra) if extra.pass == pass => Some((extra.record)(&mut cx)),

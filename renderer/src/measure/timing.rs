@@ -65,6 +65,11 @@ impl Timing {
     /// Frames left out after the steps change: they compile shaders and fill caches.
     pub const WARM_UP: u32 = 4;
 
+    /// Whether times are read back.
+    pub(crate) fn is_enabled(&self) -> bool {
+        self.enabled || self.trace.is_some()
+    }
+
     /// Measures where the device can, if `enabled`; the CPU times of frames are taken in any case. With `trace`, every frame is
     /// written down.
     pub(crate) fn new(enabled: bool, trace: bool) -> Self {
@@ -184,7 +189,7 @@ impl Timing {
         if let Some(trace) = &mut self.trace {
             trace.end_frame(&recording.steps);
         }
-        let measured = self.warm_up_left == 0 && (self.enabled || self.trace.is_some());
+        let measured = self.warm_up_left == 0 && self.is_enabled();
         for StepTime { step, begun, ended } in recording.steps.iter().filter(|_| measured) {
             if let Some(samples) = self.steps.get_mut(step.index()) {
                 samples.cpu.push(ms(ended.duration_since(*begun)));
@@ -192,7 +197,7 @@ impl Timing {
         }
         if let (Some(begun), 0) = (self.begun.take(), self.warm_up_left) {
             self.frame.cpu.push(ms(begun.elapsed()));
-            if self.enabled || self.trace.is_some() {
+            if self.is_enabled() {
                 self.wgpu.push(ms(recording.in_wgpu));
             }
         }
