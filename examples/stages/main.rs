@@ -1,8 +1,6 @@
 //! The standard frame with fog after its color stage and a sharpening filter in the place of FXAA. See `README.md` beside
 //! this file.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 mod fog;
 mod frame;
 mod sharpen;

@@ -25,4 +25,4 @@ mod target;
 
 #[cfg(feature = "run")]
 pub use bytes::bytes;
-pub use print::{error, exit, line, note, print};
+pub use print::{ended, error, exit, line, note, print};

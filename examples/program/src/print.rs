@@ -59,6 +59,17 @@ pub fn exit(code: u8) -> ExitCode {
     }
 }
 
+/// The exit code of a program that did its work, 0, or did not, 1, of which a line on standard error says why.
+pub fn ended(program: &str, result: Result<(), impl Display>) -> ExitCode {
+    match result {
+        Ok(()) => exit(0),
+        Err(reason) => {
+            note(format_args!("{program}: {reason}"));
+            exit(1)
+        }
+    }
+}
+
 /// Writes, unless that has failed before.
 fn keep_first(write: impl FnOnce(&mut io::StdoutLock<'_>) -> io::Result<()>) {
     let mut failed = FAILED.lock().unwrap_or_else(|poisoned| poisoned.into_inner());

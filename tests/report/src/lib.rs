@@ -31,6 +31,7 @@ pub fn share<T>(cases: impl IntoIterator<Item = T>) -> Vec<T> {
     cases.into_iter().step_by(if all { 1 } else { 3 }).collect()
 }
 
+#[allow(clippy::print_stdout, reason = "shown with --nocapture")]
 fn line(text: &str) {
     println!("{text}");
     let Some(path) = std::env::var_os(LOG) else { return };

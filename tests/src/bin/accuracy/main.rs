@@ -1,7 +1,5 @@
 //! `accuracy`: what each approximation of the frame errs by and costs on this adapter, as JSON, as a document and as a page.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 mod args;
 mod budget;
 

@@ -3,8 +3,6 @@
 //! `cargo run -p tests --bin hard_cases` prints the tables of `docs/hard-cases.md`. The exit code is 1 when an invariant
 //! does not hold, or a guard is neither missed by a case nor explained.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::error::Error;
 use std::process::ExitCode;

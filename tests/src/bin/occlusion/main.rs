@@ -11,13 +11,7 @@ use std::error::Error;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("occlusion: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    program::ended("occlusion", run())
 }
 
 fn run() -> Result<(), Box<dyn Error>> {
@@ -25,7 +19,7 @@ fn run() -> Result<(), Box<dyn Error>> {
         return Err(format!("{unknown}: no argument is taken").into());
     }
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
-    println!("adapter: {}", gpu.describe());
+    program::line(format_args!("adapter: {}", gpu.describe()));
     tables::open_ground(&gpu)?;
     tables::corner(&gpu)?;
     tables::taps(&gpu)?;

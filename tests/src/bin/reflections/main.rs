@@ -15,13 +15,7 @@ use tests::measure::reflection::{Found, Stage};
 const SIZE: [u32; 2] = [320, 240];
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => program::exit(0),
-        Err(error) => {
-            program::note(format_args!("reflections: {error}"));
-            program::exit(1)
-        }
-    }
+    program::ended("reflections", run())
 }
 
 fn run() -> Result<(), Box<dyn Error>> {

@@ -3,8 +3,6 @@
 //! `cargo run -p tests --bin shading_errors` prints the tables of `docs/half-floats.md`. Each has a control: something
 //! wrong on purpose that its comparison must notice. The exit code is 1 when one is not noticed.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_shaders::reference::cases;
 use framegraph_wgpu::{AdapterRequest, Gpu};

@@ -8,13 +8,7 @@ use std::process::ExitCode;
 use tests::measure::temporal::table;
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("taa: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    program::ended("taa", run())
 }
 
 fn run() -> Result<(), Box<dyn Error>> {
@@ -22,7 +16,7 @@ fn run() -> Result<(), Box<dyn Error>> {
         return Err(format!("{unknown}: no argument is taken").into());
     }
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
-    println!("adapter: {}\n", gpu.describe());
-    table(&gpu)?.iter().for_each(|row| println!("{row}"));
+    program::line(format_args!("adapter: {}\n", gpu.describe()));
+    table(&gpu)?.iter().for_each(program::line);
     Ok(())
 }
