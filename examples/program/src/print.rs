@@ -70,6 +70,14 @@ pub fn ended(program: &str, result: Result<(), impl Display>) -> ExitCode {
     }
 }
 
+/// Refuses what stands on the command line of a program that takes nothing.
+///
+/// # Errors
+/// One line that names the first word.
+pub fn no_arguments() -> Result<(), String> {
+    std::env::args_os().nth(1).map_or(Ok(()), |word| Err(format!("{}: no argument is taken", word.to_string_lossy())))
+}
+
 /// Writes, unless that has failed before.
 fn keep_first(write: impl FnOnce(&mut io::StdoutLock<'_>) -> io::Result<()>) {
     let mut failed = FAILED.lock().unwrap_or_else(|poisoned| poisoned.into_inner());

@@ -12,9 +12,7 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Result<(), Box<dyn Error>> {
-    if let Some(unknown) = std::env::args().nth(1) {
-        return Err(format!("{unknown}: no argument is taken").into());
-    }
+    program::no_arguments()?;
     program::line(HEAD);
     for (name, look) in looks() {
         for desc in descs(&look) {

@@ -23,7 +23,10 @@ const VIEWS: u32 = 9;
 const SAMPLES: u32 = 20_000;
 
 fn main() -> ExitCode {
-    program::ended("lights", Gpu::open(&AdapterRequest::from_env()).map_err(Box::from).and_then(|gpu| print(&gpu)))
+    program::ended(
+        "lights",
+        program::no_arguments().map_err(Box::from).and_then(|()| print(&Gpu::open(&AdapterRequest::from_env())?)),
+    )
 }
 
 fn print(gpu: &Gpu) -> Outcome {

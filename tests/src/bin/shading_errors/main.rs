@@ -13,7 +13,7 @@ use tests::measure::half_table::{POINTS, ROUGHNESS, SAMPLES, SCENES, Studio, lob
 use tests::mirror;
 
 fn main() -> ExitCode {
-    match Gpu::open(&AdapterRequest::from_env()).map_err(Box::from).and_then(|gpu| print(&gpu)) {
+    match program::no_arguments().map_err(Box::from).and_then(|()| print(&Gpu::open(&AdapterRequest::from_env())?)) {
         Ok(true) => program::exit(0),
         Ok(false) => program::exit(1),
         Err(error) => {

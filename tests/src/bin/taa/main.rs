@@ -12,9 +12,7 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Result<(), Box<dyn Error>> {
-    if let Some(unknown) = std::env::args().nth(1) {
-        return Err(format!("{unknown}: no argument is taken").into());
-    }
+    program::no_arguments()?;
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
     program::line(format_args!("adapter: {}\n", gpu.describe()));
     table(&gpu)?.iter().for_each(program::line);
