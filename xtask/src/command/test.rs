@@ -24,6 +24,10 @@ Stages, all of which run even if one fails:
   deny    deny.toml but for advisories, where cargo-deny is installed
   tests   unit, integration and documentation tests
 
+Tests that replay streams under Vulkan's validation layers and tests that open
+windows want those layers and Xvfb, which are installed like a driver; where
+they cannot be, such tests are skipped.
+
 Tests of many cases that draw for long run a third of them, each of which stands
 for its neighbors; docs/time.md lists them.
 
@@ -41,6 +45,7 @@ const ON_DEMAND: &str = "framegraph-fuzz/fuzzer,tests-fuzz/fuzzer,peers/peer";
 
 fn run(options: &Options) -> Result<(), Failure> {
     let expected = adapter::ready(options)?;
+    adapter::checks(options);
     let mut outcomes = vec![
         stage::run("format", &mut workspace::cargo(&["fmt", "--all", "--", "--check"])),
         stage::run("clippy", checking("clippy", &["--all-targets"]).args(["--", "-D", "warnings"])),
