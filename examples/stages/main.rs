@@ -1,8 +1,6 @@
 //! The standard frame with fog after its color stage and a sharpening filter in the place of FXAA. See `README.md` beside
 //! this file.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 mod fog;
 mod frame;
 mod sharpen;
@@ -16,6 +14,7 @@ use framegraph_scene::environment::Sky;
 use framegraph_scene::picture::encode_png;
 use framegraph_scene::{Scene, progress};
 use framegraph_wgpu::{AdapterRequest, Executor, Frame, Gpu, Imports, OpenError, read_texture};
+use program::interrupt;
 use program::outputs::{OutputError, Outputs, is_special};
 use std::error::Error;
 use std::path::Path;
@@ -30,7 +29,7 @@ usage: stages FILE.png [DENSITY]
   DENSITY    extinction of the fog in 1/m, 0 to 10 (0.05)
 
 WGPU_BACKEND and WGPU_ADAPTER_NAME choose another adapter.
-Exit codes: 0 done, 1 the device failed, 2 bad input or output.";
+Exit codes: 0 done, 1 the device failed, 2 bad input or output, 128 and its number after a signal.";
 
 const SIZE_PX: [u32; 2] = [640, 360];
 
@@ -44,6 +43,7 @@ fn main() -> ExitCode {
         Ok(asked) => asked,
         Err(message) => return fail(2, &message),
     };
+    interrupt::exit_when_asked();
     match draw(Path::new(out), density) {
         Ok(()) => program::exit(0),
         Err(error) => {

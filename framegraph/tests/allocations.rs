@@ -86,9 +86,9 @@ fn check(work: &Workload, caps: Caps, options: Options, frames: usize) {
         let change = region.change();
         let moved = (change.allocations, change.reallocations, change.deallocations);
         assert_eq!(moved, (0, 0, 0), "{} for {}, {plans} plans", work.name, caps.name);
-        println!(
+        program::line(format_args!(
             "{} for {}, {plans} plans in turns: {frames} frames, no allocation ({first} while warming up)",
             work.name, caps.name
-        );
+        ));
     }
 }

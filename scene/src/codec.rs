@@ -28,7 +28,6 @@ pub(crate) use ktx::{CubeF32, header as cube_header};
 pub(crate) use picture::{Header, Picture8, PictureF32};
 
 /// Reads the header of what [`decode_8`] decodes.
-#[cfg(feature = "gltf")]
 #[cfg_attr(not(any(feature = "png", feature = "jpeg")), allow(unused_variables, reason = "then every kind is refused"))]
 pub(crate) fn header_8(bytes: &[u8], max_side_texels: u32) -> Result<Header, CodecError> {
     catch::catch_panic(|| match FileKind::of(bytes) {

@@ -4,12 +4,16 @@ use std::path::{Path, PathBuf};
 
 use crate::codec::{self, Picture8};
 use crate::error::SceneError;
-use crate::read::read_file;
+use crate::memory::{Loan, Memory, OverBudget};
+use crate::read::{file_bytes, read_file, read_start};
 
 pub use crate::codec::{CodecError, FileKind, HdrError, KtxError};
 
 /// The largest side of a picture that [`read_rgba8`] takes, in texels.
 const MAX_SIDE_TEXELS: u32 = 1 << 15;
+
+/// Bytes of a file in which a header is looked for first.
+const START_BYTES: u64 = 1 << 16;
 
 /// A picture could not be read.
 #[derive(thiserror::Error)]
@@ -68,6 +72,39 @@ pub fn read_rgba8(path: &Path) -> Result<([u32; 2], Vec<u8>), PictureError> {
     Ok((size_texels, rgba8))
 }
 
+/// The same within a budget: the header first, then the pixels. The loan has room for the texels and a copy of them on the way
+/// to a device; hold it as long as they are.
+///
+/// # Errors
+/// As [`read_rgba8`]; [`SceneError::Memory`] where the budget has not so much left.
+pub fn read_rgba8_within<'a>(path: &Path, memory: &'a Memory) -> Result<([u32; 2], Vec<u8>, Loan<'a>), PictureError> {
+    let file_bytes = file_bytes(path)?;
+    let codec = |error| PictureError::Codec { path: path.into(), error };
+    let start = read_start(path, START_BYTES)?;
+    let header = match codec::header_8(&start, MAX_SIDE_TEXELS) {
+        // Some have large metadata before it.
+        Err(CodecError::Other(_)) if file_bytes > START_BYTES => {
+            let _whole = memory.lend(file_bytes).map_err(|budget| over(path, String::new(), budget))?;
+            codec::header_8(&read_file(path)?, MAX_SIDE_TEXELS)
+        }
+        header => header,
+    };
+    let header = header.map_err(codec)?;
+    let (size, rgba8_bytes) = (header.size_texels, header.rgba8_bytes());
+    let bytes = rgba8_bytes + rgba8_bytes.max(header.working_bytes + file_bytes);
+    let loan = memory.lend(bytes).map_err(|budget| over(path, format!("{}×{}", size[0], size[1]), budget))?;
+    let (found, rgba8) = read_rgba8(path)?;
+    if found != size {
+        let reason = "its size changed while it was read".into();
+        return Err(SceneError::Malformed { file: path.into(), at: "picture".into(), reason }.into());
+    }
+    Ok((size, rgba8, loan))
+}
+
+fn over(path: &Path, at: String, budget: OverBudget) -> PictureError {
+    SceneError::Memory { file: path.into(), at, budget }.into()
+}
+
 #[cfg(any(feature = "png", feature = "exr"))]
 fn check_size(size_texels: [u32; 2], given: usize) -> Result<(), CodecError> {
     let expected = size_texels[0] as usize * size_texels[1] as usize * 4;
@@ -91,6 +128,28 @@ mod tests {
         encode_exr(&mut exr, [1, 2], &light)?;
         let read = image::load_from_memory(exr.get_ref())?.into_rgba32f();
         assert_eq!(read.as_raw().as_slice(), light.as_flattened());
+        std::fs::remove_dir_all(&folder)?;
+        Ok(())
+    }
+
+    #[test]
+    fn a_picture_over_the_budget_is_refused_by_its_header() -> Result<(), Box<dyn std::error::Error>> {
+        let folder = std::env::temp_dir().join(format!("framegraph-picture-within-{}", std::process::id()));
+        std::fs::create_dir_all(&folder)?;
+        let png = folder.join("a.png");
+        encode_png(std::fs::File::create(&png)?, [256, 256], &vec![7; 256 * 256 * 4])?;
+        // Its texels take 256 KiB, and as much again on the way to a device.
+        let told = read_rgba8_within(&png, &Memory::new(511 << 10)).map(drop).map_err(|told| told.to_string());
+        assert!(told.as_ref().is_err_and(|told| told.contains("a.png") && told.contains("256×256")), "{told:?}");
+        let memory = Memory::new(1 << 20);
+        let (size, rgba8, loan) = read_rgba8_within(&png, &memory)?;
+        assert_eq!((size, rgba8.len()), ([256, 256], 256 << 10));
+        assert!(memory.keep(600 << 10).is_err(), "it is lent as long as the texels are there");
+        drop(loan);
+        assert!(memory.keep(600 << 10).is_ok());
+        // The header is cut off: no room is asked for.
+        std::fs::write(&png, &std::fs::read(&png)?[..20])?;
+        assert!(read_rgba8_within(&png, &memory).is_err_and(|told| told.to_string().contains("a.png")));
         std::fs::remove_dir_all(&folder)?;
         Ok(())
     }

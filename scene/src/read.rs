@@ -37,7 +37,6 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
 }
 
 /// The first bytes of a file, at most so many.
-#[cfg(feature = "gltf")]
 pub(crate) fn read_start(path: &Path, most_bytes: u64) -> Result<Vec<u8>, SceneError> {
     let length = file_bytes(path)?.min(most_bytes);
     let mut bytes = Vec::with_capacity(length as usize);

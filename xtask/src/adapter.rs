@@ -20,7 +20,7 @@ use crate::Failure;
 use crate::options::Options;
 use crate::stage;
 use facts::Machine;
-use packages::Install;
+use packages::{Install, Want};
 use verdict::Verdict;
 
 /// Makes sure that an adapter is usable, installing Mesa's software Vulkan driver where none is,
@@ -43,7 +43,7 @@ pub fn ready(options: &Options) -> Result<String, Failure> {
         }
         Verdict::Missing(reason) => reason,
     };
-    let install = packages::plan(&facts::packages(&machine(&variable)))
+    let install = packages::plan(&facts::packages(&machine(&variable)), Want::Driver)
         .map_err(|reason| Failure::Failed(format!("no usable adapter: {missing}; {reason}")))?;
     if options.no_install {
         return Err(Failure::Failed(format!(
@@ -62,6 +62,28 @@ pub fn ready(options: &Options) -> Result<String, Failure> {
             Err(Failure::Failed(format!("still no usable adapter after `{install}`: {reason}")))
         }
     }
+}
+
+/// Installs what tests ask for that replay streams under Vulkan's validation layers and open windows. What cannot be installed
+/// is said, and the tests count as skipped.
+pub fn checks(options: &Options) {
+    let missing = facts::missing_checks(&machine(&variable));
+    if missing.is_empty() || !cfg!(target_os = "linux") {
+        return;
+    }
+    let missing = missing.join(" and ");
+    let told = match packages::plan(&facts::packages(&machine(&variable)), Want::Checks) {
+        Err(reason) => reason,
+        Ok(install) if options.no_install => format!("they are installed by: {install}"),
+        Ok(install) => {
+            program::line(format_args!("xtask: installing {missing}: {install}"));
+            match carry_out(&install) {
+                Ok(()) => return,
+                Err(failure) => failure.to_string(),
+            }
+        }
+    };
+    program::line(format_args!("xtask: tests that need {missing} are skipped: {told}"));
 }
 
 /// Judges the machine this runs on.
@@ -108,5 +130,5 @@ fn carry_out(install: &Install) -> Result<(), Failure> {
             Some(failed) => reason = failed,
         }
     }
-    Err(Failure::Failed(format!("cannot install the software Vulkan driver: {reason}")))
+    Err(Failure::Failed(format!("cannot be installed: {reason}")))
 }

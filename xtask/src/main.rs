@@ -15,8 +15,6 @@
 //! # Exit codes
 //! 0 done; 1 something failed; 2 the command line was wrong.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 mod adapter;
 mod command;
 mod mutant;

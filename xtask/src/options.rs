@@ -136,7 +136,8 @@ pub fn help_of(command: &Command) -> String {
 const OPTIONS: &str = "
 Options:
   --no-install  where no adapter is usable, print the command that installs
-                Mesa's software Vulkan driver and exit 1, instead of running it
+                Mesa's software Vulkan driver and exit 1, instead of running it;
+                for what tests want beside it, print the command and go on
   --quick, --dsa DIR, --out FILE
                 of `prove`: see `cargo xtask prove --help`
   --all, --count N, --list, --out FILE

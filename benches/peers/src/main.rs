@@ -7,6 +7,7 @@
 
 use framegraph::{AccessKind, Caps, Graph, Intent, Options, Plan, Scratch, compile};
 use std::hint::black_box;
+use std::process::ExitCode;
 use std::time::Instant;
 
 type Failure = Box<dyn std::error::Error>;
@@ -88,8 +89,12 @@ does not reorder, merge or derive load and store operations. The aim is a ratio 
 | chain of buffers | framegraph, ns | zenfg 0.2, ns | ratio |
 | --- | --- | --- | --- |";
 
-fn main() -> Result<(), Failure> {
-    println!("{HEAD}");
+fn main() -> ExitCode {
+    program::ended("peers", run())
+}
+
+fn run() -> Result<(), Failure> {
+    program::line(HEAD);
     for passes in [100, 1000] {
         let names: Vec<_> = (0..passes).map(|i| (format!("p{i}"), format!("b{i}"))).collect();
         let mut ours = Ours {
@@ -109,7 +114,9 @@ fn main() -> Result<(), Failure> {
         }
         let ([ours, least], [theirs, their_least]) = (sorted(a), sorted(b));
         let (ratio, of_least) = (theirs / ours, their_least / least);
-        println!("| {passes} | {ours:.0} ({least:.0}) | {theirs:.0} ({their_least:.0}) | {ratio:.1} ({of_least:.1}) |");
+        program::line(format_args!(
+            "| {passes} | {ours:.0} ({least:.0}) | {theirs:.0} ({their_least:.0}) | {ratio:.1} ({of_least:.1}) |"
+        ));
     }
     Ok(())
 }

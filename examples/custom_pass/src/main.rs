@@ -1,8 +1,6 @@
 //! An engine that owns its device, surface and pipelines, with two effects from the render graph. See `README.md` beside
 //! this file.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 mod args;
 mod headless;
 mod window;

@@ -295,6 +295,7 @@ fn finish(given: Given) -> Result<Command, String> {
             (diff.is_some(), "--diff"),
             (budget.is_some(), "--budget"),
             (queues.is_some(), "--queues"),
+            (costs.is_some(), "--costs"),
         ];
         if let Some((_, other)) = alone.into_iter().find(|(given, _)| *given) {
             return Err(format!("{other} does not go together with --offsets"));

@@ -1,8 +1,6 @@
 //! Plans a frame from a file, without a GPU: what it would cost on a device, at a size, with a feature, against another
 //! frame, and whether that is within a budget.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 mod args;
 mod offsets;
 mod output;

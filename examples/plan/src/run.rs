@@ -4,8 +4,7 @@ use crate::args::{Args, Format};
 use crate::{output, queues};
 use framegraph::file::{self, GraphFile, Included, Registry};
 use framegraph::{Alias, Caps, Graph, Options, Plan, Scratch, diff, dump};
-use std::fs::File;
-use std::io::Read;
+use program::input;
 use std::path::Path;
 
 /// Why there is nothing to show for it.
@@ -20,21 +19,18 @@ pub enum Failure {
 /// The frame size when neither the file nor the command line says one, in texels.
 const FRAME: [u32; 2] = [1920, 1080];
 
-/// Files larger than this are refused, in bytes.
-const MOST_BYTES: u64 = 64 << 20;
-
 /// Plans, prints, and checks the budget.
 ///
 /// # Errors
 /// Bad input, or a broken budget; the output is written in the second case.
 pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
-    let input = |path: &Path| {
+    let source = |path: &Path| {
         let (path, text) = (path.display().to_string(), read(path)?);
         let included = Included::load(&path, &text, |path| read(Path::new(path))).map_err(|e| e.to_string())?;
         Ok((path, text, included))
     };
     let sources: Result<Vec<_>, _> =
-        [Some(args.frame.as_path()), args.diff.as_deref()].into_iter().flatten().map(input).collect();
+        [Some(args.frame.as_path()), args.diff.as_deref()].into_iter().flatten().map(source).collect();
     let sources = sources.map_err(Failure::Input)?;
     let read = sources.iter().flat_map(|(path, _, included)| [path.as_str()].into_iter().chain(included.paths()));
     let device = args.caps.ends_with(".ron").then_some(args.caps.as_str());
@@ -106,20 +102,7 @@ fn caps(which: &str) -> Result<Caps, String> {
 /// # Errors
 /// One line that names the file and what is wrong with it.
 pub fn read(path: &Path) -> Result<String, String> {
-    let shown = path.display();
-    let unreadable = |e: std::io::Error| format!("{shown}: cannot be read: {e}");
-    // Some files have no end, and say that they have no length.
-    let mut bytes = Vec::new();
-    let file = File::open(path).map_err(unreadable)?;
-    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > MOST_BYTES {
-        return Err(format!("{shown}: more than {MOST_BYTES} bytes; files of that size are not read"));
-    }
-    String::from_utf8(bytes).map_err(|e| {
-        let before = &e.as_bytes()[..e.utf8_error().valid_up_to()];
-        let line = 1 + before.iter().filter(|b| **b == b'\n').count();
-        format!("{shown}:{line}:1: the line is not UTF-8; save the file as UTF-8")
-    })
+    input::text(path, input::MOST_TEXT_BYTES)
 }
 
 fn shown(plan: &Plan, name: &str, format: Format) -> String {

@@ -2,7 +2,7 @@
 //!
 //! [`Outputs::add`] refuses, before anything is rendered, what cannot be written, what two outputs would share, and what the
 //! run reads. [`Outputs::write`] makes the file beside its place. [`Outputs::commit`] writes through pipes and devices, then
-//! gives every file its name; when anything fails before that, no output is changed.
+//! gives every file its name; when anything fails, no file is changed.
 //!
 //! ```
 //! use program::outputs::Outputs;
@@ -21,6 +21,7 @@
 //! ```
 
 use crate::part::Part;
+use crate::place;
 use crate::target::{Target, same};
 use std::fmt::Display;
 use std::fs;
@@ -201,9 +202,8 @@ impl Outputs {
         for (path, mut target, bytes) in through {
             target.write(bytes.get_ref()).map_err(|error| OutputError::File { path, error })?;
         }
-        for (path, place, part) in parts {
-            part.place(&place).map_err(|error| OutputError::File { path, error })?;
-        }
+        let (paths, parts): (Vec<_>, _) = parts.into_iter().map(|(path, place, part)| (path, (place, part))).unzip();
+        place::all(parts).map_err(|(index, error)| OutputError::File { path: paths[index].clone(), error })?;
         Ok(names)
     }
 
@@ -212,7 +212,18 @@ impl Outputs {
     /// # Errors
     /// [`OutputError`].
     pub fn one(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+        Self::one_beside(path, bytes, &[])
+    }
+
+    /// The same, but not over one of the files that were read.
+    ///
+    /// # Errors
+    /// [`OutputError`].
+    pub fn one_beside(path: &Path, bytes: &[u8], read: &[PathBuf]) -> Result<(), OutputError> {
         let mut outputs = Self::default();
+        for file in read {
+            outputs.reads(file)?;
+        }
         outputs.write(path, |file| file.write_all(bytes))?;
         outputs.commit().map(drop)
     }

@@ -22,8 +22,24 @@ fn live() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     LIVE.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
+/// Held while files get their names: the program ends before or after that, not between.
+static PLACING: Mutex<()> = Mutex::new(());
+
+/// Keeps [`remove_all`] waiting.
+pub(crate) fn hold() -> MutexGuard<'static, ()> {
+    PLACING.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+/// A name in `folder` that nothing else in this program has.
+pub(crate) fn fresh_name(folder: &Path) -> PathBuf {
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let number = COUNT.fetch_add(1, Ordering::Relaxed);
+    folder.join(format!("{BEGIN}{}-{number}{END}", std::process::id()))
+}
+
 /// Removes every part of this program, which is about to end.
 pub(crate) fn remove_all() {
+    std::mem::forget(hold());
     for path in live().iter() {
         // What cannot be removed is swept away by the next run.
         let _ = fs::remove_file(path);
@@ -40,11 +56,9 @@ pub(crate) struct Part {
 impl Part {
     /// A new part in `folder`. Removes what killed runs left there.
     pub fn create(folder: &Path) -> io::Result<Self> {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
         sweep(folder);
         for _ in 0..TRIES {
-            let number = COUNT.fetch_add(1, Ordering::Relaxed);
-            let path = folder.join(format!("{BEGIN}{}-{number}{END}", std::process::id()));
+            let path = fresh_name(folder);
             let file = match OpenOptions::new().read(true).write(true).create_new(true).open(&path) {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
                 opened => opened?,

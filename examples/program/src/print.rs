@@ -59,6 +59,25 @@ pub fn exit(code: u8) -> ExitCode {
     }
 }
 
+/// The exit code of a program that did its work, 0, or did not, 1, of which a line on standard error says why.
+pub fn ended(program: &str, result: Result<(), impl Display>) -> ExitCode {
+    match result {
+        Ok(()) => exit(0),
+        Err(reason) => {
+            note(format_args!("{program}: {reason}"));
+            exit(1)
+        }
+    }
+}
+
+/// Refuses what stands on the command line of a program that takes nothing.
+///
+/// # Errors
+/// One line that names the first word.
+pub fn no_arguments() -> Result<(), String> {
+    std::env::args_os().nth(1).map_or(Ok(()), |word| Err(format!("{}: no argument is taken", word.to_string_lossy())))
+}
+
 /// Writes, unless that has failed before.
 fn keep_first(write: impl FnOnce(&mut io::StdoutLock<'_>) -> io::Result<()>) {
     let mut failed = FAILED.lock().unwrap_or_else(|poisoned| poisoned.into_inner());

@@ -5,15 +5,20 @@
 //! such shaders a frame of 32×32 pixels took several MiB more than the one before. Bounds of loops are therefore `override`
 //! constants, and what fragments are shaded with does not lie first.
 
-use crate::support::{command, folder};
+use crate::support::{CORNERS, TRIANGLE, UP, command, folder, refusal, triangle, undrawn};
 use std::path::Path;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// The most that the process held in memory, in KiB, as the system says it while it runs; none where it does not say.
-fn peak_kib(folder: &Path, frames: &str, options: &str) -> Option<u64> {
+/// The most that a process held in memory while it drew some frames.
+fn peak_of_frames_kib(folder: &Path, frames: &str, options: &str) -> Option<u64> {
     let mut run = command(folder);
     run.args(["columns", "--size", "32x32", "--frames", frames]).args(options.split(' '));
+    peak_kib(run, options)
+}
+
+/// The most that the process held in memory, in KiB, as the system says it while it runs; none where it does not say.
+fn peak_kib(mut run: Command, options: &str) -> Option<u64> {
     let mut run = run.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program starts");
     let status = format!("/proc/{}/status", run.id());
     let mut peak = None;
@@ -41,7 +46,7 @@ fn memory_does_not_grow_with_frames() {
         "--preset medium --shadows evsm --shadow texels=256,blur=9 --dof on:focus=3,resolution=full",
         "--preset ultra --shadow texels=256,contact=on --fog on --bloom on:flare=on --dof on:focus=3 --taa on",
     ] {
-        let [few, many] = ["8", "33"].map(|frames| peak_kib(&folder, frames, options));
+        let [few, many] = ["8", "33"].map(|frames| peak_of_frames_kib(&folder, frames, options));
         let (Some(few), Some(many)) = (few, many) else {
             return test_report::skip(
                 "memory_does_not_grow_with_frames",
@@ -49,5 +54,48 @@ fn memory_does_not_grow_with_frames() {
             );
         };
         assert!(many < few + (12 << 10), "{options}: {few} KiB after 8 frames, {many} KiB after 33");
+    }
+}
+
+/// One picture that is used 16 times is decoded once, within the budget that is given: 16 MiB of texels, and 48 for mip levels and
+/// the way to the device. Held for each use they would take 256 MiB.
+#[test]
+fn one_picture_takes_its_budget_however_often_it_is_used() {
+    const BUDGET_MIB: u64 = 80;
+    let folder = folder("uses");
+    let list = |entry: &dyn Fn(usize) -> String| (0..16).map(entry).collect::<Vec<_>>().join(", ");
+    let textured = format!(
+        r#""materials": [{}], "textures": [{}], "images": [{}], "accessors""#,
+        list(&|i| format!(r#"{{"pbrMetallicRoughness": {{"baseColorTexture": {{"index": {i}}}}}}}"#)),
+        list(&|i| format!(r#"{{"source": {i}}}"#)),
+        list(&|_| r#"{"uri": "large.png"}"#.to_owned()),
+    );
+    let part = r#"{"attributes": {"POSITION": 0, "NORMAL": 1}"#;
+    let parts = list(&|i| format!(r#"{part}, "material": {i}}}"#));
+    let text = TRIANGLE.replace("\"accessors\"", &textured).replace(&format!("{part}}}"), &parts);
+    let picture = image::GrayImage::from_pixel(2048, 2048, image::Luma([90]));
+    picture.save(folder.join("large.png")).expect("the folder can be written");
+    let peak = |text: &str, options: &[&str]| {
+        triangle(&folder, text, CORNERS, UP);
+        let mut run = undrawn(&folder, &["t.gltf", "--frames", "1", "--memory", &format!("{BUDGET_MIB}MiB")]);
+        run.args(options);
+        peak_kib(run, "t.gltf")
+    };
+    let plain = peak(TRIANGLE, &[]);
+    for (text, options) in [(text.as_str(), &[][..]), (TRIANGLE, &["--dirt", "large.png", "--bloom", "on"])] {
+        let (Some(plain), Some(many)) = (plain, peak(text, options)) else {
+            let test = "one_picture_takes_its_budget_however_often_it_is_used";
+            return test_report::skip(test, "this system does not say what a process holds");
+        };
+        assert!(many < plain + (BUDGET_MIB << 10), "{options:?}: {many} KiB, without the picture {plain} KiB");
+        assert!(many > plain + (8 << 10), "the picture is not in it: {many} KiB, without {plain} KiB");
+    }
+    // The budget counts: a picture that does not fit is refused.
+    for (text, options) in
+        [(text.as_str(), &["t.gltf"][..]), (TRIANGLE, &["t.gltf", "--dirt", "large.png", "--bloom", "on"])]
+    {
+        triangle(&folder, text, CORNERS, UP);
+        let line = refusal(&folder, undrawn(&folder, options).args(["--memory", "20MiB"]));
+        assert!(line.contains("large.png") && line.contains("2048×2048") && line.contains("--memory"), "{line}");
     }
 }

@@ -34,12 +34,23 @@ fn files_of_a_scene_stay_in_its_folder() {
 fn nothing_but_regular_files_is_opened() {
     let folder = folder("pipes");
     textured(&folder);
-    for name in ["t.bin", "t.png", "map.hdr", "scene.gltf"] {
+    for name in ["t.bin", "t.png", "map.hdr", "scene.gltf", "own.ron", "own.json", "own.cube"] {
         let _ = fs::remove_file(folder.join(name));
         let made = std::process::Command::new("mkfifo").arg(folder.join(name)).status();
         assert!(made.is_ok_and(|status| status.success()));
     }
-    for args in [&["t.gltf"][..], &["scene.gltf"], &["--environment", "map.hdr"], &["--environment", "/proc/kmsg"]] {
+    for args in [
+        &["t.gltf"][..],
+        &["scene.gltf"],
+        &["--environment", "map.hdr"],
+        &["--environment", "/proc/kmsg"],
+        &["--settings", "own.ron"],
+        &["--what-if", "own.ron"],
+        &["--preset", "low", "--record", "own.json"],
+        &["--record", "own.json", "--budget-ms", "9"],
+        &["--look", "own.cube", "--grade-by", "table"],
+        &["--dirt", "t.png", "--bloom", "on"],
+    ] {
         let line = refused(&folder, args);
         assert!(line.contains("not a regular file") || line.contains("/proc/kmsg"), "{args:?}: {line}");
     }

@@ -47,7 +47,7 @@ planned anew when it changes, or a trace (`render --trace`). docs/viewer.md show
   --measure           no window: prints what the panels cost on this machine
   --help              this text
 
-Exit codes: 0 done, 2 bad input or output, 3 no device or window.
+Exit codes: 0 done, 2 bad input or output, 3 no device or window, 128 and its number after a signal.
 ";
 
 /// What was asked for.
@@ -146,6 +146,16 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
         (true, None) => return Err("--headless needs --out FILE.png or FILE.svg".into()),
         (false, Some(_)) => return Err("--out goes together with --headless only".into()),
         _ => {}
+    }
+    let without_window = [(headless, "--headless"), (out.measure, "--measure")].into_iter().find(|(given, _)| *given);
+    if let (Some((_, other)), true) = (without_window, out.frames.is_some()) {
+        return Err(format!("--frames does not go together with {other}: there is no window"));
+    }
+    if out.measure && (headless || out.live || out.file.is_some() || out.standard.is_some()) {
+        return Err("--measure goes alone: it measures plans of its own".into());
+    }
+    if !headless && (out.whole || out.picture.is_some()) {
+        return Err("--whole and --picture go together with --headless only".into());
     }
     if out.standard.is_some() && out.file.is_some() {
         return Err("--standard does not go together with a FILE".into());
@@ -288,6 +298,10 @@ mod tests {
             ("a.ron --plan b.ron", "FILE is given twice"),
             ("--live --standard low", "--live"),
             ("--settings low", "--live only"),
+            ("--frames 3 --headless --plan a.json --out a.png", "--frames does not go together with --headless"),
+            ("a.json --measure", "--measure goes alone"),
+            ("a.json --whole", "--headless only"),
+            ("a.json --picture 8x8", "--headless only"),
             ("--capz tiler", "--capz"),
             ("-x", "-x"),
             ("a.ron --standard low", "--standard"),

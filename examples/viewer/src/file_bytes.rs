@@ -1,7 +1,7 @@
 //! Reading a file by pieces, with progress, as long as somebody wants it.
 
 use crate::job::Handle;
-use std::fs::File;
+use program::input::open;
 use std::io::Read;
 use std::path::Path;
 
@@ -12,13 +12,9 @@ const CHUNK_BYTES: usize = 1 << 20;
 pub(crate) fn bytes_of(path: &Path, most_bytes: u64, handle: &Handle) -> Result<Vec<u8>, String> {
     let shown = path.display();
     let unreadable = |e: std::io::Error| format!("{shown}: cannot be read: {e}");
-    let file = File::open(path).map_err(unreadable)?;
-    let metadata = file.metadata().map_err(unreadable)?;
-    if metadata.is_dir() {
-        return Err(format!("{shown}: is a folder, not a file"));
-    }
+    let file = open(path).map_err(unreadable)?;
     let too_large = || format!("{shown}: more than {most_bytes} bytes; files of that size are not read");
-    let total = metadata.len();
+    let total = file.metadata().map_err(unreadable)?.len();
     if total > most_bytes {
         return Err(too_large());
     }

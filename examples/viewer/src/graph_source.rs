@@ -4,10 +4,8 @@ use crate::plan_data::PlanData;
 use crate::what_if::{Planner, WhatIf};
 use framegraph::file::{GraphFile, Included};
 use framegraph::{Graph, Options, Plan, Scratch};
+use program::input::{MOST_TEXT_BYTES, in_utf8};
 use std::path::{Path, PathBuf};
-
-/// Graph files larger than this are refused, in bytes.
-const MOST_BYTES: u64 = 64 << 20;
 
 /// The size of a frame when neither the file nor the user says one, in texels.
 const FRAME: [u32; 2] = [1920, 1080];
@@ -76,10 +74,6 @@ impl Planner for GraphSource {
 
 /// The text of a file.
 fn text_of(path: &Path) -> Result<String, String> {
-    let bytes = crate::file_bytes::bytes_of(path, MOST_BYTES, &crate::job::Handle::default())?;
-    String::from_utf8(bytes).map_err(|error| {
-        let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
-        format!("{}:{line}: the line is not UTF-8; save the file as UTF-8", path.display())
-    })
+    let bytes = crate::file_bytes::bytes_of(path, MOST_TEXT_BYTES, &crate::job::Handle::default())?;
+    in_utf8(path, bytes)
 }

@@ -34,6 +34,8 @@ use frame::{Asked, Running};
 use loading::{Around, Lit, Loaded};
 use look::{Document, Sun};
 use preview::Preview;
+use program::input;
+use program::outputs::Outputs;
 use screen::Screen;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -154,7 +156,9 @@ impl Live {
                 match crate::standard_frame::settings(&name) {
                     Ok(frame) => self.set(Document { frame, ..self.document().clone() }, false),
                     // A graph is another kind of file; settings say what is wrong with them.
-                    Err(_) if !std::fs::read_to_string(path).is_ok_and(|text| text.contains("frame: (")) => {
+                    Err(_)
+                        if !input::text(path, input::MOST_TEXT_BYTES).is_ok_and(|text| text.contains("frame: (")) =>
+                    {
                         return false;
                     }
                     Err(error) => session.say(error),
@@ -378,7 +382,14 @@ impl Live {
     /// One line that names the file.
     pub fn save(&self, path: &Path) -> Result<(), String> {
         let text = self.document().frame.to_ron()?;
-        std::fs::write(path, text).map_err(|e| format!("{}: cannot be written: {e}", path.display()))
+        Outputs::one_beside(path, text.as_bytes(), &self.read()).map_err(|error| error.to_string())
+    }
+
+    /// The files of the scene and of its light: nothing is written over them.
+    pub fn read(&self) -> Vec<PathBuf> {
+        let loaded = self.running.as_ref().map(|running| &running.loaded);
+        let around = loaded.and_then(|loaded| if let Around::File(file) = &loaded.around { Some(file) } else { None });
+        loaded.into_iter().flat_map(|loaded| &loaded.scene.files).chain(around).cloned().collect()
     }
 
     /// The environment that is shown or made, in words.

@@ -35,6 +35,7 @@ fn main() -> ExitCode {
             return program::exit(2);
         }
     };
+    program::interrupt::exit_when_asked();
     let done = match &args.out {
         _ if args.measure => viewer::measuring::table().map(program::print).map_err(Failure::Device),
         Some(out) => headless::run(&args, out),
@@ -60,7 +61,7 @@ fn first(args: &args::Args) -> Result<WhatIf, Failure> {
         None if args.caps.ends_with(".ron") => {
             let path = &args.caps;
             let text =
-                std::fs::read_to_string(path).map_err(|e| Failure::Input(format!("{path}: cannot be read: {e}")))?;
+                program::input::text(Path::new(path), program::input::MOST_TEXT_BYTES).map_err(Failure::Input)?;
             framegraph::file::caps(path, &text).map_err(|e| Failure::Input(e.to_string()))?
         }
         None => {

@@ -53,6 +53,8 @@ pub struct Session {
     pub questions: Option<Questions>,
     /// What is selected.
     pub selected: Option<Item>,
+    /// Files that were opened, and what they include.
+    pub read: Vec<PathBuf>,
     /// What went wrong, the latest last.
     pub messages: Vec<String>,
     base: Option<Arc<PlanData>>,
@@ -83,6 +85,7 @@ impl Session {
             budget_ms: 0.0,
             questions: None,
             selected: None,
+            read: Vec::new(),
             messages: Vec::new(),
             base: None,
             against: None,
@@ -165,6 +168,7 @@ impl Session {
     /// Opens a file on a thread of its own. What is shown stays until it is there, or if it is none.
     pub fn open(&mut self, path: &Path, role: Role) {
         let at = path.to_owned();
+        self.read.push(path.to_owned());
         self.start(format!("reading {}", path.display()), move |handle| {
             Brought::File(at.clone(), role, open(&at, handle))
         });
@@ -347,6 +351,7 @@ impl Session {
                 self.generation += 1;
             }
             (Opened::Graph(graph), Role::Against) => {
+                self.read.extend(graph.files());
                 let question = self.questions.as_ref().map_or_else(|| self.first.clone(), |q| q.asked.clone());
                 let question = WhatIf { features: self.features(&*graph, &question), ..question };
                 self.start(format!("planning {}", graph.name()), move |_| {
@@ -359,6 +364,7 @@ impl Session {
                 self.put(plan);
             }
             (Opened::Graph(graph), Role::Shown) => {
+                self.read.extend(graph.files());
                 let wake = self.wake.clone();
                 self.watch = Some((path.to_owned(), Watch::start(graph.files(), move || wake())));
                 self.show(graph);

@@ -46,14 +46,17 @@ pub fn print() {
         let packed = pack::pack(black_box(&items), None, &limits, &mut scratch, &mut offsets);
         assert!(packed.is_ok_and(|packed| packed.top == heaped.plan.memory().bytes), "another packing than the plan's");
     });
-    println!("{HEAD}");
+    program::line(HEAD);
     let rows = [("off", off, None, &apart), ("pool", pool, None, &pooled), ("heap", heap, Some(solver), &heaped)];
     for (name, time, solver, frames) in rows {
         let memory = frames.plan.memory();
         let more = Time { median: time.median - off.median, fastest: time.fastest - off.fastest };
         let placing = if name == "off" { String::new() } else { more.to_string() };
         let solver = solver.map_or_else(String::new, |solver| solver.to_string());
-        println!("| {name} | {time} | {placing} | {solver} | {} | {} |", memory.bytes, memory.lower_bound_bytes);
+        program::line(format_args!(
+            "| {name} | {time} | {placing} | {solver} | {} | {} |",
+            memory.bytes, memory.lower_bound_bytes
+        ));
     }
-    println!();
+    program::line("");
 }

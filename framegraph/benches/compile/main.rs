@@ -75,17 +75,8 @@ fn main() -> ExitCode {
             heap::print();
             memory::print();
         }
-        ["--count", graph, what, frames] => match count::run(graph, what, frames) {
-            Ok(()) => {}
-            Err(reason) => {
-                eprintln!("{reason}");
-                return ExitCode::FAILURE;
-            }
-        },
-        _ => {
-            eprintln!("usage: compile [--count GRAPH (declare|compile) FRAMES]");
-            return ExitCode::FAILURE;
-        }
+        ["--count", graph, what, frames] => return program::ended("compile", count::run(graph, what, frames)),
+        _ => return program::ended("compile", Err("there is nothing but --count GRAPH (declare|compile) FRAMES")),
     }
-    ExitCode::SUCCESS
+    program::exit(0)
 }

@@ -21,7 +21,7 @@ takes, when the graph is declared anew while a plan holds the first.
 
 /// Prints bytes per pass of cold graphs of three sizes.
 pub fn print() {
-    println!("{HEAD}");
+    program::line(HEAD);
     for passes in [10_000, 50_000, 100_000] {
         let mut frames = Frames::new(workload::dag(passes, 42));
         frames.handles.reserve(frames.work.resources.len());
@@ -33,7 +33,7 @@ pub fn print() {
         let declared = bytes(&mut || frames.declare());
         let compiled = bytes(&mut || frames.compile());
         let again = bytes(&mut || frames.declare());
-        println!("| dag_{passes} | {declared} | {compiled} | {} | {again} |", declared + compiled);
+        program::line(format_args!("| dag_{passes} | {declared} | {compiled} | {} | {again} |", declared + compiled));
     }
-    println!();
+    program::line("");
 }

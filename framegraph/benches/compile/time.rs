@@ -77,7 +77,7 @@ pool, the decision log. The aim is for both. An unchanged graph is recognised by
 
 /// Prints the table.
 pub fn print() {
-    println!("{HEAD}");
+    program::line(HEAD);
     let mut why = None;
     for (work, aim) in works() {
         let counted = [What::Declare, What::Compile].map(|what| match count::instructions(&work, what) {
@@ -90,16 +90,16 @@ pub fn print() {
         let mut frames = Frames::new(work);
         let [declared, compiled, both, unchanged] = times(&mut frames);
         let aim = aim.map_or_else(String::new, |aim| aim.to_string());
-        println!(
+        program::line(format_args!(
             "| {} | {declared} | {compiled} | {both} | {aim} | {unchanged} | {} | {} |",
             frames.work.name, counted[0], counted[1]
-        );
+        ));
     }
-    println!();
+    program::line("");
     match why {
-        None => println!(
-            "Instructions are those that valgrind's callgrind counts in warm frames; they do not depend on load.\n"
+        None => program::line(
+            "Instructions are those that valgrind's callgrind counts in warm frames; they do not depend on load.\n",
         ),
-        Some(reason) => println!("Instructions were not counted: {reason}.\n"),
+        Some(reason) => program::line(format_args!("Instructions were not counted: {reason}.\n")),
     }
 }

@@ -10,9 +10,9 @@ use std::time::Instant;
 
 /// Prints the table.
 pub fn print() {
-    println!("### Culling\n");
-    println!("| boxes | seen | one by one in f64, ms | arrays, ms | on two threads, ms |");
-    println!("| --- | --- | --- | --- | --- |");
+    program::line("### Culling\n");
+    program::line("| boxes | seen | one by one in f64, ms | arrays, ms | on two threads, ms |");
+    program::line("| --- | --- | --- | --- | --- |");
     for count in [10_000, 100_000, 1_000_000] {
         let workload = Workload::alike(count);
         let side = (count as f64).cbrt().ceil() as usize;
@@ -46,7 +46,7 @@ pub fn print() {
         };
         let (one, two) = (on(None), on(workers.as_ref().and_then(Workers::pool)));
         let cell = |(median, least): (f64, f64)| format!("{median:.2} ({least:.2})");
-        println!("| {count} | {} | {} | {} | {} |", found.len(), cell(exact), cell(one), cell(two));
+        program::line(format_args!("| {count} | {} | {} | {} | {} |", found.len(), cell(exact), cell(one), cell(two)));
     }
-    println!();
+    program::line("");
 }

@@ -29,16 +29,16 @@ const WORKLOADS: [Workload; 5] = [
 
 /// Prints the table.
 pub fn print() -> Result<(), Box<dyn Error>> {
-    println!("### Large scenes\n");
-    println!(
-        "| nodes | meshes × materials | draws | prepare once, ms | view, ms | upload, ms | execute, ms | frame, ms |"
+    program::line("### Large scenes\n");
+    program::line(
+        "| nodes | meshes × materials | draws | prepare once, ms | view, ms | upload, ms | execute, ms | frame, ms |",
     );
-    println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
+    program::line("| --- | --- | --- | --- | --- | --- | --- | --- |");
     let gpu = Gpu::noop()?;
     for workload in &WORKLOADS {
         row(&gpu, workload)?;
     }
-    println!();
+    program::line("");
     Ok(())
 }
 
@@ -95,10 +95,10 @@ fn row(gpu: &Gpu, workload: &Workload) -> Result<(), Box<dyn Error>> {
         }
     }
     let ([view_ms, upload_ms, execute_ms], frame_ms) = (spans, spans.iter().sum::<f64>());
-    println!(
+    program::line(format_args!(
         "| {} | {} | {draws} | {prepare_ms:.1} | {view_ms:.2} | {upload_ms:.2} | {execute_ms:.2} | {frame_ms:.2} ({least_ms:.2}) |",
         workload.nodes,
         workload.name(),
-    );
+    ));
     Ok(())
 }

@@ -6,10 +6,8 @@ mod workload;
 
 use std::time::Instant;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    frames::print()?;
-    cull::print();
-    Ok(())
+fn main() -> std::process::ExitCode {
+    program::ended("scenes", frames::print().map(|()| cull::print()))
 }
 
 /// Milliseconds that this thread has run: waiting for other programs is not in it. Where the system does not tell (Linux does), the time since

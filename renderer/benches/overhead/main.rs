@@ -14,13 +14,17 @@ use executed::Executed;
 use framegraph_wgpu::Gpu;
 use shared::Case;
 use std::error::Error;
-use std::process::Command;
+use std::process::{Command, ExitCode};
 use std::time::Instant;
 
 const CASES: [Case; 3] = [Case { passes: 5, draws: 1 }, Case { passes: 50, draws: 1 }, Case { passes: 50, draws: 100 }];
 const WARM_UP: usize = 10;
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    program::ended("overhead", run())
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
     if let [count, who, passes, draws, frames] = arguments.as_slice()
         && count == "--count"
@@ -28,11 +32,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         let case = Case { passes: passes.parse()?, draws: draws.parse()? };
         return run_counted(who, case, frames.parse()?);
     }
-    println!("### Over wgpu\n");
-    println!(
-        "| passes × draws | by hand, µs | executed, µs | ratio | by hand, instr. | executed, instr. | ratio | timed, instr. | ratio |"
+    program::line("### Over wgpu\n");
+    program::line(
+        "| passes × draws | by hand, µs | executed, µs | ratio | by hand, instr. | executed, instr. | ratio | timed, instr. | ratio |",
     );
-    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+    program::line("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     for case in CASES {
         let (hand, own) = side_by_side(case)?;
         let counts = ["hand", "executor", "timed"].map(|who| instructions(who, case));
@@ -43,9 +47,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             [Err(why), ..] | [_, Err(why), _] | [.., Err(why)] => format!("{why} | | | |"),
         };
         let Case { passes, draws } = case;
-        println!("| {passes} × {draws} | {hand:.1} | {own:.1} | {:.2} | {counted} |", own / hand);
+        program::line(format_args!("| {passes} × {draws} | {hand:.1} | {own:.1} | {:.2} | {counted} |", own / hand));
     }
-    println!();
+    program::line("");
     threads::print()
 }
 

@@ -22,17 +22,17 @@ const WARM_UP: usize = 10;
 /// Prints the table.
 pub fn print() -> Result<(), Box<dyn Error>> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    println!("### Threads\n");
-    println!(
-        "| passes × draws | threads | one thread, µs | always on all, µs | speed-up | automatic, µs | speed-up | on threads |"
+    program::line("### Threads\n");
+    program::line(
+        "| passes × draws | threads | one thread, µs | always on all, µs | speed-up | automatic, µs | speed-up | on threads |",
     );
-    println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
+    program::line("| --- | --- | --- | --- | --- | --- | --- | --- |");
     for case in CASES {
         for threads in (1..=cores.ilog2().max(1)).map(|doublings| 1 << doublings) {
             row(case, threads)?;
         }
     }
-    println!();
+    program::line("");
     Ok(())
 }
 
@@ -57,11 +57,11 @@ fn row(case: Case, threads: usize) -> Result<(), Box<dyn Error>> {
         times[times.len() / 2]
     });
     let Case { passes, draws } = case;
-    println!(
+    program::line(format_args!(
         "| {passes} × {draws} | {threads} | {one:.1} | {always:.1} | {:.2} | {automatic:.1} | {:.2} | {} |",
         one / always,
         one / automatic,
         all[2].threads()
-    );
+    ));
     Ok(())
 }

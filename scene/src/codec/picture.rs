@@ -21,7 +21,6 @@ pub(crate) struct Header {
 
 impl Header {
     /// Bytes of the picture once it is decoded.
-    #[cfg(feature = "gltf")]
     pub fn rgba8_bytes(&self) -> u64 {
         self.texels() * 4
     }

@@ -61,6 +61,7 @@ fn operations(pass: &Module<'_>, features: &Features, loops_counted: bool) -> Op
     })
 }
 
+#[allow(clippy::print_stdout, reason = "shown with --nocapture")]
 fn compare(table: &str, expected: &[String]) {
     println!("{}", expected.join("\n"));
     let (_, after) = DOCUMENT.split_once(&format!("<!-- table: {table} -->")).expect("the document has the table");

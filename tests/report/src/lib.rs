@@ -25,12 +25,19 @@ pub fn adapter(name: &str) {
 const CASES: &str = "FRAMEGRAPH_TESTS";
 
 /// Of the cases of a test that draws for long, those that run: the first of each three, or all of them where
-/// `FRAMEGRAPH_TESTS=all` asks for that, as `cargo xtask test --all` does.
+/// `FRAMEGRAPH_TESTS=all` asks for that, as `cargo xtask test --all` does. What is left out is counted there.
 pub fn share<T>(cases: impl IntoIterator<Item = T>) -> Vec<T> {
     let all = std::env::var_os(CASES).is_some_and(|cases| cases == "all");
-    cases.into_iter().step_by(if all { 1 } else { 3 }).collect()
+    let cases: Vec<T> = cases.into_iter().collect();
+    let count = cases.len();
+    let run: Vec<T> = cases.into_iter().step_by(if all { 1 } else { 3 }).collect();
+    // The harness names the thread of a test by the test.
+    let thread = std::thread::current();
+    line(&format!("CASES: {}: {} of {count}", thread.name().unwrap_or("test"), run.len()));
+    run
 }
 
+#[allow(clippy::print_stdout, reason = "shown with --nocapture")]
 fn line(text: &str) {
     println!("{text}");
     let Some(path) = std::env::var_os(LOG) else { return };
@@ -39,5 +46,14 @@ fn line(text: &str) {
     let opened = OpenOptions::new().create(true).append(true).open(path);
     if let Ok(mut file) = opened {
         let _ = file.write_all(format!("{text}\n").as_bytes());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_share_is_every_third_case_and_its_neighbors_are_counted() {
+        let run = super::share(0..10);
+        assert!(run == [0, 3, 6, 9] || run == (0..10).collect::<Vec<_>>(), "{run:?}");
     }
 }

@@ -7,6 +7,7 @@ use super::technique::{Choice, Measured, Outcome, Subject, Technique};
 use crate::reference::picture::Picture;
 use framegraph_shaders::reference::cases;
 use framegraph_shaders::reflect::Operations;
+use program::outputs::Outputs;
 use std::path::Path;
 
 /// Measures a technique; pictures go into `pictures`, a file a choice.
@@ -55,7 +56,7 @@ fn judged(
             let (ours, noise) = (drawn.picture(studio.gpu)?, drawn.trembles(studio.gpu)?);
             let (error, bias, picture) = compared(&ours, truth)?;
             let file = pictures.join(format!("{}.{}.png", technique.name, file_name(&choice.name)));
-            std::fs::write(&file, strip(&ours, truth)?).map_err(|e| format!("{}: {e}", file.display()))?;
+            Outputs::one(&file, &strip(&ours, truth)?)?;
             let truth_error = *truth_error;
             (Measured { error, bias: Some(bias), noise, truth_error }, Some(picture))
         }

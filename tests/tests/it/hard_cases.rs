@@ -49,7 +49,8 @@ fn every_row_is_held_by_tests_that_are_there() -> TestResult {
 /// must be noticed unless it is explained. The program takes out every one.
 #[test]
 fn hard_inputs_leave_every_invariant_and_guards_are_missed() -> TestResult {
-    let Some(gpu) = stage::gpu("hard_inputs_leave_every_invariant_and_guards_are_missed") else { return Ok(()) };
+    let test = "hard_inputs_leave_every_invariant_and_guards_are_missed";
+    let Some(gpu) = stage::gpu(test) else { return Ok(()) };
     let has_half = gpu.device.features().contains(wgpu::Features::SHADER_F16);
     let mut failures = Vec::new();
     for case in builds().into_iter().filter(|case| has_half || !case.in_half) {
@@ -58,7 +59,7 @@ fn hard_inputs_leave_every_invariant_and_guards_are_missed() -> TestResult {
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
     if !DOCUMENT.contains(&format!("Adapter: {}\n", gpu.describe())) {
-        test_report::skip("guards", &format!("docs/hard-cases.md is not of {}", gpu.describe()));
+        test_report::skip(test, &format!("the figures of docs/hard-cases.md are not of {}", gpu.describe()));
         return Ok(());
     }
     let guards = kept(&gpu, 0, 5)?;

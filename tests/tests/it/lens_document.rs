@@ -4,6 +4,7 @@
 const DOCUMENT: &str = include_str!("../../../docs/lens.md");
 
 /// Prints a row of the document and compares: the last column is within a tenth, and a rounding, of what was found.
+#[allow(clippy::print_stdout, reason = "shown with --nocapture")]
 pub fn documented(row: &str, found: f64) {
     println!("| {row} | {found:.4} |");
     let line = DOCUMENT.lines().find(|line| line.starts_with(&format!("| {row} |")));

@@ -73,7 +73,7 @@ fn froxels_show_what_all_lights_show() -> TestResult {
         ("half floats", own(1), [96, 54], half),
     ]) {
         if let Err(error) = settings.shading.precision.check(&gpu) {
-            test_report::skip(what, &error.to_string());
+            test_report::skip(&format!("lights, {what}"), &error.to_string());
             continue;
         }
         same(&gpu, what, Night::new(&gpu, scene.clone(), camera, size, settings)?)?;

@@ -4,18 +4,61 @@
 use std::path::Path;
 use std::process::Command;
 
-/// Standard output and standard error that take nothing more: an exit code says so, and nothing panics.
+/// Standard output and standard error that take nothing more: an exit code says so, and nothing panics. The programs are those
+/// that cargo lists, so that a new one is among them.
 #[test]
 fn a_full_standard_output_is_an_exit_code() {
+    let folder = Path::new(env!("CARGO_BIN_EXE_prove")).parent().expect("a program lies in a folder");
     let full = || std::fs::File::options().write(true).open("/dev/full").expect("Linux has it");
-    for (program, args) in [
-        (env!("CARGO_BIN_EXE_prove"), &["--help"][..]),
-        (env!("CARGO_BIN_EXE_reference"), &["--help"]),
-        (env!("CARGO_BIN_EXE_ibl_errors"), &["no such section"]),
-    ] {
-        let status = Command::new(program).args(args).stdout(full()).stderr(full()).status();
-        let expected = if args == ["--help"] { 2 } else { 1 };
-        assert_eq!(status.expect("the program starts").code(), Some(expected), "{program}");
+    let programs = programs();
+    for expected in ["grading", "plan", "prove", "render", "viewer", "xtask"] {
+        assert!(programs.iter().any(|name| name == expected), "{expected} is not among {programs:?}");
+    }
+    for name in programs {
+        let program = folder.join(&name);
+        if !program.exists() {
+            // Programs of other packages are built by tests of the whole workspace.
+            test_report::skip("a_full_standard_output_is_an_exit_code", &format!("{name} is not built"));
+            continue;
+        }
+        let status = Command::new(program).arg("--help").stdout(full()).stderr(full()).status();
+        let code = status.expect("the program starts").code();
+        // 2: help was asked for and not taken. 1: there is none, which could not be said.
+        assert!(matches!(code, Some(1 | 2)), "{name}: {code:?}");
+    }
+}
+
+/// The programs of the workspace that are built without a feature being asked for.
+fn programs() -> Vec<String> {
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.current_dir(env!("CARGO_MANIFEST_DIR")).args(["metadata", "--no-deps", "--offline", "--format-version=1"]);
+    let metadata = cargo.output().expect("cargo runs the tests").stdout;
+    let metadata: serde_json::Value = serde_json::from_slice(&metadata).expect("cargo writes JSON");
+    let mut names = Vec::new();
+    for package in metadata["packages"].as_array().expect("there are packages") {
+        let by_default = package["features"]["default"].as_array().into_iter().flatten().collect::<Vec<_>>();
+        for target in package["targets"].as_array().expect("there are targets") {
+            let asks = target["required-features"].as_array().into_iter().flatten();
+            if target["kind"][0] == "bin" && asks.clone().all(|feature| by_default.contains(&feature)) {
+                names.push(target["name"].as_str().expect("a target has a name").to_owned());
+            }
+        }
+    }
+    names
+}
+
+/// Every package takes the lints of the workspace, `print_stdout` among them; fuzz targets, which print nothing, have their own.
+#[test]
+fn no_package_prints_with_a_macro_that_can_panic() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace");
+    let text = |path: &Path| std::fs::read_to_string(path).expect("a manifest can be read");
+    let workspace = text(&root.join("Cargo.toml"));
+    assert!(workspace.contains("\nprint_stderr = \"warn\"\nprint_stdout = \"warn\"\n"));
+    let members = workspace.lines().find_map(|line| line.strip_prefix("members = [")).expect("there are members");
+    for member in members.split('"').skip(1).step_by(2) {
+        let manifest = text(&root.join(member).join("Cargo.toml"));
+        let linted = manifest.contains("\n[lints]\nworkspace = true\n");
+        assert!(linted || member.ends_with("/fuzz"), "{member}");
     }
 }
 

@@ -15,6 +15,7 @@ use tests::reference::studio::Shade;
 type TestResult = Result<(), Box<dyn Error>>;
 
 /// Examines statements of a folder, and compares with the table in the document that `command` prints.
+#[allow(clippy::print_stdout, reason = "shown with --nocapture")]
 fn examined(test: &str, (command, folder): Table<'_>, ids: &[&str]) -> Result<Option<Vec<Outcome>>, Box<dyn Error>> {
     let Some(gpu) = gpu(test) else { return Ok(None) };
     let one = |id: &&str| examine(&gpu, &folder.join(format!("{id}.json")), How::default());

@@ -153,6 +153,7 @@ impl Set {
     }
 
     /// Such pixels, pixels in all, and those that rays find in shadow.
+    #[allow(clippy::print_stdout, reason = "shown with --nocapture")]
     fn compared(
         &self,
         gpu: &Gpu,

@@ -108,6 +108,19 @@ pub fn graphics(machine: &Machine<'_>) -> Graphics {
     }
 }
 
+/// What tests of streams and of windows ask for and the machine lacks, in words.
+pub fn missing_checks(machine: &Machine<'_>) -> Vec<&'static str> {
+    let given = (machine.variable)("VK_LAYER_PATH").unwrap_or_default();
+    let usual = ["/usr/share", "/usr/local/share", "/etc"].map(|at| Path::new(at).join("vulkan/explicit_layer.d"));
+    let mut folders = std::env::split_paths(&given).chain(usual);
+    let layers =
+        folders.any(|folder| machine.names(&folder).iter().any(|name| name == "VkLayer_khronos_validation.json"));
+    let path = (machine.variable)("PATH").unwrap_or_default();
+    let display = std::env::split_paths(&path).any(|folder| machine.at(&folder.join("Xvfb")).is_file());
+    let wanted = [(layers, "Vulkan's validation layers"), (display, "Xvfb")];
+    wanted.into_iter().filter(|(there, _)| !there).map(|(_, what)| what).collect()
+}
+
 /// Reads what decides how a package is installed.
 pub fn packages(machine: &Machine<'_>) -> Packages {
     let release = fs::read_to_string(machine.at(Path::new("/etc/os-release"))).unwrap_or_default();

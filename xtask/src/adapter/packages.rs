@@ -1,4 +1,4 @@
-//! Which commands install Mesa's software Vulkan driver with the system's package manager.
+//! Which commands install Mesa's software Vulkan driver, or what checks ask for, with the system's package manager.
 
 use std::fmt;
 use std::process::Command;
@@ -39,15 +39,28 @@ impl fmt::Display for Install {
     }
 }
 
-/// A package manager: what it is called, where it is at home, how it installs the driver.
+/// What is installed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Want {
+    /// Mesa's lavapipe and the Vulkan loader.
+    Driver,
+    /// Vulkan's validation layers and Xvfb, a display without a screen.
+    Checks,
+}
+
+/// A package manager: what it is called, where it is at home, how it installs.
 struct Manager {
     program: &'static str,
     /// `ID` or `ID_LIKE` of the distributions whose own manager this is.
     systems: &'static [&'static str],
     /// Fetches the package lists, for managers that do not do so by themselves.
     refresh: Option<&'static [&'static str]>,
-    /// Installs Mesa's lavapipe and the Vulkan loader.
+    /// Installs the packages behind it.
     install: &'static [&'static str],
+    /// Mesa's lavapipe and the Vulkan loader.
+    driver: &'static [&'static str],
+    /// The validation layers and Xvfb.
+    checks: &'static [&'static str],
 }
 
 const MANAGERS: &[Manager] = &[
@@ -55,59 +68,64 @@ const MANAGERS: &[Manager] = &[
         program: "apt-get",
         systems: &["debian", "ubuntu"],
         refresh: Some(&["apt-get", "update"]),
-        install: &[
-            "env",
-            "DEBIAN_FRONTEND=noninteractive",
-            "apt-get",
-            "install",
-            "--yes",
-            "--no-install-recommends",
-            "mesa-vulkan-drivers",
-            "libvulkan1",
-        ],
+        install: &["env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "install", "--yes", "--no-install-recommends"],
+        driver: &["mesa-vulkan-drivers", "libvulkan1"],
+        checks: &["vulkan-validationlayers", "xvfb"],
     },
     Manager {
         program: "dnf",
         systems: &["fedora", "rhel", "centos"],
         refresh: None,
-        install: &["dnf", "install", "--assumeyes", "mesa-vulkan-drivers", "vulkan-loader"],
+        install: &["dnf", "install", "--assumeyes"],
+        driver: &["mesa-vulkan-drivers", "vulkan-loader"],
+        checks: &["vulkan-validation-layers", "xorg-x11-server-Xvfb"],
     },
     Manager {
         program: "pacman",
         systems: &["arch"],
         refresh: Some(&["pacman", "-Sy", "--noconfirm"]),
-        install: &["pacman", "-S", "--needed", "--noconfirm", "vulkan-swrast", "vulkan-icd-loader"],
+        install: &["pacman", "-S", "--needed", "--noconfirm"],
+        driver: &["vulkan-swrast", "vulkan-icd-loader"],
+        checks: &["vulkan-validation-layers", "xorg-server-xvfb"],
     },
     Manager {
         program: "zypper",
         systems: &["suse", "opensuse"],
         refresh: None,
-        install: &["zypper", "--non-interactive", "install", "libvulkan_lvp", "libvulkan1"],
+        install: &["zypper", "--non-interactive", "install"],
+        driver: &["libvulkan_lvp", "libvulkan1"],
+        checks: &["vulkan-validationlayers", "xorg-x11-server-Xvfb"],
     },
     Manager {
         program: "apk",
         systems: &["alpine"],
         refresh: None,
-        install: &["apk", "add", "--no-cache", "mesa-vulkan-swrast", "vulkan-loader"],
+        install: &["apk", "add", "--no-cache"],
+        driver: &["mesa-vulkan-swrast", "vulkan-loader"],
+        checks: &["vulkan-validation-layers", "xvfb"],
     },
 ];
 
-/// How to install the driver on a machine with these facts.
+/// How to install something on a machine with these facts.
 ///
 /// The manager of the distribution is preferred to one that merely happens to be installed. Lists
 /// are fetched first where there are none, and otherwise only after a first attempt has failed.
 ///
 /// # Errors
 /// Says why nothing can be installed, and what to do about it.
-pub fn plan(packages: &Packages) -> Result<Install, String> {
+pub fn plan(packages: &Packages, want: Want) -> Result<Install, String> {
     let Packages { system_ids, programs, root, apt_lists, pacman_databases, terminal } = packages;
     let present = |manager: &&Manager| programs.contains(&manager.program);
     let native = |manager: &&Manager| system_ids.iter().any(|id| manager.systems.contains(&&**id));
     let manager = MANAGERS.iter().filter(present).find(native);
     let Some(manager) = manager.or_else(|| MANAGERS.iter().find(present)) else {
-        return Err("no package manager known here (apt-get, dnf, pacman, zypper, apk) is present: \
-                    install a Vulkan driver, such as Mesa's lavapipe, by hand"
-            .to_owned());
+        let what = match want {
+            Want::Driver => "a Vulkan driver, such as Mesa's lavapipe,",
+            Want::Checks => "Vulkan's validation layers and Xvfb",
+        };
+        return Err(format!(
+            "no package manager known here (apt-get, dnf, pacman, zypper, apk) is present: install {what} by hand"
+        ));
     };
     let sudo = programs.contains(&"sudo");
     let prefix: &[&str] = match (root, sudo, terminal) {
@@ -117,7 +135,8 @@ pub fn plan(packages: &Packages) -> Result<Install, String> {
         (false, true, false) => &["sudo", "-n"],
     };
     let line = |words: &[&'static str]| Line([prefix, words].concat());
-    let install = line(manager.install);
+    let names = if want == Want::Driver { manager.driver } else { manager.checks };
+    let install = line(&[manager.install, names].concat());
     let listed = match manager.program {
         "apt-get" => *apt_lists,
         "pacman" => *pacman_databases,
@@ -151,7 +170,7 @@ mod tests {
     }
 
     fn shown(packages: &Packages) -> String {
-        plan(packages).expect("a plan").to_string()
+        plan(packages, Want::Driver).expect("a plan").to_string()
     }
 
     const APT: &str = "env DEBIAN_FRONTEND=noninteractive apt-get install --yes \
@@ -163,12 +182,12 @@ mod tests {
         assert_eq!(shown(&debian), APT);
         let fresh = Packages { apt_lists: false, ..debian };
         assert_eq!(shown(&fresh), format!("apt-get update && {APT}"));
-        assert_eq!(plan(&fresh).expect("a plan").attempts.len(), 1);
+        assert_eq!(plan(&fresh, Want::Driver).expect("a plan").attempts.len(), 1);
     }
 
     #[test]
     fn old_lists_get_a_second_attempt() {
-        let attempts = plan(&facts("debian", &["apt-get"])).expect("a plan").attempts;
+        let attempts = plan(&facts("debian", &["apt-get"]), Want::Driver).expect("a plan").attempts;
         assert_eq!(attempts.len(), 2);
         assert_eq!(attempts[1][0].to_string(), "apt-get update");
         assert_eq!(attempts[1][1], attempts[0][0]);
@@ -180,7 +199,7 @@ mod tests {
         assert_eq!(shown(&user), format!("sudo -n {APT}"));
         assert_eq!(shown(&Packages { terminal: true, ..user }), format!("sudo {APT}"));
         let bare = Packages { root: false, ..facts("debian", &["apt-get"]) };
-        let reason = plan(&bare).expect_err("nobody can install");
+        let reason = plan(&bare, Want::Driver).expect_err("nobody can install");
         assert!(reason.contains("as root") && reason.contains(APT), "{reason}");
     }
 
@@ -199,8 +218,11 @@ mod tests {
         for manager in MANAGERS {
             let shown = shown(&facts(manager.systems[0], &[manager.program]));
             assert!(shown.contains(manager.program), "{shown}");
+            let checks =
+                plan(&facts(manager.systems[0], &[manager.program]), Want::Checks).expect("a plan").to_string();
+            assert!(checks.contains("validation") && checks.to_lowercase().contains("xvfb"), "{checks}");
         }
-        assert!(plan(&facts("debian", &["sudo"])).is_err_and(|reason| reason.contains("lavapipe")));
+        assert!(plan(&facts("debian", &["sudo"]), Want::Driver).is_err_and(|reason| reason.contains("lavapipe")));
     }
 
     #[test]

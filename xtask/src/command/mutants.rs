@@ -9,6 +9,7 @@ use crate::mutant::room::{ROOMS, Room};
 use crate::mutant::run::{Bench, Fate};
 use crate::options::Options;
 use std::fs;
+use std::path::Path;
 
 /// The command.
 pub const COMMAND: Command = Command {
@@ -39,7 +40,11 @@ noticed nor explained in xtask/src/mutant/explained.rs.
 fn run(options: &Options) -> Result<(), Failure> {
     let named: Vec<&Room> = options.rooms.iter().map(|name| Room::named(name)).collect::<Result<_, _>>()?;
     let rooms = if named.is_empty() { ROOMS.iter().collect() } else { named };
+    let out = options.value("--out").map(|file| crate::workspace::root().join(file));
     if options.has("--list") {
+        if out.is_some() {
+            return Err(Failure::Usage("--out does not go together with --list: no document is made".to_owned()));
+        }
         for room in rooms {
             let mutants = room.mutants()?;
             let count = count(room, options, mutants.len())?;
@@ -47,21 +52,37 @@ fn run(options: &Options) -> Result<(), Failure> {
         }
         return Ok(());
     }
+    // The work takes an hour: what cannot be written is better said before it.
+    out.as_deref().map_or(Ok(()), writable)?;
     let mut tried = Vec::new();
     for room in rooms {
         tried.push(try_room(room, options)?);
     }
     let text = document(&tried);
-    match options.value("--out") {
+    match out {
         Some(file) => {
-            let told = |error| Failure::Failed(format!("{}: {error}", file.to_string_lossy()));
-            fs::write(crate::workspace::root().join(file), text).map_err(told)?;
+            // Beside its place first: a full disk leaves the old document.
+            let part = file.with_extension("part");
+            let written = fs::write(&part, text).and_then(|()| fs::rename(&part, &file));
+            written.map_err(|error| unwritable(&file, &error))?;
         }
         None => program::print(text),
     }
     let left: usize =
         tried.iter().map(|t| t.fates.iter().filter(|(m, f)| *f == Fate::Survived && why(m).is_none()).count()).sum();
     if left == 0 { Ok(()) } else { Err(Failure::Failed(format!("{left} faults are neither noticed nor explained"))) }
+}
+
+fn unwritable(file: &Path, error: &std::io::Error) -> Failure {
+    Failure::Failed(format!("{}: cannot be written: {error}", file.display()))
+}
+
+/// Whether a file can be written; nothing is changed.
+fn writable(file: &Path) -> Result<(), Failure> {
+    let is_new = fs::symlink_metadata(file).is_err();
+    let opened = fs::File::options().append(true).create(true).open(file);
+    opened.map_err(|error| unwritable(file, &error))?;
+    if is_new { fs::remove_file(file).map_err(|error| unwritable(file, &error)) } else { Ok(()) }
 }
 
 /// How many of the possible faults are tried.
@@ -114,4 +135,24 @@ fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
     fates.extend(left.into_iter().zip(found));
     fates.sort_by(|(a, _), (b, _)| (&a.file, a.line, &a.after).cmp(&(&b.file, b.line, &b.after)));
     Ok(Tried { name: room.name, possible, fates })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_cannot_be_written_is_said_and_nothing_is_changed() {
+        let folder = std::env::temp_dir().join(format!("xtask-writable-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a folder for temporary files");
+        let [old, new] = ["old", "new"].map(|name| folder.join(name));
+        fs::write(&old, "text").expect("the folder is ours");
+        assert_eq!((writable(&old), writable(&new)), (Ok(()), Ok(())));
+        assert_eq!((fs::read_to_string(&old).ok().as_deref(), new.exists()), (Some("text"), false));
+        for refused in [&folder, &folder.join("gone/a.md")] {
+            let told = writable(refused).map_err(|told| told.to_string());
+            assert!(told.is_err_and(|told| told.contains("cannot be written")), "{}", refused.display());
+        }
+        fs::remove_dir_all(&folder).expect("the folder is ours");
+    }
 }

@@ -24,13 +24,17 @@ Stages, all of which run even if one fails:
   deny    deny.toml but for advisories, where cargo-deny is installed
   tests   unit, integration and documentation tests
 
+Tests that replay streams under Vulkan's validation layers and tests that open
+windows want those layers and Xvfb, which are installed like a driver; where
+they cannot be, such tests are skipped.
+
 Tests of many cases that draw for long run a third of them, each of which stands
 for its neighbors; docs/time.md lists them.
 
   --all         all of their cases, in release
 
-The summary counts the tests and repeats every test that skipped, with its
-reason. Exit code 1 if a stage failed, if no test ran, if none found an adapter,
+The summary counts the tests, what those that share leave out, and repeats every
+test that skipped, with its reason. Exit code 1 if a stage failed, if no test ran, if none found an adapter,
 or if one skipped for a reason that is not among the known ones.
 ",
     run,
@@ -41,6 +45,7 @@ const ON_DEMAND: &str = "framegraph-fuzz/fuzzer,tests-fuzz/fuzzer,peers/peer";
 
 fn run(options: &Options) -> Result<(), Failure> {
     let expected = adapter::ready(options)?;
+    adapter::checks(options);
     let mut outcomes = vec![
         stage::run("format", &mut workspace::cargo(&["fmt", "--all", "--", "--check"])),
         stage::run("clippy", checking("clippy", &["--all-targets"]).args(["--", "-D", "warnings"])),
@@ -99,7 +104,7 @@ fn tests(all: bool) -> Result<(Outcome, Totals, Reported), Failure> {
 /// What the command prints last.
 fn summary(outcomes: &[Outcome], totals: Totals, reported: &Reported, expected: &str) -> String {
     let Totals { runs, passed, failed, ignored } = totals;
-    let Reported { skips, adapters } = reported;
+    let Reported { skips, shares, adapters } = reported;
     let mut text = String::from("== summary\n");
     for outcome in outcomes {
         text += &format!("  {outcome}\n");
@@ -109,7 +114,14 @@ fn summary(outcomes: &[Outcome], totals: Totals, reported: &Reported, expected: 
         text += &format!("  {:.0} s of processor time\n", processor.as_secs_f64());
     }
     text += &format!("  tests: {passed} passed, {failed} failed, {ignored} ignored, in {runs} runs\n");
-    text += &format!("  skips: {}\n", skips.len());
+    let [ran, all] = reported.cases();
+    if ran < all {
+        text += &format!("  cases: {ran} of {all} run in tests that share; --all runs all\n");
+        for (test, [ran, all]) in shares {
+            text += &format!("    {test}: {ran} of {all}\n");
+        }
+    }
+    text += &format!("  skips: {}, known ones allowed: {}\n", skips.len(), tally::known_skips());
     for skip in skips {
         text += &format!("    SKIP: {skip}\n");
     }
@@ -155,13 +167,15 @@ mod tests {
     #[test]
     fn the_summary_repeats_counts_skips_and_adapter() {
         let totals = Totals { runs: 2, passed: 7, failed: 1, ignored: 0 };
-        let reported = Reported::from_text("SKIP: image: no f16\nADAPTER: llvmpipe (Vulkan)\n");
+        let reported = Reported::from_text("SKIP: image: no f16\nCASES: looks: 3 of 9\nADAPTER: llvmpipe (Vulkan)\n");
         let text = summary(&outcomes(), totals, &reported, "Vulkan, software (lvp)");
         for part in [
             "clippy   FAILED     1.5 s     2.5 s of processor time  (exit status: 101)",
             "  8 s of processor time",
             "7 passed, 1 failed, 0 ignored, in 2 runs",
-            "skips: 1\n    SKIP: image: no f16",
+            "cases: 3 of 9 run in tests that share; --all runs all\n    looks: 3 of 9\n",
+            "skips: 1, known ones allowed: ",
+            "\n    SKIP: image: no f16",
             "adapter: llvmpipe (Vulkan)\n",
         ] {
             assert!(text.contains(part), "`{part}` is not in:\n{text}");

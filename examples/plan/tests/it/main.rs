@@ -331,17 +331,53 @@ fn an_end_is_the_last_step_itself() {
 }
 
 /// Work without steps ends at a signal, and leaves nothing behind: here it waits for somebody to write its input.
+/// A file of so many passes in a row that planning them takes longer than a signal.
+fn long_chain(path: &Path) {
+    let (mut resources, mut passes) = (String::new(), String::new());
+    for i in 0..20_000 {
+        resources += &format!("Texture(name: \"t{i}\", format: Rgba8Unorm), ");
+        let read = if i > 0 { format!("Sampled(of: \"t{0}@p{0}\"), ", i - 1) } else { String::new() };
+        passes += &format!("Raster(name: \"p{i}\", accesses: [{read}Color(to: \"t{i}\", intent: Overwrite)]),\n");
+    }
+    std::fs::write(path, format!("(version: 1, resources: [{resources}], passes: [{passes}])")).expect("a file");
+}
+
+/// A pipe without a writer: opening it would wait for ever.
+#[cfg(unix)]
+#[test]
+fn nothing_but_regular_files_is_opened() {
+    let pipe = scratch("pipe.ron");
+    let _ = std::fs::remove_file(&pipe);
+    assert!(Command::new("mkfifo").arg(&pipe).status().is_ok_and(|status| status.success()));
+    let including = scratch("including.ron");
+    std::fs::write(&including, "(version: 1, include: [\"pipe.ron\"])").expect("written");
+    let (pipe, frame) = (pipe.display().to_string(), case("diamond.ron"));
+    let (including, costs) = (including.display().to_string(), ["--queues", "one", "--costs", &pipe]);
+    for args in [
+        &[&*pipe][..],
+        &[&including],
+        &[&frame, "--diff", &pipe],
+        &[&frame, "--caps", &pipe],
+        &[&frame, costs[0], costs[1], costs[2], costs[3]],
+        &["--offsets", &pipe],
+        &["/dev/zero"],
+    ] {
+        let (code, text, error) = run(args);
+        assert_eq!((code, text.as_str()), (Some(2), ""), "{args:?}");
+        assert!(error.contains("cannot be read: it is not a regular file"), "{args:?}: {error}");
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn a_signal_ends_what_has_no_steps() {
     let folder = scratch("signal");
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("the folder is ours");
-    let input = scratch("signal.pipe");
-    let _ = std::fs::remove_file(&input);
-    assert!(Command::new("mkfifo").arg(&input).status().is_ok_and(|status| status.success()));
+    let input = scratch("signal.ron");
+    long_chain(&input);
     let mut command = Command::new(env!("CARGO_BIN_EXE_plan"));
-    command.arg("--offsets").arg(&input).arg("--out").arg(folder.join("out.csv"));
+    command.arg(&input).arg("--out").arg(folder.join("out.txt"));
     let mut child = command.stderr(std::process::Stdio::piped()).spawn().expect("the program starts");
     let parts = || std::fs::read_dir(&folder).expect("it is there").count();
     while parts() == 0 {

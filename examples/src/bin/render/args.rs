@@ -185,6 +185,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     let args: Vec<OsString> = args.into_iter().collect();
     let (frame, settings) = decide::base(&args)?;
     let base = frame.map_or(Settings::default(), |frame| frame.settings);
+    let mut given = Given::of(&args);
     let mut parser = lexopt::Parser::from_args(args);
     let mut found = Args {
         scene: String::new(),
@@ -225,7 +226,6 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         found.begin_with(frame);
     }
     let mut plan: Option<PathBuf> = None;
-    let mut given = Given::default();
     let mut shade = String::new();
     let mut numbers: Option<Precision> = None;
     while let Some(arg) = parser.next().map_err(|e| e.to_string())? {

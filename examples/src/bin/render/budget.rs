@@ -9,6 +9,7 @@ use framegraph_passes::budget::{Bound, Choices, GROUPS, Measured, Offers, Settle
 use framegraph_passes::facts::{Decision, Facts};
 use framegraph_wgpu::read_texture;
 use lexopt::Parser;
+use program::input::{MOST_TEXT_BYTES, text};
 use program::outputs::Outputs;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -74,7 +75,7 @@ pub fn record(file: Option<&Path>) -> Result<(Measured, String), String> {
     let shown = file.map_or_else(|| "docs/accuracy.json".into(), |file| file.to_string_lossy());
     let told = |what: &dyn std::fmt::Display| format!("--record {shown}: {what}");
     let text = match file {
-        Some(file) => &std::fs::read_to_string(file).map_err(|error| told(&error))?,
+        Some(file) => &text(file, MOST_TEXT_BYTES).map_err(|error| format!("--record {error}"))?,
         None => OWN,
     };
     let Record { schema, version, adapter, budget } = serde_json::from_str(text).map_err(|error| told(&error))?;

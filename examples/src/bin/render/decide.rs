@@ -11,6 +11,7 @@ use framegraph_passes::measure::Measurement;
 use framegraph_passes::view::ViewSettings;
 use framegraph_passes::{Effect, EffectSet, FactInput, FactMemory, Facts, FrameSettings, Preset, Settings};
 use lexopt::Parser;
+use program::input;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
@@ -146,7 +147,8 @@ pub fn base(args: &[OsString]) -> Result<(Option<FrameSettings>, Option<PathBuf>
         }
         (None, Some(path)) => {
             let shown = path.to_string_lossy();
-            let text = std::fs::read_to_string(&path).map_err(|error| format!("--settings {shown}: {error}"))?;
+            let text =
+                input::text(Path::new(&path), input::MOST_TEXT_BYTES).map_err(|error| format!("--settings {error}"))?;
             let frame = FrameSettings::from_ron(&shown, &text).map_err(|error| format!("--settings {error}"))?;
             Ok((Some(frame), Some(path.into())))
         }

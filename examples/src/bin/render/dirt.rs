@@ -3,7 +3,8 @@
 use crate::run::{Failure, input};
 use framegraph::{Entry, Exit, Extent, Format, Texture, TextureDesc};
 use framegraph_passes::{Handles, Slot, World};
-use framegraph_scene::picture::read_rgba8;
+use framegraph_scene::Memory;
+use framegraph_scene::picture::read_rgba8_within;
 use framegraph_wgpu::{Frame, Gpu, Imports};
 use std::path::Path;
 
@@ -12,12 +13,13 @@ use std::path::Path;
 pub struct Dirt(wgpu::Texture);
 
 impl Dirt {
-    /// Reads a PNG or JPEG picture: what is white lets all of the glow light up, what is black none.
+    /// Reads a PNG or JPEG picture within a budget: what is white lets all of the glow light up, what is black none.
     ///
     /// # Errors
     /// One line that names the file and the reason.
-    pub fn load(gpu: &Gpu, file: &Path) -> Result<Self, Failure> {
-        let (size, rgba8) = read_rgba8(file).map_err(|error| input(format!("--dirt: {error}")))?;
+    pub fn load(gpu: &Gpu, file: &Path, memory: &Memory) -> Result<Self, Failure> {
+        let (size, rgba8, _loan) =
+            read_rgba8_within(file, memory).map_err(|error| input(format!("--dirt: {error}")))?;
         let most = gpu.caps().max_texture_texels;
         if size.into_iter().any(|side| side > most) {
             let [width, height] = size;

@@ -2,10 +2,16 @@
 
 use crate::args::Args;
 use crate::light::{Around, Sun};
+use framegraph_passes::Effect;
+use std::ffi::OsString;
 
 /// Options by name, in the order in which they were given.
 #[derive(Debug, Default)]
-pub struct Given(Vec<String>);
+pub struct Given {
+    names: Vec<String>,
+    /// Each word behind an option, with the option's name: its value, if it takes one.
+    values: Vec<(String, String)>,
+}
 
 /// What writes or shows something of one rendered frame.
 const OF_ONE_FRAME: [&str; 9] =
@@ -33,8 +39,38 @@ const OF_MANY: [&str; 4] = ["compare-post", "bisect", "turntable", "sequence"];
 /// What may be given several times.
 const REPEATED: [&str; 2] = ["enable", "disable"];
 
-/// An option with others that it leaves nothing to do, and why.
-const AGAINST: [(&str, &[&str], &str); 15] = [
+/// What of the plan is written and printed.
+const OF_THE_PLAN: [&str; 3] = ["facts", "graph", "what-if"];
+
+/// What says how shadows are drawn.
+const OF_SHADOWS: [&str; 7] = [
+    "cascades",
+    "shadow",
+    "show-cascades",
+    "enable cascades",
+    "enable sun-shadows",
+    "enable lamp-shadows",
+    "enable contact-shadows",
+];
+
+/// What stands for no effect where an option has the effect's name.
+const OFF: [(&str, &str); 11] = [
+    ("ao", "off"),
+    ("bloom", "off"),
+    ("cascades", "1"),
+    ("dither", "0"),
+    ("dof", "off"),
+    ("fog", "off"),
+    ("glass-layers", "1"),
+    ("msaa", "1"),
+    ("ssr", "off"),
+    ("taa", "off"),
+    ("vignette", "0"),
+];
+
+/// An option with others that it leaves nothing to do, and why. A value behind an option is one of those between its commas,
+/// up to its colon.
+const AGAINST: [(&str, &[&str], &str); 33] = [
     ("budget-ms", &["max-error"], "a frame is held to one of both"),
     ("budget-ms", &CHOSEN, "it chooses that itself; --preset and --settings are what it begins with"),
     ("max-error", &CHOSEN, "it chooses that itself; --preset and --settings are what it begins with"),
@@ -65,7 +101,25 @@ const AGAINST: [(&str, &[&str], &str); 15] = [
     ),
     ("dynamic-resolution", &["scale"], "it finds the scale"),
     ("bisect", &OF_ONE_FRAME, "it compares pictures and keeps none"),
-    ("bisect", &["timing", "what-it-costs"], "it measures nothing"),
+    ("bisect", &["timing", "what-it-costs", "frames"], "it measures nothing"),
+    ("bisect", &OF_THE_PLAN, "it compares pictures and keeps none"),
+    ("bisect", &["shadow keep=on"], "it draws whole frames"),
+    ("turntable", &["shadow keep=on"], "it draws whole frames"),
+    ("sequence", &["shadow keep=on"], "it draws whole frames"),
+    ("what-it-costs", &["shadow keep=on"], "it draws whole frames"),
+    ("compare-post", &["shadow keep=on"], "it draws whole frames"),
+    ("turntable", &["frames"], "the number before its folder says how many there are"),
+    ("sequence", &["frames"], "the number before its folder says how many there are"),
+    ("no-shadows", &["shadows"], "one of both says whether there are shadows"),
+    ("no-shadows", &OF_SHADOWS, "nothing casts a shadow"),
+    ("shadows off", &OF_SHADOWS, "nothing casts a shadow"),
+    ("disable sun-shadows", &["cascades", "show-cascades", "enable cascades"], "the sun casts no shadow"),
+    ("no-fxaa", &["enable fxaa", "disable fxaa"], "one of both says whether edges are softened"),
+    ("debug no-inline", &["inline", "round-hdr"], "nothing is inlined"),
+    ("debug immediate", &["inline", "round-hdr"], "nothing is inlined"),
+    ("debug no-alias", &["alias"], "no memory is shared"),
+    ("debug immediate", &["alias"], "no memory is shared"),
+    ("scale 1", &["upscale", "sharpness"], "the picture is drawn as large as it is shown"),
 ];
 
 /// An option that means something only beside one of others.
@@ -81,6 +135,19 @@ const BESIDE: [(&str, &[&str]); 8] = [
 ];
 
 impl Given {
+    /// Nothing yet of these words.
+    pub fn of(words: &[OsString]) -> Self {
+        let mut values = Vec::new();
+        let words: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
+        for (index, word) in words.iter().enumerate() {
+            let Some(option) = word.strip_prefix("--") else { continue };
+            let next = words.get(index + 1).map_or("", AsRef::as_ref);
+            let (name, value) = option.split_once('=').unwrap_or((option, next));
+            values.push((name.to_owned(), value.to_owned()));
+        }
+        Self { names: Vec::new(), values }
+    }
+
     /// Notes an option.
     ///
     /// # Errors
@@ -89,13 +156,15 @@ impl Given {
         if self.has(name) && !REPEATED.contains(&name) {
             return Err(format!("--{name}: it is given twice"));
         }
-        self.0.push(name.to_owned());
+        self.names.push(name.to_owned());
         Ok(())
     }
 
-    /// Whether an option was given.
-    pub fn has(&self, name: &str) -> bool {
-        self.0.iter().any(|given| given == name)
+    /// Whether an option was given; with a value behind it, whether that was.
+    pub fn has(&self, asked: &str) -> bool {
+        let Some((option, value)) = asked.split_once(' ') else { return self.names.iter().any(|name| name == asked) };
+        let is_it = |part: &str| part == value || part.split(':').next() == Some(value);
+        self.values.iter().any(|(name, values)| name == option && values.split(',').any(is_it))
     }
 
     /// Refuses what does not go together.
@@ -108,6 +177,14 @@ impl Given {
                 return Err(format!("--{other} does not go together with --{option}: {why}"));
             }
         }
+        for name in Effect::ALL.map(Effect::name).into_iter().filter(|name| self.has(name)) {
+            let is_off = OFF.iter().any(|(effect, off)| *effect == name && self.has(&format!("{name} {off}")));
+            for option in ["enable", "disable"] {
+                if self.has(&format!("{option} {name}")) && (option == "disable" || is_off) {
+                    return Err(format!("--{option} {name} does not go together with --{name}: one of both says it"));
+                }
+            }
+        }
         for (option, others) in BESIDE {
             if self.has(option) && !others.iter().any(|other| self.has(other)) {
                 let others = others.iter().map(|other| format!("--{other}")).collect::<Vec<_>>().join(" or ");
@@ -116,17 +193,6 @@ impl Given {
         }
         if args.round_hdr && !args.inline {
             return Err("--round-hdr does not go together with --inline off: what is not inlined is stored".into());
-        }
-        if args.decide.sequence.is_some() && args.shadows.keep {
-            return Err(
-                "--shadow keep=on does not go together with --turntable and --sequence: they draw whole frames".into(),
-            );
-        }
-        if args.decide.what_it_costs && args.shadows.keep {
-            return Err("--shadow keep=on does not go together with --what-it-costs: it draws whole frames".into());
-        }
-        if args.compare_post && args.shadows.keep {
-            return Err("--shadow keep=on does not go together with --compare-post: it draws whole frames".into());
         }
         if args.lighting.sun == Sun::InMap && !matches!(args.lighting.around, Around::File(_)) {
             return Err("--sun in-map goes together with --environment FILE only: there is no map".into());
@@ -158,14 +224,41 @@ mod tests {
             ("--record a.json", "--record goes together with --budget-ms or --max-error or --preset only"),
             ("--dynamic-resolution 9", "--dynamic-resolution goes together with --turntable or --sequence only"),
             ("--sun in-map", "--sun in-map goes together with --environment FILE only"),
+            ("--bisect --facts f.json", "--facts does not go together with --bisect"),
+            ("--bisect --graph g.ron", "--graph does not"),
+            ("--bisect --what-if tiler", "--what-if does not"),
+            ("--bisect --frames 3", "--frames does not go together with --bisect"),
+            ("--bisect --shadow keep=on", "--shadow keep=on does not go together with --bisect"),
+            ("--turntable 2 d --frames 99", "--frames does not go together with --turntable"),
+            ("--sequence 2 d --shadow texels=64,keep=on", "--shadow keep=on does not go together with --sequence"),
+            ("--shadows off --cascades 4", "--cascades does not go together with --shadows off"),
+            ("--shadows=off --enable sun-shadows", "--enable sun-shadows does not go together with --shadows off"),
+            ("--no-shadows --show-cascades", "--show-cascades does not go together with --no-shadows"),
+            ("--no-shadows --shadows pcf", "--shadows does not go together with --no-shadows"),
+            ("--no-shadows --shadow keep=on", "--shadow does not go together with --no-shadows"),
+            ("--disable sun-shadows --cascades 2", "--cascades does not go together with --disable sun-shadows"),
+            ("--no-fxaa --enable fxaa", "--enable fxaa does not go together with --no-fxaa"),
+            ("--inline on --debug no-inline", "--inline does not go together with --debug no-inline"),
+            ("--alias heap --debug poison,no-alias", "--alias does not go together with --debug no-alias"),
+            ("--debug immediate --round-hdr", "--round-hdr does not go together with --debug immediate"),
+            ("--scale 1 --upscale fsr", "--upscale does not go together with --scale 1"),
+            ("--disable ao --ao gtao:slices=4", "--disable ao does not go together with --ao"),
+            ("--enable taa --taa off", "--enable taa does not go together with --taa"),
+            ("--msaa 1 --enable msaa", "--enable msaa does not go together with --msaa"),
             ("--no-fxaa --no-fxaa", "--no-fxaa: it is given twice"),
         ] {
             let told = parse(line.split(' ').map(OsString::from)).map(drop);
             assert!(told.as_ref().is_err_and(|told| told.starts_with(named)), "{line}: {told:?}");
         }
-        for line in
-            ["--inspect hdr --inspect-out a.png", "--inspect-all . --inspect-mode auto", "--bisect --debug poison"]
-        {
+        for line in [
+            "--inspect hdr --inspect-out a.png",
+            "--inspect-all . --inspect-mode auto",
+            "--bisect --debug poison",
+            "--shadows pcf --cascades 4",
+            "--enable ao --ao gtao",
+            "--alias none --debug no-inline",
+            "--scale 0.5 --upscale fsr",
+        ] {
             assert!(parse(line.split(' ').map(OsString::from)).is_ok(), "{line}");
         }
     }

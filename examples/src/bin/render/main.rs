@@ -1,7 +1,5 @@
 //! Renders a scene through the compiled render graph, headless: the main job of the project.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 mod args;
 mod budget;
 mod compare;

@@ -144,7 +144,7 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     if asked.bloom.is_none() && args.effects.dirt.is_some() {
         return Err(input("--dirt: it goes together with bloom only; `--bloom on` asks for that"));
     }
-    let dirt = args.effects.dirt.as_deref().map(|file| Dirt::load(&gpu, file)).transpose()?;
+    let dirt = args.effects.dirt.as_deref().map(|file| Dirt::load(&gpu, file, &options.memory)).transpose()?;
     let given = kept.as_mut().zip(moment.shadows.as_ref()).map(|(kept, shadows)| (&gpu, kept, shadows));
     let own = Own { kept: given, dirt: dirt.as_ref() };
     let (frame, io, imports) = declare(&settings, &facts, args.linear_out.is_some(), own)?;

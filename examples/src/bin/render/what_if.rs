@@ -4,6 +4,7 @@ use crate::run::{Failure, input};
 use crate::table::{aligned, mebibytes};
 use framegraph::file::caps;
 use framegraph::{Caps, Graph, Options, Plan, Scratch, compile};
+use program::input::{MOST_TEXT_BYTES, text};
 use std::path::Path;
 
 /// A device by the name of a preset, or from a file.
@@ -18,7 +19,7 @@ pub fn device(which: &str) -> Result<Caps, Failure> {
         let known = Caps::PRESETS.join(", ");
         return Err(input(format!("--what-if {which}: no such device; there are {known}, or a FILE.ron")));
     }
-    let text = std::fs::read_to_string(which).map_err(|error| input(format!("--what-if {which}: {error}")))?;
+    let text = text(Path::new(which), MOST_TEXT_BYTES).map_err(|error| input(format!("--what-if {error}")))?;
     caps(which, &text).map_err(|error| input(format!("--what-if {error}")))
 }
 

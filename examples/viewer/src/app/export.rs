@@ -9,6 +9,7 @@ use crate::view::View;
 use egui::{TextEdit, Ui};
 use framegraph::dump;
 use framegraph::file::to_ron;
+use program::outputs::Outputs;
 use std::path::{Path, PathBuf};
 
 /// Pixels for each point of a view in a PNG.
@@ -23,6 +24,7 @@ pub(super) fn write(
     drawing: Option<&Drawing>,
     plan: Option<&PlanData>,
     theme: Theme,
+    read: &[PathBuf],
 ) -> Result<(), String> {
     let shown = path.display();
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
@@ -44,7 +46,7 @@ pub(super) fn write(
             ));
         }
     };
-    std::fs::write(path, bytes).map_err(|e| format!("{shown}: cannot be written: {e}"))
+    Outputs::one_beside(path, &bytes, read).map_err(|error| error.to_string())
 }
 
 /// On a device of its own: what draws the window is not disturbed.
@@ -94,7 +96,7 @@ impl Viewer {
     /// # Errors
     /// One line that names the file.
     pub(super) fn export(&self, view: View, path: &Path, theme: Theme) -> Result<(), String> {
-        write(path, self.drawings.get(&view), self.session.plan.as_deref(), theme)
+        write(path, self.drawings.get(&view), self.session.plan.as_deref(), theme, &self.read())
     }
 
     /// Writes the times of the frames that were drawn in the trace event format.
@@ -106,6 +108,13 @@ impl Viewer {
         let running = self.live.as_ref().and_then(|live| live.running.as_ref());
         let trace = running.and_then(|running| running.frames().executor().timing().trace());
         let trace = trace.ok_or_else(|| format!("{shown}: no frame is drawn"))?;
-        std::fs::write(path, trace.chrome_json()).map_err(|e| format!("{shown}: cannot be written: {e}"))
+        let json = trace.chrome_json();
+        Outputs::one_beside(path, json.as_bytes(), &self.read()).map_err(|error| error.to_string())
+    }
+
+    /// What is shown was read from these files.
+    fn read(&self) -> Vec<PathBuf> {
+        let live = self.live.as_ref().map_or_else(Vec::new, |live| live.read());
+        self.session.read.iter().cloned().chain(live).collect()
     }
 }

@@ -115,6 +115,16 @@ fn plans_graphs_and_times_are_written_and_read_again() {
         (again.form.totals.passes, again.form.totals.steps),
         (shown.form.totals.passes, shown.form.totals.steps)
     );
+    // What is shown was read from the files of the session; nothing is written over those.
+    let kept = std::fs::read(&ron).expect("a file");
+    harness.state_mut().session.read.push(ron.clone());
+    for purpose in [Purpose::Trace, Purpose::Export(graph)] {
+        harness.state_mut().session.messages.clear();
+        write(&mut harness, purpose, "frame.ron");
+        let told = harness.state().session.messages.join("\n");
+        assert!(told.contains("frame.ron: it is read"), "{told}");
+    }
+    assert_eq!(std::fs::read(&ron).expect("a file"), kept);
     let trace = write(&mut harness, Purpose::Trace, "times.json");
     let text = std::fs::read(&trace).expect("a file");
     let trace = trace_data::read(&text).expect("a trace");

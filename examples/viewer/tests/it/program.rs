@@ -52,3 +52,33 @@ fn every_mistake_is_one_line_and_leaves_no_file() {
     let (code, help, _) = run(&["--help"]);
     assert!(code == Some(0) && help.contains("--headless") && help.lines().all(|line| line.len() <= 120), "{help}");
 }
+
+/// A file of so many passes in a row that planning them takes longer than a signal.
+fn long_chain(path: &Path) {
+    let (mut resources, mut passes) = (String::new(), String::new());
+    for i in 0..20_000 {
+        resources += &format!("Texture(name: \"t{i}\", format: Rgba8Unorm), ");
+        let read = if i > 0 { format!("Sampled(of: \"t{0}@p{0}\"), ", i - 1) } else { String::new() };
+        passes += &format!("Raster(name: \"p{i}\", accesses: [{read}Color(to: \"t{i}\", intent: Overwrite)]),\n");
+    }
+    std::fs::write(path, format!("(version: 1, resources: [{resources}], passes: [{passes}])")).expect("a file");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_signal_leaves_no_file_behind() {
+    let (folder, input) = (folder("signal"), folder("signal_input").join("long.ron"));
+    long_chain(&input);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_viewer"));
+    command.arg("--headless").arg("--plan").arg(&input).arg("--out").arg(folder.join("out.svg"));
+    let mut child = command.stderr(std::process::Stdio::piped()).spawn().expect("the program starts");
+    let parts = || std::fs::read_dir(&folder).expect("it is there").count();
+    while parts() == 0 {
+        assert!(matches!(child.try_wait(), Ok(None)), "it ended by itself");
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(sent.is_ok_and(|status| status.success()));
+    assert_eq!(child.wait().expect("it ends").code(), Some(130));
+    assert_eq!(parts(), 0);
+}

@@ -114,7 +114,7 @@ fn files_of_other_kinds_are_told_by_name() {
         (written("picture.json", b"\x89PNG"), "neither a graph"),
         (written("trace.json", b"{\"traceEvents\": []}"), "no frames of this library"),
         (written("bad.ron", b"(version: 1, passes: [Raster(name: \"a\")], oops"), "bad.ron"),
-        (written("binary.ron", b"(version: 1,\n\xff"), "binary.ron:2: the line is not UTF-8"),
+        (written("binary.ron", b"(version: 1,\n\xff"), "binary.ron:2:1: the line is not UTF-8"),
     ];
     for (path, named) in cases {
         let error = open(&path, &Handle::default()).expect_err(named);

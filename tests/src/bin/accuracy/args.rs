@@ -37,6 +37,9 @@ should run beside it.
   -h, --help         print this
 ";
 
+/// What says how and what is measured.
+const MEASURING: [&str; 4] = ["quick", "technique", "scene", "again"];
+
 /// What to do.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wanted {
@@ -77,6 +80,10 @@ impl Args {
     /// # Errors
     /// In a sentence.
     pub fn parse() -> Result<Self, lexopt::Error> {
+        Self::of(lexopt::Parser::from_env())
+    }
+
+    fn of(mut parser: lexopt::Parser) -> Result<Self, lexopt::Error> {
         let mut args = Self {
             wanted: Wanted::Measure,
             quick: false,
@@ -85,8 +92,11 @@ impl Args {
             scene: None,
             out: PathBuf::from("target/accuracy"),
         };
-        let mut parser = lexopt::Parser::from_env();
+        let mut given: Vec<String> = Vec::new();
         while let Some(arg) = parser.next()? {
+            if let Long(name) = arg {
+                given.push(name.to_owned());
+            }
             match arg {
                 Long("quick") => args.quick = true,
                 Long("again") => args.again = true,
@@ -106,6 +116,20 @@ impl Args {
                 other => return Err(other.unexpected()),
             }
         }
+        let other =
+            |among: &[&str]| given.iter().filter(|name| among.contains(&name.as_str())).cloned().collect::<Vec<_>>();
+        let (kinds, of_measuring) =
+            (other(&["budget-ms", "max-error", "verify", "document", "presets"]), other(&MEASURING));
+        match (&kinds[..], &of_measuring[..]) {
+            _ if args.wanted == Wanted::Help => {}
+            ([kind, second, ..], _) => {
+                return Err(format!("--{second} does not go together with --{kind}: a run does one of both").into());
+            }
+            ([kind], [option, ..]) => {
+                return Err(format!("--{option} does not go together with --{kind}: nothing is measured anew").into());
+            }
+            _ => {}
+        }
         Ok(args)
     }
 }
@@ -120,4 +144,28 @@ fn scene(name: &str) -> Result<&'static str, String> {
     known.ok_or_else(|| {
         format!("--scene {name}: there is no such built-in scene; there are {}", builtin::NAMES.join(", "))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_that_would_do_nothing_are_refused() {
+        let parsed = |line: &str| Args::of(lexopt::Parser::from_args(line.split_whitespace()));
+        for (line, named) in [
+            ("--document --presets a.rs", "--presets does not go together with --document"),
+            ("--max-error 3 --budget-ms 9", "--budget-ms does not go together with --max-error"),
+            ("--document --quick", "--quick does not go together with --document"),
+            ("--scene glass --verify 3", "--scene does not go together with --verify"),
+        ] {
+            let told = parsed(line).map_err(|told| told.to_string());
+            assert!(told.as_ref().is_err_and(|told| told.starts_with(named)), "{line}: {told:?}");
+        }
+        for line in
+            ["--quick --technique budget --technique fog --again", "--verify 3 --out d", "--document --quick --help"]
+        {
+            assert!(parsed(line).is_ok(), "{line}");
+        }
+    }
 }

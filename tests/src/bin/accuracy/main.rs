@@ -1,13 +1,12 @@
 //! `accuracy`: what each approximation of the frame errs by and costs on this adapter, as JSON, as a document and as a page.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 mod args;
 mod budget;
 
 use args::{Args, Wanted};
 use framegraph_passes::preset;
 use framegraph_wgpu::{AdapterRequest, Gpu};
+use program::interrupt;
 use program::outputs::Outputs;
 use program::progress::Shown;
 use std::path::Path;
@@ -35,7 +34,7 @@ fn main() -> ExitCode {
         Ok(()) => program::exit(0),
         Err(reason) => {
             program::error(format_args!("{reason}"));
-            program::exit(1)
+            program::exit(interrupt::check().map_or_else(interrupt::Stopped::code, |()| 1))
         }
     }
 }
@@ -63,7 +62,7 @@ fn run(args: &Args) -> Outcome<()> {
 
 /// Measures what the record does not have yet, and writes it after each technique.
 fn measured(args: &Args, file: &Path) -> Outcome<()> {
-    program::interrupt::watch();
+    interrupt::watch();
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
     let pictures = args.out.join("pictures");
     std::fs::create_dir_all(&pictures).map_err(|e| format!("{}: {e}", pictures.display()))?;

@@ -4,8 +4,6 @@
 //! combinations of twelve effects in each of six small scenes, as asked for and as decided, and compares; with `--masks N`
 //! N of them, spread over all; with `--scene NAME` behind either, in that scene alone.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use program::progress::Shown;

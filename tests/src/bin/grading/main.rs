@@ -8,23 +8,15 @@ use std::process::ExitCode;
 use tests::measure::grading::{HEAD, descs, error, looks};
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("grading: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    program::ended("grading", run())
 }
 
 fn run() -> Result<(), Box<dyn Error>> {
-    if let Some(unknown) = std::env::args().nth(1) {
-        return Err(format!("{unknown}: no argument is taken").into());
-    }
-    println!("{HEAD}");
+    program::no_arguments()?;
+    program::line(HEAD);
     for (name, look) in looks() {
         for desc in descs(&look) {
-            println!("{}", error(name, &look, desc)?.row());
+            program::line(error(name, &look, desc)?.row());
         }
     }
     Ok(())

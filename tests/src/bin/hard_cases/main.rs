@@ -3,8 +3,6 @@
 //! `cargo run -p tests --bin hard_cases` prints the tables of `docs/hard-cases.md`. The exit code is 1 when an invariant
 //! does not hold, or a guard is neither missed by a case nor explained.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::error::Error;
 use std::process::ExitCode;
@@ -13,7 +11,7 @@ use tests::hard::judge::Questions;
 use tests::hard::probe::builds;
 
 fn main() -> ExitCode {
-    match Gpu::open(&AdapterRequest::from_env()).map_err(Box::from).and_then(|gpu| print(&gpu)) {
+    match program::no_arguments().map_err(Box::from).and_then(|()| print(&Gpu::open(&AdapterRequest::from_env())?)) {
         Ok(true) => program::exit(0),
         Ok(false) => program::exit(1),
         Err(error) => {

@@ -5,8 +5,6 @@
 //! `frame`, `load`. Each has a control: something wrong on
 //! purpose that its comparison must notice. The exit code is 1 when one is not noticed.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 mod sections;
 
 use framegraph_wgpu::{AdapterRequest, Gpu};

@@ -3,8 +3,6 @@
 //! `cargo run --release -p tests --bin lights` prints the tables of `docs/lights.md`. Times are the least of several frames;
 //! they say what this device takes, and nothing of another.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 use framegraph_passes::punctual::{Found, FroxelSettings, LightSearch};
 use framegraph_passes::{CameraView, Settings};
 use framegraph_scene::{LightKind, Scene, progress};
@@ -25,13 +23,10 @@ const VIEWS: u32 = 9;
 const SAMPLES: u32 = 20_000;
 
 fn main() -> ExitCode {
-    match Gpu::open(&AdapterRequest::from_env()).map_err(Box::from).and_then(|gpu| print(&gpu)) {
-        Ok(()) => program::exit(0),
-        Err(error) => {
-            program::note(format_args!("lights: {error}"));
-            program::exit(1)
-        }
-    }
+    program::ended(
+        "lights",
+        program::no_arguments().map_err(Box::from).and_then(|()| print(&Gpu::open(&AdapterRequest::from_env())?)),
+    )
 }
 
 fn print(gpu: &Gpu) -> Outcome {

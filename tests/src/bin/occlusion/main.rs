@@ -11,21 +11,13 @@ use std::error::Error;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("occlusion: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    program::ended("occlusion", run())
 }
 
 fn run() -> Result<(), Box<dyn Error>> {
-    if let Some(unknown) = std::env::args().nth(1) {
-        return Err(format!("{unknown}: no argument is taken").into());
-    }
+    program::no_arguments()?;
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
-    println!("adapter: {}", gpu.describe());
+    program::line(format_args!("adapter: {}", gpu.describe()));
     tables::open_ground(&gpu)?;
     tables::corner(&gpu)?;
     tables::taps(&gpu)?;

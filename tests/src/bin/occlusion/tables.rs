@@ -48,8 +48,8 @@ fn noise_and_bias(stage: &Stage, texels: &[f32], converged: &[f32]) -> [f64; 3] 
 
 /// Noise, bias and time of SAO by taps, unblurred, in a picture and in one of a quarter of its texels.
 pub fn taps(gpu: &Gpu) -> Outcome {
-    println!("\n| taps (turns) | σ | σ of 4×4 | off converged | ms | half: σ | σ of 4×4 | off converged | ms |");
-    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+    program::line("\n| taps (turns) | σ | σ of 4×4 | off converged | ms | half: σ | σ of 4×4 | off converged | ms |");
+    program::line("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     let stages = [corner_stage(256)?, corner_stage(128)?];
     let frames = [Stage::new(Projection::perspective(0.8, 0.1), [1280, 720], ground(4.0, 45.0))?, {
         Stage::new(Projection::perspective(0.8, 0.1), [640, 360], ground(4.0, 45.0))?
@@ -60,22 +60,22 @@ pub fn taps(gpu: &Gpu) -> Outcome {
     let [full, half] = converged;
     let converged = [full?, half?];
     for [taps, turns] in SPIRALS {
-        print!("| {taps} ({turns})");
+        program::print(format_args!("| {taps} ({turns})"));
         for (index, stage) in stages.iter().enumerate() {
             let made = stage.visibility(gpu, &spiral(taps, turns), Precision::Full)?;
             let [noise, blocked, off] = noise_and_bias(stage, &made, &converged[index]);
             let (_, ms) = frames[index].occlusion(gpu, &spiral(taps, turns), Precision::Full, FRAMES)?;
-            print!(" | {noise:.3} | {blocked:.3} | {off:.3} | {ms:.1}");
+            program::print(format_args!(" | {noise:.3} | {blocked:.3} | {off:.3} | {ms:.1}"));
         }
-        println!(" |");
+        program::line(" |");
     }
     Ok(())
 }
 
 /// Each method as it is used, with its blur, against the truths of the corner and of the columns.
 pub fn methods(gpu: &Gpu) -> Outcome {
-    println!("\n| method | corner RMS | columns RMS | bias | as shaded | at half | ms |");
-    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    program::line("\n| method | corner RMS | columns RMS | bias | as shaded | at half | ms |");
+    program::line("| --- | --- | --- | --- | --- | --- | --- |");
     let columns = Columns::open(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/references/filament_frame")))?;
     let stage = corner_stage(256)?;
     let frame = Stage::new(Projection::perspective(0.8, 0.1), [1280, 720], ground(4.0, 45.0))?;
@@ -98,7 +98,9 @@ pub fn methods(gpu: &Gpu) -> Outcome {
         let shaded = columns.off_as_shaded(gpu, own)?.rms;
         let half = columns.off_as_shaded(gpu, settings(&halved(text))?)?.rms;
         let (_, ms) = frame.occlusion(gpu, &own, Precision::Full, FRAMES)?;
-        println!("| `{text}` | {corner:.3} | {rms:.3} | {bias:+.3} | {shaded:.3} | {half:.3} | {ms:.1} |");
+        program::line(format_args!(
+            "| `{text}` | {corner:.3} | {rms:.3} | {bias:+.3} | {shaded:.3} | {half:.3} | {ms:.1} |"
+        ));
     }
     Ok(())
 }
@@ -111,39 +113,39 @@ fn halved(text: &str) -> String {
 
 /// The least and the mean visibility of ground without occluders.
 pub fn open_ground(gpu: &Gpu) -> Outcome {
-    println!("\n| open ground, tilted by | 0° | 45° | 70° | 85° |");
-    println!("| --- | --- | --- | --- | --- |");
+    program::line("\n| open ground, tilted by | 0° | 45° | 70° | 85° |");
+    program::line("| --- | --- | --- | --- | --- |");
     for text in ["sao:quality=ultra", "gtao", "gtao:occluders=0.5", "sao:quality=ultra,place=filament,normals=coarse"] {
-        print!("| `{text}`, mean (least)");
+        program::print(format_args!("| `{text}`, mean (least)"));
         for tilt in [0.0, 45.0, 70.0, 85.0] {
             let stage = Stage::new(Projection::perspective(0.8, 0.1), [320, 180], ground(5.0, tilt))?;
             let made = stage.visibility(gpu, &settings(text)?, Precision::Full)?;
             let covered = made.iter().zip(&stage.depth).filter(|(_, depth)| **depth > 0.0);
             let covered: Vec<f64> = covered.map(|(visibility, _)| f64::from(*visibility)).collect();
             let least = covered.iter().copied().fold(1.0, f64::min);
-            print!(" | {:.3} ({least:.3})", mean_and_deviation(&covered)[0]);
+            program::print(format_args!(" | {:.3} ({least:.3})", mean_and_deviation(&covered)[0]));
         }
-        println!(" |");
+        program::line(" |");
     }
     Ok(())
 }
 
 /// What the methods converge to beside the truth.
 pub fn corner(gpu: &Gpu) -> Outcome {
-    println!("\n| from the edge | 0.02 m | 0.05 m | 0.1 m | 0.15 m | 0.2 m |");
-    println!("| --- | --- | --- | --- | --- | --- |");
+    program::line("\n| from the edge | 0.02 m | 0.05 m | 0.1 m | 0.15 m | 0.2 m |");
+    program::line("| --- | --- | --- | --- | --- | --- |");
     let stage = corner_stage(256)?;
     let columns = corner_columns(&stage, 1.0);
     let wanted = [0.02, 0.05, 0.1, 0.15, 0.2];
     let row = |name: &str, of: &dyn Fn(u32, f64) -> f64| {
-        print!("| {name}");
+        program::print(format_args!("| {name}"));
         for wanted in wanted {
             let near = columns.iter().min_by(|a, b| (a.1 - wanted).abs().total_cmp(&(b.1 - wanted).abs()));
             if let Some((x, distance_m)) = near {
-                print!(" | {:.3}", of(*x, *distance_m));
+                program::print(format_args!(" | {:.3}", of(*x, *distance_m)));
             }
         }
-        println!(" |");
+        program::line(" |");
     };
     row("truth", &|_, distance_m| truth::corner(distance_m, RADIUS_M));
     let plain = OcclusionSettings { blur: None, bias: 0.0, ..OcclusionSettings::SAO };

@@ -6,8 +6,6 @@
 //! before it is whole, so it can be interrupted at any time. Exit codes: 0 every claim holds, 1 some do not, which are
 //! named, 2 bad input.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 mod aliasing;
 mod args;
 mod document;

@@ -15,19 +15,11 @@ use tests::measure::reflection::{Found, Stage};
 const SIZE: [u32; 2] = [320, 240];
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => program::exit(0),
-        Err(error) => {
-            program::note(format_args!("reflections: {error}"));
-            program::exit(1)
-        }
-    }
+    program::ended("reflections", run())
 }
 
 fn run() -> Result<(), Box<dyn Error>> {
-    if let Some(unknown) = std::env::args().nth(1) {
-        return Err(format!("{unknown}: no argument is taken").into());
-    }
+    program::no_arguments()?;
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
     program::line(format_args!("adapter: {}", gpu.describe()));
     program::line(

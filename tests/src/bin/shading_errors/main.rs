@@ -3,8 +3,6 @@
 //! `cargo run -p tests --bin shading_errors` prints the tables of `docs/half-floats.md`. Each has a control: something
 //! wrong on purpose that its comparison must notice. The exit code is 1 when one is not noticed.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_shaders::reference::cases;
 use framegraph_wgpu::{AdapterRequest, Gpu};
@@ -15,7 +13,7 @@ use tests::measure::half_table::{POINTS, ROUGHNESS, SAMPLES, SCENES, Studio, lob
 use tests::mirror;
 
 fn main() -> ExitCode {
-    match Gpu::open(&AdapterRequest::from_env()).map_err(Box::from).and_then(|gpu| print(&gpu)) {
+    match program::no_arguments().map_err(Box::from).and_then(|()| print(&Gpu::open(&AdapterRequest::from_env())?)) {
         Ok(true) => program::exit(0),
         Ok(false) => program::exit(1),
         Err(error) => {

@@ -3,8 +3,6 @@
 //! `WGPU_BACKEND=noop cargo run --release -p tests --bin soak -- --frames 100000` prints what the run holds as it goes on, and at its end
 //! whether the last frame is that of a fresh run. Any error of any frame ends it.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::error::Error;
 use std::process::ExitCode;
@@ -23,13 +21,7 @@ WGPU_BACKEND=noop draws nothing and validates everything.
 ";
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => program::exit(0),
-        Err(error) => {
-            program::note(format_args!("soak: {error}"));
-            program::exit(1)
-        }
-    }
+    program::ended("soak", run())
 }
 
 fn run() -> Result<(), Box<dyn Error>> {

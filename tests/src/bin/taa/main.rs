@@ -8,21 +8,13 @@ use std::process::ExitCode;
 use tests::measure::temporal::table;
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("taa: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    program::ended("taa", run())
 }
 
 fn run() -> Result<(), Box<dyn Error>> {
-    if let Some(unknown) = std::env::args().nth(1) {
-        return Err(format!("{unknown}: no argument is taken").into());
-    }
+    program::no_arguments()?;
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
-    println!("adapter: {}\n", gpu.describe());
-    table(&gpu)?.iter().for_each(|row| println!("{row}"));
+    program::line(format_args!("adapter: {}\n", gpu.describe()));
+    table(&gpu)?.iter().for_each(program::line);
     Ok(())
 }

@@ -33,6 +33,7 @@ fn error(gpu: &Gpu, set: &Set, settings: ShadowSettings, radius_m: f64) -> Resul
 }
 
 /// What was found with the software driver; another one places edges and weighs texels otherwise, by thousandths of the light.
+#[allow(clippy::print_stdout, reason = "shown with --nocapture")]
 fn stated(name: &str, found: [f64; 2], stated: [f64; 2]) {
     let near = found.iter().zip(stated).all(|(found, stated)| (found - stated).abs() < 0.003);
     println!("{name}: {found:.4?}");

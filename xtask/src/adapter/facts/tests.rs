@@ -106,3 +106,21 @@ fn package_facts_are_read_from_the_tree() {
     assert_eq!(packages.programs, ["apt-get", "sudo"]);
     assert!(packages.apt_lists && !packages.pacman_databases);
 }
+
+#[test]
+fn layers_and_a_display_are_found_or_named() {
+    let missing = |files: &[(&str, &str)], variables: &[(&str, &str)]| {
+        let tree = Tree::new(files);
+        let of = |name: &str| variables.iter().find(|(key, _)| *key == name).map(|(_, value)| OsString::from(value));
+        missing_checks(&Machine { root: tree.root(), variable: &of })
+    };
+    let path = ("PATH", "/bin:/usr/bin");
+    let (layers, display) =
+        (("/usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation.json", ""), ("/usr/bin/Xvfb", ""));
+    assert_eq!(missing(&[], &[path]), ["Vulkan's validation layers", "Xvfb"]);
+    assert_eq!(missing(&[layers], &[path]), ["Xvfb"]);
+    assert_eq!(missing(&[display], &[path]), ["Vulkan's validation layers"]);
+    assert!(missing(&[layers, display], &[path]).is_empty());
+    let own = ("/own/VkLayer_khronos_validation.json", "");
+    assert!(missing(&[own, display], &[path, ("VK_LAYER_PATH", "/own")]).is_empty());
+}
