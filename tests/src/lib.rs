@@ -12,6 +12,7 @@ pub mod measure;
 pub mod mirror;
 pub mod reference;
 pub mod soak;
+pub mod stage;
 pub mod truth;
 
 /// The examples of the README, run as doc tests.

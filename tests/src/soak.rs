@@ -1,20 +1,15 @@
 //! A long run of the standard frame under everything that changes while an application runs: the size of its window, the
-//! effects that are on, the scene that is shown, the texts of its shaders, the device. What a run leaves behind is compared with a
-//! fresh one.
+//! effects that are on, the scene that is shown, how memory is shared, the texts of its shaders, the device. What a run leaves
+//! behind is compared with a fresh one.
 
-use framegraph::{Extent, Format, Target, TextureDesc};
-use framegraph_passes::ibl::cache::Cache;
-use framegraph_passes::ibl::{DfgSettings, IblSettings};
-use framegraph_passes::shading::LightSettings;
-use framegraph_passes::shadow::ShadowSettings;
-use framegraph_passes::view::{Background, ViewSettings};
-use framegraph_passes::{
-    CameraView, LightSearch, Lighting, OcclusionSettings, PreparedScene, ReflectionSettings, Settings, StageError,
-    ViewId, World, standard,
-};
-use framegraph_scene::{Environment, Scene, progress};
+use crate::stage::Stage;
+use framegraph::Alias;
+use framegraph_passes::bloom::BloomSettings;
+use framegraph_passes::dof::DofSettings;
+use framegraph_passes::fog::FogSettings;
+use framegraph_passes::shadow::{ShadowFilter, ShadowSettings};
+use framegraph_passes::{OcclusionSettings, ReflectionSettings, Settings, TaaSettings, Upscale, World};
 use framegraph_wgpu::{FrameLoop, Gpu, OpenError, PoolCounts, Workers, read_texture};
-use glam::{DVec3, Vec3};
 use std::error::Error;
 
 /// What a run is made of, drawn anew from frame to frame.
@@ -26,10 +21,12 @@ pub struct State {
     pub scene: usize,
     /// Which of the settings.
     pub variant: usize,
+    /// How textures share memory.
+    pub alias: Alias,
 }
 
 /// The state in which a run ends, and which a fresh run draws alone.
-const LAST: State = State { size_px: [64, 36], scene: 0, variant: 0 };
+const LAST: State = State { size_px: [64, 36], scene: 0, variant: 0, alias: Alias::Pool };
 /// Side of a shadow map.
 const SHADOW_TEXELS: u32 = 128;
 
@@ -59,34 +56,42 @@ pub struct Trouble {
     pub open: fn() -> Result<Gpu, OpenError>,
 }
 
-struct Stage {
-    scene: Scene,
-    prepared: PreparedScene,
-    world: World,
-}
-
 /// A run.
 pub struct Soak {
     gpu: Gpu,
     frames: FrameLoop<World>,
     stages: Vec<Stage>,
     state: u64,
+    /// Frames that were drawn.
+    drawn: u32,
     largest_px: u32,
+    /// How many of the variants there are.
+    variants: u32,
     trouble: Option<Trouble>,
     reloaded: usize,
     lost: usize,
 }
 
-/// Effects in different combinations; all of them leave shaders as simple as software drivers want them.
-fn variants() -> [Settings; 5] {
+/// What differs in what it calls for: opaque surfaces, many lights, surfaces that transmit.
+const SCENES: [&str; 3] = ["spheres", "lamps:3", "glass"];
+
+/// Effects in different combinations, the simplest first.
+fn variants() -> [Settings; 10] {
     let shadows = |cascades| Some(ShadowSettings { cascades, ..ShadowSettings::texels(SHADOW_TEXELS) });
     let plain = Settings { shadows: shadows(1), ..Settings::DEFAULT };
+    let moments = ShadowSettings { filter: ShadowFilter::Evsm, ..ShadowSettings::texels(SHADOW_TEXELS) };
+    let (bloom, dof) = (Some(BloomSettings::DEFAULT), Some(DofSettings::DEFAULT));
     [
         plain,
         Settings { samples: 4, shadows: shadows(3), ..plain },
         Settings { shadows: None, fxaa: false, ..plain },
         Settings { occlusion: Some(OcclusionSettings::SAO), split_post: true, ..plain },
         Settings { reflections: Some(ReflectionSettings::DEFAULT), ..plain },
+        Settings { taa: Some(TaaSettings::DEFAULT), fxaa: false, ..plain },
+        Settings { bloom, fog: Some(FogSettings::DEFAULT), ..plain },
+        Settings { dof, samples: 4, ..plain },
+        Settings { shadows: Some(moments), upscale: Some(Upscale::DEFAULT), ..plain },
+        Settings { taa: Some(TaaSettings::DEFAULT), upscale: Some(Upscale::DEFAULT), bloom, dof, ..plain },
     ]
 }
 
@@ -96,8 +101,21 @@ impl Soak {
     /// # Errors
     /// When a scene cannot be set up.
     pub fn new(gpu: &Gpu, largest_px: u32) -> Result<Self, Box<dyn Error>> {
-        let (stages, frames) = (stages(gpu)?, frames(gpu)?);
-        Ok(Self { gpu: gpu.clone(), frames, stages, state: 1, largest_px, trouble: None, reloaded: 0, lost: 0 })
+        Self::of(gpu, largest_px, variants().len() as u32, SCENES.len())
+    }
+
+    /// The same with the first combinations of effects and the first scene alone, whose shaders are soon compiled.
+    ///
+    /// # Errors
+    /// As [`Soak::new`].
+    pub fn simple(gpu: &Gpu, largest_px: u32) -> Result<Self, Box<dyn Error>> {
+        Self::of(gpu, largest_px, 2, 1)
+    }
+
+    fn of(gpu: &Gpu, largest_px: u32, variants: u32, scenes: usize) -> Result<Self, Box<dyn Error>> {
+        let (stages, frames) = (stages(gpu, scenes)?, frames(gpu)?);
+        let (gpu, trouble) = (gpu.clone(), None);
+        Ok(Self { gpu, frames, stages, state: 1, drawn: 0, largest_px, variants, trouble, reloaded: 0, lost: 0 })
     }
 
     /// The same run, with that on the way.
@@ -115,7 +133,7 @@ impl Soak {
     /// comes too.
     fn next(&mut self, before: State) -> State {
         let mut state = before;
-        let changed = self.random(7) + 1;
+        let changed = self.random(15) + 1;
         if changed & 1 != 0 {
             let octaves = self.largest_px.ilog2() + 1;
             state.size_px = [0; 2].map(|_: u32| {
@@ -124,10 +142,13 @@ impl Soak {
             });
         }
         if changed & 2 != 0 {
-            state.variant = self.random(variants().len() as u32) as usize;
+            state.variant = self.random(self.variants) as usize;
         }
         if changed & 4 != 0 {
             state.scene = self.random(self.stages.len() as u32) as usize;
+        }
+        if changed & 8 != 0 {
+            state.alias = [Alias::Pool, Alias::Heap][self.random(2) as usize];
         }
         state
     }
@@ -175,7 +196,7 @@ impl Soak {
                 return Err(format!("of a lost device this was told: {told}").into());
             }
             self.gpu = (trouble.open)()?;
-            (self.stages, self.frames) = (stages(&self.gpu)?, frames(&self.gpu)?);
+            (self.stages, self.frames) = (stages(&self.gpu, self.stages.len())?, frames(&self.gpu)?);
             self.lost += 1;
         }
         Ok(())
@@ -186,33 +207,25 @@ impl Soak {
     /// # Errors
     /// Any error of the frame.
     pub fn fresh(gpu: &Gpu) -> Result<Vec<u8>, Box<dyn Error>> {
-        Self::new(gpu, 64)?.draw(LAST)
+        Self::simple(gpu, 64)?.draw(LAST)
     }
 
     fn draw(&mut self, state: State) -> Result<Vec<u8>, Box<dyn Error>> {
-        let State { size_px, scene, variant } = state;
-        let Stage { scene, prepared, world } = &mut self.stages[scene];
-        let settings = variants()[variant].for_scene(scene, size_px);
-        let view = view(scene, prepared, &world.lighting, &settings, size_px);
-        world.set_view(&self.gpu, ViewId::MAIN, view)?;
-        let ran = self.frames.run(size_px, world, |frame, _| {
-            let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
-            let output = frame.graph_mut().texture("output", desc);
-            let io = standard(frame, &settings, Target::from(output))?;
-            frame.graph_mut().readback(io.output).map_err(StageError::from)?;
-            Ok::<_, StageError>(io.output)
-        })?;
+        let State { size_px, scene, variant, alias } = state;
+        self.frames.options_mut().alias = alias;
+        let picture = self.stages[scene].draw(&mut self.frames, &variants()[variant], size_px, self.drawn)?;
+        self.drawn += 1;
         if state != LAST {
             return Ok(Vec::new());
         }
-        let picture = ran.and_then(|ran| self.frames.executor().texture(self.frames.plan(), ran.io));
+        let picture = self.frames.executor().texture(self.frames.plan(), picture);
         Ok(read_texture(&self.gpu, picture.ok_or("the frame left no picture")?)?.rgba8())
     }
 }
 
-/// The scenes, on a device.
-fn stages(gpu: &Gpu) -> Result<Vec<Stage>, Box<dyn Error>> {
-    ["spheres", "lamps:3"].into_iter().map(|name| Stage::new(gpu, name)).collect()
+/// The first scenes, on a device.
+fn stages(gpu: &Gpu, count: usize) -> Result<Vec<Stage>, Box<dyn Error>> {
+    SCENES.into_iter().take(count).map(|name| Stage::new(gpu, name)).collect()
 }
 
 /// Frames that are recorded on all cores where that is faster.
@@ -220,39 +233,6 @@ fn frames(gpu: &Gpu) -> Result<FrameLoop<World>, Box<dyn Error>> {
     let mut frames = FrameLoop::new(gpu);
     frames.executor_mut().record_on(Some(Workers::new()?));
     Ok(frames)
-}
-
-impl Stage {
-    fn new(gpu: &Gpu, name: &str) -> Result<Self, Box<dyn Error>> {
-        let scene = Scene::open(name, &mut progress::silent)?;
-        let prepared = PreparedScene::new(&scene);
-        let shading = Settings::DEFAULT.shading;
-        let image = IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() };
-        let light = LightSettings { image, dfg: DfgSettings { texels: 32, visibility: shading.table } };
-        let even = Environment::uniform(DVec3::splat(2000.0))?;
-        let lighting = Lighting::new(gpu, &even, &light, &Cache::off(), &mut progress::silent)?;
-        let first = view(&scene, &prepared, &lighting, &Settings::DEFAULT, LAST.size_px);
-        let world = World::new(gpu, &scene, lighting, [first], &mut progress::silent)?;
-        Ok(Self { scene, prepared, world })
-    }
-}
-
-fn view(
-    scene: &Scene,
-    prepared: &PreparedScene,
-    lighting: &Lighting,
-    settings: &Settings,
-    size_px: [u32; 2],
-) -> CameraView {
-    let seen = ViewSettings {
-        camera: scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
-        size_px,
-        ev100: 12.0,
-        environment_intensity: 1.0,
-        shadows: settings.shadows,
-        lights: LightSearch::default(),
-    };
-    CameraView::prepared(scene, prepared, &lighting.image, &Background::Constant(Vec3::ONE), &seen)
 }
 
 /// Resident memory of this program, as Linux tells.

@@ -19,8 +19,8 @@ pub(crate) struct Arena {
     /// Shape and offset of each object.
     key: Vec<(Shape, u64)>,
     pub(crate) objects: Vec<Object>,
-    /// Bytes that the driver was asked for.
-    allocated_bytes: u64,
+    /// Bytes that the driver was asked for, and those that it asks for the objects one by one.
+    allocated_bytes: [u64; 2],
     /// The frame that used it last.
     used: u64,
 }
@@ -171,7 +171,8 @@ impl Arenas {
         }
         let name = |r: &PlacedRequest| plan.graph().resource_name(r.resource);
         let items: Vec<_> = requests.iter().map(|r| (r.shape, r.offset, name(r))).collect();
-        let (objects, allocated_bytes) = self.driver(gpu)?.place(&items, &all)?;
+        let (objects, together) = self.driver(gpu)?.place(&items, &all)?;
+        let allocated_bytes = [together, all.iter().map(|needs| needs.bytes).sum()];
         let key = requests.iter().map(|r| (r.shape, r.offset)).collect();
         self.created += objects.len() as u64;
         self.arenas.push(Arena { key, objects, allocated_bytes, used: self.frame });
@@ -210,9 +211,9 @@ impl Arenas {
         self.arenas.retain(|arena| arena.used != frame);
     }
 
-    /// Bytes that the driver gave for all arenas.
-    pub(crate) fn allocated_bytes(&self) -> u64 {
-        self.arenas.iter().map(|arena| arena.allocated_bytes).sum()
+    /// Bytes that the driver gave for all arenas, and those that it asks for what lies in them one by one.
+    pub(crate) fn allocated_bytes(&self) -> [u64; 2] {
+        [0, 1].map(|which| self.arenas.iter().map(|arena| arena.allocated_bytes[which]).sum())
     }
 
     /// Whether memory changes hands without a word, as a test may ask for.

@@ -33,9 +33,9 @@ pub fn memory(plan: &Plan, executor: &Executor) -> String {
     let block = match executor.not_placed() {
         Some(why) => format!("--alias heap: {why}; textures of one shape share memory in its place"),
         None => format!(
-            "in one block: {} allocated, for what would take {} apart",
+            "in one block: {} allocated, for what the driver asks {} for one by one",
             mebibytes(allocated.placed),
-            mebibytes(plan.memory().unaliased_bytes)
+            mebibytes(allocated.placed_apart)
         ),
     };
     format!("{block}; wgpu has allocated {}\n", mebibytes(allocated.by_wgpu))

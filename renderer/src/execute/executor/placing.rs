@@ -9,6 +9,8 @@ use framegraph::{Alias, CompileErrors, Graph, Options, Plan, Scratch, recompile}
 pub struct Allocated {
     /// Blocks in which textures and buffers share memory.
     pub placed: u64,
+    /// What the driver asks for the same textures and buffers, each in memory of its own.
+    pub placed_apart: u64,
     /// Everything that wgpu allocated on the device, by this executor or another; 0 where wgpu does not say.
     pub by_wgpu: u64,
 }
@@ -67,7 +69,8 @@ impl Executor {
     /// What the driver gave until now.
     pub fn allocated(&self) -> Allocated {
         let by_wgpu = self.gpu.device.generate_allocator_report().map_or(0, |report| report.total_allocated_bytes);
-        Allocated { placed: self.arenas.allocated_bytes(), by_wgpu }
+        let [placed, placed_apart] = self.arenas.allocated_bytes();
+        Allocated { placed, placed_apart, by_wgpu }
     }
 
     /// Breaks sharing on purpose: memory changes hands without a barrier and within one command buffer. For tests that look

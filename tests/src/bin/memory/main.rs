@@ -1,0 +1,81 @@
+//! `memory`: the bytes that a device's allocator gives for the standard frame, with each way of sharing memory.
+//!
+//! `cargo run --release -p tests --bin memory` prints the table of `docs/performance.md`, of one frame in each size.
+
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
+use framegraph::{Alias, Options};
+use framegraph_passes::bloom::BloomSettings;
+use framegraph_passes::dof::DofSettings;
+use framegraph_passes::fog::FogSettings;
+use framegraph_passes::{Preset, Settings};
+use framegraph_wgpu::{AdapterRequest, Allocated, ExecutorOptions, FrameLoop, Gpu};
+use std::error::Error;
+use std::process::ExitCode;
+use tests::stage::Stage;
+
+const SIZES_PX: [[u32; 2]; 2] = [[1280, 720], [3840, 2160]];
+const WAYS: [(&str, Alias); 3] = [("none", Alias::Off), ("pool", Alias::Pool), ("heap", Alias::Heap)];
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => program::exit(0),
+        Err(error) => {
+            program::note(format_args!("memory: {error}"));
+            program::exit(1)
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
+    if let Some(unknown) = std::env::args().nth(1) {
+        return Err(format!("{unknown}: no argument is taken").into());
+    }
+    let open = || Gpu::open(&AdapterRequest::from_env());
+    program::line(format_args!("adapter: {}", open()?.describe()));
+    program::line(
+        "\n| size | aliasing | by the plan, MiB | by wgpu, MiB | in blocks, MiB | together, MiB | of no aliasing |",
+    );
+    program::line("| --- | --- | --- | --- | --- | --- | --- |");
+    for size_px in SIZES_PX {
+        let mut apart = None;
+        for (name, alias) in WAYS {
+            // A device of its own, so that nothing of another way is counted.
+            let (planned, frame) = measured(&open()?, size_px, alias)?;
+            let together = frame.by_wgpu + frame.placed;
+            let share = together as f64 / *apart.get_or_insert(together) as f64;
+            let [planned, by_wgpu, placed, together] = [planned, frame.by_wgpu, frame.placed, together].map(mib);
+            let [width, height] = size_px;
+            program::line(format_args!(
+                "| {width}x{height} | {name} | {planned:.1} | {by_wgpu:.1} | {placed:.1} | {together:.1} | {share:.2} |"
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn mib(bytes: u64) -> f64 {
+    bytes as f64 / f64::from(1 << 20)
+}
+
+/// What the plan of the frame says it takes, and what was allocated for it beside what its scene takes.
+fn measured(gpu: &Gpu, size_px: [u32; 2], alias: Alias) -> Result<(u64, Allocated), Box<dyn Error>> {
+    let settings = Settings {
+        fog: Some(FogSettings::DEFAULT),
+        bloom: Some(BloomSettings::DEFAULT),
+        dof: Some(DofSettings::DEFAULT),
+        ..Preset::High.frame().settings
+    };
+    let mut stage = Stage::new(gpu, "columns")?;
+    let mut frames = FrameLoop::with(gpu, Options { alias, ..Options::default() }, ExecutorOptions::default());
+    gpu.wait()?;
+    let before = frames.executor().allocated();
+    stage.draw(&mut frames, &settings, size_px, 0)?;
+    gpu.wait()?;
+    let behind = frames.executor().allocated();
+    if let Some(why) = frames.executor().not_placed() {
+        return Err(format!("nothing is placed: {why}").into());
+    }
+    let memory = frames.plan().memory();
+    Ok((memory.bytes + memory.own_bytes, Allocated { by_wgpu: behind.by_wgpu - before.by_wgpu, ..behind }))
+}

@@ -1,0 +1,90 @@
+//! A scene on a device, drawn by the standard frame again and again.
+
+use framegraph::{Extent, Format, Target, Texture, TextureDesc};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::shading::LightSettings;
+use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::{
+    CameraView, LightSearch, Lighting, PreparedScene, Settings, StageError, ViewId, World, standard,
+};
+use framegraph_scene::{Environment, Scene, progress};
+use framegraph_wgpu::{FrameLoop, Gpu};
+use glam::{DVec3, Vec3};
+use std::error::Error;
+
+/// A scene with all that drawing it takes, under an even sky.
+pub struct Stage {
+    scene: Scene,
+    prepared: PreparedScene,
+    /// What its frames are recorded with.
+    pub world: World,
+}
+
+impl Stage {
+    /// A built-in scene.
+    ///
+    /// # Errors
+    /// When it cannot be set up.
+    pub fn new(gpu: &Gpu, name: &str) -> Result<Self, Box<dyn Error>> {
+        let scene = Scene::open(name, &mut progress::silent)?;
+        let prepared = PreparedScene::new(&scene);
+        let shading = Settings::DEFAULT.shading;
+        let image = IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() };
+        let light = LightSettings { image, dfg: DfgSettings { texels: 32, visibility: shading.table } };
+        let even = Environment::uniform(DVec3::splat(2000.0))?;
+        let lighting = Lighting::new(gpu, &even, &light, &Cache::off(), &mut progress::silent)?;
+        let first = view(&scene, &prepared, &lighting, &Settings::DEFAULT, [64, 36]);
+        let world = World::new(gpu, &scene, lighting, [first], &mut progress::silent)?;
+        Ok(Self { scene, prepared, world })
+    }
+
+    /// Draws a frame of `frames`, seen anew, through the places in pixels that frame `number` looks through where frames are
+    /// added up; its picture.
+    ///
+    /// # Errors
+    /// Any error of the frame.
+    pub fn draw(
+        &mut self,
+        frames: &mut FrameLoop<World>,
+        settings: &Settings,
+        size_px: [u32; 2],
+        number: u32,
+    ) -> Result<Texture, Box<dyn Error>> {
+        let Self { scene, prepared, world } = self;
+        let gpu = frames.executor().gpu().clone();
+        let drawn_px = settings.upscale.map_or(size_px, |upscale| upscale.extent().texels(size_px));
+        let settings = settings.for_scene(scene, drawn_px);
+        let mut seen = view(scene, prepared, &world.lighting, &settings, drawn_px);
+        if let Some(taa) = &settings.taa {
+            seen.jitter(taa.jitter_px(number));
+        }
+        world.set_view(&gpu, ViewId::MAIN, seen)?;
+        let ran = frames.run(size_px, world, |frame, _| {
+            let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
+            let output = frame.graph_mut().texture("output", desc);
+            let io = standard(frame, &settings, Target::from(output))?;
+            frame.graph_mut().readback(io.output).map_err(StageError::from)?;
+            Ok::<_, StageError>(io.output)
+        })?;
+        Ok(ran.ok_or("a picture without texels")?.io)
+    }
+}
+
+fn view(
+    scene: &Scene,
+    prepared: &PreparedScene,
+    lighting: &Lighting,
+    settings: &Settings,
+    size_px: [u32; 2],
+) -> CameraView {
+    let seen = ViewSettings {
+        camera: scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
+        size_px,
+        ev100: 12.0,
+        environment_intensity: 1.0,
+        shadows: settings.shadows,
+        lights: LightSearch::default(),
+    };
+    CameraView::prepared(scene, prepared, &lighting.image, &Background::Constant(Vec3::ONE), &seen)
+}
