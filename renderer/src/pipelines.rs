@@ -2,6 +2,7 @@
 
 pub(crate) mod bind_groups;
 pub(crate) mod binding_error;
+pub(crate) mod bounds;
 pub(crate) mod cache;
 pub(crate) mod key;
 pub(crate) mod loops;

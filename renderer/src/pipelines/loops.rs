@@ -6,6 +6,7 @@
 //! a number is less than the greatest one; so the loop ends, whatever the bound is and even if it changes meanwhile. With another
 //! step, or with "less or equal", the bound must be a number that is not too near to the greatest.
 
+use super::bounds::is_emitted;
 use wgpu::naga::{
     BinaryOperator, Block, Expression, Function, Handle, Literal, LocalVariable, Module, Statement, front::wgsl,
 };
@@ -68,7 +69,8 @@ impl Proof<'_> {
             BinaryOperator::GreaterEqual => (right, left, true),
             _ => return false,
         };
-        let Some(counter) = self.loaded(counter) else { return false };
+        // As it is in this turn, not as it was once.
+        let Some(counter) = self.loaded(counter).filter(|_| is_emitted(body, counter)) else { return false };
         let Some(step) = self.step(counter, continuing) else { return false };
         // One store at the end of a turn, and none elsewhere.
         if self.changes(body, counter) > 0 || self.changes(continuing, counter) != 1 {
@@ -106,7 +108,7 @@ impl Proof<'_> {
                 Literal::I32(step) => i64::from(step),
                 _ => return None,
             };
-            (self.loaded(left) == Some(counter) && step > 0).then_some(step)
+            (self.loaded(left) == Some(counter) && is_emitted(continuing, left) && step > 0).then_some(step)
         })
     }
 
@@ -212,5 +214,10 @@ mod tests {
         let text = "fn a() { for (var i = 0; i < 3; i++) {} } @compute @workgroup_size(1) fn main() { a(); loop {} }";
         assert_eq!(endless_loop(text).as_deref(), Some("main"));
         assert_eq!(endless_loop("no shader"), None);
+        // What was read of the counter before the loop stays what it was.
+        let stale = "fn f(n: i32) { var i = 0; let x = i; for (; x < n; i++) {} }";
+        assert_eq!(endless_loop(stale).as_deref(), Some("f"));
+        let stale = "fn f(n: i32) { var i = 0; let x = i; for (; i < n; i = x + 1) {} }";
+        assert_eq!(endless_loop(stale).as_deref(), Some("f"));
     }
 }

@@ -3,11 +3,13 @@
 use crate::cache::Cache;
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::hash::{FNV_START, fnv_append};
-use crate::pipelines::loops::endless_loop;
+use crate::pipelines::bounds::first_unproved;
+use crate::pipelines::loops::first_endless;
 use crate::pipelines::pipeline::Source;
 use std::collections::BTreeMap;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
+use wgpu::naga::front::wgsl;
 use wgpu::{Device, ShaderModule, ShaderModuleDescriptor, ShaderRuntimeChecks, ShaderSource};
 
 /// A WGSL module with its name.
@@ -157,15 +159,17 @@ impl ShaderModules {
     }
 }
 
-/// A module in which loops are not counted if they are proved to end.
-#[allow(unsafe_code, reason = "wgpu takes the promise that loops end by a call of its own")]
+/// A module in which loops are not counted if they are proved to end, and indices not tested if they are proved to be in range.
+#[allow(unsafe_code, reason = "wgpu takes the promise that loops end, and indices are in range, by a call of its own")]
 fn create_module(device: &Device, descriptor: ShaderModuleDescriptor<'_>, text: &str) -> ShaderModule {
-    if endless_loop(text).is_some() {
+    let Ok(module) = wgsl::parse_str(text) else { return device.create_shader_module(descriptor) };
+    let (force_loop_bounding, bounds_checks) = (first_endless(&module).is_some(), first_unproved(&module).is_some());
+    if force_loop_bounding && bounds_checks {
         return device.create_shader_module(descriptor);
     }
-    let checks = ShaderRuntimeChecks { force_loop_bounding: false, ..ShaderRuntimeChecks::checked() };
-    // SAFETY: all checks stay but one, which asks that no loop is endless; each was proved to end on the text that is compiled,
-    // and a text that cannot be read has no module.
+    let checks = ShaderRuntimeChecks { force_loop_bounding, bounds_checks, ..ShaderRuntimeChecks::checked() };
+    // SAFETY: all checks stay but two. One asks that no loop is endless, the other that no index is out of range; each loop was proved
+    // to end, or each index to be in range, on the text that is compiled, and a text that cannot be read has no module.
     unsafe { device.create_shader_module_trusted(descriptor, checks) }
 }
 

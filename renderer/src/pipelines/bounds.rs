@@ -1,0 +1,401 @@
+//! Whether the indices of a shader are in range, proved on naga's representation of it.
+//!
+//! wgpu clamps indices, or tests them, in the shaders that it hands to drivers, since reading beyond an array is undefined behavior
+//! there. Where each index is seen to be in range that is not needed. Functions are gone through statement by statement with what is
+//! known of whole numbers: the least and the greatest that a value can be. Numbers in the text are known, sums and products of what is
+//! known, what is masked, clamped or a remainder, and the counter of a loop from its first value to below its bound.
+
+use std::collections::HashMap;
+use std::ops::RangeInclusive;
+use wgpu::naga::valid::{Capabilities, FunctionInfo, ValidationFlags, Validator};
+use wgpu::naga::{
+    ArraySize, BinaryOperator, Block, Expression, Function, Handle, Literal, LocalVariable, MathFunction, Module,
+    ScalarKind, Statement, TypeInner, front::wgsl, proc::TypeResolution,
+};
+
+/// Why the indices of a shader are tested while it runs: the name of the first function with an index, or a texel that is loaded or
+/// stored by its place, that is not seen to be in range; none where all are, and for a text that does not compile.
+///
+/// ```
+/// use framegraph_wgpu::unproved_index;
+///
+/// let sum = |bound: &str| format!("fn sum(a: array<f32, 4>, n: u32) -> f32 {{
+///     var all = a; var s = 0.0; for (var i = 0u; i < {bound}; i++) {{ s += all[i]; }} return s; }}");
+/// assert_eq!(unproved_index(&sum("4u")), None);
+/// assert_eq!(unproved_index(&sum("min(n, 4u)")), None);
+/// assert_eq!(unproved_index(&sum("n")).as_deref(), Some("sum"));
+/// ```
+#[must_use]
+pub fn unproved_index(text: &str) -> Option<String> {
+    first_unproved(&wgsl::parse_str(text).ok()?)
+}
+
+/// The name of the first function with such an index; none for a module that is not valid, too.
+pub(crate) fn first_unproved(module: &Module) -> Option<String> {
+    let info = Validator::new(ValidationFlags::empty(), Capabilities::all()).validate(module).ok()?;
+    let own = module.functions.iter().map(|(handle, function)| (function, &info[handle], function.name.as_deref()));
+    let entries = module.entry_points.iter().enumerate();
+    let entries = entries.map(|(at, entry)| (&entry.function, info.get_entry_point(at), Some(entry.name.as_str())));
+    let proved = |function, types| {
+        let mut proof = Proof { module, function, types, values: HashMap::new(), variables: HashMap::new() };
+        let first = |(variable, own): (_, &LocalVariable)| Some((variable, proof.span(own.init?)?));
+        proof.variables = function.local_variables.iter().filter_map(first).collect();
+        proof.block(&function.body)
+    };
+    own.chain(entries)
+        .find(|(function, types, _)| !proved(*function, types))
+        .map(|(.., name)| name.unwrap_or_default().to_owned())
+}
+
+/// The least and the greatest value of a whole number.
+type Span = RangeInclusive<i64>;
+
+struct Proof<'m> {
+    module: &'m Module,
+    function: &'m Function,
+    types: &'m FunctionInfo,
+    /// Of expressions that were gone by, as they were then.
+    values: HashMap<Handle<Expression>, Span>,
+    /// Of local variables, now.
+    variables: HashMap<Handle<LocalVariable>, Span>,
+}
+
+impl Proof<'_> {
+    /// Whether all indices of a block are in range.
+    fn block(&mut self, block: &Block) -> bool {
+        block.iter().all(|statement| self.statement(statement))
+    }
+
+    fn statement(&mut self, statement: &Statement) -> bool {
+        match statement {
+            Statement::Emit(range) => range.clone().all(|value| self.emit(value)),
+            Statement::Block(inner) => self.block(inner),
+            Statement::Store { pointer, value } => {
+                if let Some(variable) = root(self.function, *pointer) {
+                    let whole = matches!(self.function.expressions[*pointer], Expression::LocalVariable(_));
+                    match self.span(*value).filter(|_| whole) {
+                        Some(span) => self.variables.insert(variable, span),
+                        None => self.variables.remove(&variable),
+                    };
+                }
+                true
+            }
+            Statement::If { accept, reject, .. } => self.branches(&[accept, reject]),
+            Statement::Switch { cases, .. } => self.branches(&cases.iter().map(|case| &case.body).collect::<Vec<_>>()),
+            Statement::Loop { body, continuing, .. } => self.turns(body, continuing),
+            Statement::Call { arguments, .. } => {
+                let pointed = arguments.iter().filter_map(|argument| root(self.function, *argument));
+                pointed.for_each(|variable| drop(self.variables.remove(&variable)));
+                true
+            }
+            Statement::Break | Statement::Continue | Statement::Return { .. } | Statement::Kill => true,
+            // What writes by a place, and what is not looked into.
+            _ => false,
+        }
+    }
+
+    /// Each of several blocks from what is known now; afterwards nothing is known of what any changes.
+    fn branches(&mut self, blocks: &[&Block]) -> bool {
+        let before = self.variables.clone();
+        let proved = blocks.iter().all(|block| {
+            self.variables.clone_from(&before);
+            self.block(block)
+        });
+        self.variables = before;
+        blocks.iter().for_each(|block| self.forget(block));
+        proved
+    }
+
+    fn turns(&mut self, body: &Block, continuing: &Block) -> bool {
+        let counted = self.counter(body, continuing);
+        self.forget(body);
+        self.forget(continuing);
+        let before = self.variables.clone();
+        // What is tested stands before the counter is known to be below its bound.
+        let tested = body.iter().position(|statement| matches!(statement, Statement::If { .. })).unwrap_or(0);
+        let all: Vec<&Statement> = body.iter().collect();
+        let (head, rest) = all.split_at(tested);
+        let mut proved = head.iter().all(|statement| self.statement(statement));
+        if let Some((counter, span)) = counted {
+            self.variables.insert(counter, span);
+        }
+        proved &= rest.iter().all(|statement| self.statement(statement)) && self.block(continuing);
+        self.variables = before;
+        proved
+    }
+
+    /// The counter of a loop that goes up by one from a known number while it is less than a known one, with what it is in a turn.
+    fn counter(&mut self, body: &Block, continuing: &Block) -> Option<(Handle<LocalVariable>, Span)> {
+        let tested = body.iter().find(|statement| !matches!(statement, Statement::Emit(_)))?;
+        let Statement::If { condition, accept, reject } = tested else { return None };
+        let Expression::Binary { op: BinaryOperator::Less, left, right } = self.function.expressions[*condition] else {
+            return None;
+        };
+        let Expression::Load { pointer } = self.function.expressions[left] else { return None };
+        let Expression::LocalVariable(counter) = self.function.expressions[pointer] else { return None };
+        let leaves = accept.is_empty() && matches!(reject.iter().next(), Some(Statement::Break));
+        let steps = continuing.iter().filter_map(|statement| match statement {
+            Statement::Store { pointer: place, value } if root(self.function, *place) == Some(counter) => Some(*value),
+            _ => None,
+        });
+        let [step] = steps.collect::<Vec<_>>()[..] else { return None };
+        let Expression::Binary { op: BinaryOperator::Add, left: from, right: by } = self.function.expressions[step]
+        else {
+            return None;
+        };
+        // As it is in this turn, not as it was once.
+        let from_itself = matches!(self.function.expressions[from], Expression::Load { pointer: p } if p == pointer)
+            && is_emitted(continuing, from)
+            && is_emitted(body, left);
+        let mut changed = Vec::new();
+        changes(self.function, body, &mut changed);
+        if !leaves || !from_itself || changed.contains(&counter) || self.written(by) != Some(1) {
+            return None;
+        }
+        let first = *self.variables.get(&counter)?.start();
+        // The bound may be worked out in each turn, of what no turn changes.
+        let emits = body.iter().take_while(|statement| matches!(statement, Statement::Emit(_)));
+        changes(self.function, continuing, &mut changed);
+        let kept = std::mem::take(&mut self.variables);
+        self.variables.extend(kept.iter().filter(|(v, _)| !changed.contains(v)).map(|(v, span)| (*v, span.clone())));
+        for statement in emits {
+            self.statement(statement);
+        }
+        let bound = self.span(right).map(|span| *span.end());
+        self.variables = kept;
+        Some((counter, first..=(bound? - 1).max(first)))
+    }
+
+    /// Nothing is known any more of what a block changes.
+    fn forget(&mut self, block: &Block) {
+        let mut changed = Vec::new();
+        changes(self.function, block, &mut changed);
+        self.variables.retain(|variable, _| !changed.contains(variable));
+    }
+
+    /// Notes what is known of a value, and tells whether what it takes an element of has that element.
+    fn emit(&mut self, value: Handle<Expression>) -> bool {
+        if let Some(span) = self.worked_out(value) {
+            self.values.insert(value, span);
+        } else {
+            self.values.remove(&value);
+        }
+        match self.function.expressions[value] {
+            Expression::Access { base, index } => {
+                let count = self.elements(base);
+                let span = self.span(index);
+                count.zip(span).is_some_and(|(count, span)| *span.start() >= 0 && *span.end() < count)
+            }
+            Expression::ImageLoad { .. } => false,
+            _ => true,
+        }
+    }
+
+    /// How many elements what `base` is, or points to, has; none where the text does not say.
+    fn elements(&self, base: Handle<Expression>) -> Option<i64> {
+        let inner = |resolution: &TypeResolution| match resolution {
+            TypeResolution::Handle(handle) => self.module.types[*handle].inner.clone(),
+            TypeResolution::Value(inner) => inner.clone(),
+        };
+        let mut own = inner(&self.types[base].ty);
+        if let TypeInner::Pointer { base, .. } = own {
+            own = self.module.types[base].inner.clone();
+        }
+        match own {
+            TypeInner::Vector { size, .. } | TypeInner::ValuePointer { size: Some(size), .. } => Some(size as i64),
+            TypeInner::Matrix { columns, .. } => Some(columns as i64),
+            TypeInner::Array { size: ArraySize::Constant(count), .. } => Some(i64::from(count.get())),
+            _ => None,
+        }
+    }
+
+    fn span(&self, value: Handle<Expression>) -> Option<Span> {
+        self.values.get(&value).cloned().or_else(|| self.written(value).map(|number| number..=number))
+    }
+
+    /// A number that stands in the text.
+    fn written(&self, value: Handle<Expression>) -> Option<i64> {
+        let literal = match self.function.expressions[value] {
+            Expression::Literal(literal) => literal,
+            Expression::Constant(constant) => {
+                match self.module.global_expressions[self.module.constants[constant].init] {
+                    Expression::Literal(literal) => literal,
+                    _ => return None,
+                }
+            }
+            _ => return None,
+        };
+        match literal {
+            Literal::U32(number) => Some(number.into()),
+            Literal::I32(number) => Some(number.into()),
+            _ => None,
+        }
+    }
+
+    /// What is known of a value by what is known of those that it is made of.
+    fn worked_out(&self, value: Handle<Expression>) -> Option<Span> {
+        let (least, most) = match self.types[value].ty.inner_with(&self.module.types) {
+            TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Uint && scalar.width == 4 => {
+                (0, i64::from(u32::MAX))
+            }
+            TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Sint && scalar.width == 4 => {
+                (i64::from(i32::MIN), i64::from(i32::MAX))
+            }
+            _ => return None,
+        };
+        let any = || least..=most;
+        let span = |value| self.span(value).unwrap_or(any());
+        let found = match self.function.expressions[value] {
+            Expression::Load { pointer } => match self.function.expressions[pointer] {
+                Expression::LocalVariable(variable) => self.variables.get(&variable)?.clone(),
+                _ => return None,
+            },
+            Expression::Binary { op, left, right } => {
+                let ((a, b), (c, d)) = (span(left).into_inner(), span(right).into_inner());
+                match op {
+                    BinaryOperator::Add => a + c..=b + d,
+                    BinaryOperator::Subtract => a - d..=b - c,
+                    BinaryOperator::Multiply if a >= 0 && c >= 0 => a.checked_mul(c)?..=b.checked_mul(d)?,
+                    BinaryOperator::Divide if a >= 0 && c > 0 => a / d..=b / c,
+                    BinaryOperator::Modulo if a >= 0 && c > 0 => 0..=b.min(d - 1),
+                    BinaryOperator::And if c >= 0 => 0..=d,
+                    BinaryOperator::And if a >= 0 => 0..=b,
+                    BinaryOperator::ShiftRight if a >= 0 && c == d => a >> c..=b >> c,
+                    _ => return None,
+                }
+            }
+            Expression::Math { fun: MathFunction::Min, arg, arg1: Some(other), .. } => {
+                let ((a, b), (c, d)) = (span(arg).into_inner(), span(other).into_inner());
+                a.min(c)..=b.min(d)
+            }
+            Expression::Math { fun: MathFunction::Max, arg, arg1: Some(other), .. } => {
+                let ((a, b), (c, d)) = (span(arg).into_inner(), span(other).into_inner());
+                a.max(c)..=b.max(d)
+            }
+            Expression::Math { fun: MathFunction::Clamp, arg1: Some(low), arg2: Some(high), .. } => {
+                let ((a, _), (c, d)) = (span(low).into_inner(), span(high).into_inner());
+                a.min(c)..=d
+            }
+            Expression::Select { accept, reject, .. } => {
+                let ((a, b), (c, d)) = (span(accept).into_inner(), span(reject).into_inner());
+                a.min(c)..=b.max(d)
+            }
+            Expression::As { expr, convert: Some(4), .. } => self.span(expr)?,
+            _ => return None,
+        };
+        // What does not fit wraps around.
+        (*found.start() >= least && *found.end() <= most).then_some(found)
+    }
+}
+
+/// Whether a value is worked out in a block itself, each time it is run.
+pub(super) fn is_emitted(block: &Block, value: Handle<Expression>) -> bool {
+    let emits =
+        |statement: &Statement| matches!(statement, Statement::Emit(range) if range.clone().any(|own| own == value));
+    block.iter().any(emits)
+}
+
+/// The local variable into which a pointer points.
+fn root(function: &Function, pointer: Handle<Expression>) -> Option<Handle<LocalVariable>> {
+    match function.expressions[pointer] {
+        Expression::LocalVariable(variable) => Some(variable),
+        Expression::Access { base, .. } | Expression::AccessIndex { base, .. } => root(function, base),
+        _ => None,
+    }
+}
+
+/// The local variables that a block may change.
+fn changes(function: &Function, block: &Block, into: &mut Vec<Handle<LocalVariable>>) {
+    for statement in block {
+        match statement {
+            Statement::Store { pointer, .. } => into.extend(root(function, *pointer)),
+            Statement::Call { arguments, .. } => into.extend(arguments.iter().filter_map(|a| root(function, *a))),
+            Statement::Block(inner) => changes(function, inner, into),
+            Statement::If { accept, reject, .. } => {
+                changes(function, accept, into);
+                changes(function, reject, into);
+            }
+            Statement::Switch { cases, .. } => cases.iter().for_each(|case| changes(function, &case.body, into)),
+            Statement::Loop { body, continuing, .. } => {
+                changes(function, body, into);
+                changes(function, continuing, into);
+            }
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn proved(body: &str) -> bool {
+        let text = format!(
+            "const COUNT = 4u; var<private> far: u32;
+             fn up(p: ptr<function, u32>) {{ *p += 9u; }}
+             fn f(a: array<f32, 8>, n: u32, k: i32, v: vec4<f32>) -> f32 {{ var all = a; var s = 0.0; {body} return s; }}"
+        );
+        assert!(wgsl::parse_str(&text).is_ok(), "{text}");
+        unproved_index(&text).is_none()
+    }
+
+    #[test]
+    fn what_is_in_range_is_seen_to_be() {
+        for body in [
+            "s = all[7] + v[3];",
+            "s = all[n & 7u] + v[n % 4u];",
+            "s = all[min(n, 7u)] + all[clamp(k, 0, 7)];",
+            "s = all[2u * (n & 3u) + 1u];",
+            "s = all[(n >> 29u)];",
+            "s = all[select(0u, 7u, n > 3u)];",
+            "for (var i = 0u; i < 8u; i++) { s += all[i]; }",
+            "for (var i = 0; i < 7; i++) { s += all[i + 1]; all[i] = s; }",
+            "for (var i = 0u; i < COUNT; i += 1u) { for (var j = 0u; j < 2u; j++) { s += all[2u * i + j]; } }",
+            "let most = min(n, 8u); for (var i = 0u; i < most; i++) { if s > 3.0 { continue; } s += all[i]; }",
+            "var i = 3u; if n > 2u { s = all[i]; } i = 7u; s += all[i];",
+        ] {
+            assert!(proved(body), "{body}");
+        }
+    }
+
+    /// Each is nearly one of those, and may be out of range.
+    #[test]
+    fn what_may_be_out_of_range_is_told() {
+        for body in [
+            "s = all[n];",
+            "s = v[n & 7u];",
+            "s = all[n & 8u];",
+            "s = all[k % 8];",
+            "s = all[min(k, 7)];",
+            "s = all[clamp(k, 0, 8)];",
+            "s = all[max(n, 7u)];",
+            "s = all[(n & 3u) - 1u];",
+            "s = all[(n >> 28u)];",
+            "s = all[far];",
+            "for (var i = 0u; i < 9u; i++) { s += all[i]; }",
+            "for (var i = 0u; i <= 8u; i++) { s += all[i]; }",
+            "for (var i = 0u; i < n; i++) { s += all[i]; }",
+            "for (var i = k; i < 8; i++) { s += all[i]; }",
+            "for (var i = 0u; i < 8u; i++) { s += all[i + 1u]; }",
+            "for (var i = 0u; i < 8u; i++) { i += 3u; s += all[i]; }",
+            "for (var i = 0u; i < 8u; i++) { up(&i); s += all[i]; }",
+            "for (var i = 7; i < 8; i--) { s += all[i]; }",
+            "var i = 0u; let x = i; loop { if x < 8u { } else { break; } s += all[i]; continuing { i += 1u; } }",
+            "var i = -9; let x = i; i = 0; loop { if i < 8 { } else { break; } s += all[i]; continuing { i = x + 1; } }",
+            "var i = 3u; if n > 2u { i = n; } s = all[i];",
+            "var i = 3u; up(&i); s = all[i];",
+            "var i = 0u; loop { s += all[i]; i += 1u; if i > 7u { break; } }",
+        ] {
+            assert!(!proved(body), "{body}");
+        }
+    }
+
+    #[test]
+    fn texels_by_their_place_and_arrays_without_a_length_are_told() {
+        let load = "@group(0) @binding(0) var t: texture_2d<f32>; fn texel() -> vec4<f32> { return textureLoad(t, vec2(0), 0); }";
+        assert_eq!(unproved_index(load).as_deref(), Some("texel"));
+        let open = "@group(0) @binding(0) var<storage> b: array<f32>; fn item(n: u32) -> f32 { return b[n & 1u]; }";
+        assert_eq!(unproved_index(open).as_deref(), Some("item"));
+        assert_eq!(unproved_index("no shader"), None);
+    }
+}
