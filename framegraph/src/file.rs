@@ -251,7 +251,7 @@ impl<'t> GraphFile<'t> {
             }
         }
         let slots_of = |kind: &str| registry.slots(kind);
-        let mut selected = select::select(source, (&self.form, &self.entries), &features, &slots_of, &mut errors);
+        let mut selected = select::select(source, &self.entries, &features, &slots_of, &mut errors);
         for pass in 0..selected.passes.len() {
             let (found, row) = (errors.count(), &selected.passes[pass]);
             if let PassForm::Plugin(form) = row.form {

@@ -7,7 +7,7 @@ use crate::resolve::ResolveMode;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, Deserializer};
 
-/// The first level or layer of an access.
+/// A number that a loop can give: the first level or layer of an access, how often another loop repeats.
 #[derive(Clone, Debug, Default)]
 pub(super) enum Level<T> {
     /// Not named.
@@ -21,17 +21,10 @@ pub(super) enum Level<T> {
 
 impl<T: Copy> Level<T> {
     /// The number; a text was put into numbers when its loop was written out.
-    fn number(&self) -> Option<T> {
+    pub(super) fn number(&self) -> Option<T> {
         match self {
             Self::Number(number) => Some(*number),
             Self::None | Self::Text(_) => None,
-        }
-    }
-
-    /// Puts a number in the place of a text.
-    pub(super) fn evaluate(&mut self, number: impl FnOnce(&mut Spanned<String>) -> T) {
-        if let Self::Text(text) = self {
-            *self = Self::Number(number(text));
         }
     }
 }

@@ -171,10 +171,10 @@ impl<'f> Declaring<'_, 'f> {
             return Err(self.source.value(&form.of, ValueFault::ForwardsTextures));
         };
         let mut range = Range::ALL;
-        if let Some(mip) = form.mip {
+        if let Some(mip) = form.mip.number() {
             (range.mip, range.mips) = (mip, 1);
         }
-        if let Some(layer) = form.layer {
+        if let Some(layer) = form.layer.number() {
             (range.layer, range.layers) = (layer, 1);
         }
         let name = self.selected.resources[of];

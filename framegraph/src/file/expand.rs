@@ -4,9 +4,11 @@
 //! the place of its parameters. Both are written out right after a file is read, so that everything behind sees plain
 //! entries, each of which keeps its place in the text.
 
+use super::access_form::Level;
 use super::error::FileErrors;
 use super::form::{
-    EachForm, GraphForm, PassEntry, PassForm, PluginForm, ResourceEntry, ResourceForm, TemplateForm, UseForm, WorkForm,
+    EachForm, ExportEntry, ExportForm, GraphForm, PassEntry, PassForm, PluginForm, ResourceEntry, ResourceForm,
+    TemplateForm, UseForm, WorkForm,
 };
 use super::params::Word;
 use super::spanned::{Source, Spanned};
@@ -30,25 +32,31 @@ enum Meaning<'n> {
 pub(super) struct Expanded {
     pub(super) resources: Vec<ResourceForm>,
     pub(super) passes: Vec<PassForm>,
+    pub(super) exports: Vec<ExportForm>,
 }
 
 /// Writes out all loops and uses of templates; what is wrong with them goes to `errors`.
 pub(super) fn expand(source: Source<'_>, form: &mut GraphForm, errors: &mut FileErrors) -> Expanded {
     let (resources, passes) = (std::mem::take(&mut form.resources), std::mem::take(&mut form.passes));
-    let out = Expanded { resources: Vec::with_capacity(resources.len()), passes: Vec::with_capacity(passes.len()) };
-    let mut writer = Writer { source, templates: &form.templates.0, out, made: 0, errors };
-    for entry in resources {
-        writer.resource(entry, &Names::new());
-    }
-    for entry in passes {
-        writer.pass(entry, &Names::new());
-    }
+    let exports = std::mem::take(&mut form.exports);
+    let out = Expanded {
+        resources: Vec::with_capacity(resources.len()),
+        passes: Vec::with_capacity(passes.len()),
+        exports: Vec::with_capacity(exports.len()),
+    };
+    let mut writer = Writer { source, templates: &form.templates.0, within: false, out, made: 0, errors };
+    let none = Names::new();
+    resources.into_iter().for_each(|entry| writer.resource(entry, &none));
+    passes.into_iter().for_each(|entry| writer.pass(entry, &none));
+    exports.into_iter().for_each(|entry| writer.export(entry, &none));
     writer.out
 }
 
 struct Writer<'w, 's> {
     source: Source<'s>,
     templates: &'w [(Spanned<String>, TemplateForm)],
+    /// The entries of a template are being written, at whatever depth of loops.
+    within: bool,
     out: Expanded,
     /// Entries that loops and templates have made.
     made: usize,
@@ -84,6 +92,10 @@ impl Writer<'_, '_> {
     fn pass(&mut self, entry: PassEntry, names: &Names<'_>) {
         let form = match entry {
             PassEntry::Each(each) => return self.each(&each, names, Self::pass),
+            // A template that uses another, or itself, would have no end.
+            PassEntry::Use(used) if self.within => {
+                return self.errors.push(|| self.source.value(&used.template, ValueFault::TemplateInTemplate));
+            }
             PassEntry::Use(used) => return self.used(&used, names),
             PassEntry::Raster(form) => PassForm::Raster(self.work(form, names)),
             PassEntry::Compute(form) => PassForm::Compute(self.work(form, names)),
@@ -99,19 +111,43 @@ impl Writer<'_, '_> {
         own.for_each(|text| self.fill(text, names));
         for access in accesses {
             std::iter::once(&mut access.of).chain(&mut access.when).for_each(|text| self.fill(text, names));
-            let mut number = |text: &mut Spanned<String>, most: u16| {
-                self.fill(text, names);
-                let number = text.value.parse().ok().filter(|number: &u16| *number < most);
-                if number.is_none() {
-                    let fault = ValueFault::Level(text.value.clone());
-                    self.errors.push(|| self.source.value(text, fault));
-                }
-                number.unwrap_or_default()
-            };
-            access.mip.evaluate(|text| number(text, u8::MAX.into()) as u8);
-            access.layer.evaluate(|text| number(text, u16::MAX));
+            // The greatest of each means all.
+            self.number(&mut access.mip, u8::MAX - 1, names);
+            self.number(&mut access.layer, u16::MAX - 1, names);
         }
         form
+    }
+
+    fn export(&mut self, entry: ExportEntry, names: &Names<'_>) {
+        let mut form = match entry {
+            ExportEntry::Each(each) => return self.each(&each, names, Self::export),
+            ExportEntry::Keep(form) => ExportForm::Keep(form),
+            ExportEntry::Readback(form) => ExportForm::Readback(form),
+            ExportEntry::Forward(form) => ExportForm::Forward(form),
+        };
+        match &mut form {
+            ExportForm::Keep(kept) | ExportForm::Readback(kept) => {
+                std::iter::once(&mut kept.of).chain(&mut kept.when).for_each(|text| self.fill(text, names));
+            }
+            ExportForm::Forward(f) => {
+                [&mut f.of, &mut f.to].into_iter().chain(&mut f.when).for_each(|text| self.fill(text, names));
+                self.number(&mut f.mip, u8::MAX, names);
+                self.number(&mut f.layer, u16::MAX, names);
+            }
+        }
+        self.out.exports.push(form);
+    }
+
+    /// Puts the number that a text comes to in its place.
+    fn number<T: TryFrom<u32> + Into<u32> + Copy>(&mut self, level: &mut Level<T>, max: T, names: &Names<'_>) {
+        let Level::Text(text) = level else { return };
+        self.fill(text, names);
+        let number = text.value.parse().ok().filter(|number: &u32| *number <= max.into());
+        if number.is_none() {
+            let fault = ValueFault::Number { text: text.value.clone(), max: max.into() };
+            self.errors.push(|| self.source.value(text, fault));
+        }
+        *level = Level::Number(number.and_then(|number| number.try_into().ok()).unwrap_or(max));
     }
 
     fn plugin(&mut self, mut form: PluginForm, names: &Names<'_>) -> PluginForm {
@@ -127,16 +163,19 @@ impl Writer<'_, '_> {
 
     /// A loop: its entries once for each number.
     fn each<E: Clone>(&mut self, each: &EachForm<E>, names: &Names<'_>, write: fn(&mut Self, E, &Names<'_>)) {
-        let mut names = names.clone();
-        names.push((&each.index.value, Meaning::Number(0)));
         let found = self.errors.count();
-        // What is wrong in one turn is wrong in all.
-        for turn in 0..i64::from(each.count) {
-            if self.errors.count() != found {
+        let (mut from, mut count) = (each.from.clone(), each.count.clone());
+        [&mut from, &mut count].into_iter().for_each(|text| self.number(text, u32::MAX, names));
+        let [from, count] = [from, count].map(|number| i64::from(number.number().unwrap_or_default()));
+        let mut names = names.clone();
+        names.push((&each.index.value, Meaning::Number(from)));
+        // What is wrong in one turn is wrong in all, and nothing takes no turns.
+        for turn in 0..count {
+            if self.errors.count() != found || each.entries.is_empty() {
                 return;
             }
             if let Some(last) = names.last_mut() {
-                last.1 = Meaning::Number(i64::from(each.from) + turn);
+                last.1 = Meaning::Number(from + turn * i64::from(each.step));
             }
             for entry in &each.entries {
                 if !self.room(&each.index) {
@@ -178,14 +217,13 @@ impl Writer<'_, '_> {
                 self.resource(entry.clone(), &inner);
             }
         }
+        self.within = true;
         for entry in &template.passes {
-            // A template that uses another, or itself, would have no end.
-            if let PassEntry::Use(inside) = entry {
-                self.errors.push(|| self.source.value(&inside.template, ValueFault::TemplateInTemplate));
-            } else if self.room(&used.template) {
+            if self.room(&used.template) {
                 self.pass(entry.clone(), &inner);
             }
         }
+        self.within = false;
     }
 
     /// A word that is a name in braces and nothing else is what the name stands for.
@@ -233,20 +271,17 @@ impl Writer<'_, '_> {
     }
 }
 
-/// What stands in braces: a name, or a number with another added or taken away.
+/// What stands in braces: a name, or a number with another added or taken away; a template's parameter can be a number.
 fn meaning(inside: &str, names: &Names<'_>) -> Option<Word> {
     let inside = inside.trim();
     let split = inside.find(['+', '-']).unwrap_or(inside.len());
     let (name, change) = inside.split_at(split);
     let (_, found) = names.iter().rev().find(|(known, _)| *known == name.trim())?;
-    match (*found, change) {
-        (Meaning::Word(word), "") => Some(word.clone()),
-        (Meaning::Number(number), "") => Some(Word::Value(number.to_string())),
-        (Meaning::Number(number), change) => {
-            let (sign, by) = change.split_at(1);
-            let by: i64 = by.trim().parse::<u32>().ok()?.into();
-            Some(Word::Value((if sign == "-" { number - by } else { number + by }).to_string()))
-        }
-        (Meaning::Word(_), _) => None,
-    }
+    let number = match (*found, change) {
+        (Meaning::Word(word), "") => return Some(word.clone()),
+        (Meaning::Word(word), _) => word.text().parse::<u32>().ok()?.into(),
+        (Meaning::Number(number), _) => number,
+    };
+    let by: i64 = change.get(1..).map_or(Some(0), |by| by.trim().parse::<u32>().ok())?.into();
+    Some(Word::Value((if change.starts_with('-') { number - by } else { number + by }).to_string()))
 }

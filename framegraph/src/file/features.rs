@@ -34,23 +34,24 @@ impl Features {
     /// Whether a condition holds; none always does.
     pub(super) fn holds(&self, source: Source<'_>, when: Option<&Spanned<String>>) -> Result<bool, FileError> {
         let Some(when) = when else { return Ok(true) };
-        self.evaluate(&when.value).map_err(|reason| source.error(when, reason))
+        self.evaluate(&when.value, source.is_brief()).map_err(|reason| source.error(when, reason))
     }
 
-    /// The value of an or of ands. Every name is looked at, so that a misspelt one never hides behind another.
-    pub(super) fn evaluate(&self, condition: &str) -> Result<bool, FileReason> {
+    /// The value of an or of ands. Every name is looked at, so that a misspelt one never hides behind another. A `brief`
+    /// reason suggests none.
+    fn evaluate(&self, condition: &str, brief: bool) -> Result<bool, FileReason> {
         let mut any = false;
         for term in condition.split("||") {
             let mut all = true;
             for factor in term.split("&&") {
-                all &= self.factor(factor.trim())?;
+                all &= self.factor(factor.trim(), brief)?;
             }
             any |= all;
         }
         Ok(any)
     }
 
-    fn factor(&self, factor: &str) -> Result<bool, FileReason> {
+    fn factor(&self, factor: &str, brief: bool) -> Result<bool, FileReason> {
         let (name, wanted) = match factor.strip_prefix('!') {
             Some(name) => (name.trim_start(), false),
             None => (factor, true),
@@ -60,6 +61,7 @@ impl Features {
         }
         match self.rows.iter().find(|(n, _)| n == name) {
             Some((_, on)) => Ok(*on == wanted),
+            None if brief => Err(Self::new(Vec::new()).unknown(name)),
             None => Err(self.unknown(name)),
         }
     }
@@ -89,14 +91,14 @@ mod tests {
             ("!off && !on", false),
         ];
         for (text, value) in cases {
-            assert_eq!(f.evaluate(text).ok(), Some(value), "{text}");
+            assert_eq!(f.evaluate(text, false).ok(), Some(value), "{text}");
         }
         for bad in ["", "on &&", "on & off", "(on)", "!!on", "on on"] {
-            assert!(matches!(f.evaluate(bad), Err(FileReason::Value(_))), "{bad}");
+            assert!(matches!(f.evaluate(bad, false), Err(FileReason::Value(_))), "{bad}");
         }
         // A name that does not exist is found wherever it stands.
         for unknown in ["on || offf", "off && offf"] {
-            let Err(FileReason::Unknown { near, .. }) = f.evaluate(unknown) else {
+            let Err(FileReason::Unknown { near, .. }) = f.evaluate(unknown, false) else {
                 panic!("{unknown} is known");
             };
             assert_eq!(near.as_deref(), Some("off"));

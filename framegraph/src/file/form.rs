@@ -1,6 +1,6 @@
 //! The shape of a file, as serde reads it. Field by field the reference is `docs/graph-format.md`.
 
-use super::access_form::AccessForm;
+use super::access_form::{AccessForm, Level};
 use super::entries::{Count, Entries};
 use super::params::{Params, Word};
 use super::spanned::{Raw, Spanned};
@@ -29,7 +29,7 @@ pub(super) struct GraphForm {
     #[serde(default)]
     pub(super) passes: Vec<PassEntry>,
     #[serde(default)]
-    pub(super) exports: Vec<ExportForm>,
+    pub(super) exports: Vec<ExportEntry>,
     pub(super) expect: Option<Raw>,
 }
 
@@ -86,8 +86,10 @@ pub(super) enum ResourceForm {
 pub(super) struct EachForm<E> {
     pub(super) index: Spanned<String>,
     #[serde(default)]
-    pub(super) from: u32,
-    pub(super) count: u32,
+    pub(super) from: Level<u32>,
+    pub(super) count: Level<u32>,
+    #[serde(default = "one")]
+    pub(super) step: i32,
     pub(super) entries: Vec<E>,
 }
 
@@ -186,8 +188,8 @@ pub(super) enum Size {
     Texels(u32, u32),
 }
 
-const fn one() -> u16 {
-    1
+fn one<N: From<u8>>() -> N {
+    1.into()
 }
 
 /// Where a resource comes from.
@@ -287,28 +289,40 @@ impl Flag {
     ];
 }
 
-#[derive(Debug, Deserialize)]
+/// An entry of the list of exports, as it stands.
+#[derive(Clone, Debug, Deserialize)]
 #[serde(rename = "Export")]
+pub(super) enum ExportEntry {
+    Keep(RefForm),
+    Readback(RefForm),
+    Forward(ForwardForm),
+    Each(EachForm<Self>),
+}
+
+/// An export, loops written out.
+#[derive(Debug)]
 pub(super) enum ExportForm {
     Keep(RefForm),
     Readback(RefForm),
     Forward(ForwardForm),
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Export")]
 pub(super) struct RefForm {
     pub(super) of: Spanned<String>,
     pub(super) when: Option<Spanned<String>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Forward")]
 pub(super) struct ForwardForm {
     pub(super) of: Spanned<String>,
     pub(super) to: Spanned<String>,
-    pub(super) mip: Option<u8>,
-    pub(super) layer: Option<u16>,
+    #[serde(default)]
+    pub(super) mip: Level<u8>,
+    #[serde(default)]
+    pub(super) layer: Level<u16>,
     pub(super) when: Option<Spanned<String>>,
 }
 

@@ -7,7 +7,7 @@
 use super::error::{FileError, FileErrors, FileReason};
 use super::expand::Expanded;
 use super::features::Features;
-use super::form::{ExportForm, GraphForm, PassForm, ResourceForm};
+use super::form::{ExportForm, PassForm, ResourceForm};
 use super::names::{Lookup, Names};
 use super::selected::{Declared, Mention, PassRow, Selected, SlotsOf};
 use super::spanned::{Source, Spanned};
@@ -16,7 +16,7 @@ use super::value::ValueFault;
 /// Looks everything up; what cannot be found goes to `errors`.
 pub(super) fn select<'f>(
     source: Source<'_>,
-    (form, entries): (&'f GraphForm, &'f Expanded),
+    entries: &'f Expanded,
     features: &Features,
     slots_of: &SlotsOf<'_>,
     errors: &mut FileErrors,
@@ -48,7 +48,7 @@ pub(super) fn select<'f>(
         look_up.mentions(row, slots_of, blind, errors);
         row.failed |= errors.count() != found;
     }
-    for export in &form.exports {
+    for export in &entries.exports {
         let r = match export {
             ExportForm::Keep(r) | ExportForm::Readback(r) => r,
             ExportForm::Forward(form) => {

@@ -96,6 +96,11 @@ impl<'t> Source<'t> {
         if counted_only { Self { text: "", included: &[], ..self } } else { self }
     }
 
+    /// Whether errors are only counted.
+    pub(super) fn is_brief(self) -> bool {
+        self.text.is_empty()
+    }
+
     /// Line and column of a value, both from 1; columns count characters.
     pub(super) fn place<T>(&self, at: &Spanned<T>) -> (usize, usize) {
         self.place_at(at.address)

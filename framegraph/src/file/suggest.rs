@@ -1,38 +1,59 @@
 //! The name that was probably meant.
 
-/// Longer names are not compared: that takes the product of their lengths.
+/// Longer names are not compared.
 const MOST_BYTES: usize = 200;
 
-/// The candidate nearest to `name`, if it is near: at most a third of its letters away, one at least, and never all.
+/// The most slips that a name is forgiven, however long it is.
+const MOST_SLIPS: usize = 12;
+
+/// Candidates are compared until so many pairs of letters were looked at: some ten milliseconds. Names of usual length
+/// reach it beyond ten thousand candidates.
+const MOST_PAIRS: usize = 1 << 22;
+
+/// The candidate nearest to `name`, if it is near: at most a third of its letters away and twelve, one at least, and never
+/// all.
 pub(super) fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
-    let short = |name: &str| name.len() <= MOST_BYTES;
-    if !short(name) {
-        return None;
-    }
-    let letters = name.chars().count();
-    let allowed = (letters / 3).max(1).min(letters.saturating_sub(1));
-    let mut best: Option<(usize, &str)> = None;
-    for candidate in candidates.into_iter().filter(|c| short(c)) {
-        let distance = distance(&name.to_lowercase(), &candidate.to_lowercase(), allowed);
-        if distance <= allowed && best.is_none_or(|(least, _)| distance < least) {
-            best = Some((distance, candidate));
-        }
-    }
-    best.map(|(_, candidate)| candidate)
+    search(name, candidates).0
 }
 
-/// Insertions, deletions, changes and swaps of neighbours from `a` to `b` (optimal string alignment); `limit + 1` when
-/// the lengths alone rule the limit out.
-fn distance(a: &str, b: &str, limit: usize) -> usize {
-    let (a, b): (Vec<_>, Vec<_>) = (a.chars().collect(), b.chars().collect());
-    if a.len().abs_diff(b.len()) > limit {
-        return limit + 1;
+/// The nearest candidate, and how many pairs of letters were looked at.
+fn search<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> (Option<&'c str>, usize) {
+    let (mut best, mut pairs) = (None, 0);
+    if name.len() > MOST_BYTES {
+        return (best, pairs);
     }
-    let mut before = vec![0; b.len() + 1];
+    let letters: Vec<char> = name.to_lowercase().chars().collect();
+    let allowed = (letters.len() / 3).clamp(1, MOST_SLIPS).min(letters.len().saturating_sub(1));
+    // Only one that is nearer than the best so far is of use.
+    let mut limit = Some(allowed);
+    for candidate in candidates.into_iter().filter(|candidate| candidate.len() <= MOST_BYTES) {
+        let Some(most) = limit.filter(|_| pairs < MOST_PAIRS) else { break };
+        let other: Vec<char> = candidate.to_lowercase().chars().collect();
+        if let Some(found) = distance(&letters, &other, most, &mut pairs) {
+            (best, limit) = (Some(candidate), found.checked_sub(1));
+        }
+    }
+    (best, pairs)
+}
+
+/// Insertions, deletions, changes and swaps of neighbours from `a` to `b` (optimal string alignment), none when they are
+/// more than `limit`. Looks at the pairs of letters that are at most `limit` places apart (Ukkonen 1985), as far as some
+/// row stays within it, and counts them.
+fn distance(a: &[char], b: &[char], limit: usize, pairs: &mut usize) -> Option<usize> {
+    if a.len().abs_diff(b.len()) > limit {
+        return None;
+    }
+    let beyond = limit + 1;
+    let mut before = vec![beyond; b.len() + 1];
     let mut last: Vec<usize> = (0..=b.len()).collect();
+    let mut row = before.clone();
     for i in 1..=a.len() {
-        let mut row = vec![i; b.len() + 1];
-        for j in 1..=b.len() {
+        let band = i.saturating_sub(limit).max(1)..=(i + limit).min(b.len());
+        *pairs += 1 + band.clone().count();
+        // What lies beside the band is beyond the limit.
+        row.fill(beyond);
+        row[0] = i;
+        for j in band {
             let change = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
             row[j] = change.min(last[j] + 1).min(row[j - 1] + 1);
             let swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
@@ -40,14 +61,22 @@ fn distance(a: &str, b: &str, limit: usize) -> usize {
                 row[j] = row[j].min(before[j - 2] + 1);
             }
         }
-        before = std::mem::replace(&mut last, row);
+        if row.iter().all(|distance| *distance > limit) {
+            return None;
+        }
+        (before, last, row) = (last, row, before);
     }
-    last[b.len()]
+    Some(last[b.len()]).filter(|distance| *distance <= limit)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn slips(a: &str, b: &str, limit: usize) -> Option<usize> {
+        let [a, b] = [a, b].map(|text| text.chars().collect::<Vec<_>>());
+        distance(&a, &b, limit, &mut 0)
+    }
 
     #[test]
     fn slips_are_found_and_strangers_are_not() {
@@ -57,13 +86,41 @@ mod tests {
         assert_eq!(nearest("ssao", names), None);
         assert_eq!(nearest("", names), None);
         assert_eq!(nearest("a", ["b"]), None);
+        // The nearest wins, of equals the first.
+        assert_eq!(nearest("shadow", ["shadwos", "shadows", "shadown"]), Some("shadows"));
     }
 
     #[test]
     fn distances_by_hand() {
-        assert_eq!(distance("kitten", "sitting", 9), 3);
-        assert_eq!(distance("ab", "ba", 9), 1);
-        assert_eq!(distance("", "abc", 9), 3);
-        assert_eq!(distance("abc", "", 1), 2);
+        assert_eq!(slips("kitten", "sitting", 9), Some(3));
+        assert_eq!(slips("ab", "ba", 9), Some(1));
+        assert_eq!(slips("", "abc", 9), Some(3));
+        assert_eq!(slips("abc", "", 1), None);
+    }
+
+    #[test]
+    fn a_band_finds_what_the_whole_table_finds() {
+        // Words of six and of three letters over an alphabet of two.
+        let words: Vec<String> =
+            (0..64).map(|n| format!("{n:06b}")).chain((0..8).map(|n| format!("{n:03b}"))).collect();
+        for (a, b) in words.iter().flat_map(|a| words.iter().map(move |b| (a, b))) {
+            let whole = slips(a, b, 9).expect("no two are so far apart");
+            for limit in 0..6 {
+                assert_eq!(slips(a, b, limit), (whole <= limit).then_some(whole), "{a} {b} {limit}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_work_is_bounded() {
+        // Strangers end after a few rows of the band.
+        let (mut pairs, [a, b]) = (0, ["a", "b"].map(|letter| letter.repeat(190).chars().collect::<Vec<_>>()));
+        assert_eq!(distance(&a, &b, MOST_SLIPS, &mut pairs), None);
+        assert!(pairs <= (MOST_SLIPS + 1) * (2 * MOST_SLIPS + 2), "{pairs}");
+        // Names that differ at their ends alone need all rows: many of them are not all looked at.
+        let names: Vec<String> = (0..40_000).map(|n| format!("{}{n:018}", "a".repeat(172))).collect();
+        let (_, pairs) = search(&format!("{}{}", "a".repeat(172), "x".repeat(18)), names.iter().map(String::as_str));
+        // The last one that was begun is compared to its end.
+        assert!(pairs < MOST_PAIRS + 200 * (2 * MOST_SLIPS + 2), "{pairs}");
     }
 }

@@ -28,8 +28,8 @@ faults! {
             "name a file in this folder or below, with `/` between the parts";
         /// What the system says of it.
         Unreadable(message: String) "the file cannot be included: {message}", "name a file that can be read";
-        Level(text: String) "`{text}` is no level or layer",
-            "write a number, in a loop one in braces: `\"{{i-1}}\"`";
+        Number { text: String, max: u32 } "`{text}` is no number from 0 to {max}",
+            "write one, in a loop or template one in braces: `\"{{i-1}}\"`";
         Parameter(name: String) "the template needs the parameter `{name}`", "add `\"{name}\": \"…\"` to its `with`";
         TemplateInTemplate "a template uses a template", "write its entries out here";
         Entries { max: u64 } "loops, templates or includes make more than {max} entries",

@@ -58,6 +58,60 @@ fn loops_nest_and_make_resources() {
 }
 
 #[test]
+fn a_template_repeats_as_often_as_it_is_told() {
+    // A chain of levels down and up again: both loops take their bounds from the use.
+    let text = r#"(version: 1,
+        templates: {"chain": (params: ["last"], passes: [
+            Each(index: "i", from: 1, count: "{last}", entries: [Raster(name: "down {i}", accesses: [
+                Sampled(of: "chain", mip: "{i-1}"), Color(to: "chain", mip: "{i}", intent: Overwrite),
+            ])]),
+            Each(index: "i", from: "{last-1}", count: "{last}", step: -1, entries: [Raster(name: "up {i}", accesses: [
+                Sampled(of: "chain", mip: "{i+1}"), Color(to: "chain", mip: "{i}", intent: Modify),
+            ])]),
+        ])},
+        resources: [Texture(name: "chain", format: Rgba16Float, mips: 4)],
+        passes: [
+            Raster(name: "top", accesses: [Color(to: "chain", mip: 0, intent: Overwrite)]),
+            Use(template: "chain", with: {"last": 3}),
+        ],
+        exports: [Keep(of: "chain")],
+    )"#;
+    let graph = graph(text);
+    let names: Vec<_> = graph.pass_ids().map(|p| graph.pass_name(p)).collect();
+    assert_eq!(names, ["top", "down 1", "down 2", "down 3", "up 2", "up 1", "up 0"]);
+    let last: Vec<_> = graph.accesses().iter().rev().take(2).map(|access| access.range.mip).collect();
+    assert_eq!(last, [0, 1], "the last pass reads level 1 and draws into level 0");
+}
+
+#[test]
+fn exports_loop() {
+    let text = |exports: &str| {
+        format!(
+            r#"(version: 1,
+            resources: [
+                Texture(name: "a0", format: R8Unorm), Texture(name: "a1", format: R8Unorm),
+                Texture(name: "b0", format: R8Unorm), Texture(name: "b1", format: R8Unorm),
+                Texture(name: "atlas", format: R8Unorm, layers: 2, kind: Import(entry: Undefined, exit: Keep)),
+            ],
+            passes: [Each(index: "i", count: 2, entries: [
+                Raster(name: "a{{i}}", accesses: [Color(to: "a{{i}}", intent: Overwrite)]),
+                Raster(name: "b{{i}}", accesses: [Color(to: "b{{i}}", intent: Overwrite)]),
+            ])],
+            exports: [{exports}],
+        )"#
+        )
+    };
+    let looped = r#"Each(index: "i", count: 2, entries: [
+        Keep(of: "a{i}"), Forward(of: "b{i}", to: "atlas", layer: "{i}"),
+    ])"#;
+    let plain = r#"Keep(of: "a0"), Forward(of: "b0", to: "atlas", layer: 0), Keep(of: "a1"),
+        Forward(of: "b1", to: "atlas", layer: 1)"#;
+    assert!(graph(&text(looped)).same_as(&graph(&text(plain))));
+    assert_eq!(graph(&text(looped)).exports().len(), 2);
+    assert!(!graph(&text(looped)).same_as(&graph(&text(&plain.replace("layer: 1", "layer: 0")))));
+}
+
+#[test]
 fn a_template_is_used_twice() {
     let text = r#"(version: 1,
         templates: {"copy": (params: ["from", "to"], passes: [
@@ -90,7 +144,7 @@ fn what_is_wrong_with_a_loop_has_its_place() {
         (each(r#"Compute(name: "p")"#), "more than one pass is called `p`"),
         (
             each(r#"Raster(name: "p{i}", accesses: [Color(to: "a", mip: "{i-1}", intent: Overwrite)])"#),
-            "`-1` is no level or layer",
+            "`-1` is no number from 0 to 254",
         ),
         ("(version: 1, passes: [Use(template: \"t\")])".into(), "there is no template `t`"),
         (
@@ -104,6 +158,29 @@ fn what_is_wrong_with_a_loop_has_its_place() {
         (
             r#"(version: 1, templates: {"t": (passes: [Use(template: "t")])}, passes: [Use(template: "t")])"#.into(),
             "a template uses a template",
+        ),
+        (
+            r#"(version: 1, templates: {"t": (passes: [Each(index: "i", count: 1, entries: [
+                Each(index: "j", count: 2, entries: [Use(template: "t")])])])}, passes: [Use(template: "t")])"#
+                .replace('\n', " "),
+            "a template uses a template",
+        ),
+        (
+            r#"(version: 1, templates: {"a": (), "b": (passes: [Each(index: "i", count: 1, entries: [Use(template: "a")])])},
+                passes: [Use(template: "b"), Use(template: "b")])"#
+                .replace('\n', " "),
+            "a template uses a template",
+        ),
+        (
+            r#"(version: 1, templates: {"t": (params: ["n"], passes: [Each(index: "i", count: "{n}", entries: [])])},
+                passes: [Use(template: "t", with: {"n": "few"})])"#
+                .replace('\n', " "),
+            "`few` is no number from 0 to 4294967295",
+        ),
+        (each(r#"Each(index: "j", from: "{i-1}", count: 1, entries: [])"#), "`-1` is no number from 0 to 4294967295"),
+        (
+            r#"(version: 1, exports: [Each(index: "i", count: 2, entries: [Keep(of: "a{j}")])])"#.into(),
+            "there is no name in braces `j`",
         ),
         (each(r#"Each(index: "j", count: 4000000000, entries: [Compute(name: "{i} {j}")])"#), "more than 131072 entries"),
     ];
