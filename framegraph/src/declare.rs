@@ -139,8 +139,9 @@ impl Graph {
     /// A texture whose last `frames` versions stay readable in later frames: the image that this frame writes.
     ///
     /// The ring has `frames + 1` images. On the first frame, and after a reset of the history, the earlier images hold
-    /// zeros and the back end says that they are not valid. Back ends know a history by its full name from frame to frame,
-    /// so a graph has one history of a name; scopes tell two views apart.
+    /// zeros and the back end says that they are not valid. A back end knows a history from frame to frame by who declares it
+    /// (of `framegraph_wgpu` the `Frame`, not the executor) and its full name, so a graph has one history of a name; scopes
+    /// tell two views apart.
     #[track_caller]
     pub fn history(&mut self, name: &str, desc: TextureDesc, frames: u8) -> Texture {
         if frames == 0 {

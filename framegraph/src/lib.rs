@@ -68,7 +68,7 @@ pub mod id;
 mod inspect;
 pub mod options;
 pub mod pass_builder;
-mod plain;
+pub mod plain;
 pub mod plan;
 pub mod resolve;
 pub mod resource;

@@ -1,10 +1,9 @@
 //! Names as outputs show them: on one line, without control characters, and short.
 
 use std::borrow::Cow;
-use std::fmt::Write;
 
 /// Text on one line, whatever is in a name: control characters are written as Rust would (`\n`, `\u{1b}`).
-pub(crate) fn plain(text: &str) -> Cow<'_, str> {
+pub fn plain(text: &str) -> Cow<'_, str> {
     if !text.contains(char::is_control) {
         return Cow::Borrowed(text);
     }
@@ -26,28 +25,22 @@ const MOST_OF_A_NAME: usize = 120;
 const MOST_OF_A_LINE: usize = 4000;
 
 /// The line of an error: [`plain`], each name in backticks shortened, and the whole too.
-pub(crate) fn line(text: &str) -> String {
-    let mut out = String::new();
-    for (index, piece) in text.split('`').enumerate() {
-        if index != 0 {
-            out.push('`');
-        }
-        shorten(piece, MOST_OF_A_NAME, &mut out, index % 2 == 1);
-    }
-    let mut whole = String::new();
-    shorten(&out, MOST_OF_A_LINE, &mut whole, true);
-    plain(&whole).into_owned()
+pub fn line(text: &str) -> String {
+    let pieces = text.split('`').enumerate();
+    let pieces = pieces.map(|(i, piece)| if i % 2 == 1 { short(piece, MOST_OF_A_NAME) } else { piece.into() });
+    plain(&short(&pieces.collect::<Vec<_>>().join("`"), MOST_OF_A_LINE)).into_owned()
 }
 
-/// Appends `text`, or if it has more than `most` characters, so many of them and how many there are.
-fn shorten(text: &str, most: usize, out: &mut String, name: bool) {
+/// A name in an error: [`plain`], and shortened.
+pub fn name(text: &str) -> String {
+    plain(&short(text, MOST_OF_A_NAME)).into_owned()
+}
+
+/// `text`, or if it has more than `most` characters, so many of them and how many there are.
+fn short(text: &str, most: usize) -> Cow<'_, str> {
     match text.char_indices().nth(most) {
-        Some((end, _)) if name => {
-            out.push_str(&text[..end]);
-            // Writing to a string cannot fail.
-            let _ = write!(out, "… ({} characters)", text.chars().count());
-        }
-        _ => out.push_str(text),
+        Some((end, _)) => format!("{}… ({} characters)", &text[..end], text.chars().count()).into(),
+        None => text.into(),
     }
 }
 

@@ -76,7 +76,8 @@ impl<W: ?Sized + 'static> Frame<W> {
         self.recorders.insert(pass, ClosureRecorder { io: pass, record });
     }
 
-    /// Forgets everything declared and keeps the memory; handles of before are refused from now on.
+    /// Forgets everything declared and keeps the memory; handles of before are refused from now on. Histories go on: they
+    /// belong to the frame and their names, and end when it is dropped.
     pub fn reset(&mut self) {
         self.graph.reset();
         self.recorders.clear();

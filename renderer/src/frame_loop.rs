@@ -7,7 +7,7 @@ use crate::execute::executor::{Executor, ExecutorOptions, WarmUp};
 use crate::frame::Frame;
 use crate::frames_in_flight::FramesInFlight;
 use crate::resources::imports::Imports;
-use framegraph::{CompileErrors, DeclareError, Options, Plan, Scratch};
+use framegraph::{CompileErrors, DeclareError, Options, Plan, Scratch, Warning};
 use std::fmt;
 use wgpu::SubmissionIndex;
 
@@ -64,6 +64,9 @@ pub enum FrameError<E = DeclareError> {
     /// It was declared and cannot be compiled.
     #[error(transparent)]
     Compile(#[from] CompileErrors),
+    /// It was compiled, and the plan does nothing of what was declared.
+    #[error("the frame does nothing: {}", .0.sentence())]
+    Idle(Warning),
     /// It was compiled and could not be executed.
     #[error(transparent)]
     Execute(#[from] ExecuteError),
@@ -134,7 +137,33 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
         Ok(Some(Ran { io, submission }))
     }
 
-    /// The first half of [`FrameLoop::run`]: declares and compiles, and executes nothing.
+    /// As [`FrameLoop::run`], with the commands handed out instead of submitted: [`Executor::record`] says what holds until
+    /// [`FrameLoop::submitted`] is told of their submission.
+    ///
+    /// # Errors
+    /// As [`FrameLoop::run`].
+    pub fn record<T, E>(
+        &mut self,
+        size: [u32; 2],
+        world: &W,
+        declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
+    ) -> Result<Option<(T, FrameCommands)>, FrameError<E>> {
+        if size.contains(&0) {
+            return Ok(None);
+        }
+        self.flight.begin().map_err(ExecuteError::Device)?;
+        let Some(io) = self.declare(size, declare)? else { return Ok(None) };
+        Ok(Some((io, self.executor.record(&self.plan, &self.frame, world, &self.imports)?)))
+    }
+
+    /// What [`FrameLoop::record`] handed out last was submitted, with that index.
+    pub fn submitted(&mut self, submission: SubmissionIndex) {
+        self.executor.submitted();
+        self.flight.submitted(submission);
+    }
+
+    /// The first half of [`FrameLoop::run`]: declares and compiles, and executes nothing. A plan that does nothing of what was
+    /// declared, since an export was forgotten, is an error here: nobody else looks at it.
     ///
     /// # Errors
     /// As [`FrameLoop::run`].
@@ -151,7 +180,7 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
         let io = declare(&mut self.frame, &mut self.imports).map_err(FrameError::Declare)?;
         self.options.frame = size;
         self.executor.compile(self.frame.graph(), &self.options, &mut self.scratch, &mut self.plan)?;
-        Ok(Some(io))
+        self.plan.warnings().next().map_or(Ok(Some(io)), |warning| Err(FrameError::Idle(warning)))
     }
 
     /// Makes what the frame declared last takes, before it is wanted ([`Executor::warm_up`]).

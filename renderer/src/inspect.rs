@@ -125,7 +125,7 @@ impl Inspector {
         let (mut graph, handle) = plan.graph().ending_with(target.version).ok_or_else(missing)?;
         let mut part = target.part();
         let resource = plan.graph().versions()[target.version.index()].resource;
-        if let Some([width, height]) = executor.earlier_texels(plan, resource) {
+        if let Some([width, height]) = executor.earlier_texels(plan, frame.key(), resource) {
             part.desc.extent = Extent::absolute(width, height);
         }
         let inspection = part

@@ -101,5 +101,8 @@ fn upload(gpu: &Gpu, baked: &Baked) -> GpuTable {
     };
     let order = TextureDataOrder::LayerMajor;
     let texture = gpu.device.create_texture_with_data(&gpu.queue, &desc, order, &baked.bytes);
-    GpuTable { cube: baked.cube, view: texture.create_view(&wgpu::TextureViewDescriptor::default()) }
+    GpuTable {
+        cube: baked.cube,
+        view: texture.create_view(&wgpu::TextureViewDescriptor { label: Some("grading table"), ..Default::default() }),
+    }
 }

@@ -73,7 +73,12 @@ impl DfgTable {
                 texture
             }
         };
-        Ok(Self { view: texture.create_view(&Default::default()), settings, from_cache, warnings })
+        Ok(Self {
+            view: texture.create_view(&wgpu::TextureViewDescriptor { label: Some("dfg"), ..Default::default() }),
+            settings,
+            from_cache,
+            warnings,
+        })
     }
 }
 

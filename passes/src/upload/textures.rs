@@ -240,7 +240,7 @@ pub(super) fn write_levels<'a>(
             size(width, height),
         );
     }
-    texture.create_view(&TextureViewDescriptor::default())
+    texture.create_view(&TextureViewDescriptor { label: Some(label), ..Default::default() })
 }
 
 fn sampler(gpu: &Gpu, sampler: Sampler) -> wgpu::Sampler {

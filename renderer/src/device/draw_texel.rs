@@ -58,7 +58,7 @@ pub(crate) fn draw_texel(gpu: &Gpu, fragment: &str, target: TextureFormat, layer
         usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
         view_formats: &[],
     });
-    let view = texture.create_view(&Default::default());
+    let view = texture.create_view(&wgpu::TextureViewDescriptor { label: Some("probe"), ..Default::default() });
     let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor { label: Some("probe") });
     let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
         label: Some("probe"),

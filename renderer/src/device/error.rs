@@ -168,11 +168,11 @@ fn from_wgpu(error: &wgpu::Error, doing: &'static str) -> DeviceError {
     }
 }
 
-/// wgpu writes a tree of causes over several lines; the causes alone, from the outside in, on one.
+/// wgpu writes a tree of causes over several lines; the causes alone, from the outside in, on one, whatever labels they name.
 pub(crate) fn one_line(description: &str) -> String {
     let noise = ["Validation Error", "Caused by:"];
     let lines = description.lines().map(str::trim).filter(|l| !l.is_empty() && !noise.contains(l));
-    lines.collect::<Vec<_>>().join(": ")
+    framegraph::plain::line(&lines.collect::<Vec<_>>().join(": "))
 }
 
 #[cfg(test)]

@@ -38,8 +38,38 @@ impl FrameCommands {
         queue.submit(before.into_iter().flatten().chain(last).chain(behind))
     }
 
+    /// The command buffers, to be submitted in this order among those of the caller's, however it submits: before the next frame
+    /// of the same executor is recorded, on the device's queue.
+    ///
+    /// # Errors
+    /// They come back where each must be a submission of its own (Mesa's llvmpipe before version 25, with
+    /// [`framegraph::Alias::Heap`]): then [`FrameCommands::submit`] does it.
+    pub fn into_buffers(self) -> Result<Vec<CommandBuffer>, Self> {
+        if self.apart { Err(self) } else { Ok(self.buffers) }
+    }
+
     /// How many command buffers they are.
     pub fn buffers(&self) -> usize {
         self.buffers.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::gpu::Gpu;
+
+    #[test]
+    fn what_must_be_submitted_apart_is_not_handed_out() -> Result<(), Box<dyn std::error::Error>> {
+        let gpu = Gpu::noop()?;
+        let commands = |apart| {
+            let buffers = [1, 2].map(|_| gpu.device.create_command_encoder(&Default::default()).finish());
+            FrameCommands::new(buffers.into(), apart)
+        };
+        assert_eq!(commands(false).into_buffers().map(|buffers| buffers.len()).ok(), Some(2));
+        let back = commands(true).into_buffers().err().ok_or("handed out")?;
+        assert_eq!(back.buffers(), 2);
+        back.submit(&gpu.queue, [], []);
+        Ok(())
     }
 }

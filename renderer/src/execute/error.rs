@@ -199,6 +199,21 @@ pub enum ExecuteError {
         /// wgpu's reason, on one line.
         message: String,
     },
+    /// wgpu refused the frame's commands when they were submitted. They were sound when they were finished, so it is about what
+    /// they use or what was submitted with them.
+    #[error(
+        "wgpu refused to submit the frame: {message}; {}", match .import {
+            Some(import) => format!("the import `{import}` must be neither destroyed nor mapped until the frame is submitted"),
+            None => "the frame's own commands and imports are sound: look at command buffers that were submitted with them, and \
+                     at what recorders bind beside what their passes declare".into(),
+        }
+    )]
+    Submission {
+        /// The import that cannot be used, where that is the reason.
+        import: Option<Named<ResourceId>>,
+        /// wgpu's reason, on one line.
+        message: String,
+    },
     /// Passes were made epilogues of a shader whose recorder did not look.
     #[error(
         "pass `{pass}` declares that its shader takes epilogues, but its recorder did not ask for them; call `Cx::epilogues`"

@@ -3,6 +3,7 @@
 mod placing;
 #[cfg(feature = "threads")]
 mod record_on;
+mod recorded;
 mod results;
 mod upkeep;
 mod warm_up;
@@ -13,7 +14,7 @@ pub use warm_up::WarmUp;
 
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::gpu::Gpu;
-use crate::execute::blame::refused_pass;
+use crate::execute::blame::{not_submitted, refused_pass};
 use crate::execute::commands::FrameCommands;
 use crate::execute::error::{ExecuteError, MemoryAsked, RecordError};
 use crate::execute::prepared::{Caches, Prepared};
@@ -22,6 +23,7 @@ use crate::execute::segments::Segments;
 use crate::execute::steps::{Passes, record_step};
 use crate::execute::threads::Threads;
 use crate::frame::Frame;
+use crate::frame_key::FrameKey;
 use crate::measure::timing::Timing;
 use crate::named::Named;
 use crate::placed::arenas::Arenas;
@@ -38,8 +40,8 @@ use wgpu::SubmissionIndex;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExecutorOptions {
     /// Frames after which a texture, buffer, view or bind group that no frame used is dropped. The default of 30 is half a
-    /// second at 60 frames a second: longer than a toggle or a drag of the window's edge. A history that no frame declares
-    /// for so long is dropped too.
+    /// second at 60 frames a second: longer than a toggle or a drag of the window's edge. A history that no frame
+    /// writes for so long is dropped too.
     pub max_age: u64,
     /// How many times the bytes of a frame's plan the pools may hold, 3 by default: while a window is dragged, the sizes that
     /// no frame asked for the longest go first ([`PoolCounts::budget_bytes`](crate::PoolCounts::budget_bytes)). What the last two frames used stays.
@@ -102,6 +104,8 @@ pub struct Executor {
     realized: Realized,
     timing: Timing,
     executed: Counts,
+    /// A frame was recorded, and nobody said that it was submitted.
+    unsubmitted: bool,
     /// By access of the graph: whether a recorder looked it up.
     touched: Vec<AtomicBool>,
 }
@@ -128,6 +132,7 @@ impl Executor {
             realized: Realized::default(),
             timing: Timing::new(options.timing, options.trace),
             executed: Counts::default(),
+            unsubmitted: false,
             touched: Vec::new(),
         }
     }
@@ -190,9 +195,7 @@ impl Executor {
         imports: &Imports,
         submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
     ) -> Result<SubmissionIndex, ExecuteError> {
-        if !frame.graph().same_as(plan.graph()) {
-            return Err(ExecuteError::OtherPlan);
-        }
+        check(plan, frame)?;
         self.run(plan, &Passes { frame, world, extra: None }, imports, submit)
     }
 
@@ -205,27 +208,41 @@ impl Executor {
         imports: &Imports,
         submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
     ) -> Result<SubmissionIndex, ExecuteError> {
-        let commands = self.record(plan, passes, imports, None)?;
+        let commands = self.record_frame(plan, passes, imports, None)?;
         let begun = self.recording.now();
         let watch = self.gpu.watch("submitting a frame");
-        self.recording.uniforms.upload(&self.gpu.queue);
-        self.threads.upload(&self.gpu.queue);
+        self.upload();
         let index = submit(commands);
         let caught = watch.end(self.gpu.errors());
         self.recording.took_in_wgpu(begun);
         if let Err(error) = caught {
+            let told = match error {
+                DeviceError::Refused { message, .. } => not_submitted(&self.gpu, plan, imports, message),
+                other => self.told(plan, other),
+            };
             self.forget_frame();
-            return Err(self.told(plan, error));
+            return Err(told);
         }
-        self.timing.submitted(&self.recording);
-        self.histories.advance(passes.frame.key(), self.options.max_age);
-        self.give_up();
+        self.end_frame();
         Ok(index)
+    }
+
+    /// Sends the constants that recorders pushed, ahead of what is submitted next.
+    fn upload(&self) {
+        self.recording.uniforms.upload(&self.gpu.queue);
+        self.threads.upload(&self.gpu.queue);
+    }
+
+    /// Ends a frame that was submitted.
+    fn end_frame(&mut self) {
+        self.timing.submitted(&self.recording);
+        self.histories.advance(self.options.max_age);
+        self.give_up();
     }
 
     /// Records a frame. `recorded` is told each step that is done, and how many pipelines were made until then; one thread
     /// records all of them then.
-    fn record<W: ?Sized + Sync + 'static>(
+    fn record_frame<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
         passes: &Passes<'_, W>,
@@ -238,6 +255,7 @@ impl Executor {
         } else {
             self.gpu.errors().check("a frame")?;
         }
+        self.unsubmitted = false;
         self.caches.begin_frame(self.options.max_age, self.options.max_pipeline_age);
         self.executed = Counts::default();
         self.timing.begin_frame(&self.gpu, plan);
@@ -246,7 +264,7 @@ impl Executor {
 
         let watch = self.recording.in_wgpu(|| self.gpu.watch("a frame"));
         let mut elsewhere = Ok(());
-        let prepared = self.prepare(plan, imports);
+        let prepared = self.prepare(plan, passes.frame.key(), imports);
         let ran = prepared.and_then(|()| self.record_steps(plan, passes, recorded, &mut elsewhere));
         let begun = self.recording.now();
         let caught = watch.end(self.gpu.errors()).and(elsewhere);
@@ -282,7 +300,7 @@ impl Executor {
         imports: &Imports,
     ) -> Option<ExecuteError> {
         let scopes = ErrorScopes::open(&self.gpu.device);
-        let prepared = self.prepare(plan, imports);
+        let prepared = self.prepare(plan, passes.frame.key(), imports);
         let refused = scopes.close("a texture").is_ok() && prepared.is_ok();
         let Self { gpu, caches, realized, timing, touched, options, recording, .. } = self;
         let frame = &Prepared { gpu, plan, realized, caches, timing, touched, poison: options.poison };
@@ -292,12 +310,12 @@ impl Executor {
     }
 
     /// Makes, or finds again, every texture and buffer of the frame.
-    fn prepare(&mut self, plan: &Plan, imports: &Imports) -> Result<(), ExecuteError> {
+    fn prepare(&mut self, plan: &Plan, owner: &FrameKey, imports: &Imports) -> Result<(), ExecuteError> {
         let Self { gpu, textures, buffers, histories, arenas, realized, options, touched, .. } = self;
         touched.clear();
         touched.resize_with(plan.graph().accesses().len(), AtomicBool::default);
         let poison = options.poison;
-        realized.realize(plan, &mut Sources { gpu, textures, buffers, histories, imports, arenas, poison })
+        realized.realize(plan, &mut Sources { gpu, owner, textures, buffers, histories, imports, arenas, poison })
     }
 
     /// Records all steps. What wgpu refuses on other threads than this one is put into `elsewhere`.
@@ -350,14 +368,14 @@ impl Executor {
 
     /// The size in which an earlier image of a history was written, which may be another than that of `plan`; none for other
     /// resources, and for images that hold nothing of use.
-    pub(crate) fn earlier_texels(&self, plan: &Plan, resource: ResourceId) -> Option<[u32; 2]> {
+    pub(crate) fn earlier_texels(&self, plan: &Plan, owner: &FrameKey, resource: ResourceId) -> Option<[u32; 2]> {
         let Kind::HistoryPrevious { current, age } = plan.graph().resources()[resource.index()].kind else {
             return None;
         };
-        self.histories.texels(plan.graph().resource_name(current), age)
+        self.histories.texels(owner, plan.graph().resource_name(current), age)
     }
 
-    /// Forgets the earlier frames of the history of that full name: after a camera cut.
+    /// Forgets the earlier frames of the histories of that full name, whichever [`Frame`] they are of: after a camera cut.
     pub fn reset_history(&mut self, name: &str) {
         self.histories.reset(name);
     }
@@ -367,6 +385,11 @@ impl Executor {
     pub fn reset_histories(&mut self) {
         self.histories.reset_all();
     }
+}
+
+/// Whether a plan is that of a frame.
+fn check<W: ?Sized + 'static>(plan: &Plan, frame: &Frame<W>) -> Result<(), ExecuteError> {
+    if frame.graph().same_as(plan.graph()) { Ok(()) } else { Err(ExecuteError::OtherPlan) }
 }
 
 /// Records all steps on this thread.

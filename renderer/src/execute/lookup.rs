@@ -132,10 +132,10 @@ impl<'a> Cx<'a> {
     pub fn history(&self, previous: Previous) -> Result<HistoryImage, RecordError> {
         let resource = self.graph().resource_of_previous(previous).ok_or(RecordError::Foreign)?;
         Ok(match self.frame.realized.get(resource) {
-            Physical::Texture { valid, shape: PhysicalTextureDesc { size: [width, height, _], .. }, .. } => {
-                HistoryImage { valid: *valid, texels: [*width, *height] }
+            Physical::Texture { missed, shape: PhysicalTextureDesc { size: [width, height, _], .. }, .. } => {
+                HistoryImage { valid: missed.is_some(), missed: missed.unwrap_or(0), texels: [*width, *height] }
             }
-            Physical::Buffer { .. } | Physical::Absent(_) => HistoryImage { valid: false, texels: [0; 2] },
+            Physical::Buffer { .. } | Physical::Absent(_) => HistoryImage { valid: false, missed: 0, texels: [0; 2] },
         })
     }
 

@@ -7,12 +7,16 @@ use wgpu::{TextureView, TextureViewDimension};
 /// The image of a history as an earlier frame left it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HistoryImage {
-    /// It holds what that frame wrote. False on the first frame, after a reset, after a frame without the history, and
-    /// after a change of its format, layers, samples or number of frames: it holds zeros then.
+    /// It holds what that frame wrote. False on the first frame, after a reset, after more frames without the history than
+    /// [`ExecutorOptions::max_age`](crate::ExecutorOptions::max_age), and after a change of its format, layers, samples or
+    /// number of frames: it holds zeros then.
     pub valid: bool,
+    /// How many times the [`Frame`](crate::Frame) was executed without writing the history since it last did; 0 where the
+    /// frame before wrote it. What has no use for a picture that is older than the last one rejects it by this.
+    pub missed: u64,
     /// Width and height in texels. A change of size alone keeps earlier images as they were written, so this is the size of
-    /// that frame, not of this one; 0 where the history has no images. An earlier image that a pass attaches, and one
-    /// that has fewer mip levels than are declared now, is not kept.
+    /// that frame, not of this one; 0 where the history has no images. An earlier image that a pass attaches is not
+    /// kept then, nor one that lacks a mip level which a pass names; a pass that samples all levels gets those that there are.
     pub texels: [u32; 2],
 }
 

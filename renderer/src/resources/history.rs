@@ -1,44 +1,49 @@
 //! Images that outlive the frame in rings: what one frame writes, later ones read, without copies.
 //!
-//! A history of `n` frames is a ring of `n + 1` images, known by its full name. Each frame that writes it and succeeds moves
-//! the ring on by one. Fresh images hold zeros and are not *valid*; recorders are told so
+//! A history of `n` frames is a ring of `n + 1` images, known by its [`Frame`](crate::Frame) and its full name. Each frame that
+//! writes it and succeeds moves the ring on by one. Fresh images hold zeros and are not *valid*; recorders are told so
 //! ([`Cx::history`](crate::Cx::history)) and reject them.
 //!
-//! A ring is kept until it is reset, until the [`Frame`](crate::Frame) that wrote it last is executed without writing it, or
-//! until [`ExecutorOptions::max_age`](crate::ExecutorOptions::max_age) frames of others went by. A change of width and
-//! height keeps the earlier images, each in the size that it was written in; any other change of shape starts anew.
+//! A ring is kept until it is reset, until its `Frame` is dropped, or until nobody wrote it for
+//! [`ExecutorOptions::max_age`](crate::ExecutorOptions::max_age) frames of the executor, whoever declared those. No other `Frame`
+//! takes it over. A change of width and height keeps the earlier images, each in the size that it was written in; any other
+//! change of shape starts anew.
 
 use crate::device::gpu::Gpu;
-use crate::frame_key::FrameKey;
+use crate::frame_key::{FrameKey, FrameTag};
 use crate::resources::physical::PhysicalTextureDesc;
 use crate::resources::pool::Pooled;
 use crate::resources::support::Unsupported;
-use std::collections::BTreeMap;
 use wgpu::Texture;
 
-/// All histories by the full name of their resource.
+/// All histories, by their frame and the full name of their resource.
 #[derive(Clone, Debug, Default)]
 pub struct Histories {
-    rings: BTreeMap<String, Ring>,
+    rings: Vec<Ring>,
     created: u64,
     /// Frames that succeeded.
     frame: u64,
+    /// Who is executed now.
+    now: FrameTag,
 }
 
 #[derive(Clone, Debug)]
 struct Ring {
+    owner: FrameTag,
+    name: String,
     images: Vec<Image>,
     /// The image that this frame writes.
     head: usize,
     /// How many earlier images hold what a frame wrote.
     valid: usize,
+    /// Frames of its owner since the one that wrote it last.
+    missed: u64,
     declared: bool,
     written: bool,
     /// An image was made in this frame.
     fresh: bool,
-    /// The frame that wrote it last, by number and by who declared it.
+    /// The frame that wrote it last.
     moved: u64,
-    owner: Option<FrameKey>,
 }
 
 #[derive(Clone, Debug)]
@@ -58,6 +63,8 @@ pub(crate) struct Declared {
     pub(crate) written: bool,
     /// Earlier images are attached, so that they must have the size of this frame's.
     pub(crate) attached: bool,
+    /// How many levels earlier images must have for what reads them; not more than `shape` has.
+    pub(crate) levels: u32,
 }
 
 /// The image of an earlier frame.
@@ -65,7 +72,8 @@ pub(crate) struct Declared {
 pub(crate) struct Earlier {
     pub(crate) texture: Texture,
     pub(crate) shape: PhysicalTextureDesc,
-    pub(crate) valid: bool,
+    /// How many frames of its owner went by without writing the history; none where the image holds nothing of use.
+    pub(crate) missed: Option<u64>,
 }
 
 impl Image {
@@ -75,10 +83,10 @@ impl Image {
 
     /// Whether passes that are declared to read `now` can read this image, which may be of another size.
     fn reads_as(&self, now: &Declared) -> bool {
-        let Declared { shape, attached, .. } = now;
+        let Declared { shape, attached, levels, .. } = now;
         let Self { shape: own, .. } = self;
         let sized = PhysicalTextureDesc { size: [shape.size[0], shape.size[1], own.size[2]], mips: shape.mips, ..*own };
-        if *attached { own.serves(shape) } else { own.mips >= shape.mips && sized.serves(shape) }
+        if *attached { own.serves(shape) } else { own.mips >= *levels && sized.serves(shape) }
     }
 }
 
@@ -90,12 +98,16 @@ impl Histories {
 
     /// Bytes of all images, without padding.
     pub fn bytes(&self) -> u64 {
-        self.rings.values().flat_map(|ring| &ring.images).map(|image| image.shape.bytes()).sum()
+        self.rings.iter().flat_map(|ring| &ring.images).map(|image| image.shape.bytes()).sum()
     }
 
-    /// Begins a frame: nothing is declared yet.
-    pub(crate) fn begin_frame(&mut self) {
-        self.rings.values_mut().for_each(|r| (r.declared, r.fresh) = (false, false));
+    /// Begins a frame of `owner`: nothing is declared yet, and rings whose frames were dropped go.
+    pub(crate) fn begin_frame(&mut self, owner: &FrameKey) {
+        if !self.now.is_of(owner) {
+            self.now = owner.tag();
+        }
+        self.rings.retain(|ring| !ring.owner.is_gone());
+        self.rings.iter_mut().for_each(|r| (r.declared, r.fresh) = (false, false));
     }
 
     /// Declares a history and returns the image that this frame writes.
@@ -104,16 +116,21 @@ impl Histories {
     /// When the device offers no such texture.
     pub(crate) fn current(&mut self, gpu: &Gpu, name: &str, now: Declared) -> Result<Texture, Unsupported> {
         let length = usize::from(now.frames) + 1;
-        if self.rings.get(name).is_none_or(|ring| ring.images.len() != length) {
-            let images = (0..length).map(|_| Image::create(gpu, name, now.shape)).collect::<Result<Vec<_>, _>>()?;
-            self.created += length as u64;
-            let (moved, written) = (self.frame, now.written);
-            let ring = Ring { images, head: 0, valid: 0, declared: false, written, fresh: true, moved, owner: None };
-            self.rings.insert(name.to_owned(), ring);
-        }
-        let Some(ring) = self.rings.get_mut(name) else {
-            unreachable!("it was inserted above");
+        let is = |ring: &Ring| ring.is(&self.now, name);
+        let at = match self.rings.iter().position(is) {
+            Some(at) if self.rings[at].images.len() == length => at,
+            other => {
+                let images = (0..length).map(|_| Image::create(gpu, name, now.shape)).collect::<Result<Vec<_>, _>>()?;
+                self.created += length as u64;
+                let ring = Ring::new(self.now.clone(), name, images, self.frame);
+                match other {
+                    Some(at) => self.rings[at] = ring,
+                    None => self.rings.push(ring),
+                }
+                other.unwrap_or(self.rings.len() - 1)
+            }
         };
+        let ring = &mut self.rings[at];
         // An image that cannot be read makes those before it unreachable; what is not valid holds zeros in today's shape.
         let kept = (1..=ring.valid).find(|age| !ring.image(*age).reads_as(&now)).map_or(ring.valid, |age| age - 1);
         for age in 0..length {
@@ -129,47 +146,44 @@ impl Histories {
 
     /// The image as it was `age` frames ago; `None` when the history is not declared.
     pub(crate) fn previous(&self, name: &str, age: u8) -> Option<Earlier> {
-        let ring = self.rings.get(name).filter(|r| r.declared)?;
+        let ring = self.rings.iter().find(|ring| ring.declared && ring.is(&self.now, name))?;
         let age = usize::from(age);
         let Image { texture, shape } = ring.image(age).clone();
-        Some(Earlier { texture, shape, valid: age <= ring.valid })
+        Some(Earlier { texture, shape, missed: (age <= ring.valid).then_some(ring.missed) })
     }
 
-    /// Width and height of the image as it was `age` frames before the frame to come; none when that is not valid.
-    pub(crate) fn texels(&self, name: &str, age: u8) -> Option<[u32; 2]> {
-        let ring = self.rings.get(name).filter(|ring| usize::from(age) <= ring.valid)?;
+    /// Width and height of the image as it was `age` frames before the next one of `owner`; none when that is not valid.
+    pub(crate) fn texels(&self, owner: &FrameKey, name: &str, age: u8) -> Option<[u32; 2]> {
+        let ring = self.rings.iter().find(|ring| ring.owner.is_of(owner) && ring.name == name)?;
         let [width, height, _] = ring.image(age.into()).shape.size;
-        Some([width, height])
+        (usize::from(age) <= ring.valid).then_some([width, height])
     }
 
-    /// Ends a frame of `owner` that succeeded: rings that it wrote move on; its others are dropped, and those that nobody
-    /// wrote for `max_age` frames.
-    pub(crate) fn advance(&mut self, owner: &FrameKey, max_age: u64) {
+    /// Ends a frame that succeeded: rings that it wrote move on, and those that nobody wrote for `max_age` frames are dropped.
+    pub(crate) fn advance(&mut self, max_age: u64) {
         self.frame += 1;
-        let now = self.frame;
-        self.rings.retain(|_, ring| {
-            if !ring.declared {
-                return ring.owner.as_ref() != Some(owner) && now - ring.moved <= max_age;
+        let Self { rings, frame, now, .. } = self;
+        for ring in rings.iter_mut() {
+            if ring.declared && ring.written {
+                let length = ring.images.len();
+                ring.head = (ring.head + 1) % length;
+                ring.valid = (ring.valid + 1).min(length - 1);
+                (ring.moved, ring.missed) = (*frame, 0);
+            } else if ring.owner == *now {
+                ring.missed += 1;
             }
-            let length = ring.images.len();
-            ring.head = (ring.head + 1) % length;
-            ring.valid = (ring.valid + 1).min(length - 1);
-            ring.moved = now;
-            if ring.owner.as_ref() != Some(owner) {
-                ring.owner = Some(owner.clone());
-            }
-            ring.written
-        });
+        }
+        rings.retain(|ring| *frame - ring.moved <= max_age);
     }
 
     /// After the device refused something: an image made in this frame may be no good.
     pub(crate) fn forget_frame(&mut self) {
-        self.rings.retain(|_, ring| !ring.fresh);
+        self.rings.retain(|ring| !ring.fresh);
     }
 
-    /// Forgets the earlier frames of one history: after a camera cut, say.
+    /// Forgets the earlier frames of the histories of one name: after a camera cut, say.
     pub(crate) fn reset(&mut self, name: &str) {
-        self.rings.remove(name);
+        self.rings.retain(|ring| ring.name != name);
     }
 
     /// Forgets the earlier frames of all histories.
@@ -179,6 +193,16 @@ impl Histories {
 }
 
 impl Ring {
+    /// A ring of images that hold nothing yet.
+    fn new(owner: FrameTag, name: &str, images: Vec<Image>, moved: u64) -> Self {
+        let (name, head, valid, missed) = (name.to_owned(), 0, 0, 0);
+        Self { owner, name, images, head, valid, missed, declared: false, written: false, fresh: true, moved }
+    }
+
+    fn is(&self, owner: &FrameTag, name: &str) -> bool {
+        self.owner == *owner && self.name == name
+    }
+
     fn index(&self, age: usize) -> usize {
         let length = self.images.len();
         (self.head + length - age % length) % length
@@ -202,7 +226,7 @@ mod tests {
     fn declared(side: u32, format: Format, frames: u8) -> Declared {
         let desc = TextureDesc::new(Extent::absolute(side, side), format);
         let shape = PhysicalTextureDesc::new(&desc, [1, 1], Usage::SAMPLED, false);
-        Declared { shape, frames, written: true, attached: false }
+        Declared { shape, frames, written: true, attached: false, levels: 1 }
     }
 
     /// Histories with who executes.
@@ -219,22 +243,22 @@ mod tests {
 
         /// One frame with the history `taa`: how wide its earlier image is, and whether that is valid.
         fn frame(&mut self, now: Declared, success: bool) -> Result<(u32, bool), Box<dyn std::error::Error>> {
-            self.histories.begin_frame();
+            self.histories.begin_frame(&self.owner);
             self.histories.current(&self.gpu, "taa", now)?;
             let earlier = self.histories.previous("taa", 1).ok_or("not declared")?;
             if success {
-                self.histories.advance(&self.owner, 3);
+                self.histories.advance(3);
             }
             assert_eq!(earlier.texture.width(), earlier.shape.size[0]);
-            Ok((earlier.shape.size[0], earlier.valid))
+            Ok((earlier.shape.size[0], earlier.missed.is_some()))
         }
 
-        /// Frames of somebody else, without the history.
-        fn others(&mut self, frames: u64) {
+        /// Frames without the history: of somebody else, or of its own graph.
+        fn without(&mut self, frames: u64, own: bool) {
             let other = FrameKey::new();
             for _ in 0..frames {
-                self.histories.begin_frame();
-                self.histories.advance(&other, 3);
+                self.histories.begin_frame(if own { &self.owner } else { &other });
+                self.histories.advance(3);
             }
         }
     }
@@ -246,49 +270,86 @@ mod tests {
         let Bench { gpu, mut histories, owner } = Bench::new()?;
         let mut written = Vec::new();
         for frame in 0..7 {
-            histories.begin_frame();
+            histories.begin_frame(&owner);
             let current = histories.current(&gpu, "taa", declared(4, Format::R8Unorm, 2))?;
             for age in 1..=2u8 {
-                let Earlier { texture, valid, .. } = histories.previous("taa", age).ok_or("not declared")?;
+                let Earlier { texture, missed, .. } = histories.previous("taa", age).ok_or("not declared")?;
+                let valid = missed.is_some();
                 assert_eq!(valid, usize::from(age) <= frame, "frame {frame}, age {age}");
                 if valid {
                     assert_eq!(texture, written[frame - usize::from(age)]);
                 }
             }
             written.push(current);
-            histories.advance(&owner, 30);
+            histories.advance(30);
         }
         assert_eq!((histories.created(), histories.bytes()), (3, 48));
         Ok(())
     }
 
     #[test]
-    fn format_pause_and_reset_invalidate_and_a_failed_frame_does_not() -> TestResult {
+    fn format_and_reset_invalidate_and_a_failed_frame_does_not() -> TestResult {
         let mut bench = Bench::new()?;
         let (r8, r16) = (declared(4, Format::R8Unorm, 1), declared(4, Format::R16Float, 1));
         let found = [bench.frame(r8, true)?, bench.frame(r8, false)?, bench.frame(r8, true)?];
         assert_eq!(found.map(|(_, valid)| valid), [false, true, true]);
         assert_eq!([bench.frame(r16, true)?.1, bench.frame(r16, true)?.1], [false, true], "after another format");
-        bench.histories.begin_frame();
-        bench.histories.advance(&bench.owner, 3);
-        assert_eq!([bench.frame(r16, true)?.1, bench.frame(r16, true)?.1], [false, true], "after a frame without it");
         bench.histories.reset("taa");
         assert_eq!([bench.frame(r16, true)?.1, bench.frame(r16, true)?.1], [false, true], "after a reset");
         Ok(())
     }
 
     #[test]
-    fn frames_of_others_age_a_history_and_do_not_drop_it() -> TestResult {
-        let mut bench = Bench::new()?;
-        let now = declared(4, Format::R8Unorm, 1);
-        assert!(!bench.frame(now, true)?.1);
-        for others in [1, 2, 3] {
-            bench.others(others);
-            assert!(bench.frame(now, true)?.1, "after {others} frames of others");
+    fn frames_without_a_history_age_it_whoever_runs_them() -> TestResult {
+        for own in [false, true] {
+            let mut bench = Bench::new()?;
+            let now = declared(4, Format::R8Unorm, 1);
+            assert!(!bench.frame(now, true)?.1);
+            for without in [1, 2, 3] {
+                bench.without(without, own);
+                bench.histories.begin_frame(&bench.owner);
+                bench.histories.current(&bench.gpu, "taa", now)?;
+                let missed = bench.histories.previous("taa", 1).and_then(|earlier| earlier.missed);
+                assert_eq!(missed, Some(if own { without } else { 0 }), "after {without} frames without it");
+                assert!(bench.frame(now, true)?.1);
+            }
+            bench.without(4, own);
+            assert_eq!(bench.histories.bytes(), 0, "it is dropped, not only invalid");
+            assert!(!bench.frame(now, true)?.1);
         }
-        bench.others(4);
-        assert_eq!(bench.histories.bytes(), 0, "it is dropped, not only invalid");
-        assert!(!bench.frame(now, true)?.1);
+        Ok(())
+    }
+
+    #[test]
+    fn frames_share_no_ring_and_a_ring_goes_with_its_frame() -> TestResult {
+        let mut bench = Bench::new()?;
+        let mut other = FrameKey::new();
+        let (now, wide) = (declared(4, Format::R8Unorm, 1), declared(4, Format::Rgba16Float, 1));
+        for round in 0..3 {
+            for now in [now, wide] {
+                assert_eq!(bench.frame(now, true)?.1, round > 0, "round {round}");
+                std::mem::swap(&mut bench.owner, &mut other);
+            }
+        }
+        assert_eq!((bench.histories.created(), bench.histories.bytes()), (4, 2 * 16 + 2 * 128));
+        bench.owner = FrameKey::new();
+        assert!(!bench.frame(now, true)?.1, "a new frame takes over nothing");
+        assert_eq!((bench.histories.created(), bench.histories.bytes()), (6, 2 * 128 + 2 * 16));
+        Ok(())
+    }
+
+    /// Of an earlier image with fewer levels, those that it has are enough for a pass that samples all.
+    #[test]
+    fn a_resize_keeps_an_image_that_has_the_levels_that_are_read() -> TestResult {
+        let of = |side, levels| {
+            let desc = TextureDesc::new(Extent::absolute(side, side), Format::R8Unorm).mips(TextureDesc::ALL_MIPS);
+            let shape = PhysicalTextureDesc::new(&desc, [1, 1], Usage::SAMPLED, false);
+            Declared { shape, levels, ..declared(side, Format::R8Unorm, 1) }
+        };
+        let mut bench = Bench::new()?;
+        let sizes = [of(8, 1), of(16, 4), of(32, 6), of(16, 5)].map(|now| bench.frame(now, true).ok());
+        let expected = [(8, false), (8, true), (32, false), (32, true)];
+        assert_eq!(sizes, expected.map(Some), "16 texels have five levels, not the sixth that is named at 32");
         Ok(())
     }
 

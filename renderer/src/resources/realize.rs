@@ -2,6 +2,7 @@
 
 use crate::device::gpu::Gpu;
 use crate::execute::error::ExecuteError;
+use crate::frame_key::FrameKey;
 use crate::placed::arenas::{Arena, Arenas};
 use crate::resources::history::{Declared, Earlier, Histories};
 use crate::resources::imports::{Imports, Lifetime};
@@ -9,7 +10,7 @@ use crate::resources::no_memory::NoMemory;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::Pool;
 use crate::resources::requests::{Requests, offered, shaped};
-use framegraph::{Desc, Kind, Placement, Plan, ResourceId, Usage};
+use framegraph::{Access, AccessKind, Desc, Kind, Placement, Plan, ResourceId, Usage};
 use wgpu::{Buffer, Texture};
 
 /// What stands behind one resource in this frame.
@@ -17,8 +18,8 @@ use wgpu::{Buffer, Texture};
 pub(crate) enum Physical {
     /// Nothing, and why.
     Absent(NoMemory),
-    /// A texture; `valid` is false for an image of a history that holds nothing of use.
-    Texture { texture: Texture, shape: PhysicalTextureDesc, valid: bool, lifetime: Lifetime },
+    /// A texture; `missed` is how many frames a history was not written for, and none where its image holds nothing of use.
+    Texture { texture: Texture, shape: PhysicalTextureDesc, missed: Option<u64>, lifetime: Lifetime },
     /// A buffer, of which the first `bytes` bytes are the resource.
     Buffer { buffer: Buffer, bytes: u64 },
 }
@@ -45,6 +46,8 @@ pub(crate) struct Realized {
 /// Where textures and buffers come from.
 pub(crate) struct Sources<'a> {
     pub(crate) gpu: &'a Gpu,
+    /// The frame that is executed.
+    pub(crate) owner: &'a FrameKey,
     pub(crate) textures: &'a mut Pool<PhysicalTextureDesc>,
     pub(crate) buffers: &'a mut Pool<PhysicalBufferDesc>,
     pub(crate) histories: &'a mut Histories,
@@ -93,7 +96,7 @@ impl Realized {
     pub(crate) fn realize(&mut self, plan: &Plan, from: &mut Sources<'_>) -> Result<(), ExecuteError> {
         from.textures.begin_frame();
         from.buffers.begin_frame();
-        from.histories.begin_frame();
+        from.histories.begin_frame(from.owner);
         from.arenas.begin_frame();
         // Not of this plan before all of it is there.
         let before = std::mem::take(&mut self.compilation);
@@ -205,7 +208,7 @@ impl Realized {
         Ok(match declared.desc {
             Desc::Texture(_) => {
                 let (texture, shape) = self.requests.texture(resource);
-                Physical::Texture { texture, shape, valid: true, lifetime: Lifetime::Kept }
+                Physical::Texture { texture, shape, missed: Some(0), lifetime: Lifetime::Kept }
             }
             Desc::Buffer(b) => {
                 Physical::Buffer { buffer: self.requests.buffer(resource), bytes: b.bytes(plan.frame()) }
@@ -224,9 +227,9 @@ impl Realized {
             return Ok(Physical::Absent(NoMemory::IsBuffer));
         };
         let rows = plan.graph().resources().iter().zip(plan.resources());
-        let earlier =
-            rows.filter(|(r, _)| matches!(r.kind, Kind::HistoryPrevious { current, .. } if current == resource));
-        let (earlier, views_earlier) = earlier
+        let is_earlier = |kind| matches!(kind, Kind::HistoryPrevious { current, .. } if current == resource);
+        let (earlier, views_earlier) = rows
+            .filter(|(r, _)| is_earlier(r.kind))
             .fold((Usage::NONE, false), |(usage, views), (_, row)| (usage.union(row.usage), views || row.srgb_views));
         let own = plan.resources()[resource.index()];
         let usage = own.usage.union(self.requests.extra(resource)).union(earlier);
@@ -237,20 +240,35 @@ impl Realized {
         let mut shape = PhysicalTextureDesc::new(&desc, plan.frame(), usage, views);
         // An inspection reads the ring whatever the frame itself does with it.
         shape.usage |= offered(from.gpu, desc.format);
-        let written = !plan.resources()[resource.index()].first.is_none();
-        let now = Declared { shape, frames, written, attached: earlier.contains(Usage::ATTACHMENT) };
+        let reads =
+            plan.graph().accesses().iter().filter(|a| is_earlier(plan.graph().resources()[a.resource.index()].kind));
+        let now = Declared {
+            shape,
+            frames,
+            written: !plan.resources()[resource.index()].first.is_none(),
+            attached: earlier.contains(Usage::ATTACHMENT),
+            levels: reads.map(|read| levels_for(read, shape.mips)).max().unwrap_or(1),
+        };
         let texture = from.histories.current(from.gpu, plan.graph().resource_name(resource), now)?;
-        Ok(Physical::Texture { texture, shape, valid: true, lifetime: Lifetime::Kept })
+        Ok(Physical::Texture { texture, shape, missed: Some(0), lifetime: Lifetime::Kept })
     }
 
     fn previous(&self, plan: &Plan, current: ResourceId, age: u8, histories: &Histories) -> Physical {
         match histories.previous(plan.graph().resource_name(current), age) {
-            Some(Earlier { texture, shape, valid }) => {
-                Physical::Texture { texture, shape, valid, lifetime: Lifetime::Kept }
+            Some(Earlier { texture, shape, missed }) => {
+                Physical::Texture { texture, shape, missed, lifetime: Lifetime::Kept }
             }
             None => Physical::Absent(NoMemory::NoHistory),
         }
     }
+}
+
+/// How many of `mips` levels a texture must have for an access: shaders that sample all levels make do with those that there
+/// are, and copies do not.
+fn levels_for(access: &Access, mips: u32) -> u32 {
+    let levels = access.range.mip_range(mips);
+    let all = access.kind == AccessKind::Sampled && access.range.mips == u8::MAX;
+    if all { levels.start + 1 } else { levels.end }
 }
 
 /// What lies in an arena.
@@ -259,7 +277,7 @@ fn in_arena(plan: &Plan, resource: ResourceId, arena: Option<&Arena>, at: usize)
     let buffer = arena.and_then(|arena| arena.buffer(at));
     match (texture, buffer, plan.graph().resources()[resource.index()].desc) {
         (Some((texture, shape)), ..) => {
-            Physical::Texture { texture: texture.clone(), shape, valid: true, lifetime: Lifetime::Kept }
+            Physical::Texture { texture: texture.clone(), shape, missed: Some(0), lifetime: Lifetime::Kept }
         }
         (None, Some(buffer), Desc::Buffer(b)) => {
             Physical::Buffer { buffer: buffer.clone(), bytes: b.bytes(plan.frame()) }
@@ -274,7 +292,7 @@ fn external(plan: &Plan, resource: ResourceId, imports: &Imports) -> Result<Phys
             let (texture, lifetime) = imports.find_texture(plan, resource)?;
             let mut shape = PhysicalTextureDesc::new(&desc, plan.frame(), Usage::NONE, false);
             shape.usage = texture.usage();
-            Physical::Texture { texture: texture.clone(), shape, valid: true, lifetime }
+            Physical::Texture { texture: texture.clone(), shape, missed: Some(0), lifetime }
         }
         Desc::Buffer(desc) => {
             Physical::Buffer { buffer: imports.find_buffer(plan, resource)?.clone(), bytes: desc.bytes(plan.frame()) }

@@ -1,7 +1,7 @@
 //! Declare and go: what a loop keeps, what it skips, and what it does after an error.
 
 use crate::bench::{GREEN, RED, TestResult, fill_full, on_every_device};
-use framegraph::{DeclareError, Entry, Exit, Extent, Format, Intent, TextureDesc};
+use framegraph::{Counts, DeclareError, Entry, Exit, Extent, Format, Intent, TextureDesc, Warning};
 use framegraph_wgpu::{Frame, FrameError, FrameLoop, FramesInFlight, Imports, read_texture};
 use std::num::NonZeroU32;
 
@@ -71,6 +71,29 @@ fn a_loop_draws_skips_and_goes_on_after_errors() -> TestResult {
         shows(&mut frames, &small, RED)?;
         shows(&mut frames, &large, GREEN)
     })
+}
+
+/// Passes without which nothing is missing are refused, not skipped in silence; a frame without passes has nothing to do.
+#[test]
+fn a_frame_whose_export_was_forgotten_is_refused() -> TestResult {
+    let gpu = framegraph_wgpu::Gpu::noop()?;
+    let mut frames = FrameLoop::<()>::new(&gpu);
+    let mut run = |exported: bool| {
+        frames.run([8, 8], &(), |frame, _| {
+            let sky = frame.graph_mut().texture("sky", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+            let sky = frame.add_fn("sky", |p| p.color(sky, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
+            if exported { frame.graph_mut().export(sky) } else { Ok(()) }
+        })
+    };
+    assert!(run(true)?.is_some());
+    let told = run(false);
+    assert!(matches!(told, Err(FrameError::Idle(Warning::NothingRuns))), "{told:?}");
+    let told = format!("{told:?}");
+    assert!(told.contains("the frame does nothing: no pass runs") && told.contains("export"), "{told}");
+    assert!(run(true)?.is_some());
+    let ran = frames.run([8, 8], &(), |_, _| Ok::<_, DeclareError>(()))?;
+    assert!(ran.is_some() && frames.executor().executed() == Counts::default());
+    Ok(())
 }
 
 /// However long the device takes, no more frames are queued than may be, and each frame that is done is counted once.

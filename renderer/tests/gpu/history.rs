@@ -4,7 +4,7 @@ use crate::bench::{Bench, RED, TestResult, draw, draw_of, fill_full, on_every_de
 use framegraph::{DeclareError, Extent, Format, Intent, PassBuilder, Previous, Texture, TextureDesc, View};
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::inspect::Inspector;
-use framegraph_wgpu::{Cx, Raster, RecordError, Shader};
+use framegraph_wgpu::{Cx, ExecutorOptions, Raster, RecordError, Shader};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 
@@ -189,19 +189,20 @@ fn a_history_goes_on_while_sizes_change() -> TestResult {
     })
 }
 
-/// Two frames take turns on one executor, each with a history of its own; and a frame that leaves its history out loses it.
+/// What a frame declares that has nothing to do with a history.
+fn blank(frame: &mut Frame) -> Result<(), DeclareError> {
+    let out = frame.graph_mut().texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+    let out = frame.add_fn("blank", |p| p.color(out, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
+    frame.graph_mut().export(out)
+}
+
+/// A frame of another graph goes between, be it another `Frame` or the same one declared otherwise.
 #[test]
 fn a_history_survives_frames_of_another_graph() -> TestResult {
     on_every_device("a_history_survives_frames_of_another_graph", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 4, 4);
         let mut other = Frame::<()>::new();
         let valid = Arc::new(AtomicU32::new(9));
-        let blank = |frame: &mut Frame| {
-            let out = frame.graph_mut().texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
-            let out = frame.add_fn("blank", |p| p.color(out, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
-            frame.graph_mut().export(out)?;
-            Ok(())
-        };
         for (frame, sum) in [1.0, 2.0, 4.0, 7.0].into_iter().enumerate() {
             let current = bench.run(|f| declare(f, &valid))?;
             assert_eq!(valid.load(Ordering::Relaxed), (frame as u32).min(2), "valid images in frame {frame}");
@@ -214,11 +215,62 @@ fn a_history_survives_frames_of_another_graph() -> TestResult {
                 std::mem::swap(&mut bench.frame, &mut other);
             }
         }
+        for sum in [12.0, 20.0] {
+            bench.run(blank)?;
+            let current = bench.run(|f| declare(f, &valid))?;
+            assert_eq!(valid.load(Ordering::Relaxed), 2, "the same frame was declared otherwise meanwhile");
+            assert!(!drawn || bench.pixels(current)?.rgba()[5][0] == sum);
+        }
         assert_eq!(bench.executor.objects().histories, 3);
+        for _ in 0..ExecutorOptions::default().max_age {
+            bench.run(blank)?;
+        }
+        assert!(bench.executor.history_bytes() > 0);
         bench.run(blank)?;
-        assert_eq!(bench.executor.history_bytes(), 0, "a frame of its own without it");
+        assert_eq!(bench.executor.history_bytes(), 0, "nobody wrote it for so long");
         bench.run(|f| declare(f, &valid))?;
         assert_eq!(valid.load(Ordering::Relaxed), 0);
+        Ok(())
+    })
+}
+
+/// Frames with a history of one name on one executor: neither sees the other's images, whatever their formats.
+#[test]
+fn frames_do_not_share_a_history_of_one_name() -> TestResult {
+    on_every_device("frames_do_not_share_a_history_of_one_name", |gpu, drawn| {
+        let mut bench = Bench::new(gpu, 4, 4);
+        let mut other = Frame::<()>::new();
+        let sum = |frame: &mut Frame, format| {
+            let history = frame.graph_mut().history("sum", TextureDesc::new(Extent::FRAME, format), 1);
+            let previous = frame.graph_mut().previous(history, 1)?;
+            let declare = |p: &mut PassBuilder<'_>| Ok((p.sampled(previous)?, p.color(history, Intent::Overwrite)?));
+            let (_, current) =
+                frame.add_fn("add", declare, |(view, _), (), cx| draw_of(cx, &Raster::new(ADD_LAST), *view))?;
+            frame.graph_mut().readback(current)?;
+            Ok(current)
+        };
+        for format in [Format::Rgba16Float, Format::Rgba32Float] {
+            for round in 1..=3u8 {
+                // The second is executed twice in each round.
+                for (second, step) in [(false, 1), (true, 2), (true, 2)] {
+                    if second {
+                        std::mem::swap(&mut bench.frame, &mut other);
+                    }
+                    let current = bench.run(|f| sum(f, if second { format } else { Format::Rgba16Float }))?;
+                    let counted = bench.pixels(current)?.rgba()[5][0];
+                    if second {
+                        std::mem::swap(&mut bench.frame, &mut other);
+                    }
+                    let so_far = f32::from((round - 1) * step);
+                    assert!(
+                        !drawn || counted > so_far && counted <= so_far + f32::from(step),
+                        "{counted} in round {round}"
+                    );
+                }
+            }
+            bench.executor.reset_history("sum");
+        }
+        assert_eq!(bench.executor.objects().histories, 8, "two images a ring");
         Ok(())
     })
 }

@@ -1,6 +1,6 @@
 //! What wgpu refuses is told with the names of the pass, the bind group, the binding and the shader's variable.
 
-use crate::bench::{Bench, RED, TestResult, fill_full, on_every_device};
+use crate::bench::{Bench, RED, SHOW, TestResult, draw_of, fill_full, on_every_device};
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::{
     Binding, BindingReason, Cx, ExecuteError, Frame, Raster, RasterPipeline, RecordError, SamplerDesc, Shader,
@@ -240,6 +240,81 @@ fn a_view_that_an_import_cannot_have_is_named() -> TestResult {
                 _ => false,
             };
             assert!(if refused { named } else { told.is_ok() }, "{told:?}");
+        }
+        Ok(())
+    })
+}
+
+/// What is destroyed or mapped when a frame is submitted is told by name where it is an import; else that the frame is sound.
+#[test]
+fn a_submission_is_refused_by_the_import_or_what_came_with_it() -> TestResult {
+    on_every_device("a_submission_is_refused_by_the_import_or_what_came_with_it", |gpu, _| {
+        let buffer = |usage| {
+            let size = wgpu::BufferDescriptor { label: Some("theirs"), size: 64, usage, mapped_at_creation: false };
+            gpu.device.create_buffer(&size)
+        };
+        let image = || {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("theirs"),
+                size: wgpu::Extent3d { width: 4, height: 4, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: wgpu::TextureFormat::Rgba8Unorm,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            })
+        };
+        let uses = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
+        // What spoils the submission, and what is told of it.
+        for (spoilt, told_of) in
+            [("image", Some("image")), ("buffer", Some("buffer")), ("behind", None), ("none", None)]
+        {
+            let mut bench = Bench::new(gpu, 4, 4);
+            let (shown, filled) = (image(), buffer(uses));
+            let (from, into, target) = bench.declare(|frame| {
+                let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+                let from = frame.graph_mut().import_texture("image", desc, Entry::Defined, Exit::Discard);
+                let into = frame.graph_mut().import_buffer("buffer", 64, Entry::Undefined, Exit::Keep);
+                let target = frame.graph_mut().texture("target", desc);
+                let read =
+                    |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(from)?, p.color(target, Intent::Overwrite)?));
+                let (_, target) =
+                    frame.add_fn("show", read, |(view, _), (), cx| draw_of(cx, &Raster::new(SHOW), *view))?;
+                let clear = |p: &mut framegraph::PassBuilder<'_>| p.copy_target_buffer(into, Intent::Overwrite);
+                frame.add_fn("clear", clear, |into, (), cx| {
+                    let bound = cx.buffer_of(*into)?;
+                    cx.encoder()?.clear_buffer(&bound.buffer, 0, None);
+                    Ok(())
+                })?;
+                frame.graph_mut().export(target)?;
+                Ok((from, into, target))
+            })?;
+            bench.imports.texture(from, &shown).buffer(into, &filled);
+            let queue = gpu.queue.clone();
+            let told = bench.executor.execute_with(&bench.plan, &bench.frame, &(), &bench.imports, |commands| {
+                let mut behind =
+                    gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("mine") });
+                match spoilt {
+                    "image" => shown.destroy(),
+                    "buffer" => filled.map_async(wgpu::MapMode::Read, .., |_| ()),
+                    "behind" => {
+                        let gone = buffer(wgpu::BufferUsages::COPY_DST);
+                        behind.clear_buffer(&gone, 0, None);
+                        gone.destroy();
+                    }
+                    _ => {}
+                }
+                commands.submit(&queue, [], [behind.finish()])
+            });
+            match (told, told_of) {
+                (Ok(_), None) if spoilt == "none" => {}
+                (Err(ExecuteError::Submission { import, .. }), of) => {
+                    assert_eq!(import.as_ref().map(|import| import.name.as_str()), of, "{spoilt}");
+                }
+                (told, _) => panic!("{spoilt}: {told:?}"),
+            }
+            assert_eq!(bench.executor.texture(&bench.plan, target).is_some(), spoilt == "none");
         }
         Ok(())
     })

@@ -1,10 +1,12 @@
 //! Who submits a frame, and what is made ahead of the first one: pipelines, kept bytes, shaders that change meanwhile.
 
-use crate::bench::{Bench, GREEN, RED, TestResult, draw, fill_full, on_adapter, on_every_device};
-use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
+use crate::bench::{
+    Bench, GREEN, RED, SHOW, TestResult, draw, draw_of, fill_corner, fill_full, on_adapter, on_every_device,
+};
+use framegraph::{DeclareError, Entry, Exit, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::{
-    Cx, Executor, ExecutorOptions, Frame, FrameCommands, ObjectCounts, PipelineCacheError, Raster, RecordError, Shader,
-    ShaderError,
+    Cx, Executor, ExecutorOptions, Frame, FrameCommands, FrameLoop, Imports, ObjectCounts, PipelineCacheError, Raster,
+    RecordError, Shader, ShaderError, read_texture,
 };
 use std::cell::Cell;
 
@@ -45,6 +47,69 @@ fn a_frame_is_submitted_with_commands_of_the_callers() -> TestResult {
         gpu.device.poll(wgpu::PollType::Wait { submission_index: Some(index), timeout: None })?;
         let bytes = copy.get_mapped_range(..)?;
         assert!(!drawn || bytes.chunks_exact(4).all(|texel| texel == [255, 0, 0, 255]), "what this frame drew");
+        Ok(())
+    })
+}
+
+/// The caller gets the frame's command buffers and submits them between its own: one clears before, one copies behind. The frame
+/// counts when the caller says so.
+#[test]
+fn a_recorded_frame_is_submitted_among_the_callers_commands() -> TestResult {
+    on_every_device("a_recorded_frame_is_submitted_among_the_callers_commands", |gpu, drawn| {
+        let mut frames = FrameLoop::<()>::new(gpu);
+        let image = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("image"),
+            size: wgpu::Extent3d { width: 64, height: 2, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let declare = |frame: &mut Frame, imports: &mut Imports| {
+            let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+            let into = frame.graph_mut().import_texture("image", desc, Entry::Defined, Exit::Keep);
+            imports.texture(into, &image);
+            frame.add_fn("corner", |p| p.color(into, Intent::Modify), |_, (), cx| fill_corner(cx, GREEN))?;
+            let history = frame.graph_mut().history("sum", TextureDesc::new(Extent::FRAME, Format::R8Unorm), 1);
+            let earlier = frame.graph_mut().previous(history, 1)?;
+            let read =
+                |p: &mut framegraph::PassBuilder<'_>| Ok((p.sampled(earlier)?, p.color(history, Intent::Overwrite)?));
+            frame.add_fn("sum", read, |(view, _), (), cx| draw_of(cx, &Raster::new(SHOW), *view))?;
+            Ok::<_, DeclareError>(history)
+        };
+        let clear = || {
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            let view = image.create_view(&Default::default());
+            let load = wgpu::LoadOp::Clear(wgpu::Color::BLUE);
+            drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+                })],
+                ..Default::default()
+            }));
+            encoder.finish()
+        };
+        for said in [true, false, true] {
+            let (history, commands) = frames.record([64, 2], &(), declare)?.ok_or("skipped")?;
+            let now = frames.executor().texture(frames.plan(), history).ok_or("no image")?.clone();
+            let buffers = commands.into_buffers().map_err(|_| "nothing shares memory")?;
+            let index = gpu.queue.submit([clear()].into_iter().chain(buffers));
+            if said {
+                frames.submitted(index);
+            }
+            let (again, _) = frames.record([64, 2], &(), declare)?.ok_or("skipped")?;
+            let next = frames.executor().texture(frames.plan(), again).ok_or("no image")?;
+            assert_eq!(now != *next, said, "a history moves when its frame counts");
+        }
+        let read = read_texture(gpu, &image)?;
+        assert!(
+            !drawn || (read.at(0, 1), read.at(63, 0)) == (Some(&[0, 255, 0, 255][..]), Some(&[0, 0, 255, 255][..]))
+        );
         Ok(())
     })
 }

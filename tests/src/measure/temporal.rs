@@ -72,6 +72,7 @@ impl AsRef<Views> for World {
 pub struct Stage<'g> {
     gpu: &'g Gpu,
     executor: Executor,
+    frame: Frame<World>,
     world: World,
     index: u32,
 }
@@ -90,6 +91,7 @@ impl<'g> Stage<'g> {
         Ok(Self {
             gpu,
             executor: Executor::new(gpu),
+            frame: Frame::new(),
             world: World { programs: Programs::new(), views, painted },
             index: 0,
         })
@@ -115,8 +117,9 @@ impl<'g> Stage<'g> {
             self.world.views.set(self.gpu, ViewId::MAIN, view)?;
         }
         (self.world.painted, self.index) = (painted, self.index + 1);
-        let mut frame = Frame::<World>::new();
-        let hdr = paint(&mut frame, Target::New, jitter_px)?;
+        let frame = &mut self.frame;
+        frame.reset();
+        let hdr = paint(frame, Target::New, jitter_px)?;
         let depth = frame.add_fn(
             "depth",
             |pass| {
@@ -132,7 +135,7 @@ impl<'g> Stage<'g> {
             .add("taa", Taa { view: ViewId::MAIN, hdr, depth, velocity: None, earlier, into, settings: *settings })?
             .sum;
         frame.graph_mut().readback(hdr)?;
-        self.run(frame, [hdr, sum], size_px)
+        self.run([hdr, sum], size_px)
     }
 
     /// A frame in which something else fills the sum with a number.
@@ -140,11 +143,12 @@ impl<'g> Stage<'g> {
     /// # Errors
     /// What the device refuses.
     pub fn spoil(&mut self, number: f32, size_px: [u32; 2]) -> Result<(), Box<dyn Error>> {
-        let mut frame = Frame::<World>::new();
+        let frame = &mut self.frame;
+        frame.reset();
         let into = frame.graph_mut().history("taa", TextureDesc::new(Extent::FRAME, Format::Rgba16Float), 1);
         self.world.painted = Painted { disc: [0.0; 4], ground: [number, 0.0] };
-        let sum = paint(&mut frame, Target::from(into), DVec2::ZERO)?;
-        self.run(frame, [sum, sum], size_px).map(|_| ())
+        let sum = paint(frame, Target::from(into), DVec2::ZERO)?;
+        self.run([sum, sum], size_px).map(|_| ())
     }
 
     /// The camera is elsewhere now.
@@ -152,16 +156,11 @@ impl<'g> Stage<'g> {
         self.executor.reset_history("taa");
     }
 
-    fn run(
-        &mut self,
-        mut frame: Frame<World>,
-        wanted: [Texture; 2],
-        [width, height]: [u32; 2],
-    ) -> Result<[Vec<[f32; 4]>; 2], Box<dyn Error>> {
-        let mut plan = Plan::new();
+    fn run(&mut self, wanted: [Texture; 2], [width, height]: [u32; 2]) -> Result<[Vec<[f32; 4]>; 2], Box<dyn Error>> {
+        let (mut plan, frame) = (Plan::new(), &mut self.frame);
         frame.graph_mut().readback(wanted[1])?;
         compile(frame.graph(), &self.gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
-        self.executor.execute(&plan, &frame, &self.world, &Imports::new())?;
+        self.executor.execute(&plan, frame, &self.world, &Imports::new())?;
         let read = |texture| -> Result<_, Box<dyn Error>> {
             Ok(read_texture(self.gpu, self.executor.texture(&plan, texture).ok_or("there is no result")?)?.rgba())
         };

@@ -57,6 +57,7 @@ struct Film<'g> {
     gpu: &'g Gpu,
     scene: Scene,
     world: Option<World>,
+    frame: Frame<World>,
     executor: Executor,
     size_px: [u32; 2],
 }
@@ -70,7 +71,7 @@ impl<'g> Film<'g> {
         let floor = scene.add_mesh(plane(Vec2::splat(4.0), 1, Vec2::ONE));
         scene.add_instance("ball", ball, red, DMat4::IDENTITY);
         scene.add_instance("floor", floor, grey, DMat4::IDENTITY);
-        Self { gpu, scene, world: None, executor: Executor::new(gpu), size_px }
+        Self { gpu, scene, world: None, frame: Frame::new(), executor: Executor::new(gpu), size_px }
     }
 
     /// The ball is moved vertex by vertex, as joints and morph targets move a body, instead of as a whole.
@@ -121,14 +122,15 @@ impl<'g> Film<'g> {
             none => *none = Some(World::new(self.gpu, &self.scene, light, [view], &mut progress::silent)?),
         }
         let world = self.world.as_ref().ok_or("it was made above")?;
-        let mut frame = Frame::<World>::new();
-        let handles = stages(&settings).declare(&mut frame, Handles::default(), Target::New)?;
+        let frame = &mut self.frame;
+        frame.reset();
+        let handles = stages(&settings).declare(frame, Handles::default(), Target::New)?;
         let wanted = wanted(&handles).ok_or("there is no such texture")?;
         frame.graph_mut().readback(wanted)?;
         let mut plan = Plan::new();
         let options = Options::for_frame(self.size_px[0], self.size_px[1]);
         compile(frame.graph(), &self.gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
-        self.executor.execute(&plan, &frame, world, &Imports::new())?;
+        self.executor.execute(&plan, frame, world, &Imports::new())?;
         Ok(read_texture(self.gpu, self.executor.texture(&plan, wanted).ok_or("there is no picture")?)?.rgba())
     }
 }

@@ -1,6 +1,6 @@
 //! Pipelines ahead of the first frame, kept over runs, and shaders that change while the program runs.
 
-use super::Executor;
+use super::{Executor, check};
 use crate::device::pipeline_cache::{PipelineCacheError, cache_bytes, open_cache};
 use crate::execute::error::ExecuteError;
 use crate::execute::steps::Passes;
@@ -59,12 +59,10 @@ impl Executor {
         imports: &Imports,
         progress: &mut dyn FnMut(WarmUp<'_>),
     ) -> Result<(), ExecuteError> {
-        if !frame.graph().same_as(plan.graph()) {
-            return Err(ExecuteError::OtherPlan);
-        }
+        check(plan, frame)?;
         let before = self.objects().pipelines;
         let (of, mut done) = (plan.steps().len(), 0);
-        let unsent = self.record(
+        let unsent = self.record_frame(
             plan,
             &Passes { frame, world, extra: None },
             imports,
