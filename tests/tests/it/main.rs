@@ -11,6 +11,7 @@ mod dof;
 mod errors;
 mod executed;
 mod facts;
+mod figures;
 mod fog;
 mod frame_counts;
 mod frames;
