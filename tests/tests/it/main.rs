@@ -12,6 +12,7 @@ mod errors;
 mod even_light;
 mod executed;
 mod facts;
+mod figures;
 mod fog;
 mod frame_counts;
 mod frames;

@@ -143,6 +143,9 @@ fn crates_come_from_the_registry_alone() {
     }
 }
 
+/// Crates that came after the snapshot and were not looked up when this list was begun.
+const OPEN: usize = 56;
+
 /// The three numbers of a version.
 fn numbers(version: &str) -> [u64; 3] {
     let mut parts = version.split(['.', '-', '+']).map(|part| part.parse().unwrap_or(0));
@@ -168,4 +171,27 @@ fn no_version_has_a_known_advisory() {
     let known = |name, version| lines.iter().filter(|line| concerns(line, name, version)).count();
     assert_eq!((known("slab", "0.4.9"), known("slab", "0.4.10"), known("slab", "0.4.11")), (0, 1, 0));
     assert_eq!(known("paste", "1.0.15"), 1, "it left with pulp, which newer versions of exr ask for");
+}
+
+/// The names under a head of the list, up to an empty line.
+fn names<'a>(list: &'a str, head: &str) -> BTreeSet<&'a str> {
+    let (_, after) = list.split_once(&format!("\n{head}:\n")).unwrap_or_else(|| panic!("{head} is not there"));
+    after.split("\n\n").next().unwrap_or_default().split_whitespace().collect()
+}
+
+/// The snapshot says nothing of a crate that nobody looked up. A new crate is noticed; that of the crates that came after the
+/// snapshot some were not looked up yet is said, and they become no more.
+#[test]
+fn every_crate_was_looked_up_or_is_said_not_to_be() {
+    let (lock, list) = (read("Cargo.lock"), read("tests/advisories_looked_up.txt"));
+    let foreign = lock.split("[[package]]").filter(|package| package.contains("\nsource = "));
+    let locked: BTreeSet<&str> =
+        foreign.filter_map(|package| package.split("name = \"").nth(1)?.split('"').next()).collect();
+    let (known, open) = (names(&list, "looked up"), names(&list, "not looked up yet"));
+    assert!(locked.len() > 200 && known.is_disjoint(&open));
+    let new: Vec<_> = locked.iter().filter(|name| !known.contains(*name) && !open.contains(*name)).collect();
+    assert!(new.is_empty(), "look up on https://rustsec.org, and add to tests/advisories_looked_up.txt: {new:?}");
+    let gone: Vec<_> = known.union(&open).filter(|name| !locked.contains(*name)).collect();
+    assert!(gone.is_empty(), "no longer in Cargo.lock: {gone:?}");
+    assert!(open.len() <= OPEN, "{} crates are not looked up", open.len());
 }

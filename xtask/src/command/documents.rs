@@ -13,7 +13,9 @@ pub const COMMAND: Command = Command {
 Runs the programs that print the tables of docs/proofs.md, docs/image-light.md,
 docs/half-floats.md, docs/hard-cases.md, docs/occlusion.md, docs/reflections.md, docs/taa.md, docs/lights.md and
 docs/references.md, in release and in full, and says which printed rows the document does not have.
-Columns of times are left out.
+Columns of times are left out. Tables of other documents that have a mark are
+compared by tests, and those of docs/performance.md are what `cargo xtask bench`
+prints: tests hold what follows from other figures of a row.
 It takes about a quarter of an hour. Figures that depend on how a device rounds
 are those of Mesa's software driver. Exit code 1 if a row is missing or a program fails.
 ",
@@ -168,6 +170,37 @@ mod tests {
         assert!(missing(part, &printed("| a | n |\n| --- | --- |\n| one | 3 |")).is_empty());
         assert_eq!(missing(part, &printed("| a | n |\n| --- | --- |\n| one | 4 |")), ["one | 4"]);
         assert!(part_of(DOCUMENT, Some("z")).is_none());
+    }
+
+    /// Marked tables that tests compare by themselves, each with a file that does.
+    const TESTED: [(&str, &str); 10] = [
+        ("facts", "tests/tests/it/facts/table.rs"),
+        ("features of the color pass", "shaders/tests/all/operations.rs"),
+        ("grading", "tests/tests/it/grading.rs"),
+        ("loop counters", "shaders/tests/all/operations.rs"),
+        ("loops", "tests/tests/it/loops.rs"),
+        ("order", "scene/src/import/tests/real_files.rs"),
+        ("render --compare-post", "tests/tests/it/readme.rs"),
+        ("render spheres", "tests/tests/it/readme.rs"),
+        ("render spheres --force-effects", "tests/tests/it/readme.rs"),
+        ("rooms", "xtask/src/command/rooms.rs"),
+    ];
+
+    #[test]
+    fn every_marked_table_is_compared_by_somebody() {
+        let root = workspace::root();
+        let documents = fs::read_dir(root.join("docs")).expect("the folder is there").flatten().map(|file| file.path());
+        let mut marked = 0;
+        for document in documents.chain([root.join("README.md")]) {
+            let Ok(text) = fs::read_to_string(&document) else { continue };
+            for mark in text.split("<!-- table: ").skip(1).filter_map(|rest| Some(rest.split_once(" -->")?.0)) {
+                marked += 1;
+                let printed = PRINTED.iter().any(|printed| printed.mark == Some(mark));
+                let tested = TESTED.iter().any(|(tested, file)| *tested == mark && root.join(file).is_file());
+                assert!(printed || tested, "{}: nothing compares the table `{mark}`", document.display());
+            }
+        }
+        assert!(marked > 10, "{marked}");
     }
 
     #[test]

@@ -70,8 +70,8 @@ fn run(args: &Args) -> Result<Vec<String>, String> {
 fn document(args: &Args) -> Result<Document, String> {
     let mut document = Document::new(
         "# Proofs\n\nPrinted by `cargo xtask prove`. A test compares all tables but those of long runs, which say so;\n\
-         `cargo xtask documents` compares those too. Figures that are no times are the same on every machine. Peak memory \
-         and\nspeed stand in [performance.md](performance.md).\n",
+         `cargo xtask documents` compares those too; that sums and proofs of a row agree, a test asks of all.\n\
+         Figures that are no times are the same on every machine. Peak memory and speed stand in [performance.md](performance.md).\n",
     );
     aliasing::section(&mut document, aliasing::QUICK, "");
     pools::section(&mut document, aliasing::QUICK, "");
