@@ -24,14 +24,14 @@ const SMALLER: [(&str, &str); 3] = [
 ];
 
 /// A frame of a file with stand-ins, as a case asks for it.
-struct Staged {
-    label: String,
-    frame: Frame,
-    options: Options,
+pub struct Staged {
+    pub label: String,
+    pub frame: Frame,
+    pub options: Options,
 }
 
 /// Every distinct frame of every file.
-fn staged() -> Vec<Staged> {
+pub fn staged() -> Vec<Staged> {
     let mut all = Vec::new();
     for (path, text) in files() {
         let text = SMALLER.iter().fold(text, |text, (large, small)| text.replace(large, small));

@@ -38,6 +38,7 @@ mod normals;
 mod occlusion;
 mod parts;
 mod picture;
+mod placed;
 mod poison;
 mod prepass;
 mod programs;

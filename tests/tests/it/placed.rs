@@ -1,0 +1,247 @@
+//! Whole frames in one block of memory under the driver's validation layers, with synchronization validation: the standard frame
+//! with depth, samples and histories, and by stand-ins frames of `cases/` with storage, and one with buffers and copies.
+
+use crate::executed::{Staged, staged};
+use crate::stage::gpu;
+use framegraph::file::{GraphFile, Registry};
+use framegraph::{Alias, Options, Placement, Plan, Scratch, Usage};
+use framegraph_passes::dof::DofSettings;
+use framegraph_passes::shadow::{ShadowFilter, ShadowSettings};
+use framegraph_passes::{OcclusionSettings, ReflectionSettings, Settings, TaaSettings};
+use framegraph_wgpu::{
+    AdapterRequest, ExecuteError, Executor, ExecutorOptions, Frame, FrameLoop, Gpu, NotPlaced, Unsupported, stand_in,
+};
+use std::collections::BTreeSet;
+use std::error::Error;
+use std::process::Command;
+use tests::stage::Stage;
+
+type TestResult = Result<(), Box<dyn Error>>;
+
+/// Small, since layers take their time over texels too.
+const SIZE_PX: [u32; 2] = [96, 54];
+
+fn options(alias: Alias) -> Options {
+    Options { alias, ..Options::default() }
+}
+
+/// What is among the placed resources of all frames.
+#[derive(Debug, Default)]
+struct Covered {
+    depth: usize,
+    samples: usize,
+    storage: usize,
+    copied: usize,
+    buffers: usize,
+}
+
+impl Covered {
+    fn add(&mut self, plan: &Plan) {
+        for (resource, row) in plan.graph().resource_ids().zip(plan.resources()) {
+            if !matches!(row.placement, Placement::Heap { .. }) {
+                continue;
+            }
+            let texture = plan.graph().resources()[resource.index()].desc.texture();
+            self.buffers += usize::from(texture.is_none());
+            self.depth += usize::from(texture.is_some_and(|t| t.format.has_depth()));
+            self.samples += usize::from(texture.is_some_and(|t| t.samples > 1));
+            self.storage += usize::from(row.usage.contains(Usage::STORAGE));
+            self.copied += usize::from(row.usage.contains(Usage::COPY_SOURCE));
+        }
+    }
+
+    fn everything(&self) -> bool {
+        [self.depth, self.samples, self.storage, self.copied, self.buffers].iter().all(|count| *count > 0)
+    }
+}
+
+/// Effects of many textures, and two histories.
+fn settings() -> Settings {
+    let shadows = ShadowSettings { filter: ShadowFilter::Evsm, cascades: 2, ..ShadowSettings::texels(128) };
+    Settings {
+        samples: 4,
+        prepass: true,
+        shadows: Some(shadows),
+        occlusion: Some(OcclusionSettings::default()),
+        reflections: Some(ReflectionSettings::DEFAULT),
+        dof: Some(DofSettings::DEFAULT),
+        taa: Some(TaaSettings::DEFAULT),
+        ..Settings::DEFAULT
+    }
+}
+
+/// How frames are executed in a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    Apart,
+    Block,
+    /// In one block whose hand-overs are left out.
+    Broken,
+}
+
+impl Way {
+    const ALL: [Self; 3] = [Self::Apart, Self::Block, Self::Broken];
+
+    fn alias(self) -> Alias {
+        if self == Self::Apart { Alias::Off } else { Alias::Heap }
+    }
+}
+
+/// Draws the frame three times.
+fn standard(gpu: &Gpu, way: Way, covered: &mut Covered) -> TestResult {
+    let mut stage = Stage::new(gpu, "glass")?;
+    let mut frames = FrameLoop::with(gpu, options(way.alias()), ExecutorOptions::default());
+    if way == Way::Broken {
+        frames.executor_mut().leave_out_hand_overs();
+    }
+    for number in 0..3 {
+        stage.draw(&mut frames, &settings(), SIZE_PX, number)?;
+    }
+    covered.add(frames.plan());
+    Ok(gpu.wait()?)
+}
+
+/// Textures and buffers that are copied from memory which others get.
+const COPIES: &str = r#"(version: 1,
+    resources: [
+        Texture(name: "screen", format: Rgba8UnormSrgb, kind: Import(entry: Undefined, exit: Keep)),
+        Texture(name: "drawn", format: Rgba8Unorm),
+        Texture(name: "copied", format: Rgba8Unorm),
+        Texture(name: "light", format: Rgba16Float),
+        Buffer(name: "counts", bytes: 4096),
+        Buffer(name: "kept", bytes: 4096),
+        Buffer(name: "sums", bytes: 2048),
+    ],
+    passes: [
+        Raster(name: "draw", accesses: [Color(to: "drawn", intent: ClearColor(0, 0, 0, 1))]),
+        Compute(name: "count", accesses: [Sampled(of: "drawn"), StorageWrite(to: "counts", intent: Overwrite)]),
+        Copy(name: "copy", accesses: [CopySource(of: "drawn"), CopyTarget(to: "copied", intent: Overwrite)]),
+        Copy(name: "keep", accesses: [CopySource(of: "counts"), CopyTarget(to: "kept", intent: Overwrite)]),
+        Compute(name: "sum", accesses: [StorageRead(of: "kept"), StorageWrite(to: "sums", intent: Overwrite)]),
+        Raster(name: "light", accesses: [Sampled(of: "copied"), StorageRead(of: "sums"), Color(to: "light", intent: Overwrite)]),
+        Raster(name: "show", accesses: [Sampled(of: "light"), Color(to: "screen", intent: Overwrite)]),
+    ],
+)"#;
+
+fn copies() -> Result<Staged, Box<dyn Error>> {
+    let mut frame = Frame::new();
+    GraphFile::parse("copies.ron", COPIES)?.declare(&[], &Registry::new(), &mut frame)?;
+    stand_in::fill_in(&mut frame);
+    Ok(Staged { label: "copies".to_owned(), frame, options: Options { frame: SIZE_PX, ..Options::default() } })
+}
+
+fn by_stand_ins(gpu: &Gpu, staged: &Staged, way: Way, covered: &mut Covered) -> TestResult {
+    let (mut executor, mut plan) = (Executor::new(gpu), Plan::new());
+    let options = Options { alias: way.alias(), ..staged.options };
+    executor.compile(staged.frame.graph(), &options, &mut Scratch::new(), &mut plan)?;
+    if way == Way::Broken {
+        executor.leave_out_hand_overs();
+    }
+    let imported = stand_in::imports(gpu, &plan)?;
+    for _ in 0..3 {
+        executor.execute(&plan, &staged.frame, &(), &imported.bound).map_err(|error| match error {
+            ExecuteError::Unsupported(missing) => Box::<dyn Error>::from(missing),
+            other => other.into(),
+        })?;
+    }
+    covered.add(&plan);
+    Ok(gpu.wait()?)
+}
+
+/// A run of its own with the layers on; see `the_layers_are_silent_about_whole_frames`.
+#[test]
+#[ignore = "a part of another test, which sets its environment"]
+fn frames_under_validation() -> TestResult {
+    let asked = std::env::var("FRAMEGRAPH_WAY").unwrap_or_default();
+    let way = Way::ALL.into_iter().find(|way| format!("{way:?}") == asked).ok_or("FRAMEGRAPH_WAY: no such way")?;
+    // A device of its own for each frame: these layers do not see that the host waits, and take what was freed for in use.
+    let open = || Gpu::open(&AdapterRequest::from_env());
+    let (gpu, mut covered) = (open()?, Covered::default());
+    let mut probe = Executor::new(&gpu);
+    probe.compile(&framegraph::Graph::new(), &options(Alias::Heap), &mut Scratch::new(), &mut Plan::new())?;
+    if let Some(why @ NotPlaced::Backend(_)) = probe.not_placed() {
+        println!("ELSEWHERE {why}");
+        return Ok(());
+    }
+    println!("FRAME standard");
+    standard(&gpu, way, &mut covered)?;
+    let (mut files, all) = (vec!["deferred.ron", "forward.ron"], staged());
+    let asked = all.into_iter().filter(|staged| {
+        let first = files.iter().position(|file| staged.label.starts_with(file));
+        first.map(|at| files.remove(at)).is_some()
+    });
+    for staged in asked.chain([copies()?]) {
+        println!("FRAME {}", staged.label);
+        let gpu = open()?;
+        // One frame draws four cascades at once. Whether the driver keeps them apart is another test's matter.
+        gpu.trust_attached_layers();
+        match by_stand_ins(&gpu, &staged, way, &mut covered) {
+            // Not every device has all formats.
+            Err(error) if error.is::<Unsupported>() => {}
+            ran => ran?,
+        }
+    }
+    assert!(way == Way::Apart || covered.everything(), "{covered:?}");
+    println!("DONE {covered:?}");
+    Ok(())
+}
+
+/// What the layers say of each frame, each message of a kind once; an error where nothing is placed.
+fn told(way: Way) -> Result<Result<BTreeSet<(String, String)>, String>, Box<dyn Error>> {
+    let mut run = Command::new(std::env::current_exe()?);
+    run.args(["--exact", "placed::frames_under_validation", "--ignored", "--nocapture"]);
+    run.env("WGPU_VALIDATION", "1").env("FRAMEGRAPH_WAY", format!("{way:?}"));
+    // Older layers compare command buffers with each other only when told to.
+    run.env("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT");
+    let out = run.output()?;
+    let [said, errors] = [out.stdout, out.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+    if let Some(why) = said.lines().find_map(|line| line.split_once("ELSEWHERE ")) {
+        return Ok(Err(why.1.to_owned()));
+    }
+    assert!(said.contains("DONE"), "{said}\n{errors}");
+    let (mut frame, mut messages) = ("", BTreeSet::new());
+    for line in said.lines().chain(errors.lines()) {
+        if let Some(name) = line.split_once("FRAME ") {
+            frame = name.1;
+        }
+        if line.contains("Validation Error") {
+            // What it is about, and between what: not the handles and counts.
+            let about = ["[ ", "recorded_usage: ", "command: ", "prior_usage: "].iter().filter_map(|mark| {
+                let (_, rest) = line.split_once(mark)?;
+                rest.split([',', ' ']).next()
+            });
+            let kind = about.collect::<Vec<_>>().join(" ");
+            messages.insert((frame.to_owned(), kind));
+        }
+    }
+    Ok(Ok(messages))
+}
+
+/// Nothing is said of frames in one block that is not said of them apart: wgpu stores depth that is only read, which the layers
+/// take for a write that nobody waits for.
+#[test]
+fn the_layers_are_silent_about_whole_frames() -> TestResult {
+    const NAME: &str = "the_layers_are_silent_about_whole_frames";
+    if gpu(NAME).is_none() {
+        return Ok(());
+    }
+    let (apart, block) = match (told(Way::Apart)?, told(Way::Block)?) {
+        (Ok(apart), Ok(block)) => (apart, block),
+        (Err(why), _) | (_, Err(why)) => {
+            test_report::skip(NAME, &why);
+            return Ok(());
+        }
+    };
+    let more: Vec<_> = block.difference(&apart).collect();
+    assert!(more.is_empty(), "{more:?}");
+    // Without layers nothing is said of either, and newer ones do not compare memory of different images.
+    let broken = told(Way::Broken)?.unwrap_or_default();
+    let more: Vec<_> = broken.difference(&apart).filter(|(_, kind)| kind.contains("HAZARD")).collect();
+    if more.is_empty() {
+        test_report::skip(NAME, "there are no validation layers that find hand-overs that were left out");
+        return Ok(());
+    }
+    let of_standard = more.iter().filter(|(frame, _)| frame == "standard").count();
+    assert!(of_standard > 0 && of_standard < more.len(), "{more:?}");
+    Ok(())
+}
