@@ -84,8 +84,9 @@ impl Proof<'_> {
             Statement::Switch { cases, .. } => self.branches(&cases.iter().map(|case| &case.body).collect::<Vec<_>>()),
             Statement::Loop { body, continuing, .. } => self.turns(body, continuing),
             Statement::Call { arguments, .. } => {
-                let pointed = arguments.iter().filter_map(|argument| root(self.function, *argument));
-                pointed.for_each(|variable| drop(self.variables.remove(&variable)));
+                for variable in arguments.iter().filter_map(|argument| root(self.function, *argument)) {
+                    self.variables.remove(&variable);
+                }
                 true
             }
             Statement::Break | Statement::Continue | Statement::Return { .. } | Statement::Kill => true,

@@ -29,7 +29,7 @@ fn compare(table: &str, found: &BTreeMap<String, String>) -> Result<(), Box<dyn 
     let (rows, _) = after.split_once("<!-- end -->").ok_or("the table ends")?;
     let rows: Vec<_> = rows.lines().filter(|line| line.starts_with("| `")).collect();
     let expected: Vec<_> = found.iter().map(|(pass, function)| format!("| `{pass}` | `{function}` |")).collect();
-    println!("{}", expected.join("\n"));
+    program::line(expected.join("\n"));
     assert_eq!(rows, expected, "{table}");
     Ok(())
 }
@@ -38,7 +38,7 @@ fn compare(table: &str, found: &BTreeMap<String, String>) -> Result<(), Box<dyn 
 #[test]
 fn the_document_names_the_shaders_whose_loops_are_counted() -> Result<(), Box<dyn Error>> {
     let (counted, free) = told(endless_loop);
-    println!("{free} shaders whose loops are proved to end");
+    program::line(format_args!("{free} shaders whose loops are proved to end"));
     compare("loops", &counted)
 }
 
@@ -46,6 +46,6 @@ fn the_document_names_the_shaders_whose_loops_are_counted() -> Result<(), Box<dy
 #[test]
 fn the_document_names_the_shaders_whose_indices_are_tested() -> Result<(), Box<dyn Error>> {
     let (tested, free) = told(unproved_index);
-    println!("{free} shaders whose indices are proved to be in range");
+    program::line(format_args!("{free} shaders whose indices are proved to be in range"));
     compare("indices", &tested)
 }

@@ -1,7 +1,6 @@
 //! Frames whose commands the caller submits, when and among whichever it likes.
 
 use super::{Executor, check};
-use crate::device::error::ErrorScopes;
 use crate::execute::commands::FrameCommands;
 use crate::execute::error::ExecuteError;
 use crate::execute::steps::Passes;
@@ -53,9 +52,9 @@ impl Executor {
     ) -> Result<FrameCommands, ExecuteError> {
         check(plan, frame)?;
         let commands = self.record_frame(plan, &Passes { frame, world, extra: None }, imports, None)?;
-        let scopes = ErrorScopes::open(&self.gpu.device);
+        let watch = self.gpu.watch("uploading the constants of a frame");
         self.upload();
-        if let Err(error) = self.caught(scopes, "uploading the constants of a frame") {
+        if let Err(error) = watch.end(self.gpu.errors()) {
             self.forget_frame();
             return Err(self.told(plan, error));
         }
