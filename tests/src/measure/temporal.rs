@@ -75,6 +75,8 @@ pub struct Stage<'g> {
     frame: Frame<World>,
     world: World,
     index: u32,
+    /// Of the frames to come; a frame in which it or what is painted is another is another view.
+    pub exposure: f32,
 }
 
 impl<'g> Stage<'g> {
@@ -88,12 +90,14 @@ impl<'g> Stage<'g> {
         let seen = ViewSettings { camera, size_px, ev100: 0.0, environment_intensity: 1.0, shadows: None, lights };
         let views = Views::new(gpu, [CameraView::empty(&seen)])?;
         let painted = Painted { disc: [0.0; 4], ground: [0.0; 2] };
+        let exposure = views.get(ViewId::MAIN)?.view.frame.exposure;
         Ok(Self {
             gpu,
             executor: Executor::new(gpu),
             frame: Frame::new(),
             world: World { programs: Programs::new(), views, painted },
             index: 0,
+            exposure,
         })
     }
 
@@ -108,11 +112,13 @@ impl<'g> Stage<'g> {
         size_px: [u32; 2],
     ) -> Result<[Vec<[f32; 4]>; 2], Box<dyn Error>> {
         let jitter_px = settings.jitter_px(self.index);
-        if painted == self.world.painted {
+        let before = &self.world.views.get(ViewId::MAIN)?.view;
+        if painted == self.world.painted && self.exposure == before.frame.exposure {
             self.world.views.again(ViewId::MAIN, jitter_px)?;
         } else {
-            let before = self.world.views.get(ViewId::MAIN)?.view.clone();
+            let before = before.clone();
             let mut view = before.clone().after(&before);
+            view.frame.exposure = self.exposure;
             view.jitter(jitter_px);
             self.world.views.set(self.gpu, ViewId::MAIN, view)?;
         }

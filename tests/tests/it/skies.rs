@@ -10,8 +10,10 @@ use framegraph_passes::view::Background;
 use framegraph_passes::{Lighting, Quality, Settings, Shading, World};
 use framegraph_scene::environment::{EquirectMap, ShBands};
 use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular};
+use framegraph_scene::texture::{Sampler, TextureRole};
 use framegraph_scene::{Camera, Environment, Material, Projection, Scene, progress};
-use framegraph_wgpu::{Executor, Imports, read_texture};
+use framegraph_shaders::reference::occlusion::specular_occlusion;
+use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
 use glam::{DMat4, DVec3, Vec3};
 use std::error::Error;
 use tests::measure::board::{Board, card};
@@ -103,24 +105,108 @@ fn every_lobe_gathers_from_where_it_points() -> TestResult {
     for (_, material, _) in &cases {
         board.hang(material.clone(), card(0.9, NORMAL, TANGENT, 1.0), DMat4::IDENTITY);
     }
-    for quality in [Quality::High] {
-        let shading = quality.shading();
-        // A level of 32 texels: across a larger texel a slope is not straight.
-        let settings = LightSettings {
-            image: IblSettings { cube_texels: 256, ..IblSettings::default() },
-            dfg: DfgSettings { texels: 64, visibility: shading.table },
-        };
-        let lighting = Lighting::new(&gpu, &sky(), &settings, &Cache::at(LIGHT), &mut progress::silent)?;
-        let seen = board.render_lit(&gpu, lighting, &shading)?;
-        for ((name, _, surface), seen) in cases.iter().zip(&seen) {
-            let expected = surface.of_sky(DVec3::Z, of_lobe, on_surface);
-            // The cube has six bits of red and green and five of blue.
-            let apart = ((seen.nits - expected) / expected.max(DVec3::splat(0.1))).abs().max_element();
-            println!("{name}: {} for {expected}: {apart:.5}", seen.nits);
-            assert!(apart < 1e-2, "{name}: {} for {expected}", seen.nits);
-        }
+    for ((name, _, surface), seen) in cases.iter().zip(&under_sky(&gpu, &board)?) {
+        near(name, *seen, surface.of_sky(DVec3::Z, of_lobe, on_surface));
     }
     Ok(())
+}
+
+/// Radiance of what hangs on a board, by the finest shading.
+fn under_sky(gpu: &Gpu, board: &Board) -> Result<Vec<DVec3>, Box<dyn Error>> {
+    let shading = Quality::High.shading();
+    // A level of 32 texels: across a larger texel a slope is not straight.
+    let settings = LightSettings {
+        image: IblSettings { cube_texels: 256, ..IblSettings::default() },
+        dfg: DfgSettings { texels: 64, visibility: shading.table },
+    };
+    let lighting = Lighting::new(gpu, &sky(), &settings, &Cache::at(LIGHT), &mut progress::silent)?;
+    Ok(board.render_lit(gpu, lighting, &shading)?.iter().map(|seen| seen.nits).collect())
+}
+
+/// The cube has six bits of red and green and five of blue.
+fn near(name: &str, seen: DVec3, expected: DVec3) {
+    let apart = ((seen - expected) / expected.max(DVec3::splat(0.1))).abs().max_element();
+    println!("{name}: {seen} for {expected}: {apart:.5}");
+    assert!(apart < 1e-2, "{name}: {seen} for {expected}");
+}
+
+/// Over what is black and rough: a coat mirrors by the map of its own and not by the base's, and what an occlusion texture leaves
+/// of a coat or of sheen follows from the roughness of that layer.
+#[test]
+fn layers_have_their_own_normal_and_occlusion() -> TestResult {
+    let Some(gpu) = gpu("layers_have_their_own_normal_and_occlusion") else { return Ok(()) };
+    let mut board = Board::default();
+    let mut even = |texel, role| Some(board.texture(1, &[texel], role, Sampler::default()));
+    let open = 102;
+    let crevice = even([open, 255, 255, 255], TextureRole::Linear);
+    let (bump, dent) = ([170, 100, 230, 255], [100, 150, 230, 255]);
+    let [own, base] = [even(bump, TextureRole::Normal), even(dent, TextureRole::Normal)];
+    let normal = {
+        let [x, y, z] = [bump[0], bump[1], bump[2]].map(|c| f64::from(c) / 255.0 * 2.0 - 1.0);
+        (TANGENT * x + NORMAL.cross(TANGENT) * y + NORMAL * z).normalize()
+    };
+    let black = Material {
+        specular: Some(Specular { factor: 0.0, ..Specular::default() }),
+        normal_texture: base,
+        ..Material::dielectric("black", Vec3::ZERO, 1.0)
+    };
+    let coat = ClearCoat { factor: 0.8, roughness: ROUGHNESS as f32, normal_scale: 1.0, ..ClearCoat::default() };
+    let coated = |coat| Material { clear_coat: Some(coat), ..black.clone() };
+    let mapped = |roughness: f64| ClearCoat { normal_texture: own, roughness: roughness as f32, ..coat };
+    let under = |normal| {
+        let coat = Some(Coat { normal, factor: 0.8, roughness: ROUGHNESS });
+        Surface { coat, ..Surface::chalk(DVec3::ZERO, NORMAL) }
+    };
+    let whole = [
+        ("coat over a map", coated(coat), under(NORMAL)),
+        ("coat with its map", coated(mapped(ROUGHNESS)), under(normal)),
+    ];
+    // Of a roughness that is far from the base's.
+    let sheen = Sheen { color: Vec3::ONE, roughness: 0.5, ..Sheen::default() };
+    let fibers = Material { sheen: Some(sheen), normal_texture: None, roughness: 0.0, ..black.clone() };
+    let hidden = [("hidden coat", coated(mapped(0.2)), normal, 0.04), ("hidden sheen", fibers, NORMAL, 0.25)];
+    let mut hang = |material| board.hang(material, card(0.9, NORMAL, TANGENT, 1.0), DMat4::IDENTITY);
+    for (_, material, _) in &whole {
+        hang(material.clone());
+    }
+    for (_, material, ..) in &hidden {
+        hang(material.clone());
+        hang(Material { occlusion_texture: crevice, occlusion_strength: 1.0, ..material.clone() });
+    }
+    let seen = under_sky(&gpu, &board)?;
+    for ((name, _, surface), seen) in whole.iter().zip(&seen) {
+        near(name, *seen, surface.of_sky(DVec3::Z, of_lobe, on_surface));
+    }
+    for ((name, _, normal, alpha), pair) in hidden.iter().zip(seen[whole.len()..].chunks(2)) {
+        let left = specular_occlusion(normal.z, f64::from(open) / 255.0, *alpha);
+        near(name, pair[1] / pair[0], DVec3::splat(left));
+    }
+    Ok(())
+}
+
+/// Where the camera of the sky looks.
+const AHEAD: DVec3 = DVec3::new(1.0, 0.1, 0.2);
+
+/// The sky alone, a nit being 1.
+fn sky_seen_by(
+    gpu: &Gpu,
+    settings: &Settings,
+    environment: &Environment,
+    projection: Projection,
+) -> Result<Vec<[f32; 4]>, Box<dyn Error>> {
+    let shot = Shot { ev100: (1.0_f32 / 1.2).log2(), ..Shot::small(*settings) };
+    let lighting = lighting(gpu, environment, &settings.shading)?;
+    let mut scene = Scene::default();
+    scene.cameras.push(Camera::look_at(DVec3::ZERO, AHEAD, DVec3::Y, projection)?);
+    let view = view_of(&scene, &lighting.image, &Background::Environment, &shot);
+    let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
+    let (mut frame, io) = declared(settings);
+    frame.graph_mut().readback(io.hdr)?;
+    let mut plan = Plan::new();
+    compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
+    let mut executor = Executor::new(gpu);
+    executor.execute(&plan, &frame, &world, &Imports::new())?;
+    Ok(read_texture(gpu, executor.texture(&plan, io.hdr).ok_or("the frame left no picture")?)?.rgba())
 }
 
 /// Every number of bands shows a slope as it is, which the first band holds: on all sides, for one sign wrong shows on one.
@@ -132,24 +218,26 @@ fn the_sky_is_shown_in_full() -> TestResult {
     let texels = (0..16 * 8).map(|i: u32| [((i % 16 + i / 16) % 2) as f32; 4]).collect();
     let environment = Environment { map: EquirectMap::new(16, 8, texels), name: "checkered".into(), ..sky() };
     let settings = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
-    let shot = Shot { ev100: (1.0_f32 / 1.2).log2(), ..Shot::small(settings) };
-    let lighting = lighting(&gpu, &environment, &settings.shading)?;
-    let mut scene = Scene::default();
-    let projection = Projection::perspective(1.0, 0.1);
-    scene.cameras.push(Camera::look_at(DVec3::ZERO, DVec3::new(1.0, 0.1, 0.2), DVec3::Y, projection)?);
-    let view = view_of(&scene, &lighting.image, &Background::Environment, &shot);
-    let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;
-    let (mut frame, io) = declared(&settings);
-    frame.graph_mut().readback(io.hdr)?;
-    let mut plan = Plan::new();
-    compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
-    let mut executor = Executor::new(&gpu);
-    executor.execute(&plan, &frame, &world, &Imports::new())?;
-    let seen = read_texture(&gpu, executor.texture(&plan, io.hdr).ok_or("the frame left no picture")?)?.rgba();
+    let seen = sky_seen_by(&gpu, &settings, &environment, Projection::perspective(1.0, 0.1))?;
     let (least, most) = seen.iter().fold((f32::MAX, 0.0_f32), |(least, most), c| (least.min(c[0]), most.max(c[0])));
     // A pixel is a thirty-fifth of a texel, so one is within a seventieth of a texel's middle along both axes. With a tenth of
     // the next level, which is gray, it would be 0.05 to 0.95 at most.
     assert!(least < 0.035 && most > 0.965, "{least} to {most}");
+    Ok(())
+}
+
+/// A parallel projection sees one direction in every pixel: that of the camera, which no axis of the world is.
+#[test]
+fn a_parallel_projection_shows_one_place_of_the_sky() -> TestResult {
+    let Some(gpu) = gpu("a_parallel_projection_shows_one_place_of_the_sky") else { return Ok(()) };
+    let settings = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
+    let projection = Projection::Orthographic { half_width_m: None, half_height_m: 2.0, near_m: 0.1, far_m: 100.0 };
+    for seen in sky_seen_by(&gpu, &settings, &sky(), projection)? {
+        // Half floats, and a texel of the map is 0.025 wide.
+        let expected = DVec3::ONE + AHEAD.normalize() * SLOPE;
+        let apart = (DVec3::new(seen[0].into(), seen[1].into(), seen[2].into()) - expected).abs().max_element();
+        assert!(apart < 3e-3, "{seen:?} for {expected}");
+    }
     Ok(())
 }
 

@@ -208,6 +208,23 @@ fn without_a_sum_a_frame_is_itself() -> TestResult {
     Ok(())
 }
 
+/// Light that stays what it is, in a frame of half the exposure: the sum is half of what it was, and nothing of the exposure before
+/// is mixed in.
+#[test]
+fn sums_follow_the_exposure() -> TestResult {
+    let Some(gpu) = gpu("sums_follow_the_exposure") else { return Ok(()) };
+    let (mut stage, size, settings) = (Stage::new(&gpu)?, [24, 24], taa("on:clip=none,filter-input=off")?);
+    let even = |light| Painted { disc: [0.0; 4], ground: [light, 0.0] };
+    stage.frame(&settings, even(0.4), size)?;
+    stage.exposure *= 0.5;
+    let [painted, sum] = stage.frame(&settings, even(0.2), size)?;
+    // A step of half floats; the exposure before would make it 0.38.
+    let off = |(a, b): (&[f32; 4], &[f32; 4])| (a[0] - b[0]).abs();
+    let most = painted.iter().zip(&sum).map(off).fold(0.0, f32::max);
+    assert!(most < 2e-4, "{most}");
+    Ok(())
+}
+
 /// Sums that something has spoilt are let go of in one frame; so is what another size left, down to one texel (hard cases 51
 /// and 52). What is left lies between the least and the most light that there is.
 #[test]

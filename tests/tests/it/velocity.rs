@@ -7,9 +7,10 @@ use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, LightSearch, Settings, Shading, TaaSettings, ViewId, World, stages};
 use framegraph_scene::geometry::{plane, sphere};
 use framegraph_scene::motion::{Body, Moves, Shape};
-use framegraph_scene::{Aabb, Camera, Environment, Material, Mesh, MeshId, Projection, Scene, progress};
+use framegraph_scene::texture::{Filter, Image, Sampler, TextureRole, TextureSlot, UvTransform};
+use framegraph_scene::{Aabb, AlphaMode, Camera, Environment, Material, Mesh, MeshId, Projection, Scene, progress};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
-use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
+use glam::{DMat4, DVec2, DVec3, Vec2, Vec3, Vec4};
 use std::error::Error;
 
 type TestResult = Result<(), Box<dyn Error>>;
@@ -80,6 +81,23 @@ impl<'g> Film<'g> {
         let rest = Shape { positions, normals, tangents };
         let body = Body { mesh: MeshId::new(0), instance: 0, node: 0, skin: None, rest, moves: Moves::default() };
         self.scene.motion.bodies.push(body);
+        self
+    }
+
+    /// A mask leaves the ball whole: its texture has a hole, where the coordinates of this set are not, but the others are. Colors of
+    /// vertices have nothing but alpha.
+    fn masked(mut self, uv_set: u32) -> Self {
+        let sampler = Sampler { mag: Filter::Nearest, min: Filter::Nearest, mip: None, ..Sampler::default() };
+        let texels = vec![255, 255, 255, 255, 255, 255, 255, 0];
+        let image = Image { name: "hole".into(), width: 2, height: 1, rgba8: texels };
+        let texture = self.scene.add_texture(image, TextureRole::Color, sampler);
+        let slot = TextureSlot { texture, uv_set, transform: UvTransform::default() };
+        let red = &mut self.scene.materials[0];
+        (red.alpha, red.base_color_texture) = (AlphaMode::Mask { cutoff: 0.5 }, Some(slot));
+        let ball = &mut self.scene.meshes[0];
+        let count = ball.positions.len();
+        let at = |set| vec![Vec2::new(if set == uv_set { 0.25 } else { 0.75 }, 0.5); count];
+        (ball.uv0, ball.uv1, ball.colors) = (at(0), at(1), vec![Vec4::W; count]);
         self
     }
 
@@ -188,6 +206,23 @@ fn velocity_says_where_surfaces_were() -> TestResult {
         assert!(worst < 0.1, "{samples} samples: off by {worst} pixels");
         let floor = found[(size[0] * (size[1] - 1)) as usize];
         assert_eq!(floor, [0.0; 4], "the floor stands still");
+    }
+    Ok(())
+}
+
+/// What a mask keeps says where it was as what is opaque does, to the bit, with either set of coordinates.
+#[test]
+fn what_a_mask_keeps_moves_as_a_whole() -> TestResult {
+    let Some(gpu) = gpu("what_a_mask_keeps_moves_as_a_whole") else { return Ok(()) };
+    let told = |mut film: Film<'_>| -> Result<_, Box<dyn Error>> {
+        film.shoot(MOVING, 0, |handles| handles.find(Slot::VELOCITY))?;
+        film.shoot(MOVING, 1, |handles| handles.find(Slot::VELOCITY))
+    };
+    let size = [48, 32];
+    let whole = told(Film::new(&gpu, size))?;
+    assert!(whole.iter().filter(|texel| texel[3] == 1.0).count() > 70, "the ball is seen");
+    for uv_set in [0, 1] {
+        assert!(told(Film::new(&gpu, size).masked(uv_set))? == whole, "set {uv_set}");
     }
     Ok(())
 }

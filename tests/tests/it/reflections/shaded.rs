@@ -5,7 +5,7 @@ use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use crate::transmission::below;
 use framegraph::{Plan, Scratch, compile};
 use framegraph_passes::view::Background;
-use framegraph_passes::{Precision, ReflectionSettings, Settings, World};
+use framegraph_passes::{Precision, ReflectionSettings, Settings, ViewId, World};
 use framegraph_scene::geometry::plane;
 use framegraph_scene::{Camera, Environment, Material, Projection, Scene, Transmission, progress};
 use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
@@ -43,24 +43,37 @@ fn mirror(roughness: f32) -> Material {
 
 /// Pre-exposed radiance of each of so many frames.
 fn frames(gpu: &Gpu, scene: &Scene, settings: Settings, count: usize) -> Result<Vec<Vec<Vec3>>, Box<dyn Error>> {
+    exposed(gpu, scene, settings, &vec![10.0; count])
+}
+
+/// The same of a frame for each EV100.
+fn exposed(gpu: &Gpu, scene: &Scene, settings: Settings, ev100: &[f32]) -> Result<Vec<Vec<Vec3>>, Box<dyn Error>> {
     let shot = Shot::small(Settings { shadows: None, ..settings });
     let environment = Environment::uniform(DVec3::splat(NITS))?;
     let lighting = lighting(gpu, &environment, &shot.settings.shading)?;
-    let shot = Shot { settings: shot.settings.for_scene(scene, shot.size_px), ev100: 10.0, ..shot };
-    let view = view_of(scene, &lighting.image, &Background::None, &shot);
-    let world = World::new(gpu, scene, lighting, [view], &mut progress::silent)?;
+    let shot = Shot { settings: shot.settings.for_scene(scene, shot.size_px), ev100: ev100[0], ..shot };
+    let view = |ev100: &f32| view_of(scene, &lighting.image, &Background::None, &Shot { ev100: *ev100, ..shot });
+    let mut views = ev100.iter().map(view).collect::<Vec<_>>().into_iter();
+    let first = views.next().ok_or("no frame is asked for")?;
+    let mut world = World::new(gpu, scene, lighting, [first], &mut progress::silent)?;
     let (mut frame, io) = declared(&shot.settings);
     frame.graph_mut().readback(io.hdr)?;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
     let mut executor = Executor::new(gpu);
-    let mut render = || -> Result<_, Box<dyn Error>> {
-        executor.execute(&plan, &frame, &world, &Imports::new())?;
+    let mut render = |world: &World| -> Result<_, Box<dyn Error>> {
+        executor.execute(&plan, &frame, world, &Imports::new())?;
         assert_eq!(executor.executed(), plan.counts(), "executed against planned");
         let texels = read_texture(gpu, executor.texture(&plan, io.hdr).ok_or("no picture")?)?.rgba();
         Ok(texels.iter().map(|[r, g, b, _]| Vec3::new(*r, *g, *b)).collect())
     };
-    (0..count).map(|_| render()).collect()
+    let mut pictures = vec![render(&world)?];
+    for view in views {
+        let earlier = world.views.get(ViewId::MAIN)?.view.clone();
+        world.set_view(gpu, ViewId::MAIN, view.after(&earlier))?;
+        pictures.push(render(&world)?);
+    }
+    Ok(pictures)
 }
 
 fn with_reflections() -> Settings {
@@ -106,6 +119,18 @@ fn mirrors_show_the_wall() -> TestResult {
         let apart = on[1].iter().zip(&on[2]).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
         assert!(apart < 0.01 * environment.max_element(), "what stands still does not flicker: {apart}");
     }
+    Ok(())
+}
+
+/// A frame that is exposed otherwise than the one before shows the same scene: mirrors too, of what the one before had.
+#[test]
+fn mirrors_follow_the_exposure() -> TestResult {
+    let Some(gpu) = gpu("mirrors_follow_the_exposure") else { return Ok(()) };
+    let pictures = exposed(&gpu, &room(mirror(0.0), WALL), with_reflections(), &[10.0, 10.0, 11.0])?;
+    let most = |of: fn((&Vec3, &Vec3)) -> f32| pictures[1].iter().zip(&pictures[2]).map(of).fold(0.0, f32::max);
+    // A hundredth of the brightest, as above.
+    let most = most(|(a, b)| (*a - 2.0 * *b).abs().max_element()) / most(|(a, _)| a.max_element());
+    assert!(most < 0.01, "{most}");
     Ok(())
 }
 
