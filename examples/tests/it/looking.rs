@@ -17,7 +17,9 @@ fn folder(test: &str) -> PathBuf {
 /// A tiny picture with these options; standard output.
 fn render(folder: &Path, args: &[&str]) -> Result<String, String> {
     let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
-    let small = ["--size", "48x27", "--frames", "2"];
+    // A bisection measures nothing, and refuses a number of frames.
+    let small: &[&str] =
+        if args.contains(&"--bisect") { &["--size", "48x27"] } else { &["--size", "48x27", "--frames", "2"] };
     let done = command
         .env("NODEVICE_SELECT", "1")
         .env("FRAMEGRAPH_LIGHT_CACHE", LIGHT)
