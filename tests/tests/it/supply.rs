@@ -143,8 +143,8 @@ fn crates_come_from_the_registry_alone() {
     }
 }
 
-/// Crates that came after the snapshot and were not looked up when this list was begun.
-const OPEN: usize = 56;
+/// Crates that came after the snapshot and were not looked up when this list was begun, nor the two of `multiversion`, which came with it.
+const OPEN: usize = 58;
 
 /// The three numbers of a version.
 fn numbers(version: &str) -> [u64; 3] {
