@@ -179,6 +179,7 @@ mod tests {
         ("grading", "tests/tests/it/grading.rs"),
         ("loop counters", "shaders/tests/all/operations.rs"),
         ("loops", "tests/tests/it/loops.rs"),
+        ("indices", "tests/tests/it/loops.rs"),
         ("order", "scene/src/import/tests/real_files.rs"),
         ("render --compare-post", "tests/tests/it/readme.rs"),
         ("render spheres", "tests/tests/it/readme.rs"),
