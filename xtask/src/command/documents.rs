@@ -173,7 +173,7 @@ mod tests {
     }
 
     /// Marked tables that tests compare by themselves, each with a file that does.
-    const TESTED: [(&str, &str); 10] = [
+    const TESTED: [(&str, &str); 11] = [
         ("facts", "tests/tests/it/facts/table.rs"),
         ("features of the color pass", "shaders/tests/all/operations.rs"),
         ("grading", "tests/tests/it/grading.rs"),
