@@ -126,7 +126,7 @@ fn under_sky(gpu: &Gpu, board: &Board) -> Result<Vec<DVec3>, Box<dyn Error>> {
 /// The cube has six bits of red and green and five of blue.
 fn near(name: &str, seen: DVec3, expected: DVec3) {
     let apart = ((seen - expected) / expected.max(DVec3::splat(0.1))).abs().max_element();
-    println!("{name}: {seen} for {expected}: {apart:.5}");
+    program::line(format_args!("{name}: {seen} for {expected}: {apart:.5}"));
     assert!(apart < 1e-2, "{name}: {seen} for {expected}");
 }
 
