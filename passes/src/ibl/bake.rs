@@ -102,14 +102,13 @@ impl ImageLight {
 
 /// All that decides what the cube and the coefficients are. The window is applied after the cache.
 fn key(map: &EquirectMap, settings: &IblSettings, shape: &CubeShape) -> Key {
-    let mut key = Key::new("image light");
+    let mut key = Key::of("image light", "pass/ibl.wgsl");
     key.add(&[map.width(), map.height(), settings.cube_texels, settings.levels, settings.bands.count() as u32]);
     key.add_text(&format!("{:?}", texture_format(shape.format)));
     key.add(map.texels());
     for level in 0..settings.levels {
         key.add(&cube::level_kernel(settings, level));
     }
-    key.add_shader("pass/ibl.wgsl");
     key
 }
 

@@ -268,10 +268,20 @@ fn sweep(folder: &Path) {
 pub(super) struct Key(SipHasher13x128);
 
 impl Key {
-    /// `what` keeps kinds of entries apart.
-    pub fn new(what: &str) -> Self {
+    /// Of an entry that an embedded pass makes: its text and that of the whole library that it may import from count. `what`
+    /// keeps kinds of entries apart.
+    pub fn of(what: &str, pass: &str) -> Self {
+        let read = |source: &Source<'static>| library::in_use(source.path).map(|wgsl| Source { wgsl, ..*source });
+        Self::made_by(what, pass, library::SOURCES.iter().filter_map(read))
+    }
+
+    fn made_by<'a>(what: &str, pass: &str, sources: impl Iterator<Item = Source<'a>>) -> Self {
         let mut key = Self(SipHasher13x128::new());
         key.add_text(what);
+        for source in sources.filter(|source| source.path == pass || source.path.starts_with("lib/")) {
+            key.add_text(source.path);
+            key.add_text(source.wgsl);
+        }
         key
     }
 
@@ -285,19 +295,6 @@ impl Key {
     /// Adds a text.
     pub fn add_text(&mut self, text: &str) {
         self.add(text.as_bytes());
-    }
-
-    /// Adds the text of an embedded pass and of the whole library that it may import from.
-    pub fn add_shader(&mut self, pass: &str) {
-        let read = |source: &Source<'static>| library::in_use(source.path).map(|wgsl| Source { wgsl, ..*source });
-        self.add_sources(pass, library::SOURCES.iter().filter_map(read));
-    }
-
-    fn add_sources<'a>(&mut self, pass: &str, sources: impl Iterator<Item = Source<'a>>) {
-        for source in sources.filter(|source| source.path == pass || source.path.starts_with("lib/")) {
-            self.add_text(source.path);
-            self.add_text(source.wgsl);
-        }
     }
 
     pub fn finish(self) -> u128 {

@@ -83,10 +83,9 @@ impl DfgTable {
 }
 
 fn key(settings: DfgSettings) -> Key {
-    let mut key = Key::new("DFG table");
+    let mut key = Key::of("DFG table", "pass/dfg.wgsl");
     let fast = u32::from(settings.visibility == Visibility::Fast);
     key.add(&[settings.texels, fast, DfgSettings::GGX_SAMPLES, DfgSettings::CLOTH_SAMPLES]);
-    key.add_shader("pass/dfg.wgsl");
     key
 }
 

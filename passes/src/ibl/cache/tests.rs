@@ -19,7 +19,7 @@ fn a_variable_chooses_the_folder_or_none() {
 fn an_entry_comes_back_and_every_damage_is_noticed() {
     let folder = folder("damage");
     let cache = Cache::at(&folder);
-    let (key, payload) = (Key::new("test"), (0..=255).collect::<Vec<u8>>());
+    let (key, payload) = (Key::of("test", "pass/ibl.wgsl"), (0..=255).collect::<Vec<u8>>());
     let load = |warnings: &mut Vec<String>| cache.load(key, 7, warnings, |payload| Ok(payload.to_vec()));
     let mut warnings = Vec::new();
     assert_eq!(load(&mut warnings), None);
@@ -67,7 +67,7 @@ fn what_a_killed_program_left_is_swept_away_and_what_is_being_written_is_not() {
     let long_ago = std::time::SystemTime::now() - 2 * STALE;
     let file = std::fs::File::options().write(true).open(&old).expect("it is there");
     file.set_modified(long_ago).expect("the file is ours");
-    Cache::at(&folder).store(Key::new("test"), 1, &[], &mut Vec::new());
+    Cache::at(&folder).store(Key::of("test", "pass/ibl.wgsl"), 1, &[], &mut Vec::new());
     assert!(!old.exists() && new.exists());
     std::fs::remove_dir_all(folder).expect("the folder is ours");
 }
@@ -86,13 +86,13 @@ fn a_folder_that_cannot_be_written_only_warns() {
     std::fs::write(&blocked, b"x").expect("a temporary file");
     let cache = Cache::at(blocked.join("ibl"));
     let mut warnings = Vec::new();
-    cache.store(Key::new("test"), 1, &[], &mut warnings);
+    cache.store(Key::of("test", "pass/ibl.wgsl"), 1, &[], &mut warnings);
     assert!(warnings.len() == 1 && warnings[0].contains(&*blocked.to_string_lossy()), "{warnings:?}");
     assert!(warnings[0].contains("FRAMEGRAPH_LIGHT_CACHE"));
     std::fs::remove_file(blocked).expect("the file is ours");
     let mut warnings = Vec::new();
-    Cache::off().store(Key::new("test"), 1, &[], &mut warnings);
-    assert_eq!(Cache::off().load(Key::new("test"), 1, &mut warnings, |_| Ok(())), None);
+    Cache::off().store(Key::of("test", "pass/ibl.wgsl"), 1, &[], &mut warnings);
+    assert_eq!(Cache::off().load(Key::of("test", "pass/ibl.wgsl"), 1, &mut warnings, |_| Ok(())), None);
     assert!(warnings.is_empty());
 }
 
@@ -118,10 +118,11 @@ fn shader(pass: &'static str, library: &'static str) -> impl Iterator<Item = Sou
 #[test]
 fn keys_tell_apart_what_is_added() {
     let of = |add: fn(&mut Key)| {
-        let mut key = Key::new("a");
+        let mut key = Key::of("a", "pass/ibl.wgsl");
         add(&mut key);
         key.finish()
     };
+    let by = |text, library| Key::made_by("a", "pass/a.wgsl", shader(text, library)).finish();
     let keys = [
         of(|_| ()),
         of(|k| k.add(&[1_u32, 2])),
@@ -130,11 +131,11 @@ fn keys_tell_apart_what_is_added() {
             k.add(&[1_u32]);
             k.add(&[2_u32]);
         }),
-        of(|k| k.add_shader("pass/ibl.wgsl")),
-        of(|k| k.add_shader("pass/dfg.wgsl")),
-        of(|k| k.add_sources("pass/a.wgsl", shader("pass", "library"))),
-        of(|k| k.add_sources("pass/a.wgsl", shader("another pass", "library"))),
-        of(|k| k.add_sources("pass/a.wgsl", shader("pass", "another library"))),
+        Key::of("a", "pass/dfg.wgsl").finish(),
+        Key::of("b", "pass/ibl.wgsl").finish(),
+        by("pass", "library"),
+        by("another pass", "library"),
+        by("pass", "another library"),
     ];
     for (i, a) in keys.iter().enumerate() {
         assert!(keys[..i].iter().all(|b| a != b), "{i}");
