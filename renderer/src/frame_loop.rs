@@ -6,8 +6,9 @@ use crate::execute::error::ExecuteError;
 use crate::execute::executor::{Executor, ExecutorOptions, WarmUp};
 use crate::frame::Frame;
 use crate::frames_in_flight::FramesInFlight;
+use crate::placed::not_placed::NotPlaced;
 use crate::resources::imports::Imports;
-use framegraph::{CompileErrors, DeclareError, Options, Plan, Scratch, Warning};
+use framegraph::{Alias, CompileErrors, DeclareError, Options, Plan, Scratch, Warning};
 use std::fmt;
 use wgpu::SubmissionIndex;
 
@@ -53,6 +54,9 @@ pub struct Ran<T> {
     pub io: T,
     /// The submission of its commands.
     pub submission: SubmissionIndex,
+    /// Why textures that were asked to share one block of memory ([`Alias::Heap`]) share by shape instead; none where they lie in one,
+    /// or were not asked to.
+    pub not_placed: Option<NotPlaced>,
 }
 
 /// A frame was not executed; the next one starts clean.
@@ -134,7 +138,9 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
         let Some(io) = self.declare(size, declare)? else { return Ok(None) };
         let submission = self.executor.execute_with(&self.plan, &self.frame, world, &self.imports, submit)?;
         self.flight.submitted(submission.clone());
-        Ok(Some(Ran { io, submission }))
+        let asked = self.options.alias == Alias::Heap;
+        let not_placed = self.executor.not_placed().filter(|_| asked).cloned();
+        Ok(Some(Ran { io, submission, not_placed }))
     }
 
     /// As [`FrameLoop::run`], with the commands handed out instead of submitted: [`Executor::record`] says what holds until

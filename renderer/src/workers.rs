@@ -3,8 +3,9 @@
 use std::fmt;
 use std::sync::Arc;
 
-/// A pool of threads, each pinned to a core of its own; one core is left to the thread that submits, which works too while
-/// it waits. Clones share the threads.
+/// A pool of threads, each pinned to a core of its own as long as there are any; one core is left to the thread that submits, which
+/// works too while it waits. Threads beyond the cores run where the system puts them, and so does the thread that submits. Clones
+/// share the threads.
 ///
 /// An executor records on them once it is given them ([`Executor::record_on`](crate::Executor::record_on)).
 ///
@@ -104,6 +105,20 @@ impl fmt::Debug for Workers {
 mod tests {
     use super::*;
     use std::thread::{self, ThreadId};
+
+    /// As the system tells: a thread that is pinned may run on one core. The last core is nobody's.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn threads_are_pinned_as_long_as_there_are_cores() -> Result<(), WorkersError> {
+        let cores = core_affinity::get_core_ids().unwrap_or_default();
+        let workers = Workers::with_threads(cores.len() + 2)?;
+        let pool = workers.pool().ok_or(WorkersError { reason: "no pool".into() })?;
+        let may_run_on = pool.broadcast(|_| core_affinity::get_core_ids().unwrap_or_default());
+        let expected: Vec<_> =
+            (0..=cores.len()).map(|at| if at + 1 < cores.len() { vec![cores[at]] } else { cores.clone() }).collect();
+        assert_eq!(may_run_on, expected);
+        Ok(())
+    }
 
     /// All items are worked on, the first by who asks.
     #[test]

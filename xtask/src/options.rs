@@ -41,12 +41,14 @@ struct Own {
     commands: &'static [&'static str],
 }
 
-const OWN: [Own; 12] = [
+const OWN: [Own; 14] = [
     Own { name: "--frames", valued: false, commands: &["bench"] },
     Own { name: "--scene", valued: true, commands: &["bench"] },
     Own { name: "--preset", valued: true, commands: &["bench"] },
     Own { name: "--size", valued: true, commands: &["bench"] },
     Own { name: "--beside", valued: true, commands: &["bench"] },
+    Own { name: "--with", valued: true, commands: &["bench"] },
+    Own { name: "--rounds", valued: true, commands: &["bench"] },
     Own { name: "--build", valued: false, commands: &["rooms"] },
     Own { name: "--quick", valued: false, commands: &["prove"] },
     Own { name: "--dsa", valued: true, commands: &["prove"] },
@@ -143,7 +145,8 @@ Options:
   --all, --count N, --list, --out FILE
                 of `mutants`: see `cargo xtask mutants --help`
   --all         of `test`: see `cargo xtask test --help`
-  --frames, --scene NAME, --preset NAME, --size WxH, --beside COMMAND
+  --frames, --scene NAME, --preset NAME, --size WxH, --beside COMMAND,
+  --with ARGS, --rounds N
                 of `bench`: see `cargo xtask bench --help`
   --build       of `rooms`: see `cargo xtask rooms --help`
   -h, --help    print help

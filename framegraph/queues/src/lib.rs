@@ -57,6 +57,6 @@ pub use layout::{Queue, QueueId, QueueLayout};
 pub use memory::{SharedMemory, share_memory};
 pub use replan::replan;
 pub use schedule::{QueueError, Schedule, Wait, schedule, schedule_with};
-pub use stream::{Command, Memory, stream};
+pub use stream::{Command, Memory, PlanStream, stream};
 pub use text::{svg, text};
 pub use transfers::Transfer;

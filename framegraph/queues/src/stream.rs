@@ -149,6 +149,42 @@ pub fn stream(plan: &Plan, schedule: Option<&Schedule>) -> Vec<Command> {
     commands
 }
 
+/// A plan as a stream, by a call on the plan.
+///
+/// ```
+/// use framegraph::{Caps, Extent, Format, Graph, Intent, Options, Plan, Scratch, TextureDesc, compile};
+/// use framegraph_queues::{Command, PlanStream};
+///
+/// let mut graph = Graph::new();
+/// let sky = graph.texture("sky", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+/// let sky = graph.add_fn("sky", |p| p.color(sky, Intent::Overwrite))?;
+/// graph.export(sky)?;
+/// let mut plan = Plan::new();
+/// compile(&graph, &Caps::desktop(), &Options::for_frame(64, 64), &mut Scratch::new(), &mut plan)?;
+/// assert!(plan.stream().iter().any(|command| matches!(command, Command::Begin { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub trait PlanStream {
+    /// [`stream()`] of one queue.
+    fn stream(&self) -> Vec<Command>;
+
+    /// [`stream()`] of the queues of a schedule of this plan.
+    ///
+    /// # Panics
+    /// When `schedule` is of another plan.
+    fn stream_on(&self, schedule: &Schedule) -> Vec<Command>;
+}
+
+impl PlanStream for Plan {
+    fn stream(&self) -> Vec<Command> {
+        stream(self, None)
+    }
+
+    fn stream_on(&self, schedule: &Schedule) -> Vec<Command> {
+        stream(self, Some(schedule))
+    }
+}
+
 /// Heaps, and everything that lies in them or elsewhere.
 fn memory(plan: &Plan) -> Vec<Command> {
     let is_buffer = |resource: ResourceId| plan.graph().resources()[resource.index()].desc.texture().is_none();

@@ -6,7 +6,7 @@ use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{
     Access, AccessKind, Alias, Caps, Join, Options, PassKind, Placement, Plan, ResourceId, Scratch, State, compile,
 };
-use framegraph_queues::{Command, Memory, QueueId, QueueLayout, Schedule, schedule, stream};
+use framegraph_queues::{Command, Memory, PlanStream, QueueId, QueueLayout, Schedule, schedule};
 use std::collections::{BTreeMap, BTreeSet};
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
@@ -160,7 +160,7 @@ fn a_machine_runs_streams_on_one_queue() -> TestResult {
     let (mut ran, mut barriers, mut heaps, mut noticed) = (0, 0, 0, 0);
     for seed in 0..400 {
         let Some(plan) = planned(seed, Alias::Heap) else { continue };
-        let commands = stream(&plan, None);
+        let commands = plan.stream();
         let steps =
             run(&plan, None, &commands).map_err(|e| format!("seed {seed}: {e}\n{}", framegraph::dump::text(&plan)))?;
         assert!(steps.iter().copied().eq(0..plan.steps().len() as u32), "seed {seed}");
@@ -187,7 +187,7 @@ fn a_machine_runs_streams_on_several_queues() -> TestResult {
         let costs: Vec<f64> =
             (0..plan.steps().len()).map(|step| (seed as usize * 37 + step * 101) as f64 % 400.0).collect();
         let found = schedule(&plan, &QueueLayout::async_compute(), &costs)?;
-        let commands = stream(&plan, Some(&found));
+        let commands = plan.stream_on(&found);
         run(&plan, Some(&found), &commands).map_err(|e| format!("seed {seed}: {e}"))?;
         let count = |is: fn(&Command) -> bool| commands.iter().filter(|command| is(command)).count();
         let waits = count(|c| matches!(c, Command::Wait { .. }));

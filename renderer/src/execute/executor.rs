@@ -19,9 +19,8 @@ use crate::execute::commands::FrameCommands;
 use crate::execute::error::{ExecuteError, MemoryAsked, RecordError};
 use crate::execute::prepared::{Caches, Prepared};
 use crate::execute::recording::Recording;
-use crate::execute::segments::Segments;
-use crate::execute::steps::{Passes, record_step};
-use crate::execute::threads::Threads;
+use crate::execute::steps::Passes;
+use crate::execute::threads::{Threads, record_part};
 use crate::frame::Frame;
 use crate::frame_key::FrameKey;
 use crate::measure::timing::Timing;
@@ -328,16 +327,12 @@ impl Executor {
     ) -> Result<FrameCommands, ExecuteError> {
         let Self { gpu, caches, arenas, realized, timing, touched, options, recording, threads, executed, .. } = self;
         let frame = &Prepared { gpu, plan, realized, caches, timing, touched, poison: options.poison };
-        // Command buffers end where memory changes hands: such a frame is recorded on one thread.
-        let alone = recorded.is_some() || arenas.current().is_some();
-        let shared = if alone { None } else { threads.record(frame, passes, recording, elsewhere) };
-        let commands = match shared {
-            Some(buffers) => buffers.map(|buffers| FrameCommands::new(buffers, false)),
-            None => {
-                let segments = recording.in_wgpu(|| Segments::new(gpu, plan, realized, arenas));
-                record_alone(frame, passes, recording, segments, recorded)
-            }
-        };
+        let arenas = &*arenas;
+        let alone = recorded.is_some();
+        let shared = if alone { None } else { threads.record(frame, arenas, passes, recording, elsewhere) };
+        let all = 0..plan.steps().len() as u32;
+        let commands = shared.unwrap_or_else(|| record_part(frame, arenas, passes, all, recording, recorded));
+        let commands = commands.map(|buffers| FrameCommands::new(buffers, arenas.submits_apart(gpu)));
         if !alone {
             threads.end_frame(recording);
         }
@@ -390,27 +385,6 @@ impl Executor {
 /// Whether a plan is that of a frame.
 fn check<W: ?Sized + 'static>(plan: &Plan, frame: &Frame<W>) -> Result<(), ExecuteError> {
     if frame.graph().same_as(plan.graph()) { Ok(()) } else { Err(ExecuteError::OtherPlan) }
-}
-
-/// Records all steps on this thread.
-fn record_alone<W: ?Sized + 'static>(
-    frame: &Prepared<'_>,
-    passes: &Passes<'_, W>,
-    recording: &mut Recording,
-    mut segments: Segments<'_>,
-    mut recorded: Option<&mut dyn FnMut(StepId, u64)>,
-) -> Result<FrameCommands, ExecuteError> {
-    for step in frame.plan.step_ids() {
-        segments.begin_step(step);
-        record_step(frame, passes, step, recording, &mut segments.encoder)?;
-        if let Some(recorded) = &mut recorded {
-            recorded(step, frame.caches.pipelines.counts().created);
-        }
-    }
-    Ok(recording.in_wgpu(|| {
-        frame.timing.resolve(&mut segments.encoder);
-        segments.finish()
-    }))
 }
 
 /// Whether what was `said` while recording follows from the device's `error`, such as a view of a texture that there is no

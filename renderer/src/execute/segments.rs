@@ -1,13 +1,13 @@
-//! The command buffers of a frame while its steps are recorded: one, or a new one wherever memory changes hands.
+//! The command buffers of a part of a frame while its steps are recorded: one, or a new one wherever memory changes hands.
 
 use crate::device::gpu::Gpu;
-use crate::execute::commands::FrameCommands;
+use crate::execute::prepared::Prepared;
 use crate::placed::activation::{Activation, activations};
 use crate::placed::arenas::{Arena, Arenas};
 use crate::placed::driver::{Driver, Object, PlacedTexture};
-use crate::placed::submission::keeps_order_of_aliases;
 use crate::resources::realize::Realized;
 use framegraph::{Plan, ResourceId, StepId};
+use std::ops::Range;
 use wgpu::{CommandBuffer, CommandEncoder, CommandEncoderDescriptor, TextureTransition};
 
 /// See the [module](self).
@@ -15,6 +15,7 @@ pub(crate) struct Segments<'a> {
     gpu: &'a Gpu,
     pub(crate) encoder: CommandEncoder,
     done: Vec<CommandBuffer>,
+    steps: Range<u32>,
     sharing: Option<Sharing<'a>>,
 }
 
@@ -31,8 +32,9 @@ struct Sharing<'a> {
 }
 
 impl<'a> Segments<'a> {
-    /// Begins a frame. Opens an encoder, which is told to be wgpu's time by who calls.
-    pub(crate) fn new(gpu: &'a Gpu, plan: &'a Plan, realized: &'a Realized, arenas: &'a Arenas) -> Self {
+    /// Begins the part of a frame that these steps are. Opens an encoder, which is told to be wgpu's time by who calls.
+    pub(crate) fn new(frame: &Prepared<'a>, arenas: &'a Arenas, steps: Range<u32>) -> Self {
+        let Prepared { gpu, plan, realized, .. } = *frame;
         let sharing = arenas.current().zip(arenas.placing()).map(|(arena, driver)| {
             let mut coming = activations(plan, |resource| realized.placed_at(resource).is_some());
             if arenas.leaves_out_hand_overs() {
@@ -40,10 +42,15 @@ impl<'a> Segments<'a> {
                 let resources = coming.drain(..).flat_map(|a| a.resources).collect();
                 coming.push(Activation { before: StepId::at(0), resources });
             }
+            // Parts before have handed over and taken back what was due until then.
+            let begin = StepId::at(steps.start as usize);
+            let here = coming.partition_point(|a| a.before < begin);
+            let before = coming.drain(..here).flat_map(|a| a.resources);
+            let active = before.filter(|r| plan.resources()[r.index()].last >= begin).collect();
             coming.reverse();
-            Sharing { driver, arena, plan, realized, coming, active: Vec::new() }
+            Sharing { driver, arena, plan, realized, coming, active }
         });
-        Self { gpu, encoder: encoder(gpu), done: Vec::new(), sharing }
+        Self { gpu, encoder: encoder(gpu), done: Vec::new(), steps, sharing }
     }
 
     /// Begins a step: what uses memory from here on gets it.
@@ -53,19 +60,21 @@ impl<'a> Segments<'a> {
         sharing.retire(step, &mut self.encoder);
         let before = std::mem::replace(&mut self.encoder, encoder(self.gpu));
         // In front of the first step there is nothing to end.
-        if step.index() > 0 {
+        if step.index() > self.steps.start as usize {
             self.done.push(before.finish());
         }
         self.done.push(sharing.activate(now.resources));
     }
 
-    /// Ends the frame.
-    pub(crate) fn finish(mut self) -> FrameCommands {
+    /// Ends the part.
+    pub(crate) fn finish(mut self) -> Vec<CommandBuffer> {
         if let Some(sharing) = &mut self.sharing {
-            sharing.retire(StepId::NONE, &mut self.encoder);
+            let last = self.steps.end as usize == sharing.plan.steps().len();
+            let next = if last { StepId::NONE } else { StepId::at(self.steps.end as usize) };
+            sharing.retire(next, &mut self.encoder);
         }
         self.done.push(self.encoder.finish());
-        FrameCommands::new(self.done, self.sharing.is_some() && !keeps_order_of_aliases(self.gpu.info()))
+        self.done
     }
 }
 

@@ -1,19 +1,21 @@
-//! A frame whose steps are recorded on several threads: each records a part of them, in order, into a command buffer of its
+//! A frame whose steps are recorded on several threads: each records a part of them, in order, into command buffers of its
 //! own. They are submitted in the order of the steps, so the device sees what it sees of one thread.
 
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::execute::error::ExecuteError;
 use crate::execute::prepared::Prepared;
 use crate::execute::recording::Recording;
+use crate::execute::segments::Segments;
 use crate::execute::share::Share;
 use crate::execute::steps::{Passes, record_step};
+use crate::placed::arenas::Arenas;
 use crate::workers::Workers;
 use framegraph::{Placement, Plan, StepId, StoreOp, Usage};
 use std::ops::Range;
 use std::time::Instant;
 #[cfg(feature = "threads")]
 use wgpu::Device;
-use wgpu::{CommandBuffer, CommandEncoderDescriptor, Queue};
+use wgpu::{CommandBuffer, Queue};
 
 /// Who records beside the thread that submits, and what.
 #[derive(Debug, Default)]
@@ -33,7 +35,7 @@ pub(crate) struct Threads {
 struct Part<'a> {
     steps: Range<u32>,
     recording: &'a mut Recording,
-    commands: Result<Option<CommandBuffer>, ExecuteError>,
+    commands: Result<Vec<CommandBuffer>, ExecuteError>,
     caught: Result<(), DeviceError>,
 }
 
@@ -109,6 +111,7 @@ impl Threads {
     pub(crate) fn record<W: ?Sized + Sync + 'static>(
         &mut self,
         frame: &Prepared<'_>,
+        arenas: &Arenas,
         passes: &Passes<'_, W>,
         first: &mut Recording,
         caught: &mut Result<(), DeviceError>,
@@ -120,14 +123,19 @@ impl Threads {
             .parts()
             .iter()
             .zip(recordings)
-            .map(|(steps, recording)| Part { steps: steps.clone(), recording, commands: Ok(None), caught: Ok(()) })
+            .map(|(steps, recording)| Part {
+                steps: steps.clone(),
+                recording,
+                commands: Ok(Vec::new()),
+                caught: Ok(()),
+            })
             .collect();
         *recorded = parts.len();
         workers.for_each(&mut parts, |part| {
             let begun = part.recording.now();
             let scopes = ErrorScopes::open(&frame.gpu.device);
             part.recording.took_in_wgpu(begun);
-            part.commands = record_part(frame, passes, part.steps.clone(), part.recording).map(Some);
+            part.commands = record_part(frame, arenas, passes, part.steps.clone(), part.recording, None);
             let begun = part.recording.now();
             part.caught = scopes.close("a frame");
             part.recording.took_in_wgpu(begun);
@@ -156,8 +164,8 @@ fn may_begin(plan: &Plan, may: &mut Vec<bool>) {
     let mut discarded: [Vec<Option<usize>>; 2] = [Vec::new(), Vec::new()];
     let texture = |resource: usize| match plan.resources()[resource].placement {
         Placement::Slot(slot) => Some((0, slot.index())),
-        Placement::Own | Placement::External => Some((1, resource)),
-        Placement::Unused | Placement::Memoryless | Placement::Inlined | Placement::Heap { .. } => None,
+        Placement::Own | Placement::External | Placement::Heap { .. } => Some((1, resource)),
+        Placement::Unused | Placement::Memoryless | Placement::Inlined => None,
     };
     for step in plan.step_ids() {
         for attachment in plan.attachments_of(step) {
@@ -185,21 +193,28 @@ fn may_begin(plan: &Plan, may: &mut Vec<bool>) {
     }
 }
 
-fn record_part<W: ?Sized + 'static>(
+/// Records these steps on this thread. `recorded` is told each that is done, and how many pipelines were made until then.
+pub(crate) fn record_part<W: ?Sized + 'static>(
     frame: &Prepared<'_>,
+    arenas: &Arenas,
     passes: &Passes<'_, W>,
     steps: Range<u32>,
     recording: &mut Recording,
-) -> Result<CommandBuffer, ExecuteError> {
-    let mut encoder = frame.gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("frame") });
+    mut recorded: Option<&mut dyn FnMut(StepId, u64)>,
+) -> Result<Vec<CommandBuffer>, ExecuteError> {
     let last = steps.end as usize == frame.plan.steps().len();
-    for step in steps {
-        record_step(frame, passes, StepId::at(step as usize), recording, &mut encoder)?;
+    let mut segments = recording.in_wgpu(|| Segments::new(frame, arenas, steps.clone()));
+    for step in steps.map(|step| StepId::at(step as usize)) {
+        segments.begin_step(step);
+        record_step(frame, passes, step, recording, &mut segments.encoder)?;
+        if let Some(recorded) = &mut recorded {
+            recorded(step, frame.caches.pipelines.counts().created);
+        }
     }
     Ok(recording.in_wgpu(|| {
         if last {
-            frame.timing.resolve(&mut encoder);
+            frame.timing.resolve(&mut segments.encoder);
         }
-        encoder.finish()
+        segments.finish()
     }))
 }

@@ -7,6 +7,7 @@ use crate::named::Named;
 use crate::placed::driver::{Driver, Object};
 use crate::placed::not_placed::NotPlaced;
 use crate::placed::shape::{Needs, Shape};
+use crate::placed::submission::keeps_order_of_aliases;
 use crate::resources::physical::PhysicalTextureDesc;
 use crate::resources::requests::{PlacedRequest, Requests, shaped};
 use crate::resources::support::{Unsupported, check_buffer, check_texture};
@@ -184,6 +185,11 @@ impl Arenas {
     /// The arena of this frame; none when nothing is placed.
     pub(crate) fn current(&self) -> Option<&Arena> {
         self.arenas.first().filter(|arena| arena.used == self.frame)
+    }
+
+    /// Whether each command buffer of this frame is to be a submission of its own.
+    pub(crate) fn submits_apart(&self, gpu: &Gpu) -> bool {
+        self.current().is_some() && !keeps_order_of_aliases(gpu.info())
     }
 
     /// The driver, where something is placed.

@@ -1,7 +1,7 @@
 //! Declare and go: what a loop keeps, what it skips, and what it does after an error.
 
 use crate::bench::{GREEN, RED, TestResult, fill_full, on_every_device};
-use framegraph::{Counts, DeclareError, Entry, Exit, Extent, Format, Intent, TextureDesc, Warning};
+use framegraph::{Alias, Counts, DeclareError, Entry, Exit, Extent, Format, Intent, TextureDesc, Warning};
 use framegraph_wgpu::{Frame, FrameError, FrameLoop, FramesInFlight, Imports, read_texture};
 use std::num::NonZeroU32;
 
@@ -93,6 +93,24 @@ fn a_frame_whose_export_was_forgotten_is_refused() -> TestResult {
     assert!(run(true)?.is_some());
     let ran = frames.run([8, 8], &(), |_, _| Ok::<_, DeclareError>(()))?;
     assert!(ran.is_some() && frames.executor().executed() == Counts::default());
+    Ok(())
+}
+
+/// A loop that asks for one block of memory and gets none says why with each frame, and only while it asks.
+#[test]
+fn a_loop_says_why_nothing_is_placed() -> TestResult {
+    let gpu = framegraph_wgpu::Gpu::noop()?;
+    let mut frames = FrameLoop::<()>::new(&gpu);
+    for alias in [Alias::Pool, Alias::Heap, Alias::Heap, Alias::Off] {
+        frames.options_mut().alias = alias;
+        let ran = frames.run([8, 8], &(), |frame, _| {
+            let sky = frame.graph_mut().texture("sky", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+            let sky = frame.add_fn("sky", |p| p.color(sky, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
+            frame.graph_mut().export(sky)
+        })?;
+        let told = ran.ok_or("no frame")?.not_placed.map(|why| why.to_string());
+        assert_eq!(told.is_some_and(|why| why.contains("Vulkan")), alias == Alias::Heap, "{alias:?}");
+    }
     Ok(())
 }
 

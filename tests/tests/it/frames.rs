@@ -111,36 +111,48 @@ fn ten_frames_with_a_resize_are_the_same_however_they_are_planned() -> Result<()
     Ok(())
 }
 
-/// With every effect and its histories, frame after frame: textures in one block of memory, recorded on one thread, show what
-/// they show apart, recorded on three.
+/// With every effect and its histories, frame after frame: textures in one block of memory, recorded on three threads, show what
+/// they show apart, recorded on one; and so it is with the first frames of every other way.
 #[test]
 fn frames_in_one_block_of_memory_are_the_frames_apart() -> Result<(), Box<dyn Error>> {
     const NAME: &str = "frames_in_one_block_of_memory_are_the_frames_apart";
     let Some(gpu) = gpu(NAME) else { return Ok(()) };
     let settings = Settings { shadows: Some(ShadowSettings::texels(256)), ..Preset::Ultra.frame().settings };
-    let shots = test_report::share(0..24_u8)
+    let shots: Vec<_> = test_report::share(0..24_u8)
         .into_iter()
-        .map(|index| Shot { ev100: 13.5 + f32::from(index) / 16.0, ..Shot::small(settings) });
-    let (mut films, mut pictures) = (Vec::new(), Vec::new());
-    for alias in [Alias::Off, Alias::Heap] {
-        let mut film = Film::new(&gpu, "spheres")?;
-        film.executor.always_record_on(Workers::with_threads(3)?);
-        let shoot = |shot: Shot| film.shoot(&Shot { options: Options { alias, ..shot.options }, ..shot });
-        pictures.push(shots.clone().map(shoot).collect::<Result<Vec<_>, _>>()?);
-        films.push(film);
+        .map(|index| Shot { ev100: 13.5 + f32::from(index) / 16.0, ..Shot::small(settings) })
+        .collect();
+    let mut film = Film::new(&gpu, "spheres")?;
+    let mut apart = Vec::new();
+    let few = shots.len().min(3);
+    let ways = [(Alias::Off, 1, shots.len()), (Alias::Heap, 3, shots.len())];
+    let others = [(Alias::Heap, 1, few), (Alias::Pool, 3, few), (Alias::Off, 3, few)];
+    for (alias, threads, count) in ways.into_iter().chain(others) {
+        film.forget();
+        film.executor.always_record_on(Workers::with_threads(threads)?);
+        for (index, shot) in shots[..count].iter().enumerate() {
+            let found = film.shoot(&Shot { options: Options { alias, ..shot.options }, ..*shot })?;
+            match apart.get(index) {
+                Some(picture) => assert!(found == *picture, "frame {index}, {alias:?} on {threads} threads"),
+                None => apart.push(found),
+            }
+        }
+        if let Some(why) = film.executor.not_placed() {
+            test_report::skip(NAME, &why.to_string());
+            return Ok(());
+        }
+        let rows = film.plan.resources().iter();
+        let placed = rows.filter(|r| matches!(r.placement, Placement::Heap { .. })).count();
+        assert_eq!(
+            (placed > 5, film.executor.recording_threads()),
+            (alias == Alias::Heap, threads),
+            "{placed} are placed"
+        );
+        // What the driver gave is less than it asks for one by one.
+        let given = film.executor.allocated();
+        assert_eq!(given.placed > 0 && given.placed < given.placed_apart, alias == Alias::Heap, "{given:?}");
     }
-    let placed = films[1].plan.resources().iter().filter(|r| matches!(r.placement, Placement::Heap { .. })).count();
-    if let Some(why) = films[1].executor.not_placed() {
-        test_report::skip(NAME, &why.to_string());
-        return Ok(());
-    }
-    assert!(placed > 5 && is_picture(&pictures[0][0]), "{placed} textures are placed");
-    assert_eq!([0, 1].map(|film| films[film].executor.recording_threads()), [3, 1]);
-    for (index, (apart, block)) in pictures[0].iter().zip(&pictures[1]).enumerate() {
-        assert!(apart == block, "frame {index}");
-    }
-    let [apart, block] = [&films[0], &films[1]].map(|film| (film.executor.allocated().placed, film.plan.memory()));
-    assert!(apart.0 == 0 && block.0 > 0 && block.0 < block.1.unaliased_bytes, "{apart:?} {block:?}");
+    assert!(is_picture(&apart[0]));
     Ok(())
 }
 

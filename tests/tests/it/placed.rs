@@ -9,7 +9,8 @@ use framegraph_passes::dof::DofSettings;
 use framegraph_passes::shadow::{ShadowFilter, ShadowSettings};
 use framegraph_passes::{OcclusionSettings, ReflectionSettings, Settings, TaaSettings};
 use framegraph_wgpu::{
-    AdapterRequest, ExecuteError, Executor, ExecutorOptions, Frame, FrameLoop, Gpu, NotPlaced, Unsupported, stand_in,
+    AdapterRequest, ExecuteError, Executor, ExecutorOptions, Frame, FrameLoop, Gpu, NotPlaced, Unsupported, Workers,
+    stand_in,
 };
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -74,6 +75,7 @@ fn settings() -> Settings {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     Apart,
+    /// In one block, recorded on three threads.
     Block,
     /// In one block whose hand-overs are left out.
     Broken,
@@ -85,15 +87,22 @@ impl Way {
     fn alias(self) -> Alias {
         if self == Self::Apart { Alias::Off } else { Alias::Heap }
     }
+
+    fn set(self, executor: &mut Executor) -> TestResult {
+        match self {
+            Self::Apart => {}
+            Self::Block => executor.always_record_on(Workers::with_threads(3)?),
+            Self::Broken => executor.leave_out_hand_overs(),
+        }
+        Ok(())
+    }
 }
 
 /// Draws the frame three times.
 fn standard(gpu: &Gpu, way: Way, covered: &mut Covered) -> TestResult {
     let mut stage = Stage::new(gpu, "glass")?;
     let mut frames = FrameLoop::with(gpu, options(way.alias()), ExecutorOptions::default());
-    if way == Way::Broken {
-        frames.executor_mut().leave_out_hand_overs();
-    }
+    way.set(frames.executor_mut())?;
     for number in 0..3 {
         stage.draw(&mut frames, &settings(), SIZE_PX, number)?;
     }
@@ -134,9 +143,7 @@ fn by_stand_ins(gpu: &Gpu, staged: &Staged, way: Way, covered: &mut Covered) -> 
     let (mut executor, mut plan) = (Executor::new(gpu), Plan::new());
     let options = Options { alias: way.alias(), ..staged.options };
     executor.compile(staged.frame.graph(), &options, &mut Scratch::new(), &mut plan)?;
-    if way == Way::Broken {
-        executor.leave_out_hand_overs();
-    }
+    way.set(&mut executor)?;
     let imported = stand_in::imports(gpu, &plan)?;
     for _ in 0..3 {
         executor.execute(&plan, &staged.frame, &(), &imported.bound).map_err(|error| match error {

@@ -19,7 +19,7 @@ use framegraph::{Alias, Caps, Desc, Extent, Graph, Options, Placement, Plan, Scr
 use framegraph_passes::Settings;
 use framegraph_passes::occlusion::OcclusionSettings;
 use framegraph_passes::shadow::ShadowSettings;
-use framegraph_queues::{Command, QueueId, QueueLayout, schedule, stream};
+use framegraph_queues::{Command, PlanStream, QueueId, QueueLayout, schedule};
 use replay::Replay;
 
 /// Small, since layers take their time over texels too; shadow maps keep their size.
@@ -103,7 +103,7 @@ fn streams_of_whole_frames_are_replayed_and_the_layers_are_silent() -> Result<()
         for alias in [Alias::Heap, Alias::Pool, Alias::Off] {
             let options = Options { alias, ..Options::for_frame(FRAME[0], FRAME[1]) };
             let plan = planned(&device, &graph, &options)?;
-            let commands = stream(&plan, None);
+            let commands = plan.stream();
             let (messages, [passes, barriers, submissions]) = told(&device, &plan, &commands)?;
             println!("{name}, {alias:?}: {passes} passes, {barriers} barriers, {submissions} submissions");
             assert!(messages.is_empty(), "{name}, {alias:?}: {}\n{}", messages.len(), messages[0]);
@@ -122,7 +122,7 @@ fn barriers_that_are_left_out_are_noticed() -> Result<(), Trouble> {
     for ((name, graph), alias) in frames().iter().flat_map(|frame| [(frame, Alias::Off), (frame, Alias::Heap)]) {
         let options = Options { alias, ..Options::for_frame(FRAME[0], FRAME[1]) };
         let plan = planned(&device, graph, &options)?;
-        let commands = stream(&plan, None);
+        let commands = plan.stream();
         let without = |left: &dyn Fn(u32) -> bool| -> Vec<Command> {
             let kept = |c: &&Command| !matches!(c, Command::Barrier { barrier, .. } if left(*barrier));
             commands.iter().filter(kept).copied().collect()
@@ -154,7 +154,7 @@ fn streams_of_random_graphs_are_replayed_and_the_layers_are_silent() -> Result<(
         let alias = [Alias::Heap, Alias::Pool][seed as usize % 2];
         let options = Options { alias, ..generate::options_of(seed as u32 % 64) };
         let outcome = planned(&device, &graph, &options).and_then(|plan| {
-            let outcome = told(&device, &plan, &stream(&plan, None))?;
+            let outcome = told(&device, &plan, &plan.stream())?;
             Ok((plan, outcome))
         });
         match outcome {
@@ -184,7 +184,7 @@ fn streams_on_two_queues_are_replayed_and_the_layers_are_silent() -> Result<(), 
         let plan = planned(&device, &graph, &options)?;
         let costs: Vec<f64> = (0..plan.steps().len()).map(|step| (step * 101) as f64 % 400.0).collect();
         let found = schedule(&plan, &QueueLayout::async_compute(), &costs)?;
-        let commands = stream(&plan, Some(&found));
+        let commands = plan.stream_on(&found);
         let (messages, [_, _, submissions]) = told(&device, &plan, &commands)?;
         assert!(messages.is_empty(), "{name}: {}", messages[0]);
         let moved = found.lanes.iter().filter(|lane| **lane != QueueId::MAIN).count();

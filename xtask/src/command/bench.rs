@@ -30,8 +30,12 @@ merging, inlining and aliasing. Hours on a software driver; less of it by
   --scene NAME      one scene: a built-in one, or a file
   --preset NAME     one preset
   --size WxH        one size
+  --rounds N        runs of each, in turns (3)
+  --with ARGS       more arguments for `render`, with spaces between
   --beside COMMAND  in turns with a command of another renderer, of whose output
-                    the last number before `ms` is its time
+                    the last number before `ms` is its time; in it {scene}, {size}
+                    and {preset} are those of the row. The last column is what our
+                    frame takes of that
 ",
     run,
 };
@@ -40,7 +44,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     if options.has("--frames") {
         return frames::run(options);
     }
-    let own = ["--scene", "--preset", "--size", "--beside"];
+    let own = ["--scene", "--preset", "--size", "--beside", "--with", "--rounds"];
     if let Some(name) = own.into_iter().find(|name| options.has(name)) {
         return Err(Failure::Usage(format!("`{name}` goes together with `--frames` only")));
     }

@@ -6,8 +6,7 @@ use crate::workers::Workers;
 impl Executor {
     /// Records steps on these threads too, from the next frame on, where that is measured to be faster
     /// ([`Executor::recording_threads`]); on this thread alone without. What reaches the device is the same, in the same
-    /// order, and so is an error. A frame in which textures share one block of memory ([`framegraph::Alias::Heap`]) is recorded on one
-    /// thread.
+    /// order, and so is an error.
     pub fn record_on(&mut self, workers: Option<Workers>) {
         let timed = self.options.timing || self.options.trace;
         self.threads.set(workers, &self.gpu.device, timed);
