@@ -48,6 +48,9 @@ pub struct Caps {
     pub separate_planes: bool,
     /// How samples of colors are resolved while a step is stored; by other modes a full-screen pass resolves them.
     pub color_resolves: ResolveModes,
+    /// Formats whose samples are averaged in no store all the same: no part of a file.
+    #[cfg_attr(feature = "files", serde(skip))]
+    pub not_averaged: Vec<Format>,
     /// How samples of depth are.
     pub depth_resolves: ResolveModes,
     /// Textures and buffers can be placed at offsets of one allocation.
@@ -93,6 +96,7 @@ impl Caps {
             sample_read_only_depth: true,
             separate_planes: true,
             color_resolves: ResolveModes::of(&[ResolveMode::Average]),
+            not_averaged: Vec::new(),
             // What every device with Vulkan 1.2 does; the other modes are optional.
             depth_resolves: ResolveModes::of(&[ResolveMode::Sample0]),
             placed: true,
@@ -161,12 +165,11 @@ impl Caps {
     /// The names that [`Caps::preset`] knows.
     pub const PRESETS: [&'static str; 3] = ["desktop", "tiler", "wgpu"];
 
-    /// Whether the device makes a resolve while it stores the step.
-    #[inline]
-    pub fn resolves_in_store(&self, access: &Access) -> bool {
+    /// Whether the device makes a resolve into a texture of that format while it stores the step.
+    pub fn resolves_in_store(&self, access: &Access, format: Option<Format>) -> bool {
         debug_assert_eq!(access.kind, AccessKind::Resolve);
         let modes = if access.slot == Access::DEPTH { self.depth_resolves } else { self.color_resolves };
-        modes.has(access.resolve)
+        modes.has(access.resolve) && !format.is_some_and(|format| self.not_averaged.contains(&format))
     }
 
     /// The bytes that `desc` takes in a heap, in a frame of `frame` texels, if its texels take `bytes`.

@@ -158,7 +158,8 @@ narrowed!(Part, ReadOnly);
 impl Buffer {
     /// `bytes` bytes from `offset` on. What other bytes of the buffer hold is followed apart: writing some does not
     /// touch the others, and they are read as the passes left them that wrote them. Ranges may overlap; a byte holds
-    /// what the last pass wrote that named it.
+    /// what the last pass wrote that named it. A range does not follow the frame: where the buffer does, work it out from the
+    /// frame's size ([`Extent::texels`](crate::Extent::texels)) and declare the graph anew.
     ///
     /// A device binds a buffer at multiples of its alignment alone (wgpu: 256 bytes for uniforms and storage, 4 for the
     /// rest); nothing is rounded here.

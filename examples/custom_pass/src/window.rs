@@ -187,6 +187,11 @@ impl Running {
         self.app.draw(self.clock.now_s(), Screen::Surface(&image.texture)).map_err(Failure::device)?;
         if std::mem::take(&mut self.print_plan) {
             program::line(dump::text(self.app.frames.plan()));
+            let flight = self.app.frames.frames_in_flight();
+            if let Some(latency) = flight.latency() {
+                let (median_ms, most) = (latency.median_ms, flight.most());
+                program::line(format_args!("latency: median {median_ms:.2} ms with {most} frames queued at most"));
+            }
         }
         self.window.pre_present_notify();
         self.surface.present(image);

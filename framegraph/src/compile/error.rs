@@ -104,7 +104,7 @@ faults! {
             "ask for levels and layers that there are";
         NoSuchBytes { offset: u64, bytes: u64, size: u64 }
             "{bytes} bytes from {offset} on are asked of a buffer that has {size} at this frame size",
-            "ask for bytes that there are";
+            "ask for bytes that there are: work them out from the frame's size when it is declared";
         SampledDepth { access: AccessKind }
             "used as `{access}` and as depth attachment at once, which the device cannot do",
             "copy it before, or read it in a pass of its own";

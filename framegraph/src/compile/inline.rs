@@ -105,7 +105,8 @@ pub(crate) fn inlinable(
     };
     let resolves = |a: &Access| a.kind == AccessKind::Resolve && a.resource == intermediate;
     let mut resolves = members.iter().flat_map(|m| graph.accesses_of(m.pass)).filter(|a| resolves(a));
-    let averaged = |a: &Access| a.resolve == ResolveMode::Average && candidate.caps.resolves_in_store(a);
+    let stored = |a: &Access| [from, to].iter().all(|t| candidate.caps.resolves_in_store(a, Some(t.format)));
+    let averaged = |a: &Access| a.resolve == ResolveMode::Average && stored(a);
     if !resolves.all(averaged) {
         return Err(Refusal::ResolveMode);
     }

@@ -36,7 +36,8 @@ impl Lowering {
         decisions: &mut Vec<Decision>,
     ) -> Option<&Tables> {
         self.declarers.clear();
-        let lacks = |a: &Access| a.kind == AccessKind::Resolve && !caps.resolves_in_store(a);
+        let format = |a: &Access| graph.resources[a.resource.index()].desc.texture().map(|t| t.format);
+        let lacks = |a: &Access| a.kind == AccessKind::Resolve && !caps.resolves_in_store(a, format(a));
         let resolves = |p: PassId| graph.passes[p.index()].flags.has(PassFlags::RESOLVES);
         if !graph.resolves
             || !step_passes.iter().any(|m| resolves(m.pass) && graph.accesses_of(m.pass).iter().any(lacks))

@@ -5,6 +5,7 @@ use super::params::Params;
 use super::slot::PluginSlot;
 use super::spanned::Source;
 use crate::error::DeclareError;
+use crate::faults::faults;
 use crate::graph::Graph;
 use crate::handle::{Buffer, ReadOnly, Target, Texture};
 use serde::de::DeserializeOwned;
@@ -79,20 +80,16 @@ impl<H: ?Sized> std::fmt::Debug for Registry<'_, H> {
     }
 }
 
-/// Why a plugin declared nothing.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum PluginError {
-    /// The graph refused a declaration.
-    Declare(DeclareError),
-    /// The parameters do not fit; the error says where they stand.
-    Params(FileError),
-    /// A reason of the plugin's own.
-    Custom {
-        /// What is wrong.
-        message: String,
-        /// What to do.
-        hint: String,
-    },
+faults! {
+    /// Why a plugin declared nothing.
+    PluginError {
+        /// The graph refused a declaration.
+        Declare(error: DeclareError) => (error.to_string(), String::new());
+        /// The parameters do not fit; the error says where they stand.
+        Params(error: FileError) => (error.to_string(), String::new());
+        /// A reason of the plugin's own, and what to do:
+        Custom { message: String, hint: String } "{message}", "{hint}";
+    }
 }
 
 impl From<DeclareError> for PluginError {

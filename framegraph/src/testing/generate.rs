@@ -31,6 +31,7 @@ pub use profile::{FRAME, Profile};
 
 use crate::access::AccessKind;
 use crate::caps::Caps;
+use crate::format::Format;
 use crate::graph::Graph;
 use crate::options::{Alias, Effort, Options, Order};
 use crate::resolve::{ResolveMode, ResolveModes};
@@ -109,6 +110,9 @@ pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
     };
     if entropy.one_in(3) {
         (caps.color_resolves, caps.depth_resolves) = (some(entropy), some(entropy));
+    }
+    if entropy.one_in(4) {
+        caps.not_averaged = Format::ALL.into_iter().filter(|f| f.is_resolvable() && entropy.one_in(3)).collect();
     }
     if entropy.one_in(4) {
         caps.max_color_attachments = entropy.pick(&[2, 4]);

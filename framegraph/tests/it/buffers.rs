@@ -180,6 +180,20 @@ fn sizes_follow_the_frame() {
     let first = &refused.listed[0];
     assert_eq!(first.reason, CompileReason::NoSuchBytes { offset: 0, bytes: 64, size: 8 });
     assert_eq!(first.pass.as_ref().map(|p| p.name.as_str()), Some("fill"));
+    // Declared from the size of the frame, a range is right in each: the last row of tiles.
+    for frame in [[64, 32], [16, 16], [100, 50]] {
+        g.reset();
+        let extent = Extent::fraction(16);
+        let [x, y] = extent.texels(frame).map(u64::from);
+        let tiles = g.buffer("tiles", BufferSize::per_texel(8, extent));
+        g.add_fn("fill", |p| {
+            p.side_effect();
+            p.storage_write_buffer(tiles.bytes(8 * x * (y - 1), 8 * x), ZERO)
+        })
+        .unwrap();
+        let options = Options::for_frame(frame[0], frame[1]);
+        compile(&g, &Caps::wgpu(), &options, &mut Scratch::new(), &mut Plan::new()).unwrap();
+    }
     let none = Options::for_frame(0, 16);
     assert!(compile(&g, &Caps::wgpu(), &none, &mut Scratch::new(), &mut Plan::new()).is_err());
 }

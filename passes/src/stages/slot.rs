@@ -92,9 +92,10 @@ impl Slot {
 }
 
 /// Why a texture cannot be in a slot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum SlotFault {
     /// It is depth where color is needed, or the other way around.
+    #[error("its format is {format:?}, and a {} format is needed", if *.depth { "depth" } else { "color" })]
     Format {
         /// Its format.
         format: Format,
@@ -102,20 +103,15 @@ pub enum SlotFault {
         depth: bool,
     },
     /// It has several samples per texel where one is needed.
+    #[error("it has {samples} samples per texel, and one is needed; resolve it")]
     Samples {
         /// Its samples per texel.
         samples: u8,
     },
 }
 
-impl fmt::Display for SlotFault {
+impl fmt::Debug for SlotFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Format { format, depth: true } => write!(f, "its format is {format:?}, and a depth format is needed"),
-            Self::Format { format, depth: false } => {
-                write!(f, "its format is {format:?}, and a color format is needed")
-            }
-            Self::Samples { samples } => write!(f, "it has {samples} samples per texel, and one is needed; resolve it"),
-        }
+        fmt::Display::fmt(self, f)
     }
 }

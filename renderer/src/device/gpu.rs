@@ -237,7 +237,14 @@ impl Gpu {
 
     /// The device as the compiler sees it.
     pub fn caps(&self) -> Caps {
-        caps_of(&self.info, &self.device.limits())
+        let averaged = |format: &Format| {
+            let flags = self.format_features(*format).flags;
+            // Others have no samples.
+            !flags.contains(TextureFormatFeatureFlags::MULTISAMPLE_X4)
+                || flags.contains(TextureFormatFeatureFlags::MULTISAMPLE_RESOLVE)
+        };
+        let not_averaged = Format::ALL.into_iter().filter(|f| f.is_resolvable() && !averaged(f)).collect();
+        Caps { not_averaged, ..caps_of(&self.info, &self.device.limits()) }
     }
 
     /// What the device can do with a format; asked of the driver once. Nothing, where the format takes a feature that the

@@ -94,28 +94,26 @@ impl WindowSurface {
     /// # Errors
     /// [`SurfaceError`].
     pub fn acquire(&mut self) -> Result<Option<SurfaceTexture>, SurfaceError> {
-        if self.size().contains(&0) {
+        let Begin { skip, configure } = begin(self.size(), self.stale);
+        if skip {
             return Ok(None);
         }
-        if std::mem::take(&mut self.stale) {
+        if configure {
             let Self { gpu, surface, config, .. } = self;
             gpu.guard("the window's surface", || surface.configure(&gpu.device, config))?;
         }
-        match self.surface.get_current_texture() {
-            CurrentSurfaceTexture::Success(image) => Ok(Some(image)),
-            // It can be drawn into; the next one shall fit.
-            CurrentSurfaceTexture::Suboptimal(image) => {
-                self.stale = true;
-                Ok(Some(image))
-            }
-            CurrentSurfaceTexture::Timeout | CurrentSurfaceTexture::Occluded => Ok(None),
-            CurrentSurfaceTexture::Outdated => {
-                self.stale = true;
-                Ok(None)
-            }
-            CurrentSurfaceTexture::Lost => Err(SurfaceError::Lost),
-            CurrentSurfaceTexture::Validation => Err(SurfaceError::Refused),
-        }
+        let (image, answer) = match self.surface.get_current_texture() {
+            CurrentSurfaceTexture::Success(image) => (Some(image), Answer::Fits),
+            CurrentSurfaceTexture::Suboptimal(image) => (Some(image), Answer::Suboptimal),
+            CurrentSurfaceTexture::Timeout => (None, Answer::Timeout),
+            CurrentSurfaceTexture::Occluded => (None, Answer::Occluded),
+            CurrentSurfaceTexture::Outdated => (None, Answer::Outdated),
+            CurrentSurfaceTexture::Lost => (None, Answer::Lost),
+            CurrentSurfaceTexture::Validation => (None, Answer::Validation),
+        };
+        let After { draw, stale } = after(answer)?;
+        self.stale = stale;
+        Ok(image.filter(|_| draw))
     }
 
     /// Shows an image that was drawn into.
@@ -124,7 +122,94 @@ impl WindowSurface {
     }
 }
 
+/// What is done before the surface is asked for an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Begin {
+    skip: bool,
+    configure: bool,
+}
+
+/// A window without texels has no images, and cannot be configured; that waits until it has some.
+fn begin(size: [u32; 2], stale: bool) -> Begin {
+    let skip = size.contains(&0);
+    Begin { skip, configure: stale && !skip }
+}
+
+/// What the surface says when it is asked for an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Answer {
+    Fits,
+    Suboptimal,
+    Timeout,
+    Occluded,
+    Outdated,
+    Lost,
+    Validation,
+}
+
+/// What is done with the answer: the image is drawn into or the frame skipped, and the surface configured before the next one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct After {
+    draw: bool,
+    stale: bool,
+}
+
+fn after(answer: Answer) -> Result<After, SurfaceError> {
+    match answer {
+        Answer::Fits => Ok(After { draw: true, stale: false }),
+        // It can be drawn into; the next one shall fit.
+        Answer::Suboptimal => Ok(After { draw: true, stale: true }),
+        Answer::Timeout | Answer::Occluded => Ok(After { draw: false, stale: false }),
+        Answer::Outdated => Ok(After { draw: false, stale: true }),
+        Answer::Lost => Err(SurfaceError::Lost),
+        Answer::Validation => Err(SurfaceError::Refused),
+    }
+}
+
 /// The first format that encodes sRGB itself.
 fn preferred(offered: &[TextureFormat]) -> Option<TextureFormat> {
     offered.iter().copied().find(TextureFormat::is_srgb)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_window_without_texels_is_skipped_and_configured_when_it_has_some() {
+        let cases = [
+            ([0, 0], true, (true, false)),
+            ([0, 9], false, (true, false)),
+            ([9, 0], true, (true, false)),
+            ([9, 9], true, (false, true)),
+            ([9, 9], false, (false, false)),
+        ];
+        for (size, stale, (skip, configure)) in cases {
+            assert_eq!(begin(size, stale), Begin { skip, configure }, "{size:?} {stale}");
+        }
+    }
+
+    /// Each answer: drawn or not, configured anew or not; or the error.
+    #[test]
+    fn every_answer_of_a_surface_is_drawn_skipped_mended_or_told() {
+        let cases = [
+            (Answer::Fits, Ok((true, false))),
+            (Answer::Suboptimal, Ok((true, true))),
+            (Answer::Timeout, Ok((false, false))),
+            (Answer::Occluded, Ok((false, false))),
+            (Answer::Outdated, Ok((false, true))),
+            (Answer::Lost, Err(SurfaceError::Lost)),
+            (Answer::Validation, Err(SurfaceError::Refused)),
+        ];
+        for (answer, expected) in cases {
+            assert_eq!(after(answer).map(|a| (a.draw, a.stale)), expected, "{answer:?}");
+        }
+    }
+
+    #[test]
+    fn the_format_that_encodes_srgb_is_preferred() {
+        let (linear, srgb) = (TextureFormat::Bgra8Unorm, TextureFormat::Bgra8UnormSrgb);
+        assert_eq!(preferred(&[linear, srgb]), Some(srgb));
+        assert_eq!(preferred(&[linear]), None);
+    }
 }

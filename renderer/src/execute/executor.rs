@@ -42,7 +42,7 @@ pub struct ExecutorOptions {
     /// second at 60 frames a second: longer than a toggle or a drag of the window's edge. A history that no frame
     /// writes for so long is dropped too.
     pub max_age: u64,
-    /// How many times the bytes of a frame's plan the pools may hold, 3 by default: while a window is dragged, the sizes that
+    /// How many times the bytes of a frame's plan the pools and placed blocks of memory may hold, 3 by default: while a window is dragged, the sizes that
     /// no frame asked for the longest go first ([`PoolCounts::budget_bytes`](crate::PoolCounts::budget_bytes)). What the last two frames used stays.
     pub pool_budget: u32,
     /// Frames after which a pipeline and a shader module that no frame asked for are dropped; 36,000 by default, ten minutes
@@ -61,6 +61,12 @@ impl Default for ExecutorOptions {
     fn default() -> Self {
         let (max_age, pool_budget, max_pipeline_age) = (30, 3, 36_000);
         Self { max_age, pool_budget, max_pipeline_age, timing: true, trace: false, poison: false }
+    }
+}
+
+impl ExecutorOptions {
+    fn limits(&self) -> Limits {
+        Limits { max_age: self.max_age, budget: self.pool_budget }
     }
 }
 
@@ -117,7 +123,7 @@ impl Executor {
 
     /// An executor with these options.
     pub fn with(gpu: &Gpu, options: ExecutorOptions) -> Self {
-        let limits = Limits { max_age: options.max_age, budget: options.pool_budget };
+        let limits = options.limits();
         Self {
             gpu: gpu.clone(),
             options,

@@ -5,6 +5,7 @@ use crate::measure::timing::Timing;
 use crate::pipelines::bind_groups::BindGroupCache;
 use crate::pipelines::cache::Pipelines;
 use crate::pipelines::samplers::SamplerCache;
+use crate::placed::driver::Object;
 use crate::resources::realize::Realized;
 use crate::resources::views::ViewCache;
 use framegraph::Plan;
@@ -34,6 +35,14 @@ impl Caches {
     pub(crate) fn forget(&mut self, texture: &Texture) {
         self.views.forget(texture);
         self.groups.forget(texture);
+    }
+
+    /// The same of what was placed in memory that is given up.
+    pub(crate) fn forget_placed(&mut self, object: &Object) {
+        match object {
+            Object::Texture(placed) => self.forget(placed.texture()),
+            Object::Buffer(buffer) => self.groups.forget_buffer(buffer),
+        }
     }
 }
 

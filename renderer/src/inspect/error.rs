@@ -4,14 +4,14 @@ use crate::device::readback::ReadbackError;
 use crate::execute::error::ExecuteError;
 use crate::inspect::request::VersionSelector;
 use crate::named::Named;
-use framegraph::{Aspect, CompileError, DeclareError, Format, ResourceId};
+use framegraph::{Aspect, CompileError, DeclareError, Format, ResourceId, plain};
 use std::fmt;
 
 /// A texture cannot be looked at. The frame under study and its plan are as they were.
 #[derive(Clone, PartialEq, thiserror::Error)]
 pub enum InspectError {
     /// No such resource.
-    #[error("there is no texture `{name}`; the frame has {}", listed(.known.iter().map(|known| format!("`{known}`"))))]
+    #[error("there is no texture `{shown}`; the frame has {}", listed(.known.iter().map(|known| format!("`{}`", plain::name(known)))), shown = plain::name(.name))]
     NoTexture {
         /// What was asked for.
         name: String,
@@ -19,13 +19,13 @@ pub enum InspectError {
         known: Vec<String>,
     },
     /// The name is that of a buffer.
-    #[error("`{name}` is a buffer, which has no picture; read it with `read_buffer`")]
+    #[error("`{shown}` is a buffer, which has no picture; read it with `read_buffer`", shown = plain::name(.name))]
     Buffer {
         /// What was asked for.
         name: String,
     },
     /// No such version.
-    #[error("`{name}` has no version {}; it has {}", asked_version(.asked, *.steps), listed(.known.iter().map(VersionName::to_string)))]
+    #[error("`{shown}` has no version {}; it has {}", asked_version(.asked, *.steps), listed(.known.iter().map(VersionName::to_string)), shown = plain::name(.name))]
     NoVersion {
         /// The inspected texture.
         name: String,
@@ -37,7 +37,7 @@ pub enum InspectError {
         known: Vec<VersionName>,
     },
     /// No such level, layer, plane or sample.
-    #[error("`{name}` has no {part}")]
+    #[error("`{shown}` has no {part}", shown = plain::name(.name))]
     NoPart {
         /// The inspected texture.
         name: String,
@@ -46,9 +46,8 @@ pub enum InspectError {
     },
     /// An import that the frame writes over what it holds, and of which no copy can be made.
     #[error(
-        "looking at `{name}` runs passes that write the import `{import}`, and no copy of that can be made; create it with \
-         COPY_SRC"
-    )]
+        "looking at `{shown}` runs passes that write the import `{import}`, and no copy of that can be made; create it with \
+         COPY_SRC", shown = plain::name(.name))]
     Import {
         /// The texture asked for.
         name: String,
@@ -56,7 +55,7 @@ pub enum InspectError {
         import: Named<ResourceId>,
     },
     /// The inspection's own pass was refused.
-    #[error("`{name}` cannot be read: {error}")]
+    #[error("`{shown}` cannot be read: {error}", shown = plain::name(.name))]
     Declare {
         /// The inspected texture.
         name: String,
@@ -64,7 +63,7 @@ pub enum InspectError {
         error: Box<DeclareError>,
     },
     /// The inspected frame does not compile: the part asked for was not written yet, mostly.
-    #[error("`{name}` cannot be looked at there: {error}")]
+    #[error("`{shown}` cannot be looked at there: {error}", shown = plain::name(.name))]
     Compile {
         /// The inspected texture.
         name: String,
@@ -72,7 +71,7 @@ pub enum InspectError {
         error: Box<CompileError>,
     },
     /// The inspected frame could not be executed.
-    #[error("looking at `{name}`: {error}")]
+    #[error("looking at `{shown}`: {error}", shown = plain::name(.name))]
     Execute {
         /// The inspected texture.
         name: String,
@@ -80,7 +79,7 @@ pub enum InspectError {
         error: Box<ExecuteError>,
     },
     /// The result could not be read back.
-    #[error("looking at `{name}`: {error}")]
+    #[error("looking at `{shown}`: {error}", shown = plain::name(.name))]
     Readback {
         /// The inspected texture.
         name: String,
@@ -150,7 +149,7 @@ pub struct VersionName {
 impl fmt::Display for VersionName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.writer {
-            Some(writer) => write!(f, "v{} (`{writer}`)", self.number),
+            Some(writer) => write!(f, "v{} (`{}`)", self.number, plain::name(writer)),
             None => write!(f, "v{} (on entry)", self.number),
         }
     }
@@ -159,7 +158,7 @@ impl fmt::Display for VersionName {
 fn asked_version(asked: &VersionSelector, steps: usize) -> String {
     match asked {
         VersionSelector::Newest => "that a pass wrote".to_owned(),
-        VersionSelector::After(pass) => format!("of a pass `{pass}`"),
+        VersionSelector::After(pass) => format!("of a pass `{}`", plain::name(pass)),
         VersionSelector::Number(number) => format!("v{number}"),
         VersionSelector::Step(step) => format!("at step {step} of {steps}"),
     }

@@ -9,6 +9,7 @@ use crate::placed::not_placed::NotPlaced;
 use crate::placed::shape::{Needs, Shape};
 use crate::placed::submission::keeps_order_of_aliases;
 use crate::resources::physical::PhysicalTextureDesc;
+use crate::resources::pool::{Limits, PoolCounts, RECENT};
 use crate::resources::requests::{PlacedRequest, Requests, shaped};
 use crate::resources::support::{Unsupported, check_buffer, check_texture};
 use framegraph::{Caps, Desc, Extent, Plan, TextureDesc};
@@ -35,7 +36,10 @@ pub(crate) struct Arenas {
     requests: Requests,
     arenas: Vec<Arena>,
     frame: u64,
-    created: u64,
+    /// Bytes that the last frames used, in a ring.
+    recent: [u64; RECENT],
+    /// Its counts of objects are of arenas, but `created`, which counts what lies in them.
+    counts: PoolCounts,
     broken: bool,
 }
 
@@ -153,6 +157,7 @@ impl Arenas {
         if let Some(at) = self.arenas.iter().position(same) {
             self.arenas[at].used = self.frame;
             self.arenas.swap(0, at);
+            self.counts.hits += 1;
             return Ok(());
         }
         let mut all = Vec::with_capacity(requests.len());
@@ -175,7 +180,7 @@ impl Arenas {
         let (objects, together) = self.driver(gpu)?.place(&items, &all)?;
         let allocated_bytes = [together, all.iter().map(|needs| needs.bytes).sum()];
         let key = requests.iter().map(|r| (r.shape, r.offset)).collect();
-        self.created += objects.len() as u64;
+        self.counts.created += objects.len() as u64;
         self.arenas.push(Arena { key, objects, allocated_bytes, used: self.frame });
         let last = self.arenas.len() - 1;
         self.arenas.swap(0, last);
@@ -197,18 +202,44 @@ impl Arenas {
         self.driver.as_ref().and_then(|driver| driver.as_ref().ok())
     }
 
-    /// Ends a frame: of the arenas that no frame used during `max_age` frames none stays, and beside those of the last two
-    /// frames not more than one. `gone` is told what lay in them.
-    pub(crate) fn evict(&mut self, max_age: u64, mut gone: impl FnMut(&Object)) {
-        let frame = self.frame;
+    /// Ends a frame: of the arenas that no frame used for as long as `limits` say none stays, and beside those of the last two
+    /// frames not more than one, if all are within the budget. `gone` is told what lay in them.
+    pub(crate) fn evict(&mut self, limits: Limits, gone: impl FnMut(&Object)) {
+        let (frame, held) = (self.frame, self.bytes());
+        let used_bytes = self.current().map_or(0, Arena::bytes);
+        self.recent[frame as usize % RECENT] = used_bytes;
+        let largest = self.recent.iter().copied().max().unwrap_or(0);
+        let budget_bytes = largest.saturating_mul(limits.budget.into());
         let newest_old = self.arenas.iter().map(|a| a.used).filter(|used| used + 1 < frame).max();
+        let others = self.arenas.iter().filter(|a| a.used + 1 < frame && Some(a.used) != newest_old);
+        let spare = held - others.map(Arena::bytes).sum::<u64>() <= budget_bytes;
+        let kept = newest_old.filter(|used| spare && frame - used <= limits.max_age);
+        self.retain(|arena| arena.used + 1 >= frame || Some(arena.used) == kept, gone);
+        let peak_bytes = self.counts.peak_bytes.max(self.bytes());
+        self.counts = PoolCounts { used_bytes, peak_bytes, budget_bytes, ..self.counts };
+    }
+
+    /// Gives up all but the arena of this frame, and tells `gone` what lay in them.
+    pub(crate) fn trim(&mut self, gone: impl FnMut(&Object)) {
+        let frame = self.frame;
+        self.retain(|arena| arena.used == frame, gone);
+    }
+
+    fn retain(&mut self, stays: impl Fn(&Arena) -> bool, mut gone: impl FnMut(&Object)) {
+        let before = self.arenas.len();
         self.arenas.retain(|arena| {
-            let stays = arena.used + 1 >= frame || (Some(arena.used) == newest_old && frame - arena.used <= max_age);
+            let stays = stays(arena);
             if !stays {
                 arena.objects.iter().for_each(&mut gone);
             }
             stays
         });
+        self.counts.evicted += (before - self.arenas.len()) as u64;
+    }
+
+    /// Arenas found again and given up, what was placed in them, and what they hold now.
+    pub(crate) fn counts(&self) -> PoolCounts {
+        PoolCounts { objects: self.arenas.len() as u64, bytes: self.bytes(), ..self.counts }
     }
 
     /// Gives up the arena of this frame: after the device refused something, nothing is known of it.
@@ -222,6 +253,11 @@ impl Arenas {
         [0, 1].map(|which| self.arenas.iter().map(|arena| arena.allocated_bytes[which]).sum())
     }
 
+    /// Bytes that the driver gave for all arenas.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.arenas.iter().map(Arena::bytes).sum()
+    }
+
     /// Whether memory changes hands without a word, as a test may ask for.
     pub(crate) fn leaves_out_hand_overs(&self) -> bool {
         self.broken
@@ -232,14 +268,14 @@ impl Arenas {
     pub(crate) fn leave_out_hand_overs(&mut self) {
         self.broken = true;
     }
-
-    /// Textures and buffers placed since the beginning.
-    pub(crate) fn created(&self) -> u64 {
-        self.created
-    }
 }
 
 impl Arena {
+    /// Bytes that the driver gave.
+    fn bytes(&self) -> u64 {
+        self.allocated_bytes[0]
+    }
+
     /// The texture of that number.
     pub(crate) fn texture(&self, at: usize) -> Option<(&Texture, PhysicalTextureDesc)> {
         match (&self.objects[at], self.key[at].0) {

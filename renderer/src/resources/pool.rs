@@ -46,7 +46,7 @@ pub struct Limits {
 }
 
 /// Frames among which the largest sets the budget.
-const RECENT: usize = 8;
+pub(crate) const RECENT: usize = 8;
 
 /// Hits, misses and memory of a pool.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

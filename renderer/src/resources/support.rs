@@ -7,12 +7,12 @@ use crate::device::adapter::describe;
 use crate::device::format::{texture_format, texture_usages};
 use crate::device::gpu::Gpu;
 use crate::resources::physical::PhysicalTextureDesc;
-use framegraph::{Dimension, Format, Usage};
+use framegraph::{Dimension, Format, Usage, plain};
 use wgpu::{AdapterInfo, Features, TextureFormatFeatures, TextureUsages};
 
 /// The device offers no such texture or buffer.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{name}` asks for {}; {} offers {}; {}", .reason.asked(), describe(.adapter), .reason.offered(), .reason.hint())]
+#[error("`{}` {}", plain::name(.name), .reason.sentence(&describe(.adapter)))]
 pub struct Unsupported {
     /// Full name of the resource.
     pub name: String,
@@ -29,7 +29,8 @@ impl std::fmt::Debug for Unsupported {
 }
 
 /// What a device does not offer.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}", self.sentence("the device"))]
 pub enum UnsupportedReason {
     /// A texture of that many texels.
     Size {
@@ -74,7 +75,17 @@ pub enum UnsupportedReason {
     },
 }
 
+impl std::fmt::Debug for UnsupportedReason {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
+}
+
 impl UnsupportedReason {
+    fn sentence(&self, device: &str) -> String {
+        format!("asks for {}; {device} offers {}; {}", self.asked(), self.offered(), self.hint())
+    }
+
     fn asked(&self) -> String {
         match self {
             Self::Size { asked: [width, height, layers], .. } => format!("{width}×{height}×{layers} texels"),

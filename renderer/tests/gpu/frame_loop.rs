@@ -1,8 +1,10 @@
 //! Declare and go: what a loop keeps, what it skips, and what it does after an error.
 
 use crate::bench::{GREEN, RED, TestResult, fill_full, on_every_device};
-use framegraph::{Alias, Counts, DeclareError, Entry, Exit, Extent, Format, Intent, TextureDesc, Warning};
-use framegraph_wgpu::{Frame, FrameError, FrameLoop, FramesInFlight, Imports, read_texture};
+use framegraph::{
+    Alias, Counts, DeclareError, Entry, Exit, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, Warning,
+};
+use framegraph_wgpu::{Cx, Frame, FrameError, FrameLoop, FramesInFlight, Imports, Record, RecordError, read_texture};
 use std::num::NonZeroU32;
 
 /// A chain of two passes into a texture of the caller's.
@@ -110,6 +112,50 @@ fn a_loop_says_why_nothing_is_placed() -> TestResult {
         })?;
         let told = ran.ok_or("no frame")?.not_placed.map(|why| why.to_string());
         assert_eq!(told.is_some_and(|why| why.contains("Vulkan")), alias == Alias::Heap, "{alias:?}");
+    }
+    Ok(())
+}
+
+/// Layers of a picture, one above the other; how many there are is known when it is declared.
+struct Layers(usize);
+
+impl Pass for Layers {
+    // Cloned for its recorder, and no copy.
+    type Io = Vec<Texture>;
+
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Self::Io, DeclareError> {
+        let layer = |n| format!("layer {n}");
+        (0..self.0)
+            .map(|n| {
+                let layer = pass.texture(&layer(n), TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+                pass.color(layer, Intent::Overwrite)
+            })
+            .collect()
+    }
+}
+
+impl<W: ?Sized> Record<W> for Layers {
+    fn record(&self, layers: &Vec<Texture>, _: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let views = layers.iter().map(|layer| cx.view_of(*layer)).collect::<Result<Vec<_>, _>>()?;
+        if views.len() != self.0 {
+            return Err(RecordError::custom("its handles are others"));
+        }
+        cx.render_pass().map(|_| ())
+    }
+}
+
+#[test]
+fn handles_of_a_pass_need_not_be_copies() -> TestResult {
+    let gpu = framegraph_wgpu::Gpu::noop()?;
+    let mut frames = FrameLoop::<()>::new(&gpu);
+    for layers in [1, 3] {
+        let ran = frames.run([8, 8], &(), |frame, _| {
+            let drawn = frame.add("layers", Layers(layers))?;
+            drawn.iter().try_for_each(|layer| frame.graph_mut().export(*layer))?;
+            Ok::<_, DeclareError>(drawn)
+        })?;
+        assert_eq!(ran.ok_or("skipped")?.io.len(), layers);
+        assert_eq!(frames.executor().executed(), frames.plan().counts());
     }
     Ok(())
 }

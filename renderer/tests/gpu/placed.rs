@@ -77,6 +77,15 @@ impl Ran {
         Ok(Self { executor, frame, plan, last })
     }
 
+    /// A chain of another length, for so many frames.
+    fn longer(&mut self, length: u32, alias: Alias, frames: usize) -> TestResult {
+        self.frame.reset();
+        self.last = chain(&mut self.frame, length)?;
+        let options = Options { alias, ..Options::for_frame(96, 64) };
+        self.executor.compile(self.frame.graph(), &options, &mut Scratch::new(), &mut self.plan)?;
+        Ok(self.frames(frames)?)
+    }
+
     fn frames(&mut self, count: usize) -> Result<(), ExecuteError> {
         (0..count).try_for_each(|_| {
             self.executor.execute(&self.plan, &self.frame, &(), &Imports::new())?;
@@ -214,6 +223,47 @@ fn a_dispatch_waits_for_the_drawing_that_had_its_memory() -> TestResult {
         // This driver runs a dispatch before drawing that it knows no reason to wait for.
         let orders_by_texture = gpu.info().driver == "llvmpipe" && gpu.info().driver_info.starts_with("Mesa 22.");
         assert!(!orders_by_texture || !shown(true)?.1, "without hand-overs the picture is as right");
+        Ok(())
+    })
+}
+
+/// The block of a long chain is the old one once a short chain runs: it goes when it is trimmed, or when it is beyond three times
+/// what the last eight frames used, long before it is old.
+#[test]
+fn blocks_that_nobody_uses_go_by_trim_and_by_budget() -> TestResult {
+    const NAME: &str = "blocks_that_nobody_uses_go_by_trim_and_by_budget";
+    on_adapter(NAME, |gpu| {
+        let mut placed = Ran::new(gpu, Alias::Heap, false)?;
+        if let Some(why) = elsewhere(&placed.executor) {
+            return skip(NAME, &why);
+        }
+        placed.frames(2)?;
+        let long = placed.executor.placed_blocks();
+        assert_eq!((long.objects, long.bytes, long.used_bytes), (1, placed.executor.allocated().placed, long.bytes));
+        assert_eq!((long.budget_bytes, long.created), (3 * long.bytes, u64::from(LENGTH)));
+
+        placed.longer(1, Alias::Heap, 2)?;
+        let both = placed.executor.placed_blocks();
+        let short = both.used_bytes;
+        assert_eq!((both.objects, both.bytes), (2, long.bytes + short));
+        assert!(2 * short < long.bytes, "the long one is beyond the budget of the short one: {both:?}");
+        assert_eq!((placed.executor.trim(), placed.executor.trim()), (long.bytes, 0));
+        assert_eq!((placed.executor.placed_blocks().objects, placed.executor.allocated().placed), (1, short));
+
+        placed.longer(LENGTH, Alias::Heap, 1)?;
+        placed.longer(1, Alias::Heap, 7)?;
+        assert_eq!(placed.executor.placed_blocks().objects, 2, "a toggle within the budget");
+        placed.frames(1)?;
+        let now = placed.executor.placed_blocks();
+        assert_eq!((now.objects, now.bytes, now.budget_bytes), (1, short, 3 * short));
+        assert_eq!((now.evicted, now.peak_bytes), (2, long.bytes + short));
+
+        placed.longer(LENGTH, Alias::Off, 1)?;
+        assert_eq!(placed.executor.trim(), short, "the last frame placed nothing");
+        placed.longer(LENGTH, Alias::Heap, 1)?;
+        let found = placed.bytes(gpu)?;
+        placed.longer(LENGTH, Alias::Off, 1)?;
+        assert!(placed.bytes(gpu)? == found, "the pictures differ");
         Ok(())
     })
 }

@@ -1,8 +1,10 @@
 //! Resolves by mode: what each makes of four samples that differ, of colors, of integers and of depth.
 
-use crate::bench::{Bench, SHOW_DEPTH, TestResult, draw, draw_of, on_adapter, on_every_device};
+use crate::bench::{Bench, FILL, SHOW_DEPTH, TestResult, draw, draw_of, fill, on_adapter, on_every_device};
 use framegraph::{ClearValue, Extent, Format, Intent, Join, Options, Plan, ResolveMode, Scratch, TextureDesc, compile};
-use framegraph_wgpu::{Cx, Depth, ExecuteError, Executor, Frame, Gpu, Imports, Raster, RecordError, Shader};
+use framegraph_wgpu::{
+    Cx, Depth, ExecuteError, Executor, Frame, Gpu, Imports, Raster, RecordError, Shader, read_texture,
+};
 use wgpu::CompareFunction;
 
 const SIDE: u32 = 16;
@@ -107,6 +109,55 @@ fn each_mode_makes_of_the_samples_what_it_says() -> TestResult {
                     assert!(if other == own { wrong == 0 } else { wrong > 100 }, "{told}");
                 }
             }
+        }
+        Ok(())
+    })
+}
+
+/// What WebGPU averages in no store, a pass averages: the device is opened without what its adapter adds to formats.
+#[test]
+fn samples_of_32_bits_are_averaged_by_a_pass() -> TestResult {
+    const NAME: &str = "samples_of_32_bits_are_averaged_by_a_pass";
+    on_every_device(NAME, |gpu, drawn| {
+        let mut bench = Bench::new(gpu, SIDE, SIDE);
+        if gpu.info().backend == wgpu::Backend::Gl {
+            return Ok(());
+        }
+        // The same of a device that averages them, where this one does.
+        let in_store = !gpu.caps().not_averaged.contains(&Format::R32Float);
+        let declare = |frame: &mut Frame| {
+            let desc = TextureDesc::new(Extent::FRAME, Format::R32Float);
+            let samples = frame.graph_mut().texture("samples", desc.samples(4));
+            let target = frame.graph_mut().texture("target", desc);
+            let declare = |p: &mut framegraph::PassBuilder<'_>| {
+                let drawn = p.color(samples, Intent::Clear(ClearValue::BLACK))?;
+                p.resolve(drawn, target)
+            };
+            let resolved = frame.add_fn("paint", declare, |_, (), cx| {
+                let corner = Raster { vertex: "corner", ..Raster::new(FILL) };
+                fill(cx, &corner, [1.0e9, 0.0, 0.0, 1.0], 0.0)
+            })?;
+            frame.graph_mut().readback(resolved)?;
+            Ok(resolved)
+        };
+        let resolved = bench.run(declare)?;
+        assert_eq!(bench.plan.counts().multisample_resolves, u32::from(in_store));
+        assert_eq!(bench.plan.counts().steps, 1 + u32::from(!in_store));
+        let caps = framegraph::Caps { not_averaged: vec![Format::R32Float], ..gpu.caps() };
+        let mut plan = Plan::new();
+        compile(bench.frame.graph(), &caps, &bench.options, &mut Scratch::new(), &mut plan)?;
+        let mut executor = Executor::new(gpu);
+        executor.execute(&plan, &bench.frame, &(), &Imports::new())?;
+        let texture = executor.texture(&plan, resolved).ok_or("no picture")?;
+        let by_pass = read_texture(gpu, texture)?;
+        if drawn {
+            let red: Vec<_> = by_pass.rgba().iter().map(|texel| texel[0]).collect();
+            // Along the edge some of four samples are covered.
+            assert!(
+                red.contains(&1.0e9) && red.contains(&0.0) && red.iter().any(|r| *r > 0.0 && *r < 1.0e9),
+                "{red:?}"
+            );
+            assert!(red == bench.pixels(resolved)?.rgba().iter().map(|texel| texel[0]).collect::<Vec<_>>());
         }
         Ok(())
     })

@@ -3,12 +3,17 @@
 use crate::ShaderError;
 
 /// What is wrong with a file, and in which line.
-#[derive(Debug)]
 pub(super) struct Fault {
     /// Line, from one.
     pub line: usize,
     /// One line without file and line.
     pub message: String,
+}
+
+impl std::fmt::Debug for Fault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.line, self.message)
+    }
 }
 
 impl Fault {

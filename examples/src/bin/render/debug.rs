@@ -29,7 +29,8 @@ pub const HELP: &str = "
   --inspect-sample N   one sample of a multisampled texture; default: the average, of depth the first
   --inspect-all DIR    every version of every texture as a picture
   --trace FILE.json    every frame with its steps on CPU and GPU, for chrome://tracing or Perfetto
-  --timing             a table of least times, quartiles and medians, wgpu's share, what was made and found, and memory
+  --timing             a table of least times, quartiles and medians, wgpu's share, what was made and found, and memory;
+                       and latency, with one to three frames queued
   --debug MODE,...     no-cull, no-merge, no-inline, no-alias, immediate (all of these, in declared order, nothing
                        memoryless), poison (what nobody wrote is NaN or magenta)
   --bisect             render under each debug mode, and say which changes the picture
@@ -43,7 +44,7 @@ pub struct Debugging {
     inspect_mode: DisplayMode,
     inspect_all: Option<PathBuf>,
     trace: Option<PathBuf>,
-    timing: bool,
+    pub timing: bool,
     modes: Modes,
     /// Compare debug modes instead of rendering a picture.
     pub bisect: bool,
@@ -263,7 +264,12 @@ fn made_line(args: &Args, executor: &Executor, before: ObjectCounts) -> String {
     let pool = executor.texture_pool();
     let caches: Vec<_> =
         executor.caches().into_iter().map(|(name, counts)| format!("{} {name}", counts.hits)).collect();
-    let memory = [("textures", pool), ("buffers", executor.buffer_pool())].map(|(name, pool)| {
+    let mut pools = vec![("textures", pool), ("buffers", executor.buffer_pool())];
+    let blocks = executor.placed_blocks();
+    if blocks.created > 0 {
+        pools.push(("blocks of memory in which they are placed", blocks));
+    }
+    let memory = pools.into_iter().map(|(name, pool)| {
         let [held, used, peak, budget] =
             [pool.bytes, pool.used_bytes, pool.peak_bytes, pool.budget_bytes].map(mebibytes);
         format!(
@@ -271,6 +277,7 @@ fn made_line(args: &Args, executor: &Executor, before: ObjectCounts) -> String {
             pool.objects
         )
     });
+    let memory: Vec<_> = memory.collect();
     format!(
         "made in {} frames: {}; found made since the beginning: {} textures, {}\nheld by the pools: {}; by histories: {}",
         args.frames,

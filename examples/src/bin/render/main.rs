@@ -10,6 +10,7 @@ mod effects;
 mod given;
 mod grade;
 mod keep;
+mod latency;
 mod leave_out;
 mod light;
 mod load;

@@ -6,6 +6,7 @@ use crate::debug::report;
 use crate::decide::Deciding;
 use crate::dirt::Dirt;
 use crate::keep::{Kept, Own, declare, first_frame};
+use crate::latency;
 use crate::leave_out;
 use crate::light::Around;
 use crate::load::{self, Loaded};
@@ -283,6 +284,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         outputs.write(path, |file| file.write_all(text.as_bytes())).map_err(input)?;
     }
     let told = report(args, &mut prepared, &plan, &executor, before, &inspections, &mut outputs)?;
+    if args.debug.timing {
+        program::print(latency::table(args, &mut prepared, &plan, &mut executor)?);
+    }
     if args.decide.what_it_costs {
         saved = leave_out::measure(args, &mut prepared)?;
         program::print(leave_out::table(&prepared, &saved));

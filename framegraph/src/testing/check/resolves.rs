@@ -173,5 +173,6 @@ fn fits(case: &Case<'_>, target: Option<Format>, samples: Option<Format>, place:
 pub(super) fn in_store(case: &Case<'_>, resolve: &Access) -> bool {
     let caps = case.plan.caps();
     let modes = if resolve.slot == Access::DEPTH { caps.depth_resolves } else { caps.color_resolves };
-    modes.has(resolve.resolve)
+    let apart = case.texture(resolve.resource).is_some_and(|t| caps.not_averaged.contains(&t.format));
+    modes.has(resolve.resolve) && !apart
 }

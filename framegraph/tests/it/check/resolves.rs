@@ -98,6 +98,40 @@ fn colors_are_resolved_by_mode() {
     }
 }
 
+/// WebGPU averages 32-bit floats in no store, and a shader does: by format, not by device.
+#[test]
+fn a_format_that_is_not_averaged_is_resolved_by_a_pass() {
+    let caps = Caps { not_averaged: vec![Format::R32Float], ..Caps::wgpu() };
+    for (format, shown, full_screen) in [
+        (Format::R32Float, Format::R16Float, true),
+        (Format::R16Float, Format::R16Float, false),
+        (Format::R16Float, Format::R32Float, false),
+    ] {
+        let mut g = Graph::new();
+        let (samples, one) = (g.texture("samples", color(format).samples(4)), g.texture("one", color(format)));
+        let screen = g.import_texture("screen", color(shown), Entry::Undefined, Exit::Keep);
+        let declare = |p: &mut PassBuilder<'_>| {
+            p.takes_epilogue();
+            let drawn = p.color(samples, Intent::Overwrite)?;
+            p.resolve(drawn, one)
+        };
+        let one = g.add_fn("draw", declare).unwrap();
+        g.add_fn("post", |p| {
+            p.pointwise();
+            p.same_pixel(one)?;
+            p.color(screen, Intent::Overwrite)
+        })
+        .unwrap();
+        let plan = clean(&g, &Caps { inline: false, ..caps.clone() });
+        assert_eq!(plan.counts().steps, 2 + u32::from(full_screen), "{format:?}");
+        assert_eq!(plan.counts().multisample_resolves, u32::from(!full_screen));
+        // Samples of an inlined picture have the format of what is shown, and are averaged in a store.
+        let plan = clean(&g, &caps);
+        let averaged = [format, shown] == [Format::R16Float; 2];
+        assert_eq!(plan.counts().inlined, u32::from(averaged), "{format:?} {shown:?}");
+    }
+}
+
 #[test]
 fn a_resolve_that_nobody_reads_is_dropped() {
     let mut g = Graph::new();

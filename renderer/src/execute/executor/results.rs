@@ -64,7 +64,7 @@ impl Executor {
     /// Objects made since the beginning.
     pub fn objects(&self) -> ObjectCounts {
         ObjectCounts {
-            textures: self.textures.counts().created + self.arenas.created(),
+            textures: self.textures.counts().created + self.arenas.counts().created,
             histories: self.histories.created(),
             buffers: self.buffers.counts().created,
             uniform_buffers: self.recording.uniforms.created() + self.threads.uniform_buffers(),
@@ -84,6 +84,12 @@ impl Executor {
     /// The same of buffers.
     pub fn buffer_pool(&self) -> PoolCounts {
         self.buffers.counts()
+    }
+
+    /// The same of the blocks of memory in which textures and buffers are placed ([`framegraph::Alias::Heap`]): hits, evictions
+    /// and objects are blocks, `created` is what was placed in them, and bytes are those that the driver gave.
+    pub fn placed_blocks(&self) -> PoolCounts {
+        self.arenas.counts()
     }
 
     /// Bytes of the images of all histories, without padding.

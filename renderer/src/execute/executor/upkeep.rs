@@ -1,11 +1,9 @@
 //! What an executor gives up: objects that no recent frame used, and those of a frame that failed.
 
 use super::Executor;
-use crate::execute::prepared::Caches;
-use crate::placed::driver::Object;
+use crate::placed::arenas::Arenas;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::Pool;
-use wgpu::Texture;
 
 impl Executor {
     /// After the device refused something: objects made in this frame may be no good, so none that it used is kept.
@@ -23,33 +21,34 @@ impl Executor {
     }
 
     /// Gives up at once what the last frame did not use, and returns how many bytes that were: textures and buffers of
-    /// the pools with their views and bind groups, whatever their age. Histories stay.
+    /// the pools, and blocks of memory in which they are placed, with their views and bind groups, whatever their age.
+    /// Histories stay.
     pub fn trim(&mut self) -> u64 {
-        let Self { caches, textures, buffers, recording, threads, .. } = self;
+        let Self { caches, textures, buffers, arenas, recording, threads, .. } = self;
         recording.remembered.let_go();
         threads.let_go();
-        let held = |textures: &Pool<PhysicalTextureDesc>, buffers: &Pool<PhysicalBufferDesc>| {
-            textures.counts().bytes + buffers.counts().bytes
+        let held = |textures: &Pool<PhysicalTextureDesc>, buffers: &Pool<PhysicalBufferDesc>, arenas: &Arenas| {
+            textures.counts().bytes + buffers.counts().bytes + arenas.bytes()
         };
-        let before = held(textures, buffers);
+        let before = held(textures, buffers, arenas);
+        arenas.trim(|object| caches.forget_placed(object));
         textures.trim(|texture| caches.forget(texture));
         buffers.trim(|buffer| caches.groups.forget_buffer(buffer));
-        before - held(textures, buffers)
+        before - held(textures, buffers, arenas)
     }
 
     /// Drops objects that no recent frame used, and what was lent for this frame alone.
     pub(super) fn give_up(&mut self) {
         let Self { caches, textures, buffers, arenas, realized, options, recording, threads, .. } = self;
         let mut any = false;
-        let mut forget = |caches: &mut Caches, texture: &Texture| {
+        arenas.evict(options.limits(), |object| {
+            any = true;
+            caches.forget_placed(object);
+        });
+        textures.evict(|texture| {
             any = true;
             caches.forget(texture);
-        };
-        arenas.evict(options.max_age, |object| match object {
-            Object::Texture(placed) => forget(caches, placed.texture()),
-            Object::Buffer(buffer) => caches.groups.forget_buffer(buffer),
         });
-        textures.evict(|texture| forget(caches, texture));
         buffers.evict(|buffer| caches.groups.forget_buffer(buffer));
         if any {
             recording.remembered.let_go();

@@ -108,7 +108,7 @@ fn bar(ui: &mut Ui, live: &mut Live, session: &mut Session) {
     });
 }
 
-/// Frames a second, medians of the frame on both sides, size and counts.
+/// Frames a second, medians of the frame on both sides and from its begin until the device is done, size and counts.
 fn statistics(live: &Live) -> String {
     let Some(running) = &live.running else { return String::new() };
     let times = running.frames().executor().timing().frame();
@@ -116,7 +116,14 @@ fn statistics(live: &Live) -> String {
     let fps = live.frames_per_s().map_or("-".into(), |fps| format!("{fps:.1}"));
     let [width, height] = running.picture().map_or([0, 0], |(_, size)| size);
     let triangles = running.loaded.scene.triangle_count();
-    format!("{width}x{height}  {fps} fps  CPU {} ms  GPU {} ms  {triangles} triangles", ms(times.cpu), ms(times.gpu))
+    let flight = running.frames().frames_in_flight();
+    format!(
+        "{width}x{height}  {fps} fps  CPU {} ms  GPU {} ms  latency {} ms with {} frames queued  {triangles} triangles",
+        ms(times.cpu),
+        ms(times.gpu),
+        ms(flight.latency()),
+        flight.most()
+    )
 }
 
 /// Moves the camera.

@@ -91,8 +91,10 @@ impl Candidate<'_, '_> {
             Refusal::TooManyAttachments | Refusal::TileMemory => self.too_heavy(input, output),
             Refusal::ResolveMode => self.members.iter().any(|m| {
                 let mut into = self.case.accesses_of(m.pass).filter(|(_, a)| a.resource == input.resource);
+                let target = self.case.texture(output.resource).map(|t| t.format);
+                let target = target.is_some_and(|f| self.case.plan.caps().not_averaged.contains(&f));
                 into.any(|(id, a)| {
-                    let other = a.resolve != ResolveMode::Average || self.case.is_full_screen(id);
+                    let other = a.resolve != ResolveMode::Average || self.case.is_full_screen(id) || target;
                     a.kind == AccessKind::Resolve && other
                 })
             }),
