@@ -169,7 +169,8 @@ impl Caps {
     pub fn resolves_in_store(&self, access: &Access, format: Option<Format>) -> bool {
         debug_assert_eq!(access.kind, AccessKind::Resolve);
         let modes = if access.slot == Access::DEPTH { self.depth_resolves } else { self.color_resolves };
-        modes.has(access.resolve) && !format.is_some_and(|format| self.not_averaged.contains(&format))
+        let apart = |format| access.resolve == ResolveMode::Average && self.not_averaged.contains(&format);
+        modes.has(access.resolve) && !format.is_some_and(apart)
     }
 
     /// The bytes that `desc` takes in a heap, in a frame of `frame` texels, if its texels take `bytes`.

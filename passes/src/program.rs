@@ -191,6 +191,11 @@ impl Program {
         Ok(Self { name, text, hash, vertex, fragment, groups, constants, sampled })
     }
 
+    /// Its shader's name, the features and the effects that it was resolved with, joined by `+`: for messages.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
     /// The shader as pipelines take it.
     pub fn shader(&self) -> Shader<'_> {
         Shader::hashed(&self.name, &self.text, self.hash)

@@ -4,6 +4,7 @@ pub(crate) mod bind_groups;
 pub(crate) mod binding_error;
 pub(crate) mod bounds;
 pub(crate) mod cache;
+mod counting_loop;
 pub(crate) mod key;
 pub(crate) mod loops;
 pub(crate) mod pipeline;

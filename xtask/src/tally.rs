@@ -120,7 +120,7 @@ const KNOWN: [Known; 12] = [
         reason: "has no timestamps",
     },
     Known {
-        tests: &["the_layers_are_silent_about_what_is_placed"],
+        tests: &["the_layers_are_silent_about_what_is_placed", "the_layers_are_silent_about_whole_frames"],
         reason: "no validation layers that find hand-overs",
     },
     // Streams are replayed where the layers are there to say whether they suffice.
@@ -140,6 +140,7 @@ const KNOWN: [Known; 12] = [
             "frames_in_one_block_of_memory_are_the_frames_apart",
             "sizes_that_the_driver_was_not_asked_for_are_refused",
             "the_layers_are_silent_about_what_is_placed",
+            "the_layers_are_silent_about_whole_frames",
         ],
         reason: "places no textures; only Vulkan does",
     },

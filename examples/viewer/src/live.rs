@@ -153,14 +153,11 @@ impl Live {
             Some("hdr" | "exr" | "ktx" | "ktx2") => self.wanted = Around::File(path.to_owned()),
             Some("ron") => {
                 let name = path.to_string_lossy();
+                let says_frame = || input::text(path, input::MOST_TEXT_BYTES).is_ok_and(|t| t.contains("frame: ("));
                 match crate::standard_frame::settings(&name) {
                     Ok(frame) => self.set(Document { frame, ..self.document().clone() }, false),
                     // A graph is another kind of file; settings say what is wrong with them.
-                    Err(_)
-                        if !input::text(path, input::MOST_TEXT_BYTES).is_ok_and(|text| text.contains("frame: (")) =>
-                    {
-                        return false;
-                    }
+                    Err(_) if !says_frame() => return false,
                     Err(error) => session.say(error),
                 }
             }
@@ -385,19 +382,14 @@ impl Live {
         Outputs::one_beside(path, text.as_bytes(), &self.read()).map_err(|error| error.to_string())
     }
 
-    /// The files of the scene and of its light: nothing is written over them.
+    /// The files that what is shown was read from.
     pub fn read(&self) -> Vec<PathBuf> {
-        let loaded = self.running.as_ref().map(|running| &running.loaded);
-        let around = loaded.and_then(|loaded| if let Around::File(file) = &loaded.around { Some(file) } else { None });
-        loaded.into_iter().flat_map(|loaded| &loaded.scene.files).chain(around).cloned().collect()
+        self.running.iter().flat_map(|running| running.loaded.files()).cloned().collect()
     }
 
     /// The environment that is shown or made, in words.
     pub fn around(&self) -> String {
-        match &self.wanted {
-            Around::Sky(_) => "clear sky".into(),
-            Around::File(path) => path.display().to_string(),
-        }
+        self.wanted.to_string()
     }
 
     /// Lights the scene by a clear sky, or by a picture.

@@ -1,6 +1,6 @@
 //! Which adapter to render on: hardware before software, and what the environment asks for.
 
-use wgpu::{AdapterInfo, Backend, Backends, DeviceType};
+use wgpu::{Adapter, AdapterInfo, Backend, Backends, DeviceType, Instance, Limits};
 
 /// What is asked of the adapter. [`AdapterRequest::from_env`] is what programs use.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -95,6 +95,38 @@ pub fn describe(info: &AdapterInfo) -> String {
     let driver = driver.collect::<Vec<_>>().join(" ");
     let driver = if driver.is_empty() { "no driver named".to_owned() } else { driver };
     format!("{} ({kind}, {}, {driver})", info.name, info.backend)
+}
+
+/// Every adapter on the interfaces asked for. Those of the second rank are looked at only when the first ones offer
+/// nothing that fits, or only software although there may be a GPU.
+pub(crate) fn adapters(request: &AdapterRequest) -> Vec<Adapter> {
+    let first = enumerate(request.backends & Backends::PRIMARY);
+    let enough = |info: AdapterInfo| request.accepts(&info) && !(is_software(&info) && may_have_hardware());
+    let rest = request.backends - Backends::PRIMARY;
+    if rest.is_empty() || first.iter().any(|a| enough(a.get_info())) {
+        return first;
+    }
+    first.into_iter().chain(enumerate(rest)).collect()
+}
+
+fn enumerate(backends: Backends) -> Vec<Adapter> {
+    if backends.is_empty() {
+        return Vec::new();
+    }
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = backends;
+    descriptor.backend_options = wgpu::BackendOptions::from_env_or_default();
+    descriptor.backend_options.noop.enable = backends == Backends::NOOP;
+    descriptor.backend_options.noop.limits = Some(noop_limits());
+    // The driver's own validation is for those who ask for it (WGPU_VALIDATION, WGPU_DEBUG); wgpu's is always on.
+    descriptor.flags = wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL.with_env();
+    pollster::block_on(Instance::new(descriptor).enumerate_adapters(backends))
+}
+
+/// WebGPU's guaranteed limits, and several layers attached at once: by itself the adapter that does nothing has no limits, which
+/// overflow inside wgpu.
+fn noop_limits() -> Limits {
+    Limits { max_multiview_view_count: u32::BITS, ..Limits::default() }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //!
 //! wgpu reports in three ways: error scopes (per thread), a handler for what no scope caught, and a callback when the
 //! device is lost. [`DeviceErrors`] collects the last two for a device that this crate opened; [`ErrorScopes`] wraps a
-//! piece of work in the first. An engine that owns its device keeps its own handlers and forwards losses with
+//! piece of work in the first, [`Watch`] a part of a frame in what costs least. An engine that owns its device keeps its own handlers and forwards losses with
 //! [`DeviceErrors::report_lost`].
 
 use std::cell::Cell;
@@ -109,14 +109,30 @@ impl DeviceErrors {
 pub struct ErrorScopes {
     // Closed in reverse order of opening.
     guards: [ErrorScopeGuard; 3],
+    counted: Counted,
+}
+
+/// One more in [`OPEN`] while it lives.
+struct Counted;
+
+impl Counted {
+    fn new() -> Self {
+        OPEN.set(OPEN.get() + 1);
+        Self
+    }
+}
+
+impl Drop for Counted {
+    fn drop(&mut self) {
+        OPEN.set(OPEN.get() - 1);
+    }
 }
 
 impl ErrorScopes {
     /// Opens the scopes: errors of this thread are caught from now on.
     pub fn open(device: &Device) -> Self {
-        OPEN.set(OPEN.get() + 1);
         let kinds = [ErrorFilter::Internal, ErrorFilter::OutOfMemory, ErrorFilter::Validation];
-        Self { guards: kinds.map(|kind| device.push_error_scope(kind)) }
+        Self { guards: kinds.map(|kind| device.push_error_scope(kind)), counted: Counted::new() }
     }
 
     /// Closes the scopes.
@@ -124,8 +140,7 @@ impl ErrorScopes {
     /// # Errors
     /// The first error of the gravest kind that was caught: exhausted memory, then internal failure, then refusal.
     pub fn close(self, doing: &'static str) -> Result<(), DeviceError> {
-        OPEN.set(OPEN.get() - 1);
-        let [internal, memory, validation] = self.guards;
+        let Self { guards: [internal, memory, validation], counted: _counted } = self;
         let validation = pollster::block_on(validation.pop());
         let memory = pollster::block_on(memory.pop());
         let internal = pollster::block_on(internal.pop());
@@ -133,9 +148,9 @@ impl ErrorScopes {
     }
 }
 
-/// A part of a frame, whose errors are found when it ends. Opening and closing scopes takes wgpu 1,300 instructions, so they are opened
-/// only where errors would not come to the device's own handler: a device whose handler is not this crate's, or a thread with scopes
-/// around the frame.
+/// A part of a frame, whose errors are found when it ends. Opening and closing scopes takes wgpu as long as recording a small pass, so
+/// they are opened only where errors would not come to the device's own handler: a device whose handler is not this crate's, or a
+/// thread with [`ErrorScopes`] around the frame.
 #[must_use = "errors are reported by `end`"]
 pub(crate) struct Watch {
     scopes: Option<ErrorScopes>,

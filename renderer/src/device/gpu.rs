@@ -1,13 +1,13 @@
 //! The opened device: queue, limits, features, and the errors that it reported.
 
-use crate::device::adapter::{AdapterRequest, describe, is_software, may_have_hardware, rank};
+use crate::device::adapter::{AdapterRequest, adapters, describe, is_software, rank};
 use crate::device::caps::caps_of;
 use crate::device::error::{DeviceError, DeviceErrors, ErrorScopes, Watch};
 use crate::device::format::texture_format;
 use framegraph::{Caps, Format};
 use std::sync::{Arc, OnceLock, atomic};
 use wgpu::{
-    Adapter, AdapterInfo, Backend, Backends, Device, DownlevelFlags, Features, Instance, Limits, Queue,
+    Adapter, AdapterInfo, Backend, Backends, Device, DownlevelFlags, Features, Instance, Queue,
     TextureFormatFeatureFlags, TextureFormatFeatures, TextureUsages,
 };
 
@@ -38,6 +38,7 @@ pub struct Gpu {
     /// What no scope catches is noted in `errors`.
     handled: bool,
     waits: Arc<atomic::AtomicU64>,
+    caps: Arc<OnceLock<Caps>>,
     view_formats: bool,
     formats: Arc<[OnceLock<TextureFormatFeatures>; Format::ALL.len()]>,
     pub(super) attached_layers: Arc<OnceLock<u32>>,
@@ -185,6 +186,7 @@ impl Gpu {
             errors: Arc::default(),
             handled: false,
             waits: Arc::default(),
+            caps: Arc::default(),
             view_formats,
             formats,
             attached_layers: Arc::default(),
@@ -237,6 +239,10 @@ impl Gpu {
 
     /// The device as the compiler sees it.
     pub fn caps(&self) -> Caps {
+        self.caps.get_or_init(|| self.asked_caps()).clone()
+    }
+
+    fn asked_caps(&self) -> Caps {
         let averaged = |format: &Format| {
             let flags = self.format_features(*format).flags;
             // Others have no samples.
@@ -333,40 +339,8 @@ impl Gpu {
     }
 }
 
-/// Every adapter on the interfaces asked for. Those of the second rank are looked at only when the first ones offer
-/// nothing that fits, or only software although there may be a GPU.
-fn adapters(request: &AdapterRequest) -> Vec<Adapter> {
-    let first = enumerate(request.backends & Backends::PRIMARY);
-    let enough = |info: AdapterInfo| request.accepts(&info) && !(is_software(&info) && may_have_hardware());
-    let rest = request.backends - Backends::PRIMARY;
-    if rest.is_empty() || first.iter().any(|a| enough(a.get_info())) {
-        return first;
-    }
-    first.into_iter().chain(enumerate(rest)).collect()
-}
-
-fn enumerate(backends: Backends) -> Vec<Adapter> {
-    if backends.is_empty() {
-        return Vec::new();
-    }
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = backends;
-    descriptor.backend_options = wgpu::BackendOptions::from_env_or_default();
-    descriptor.backend_options.noop.enable = backends == Backends::NOOP;
-    descriptor.backend_options.noop.limits = Some(noop_limits());
-    // The driver's own validation is for those who ask for it (WGPU_VALIDATION, WGPU_DEBUG); wgpu's is always on.
-    descriptor.flags = wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL.with_env();
-    pollster::block_on(Instance::new(descriptor).enumerate_adapters(backends))
-}
-
 fn open_device(adapter: &Adapter) -> Result<(Device, Queue), wgpu::RequestDeviceError> {
     pollster::block_on(adapter.request_device(&Gpu::descriptor(adapter)))
-}
-
-/// WebGPU's guaranteed limits, and several layers attached at once: by itself the adapter that does nothing has no limits, which
-/// overflow inside wgpu.
-fn noop_limits() -> Limits {
-    Limits { max_multiview_view_count: u32::BITS, ..Limits::default() }
 }
 
 #[cfg(test)]

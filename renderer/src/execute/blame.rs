@@ -1,6 +1,6 @@
 //! Finds the pass whose commands wgpu refuses, and the import that it refuses to submit.
 //!
-//! A frame that is well opens one set of error scopes for all passes, and wgpu says at the end that something was wrong. Then
+//! A frame that is well has one [`Watch`](crate::device::error::Watch) for all passes, which says at the end that something was wrong. Then
 //! each step is recorded once more, into an encoder and scopes of its own, and the step that is refused with one more of
 //! its passes each time, until wgpu refuses it: the last of these passes is the one.
 

@@ -28,7 +28,7 @@ pub(crate) enum Open<'a> {
 
 impl Open<'_> {
     /// The same for one pass of the step.
-    pub(crate) fn again(&mut self) -> Open<'_> {
+    pub(crate) fn reborrow(&mut self) -> Open<'_> {
         match self {
             Open::Raster(pass) => Open::Raster(pass),
             Open::Compute(pass) => Open::Compute(pass),

@@ -1,5 +1,6 @@
 //! Executing frames on a device, and everything that is kept from one to the next.
 
+mod histories;
 mod placing;
 #[cfg(feature = "threads")]
 mod record_on;
@@ -31,7 +32,7 @@ use crate::resources::imports::Imports;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::{Limits, Pool};
 use crate::resources::realize::{Realized, Sources};
-use framegraph::{Counts, Kind, Plan, ResourceId, StepId};
+use framegraph::{Counts, Plan, ResourceId, StepId};
 use std::sync::atomic::AtomicBool;
 use wgpu::SubmissionIndex;
 
@@ -358,33 +359,6 @@ impl Executor {
             largest: largest.map(|r| (Named::resource(plan, r), bytes(r))),
             adapter: self.gpu.info().clone(),
         }
-    }
-
-    /// Becomes an executor of the next frame of `other`: sees histories as that left them and poisons as it does. What is
-    /// written to a history here is what `other` overwrites in its next frame.
-    pub(crate) fn borrow(&mut self, other: &Self) {
-        self.histories = other.histories.clone();
-        self.options.poison = other.options.poison;
-    }
-
-    /// The size in which an earlier image of a history was written, which may be another than that of `plan`; none for other
-    /// resources, and for images that hold nothing of use.
-    pub(crate) fn earlier_texels(&self, plan: &Plan, owner: &FrameKey, resource: ResourceId) -> Option<[u32; 2]> {
-        let Kind::HistoryPrevious { current, age } = plan.graph().resources()[resource.index()].kind else {
-            return None;
-        };
-        self.histories.texels(owner, plan.graph().resource_name(current), age)
-    }
-
-    /// Forgets the earlier frames of the histories of that full name, whichever [`Frame`] they are of: after a camera cut.
-    pub fn reset_history(&mut self, name: &str) {
-        self.histories.reset(name);
-    }
-
-    /// Forgets the earlier frames of all histories: after a camera cut, what they show has nothing to do with the next
-    /// frame. Its recorders find all of them not valid, as in a first frame.
-    pub fn reset_histories(&mut self) {
-        self.histories.reset_all();
     }
 }
 

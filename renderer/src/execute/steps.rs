@@ -75,7 +75,7 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
         recording.executed.steps += 1;
         let mut recorded = members.iter().filter(|m| m.join != Join::Inlined);
         recorded
-            .try_for_each(|member| record_pass(frame, passes, (step, *member), &targets, recording, open.again()))?;
+            .try_for_each(|member| record_pass(frame, passes, (step, *member), &targets, recording, open.reborrow()))?;
         // Here the pass ends, where it lies, and wgpu looks at everything that was recorded into it.
         Ok::<_, ExecuteError>(recording.now())
     };
@@ -177,7 +177,7 @@ fn record_pass<W: ?Sized + 'static>(
     let mut inlined = Vec::new();
     if takes_epilogue && !resolves {
         let (inlined_yet, asked_inlined) = (&[][..], false);
-        let (recording, open) = (&mut *recording, open.again());
+        let (recording, open) = (&mut *recording, open.reborrow());
         let mut cx = Cx { frame, step, pass, targets, recording, open, inlined: inlined_yet, asked_inlined };
         inlined = inlined_into(&mut cx, declared, world)?;
     }

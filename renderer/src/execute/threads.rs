@@ -40,6 +40,7 @@ struct Part<'a> {
 }
 
 impl Threads {
+    #[cfg(feature = "threads")]
     pub(crate) fn workers(&self) -> Option<&Workers> {
         self.workers.as_ref()
     }

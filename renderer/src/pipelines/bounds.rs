@@ -5,12 +5,13 @@
 //! known of whole numbers: the least and the greatest that a value can be. Numbers in the text are known, sums and products of what is
 //! known, what is masked, clamped or a remainder, and the counter of a loop from its first value to below its bound.
 
+use super::counting_loop::{CountingLoop, changed, number, root, whole};
 use std::collections::HashMap;
 use std::ops::RangeInclusive;
 use wgpu::naga::valid::{Capabilities, FunctionInfo, ValidationFlags, Validator};
 use wgpu::naga::{
-    ArraySize, BinaryOperator, Block, Expression, Function, Handle, Literal, LocalVariable, MathFunction, Module,
-    ScalarKind, Statement, TypeInner, front::wgsl, proc::TypeResolution,
+    ArraySize, BinaryOperator, Block, Expression, Function, Handle, LocalVariable, MathFunction, Module, ScalarKind,
+    Statement, TypeInner, front::wgsl, proc::TypeResolution,
 };
 
 /// Why the indices of a shader are tested while it runs: the name of the first function with an index, or a texel that is loaded or
@@ -125,52 +126,28 @@ impl Proof<'_> {
         proved
     }
 
-    /// The counter of a loop that goes up by one from a known number while it is less than a known one, with what it is in a turn.
+    /// The counter of a loop that goes up from a known number to a known bound, with what it is in a turn.
     fn counter(&mut self, body: &Block, continuing: &Block) -> Option<(Handle<LocalVariable>, Span)> {
-        let tested = body.iter().find(|statement| !matches!(statement, Statement::Emit(_)))?;
-        let Statement::If { condition, accept, reject } = tested else { return None };
-        let Expression::Binary { op: BinaryOperator::Less, left, right } = self.function.expressions[*condition] else {
-            return None;
-        };
-        let Expression::Load { pointer } = self.function.expressions[left] else { return None };
-        let Expression::LocalVariable(counter) = self.function.expressions[pointer] else { return None };
-        let leaves = accept.is_empty() && matches!(reject.iter().next(), Some(Statement::Break));
-        let steps = continuing.iter().filter_map(|statement| match statement {
-            Statement::Store { pointer: place, value } if root(self.function, *place) == Some(counter) => Some(*value),
-            _ => None,
-        });
-        let [step] = steps.collect::<Vec<_>>()[..] else { return None };
-        let Expression::Binary { op: BinaryOperator::Add, left: from, right: by } = self.function.expressions[step]
-        else {
-            return None;
-        };
-        // As it is in this turn, not as it was once.
-        let from_itself = matches!(self.function.expressions[from], Expression::Load { pointer: p } if p == pointer)
-            && is_emitted(continuing, from)
-            && is_emitted(body, left);
-        let mut changed = Vec::new();
-        changes(self.function, body, &mut changed);
-        if !leaves || !from_itself || changed.contains(&counter) || self.written(by) != Some(1) {
-            return None;
-        }
+        let CountingLoop { counter, bound, equal, step } =
+            CountingLoop::find(self.module, self.function, body, continuing)?;
         let first = *self.variables.get(&counter)?.start();
         // The bound may be worked out in each turn, of what no turn changes.
-        let emits = body.iter().take_while(|statement| matches!(statement, Statement::Emit(_)));
-        changes(self.function, continuing, &mut changed);
-        let kept = std::mem::take(&mut self.variables);
-        self.variables.extend(kept.iter().filter(|(v, _)| !changed.contains(v)).map(|(v, span)| (*v, span.clone())));
-        for statement in emits {
+        let before = self.variables.clone();
+        self.forget(body);
+        self.forget(continuing);
+        for statement in body.iter().take_while(|statement| matches!(statement, Statement::Emit(_))) {
             self.statement(statement);
         }
-        let bound = self.span(right).map(|span| *span.end());
-        self.variables = kept;
-        Some((counter, first..=(bound? - 1).max(first)))
+        let bound = self.span(bound).map(|span| *span.end());
+        self.variables = before;
+        let last = bound? - i64::from(!equal);
+        // Beyond the last it ends before numbers of either kind wrap around.
+        (last <= i64::from(i32::MAX) - step).then(|| (counter, first..=last.max(first)))
     }
 
     /// Nothing is known any more of what a block changes.
     fn forget(&mut self, block: &Block) {
-        let mut changed = Vec::new();
-        changes(self.function, block, &mut changed);
+        let changed = changed(self.function, block);
         self.variables.retain(|variable, _| !changed.contains(variable));
     }
 
@@ -211,26 +188,8 @@ impl Proof<'_> {
     }
 
     fn span(&self, value: Handle<Expression>) -> Option<Span> {
-        self.values.get(&value).cloned().or_else(|| self.written(value).map(|number| number..=number))
-    }
-
-    /// A number that stands in the text.
-    fn written(&self, value: Handle<Expression>) -> Option<i64> {
-        let literal = match self.function.expressions[value] {
-            Expression::Literal(literal) => literal,
-            Expression::Constant(constant) => {
-                match self.module.global_expressions[self.module.constants[constant].init] {
-                    Expression::Literal(literal) => literal,
-                    _ => return None,
-                }
-            }
-            _ => return None,
-        };
-        match literal {
-            Literal::U32(number) => Some(number.into()),
-            Literal::I32(number) => Some(number.into()),
-            _ => None,
-        }
+        let written = || number(self.module, self.function, value).and_then(whole);
+        self.values.get(&value).cloned().or_else(|| written().map(|number| number..=number))
     }
 
     /// What is known of a value by what is known of those that it is made of.
@@ -289,43 +248,6 @@ impl Proof<'_> {
     }
 }
 
-/// Whether a value is worked out in a block itself, each time it is run.
-pub(super) fn is_emitted(block: &Block, value: Handle<Expression>) -> bool {
-    let emits =
-        |statement: &Statement| matches!(statement, Statement::Emit(range) if range.clone().any(|own| own == value));
-    block.iter().any(emits)
-}
-
-/// The local variable into which a pointer points.
-fn root(function: &Function, pointer: Handle<Expression>) -> Option<Handle<LocalVariable>> {
-    match function.expressions[pointer] {
-        Expression::LocalVariable(variable) => Some(variable),
-        Expression::Access { base, .. } | Expression::AccessIndex { base, .. } => root(function, base),
-        _ => None,
-    }
-}
-
-/// The local variables that a block may change.
-fn changes(function: &Function, block: &Block, into: &mut Vec<Handle<LocalVariable>>) {
-    for statement in block {
-        match statement {
-            Statement::Store { pointer, .. } => into.extend(root(function, *pointer)),
-            Statement::Call { arguments, .. } => into.extend(arguments.iter().filter_map(|a| root(function, *a))),
-            Statement::Block(inner) => changes(function, inner, into),
-            Statement::If { accept, reject, .. } => {
-                changes(function, accept, into);
-                changes(function, reject, into);
-            }
-            Statement::Switch { cases, .. } => cases.iter().for_each(|case| changes(function, &case.body, into)),
-            Statement::Loop { body, continuing, .. } => {
-                changes(function, body, into);
-                changes(function, continuing, into);
-            }
-            _ => {}
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -352,6 +274,7 @@ mod tests {
             "for (var i = 0u; i < 8u; i++) { s += all[i]; }",
             "for (var i = 0; i < 7; i++) { s += all[i + 1]; all[i] = s; }",
             "for (var i = 0u; i < COUNT; i += 1u) { for (var j = 0u; j < 2u; j++) { s += all[2u * i + j]; } }",
+            "for (var i = 0; i <= 6; i += 3) { s += all[i]; }",
             "let most = min(n, 8u); for (var i = 0u; i < most; i++) { if s > 3.0 { continue; } s += all[i]; }",
             "var i = 3u; if n > 2u { s = all[i]; } i = 7u; s += all[i];",
         ] {
@@ -381,6 +304,9 @@ mod tests {
             "for (var i = 0u; i < 8u; i++) { i += 3u; s += all[i]; }",
             "for (var i = 0u; i < 8u; i++) { up(&i); s += all[i]; }",
             "for (var i = 7; i < 8; i--) { s += all[i]; }",
+            "for (var i = 1u; i <= 7u; i += 4294967295u) { s += all[i]; }",
+            "for (var i = 2u; i < 8u; i += 0u) { i -= 1u; s += all[i]; }",
+            "for (var i = 0u; i <= 8u; i += 2u) { s += all[i]; }",
             "var i = 0u; let x = i; loop { if x < 8u { } else { break; } s += all[i]; continuing { i += 1u; } }",
             "var i = -9; let x = i; i = 0; loop { if i < 8 { } else { break; } s += all[i]; continuing { i = x + 1; } }",
             "var i = 3u; if n > 2u { i = n; } s = all[i];",

@@ -6,10 +6,8 @@
 //! a number is less than the greatest one; so the loop ends, whatever the bound is and even if it changes meanwhile. With another
 //! step, or with "less or equal", the bound must be a number that is not too near to the greatest.
 
-use super::bounds::is_emitted;
-use wgpu::naga::{
-    BinaryOperator, Block, Expression, Function, Handle, Literal, LocalVariable, Module, Statement, front::wgsl,
-};
+use super::counting_loop::{CountingLoop, number};
+use wgpu::naga::{Block, Function, Literal, Module, Statement, front::wgsl};
 
 /// Why the loops of a shader are counted while it runs: the name of the first function with a loop that is not seen to end; none
 /// where all are, and for a text that does not compile.
@@ -56,100 +54,17 @@ impl Proof<'_> {
 
     /// Whether a loop counts up to a bound.
     fn counts(&self, body: &Block, continuing: &Block) -> bool {
-        let tested = body.iter().find(|statement| !matches!(statement, Statement::Emit(_)));
-        let Some(Statement::If { condition, accept, reject }) = tested else { return false };
-        if !accept.is_empty() || !matches!(reject.iter().next(), Some(Statement::Break)) {
+        let Some(CountingLoop { bound, equal, step, .. }) =
+            CountingLoop::find(self.module, self.function, body, continuing)
+        else {
             return false;
-        }
-        let Expression::Binary { op, left, right } = self.function.expressions[*condition] else { return false };
-        let (counter, bound, equal) = match op {
-            BinaryOperator::Less => (left, right, false),
-            BinaryOperator::LessEqual => (left, right, true),
-            BinaryOperator::Greater => (right, left, false),
-            BinaryOperator::GreaterEqual => (right, left, true),
-            _ => return false,
         };
-        // As it is in this turn, not as it was once.
-        let Some(counter) = self.loaded(counter).filter(|_| is_emitted(body, counter)) else { return false };
-        let Some(step) = self.step(counter, continuing) else { return false };
-        // One store at the end of a turn, and none elsewhere.
-        if self.changes(body, counter) > 0 || self.changes(continuing, counter) != 1 {
-            return false;
-        }
-        match (step, self.number(bound)) {
+        match (step, number(self.module, self.function, bound)) {
             (1, _) if !equal => true,
             (step, Some(Literal::U32(bound))) => u32::try_from(step).is_ok_and(|step| bound <= u32::MAX - step),
             (step, Some(Literal::I32(bound))) => i32::try_from(step).is_ok_and(|step| bound <= i32::MAX - step),
             _ => false,
         }
-    }
-
-    /// The local variable whose value an expression is.
-    fn loaded(&self, value: Handle<Expression>) -> Option<Handle<LocalVariable>> {
-        let Expression::Load { pointer } = self.function.expressions[value] else { return None };
-        match self.function.expressions[pointer] {
-            Expression::LocalVariable(variable) => Some(variable),
-            _ => None,
-        }
-    }
-
-    /// By how much a whole number goes up at the end of each turn, from 1.
-    fn step(&self, counter: Handle<LocalVariable>, continuing: &Block) -> Option<i64> {
-        continuing.iter().find_map(|statement| {
-            let Statement::Store { pointer, value } = statement else { return None };
-            if self.root(*pointer) != Some(counter) {
-                return None;
-            }
-            let Expression::Binary { op: BinaryOperator::Add, left, right } = self.function.expressions[*value] else {
-                return None;
-            };
-            let step = match self.number(right)? {
-                Literal::U32(step) => i64::from(step),
-                Literal::I32(step) => i64::from(step),
-                _ => return None,
-            };
-            (self.loaded(left) == Some(counter) && is_emitted(continuing, left) && step > 0).then_some(step)
-        })
-    }
-
-    /// A number that is written in the text.
-    fn number(&self, value: Handle<Expression>) -> Option<Literal> {
-        match self.function.expressions[value] {
-            Expression::Literal(literal) => Some(literal),
-            Expression::Constant(constant) => {
-                match self.module.global_expressions[self.module.constants[constant].init] {
-                    Expression::Literal(literal) => Some(literal),
-                    _ => None,
-                }
-            }
-            _ => None,
-        }
-    }
-
-    /// The local variable into which a pointer points.
-    fn root(&self, pointer: Handle<Expression>) -> Option<Handle<LocalVariable>> {
-        match self.function.expressions[pointer] {
-            Expression::LocalVariable(variable) => Some(variable),
-            Expression::Access { base, .. } | Expression::AccessIndex { base, .. } => self.root(base),
-            _ => None,
-        }
-    }
-
-    /// How many statements may change a variable.
-    fn changes(&self, block: &Block, variable: Handle<LocalVariable>) -> usize {
-        let is_it = |pointer: Handle<Expression>| usize::from(self.root(pointer) == Some(variable));
-        let of = |statement: &Statement| match statement {
-            Statement::Store { pointer, .. } => is_it(*pointer),
-            Statement::Call { arguments, .. } => arguments.iter().map(|argument| is_it(*argument)).sum(),
-            Statement::Block(inner) => self.changes(inner, variable),
-            Statement::If { accept, reject, .. } => self.changes(accept, variable) + self.changes(reject, variable),
-            Statement::Switch { cases, .. } => cases.iter().map(|case| self.changes(&case.body, variable)).sum(),
-            Statement::Loop { body, continuing, .. } => {
-                self.changes(body, variable) + self.changes(continuing, variable)
-            }
-            _ => 0,
-        };
-        block.iter().map(of).sum()
     }
 }
 

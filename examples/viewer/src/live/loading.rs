@@ -28,6 +28,15 @@ pub enum Around {
     File(PathBuf),
 }
 
+impl std::fmt::Display for Around {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Sky(_) => f.write_str("clear sky"),
+            Self::File(path) => path.display().fmt(f),
+        }
+    }
+}
+
 /// Light from all around, on the device.
 pub struct Lit {
     /// What it was made of.
@@ -159,6 +168,12 @@ fn sky(scene: &Scene, toward: Option<DVec3>) -> Sky {
 }
 
 impl Loaded {
+    /// The files of the scene and of its light: nothing is written over them.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        let around = if let Around::File(file) = &self.around { Some(file) } else { None };
+        self.scene.files.iter().chain(around)
+    }
+
     /// Takes other light.
     pub fn relight(&mut self, lit: Lit) {
         let Lit { around, settings, lighting, sun, background, metered_ev100, .. } = lit;

@@ -8,6 +8,7 @@ use crate::access::{Access, AccessKind, Mode, Range};
 use crate::format::{Aspect, Format};
 use crate::id::{PassId, StepId};
 use crate::plan::{Attachment, Join, Role, StepPass};
+use crate::resolve::ResolveMode;
 
 /// A resolve that is made by a full-screen pass: as what that pass does.
 pub(super) struct FullScreen {
@@ -173,6 +174,7 @@ fn fits(case: &Case<'_>, target: Option<Format>, samples: Option<Format>, place:
 pub(super) fn in_store(case: &Case<'_>, resolve: &Access) -> bool {
     let caps = case.plan.caps();
     let modes = if resolve.slot == Access::DEPTH { caps.depth_resolves } else { caps.color_resolves };
-    let apart = case.texture(resolve.resource).is_some_and(|t| caps.not_averaged.contains(&t.format));
+    let apart = resolve.resolve == ResolveMode::Average
+        && case.texture(resolve.resource).is_some_and(|t| caps.not_averaged.contains(&t.format));
     modes.has(resolve.resolve) && !apart
 }

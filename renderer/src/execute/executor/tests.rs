@@ -56,3 +56,41 @@ fn views_are_remembered_until_they_may_be_gone() -> Result<(), Box<dyn std::erro
     assert_eq!(execute(&mut executor, false)?, 0, "nothing is kept of what may be gone");
     Ok(())
 }
+
+/// What wgpu refuses of a frame is that frame's error, not the caller's: on a device whose handler tells, inside of scopes that the
+/// caller opened, and on a device that was wrapped, whose handler is another's. What was refused before it is told, and not as the
+/// frame's.
+#[test]
+fn a_frame_finds_its_errors_whoever_else_catches_some() -> Result<(), Box<dyn std::error::Error>> {
+    use framegraph::{ClearValue, Extent, Format, Intent, Options, Scratch, TextureDesc, compile};
+    let owned = Gpu::noop()?;
+    let wrapped = Gpu::wrap(owned.adapter(), &owned.device, &owned.queue);
+    let (mut frame, mut plan) = (Frame::<()>::new(), Plan::new());
+    let sky = frame.graph_mut().texture("sky", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+    let clear = Intent::Clear(ClearValue::BLACK);
+    // A draw without a pipeline.
+    let sky = frame.add_fn(
+        "sky",
+        |p| p.color(sky, clear),
+        |_, (), cx| {
+            cx.render_pass()?.draw(0..3, 0..1);
+            Ok(())
+        },
+    )?;
+    frame.graph_mut().export(sky)?;
+    compile(frame.graph(), &owned.caps(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan)?;
+    let refused = |gpu: &Gpu| {
+        let ran = Executor::new(gpu).execute(&plan, &frame, &(), &Imports::new());
+        assert!(matches!(ran, Err(ExecuteError::Refused { .. })), "{ran:?}");
+    };
+    for gpu in [&owned, &wrapped] {
+        refused(gpu);
+        gpu.guard("nothing else", || refused(gpu))?;
+    }
+    let size =
+        wgpu::BufferDescriptor { label: None, size: 8, usage: wgpu::BufferUsages::MAP_READ, mapped_at_creation: false };
+    owned.queue.write_buffer(&owned.device.create_buffer(&size), 0, &[0; 4]);
+    let ran = Executor::new(&owned).execute(&plan, &frame, &(), &Imports::new()).map_err(|error| error.to_string());
+    assert!(ran.as_ref().is_err_and(|told| told.contains("something outside of a frame")), "{ran:?}");
+    Ok(())
+}

@@ -2,8 +2,6 @@
 //!
 //! `cargo run --release -p tests --bin memory` prints the table of `docs/performance.md`, of one frame in each size.
 
-#![warn(clippy::print_stdout, clippy::print_stderr)]
-
 use framegraph::{Alias, Options};
 use framegraph_passes::bloom::BloomSettings;
 use framegraph_passes::dof::DofSettings;
@@ -18,19 +16,11 @@ const SIZES_PX: [[u32; 2]; 2] = [[1280, 720], [3840, 2160]];
 const WAYS: [(&str, Alias); 3] = [("none", Alias::Off), ("pool", Alias::Pool), ("heap", Alias::Heap)];
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => program::exit(0),
-        Err(error) => {
-            program::note(format_args!("memory: {error}"));
-            program::exit(1)
-        }
-    }
+    program::ended("memory", run())
 }
 
 fn run() -> Result<(), Box<dyn Error>> {
-    if let Some(unknown) = std::env::args().nth(1) {
-        return Err(format!("{unknown}: no argument is taken").into());
-    }
+    program::no_arguments()?;
     let open = || Gpu::open(&AdapterRequest::from_env());
     program::line(format_args!("adapter: {}", open()?.describe()));
     program::line(
