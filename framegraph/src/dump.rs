@@ -11,6 +11,7 @@ mod svg;
 mod text;
 mod words;
 
+pub use crate::plain::plain;
 pub use dot::dot;
 pub use flow::{Flow, data_flow, reduced};
 pub use json::{JSON_VERSION, json, totals};

@@ -222,13 +222,13 @@ impl<'t> GraphFile<'t> {
             return errors.sorted().or(()).inspect_err(|_| *plan = Plan::new());
         };
         let declared = errors.count() == 0;
-        let judged = |error: &CompileError| match error.reason {
-            // Who writes or reads it may be among the passes that were left out.
-            CompileReason::ReadUnwritten { .. } => declared || !selected.blind,
-            _ => true,
-        };
-        let CompileErrors { listed, more } = compiled;
-        let compiled = CompileErrors { listed: listed.into_iter().filter(judged).collect(), more };
+        let CompileErrors { mut listed, mut more } = compiled;
+        if !declared && selected.blind {
+            // Who writes it may be among the passes that were left out. What is only counted may be of that kind too.
+            listed.retain(|error| !matches!(error.reason, CompileReason::ReadUnwritten { .. }));
+            more = 0;
+        }
+        let compiled = CompileErrors { listed, more };
         let FileErrors { listed, more } = self.explain(&compiled);
         listed.into_iter().for_each(|error| errors.push(|| error));
         errors.more += more;

@@ -5,7 +5,7 @@
 //! files call the columns `buffer,start,end,size`. Those names are read too, with the meaning that MiniMalloc gives them:
 //! `start` (or `begin`) is `lower`, and `end` is the last step at which the item is live, one less than `upper`. What is
 //! written has `lower` and `upper`. Ids are kept as they stand, spaces and all, and may repeat; there is no quoting, so they hold
-//! no comma.
+//! no comma. Control characters in them are written as Rust would (`\u{1b}`).
 //!
 //! ```
 //! use framegraph_pack::{Options, Scratch, pack};
@@ -191,7 +191,14 @@ pub fn write(table: &Table, offsets: &[u64]) -> String {
     let mut text = String::from("id,lower,upper,size,offset\n");
     for ((id, item), offset) in table.ids.iter().zip(&table.items).zip(offsets) {
         let Interval { lower, upper, size, align: _ } = item;
-        writeln!(text, "{id},{lower},{upper},{size},{offset}").expect("writing to a string cannot fail");
+        for letter in id.chars() {
+            if letter.is_control() {
+                text.extend(letter.escape_default());
+            } else {
+                text.push(letter);
+            }
+        }
+        writeln!(text, ",{lower},{upper},{size},{offset}").expect("writing to a string cannot fail");
     }
     text
 }
@@ -211,6 +218,12 @@ mod tests {
         assert_eq!(read("id,begin,upper,size\na,1,2,3\n").unwrap().items[0].upper, 2);
         assert_eq!(read("buffer_id,start,end,size\na,2,2,3\n").unwrap().items[0].upper, 3);
         assert_eq!(read("id,lower,upper,size").unwrap(), Table::default());
+    }
+
+    #[test]
+    fn no_control_character_of_an_id_is_written() {
+        let table = read("id,lower,upper,size\na\u{1b}[31m\0\tb,0,1,2\n").unwrap();
+        assert_eq!(write(&table, &[0]), "id,lower,upper,size,offset\na\\u{1b}[31m\\u{0}\\tb,0,1,2,0\n");
     }
 
     #[test]

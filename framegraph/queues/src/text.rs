@@ -1,11 +1,13 @@
 //! Schedules to read: as text, and as a picture of lanes.
 
 use crate::schedule::Schedule;
+use framegraph::dump::plain;
 use framegraph::{Plan, StepId};
+use std::borrow::Cow;
 use std::fmt::Write;
 
-fn name(plan: &Plan, step: StepId) -> &str {
-    plan.passes_of(step).first().map_or("", |member| plan.graph().pass_name(member.pass))
+fn name(plan: &Plan, step: StepId) -> Cow<'_, str> {
+    plain(plan.passes_of(step).first().map_or("", |member| plan.graph().pass_name(member.pass)))
 }
 
 /// The schedule as text: totals, the steps of each queue with their times and what they wait for, transfers, shared resources.
@@ -19,7 +21,7 @@ pub fn text(plan: &Plan, schedule: &Schedule) -> String {
         transfers.len()
     );
     for (queue, id) in layout.queues.iter().zip(layout.ids()) {
-        let _ = writeln!(out, "\n{}:", queue.name);
+        let _ = writeln!(out, "\n{}:", plain(&queue.name));
         for step in plan.step_ids().filter(|step| lanes[step.index()] == id) {
             let [begin, end] = times_us[step.index()];
             let _ = write!(out, "  {begin:9.1} … {end:9.1}  step {} {}", step.index(), name(plan, step));
@@ -33,15 +35,18 @@ pub fn text(plan: &Plan, schedule: &Schedule) -> String {
         out.push_str("\ntransfers:\n");
     }
     for transfer in transfers {
-        let place = |(queue, step): (crate::QueueId, Option<StepId>), edge: &str| match step {
-            Some(step) => format!("{} ({} step {})", layout.queues[queue.index()].name, edge, step.index()),
-            None => format!("{} ({edge} the frame)", layout.queues[queue.index()].name),
+        let place = |(queue, step): (crate::QueueId, Option<StepId>), edge: &str| {
+            let queue = plain(&layout.queues[queue.index()].name);
+            match step {
+                Some(step) => format!("{queue} ({edge} step {})", step.index()),
+                None => format!("{queue} ({edge} the frame)"),
+            }
         };
-        let resource = plan.graph().resource_name(transfer.resource);
+        let resource = plain(plan.graph().resource_name(transfer.resource));
         let _ = writeln!(out, "  {resource}: {} to {}", place(transfer.from, "behind"), place(transfer.to, "before"));
     }
     if !concurrent.is_empty() {
-        let names: Vec<_> = concurrent.iter().map(|resource| plan.graph().resource_name(*resource)).collect();
+        let names: Vec<_> = concurrent.iter().map(|resource| plain(plan.graph().resource_name(*resource))).collect();
         let _ = writeln!(out, "\nshared by queues: {}", names.join(", "));
     }
     out
@@ -65,13 +70,13 @@ pub fn svg(plan: &Plan, schedule: &Schedule) -> String {
     );
     for (lane, queue) in layout.queues.iter().enumerate() {
         let y = top(lane) + 20.0;
-        let _ = writeln!(out, "<text x=\"8\" y=\"{y:.0}\">{}</text>", escaped(&queue.name));
+        let _ = writeln!(out, "<text x=\"8\" y=\"{y:.0}\">{}</text>", escaped(&plain(&queue.name)));
     }
     for step in plan.step_ids() {
         let ([begin, end], lane) = (times_us[step.index()], lanes[step.index()].index());
         let (left, width) = (x(begin), ((end - begin) * scale).max(1.0));
         let color = ["#7aa6d8", "#e0a15a", "#8bc48a"][lane % 3];
-        let shown = escaped(name(plan, step));
+        let shown = escaped(&name(plan, step));
         let _ = write!(
             out,
             "<rect x=\"{left:.1}\" y=\"{:.0}\" width=\"{width:.1}\" height=\"30\" fill=\"{color}\" stroke=\"#333333\">\
@@ -111,7 +116,6 @@ fn escaped(text: &str) -> String {
             '>' => out.push_str("&gt;"),
             '&' => out.push_str("&amp;"),
             '"' => out.push_str("&quot;"),
-            letter if letter.is_control() => out.push('\u{fffd}'),
             letter => out.push(letter),
         }
     }

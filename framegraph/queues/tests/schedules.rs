@@ -264,6 +264,25 @@ fn occlusion_runs_beside_shadows() -> TestResult {
 }
 
 #[test]
+fn no_control_character_is_shown() -> TestResult {
+    let mut graph = Graph::new();
+    graph.add_fn("a\u{1b}[31m", |pass| {
+        pass.side_effect();
+        Ok(())
+    })?;
+    let mut plan = Plan::new();
+    compile(&graph, &Caps::wgpu(), &Options::default(), &mut Scratch::new(), &mut plan)?;
+    let mut layout = QueueLayout::one();
+    layout.queues[0].name = "q\u{7}".into();
+    let found = schedule(&plan, &layout, &[1.0])?;
+    for shown in [text(&plan, &found), svg(&plan, &found)] {
+        assert!(shown.contains(r"a\u{1b}[31m") && shown.contains(r"q\u{7}"), "{shown:?}");
+        assert!(!shown.contains(|c: char| c.is_control() && c != '\n'), "{shown:?}");
+    }
+    Ok(())
+}
+
+#[test]
 fn what_cannot_be_scheduled_is_told() -> TestResult {
     let (plan, layout) = (frame(Alias::Off)?, QueueLayout::async_compute());
     assert_eq!(schedule(&plan, &layout, &[1.0]), Err(QueueError::Costs { given: 1, steps: 5 }));

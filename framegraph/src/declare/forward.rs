@@ -9,7 +9,7 @@ use crate::error::{DeclareError, DeclareReason, ForwardFault, StaleUser};
 use crate::graph::{Graph, Tables};
 use crate::handle::{Part, Texture};
 use crate::id::{ResourceId, VersionId};
-use crate::resource::{Kind, TextureDesc};
+use crate::resource::{Dimension, Kind, TextureDesc, halved};
 use std::panic::Location;
 
 impl Graph {
@@ -34,10 +34,10 @@ impl Graph {
     ///
     /// # Errors
     /// Stale and foreign handles; a `texture` that is not transient, not written, exported, or of several levels or layers
-    /// (unless `into` has as many, and all of them are meant); an `into` that is no single level and layer, whose format
-    /// cannot be used as `texture` was, that was declared after the first pass that wrote `texture`, or that passes have
-    /// touched meanwhile. Passes that read `into` after all that touched `texture`, while nobody has written it, read what is
-    /// forwarded.
+    /// (unless `into` has as many, and all of them are meant); an `into` that is no single level and layer, that has several
+    /// slices in the place of one, whose format cannot be used as `texture` was, that was declared after the first pass that
+    /// wrote `texture`, or that passes have touched meanwhile. Passes that read `into` after all that touched `texture`, while
+    /// nobody has written it, read what is forwarded.
     #[track_caller]
     pub fn forward(&mut self, texture: Texture, into: impl Into<Part>) -> Result<Texture, DeclareError> {
         let (into, location) = (into.into(), Location::caller());
@@ -185,6 +185,9 @@ fn place(own: &TextureDesc, target: &TextureDesc, range: Range) -> Result<Option
     let (mips, layers) = (range.mip_range(target.mips.into()), range.layer_range(target.tracked_layers()));
     let one = mips.len() == 1 && layers.len() == 1 && range.view.is_none();
     let inside = mips.end <= u32::from(target.mips) && layers.end <= target.tracked_layers();
+    if target.dimension == Dimension::D3 && halved(target.layers.into(), range.mip.into()) != u32::from(own.layers) {
+        return Err(ForwardFault::Slices);
+    }
     let flat = own.mips == 1 && own.layers == 1 && own.dimension == target.dimension;
     let all_levels = target.mips == TextureDesc::ALL_MIPS && range.mips == 1;
     if flat && (one && inside || all_levels && layers.len() == 1 && range.view.is_none()) {

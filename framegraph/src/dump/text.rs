@@ -21,7 +21,7 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
     let counts = plan.counts();
     let traffic = plan.traffic(plan.frame());
     let memory = plan.memory();
-    writeln!(out, "plan {TEXT_VERSION} for {} at {w}x{h}", plan.caps().name)?;
+    writeln!(out, "plan {TEXT_VERSION} for {} at {w}x{h}", plain(&plan.caps().name))?;
     writeln!(
         out,
         "counts: {} unresolves, {} resolves, {} clears, {} discards, {} multisample resolves, {} memoryless, {} inlined, \
@@ -66,7 +66,7 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
         writeln!(out, "  effect `{}`: {}", plain(about), plain(note))?;
     }
     for decision in plan.decisions() {
-        writeln!(out, "  {}", decision.sentence(plan.graph()))?;
+        writeln!(out, "  {}", decision.sentence(plan))?;
     }
     Ok(())
 }

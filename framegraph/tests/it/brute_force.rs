@@ -6,7 +6,8 @@ use framegraph::testing::generate::{self, Entropy, FRAME, Profile};
 use framegraph::*;
 use std::collections::BTreeSet;
 
-const PLAIN: Profile = Profile { max_passes: 6, sloppy: false, plain: true, plain_accesses: true, volumes: false };
+const PLAIN: Profile =
+    Profile { max_passes: 6, sloppy: false, plain: true, plain_accesses: true, volumes: false, forwards: false };
 
 /// Graphs of at most 7 passes and 7 resources.
 fn tiny(count: usize) -> impl Iterator<Item = (u64, Graph)> {

@@ -12,7 +12,7 @@ fn sentences(plan: &Plan, about: &str) -> Vec<String> {
         Subject::Pass(p) => g.pass_name(p) == about,
         Subject::Resource(r) | Subject::Load(_, r) | Subject::Store(_, r) => g.resource_name(r) == about,
     };
-    plan.decisions().iter().filter(named).map(|d| d.sentence(g)).collect()
+    plan.decisions().iter().filter(named).map(|d| d.sentence(plan)).collect()
 }
 
 /// `first` and `again` draw into `a`, a pass that draws into `b` stands between them.
@@ -98,6 +98,138 @@ fn an_average_that_is_not_made_says_so() {
     let plan = plan_with(&g, &Caps::wgpu(), &Options { cull: false, ..options() });
     assert_eq!(check(&plan), Ok(()));
     assert_eq!((plan.counts().steps, split_reason(&plan, "more")), (3, Some(Refusal::ResolveBetween)));
+}
+
+/// `draw` makes a texture or two, `look` reads them at the same pixel: what it is told it could do is something it can.
+#[test]
+fn hints_are_true_of_device_options_and_passes() {
+    #[derive(Clone, Copy, Default)]
+    struct Case {
+        inputs: usize,
+        outputs: usize,
+        samples: bool,
+        pointwise: bool,
+        side_effect: bool,
+        modifies: bool,
+    }
+    let graph = |case: Case| {
+        let mut g = Graph::new();
+        let inputs: Vec<Texture> = (0..case.inputs).map(|i| g.texture(&format!("in{i}"), hdr())).collect();
+        let lut = g.import_texture("lut", hdr(), Entry::Defined, Exit::Keep);
+        let outputs: Vec<Texture> = (0..case.outputs)
+            .map(|i| g.import_texture(&format!("out{i}"), hdr(), Entry::Defined, Exit::Keep))
+            .collect();
+        let mut drawn = Vec::new();
+        g.add_fn("draw", |p| {
+            for input in &inputs {
+                drawn.push(p.color(*input, BLACK)?);
+            }
+            Ok(())
+        })
+        .unwrap();
+        g.add_fn("look", |p| {
+            for input in &drawn {
+                p.same_pixel(*input)?;
+            }
+            if case.samples {
+                p.sampled(lut)?;
+            }
+            if case.pointwise {
+                p.pointwise();
+            }
+            if case.side_effect {
+                p.side_effect();
+            }
+            for output in &outputs {
+                p.color(*output, if case.modifies { Intent::Modify } else { Intent::Overwrite })?;
+            }
+            Ok(())
+        })
+        .unwrap();
+        g
+    };
+    let hint = |case: Case, caps: &Caps, options: &Options| {
+        let plan = plan_with(&graph(case), caps, options);
+        let split = |d: &&Decision| matches!(d.reason, Reason::Split(_, Refusal::SamePixelUnsupported));
+        plan.decisions().iter().find(split).expect("the read cannot stay in the tile").hint(&plan)
+    };
+    let one = Case { inputs: 1, outputs: 1, ..Case::default() };
+    let (declare, choose) =
+        ("declare the pass point-wise if it is, so that it can be inlined", "choose a device that can");
+    let mend = "choose a device that can, or mend what keeps the pass from being inlined";
+    let off = Options { inline: false, ..options() };
+    let cases = [
+        (one, Caps::wgpu(), options(), declare),
+        // Where nothing is inlined.
+        (one, Caps::desktop(), options(), choose),
+        (one, Caps::wgpu(), off, choose),
+        (Case { pointwise: true, ..one }, Caps::desktop(), options(), choose),
+        (Case { pointwise: true, ..one }, Caps::wgpu(), off, choose),
+        // What would not be inlined if it were point-wise.
+        (Case { inputs: 2, ..one }, Caps::wgpu(), options(), choose),
+        (Case { outputs: 2, ..one }, Caps::wgpu(), options(), choose),
+        (Case { samples: true, ..one }, Caps::wgpu(), options(), choose),
+        (Case { side_effect: true, ..one }, Caps::wgpu(), options(), choose),
+        (Case { modifies: true, ..one }, Caps::wgpu(), options(), choose),
+        // Point-wise, and the producer takes no epilogue.
+        (Case { pointwise: true, ..one }, Caps::wgpu(), options(), mend),
+    ];
+    for (index, (case, caps, options, expected)) in cases.iter().enumerate() {
+        assert_eq!(hint(*case, caps, options), *expected, "case {index}");
+    }
+}
+
+/// What is stored for a reader: how it could stay in the tile, where it can.
+#[test]
+fn hints_of_stores_are_true_of_device_options_and_reader() {
+    let hint = |kind: AccessKind, caps: &Caps, options: &Options| {
+        let mut g = Graph::new();
+        let (a, between) = (g.texture("a", hdr()), g.texture("between", color(Format::Rgba8Unorm)));
+        let a = g.add_fn("draw", |p| p.color(a, BLACK)).unwrap();
+        let between = g
+            .add_fn("fill", |p| {
+                p.kind(PassKind::Compute)?;
+                p.storage_write(between, Intent::Overwrite)
+            })
+            .unwrap();
+        g.export(between).unwrap();
+        if kind == AccessKind::StorageRead {
+            let compute = |p: &mut PassBuilder<'_>| {
+                p.kind(PassKind::Compute)?;
+                p.side_effect();
+                p.sampled(a).map(drop)
+            };
+            g.add_fn("look", compute).unwrap();
+        } else {
+            let out = screen(&mut g);
+            let look = |p: &mut PassBuilder<'_>| {
+                let read = if kind == AccessKind::Sampled { p.sampled(a) } else { p.same_pixel(a) };
+                read?;
+                p.color(out, Intent::Overwrite)
+            };
+            g.add_fn("look", look).unwrap();
+        }
+        let plan = plan_with(&g, caps, options);
+        let stored = |d: &&Decision| matches!(d.reason, Reason::StoreReadBy(_));
+        plan.decisions().iter().find(stored).expect("it is stored").hint(&plan)
+    };
+    let device = "choose a device that keeps same-pixel reads in the tile, and leave merging on";
+    let general = "read it at the same pixel if the reader needs its own texel alone, or let the reader share the step, to keep \
+                   it in the tile";
+    let raster = "read it in a raster pass that shares the step, to keep it in the tile";
+    let share = "let the reader share the step, to keep it in the tile";
+    let apart = Options { merge: false, ..options() };
+    let cases = [
+        (AccessKind::Sampled, Caps::desktop(), options(), device),
+        (AccessKind::Sampled, Caps::tiler(), apart, device),
+        (AccessKind::Sampled, Caps::tiler(), options(), general),
+        (AccessKind::Sampled, Caps::wgpu(), options(), general),
+        (AccessKind::SamePixel, Caps::tiler(), options(), share),
+        (AccessKind::StorageRead, Caps::tiler(), options(), raster),
+    ];
+    for (index, (kind, caps, options, expected)) in cases.iter().enumerate() {
+        assert_eq!(hint(*kind, caps, options), *expected, "case {index}");
+    }
 }
 
 /// Every reason that there is, by its word: nothing of the list is left over, and random plans, whose logs the oracle judges,

@@ -330,6 +330,16 @@ fn what_cannot_be_forwarded_is_refused_and_stays() {
     let chain = g.texture("chain", color(Format::Rgba8UnormSrgb).mips(2));
     let into_chain = draw(&mut g, "second", color(Format::Rgba8UnormSrgb));
     assert_eq!(fault(&mut g, into_chain, chain.into()), ForwardFault::Parts);
+    // One slice of several would be drawn, and all be taken as cleared.
+    let volume = |layers| TextureDesc { dimension: Dimension::D3, ..sized(8, 8) }.layers(layers);
+    let (deep, flat) = (g.texture("deep", volume(4).mips(3)), g.texture("flat", volume(1)));
+    let slice = draw(&mut g, "slice", volume(1));
+    assert_eq!(fault(&mut g, slice, deep.mip(0)), ForwardFault::Slices);
+    assert_eq!(fault(&mut g, slice, deep.mip(1)), ForwardFault::Slices);
+    let slice = g.forward(slice, deep.mip(2)).unwrap();
+    let last = g.accesses().last().unwrap();
+    assert_eq!((last.resource, last.range.mip), (g.find_resource("deep").unwrap(), 2));
+    let _ = (slice, flat);
     let stored = g.texture("stored", hdr());
     let stored = g.add_fn("store", |p| p.storage_write(stored, Intent::Overwrite)).unwrap();
     let srgb = ForwardFault::Format { format: Format::Rgba8UnormSrgb, access: AccessKind::StorageWrite };

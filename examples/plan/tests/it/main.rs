@@ -148,6 +148,35 @@ fn bad_input_is_one_line_an_error_and_exit_code_2() {
 }
 
 #[test]
+fn no_output_has_control_characters() {
+    let file = |name: &str, text: &str| {
+        let path = scratch(name);
+        std::fs::write(&path, text).expect("written");
+        path.display().to_string()
+    };
+    let device = file("escaped.ron", r#"(version: 1, name: "a\u{1b}[31m")"#);
+    let empty = file("\u{1b}[31m empty.ron", "(version: 1)");
+    let wrong = file("\u{1b}[31m wrong.ron", "(version: 1, x: 1)");
+    let table = file("escaped.csv", "id,lower,upper,size\na\u{1b}[31m,1,2,4\n");
+    let cases: [(&[&str], &str); 8] = [
+        (&[&empty, "--caps", &device], r"plan 1 for a\u{1b}[31m at"),
+        (&[&empty, "--format", "svg", "--caps", &device], r"plan for a\u{1b}[31m at"),
+        (&[&empty], r"\u{1b}[31m empty.ron: warning: no pass runs"),
+        (&[&wrong], r"\u{1b}[31m wrong.ron:1:14: "),
+        (&["\u{1b}[31m.ron"], r"\u{1b}[31m.ron: cannot be read"),
+        (&[&empty, "--caps", "\u{1b}[31m"], r"`\u{1b}[31m` is neither"),
+        (&["--\u{1b}[31m"], r"no option `--\u{1b}[31m`"),
+        (&["--offsets", &table], r"a\u{1b}[31m,1,2,4,0"),
+    ];
+    for (args, shown) in cases {
+        let (_, text, error) = run(args);
+        assert!(text.contains(shown) || error.contains(shown), "{args:?}: {text:?} {error:?}");
+        let bad = text.chars().chain(error.chars()).find(|c| c.is_control() && *c != '\n');
+        assert_eq!(bad, None, "{text:?} {error:?}");
+    }
+}
+
+#[test]
 fn intervals_are_packed_and_mistakes_in_them_named() {
     let csv = scratch("intervals.csv");
     std::fs::write(&csv, "id,lower,upper,size\na,0,3,4\nb,3,9,4\nc,0,9,4\n").expect("written");

@@ -8,6 +8,7 @@ use crate::format::Format;
 use crate::id::StepId;
 use crate::plan::{Join, Role};
 use crate::resolve::ResolveMode;
+use crate::resource::Dimension;
 
 /// Examines the attachments of every step.
 pub(super) fn attachments(case: &Case<'_>) {
@@ -111,6 +112,10 @@ fn sizes(case: &Case<'_>, step: StepId) {
         let mut found = case.texture(resource).map_or(([0; 2], 0, 1), |t| {
             (t.mip_extent(case.plan.frame(), attachment.mip.into()), attachment.layers.into(), t.samples)
         });
+        let flat = case
+            .texture(resource)
+            .is_none_or(|t| t.dimension != Dimension::D3 || u32::from(t.layers) >> attachment.mip.min(31) <= 1);
+        case.report.require(flat, Rule::Attachments, step, "an attachment has several slices, of which one is drawn");
         if resolves::is_target(attachment.role) {
             let why = format_args!("a resolve from {} to {} samples", own.2, found.2);
             case.report.require(found.2 == 1 && own.2 > 1, Rule::Resolve, step, why);

@@ -16,10 +16,12 @@ pub struct Profile {
     pub plain_accesses: bool,
     /// Textures of three dimensions too.
     pub volumes: bool,
+    /// Some of what passes wrote is forwarded to other textures, where that is allowed.
+    pub forwards: bool,
 }
 
 impl Default for Profile {
     fn default() -> Self {
-        Self { max_passes: 12, sloppy: false, plain: false, plain_accesses: false, volumes: true }
+        Self { max_passes: 12, sloppy: false, plain: false, plain_accesses: false, volumes: true, forwards: false }
     }
 }

@@ -331,6 +331,18 @@ impl<'w, 'e> World<'w, 'e> {
                 assert!(exported.is_ok() || self.profile.sloppy, "a valid export was refused");
             }
         }
+        let count = if self.profile.forwards { self.textures.len() as u32 } else { 0 };
+        for _ in 0..4 * count {
+            let [from, to] = [(); 2].map(|()| self.entropy.below(count) as usize);
+            let (from, to) = (self.textures[from].handle, self.textures[to].handle);
+            let mip = self.entropy.below(3) as u8;
+            // What cannot be forwarded stays as it is.
+            let _ = if self.entropy.one_in(2) {
+                self.graph.forward(from, to)
+            } else {
+                self.graph.forward(from, to.mip(mip))
+            };
+        }
         self.graph
     }
 }

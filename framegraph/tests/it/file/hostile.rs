@@ -77,6 +77,13 @@ fn a_misspelt_word_is_one_error() {
         "",
     );
     assert_eq!(wrong(&text).listed.len(), 1);
+    // Nor are those counted that follow beyond the hundredth.
+    let readers: String = (0..300)
+        .map(|i| format!("Raster(name: \"q{i}\", flags: [SideEffect], accesses: [Sampled(of: \"glow\")]),"))
+        .collect();
+    let passes = format!(r#"Raster(name: "p", accesses: [Color(to: "glo", intent: Overwrite)]), {readers}"#);
+    let errors = wrong(&file(r#"Texture(name: "glow", format: R8Unorm)"#, &passes, ""));
+    assert_eq!((errors.listed.len(), errors.more), (1, 0), "{errors}");
     let text = file(
         "",
         r#"Plugin(kind: "shadwo", name: "s", slots: {"output": "map"}),
@@ -99,7 +106,8 @@ fn no_output_has_control_characters() {
     let parsed = GraphFile::parse("t.ron", &text).unwrap();
     let graph = parsed.graph(&[]).unwrap();
     let mut plan = Plan::new();
-    compile(&graph, &Caps::wgpu(), &Options::default(), &mut Scratch::new(), &mut plan).unwrap();
+    let device = caps("c.ron", &format!("(version: 1, name: \"{name}\")")).unwrap();
+    compile(&graph, &device, &Options::default(), &mut Scratch::new(), &mut plan).unwrap();
     let other = crate::support::plan(&Graph::new(), &Caps::wgpu());
     let outputs = [
         dump::text(&plan),
