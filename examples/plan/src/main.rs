@@ -36,6 +36,6 @@ fn main() -> ExitCode {
 
 /// The message on standard error; a line for each error.
 fn fail(code: u8, message: &str) -> ExitCode {
-    message.lines().for_each(output::note);
+    message.lines().for_each(program::note);
     program::exit(code)
 }

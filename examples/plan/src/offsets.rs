@@ -26,7 +26,7 @@ pub fn run(args: &OffsetsArgs) -> Result<(), String> {
         if passed.as_secs() > told {
             told = passed.as_secs();
             let Progress { top, lower_bound, steps } = progress;
-            output::note(format_args!("{told} s, {steps} steps: top {top}, lower bound {lower_bound}"));
+            program::note(format_args!("{told} s, {steps} steps: top {top}, lower bound {lower_bound}"));
         }
         let over = seconds.is_some_and(|seconds| passed >= Duration::from_secs(seconds.into()));
         if over { ControlFlow::Break(()) } else { interrupt::flow() }
@@ -40,6 +40,6 @@ pub fn run(args: &OffsetsArgs) -> Result<(), String> {
     } else {
         format!("not proved optimal in {} steps; --budget-steps and --seconds allow more", packing.steps)
     };
-    output::note(format_args!("top {}, lower bound {}, {proof}", packing.top, packing.lower_bound));
+    program::note(format_args!("top {}, lower bound {}, {proof}", packing.top, packing.lower_bound));
     Ok(())
 }

@@ -3,11 +3,6 @@
 use program::outputs::Outputs;
 use std::path::Path;
 
-/// Shows a line on standard error: names of files and words of the command line have no control characters there.
-pub fn note(text: impl std::fmt::Display) {
-    program::note(framegraph::dump::plain(&text.to_string()));
-}
-
 /// The files of a run: `out` is checked before the work, and never one of those that are read.
 ///
 /// # Errors

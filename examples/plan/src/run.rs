@@ -79,7 +79,7 @@ fn planned(
     let device = (&caps(&args.caps)?, &options);
     file.plan(&switches, registry, &mut graph, device, &mut Scratch::new(), &mut plan).map_err(|e| e.to_string())?;
     for warning in plan.warnings() {
-        output::note(format_args!("{}: warning: {}", file.path(), warning.sentence()));
+        program::note(format_args!("{}: warning: {}", file.path(), warning.sentence()));
     }
     Ok(plan)
 }

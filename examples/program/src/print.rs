@@ -3,6 +3,7 @@
 //! Nothing here fails where it is called: work and files come first. What standard output could not take is remembered, and
 //! [`exit`] says so once, at the end.
 
+use framegraph::dump::plain;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
@@ -34,10 +35,13 @@ pub fn line(text: impl Display) {
     print(format_args!("{text}\n"));
 }
 
-/// Shows a line on standard error, if that can be done.
+/// Shows lines on standard error, if that can be done; names in them have no control characters there.
 pub fn note(text: impl Display) {
     // What cannot be shown must not stop the work.
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    let mut stderr = io::stderr().lock();
+    for line in text.to_string().lines() {
+        let _ = writeln!(stderr, "{}", plain(line));
+    }
 }
 
 /// Shows a message as one line, `error: …`, on standard error.
