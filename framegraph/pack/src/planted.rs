@@ -25,11 +25,13 @@ pub enum Cuts {
     Brief,
     /// A third of the pieces into five around a middle one, which no straight cut separates.
     Pinwheels,
+    /// Into rows, each of them at times of its own into five: a fifth of the pieces is alive at a time.
+    Rows,
 }
 
 impl Cuts {
     /// All ways.
-    pub const ALL: [Self; 4] = [Self::Even, Self::Long, Self::Brief, Self::Pinwheels];
+    pub const ALL: [Self; 5] = [Self::Even, Self::Long, Self::Brief, Self::Pinwheels, Self::Rows];
 
     /// What tables call it.
     pub const fn word(self) -> &'static str {
@@ -38,6 +40,7 @@ impl Cuts {
             Self::Long => "long",
             Self::Brief => "brief",
             Self::Pinwheels => "pinwheels",
+            Self::Rows => "rows",
         }
     }
 }
@@ -131,6 +134,8 @@ impl Planted {
         let (width, height) = match self.cuts {
             Cuts::Long => (width, 8 * height),
             Cuts::Brief => (8 * width, height),
+            Cuts::Rows if 5 * pieces.len() < self.items => (0, 1),
+            Cuts::Rows => (1, 0),
             Cuts::Even | Cuts::Pinwheels if entropy.below(3) == 0 => (1, 1),
             Cuts::Even | Cuts::Pinwheels => (width, height),
         };

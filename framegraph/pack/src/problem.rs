@@ -50,9 +50,9 @@ pub(super) struct Problem {
     events: Vec<u8>,
 }
 
-/// Above this many (item, section) pairs, and above `DENSE_PER_ITEM` of them an item, or above twice as many pairs of
-/// items alive together, an instance is dense.
-const DENSE_PAIRS: u64 = 1 << 22;
+/// Above this many (item, section) pairs, 128 MiB of them, and above `DENSE_PER_ITEM` of them an item, or above twice as
+/// many pairs of items alive together, an instance is dense.
+const DENSE_PAIRS: u64 = 1 << 25;
 const DENSE_PER_ITEM: u64 = 128;
 const BIRTH: u8 = 1;
 const DEATH: u8 = 2;
@@ -213,8 +213,8 @@ impl Problem {
         let Self { lo, hi, time, born, member_at, member, .. } = self;
         member_at.clear();
         member.clear();
-        let limit = DENSE_PAIRS.max(DENSE_PER_ITEM * lo.len() as u64).min(u64::from(u32::MAX));
         let pairs: u64 = lo.iter().zip(hi.iter()).map(|(&lo, &hi)| u64::from(hi - lo)).sum();
+        let limit = DENSE_PAIRS.max(DENSE_PER_ITEM * lo.len() as u64).min(u64::from(u32::MAX));
         self.dense = pairs > limit || pairs_alive_together(lo, hi, born) > 2 * limit;
         if self.dense {
             return;

@@ -30,7 +30,7 @@ const QUICK: [Row; 5] = [
     Row(Planted { items: 240, unit_bytes: 4096, left_out_percent: 15, ..Planted::square(Cuts::Even) }, 0),
 ];
 
-const LONG: [Row; 13] = [
+const LONG: [Row; 16] = [
     row(400, [1024, 1024], Cuts::Even, 5),
     row(400, [1024, 1024], Cuts::Long, 5),
     row(400, [1024, 1024], Cuts::Brief, 5),
@@ -39,11 +39,14 @@ const LONG: [Row; 13] = [
     row(1000, [1024, 1024], Cuts::Long, 5),
     row(1000, [1024, 1024], Cuts::Brief, 5),
     row(1000, [1024, 1024], Cuts::Pinwheels, 5),
+    row(1000, [1024, 1024], Cuts::Rows, 5),
     row(1000, [64, 65536], Cuts::Even, 5),
     row(10000, [65536, 65536], Cuts::Long, 10),
     row(10000, [65536, 65536], Cuts::Pinwheels, 10),
     row(10000, [64, 65536], Cuts::Brief, 10),
     row(10000, [1024, 1024], Cuts::Even, 10),
+    row(10000, [1024, 65536], Cuts::Rows, 10),
+    row(10000, [1024, 65536], Cuts::Long, 10),
 ];
 
 /// The run that a test repeats.
