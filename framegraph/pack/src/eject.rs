@@ -17,8 +17,6 @@ use super::random::Random;
 const WEIGHT: f64 = (1 << 20) as f64;
 /// Above this all weights are halved.
 const HEAVIEST: u64 = 1 << 44;
-/// An item just placed is so much heavier for the next few placements.
-const FRESH: u64 = 20;
 /// The capacity is lowered by this part of what lies between bound and top; by a smaller one where that was too much.
 const PART: u64 = 16;
 /// Entries that a neighbor counts for: it is looked at and sorted twice.
@@ -36,8 +34,6 @@ pub(super) struct Eject {
     part: u64,
     weight: Vec<u64>,
     waiting: Vec<u32>,
-    /// The number of placements up to which each item is fresh.
-    fresh: Vec<u64>,
     placements: u64,
     random: Random,
     upward: bool,
@@ -64,8 +60,6 @@ impl Eject {
             let area = |i: usize| (problem.size[i] as f64 * problem.span(i).len() as f64).sqrt();
             let most = (0..problem.len()).map(area).fold(1.0, f64::max);
             self.weight.extend((0..problem.len()).map(|i| 1 + (WEIGHT * area(i) / most) as u64));
-            self.fresh.clear();
-            self.fresh.resize(problem.len(), 0);
         }
         let unit = problem.unit();
         self.part = if self.waiting.is_empty() { (self.part / 2).max(PART) } else { 2 * self.part };
@@ -96,7 +90,6 @@ impl Eject {
             let offset = self.lightest(problem, i);
             self.push_out(problem, i, offset);
             self.offsets[i] = offset;
-            self.fresh[i] = self.placements + 1 + self.random.below(3);
             meter.spend(LOOKS * self.starts.len() as u64);
             if self.placements.is_multiple_of(often) {
                 self.upward = !self.upward;
@@ -123,13 +116,12 @@ impl Eject {
 
     /// The offset where item `i` overlaps the least weight: on top of a neighbor or right under one.
     fn lightest(&mut self, problem: &Problem, i: usize) -> u64 {
-        let Self { starts, ends, offsets, weight, fresh, .. } = self;
+        let Self { starts, ends, offsets, weight, .. } = self;
         starts.clear();
         ends.clear();
         for j in problem.neighbors(i).filter(|&j| offsets[j] != UNPLACED) {
-            let weight = weight[j] * if fresh[j] > self.placements { FRESH } else { 1 };
-            starts.push((offsets[j], weight));
-            ends.push((offsets[j] + problem.size[j], weight));
+            starts.push((offsets[j], weight[j]));
+            ends.push((offsets[j] + problem.size[j], weight[j]));
         }
         starts.sort_unstable_by_key(|start| start.0);
         ends.sort_unstable_by_key(|end| end.0);
