@@ -81,7 +81,7 @@ pub use version::GRAPH_VERSION;
 pub use write::to_ron;
 
 use crate::caps::Caps;
-use crate::compile::{CompileError, CompileErrors, CompileReason, Scratch, compile};
+use crate::compile::{CompileErrors, CompileReason, Scratch, compile};
 use crate::graph::Graph;
 use crate::options::Options;
 use crate::plan::Plan;

@@ -3,7 +3,6 @@
 //! Nothing here fails where it is called: work and files come first. What standard output could not take is remembered, and
 //! [`exit`] says so once, at the end.
 
-use framegraph::dump::plain;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
@@ -40,7 +39,8 @@ pub fn note(text: impl Display) {
     // What cannot be shown must not stop the work.
     let mut stderr = io::stderr().lock();
     for line in text.to_string().lines() {
-        let _ = writeln!(stderr, "{}", plain(line));
+        let escaped = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+        let _ = writeln!(stderr, "{}", line.chars().map(escaped).collect::<String>());
     }
 }
 
