@@ -38,6 +38,9 @@ pub enum Command {
         resource: ResourceId,
         /// From what.
         memory: Memory,
+        /// Several queues read it at once, so none owns it (Vulkan's `VK_SHARING_MODE_CONCURRENT`, if they are of different families);
+        /// else it is handed over by transfers.
+        concurrent: bool,
     },
     /// The queue waits until a semaphore is signalled.
     Wait {
@@ -109,7 +112,7 @@ pub enum Command {
 /// When `schedule` is of another plan.
 #[must_use]
 pub fn stream(plan: &Plan, schedule: Option<&Schedule>) -> Vec<Command> {
-    let mut commands = memory(plan);
+    let mut commands = memory(plan, schedule.map_or(&[], |schedule| &schedule.concurrent));
     let queue_of = |step: StepId| schedule.map_or(QueueId::MAIN, |schedule| schedule.lanes[step.index()]);
     // One semaphore a wait, and one for the end of each other queue.
     let waits: &[Wait] = schedule.map_or(&[], |schedule| &schedule.waits);
@@ -186,7 +189,7 @@ impl PlanStream for Plan {
 }
 
 /// Heaps, and everything that lies in them or elsewhere.
-fn memory(plan: &Plan) -> Vec<Command> {
+fn memory(plan: &Plan, concurrent: &[ResourceId]) -> Vec<Command> {
     let is_buffer = |resource: ResourceId| plan.graph().resources()[resource.index()].desc.texture().is_none();
     let mut commands = Vec::new();
     for of_buffers in [false, true] {
@@ -209,7 +212,7 @@ fn memory(plan: &Plan) -> Vec<Command> {
             Placement::External => Memory::External,
             Placement::Own => Memory::Own,
         };
-        commands.push(Command::Create { resource, memory });
+        commands.push(Command::Create { resource, memory, concurrent: concurrent.contains(&resource) });
     }
     commands
 }

@@ -6,7 +6,7 @@ use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{
     Access, AccessKind, Alias, Caps, Join, Options, PassKind, Placement, Plan, ResourceId, Scratch, State, compile,
 };
-use framegraph_queues::{Command, Memory, PlanStream, QueueId, QueueLayout, Schedule, schedule};
+use framegraph_queues::{Command, Memory, PlanStream, QueueId, QueueLayout, Schedule, Transfer, schedule};
 use std::collections::{BTreeMap, BTreeSet};
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
@@ -16,6 +16,9 @@ struct Machine<'a> {
     plan: &'a Plan,
     schedule: Option<&'a Schedule>,
     created: BTreeMap<ResourceId, Memory>,
+    concurrent: BTreeSet<ResourceId>,
+    /// Who has what holds something; none while it is on its way.
+    owners: BTreeMap<ResourceId, Option<QueueId>>,
     /// The state of each part of each resource.
     states: BTreeMap<(ResourceId, u32), State>,
     /// Who has had the memory of whom.
@@ -30,10 +33,18 @@ impl Machine<'_> {
         match *command {
             Command::Heap { bytes: 0, .. } => Err("a heap of nothing".into()),
             Command::Heap { .. } => Ok(()),
-            Command::Create { resource, memory } => match self.created.insert(resource, memory) {
-                None => Ok(()),
-                Some(_) => Err(format!("resource {} is made twice", resource.index())),
-            },
+            Command::Create { resource, memory, concurrent } => {
+                if concurrent {
+                    self.concurrent.insert(resource);
+                }
+                if matches!(memory, Memory::Own | Memory::External) {
+                    self.owners.insert(resource, Some(QueueId::MAIN));
+                }
+                match self.created.insert(resource, memory) {
+                    None => Ok(()),
+                    Some(_) => Err(format!("resource {} is made twice", resource.index())),
+                }
+            }
             Command::Signal { semaphore, .. } => match self.signalled.insert(semaphore) {
                 true => Ok(()),
                 false => Err(format!("semaphore {semaphore} is signalled twice")),
@@ -42,7 +53,21 @@ impl Machine<'_> {
                 true => Ok(()),
                 false => Err(format!("semaphore {semaphore} is not signalled before it is waited for")),
             },
-            Command::Release { .. } | Command::Acquire { .. } => Ok(()),
+            Command::Release { queue, transfer } => {
+                let transfer = self.transfer(transfer, |transfer| transfer.from.0 == queue)?;
+                match self.owners.insert(transfer, None) {
+                    None | Some(None) => Err(format!("resource {} is released by who has it not", transfer.index())),
+                    Some(Some(owner)) if owner != queue => Err(format!("queue {owner:?} has what {queue:?} releases")),
+                    Some(Some(_)) => Ok(()),
+                }
+            }
+            Command::Acquire { queue, transfer } => {
+                let transfer = self.transfer(transfer, |transfer| transfer.to.0 == queue)?;
+                match self.owners.insert(transfer, Some(queue)) {
+                    Some(None) => Ok(()),
+                    _ => Err(format!("resource {} is acquired and was not released", transfer.index())),
+                }
+            }
             Command::Barrier { barrier, .. } => {
                 let row = &self.plan.barriers()[barrier as usize];
                 for part in row.first_part..row.first_part + row.parts {
@@ -75,9 +100,35 @@ impl Machine<'_> {
                     return Err(format!("step {step} is on another queue"));
                 }
                 let kind = self.plan.steps()[step as usize].kind;
-                self.plan.graph().accesses_of(pass).iter().try_for_each(|access| self.touch(access, kind, join))
+                let (plan, accesses) = (self.plan, self.plan.graph().accesses_of(pass));
+                accesses.iter().try_for_each(|access| self.touch(access, kind, join))?;
+                let lives = |access: &&Access| {
+                    let placement = plan.resources()[access.resource.index()].placement;
+                    !matches!(placement, Placement::Inlined | Placement::Unused | Placement::Memoryless)
+                };
+                accesses.iter().filter(lives).try_for_each(|access| self.own(access, queue))
             }
         }
+    }
+
+    /// The resource of a transfer of the queue.
+    fn transfer(&self, index: u32, is_of: impl Fn(&Transfer) -> bool) -> Result<ResourceId, String> {
+        let transfers = self.schedule.map_or(&[][..], |schedule| &schedule.transfers);
+        let found = transfers.get(index as usize).filter(|transfer| is_of(transfer));
+        found.map(|transfer| transfer.resource).ok_or_else(|| format!("transfer {index} is not of this queue"))
+    }
+
+    /// A queue reads what it has, and has what it writes; what is concurrent any may read.
+    fn own(&mut self, access: &Access, queue: QueueId) -> Result<(), String> {
+        if self.concurrent.contains(&access.resource) {
+            return Ok(());
+        }
+        let owner = self.owners.get(&access.resource).copied();
+        if access.mode.needs_contents() && owner.is_some_and(|owner| owner != Some(queue)) {
+            return Err(format!("queue {queue:?} reads resource {}, which {owner:?} has", access.resource.index()));
+        }
+        self.owners.insert(access.resource, Some(queue));
+        Ok(())
     }
 
     /// A pass touches a resource: it is there, and its first part is in the state of the access.
@@ -134,6 +185,8 @@ fn run(plan: &Plan, schedule: Option<&Schedule>, commands: &[Command]) -> Result
         plan,
         schedule,
         created: BTreeMap::new(),
+        concurrent: BTreeSet::new(),
+        owners: BTreeMap::new(),
         states: BTreeMap::new(),
         handed: BTreeSet::new(),
         signalled: BTreeSet::new(),
@@ -182,6 +235,7 @@ fn a_machine_runs_streams_on_one_queue() -> TestResult {
 #[test]
 fn a_machine_runs_streams_on_several_queues() -> TestResult {
     let (mut semaphores, mut moved, mut late) = (0, 0, 0);
+    let (mut kept, mut alone) = (0, 0);
     for seed in 0..400 {
         let Some(plan) = planned(seed, Alias::Off) else { continue };
         let costs: Vec<f64> =
@@ -201,9 +255,21 @@ fn a_machine_runs_streams_on_several_queues() -> TestResult {
         assert_eq!(halves, [found.transfers.len(); 2], "seed {seed}");
         late += count(|c| matches!(c, Command::Barrier { behind_semaphore: true, .. }));
         semaphores += waits;
+        // Neither without the transfers nor without concurrent resources does it run.
+        let is_half = |c: &&Command| matches!(c, Command::Release { .. } | Command::Acquire { .. });
+        let bare: Vec<_> = commands.iter().filter(|c| !is_half(c)).copied().collect();
+        kept += usize::from(!found.transfers.is_empty() && run(&plan, Some(&found), &bare).is_err());
+        let owned = commands.iter().map(|command| match *command {
+            Command::Create { resource, memory, concurrent: true } => {
+                Command::Create { resource, memory, concurrent: false }
+            }
+            command => command,
+        });
+        alone += usize::from(run(&plan, Some(&found), &owned.collect::<Vec<_>>()).is_err());
         moved += found.lanes.iter().filter(|lane| **lane != QueueId::MAIN).count();
     }
     println!("{semaphores} semaphores, {moved} steps on the second queue, {late} barriers behind semaphores");
     assert!(semaphores > 50 && moved > 50 && late > 10, "{semaphores} {moved} {late}");
+    assert!(kept > 20 && alone > 5, "{kept} streams need their transfers, {alone} what is concurrent");
     Ok(())
 }

@@ -81,7 +81,10 @@ impl<'a> Replay<'a> {
     fn run(&mut self, command: &Command) -> Result<(), Trouble> {
         match *command {
             Command::Heap { of_buffers, bytes } => self.objects.heap(self.device, self.plan, of_buffers, bytes),
-            Command::Create { resource, memory } => self.objects.create(self.device, self.plan, resource, memory),
+            // All queues are of one family, so that concurrent use asks for nothing.
+            Command::Create { resource, memory, concurrent: _ } => {
+                self.objects.create(self.device, self.plan, resource, memory)
+            }
             Command::Signal { queue, semaphore } => {
                 self.lane(queue)?;
                 let signal = self.semaphore(semaphore)?;
