@@ -11,7 +11,6 @@ mod svg;
 mod text;
 mod words;
 
-pub use crate::plain::plain;
 pub use dot::dot;
 pub use flow::{Flow, data_flow, reduced};
 pub use json::{JSON_VERSION, json, totals};

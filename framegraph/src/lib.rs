@@ -64,6 +64,7 @@ pub mod file;
 pub mod format;
 pub mod graph;
 pub mod handle;
+mod hint;
 pub mod id;
 mod inspect;
 pub mod options;

@@ -147,12 +147,12 @@ impl Budget {
 
 /// A decision in words, with bytes where it costs bytes, and what to do.
 fn blame(plan: &Plan, decision: &Decision) -> String {
-    let sentence = decision.sentence(plan);
+    let sentence = plan.explained(decision);
     let bytes = match decision.subject {
         Subject::Resource(resource) => format!(" ({} B)", plan.resources()[resource.index()].bytes),
         _ => String::new(),
     };
-    let hint = decision.hint(plan);
+    let hint = plan.hint(decision);
     let hint = if hint.is_empty() || sentence.ends_with(hint) { String::new() } else { format!("; {hint}") };
     format!("{sentence}{bytes}{hint}")
 }

@@ -117,7 +117,7 @@ impl QueueLayout {
 
 impl fmt::Display for QueueLayout {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let names: Vec<_> = self.queues.iter().map(|queue| framegraph::dump::plain(&queue.name)).collect();
+        let names: Vec<_> = self.queues.iter().map(|queue| framegraph::plain::plain(&queue.name)).collect();
         write!(f, "{}, {} µs a semaphore", names.join(", "), self.semaphore_us)
     }
 }

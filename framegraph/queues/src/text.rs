@@ -1,7 +1,7 @@
 //! Schedules to read: as text, and as a picture of lanes.
 
 use crate::schedule::Schedule;
-use framegraph::dump::plain;
+use framegraph::plain::plain;
 use framegraph::{Plan, StepId};
 use std::borrow::Cow;
 use std::fmt::Write;

@@ -155,6 +155,6 @@ fn decision(plan: &Plan, names: &Names, decision: Decision) -> Json {
         field("other_pass", other_pass.map(pass_name)),
         field("other_resource", other_resource.map(resource_name)),
         field("sentence", decision.reason.sentence(graph)),
-        field("hint", Some(decision.hint(plan)).filter(|h| !h.is_empty())),
+        field("hint", Some(plan.hint(&decision)).filter(|h| !h.is_empty())),
     ])
 }

@@ -66,7 +66,7 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
         writeln!(out, "  effect `{}`: {}", plain(about), plain(note))?;
     }
     for decision in plan.decisions() {
-        writeln!(out, "  {}", decision.sentence(plan))?;
+        writeln!(out, "  {}", plan.explained(decision))?;
     }
     Ok(())
 }

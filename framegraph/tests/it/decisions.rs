@@ -12,7 +12,7 @@ fn sentences(plan: &Plan, about: &str) -> Vec<String> {
         Subject::Pass(p) => g.pass_name(p) == about,
         Subject::Resource(r) | Subject::Load(_, r) | Subject::Store(_, r) => g.resource_name(r) == about,
     };
-    plan.decisions().iter().filter(named).map(|d| d.sentence(plan)).collect()
+    plan.decisions().iter().filter(named).map(|d| plan.explained(d)).collect()
 }
 
 /// `first` and `again` draw into `a`, a pass that draws into `b` stands between them.
@@ -151,7 +151,7 @@ fn hints_are_true_of_device_options_and_passes() {
     let hint = |case: Case, caps: &Caps, options: &Options| {
         let plan = plan_with(&graph(case), caps, options);
         let split = |d: &&Decision| matches!(d.reason, Reason::Split(_, Refusal::SamePixelUnsupported));
-        plan.decisions().iter().find(split).expect("the read cannot stay in the tile").hint(&plan)
+        plan.hint(plan.decisions().iter().find(split).expect("the read cannot stay in the tile"))
     };
     let one = Case { inputs: 1, outputs: 1, ..Case::default() };
     let (declare, choose) =
@@ -211,7 +211,7 @@ fn hints_of_stores_are_true_of_device_options_and_reader() {
         }
         let plan = plan_with(&g, caps, options);
         let stored = |d: &&Decision| matches!(d.reason, Reason::StoreReadBy(_));
-        plan.decisions().iter().find(stored).expect("it is stored").hint(&plan)
+        plan.hint(plan.decisions().iter().find(stored).expect("it is stored"))
     };
     let device = "choose a device that keeps same-pixel reads in the tile, and leave merging on";
     let general = "read it at the same pixel if the reader needs its own texel alone, or let the reader share the step, to keep \
