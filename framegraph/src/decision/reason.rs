@@ -242,7 +242,7 @@ impl Reason {
     }
 
     /// What to change to have it otherwise, whatever the graph; empty where there is nothing to want.
-    /// [`Decision::hint`](super::Decision::hint) knows the graph.
+    /// [`Plan::hint`](crate::Plan::hint) knows the plan.
     pub const fn hint(self) -> &'static str {
         let Row { hint, names, .. } = self.row();
         match names {
