@@ -70,8 +70,8 @@ fn shoot(
 const DEPTH: Slot = Slot::new(Slot::DEPTH.name, framegraph_passes::stages::Holds::ColorSamples);
 
 /// Any picture of any depths, step by step. What is stored between steps is rounded to half floats, which a driver may cut off:
-/// that alone is a mean of 0.0005 to 0.0015, most where rings behind what is in focus ask which of them is nearer. A constant
-/// of the gather that is off by a tenth makes it twice to a hundred times that.
+/// that alone is a mean of 0.0005 to 0.0014, and 0.0018 where rings behind what is in focus ask which of them is nearer. Of nine
+/// faults planted in constants and signs of the gather, seven are above the limits, by 1.04 to 40 times.
 #[test]
 fn pictures_are_those_of_the_steps_on_the_cpu() -> TestResult {
     let Some(gpu) = gpu("pictures_are_those_of_the_steps_on_the_cpu") else { return Ok(()) };

@@ -268,10 +268,6 @@ impl Gather<'_> {
                     back.add(*tap, weight * farther);
                     count += 1.0;
                 }
-                if own.len() == 1 {
-                    // Both are the same place.
-                    assert_eq!(pair[0], pair[1]);
-                }
             }
         }
         let whole = count * density(least * (f64::from(rings) + 0.5) / f64::from(rings), size);
