@@ -13,6 +13,13 @@ use framegraph_wgpu::{FrameLoop, Gpu};
 use glam::{DVec3, Vec3};
 use std::error::Error;
 
+/// Where tests and programs of this package find light that another of them made: a folder beside them in the target folder,
+/// never the user's own. An entry's name says all that it was made from, so that what is changed is made anew.
+#[must_use]
+pub fn light_cache() -> Cache {
+    std::env::current_exe().map_or_else(|_| Cache::off(), |program| Cache::at(program.with_file_name("light")))
+}
+
 /// A scene with all that drawing it takes, under an even sky.
 pub struct Stage {
     scene: Scene,
@@ -33,7 +40,7 @@ impl Stage {
         let image = IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() };
         let light = LightSettings { image, dfg: DfgSettings { texels: 32, visibility: shading.table } };
         let even = Environment::uniform(DVec3::splat(2000.0))?;
-        let lighting = Lighting::new(gpu, &even, &light, &Cache::off(), &mut progress::silent)?;
+        let lighting = Lighting::new(gpu, &even, &light, &light_cache(), &mut progress::silent)?;
         let first = view(&scene, &prepared, &lighting, &Settings::DEFAULT, [64, 36]);
         let world = World::new(gpu, &scene, lighting, [first], &mut progress::silent)?;
         Ok(Self { scene, prepared, world })

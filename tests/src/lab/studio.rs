@@ -4,9 +4,9 @@ use super::statistics::Times;
 use super::technique::Outcome;
 use crate::reference::metrics::Metrics;
 use crate::reference::picture::Picture;
+use crate::stage::light_cache;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
 use framegraph_passes::facts::{Around, Survey, decide};
-use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::measure::Measurement;
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::view::{Background, ViewSettings};
@@ -20,7 +20,6 @@ use framegraph_shaders::reference::srgb::{linear_from_srgb_channel, srgb_from_li
 use framegraph_wgpu::{Executor, ExecutorOptions, Frame, Gpu, Imports, read_texture};
 use glam::{DVec2, Vec3};
 use std::cell::RefCell;
-use std::path::PathBuf;
 use std::time::Instant;
 
 use super::record::{PictureRecord, Rounds, StepRecord};
@@ -60,8 +59,6 @@ pub struct Studio<'a> {
     pub gpu: &'a Gpu,
     /// Of pictures, in pixels.
     pub size_px: [u32; 2],
-    /// Where light that was made is kept.
-    pub light: PathBuf,
     /// How often choices are drawn.
     pub rounds: Rounds,
     /// Truths that were drawn, which techniques share.
@@ -88,9 +85,9 @@ const SUMMED: u32 = 32;
 const TREMBLING: u32 = 16;
 
 impl<'a> Studio<'a> {
-    /// Pictures of a size, in pixels; light that is made is kept in a folder.
-    pub fn new(gpu: &'a Gpu, size_px: [u32; 2], light: PathBuf, rounds: Rounds) -> Self {
-        Self { gpu, size_px, light, rounds, truths: RefCell::default() }
+    /// Pictures of a size, in pixels.
+    pub fn new(gpu: &'a Gpu, size_px: [u32; 2], rounds: Rounds) -> Self {
+        Self { gpu, size_px, rounds, truths: RefCell::default() }
     }
 
     /// Makes everything that a setup needs.
@@ -103,8 +100,7 @@ impl<'a> Studio<'a> {
             scene.lights = vec![Light::directional("sun", -toward, 60_000.0)];
         }
         let environment = Sky::default().environment(128)?;
-        let cache = Cache::at(self.light.clone());
-        let lighting = Lighting::new(self.gpu, &environment, &setup.light, &cache, &mut progress::silent)?;
+        let lighting = Lighting::new(self.gpu, &environment, &setup.light, &light_cache(), &mut progress::silent)?;
         let moment = ViewSettings {
             camera: scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
             size_px: drawn_px(&setup.settings, size_px),

@@ -3,9 +3,9 @@
 //!
 //! The board hangs across the view, in the plane z = 0 about its origin; the eye is five meters in front of it.
 
+use crate::stage::light_cache;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
 use framegraph_passes::grading::Look;
-use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::shadow::ShadowSettings;
@@ -132,7 +132,7 @@ impl Board {
             image: IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() },
             dfg: DfgSettings { texels: 64, visibility: shading.table },
         };
-        let lighting = Lighting::new(gpu, environment, &settings, &Cache::off(), &mut progress::silent)?;
+        let lighting = Lighting::new(gpu, environment, &settings, &light_cache(), &mut progress::silent)?;
         self.render_lit(gpu, lighting, shading)
     }
 

@@ -4,9 +4,9 @@
 pub mod late;
 pub mod table;
 
+use crate::stage::light_cache;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
 use framegraph_passes::facts::{Around, Effect, EffectSet, FactInput, FactMemory, Facts, Proof, Survey, decide};
-use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::measure::Measurement;
 use framegraph_passes::program::Programs;
@@ -231,12 +231,12 @@ impl Drawn {
     ///
     /// # Errors
     /// When the device fails.
-    pub fn new(gpu: &Gpu, case: Case, cache: &Cache) -> Result<Self, Box<dyn Error>> {
+    pub fn new(gpu: &Gpu, case: Case) -> Result<Self, Box<dyn Error>> {
         let shading = case.asked.shading;
         let image = IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() };
         let light = LightSettings { image, dfg: DfgSettings { texels: 32, visibility: shading.table } };
         let environment = Environment::uniform(case.nits)?;
-        let lighting = Lighting::new(gpu, &environment, &light, cache, &mut progress::silent)?;
+        let lighting = Lighting::new(gpu, &environment, &light, &light_cache(), &mut progress::silent)?;
         let seen = case.view(&case.asked, SIZE_PX);
         let view = CameraView::new(&case.scene, &lighting.image, &case.background, &seen);
         let world = World::new(gpu, &case.scene, lighting, [view], &mut progress::silent)?;

@@ -3,8 +3,8 @@
 use crate::compare::{Difference, compare};
 use crate::measure::half::{Form, LobeError, lobe_error};
 use crate::mirror;
+use crate::stage::light_cache;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
-use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::shadow::ShadowSettings;
@@ -79,7 +79,7 @@ impl Studio {
     ///
     /// # Errors
     /// When there is no such scene, or the device fails.
-    pub fn new(gpu: &Gpu, scene: &str, cache: &Cache) -> Result<Self, Box<dyn Error>> {
+    pub fn new(gpu: &Gpu, scene: &str) -> Result<Self, Box<dyn Error>> {
         let size_px = [320, 180];
         // The edge filter would turn a code of difference into an edge more or less.
         let post = PostSettings { dither: 0.0, ..PostSettings::DEFAULT };
@@ -92,7 +92,7 @@ impl Studio {
             image: IblSettings { cube_texels: 64, bands, ..IblSettings::default() },
             dfg: DfgSettings { texels: 32, visibility },
         };
-        let lighting = Lighting::new(gpu, &environment, &light, cache, &mut progress::silent)?;
+        let lighting = Lighting::new(gpu, &environment, &light, &light_cache(), &mut progress::silent)?;
         let moment = ViewSettings {
             camera: scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
             size_px,

@@ -1,7 +1,7 @@
 //! Many lights: a scene at night, with its lights found by froxels and with all of them looked at everywhere.
 
+use crate::stage::light_cache;
 use framegraph::{Extent, Options, Plan, Scratch, Target, Texture, compile};
-use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::punctual::LightLists;
 use framegraph_passes::shading::LightSettings;
@@ -54,7 +54,7 @@ impl Night {
         let image = IblSettings { cube_texels: 64, bands: settings.shading.bands, ..IblSettings::default() };
         let light = LightSettings { image, dfg: DfgSettings { texels: 32, visibility: settings.shading.table } };
         let dark = Environment::uniform(DVec3::ZERO)?;
-        let lighting = Lighting::new(gpu, &dark, &light, &Cache::off(), &mut progress::silent)?;
+        let lighting = Lighting::new(gpu, &dark, &light, &light_cache(), &mut progress::silent)?;
         let seen = ViewSettings {
             camera,
             size_px,

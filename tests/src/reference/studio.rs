@@ -10,9 +10,9 @@ use super::occlusion;
 use super::picture::Picture;
 use super::temporal;
 use crate::filtered::filtered;
+use crate::stage::light_cache;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
 use framegraph_passes::fxaa::Fxaa;
-use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::occlusion::OcclusionSettings;
 use framegraph_passes::reflection::ReflectionSettings;
@@ -164,7 +164,7 @@ fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<L
         image: IblSettings { cube_texels: 64, ..IblSettings::default() },
         dfg: DfgSettings { texels: 64, visibility: shading.table },
     };
-    Ok(Lighting::new(gpu, environment, &settings, &Cache::off(), &mut progress::silent)?)
+    Ok(Lighting::new(gpu, environment, &settings, &light_cache(), &mut progress::silent)?)
 }
 
 /// How `shade` says, with the filter of normals that is stated.

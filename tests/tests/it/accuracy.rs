@@ -82,8 +82,7 @@ fn no_swap_of_a_chosen_frame_errs_less() -> Result<(), Box<dyn std::error::Error
     let Some(gpu) = gpu("no_swap_of_a_chosen_frame_errs_less") else { return Ok(()) };
     let record = record();
     let mut measured = record.budget.clone().ok_or("docs/accuracy.json has what frames are chosen from")?;
-    let folder = std::env::temp_dir().join(format!("accuracy-light-{}", std::process::id()));
-    let studio = Studio::new(&gpu, record.size_px, folder.clone(), Rounds::QUICK);
+    let studio = Studio::new(&gpu, record.size_px, Rounds::QUICK);
     let mut bench = Bench::new(&studio);
     let verified = |bench: &mut Bench<'_>, measured: &Measured| {
         verify(bench, measured, 3, &mut |_, _, given, set| Ok(given.predicted(set).ms), &mut |_| ())
@@ -100,7 +99,6 @@ fn no_swap_of_a_chosen_frame_errs_less() -> Result<(), Box<dyn std::error::Error
     measured.pairs.clear();
     let found = verified(&mut bench, &measured)?;
     assert!(!found.better.is_empty(), "{found:?}");
-    std::fs::remove_dir_all(folder)?;
     Ok(())
 }
 

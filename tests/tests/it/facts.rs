@@ -2,6 +2,7 @@
 
 mod late;
 mod masks;
+mod measured;
 mod pictures;
 mod rules;
 mod settings;

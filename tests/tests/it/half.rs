@@ -3,7 +3,6 @@
 
 use crate::stage;
 use framegraph_passes::Precision;
-use framegraph_passes::ibl::cache::Cache;
 use framegraph_shaders::reference::cases::{self, Case, Domain};
 use framegraph_wgpu::Gpu;
 use glam::DVec3;
@@ -132,7 +131,7 @@ fn pictures_in_half_floats_are_close() -> TestResult {
     let Some(gpu) = gpu(test) else { return Ok(()) };
     let check = on_the_documents_adapter(test, &gpu);
     for (scene, told) in half_table::SCENES.into_iter().zip(documented("Pictures")) {
-        let studio = Studio::new(&gpu, scene, &Cache::at(stage::LIGHT))?;
+        let studio = Studio::new(&gpu, scene)?;
         let d = studio.difference(&gpu, 0.089)?;
         // The design measured 0.9 codes on a sphere; a channel next to a rounding moves by one more.
         assert!(d.psnr_db > 58.0 && d.largest_codes <= 3, "{scene}: {d:?}");
@@ -154,7 +153,7 @@ fn pictures_in_half_floats_are_close() -> TestResult {
 fn a_device_without_half_floats_is_told() -> TestResult {
     let Some(gpu) = stage::gpu("a_device_without_half_floats_is_told") else { return Ok(()) };
     let has = gpu.device.features().contains(wgpu::Features::SHADER_F16);
-    let studio = Studio::new(&gpu, "spheres", &Cache::at(stage::LIGHT))?;
+    let studio = Studio::new(&gpu, "spheres")?;
     match studio.shoot(&gpu, Precision::Half, 0.089) {
         Ok(_) => assert!(has),
         Err(error) => assert!(!has && error.to_string().contains(&gpu.info().name), "{error}"),

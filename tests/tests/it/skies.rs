@@ -1,9 +1,8 @@
 //! Surfaces under a sky that grows brighter along x in red, along y in green and along z in blue: what a lobe gathers of it
 //! tells its direction, component by component.
 
-use crate::stage::{LIGHT, Shot, declared, gpu, lighting, view_of};
+use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Plan, Scratch, compile};
-use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::shading::LightSettings;
 use framegraph_passes::view::Background;
@@ -17,6 +16,7 @@ use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
 use glam::{DMat4, DVec3, Vec3};
 use std::error::Error;
 use tests::measure::board::{Board, card};
+use tests::stage::light_cache;
 use tests::truth::lobe::gathered;
 use tests::truth::surface::{self, Coat, Grooves, Surface};
 
@@ -119,7 +119,7 @@ fn under_sky(gpu: &Gpu, board: &Board) -> Result<Vec<DVec3>, Box<dyn Error>> {
         image: IblSettings { cube_texels: 256, ..IblSettings::default() },
         dfg: DfgSettings { texels: 64, visibility: shading.table },
     };
-    let lighting = Lighting::new(gpu, &sky(), &settings, &Cache::at(LIGHT), &mut progress::silent)?;
+    let lighting = Lighting::new(gpu, &sky(), &settings, &light_cache(), &mut progress::silent)?;
     Ok(board.render_lit(gpu, lighting, &shading)?.iter().map(|seen| seen.nits).collect())
 }
 

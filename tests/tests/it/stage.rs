@@ -1,7 +1,6 @@
 //! The standard frame on a stage: settings to plan without a device, scene to picture with one.
 
 use framegraph::{Caps, Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
-use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, IblSettings, ImageLight};
 use framegraph_passes::lighting::LightingError;
 use framegraph_passes::shading::LightSettings;
@@ -12,6 +11,7 @@ use framegraph_scene::{Environment, Scene, progress};
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{AdapterRequest, Executor, Gpu, Imports, read_texture};
 use std::error::Error;
+use tests::stage::light_cache;
 
 /// The standard frame with its picture read back.
 pub fn declared(settings: &Settings) -> (Frame<World>, FrameIo) {
@@ -128,17 +128,13 @@ impl Set {
     }
 }
 
-/// Light that another test of this target folder made is found, not made again; an entry's name says all that it was made
-/// from. None comes from the user's folder.
-pub const LIGHT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
-
 /// Light as coarse as it may be.
 pub fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<Lighting, LightingError> {
     let settings = LightSettings {
         image: IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() },
         dfg: DfgSettings { texels: 32, visibility: shading.table },
     };
-    Lighting::new(gpu, environment, &settings, &Cache::at(LIGHT), &mut progress::silent)
+    Lighting::new(gpu, environment, &settings, &light_cache(), &mut progress::silent)
 }
 
 /// The moment of a shot.

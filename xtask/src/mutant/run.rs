@@ -72,7 +72,9 @@ impl<'a> Bench<'a> {
         let kept_in = folder.join(format!("{}.fates", room.name));
         let (kept, sources) = (Kept::default(), room.sources()?);
         let mut bench = Self { room, tree, build, built: Vec::new(), tests: Vec::new(), kept, sources };
-        bench.built = bench.programs()?.ok_or_else(|| Failure::Failed("the tests do not compile".into()))?;
+        let built = bench.programs()?.ok_or_else(|| Failure::Failed("the tests do not compile".into()))?;
+        let copies = built.iter().enumerate().map(|(judge, program)| bench.copied(judge, program));
+        bench.built = copies.collect::<Result<_, _>>()?;
         let mut judges = 0;
         for program in &bench.built {
             let bytes = fs::read(program).map_err(|error| told(program, &error))?;
@@ -204,20 +206,21 @@ impl<'a> Bench<'a> {
             let tests = messages.lines().filter(is_test);
             let mut named = tests.filter_map(|line| line.split_once("\"executable\":\"")?.1.split('"').next());
             let program = named.next_back().ok_or_else(|| Failure::Failed("cargo names no program of tests".into()))?;
-            let program = PathBuf::from(program.replace("\\\\", "\\"));
-            if self.room.language == Language::Rust {
-                programs.push(program);
-                continue;
-            }
-            // A copy, so that whoever builds in this workspace meanwhile does not change the judge.
-            let copy = self.build.join("mutants/judges").join(format!("{}{}", self.room.name, programs.len()));
-            let folder = fs::create_dir_all(self.build.join("mutants/judges"));
-            // One that an interrupted run has left running cannot be written over.
-            let _ = fs::remove_file(&copy);
-            folder.and_then(|()| fs::copy(&program, &copy)).map_err(|error| told(&copy, &error))?;
-            programs.push(copy);
+            programs.push(PathBuf::from(program.replace("\\\\", "\\")));
         }
         Ok(Some(programs))
+    }
+
+    /// A copy of a program of tests without a fault: whoever builds in this workspace meanwhile, or a fault that is built where
+    /// it was, does not change the judge.
+    fn copied(&self, judge: usize, program: &Path) -> Result<PathBuf, Failure> {
+        let folder = self.build.join("mutants/judges");
+        let copy = folder.join(format!("{}{judge}", self.room.name));
+        // One that an interrupted run has left running cannot be written over.
+        let _ = fs::remove_file(&copy);
+        let made = fs::create_dir_all(&folder).and_then(|()| fs::copy(program, &copy));
+        made.map_err(|error| told(&copy, &error))?;
+        Ok(copy)
     }
 
     /// Runs test after test until one falls: the quick tests, or when they are `done` the others, as long as

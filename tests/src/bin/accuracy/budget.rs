@@ -1,6 +1,5 @@
 //! Frames within a budget: what the record would choose, and how what it chooses turns out.
 
-use crate::args::Args;
 use framegraph_passes::Facts;
 use framegraph_passes::budget::{Bound, Measured};
 use framegraph_wgpu::{AdapterRequest, Gpu};
@@ -43,10 +42,10 @@ pub fn chosen(record: &Record, bound: Bound) -> Outcome<()> {
 }
 
 /// Chooses for random budgets, draws and times what was chosen, and every swap of one option.
-pub fn verified(args: &Args, record: &Record, count: usize) -> Outcome<()> {
+pub fn verified(record: &Record, count: usize) -> Outcome<()> {
     program::interrupt::watch();
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
-    let studio = Studio::new(&gpu, record.size_px, args.out.join("light"), record.rounds());
+    let studio = Studio::new(&gpu, record.size_px, record.rounds());
     let mut shown = Shown::default();
     let found = verify(
         &mut Bench::new(&studio),

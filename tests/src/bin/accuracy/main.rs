@@ -52,7 +52,7 @@ fn run(args: &Args) -> Outcome<()> {
             Ok(())
         }
         Wanted::Budget(bound) => budget::chosen(&Record::read(&file)?, *bound),
-        Wanted::Verify(count) => budget::verified(args, &Record::read(&file)?, *count),
+        Wanted::Verify(count) => budget::verified(&Record::read(&file)?, *count),
         Wanted::Presets(source) => {
             let chosen = preset::source(budget::measured(&Record::read(&file)?)?)?;
             Ok(Outputs::one(source, chosen.as_bytes())?)
@@ -87,7 +87,7 @@ fn measured(args: &Args, file: &Path) -> Outcome<()> {
         Ok(found) if !args.again && found.is_of_the_kind_of(&fresh) => found,
         _ => fresh,
     };
-    let studio = Studio::new(&gpu, size_px, args.out.join("light"), rounds);
+    let studio = Studio::new(&gpu, size_px, rounds);
     let mut all = techniques::all(&gpu);
     for found in &mut record.techniques {
         if let Some(technique) = all.iter().find(|technique| technique.name == found.name) {

@@ -4,7 +4,6 @@
 //! combinations of twelve effects in each of six small scenes, as asked for and as decided, and compares; with `--masks N`
 //! N of them, spread over all; with `--scene NAME` behind either, in that scene alone.
 
-use framegraph_passes::ibl::cache::Cache;
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use program::progress::Shown;
 use std::error::Error;
@@ -78,7 +77,7 @@ fn draw_masks(gpu: &Gpu, count: u32, scene: Option<&str>) -> Outcome {
     program::line("| scene | masks | pictures that differ | largest difference, codes | beyond their bounds | s |");
     program::line("| --- | --- | --- | --- | --- | --- |");
     for case in cases().into_iter().filter(|case| scene.is_none_or(|name| name == case.name)) {
-        let mut drawn = Drawn::new(gpu, case, &Cache::from_env())?;
+        let mut drawn = Drawn::new(gpu, case)?;
         let (mut shown, begun) = (Shown::default(), Instant::now());
         let (mut differ, mut largest, mut beyond) = (0, 0, 0);
         for number in 0..count {

@@ -3,7 +3,6 @@
 //! `cargo run -p tests --bin shading_errors` prints the tables of `docs/half-floats.md`. Each has a control: something
 //! wrong on purpose that its comparison must notice. The exit code is 1 when one is not noticed.
 
-use framegraph_passes::ibl::cache::Cache;
 use framegraph_shaders::reference::cases;
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::error::Error;
@@ -70,7 +69,7 @@ fn pictures(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     program::line("| --- | --- | --- | --- |");
     let mut noticed = true;
     for scene in SCENES {
-        let studio = Studio::new(gpu, scene, &Cache::off())?;
+        let studio = Studio::new(gpu, scene)?;
         let d = studio.difference(gpu, 0.089)?;
         program::line(format_args!(
             "| {scene} | {:.1} dB | {:.3} % | {} codes |",

@@ -3,7 +3,6 @@
 use super::{Case, Drawn, Easel, SIZE_PX, cases};
 use framegraph::{Caps, Options, Scratch};
 use framegraph_passes::facts::{Cost, EffectSet, FactMemory, costs};
-use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::shadow::{local_layers, local_maps};
 use framegraph_passes::sun::has_sun;
 use framegraph_passes::view::Background;
@@ -45,7 +44,7 @@ fn asked(case: &Case, preset: Preset, size_px: [u32; 2]) -> Settings {
 pub fn rows(gpu: &Gpu, timed: bool) -> Result<Vec<String>, Box<dyn Error>> {
     let mut found = Vec::new();
     for case in cases() {
-        let mut drawn = Drawn::new(gpu, case, &Cache::off())?;
+        let mut drawn = Drawn::new(gpu, case)?;
         for preset in Preset::ALL {
             // Shaders of one preset are no other's: an executor of their own forgets them.
             let mut easel = Easel::new(gpu);
@@ -110,7 +109,7 @@ pub fn bare(gpu: &Gpu) -> Result<(f64, f64), Box<dyn Error>> {
         post: PostSettings { dither: 0.0, ..ultra.post },
         ..Settings::DEFAULT
     };
-    let (mut drawn, mut easel) = (Drawn::new(gpu, case, &Cache::off())?, Easel::new(gpu));
+    let (mut drawn, mut easel) = (Drawn::new(gpu, case)?, Easel::new(gpu));
     let size_px = [512, 512];
     let (mut bare_ms, mut decided_ms) = (f64::INFINITY, f64::INFINITY);
     // In turns, so that both see the same machine.

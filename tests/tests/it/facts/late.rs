@@ -1,17 +1,15 @@
 //! Facts that only the GPU knows: they come some frames late, no frame waits for them, and nothing flickers.
 
 use super::TestResult;
-use crate::stage::{LIGHT, gpu, plan};
-use framegraph::{Caps, Desc, Entry, Exit, Extent, Format, Options, Plan, Scratch, TextureDesc, compile};
+use crate::stage::{gpu, plan};
+use framegraph::{Caps, Desc, Options};
 use framegraph_passes::bloom::{Blend, Threshold};
 use framegraph_passes::facts::{Decision, Effect, Proof};
-use framegraph_passes::ibl::cache::Cache;
-use framegraph_passes::measure::{Measure, MeasurePass, MeasureStep, Measurement};
-use framegraph_passes::program::Programs;
+use framegraph_passes::measure::{Measure, Measurement};
 use framegraph_passes::view::ViewSettings;
 use framegraph_passes::{BloomSettings, DofSettings, Settings};
 use framegraph_scene::Projection;
-use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use framegraph_wgpu::Gpu;
 use tests::measure::facts::late::InARow;
 use tests::measure::facts::{Drawn, SIZE_PX, cases};
 
@@ -20,7 +18,7 @@ const BARE: Settings = Settings { shadows: None, fxaa: false, ..Settings::DEFAUL
 
 fn row(gpu: &Gpu, name: &str) -> Result<InARow, Box<dyn std::error::Error>> {
     let case = cases().into_iter().find(|case| case.name == name).ok_or("a case")?;
-    Ok(InARow::new(gpu, Drawn::new(gpu, case, &Cache::at(LIGHT))?))
+    Ok(InARow::new(gpu, Drawn::new(gpu, case)?))
 }
 
 /// The ball under light from all around that is so many times as bright; at 1 the sky is 1.15 before grading.
@@ -118,43 +116,6 @@ fn what_no_measure_decides_is_kept() -> TestResult {
     gpu.wait()?;
     let known = row.measuring.known(&gpu)?;
     assert!(!matches!(known, Measurement::Known(found) if found.distances_m.is_some()), "{known:?}");
-    Ok(())
-}
-
-/// A NaN counts as black, an infinity as the most that half floats hold, as for bloom.
-#[test]
-fn what_is_no_number_is_measured_as_bloom_takes_it() -> TestResult {
-    let Some(gpu) = gpu("what_is_no_number_is_measured_as_bloom_takes_it") else { return Ok(()) };
-    for (bits, most) in [(0x7e00_u16, 1.5), (0x7c00, 65504.0), (0xfc00, 1.5)] {
-        let size = wgpu::Extent3d { width: 8, height: 8, depth_or_array_layers: 1 };
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("hdr"),
-            size,
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba16Float,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
-        let texel = |at: usize| if at == 27 { [bits; 4] } else { [0x3e00_u16; 4] };
-        let bytes: Vec<u8> = (0..64).flat_map(texel).flat_map(u16::to_le_bytes).collect();
-        let layout = wgpu::TexelCopyBufferLayout { bytes_per_row: Some(64), ..Default::default() };
-        gpu.queue.write_texture(texture.as_image_copy(), &bytes, layout, size);
-        let (mut frame, mut imports) = (Frame::<Programs>::new(), Imports::new());
-        let desc = TextureDesc::new(Extent::absolute(8, 8), Format::Rgba16Float);
-        let hdr = frame.graph_mut().import_texture("hdr", desc, Entry::Defined, Exit::Keep);
-        imports.texture(hdr, &texture);
-        let step = MeasurePass { step: MeasureStep::Light { hdr }, extent: Extent::absolute(8, 8), eighths: 1 };
-        let result = frame.add("light", step)?.result;
-        frame.graph_mut().readback(result)?;
-        let mut plan = Plan::new();
-        compile(frame.graph(), &gpu.caps(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan)?;
-        let mut executor = Executor::new(&gpu);
-        executor.execute(&plan, &frame, &Programs::new(), &imports)?;
-        let found = read_texture(&gpu, executor.texture(&plan, result).ok_or("nothing was measured")?)?.rgba();
-        assert_eq!(found[0][0], most, "{bits:04x}");
-    }
     Ok(())
 }
 

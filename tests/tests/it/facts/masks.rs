@@ -1,9 +1,8 @@
 //! Combinations of effects: each frame as it is asked for against the frame as it is decided.
 
 use super::TestResult;
-use crate::stage::{LIGHT, gpu};
+use crate::stage::gpu;
 use framegraph_passes::facts::{Effect, EffectSet, FactMemory};
-use framegraph_passes::ibl::cache::Cache;
 use framegraph_scene::{Light, LightKind};
 use glam::{DMat4, DVec3};
 use tests::measure::facts::{Case, Drawn, Easel, MASKED, cases, compare_mask, some_masks};
@@ -33,7 +32,7 @@ fn what_is_dropped_changes_no_more_than_its_class_says() -> TestResult {
             "ball" | "full" => vec![0, some_masks(false).into_iter().max().unwrap_or(0)],
             _ => some_masks(false),
         };
-        let mut drawn = Drawn::new(&gpu, case, &Cache::at(LIGHT))?;
+        let mut drawn = Drawn::new(&gpu, case)?;
         let mut dropped = EffectSet::NONE;
         for mask in masks {
             let found = compare_mask(&mut easel, &mut drawn, mask)?;
@@ -56,7 +55,7 @@ fn what_adds_nothing_changes_no_bit() -> TestResult {
     let [.., night, _] = cases();
     let mut decided = |case: Case| -> Result<Vec<u8>, Box<dyn std::error::Error>> {
         let asked = case.asked.without(Effect::Reflections);
-        let mut drawn = Drawn::new(&gpu, case, &Cache::at(LIGHT))?;
+        let mut drawn = Drawn::new(&gpu, case)?;
         let facts = drawn.facts(&asked, EffectSet::NONE, &mut FactMemory::default());
         drawn.picture(&mut easel, &facts.apply(&asked))
     };

@@ -2,9 +2,8 @@
 //! and what they keep is seen.
 
 use super::TestResult;
-use crate::stage::{LIGHT, gpu};
+use crate::stage::gpu;
 use framegraph_passes::facts::{Decision, Effect, EffectSet, FactMemory, Proof};
-use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::{BloomSettings, DofSettings, FogSettings, Settings};
 use tests::measure::facts::{Drawn, Easel, SIZE_PX, cases};
 
@@ -52,7 +51,7 @@ fn air_and_lens_change_the_picture_where_they_are_kept() -> TestResult {
     let mut easel = Easel::new(&gpu);
     for name in ["floor", "ball", "cards"] {
         let case = cases().into_iter().find(|case| case.name == name).ok_or("a case")?;
-        let mut drawn = Drawn::new(&gpu, case, &Cache::at(LIGHT))?;
+        let mut drawn = Drawn::new(&gpu, case)?;
         for ((effect, _, asked), expected) in rows.iter().filter(|((_, of, _), _)| *of == name) {
             let asked = asked.for_scene(&drawn.case.scene, SIZE_PX);
             let facts = drawn.facts(&asked, EffectSet::NONE, &mut FactMemory::default());
