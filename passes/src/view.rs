@@ -84,7 +84,7 @@ impl BackgroundUniforms {
         match background {
             Background::None => Self::None,
             Background::Environment => Self::Environment,
-            Background::ClearSky(sky) => Self::ClearSky(SkyUniforms::new(sky, environment_scale, true)),
+            Background::ClearSky(sky) => Self::ClearSky(SkyUniforms::new(sky, environment_scale)),
             Background::Constant(nits) => Self::Constant(SkyUniforms::constant(*nits * exposure)),
         }
     }

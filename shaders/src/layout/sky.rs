@@ -13,32 +13,32 @@ pub struct SkyUniforms {
     pub perez: [Vec4; 5],
     /// (x, y, Y) at the zenith over Perez' function there; Y in pre-exposed nits.
     pub zenith: Vec3,
-    /// 1 shows the sun's disc, 0 hides it.
-    pub sun_disc: f32,
+    /// Padding to 16 bytes; zero.
+    pub _pad0: f32,
     /// Pre-exposed radiance below the horizon, or everywhere where it is constant.
     pub ground: Vec3,
     /// Padding to 16 bytes; zero.
-    pub _pad0: f32,
+    pub _pad1: f32,
     /// Unit vector toward the sun that the sky was made for.
     pub toward_sun: Vec3,
     /// Padding to 16 bytes; zero.
-    pub _pad1: f32,
+    pub _pad2: f32,
 }
 
 impl SkyUniforms {
     /// Packs a sky. `exposure` in 1/nits.
-    pub fn new(sky: &Preetham, exposure: f32, sun_disc: bool) -> Self {
+    pub fn new(sky: &Preetham, exposure: f32) -> Self {
         let exposure = f64::from(exposure);
         let mut zenith = sky.zenith;
         zenith.z *= exposure;
         Self {
             perez: sky.perez.map(|coefficient| coefficient.extend(0.0).as_vec4()),
             zenith: zenith.as_vec3(),
-            sun_disc: f32::from(u8::from(sun_disc)),
-            ground: (sky.ground * exposure).as_vec3(),
             _pad0: 0.0,
-            toward_sun: sky.to_sun.as_vec3(),
+            ground: (sky.ground * exposure).as_vec3(),
             _pad1: 0.0,
+            toward_sun: sky.to_sun.as_vec3(),
+            _pad2: 0.0,
         }
     }
 
@@ -50,7 +50,7 @@ impl SkyUniforms {
 
 #[cfg(test)]
 pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
-    vec![layout_of!(SkyUniforms { perez, zenith, sun_disc, ground, _pad0, toward_sun, _pad1 })]
+    vec![layout_of!(SkyUniforms { perez, zenith, _pad0, ground, _pad1, toward_sun, _pad2 })]
 }
 
 #[cfg(test)]
@@ -67,10 +67,9 @@ mod tests {
             ground: DVec3::new(10.0, 20.0, 40.0),
             to_sun: DVec3::Y,
         };
-        let packed = SkyUniforms::new(&sky, 0.125, true);
+        let packed = SkyUniforms::new(&sky, 0.125);
         assert_eq!(packed.zenith, Vec3::new(0.25, 0.5, 125.0));
         assert_eq!(packed.ground, Vec3::new(1.25, 2.5, 5.0));
         assert_eq!((packed.perez, packed.toward_sun), ([Vec4::new(0.1, 0.2, 0.3, 0.0); 5], Vec3::Y));
-        assert_eq!((packed.sun_disc, SkyUniforms::new(&sky, 0.125, false).sun_disc), (1.0, 0.0));
     }
 }

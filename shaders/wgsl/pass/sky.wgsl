@@ -21,8 +21,6 @@ struct SkyUniforms {
     perez: array<vec4<f32>, 5>,
     /// (x, y, Y) at the zenith over Perez' function there; Y in pre-exposed nits.
     zenith: vec3<f32>,
-    /// 1 shows the sun's disc, 0 hides it.
-    sun_disc: f32,
     /// Pre-exposed radiance below the horizon, or everywhere where it is constant; linear Rec.709.
     ground: vec3<f32>,
     /// Unit vector toward the sun that the sky was made for.
@@ -74,7 +72,7 @@ fn fs_procedural(vertex: SkyVertex) -> @location(0) vec4<f32> {
     let d = normalize_or(vertex.ray, vec3<f32>(0.0, 1.0, 0.0));
     var color = sky_radiance(sky.perez, sky.zenith, sky.ground, sky.toward_sun, d);
     let sin_radius = sin(frame.sun_angular_radius);
-    let disc = sun_disc(d, frame.sun_direction, sin_radius) * sky.sun_disc;
+    let disc = sun_disc(d, frame.sun_direction, sin_radius);
     if disc > 0.0 && d.y > 0.0 {
         color += disc * sun_disc_radiance(frame.sun_illuminance, sin_radius);
     }

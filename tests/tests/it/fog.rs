@@ -6,10 +6,12 @@ use framegraph::{Caps, Options, Plan, Scratch, Target, compile};
 use framegraph_passes::fog::{FogColor, FogGlow};
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, FogSettings, LightSearch, Settings, Shading, World, standard};
+use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::{Camera, Environment, Light, Projection, Scene, progress};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
 use glam::{DVec3, Vec3};
 use std::error::Error;
+use tests::truth::lobe::gathered;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
@@ -26,10 +28,20 @@ const FOV: f64 = 0.9;
 
 /// What the standard frame shows of the grid: radiance.
 fn shoot(gpu: &Gpu, fog: Option<FogSettings>, background: &Background) -> Result<Vec<[f32; 4]>, Box<dyn Error>> {
+    shoot_under(gpu, fog, background, &Environment::uniform(DVec3::new(0.5, 1.0, 0.75))?)
+}
+
+/// The same under another sky.
+fn shoot_under(
+    gpu: &Gpu,
+    fog: Option<FogSettings>,
+    background: &Background,
+    sky: &Environment,
+) -> Result<Vec<[f32; 4]>, Box<dyn Error>> {
     let settings = Settings { shadows: None, fxaa: false, fog, ..Settings::DEFAULT };
     let mut scene = Scene::open(GRID, &mut progress::silent)?;
     scene.lights.push(Light::directional("sun", -SUN.normalize().as_vec3(), SUN_LUX));
-    let lighting = lighting(gpu, &Environment::uniform(DVec3::new(0.5, 1.0, 0.75))?, &Shading::default())?;
+    let lighting = lighting(gpu, sky, &Shading::default())?;
     let moment = ViewSettings {
         camera: Camera::look_at(EYE, EYE + LOOK, DVec3::Y, Projection::perspective(FOV, 0.1))?,
         size_px: SIZE,
@@ -165,6 +177,30 @@ fn fog_takes_the_environments_color() -> TestResult {
         clear * (1.0 - share) + tint * around * share
     });
     assert!(worst < BOUND, "off by {worst}");
+    Ok(())
+}
+
+/// Where fog hides all, it has the colors of the environment as the roughest surface mirrors them, and a level less blurred beyond
+/// the distance that is stated.
+#[test]
+fn far_fog_takes_a_sharper_image() -> TestResult {
+    let Some(gpu) = gpu("far_fog_takes_a_sharper_image") else { return Ok(()) };
+    let map = EquirectMap::from_fn(256, 128, |d| DVec3::splat(2.0 + 1.9 * d.x));
+    let sky = Environment { name: "slope".into(), map, sun: None, filtered: None, warnings: Vec::new() };
+    // What is seen at the left and at the right of the sky, and the rays there.
+    let ends = [8, SIZE[0] as usize - 8];
+    let rays = ends.map(|at| rays()[at].map_or(DVec3::ZERO, |(ray, _)| ray));
+    let slope = |sharp_m: f32| -> Result<f64, Box<dyn Error>> {
+        let color = FogColor::Environment { tint: [1.0; 3], sharp_m };
+        let fog = FogSettings { color, density: 50.0, falloff: 0.0, ..FogSettings::DEFAULT };
+        let shot = shoot_under(&gpu, Some(fog), &Background::None, &sky)?;
+        Ok(f64::from(shot[ends[1]][0] - shot[ends[0]][0]) / (1.9 * (rays[1].x - rays[0].x)))
+    };
+    let [near, far] = [slope(1e20)?, slope(1e-3)?];
+    let blurred = |roughness: f64| gathered(DVec3::Z, roughness, |l| DVec3::splat(l.z)).z;
+    // Between the four texels across a face of that level the slope is not straight.
+    assert!((near / blurred(1.0) - 1.0).abs() < 0.08, "{near} for {}", blurred(1.0));
+    assert!(far > 1.05 * near && far < 1.0, "{far} beyond, {near} before");
     Ok(())
 }
 

@@ -167,6 +167,12 @@ fn looks() -> Vec<Look> {
     let mut looks = curves.to_vec();
     looks.push(Look { grading: warm, ..Look::default() });
     looks.push(Look { grading: warm, tone_map: ToneMap::Filmic, ..Look::default() });
+    // Every channel is below the middle of its curve, and above it.
+    for middle in [8.0, 0.01] {
+        let (shadow_gamma, highlight_scale) = (Vec3::new(1.5, 0.8, 1.2), Vec3::new(0.7, 1.3, 0.9));
+        let grading = Grading { shadow_gamma, middle: Vec3::splat(middle), highlight_scale, ..Grading::NEUTRAL };
+        looks.push(Look { grading, ..Look::default() });
+    }
     looks.push(Look { grading: night, tone_map: ToneMap::Linear2020, ..Look::default() });
     looks.push(Look { tone_map: ToneMap::Aces, luminance_scaling: true, gamut_mapping: true, ..Look::default() });
     looks

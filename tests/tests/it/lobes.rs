@@ -155,6 +155,11 @@ fn lobes_in_one_light_are_their_formulas() -> TestResult {
     close("grooves turned", &seen[3], stretched(0.8, f64::from(0.7_f32)), 3e-3, 1e-5);
     close("grooves of no depth", &seen[4], stretched(0.0, 0.0), 3e-3, 1e-5);
     close("no grooves", &seen[5], stretched(0.0, 0.0), 3e-3, 1e-5);
+    // What is scattered within the surface is added to grooves of no depth as to none, by the same factor.
+    let whole = in_one_light(&gpu, &materials[4..], &Shading { compensate_punctual: true, ..shading })?;
+    for (of, (grooved, plain)) in whole[0].iter().zip(&whole[1]).enumerate() {
+        assert!(*plain > 1.02 * seen[5][of] && (grooved / plain - 1.0).abs() < 5e-3, "{grooved} for {plain}");
+    }
     // The control: turned and straight grooves differ by more than what is let pass.
     assert!(seen[2].iter().zip(&seen[3]).any(|(a, b)| (a / b - 1.0).abs() > 0.05));
     Ok(())

@@ -45,7 +45,7 @@ const RADIUS_M: f64 = 0.6;
 
 /// A ball over a floor, and where the ball and the eye are in a frame.
 fn moment(frame: f64) -> (DVec3, DVec3) {
-    (DVec3::new(-0.9 + 0.12 * frame, 0.7, 0.1 * frame), DVec3::new(0.02 * frame, 1.0, 4.0))
+    (DVec3::new(-0.9 + 0.12 * frame, 0.7 + 0.25 * frame.sin(), 0.1 * frame), DVec3::new(0.02 * frame, 1.0, 4.0))
 }
 
 fn camera(frame: f64) -> Result<Camera, Box<dyn Error>> {
@@ -203,7 +203,9 @@ fn velocity_says_where_surfaces_were() -> TestResult {
             }
         }
         assert!(on > 300, "{samples} samples: the ball is seen in {on} pixels");
-        assert!(worst < 0.1, "{samples} samples: off by {worst} pixels");
+        // One of four samples is up to half a pixel beside the middle, where the ball's side is another.
+        let most = if samples == 1 { 0.03 } else { 0.3 };
+        assert!(worst < most, "{samples} samples: off by {worst} pixels");
         let floor = found[(size[0] * (size[1] - 1)) as usize];
         assert_eq!(floor, [0.0; 4], "the floor stands still");
     }

@@ -20,7 +20,7 @@ Stages, all of which run even if one fails:
   format  cargo fmt --all -- --check
   clippy  every target of the workspace, fuzz targets and the program beside a
           peer too, warnings are errors
-  docs    rustdoc with private items, warnings are errors
+  docs    rustdoc of libraries, with private items, warnings are errors
   deny    deny.toml but for advisories, where cargo-deny is installed
   tests   unit, integration and documentation tests
 
@@ -28,10 +28,10 @@ Tests that replay streams under Vulkan's validation layers and tests that open
 windows want those layers and Xvfb, which are installed like a driver; where
 they cannot be, such tests are skipped.
 
-Tests of many cases that draw for long run a third of them, each of which stands
-for its neighbors; docs/time.md lists them.
+Tests of many cases that draw for long run a third of them, or of more than
+twenty a sixth, each of which stands for its neighbors; docs/time.md lists them.
 
-  --all         all of their cases, in release
+  --all         all of their cases, in release, and rustdoc of programs too
 
 The summary counts the tests, what those that share leave out, and repeats every
 test that skipped, with its reason. Exit code 1 if a stage failed, if no test ran, if none found an adapter,
@@ -49,10 +49,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     let mut outcomes = vec![
         stage::run("format", &mut workspace::cargo(&["fmt", "--all", "--", "--check"])),
         stage::run("clippy", checking("clippy", &["--all-targets"]).args(["--", "-D", "warnings"])),
-        stage::run(
-            "docs",
-            checking("doc", &["--no-deps", "--document-private-items"]).env("RUSTDOCFLAGS", "-D warnings"),
-        ),
+        stage::run("docs", &mut documented(options.has("--all"))),
     ];
     // Where the tool is not at hand, a test reads the same lists. Advisories are that test's alone: the tool fetches theirs, and
     // a run without a network, or on a day with new ones, would say nothing of this commit.
@@ -73,6 +70,16 @@ fn checking(what: &str, more: &[&str]) -> std::process::Command {
     let mut command = workspace::cargo(&[what, "--workspace", "--ignore-rust-version", "--features", ON_DEMAND]);
     // The fuzzer's own library would ask for a compiler of C++.
     command.args(more).env("CUSTOM_LIBFUZZER_PATH", "./none");
+    command
+}
+
+/// The documentation of libraries, or of programs too: each program takes as long as a library, whose links are most.
+fn documented(programs: bool) -> std::process::Command {
+    let mut command = checking("doc", &["--no-deps", "--document-private-items"]);
+    if !programs {
+        command.arg("--lib");
+    }
+    command.env("RUSTDOCFLAGS", "-D warnings");
     command
 }
 

@@ -122,6 +122,102 @@ pub const EXPLAINED: &[Explained] = &[
         after: "override SH_BANDS: u32 = 4u;",
         why: "Every pipeline sets it.",
     },
+    Explained {
+        file: "shaders/wgsl/effect/bloom.wgsl",
+        before: "added += textureSampleLevel(bloom_flare, bloom_sampler, uv, 0.0).rgb * blooming.flare;",
+        after: "added += textureSampleLevel(bloom_flare, bloom_sampler, uv, 0.1).rgb * blooming.flare;",
+        why: "What is bound is one level, and there is none between it and the next.",
+    },
+    Explained {
+        file: "shaders/wgsl/lib/display_range.wgsl",
+        before: "let stop = clamp(log2(clamp(y, 1e-10, 65504.0) / 0.18) + 5.0, 0.0, 15.0);",
+        after: "let stop = clamp(log2(clamp(y, 1e-10, 65504.0) / 0.18) + 5.0, 0.0, 16.5);",
+        why: "From the fifteenth stop on all colors are white.",
+    },
+    Explained {
+        file: "shaders/wgsl/lib/gt7.wgsl",
+        before: "let x = min(pow(max(code, vec3<f32>(1e-20)), vec3<f32>(1.0 / 78.84375)), vec3<f32>(1.0));",
+        after: "let x = min(pow(max(code, vec3<f32>(1e-20)), vec3<f32>(1.0 / 78.84375)), vec3<f32>(1.1));",
+        why: "No code is above 1; the limit is for what rounding may carry past it.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/dof.wgsl",
+        before: "override TEXEL_PX: f32 = 1.0;",
+        after: "override TEXEL_PX: f32 = 1.1;",
+        why: "Every pipeline states its own; the number is for tools that compile the text alone.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/dof.wgsl",
+        before: "override RINGS_EVEN: f32 = 5.0;",
+        after: "override RINGS_EVEN: f32 = 5.5;",
+        why: "Every pipeline states its own; the number is for tools that compile the text alone.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/dof.wgsl",
+        before: "return gather_even(vertex.uv, 0.5 * (abs(tile.x) + abs(tile.y)), noise);",
+        after: "return gather_even(vertex.uv, 0.5 * (abs(tile.x) + abs(tile.x)), noise);",
+        why: "It is where the two radii differ by a twentieth at the most, so that their mean is either to a fortieth.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/post.wgsl",
+        before: "return fullscreen_position(vertex, 0.0);",
+        after: "return fullscreen_position(vertex, 0.1);",
+        why: "It is the depth of a pass that has no depth attached.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/scene.wgsl",
+        before: "let ndc = vec2<f32>(vertex.uv.x * 2.0 - 1.0, 1.0 - vertex.uv.y * 2.0);",
+        after: "let ndc = vec2<f32>(vertex.uv.x * 2.0 - 1.0, 1.0 - vertex.uv.x * 2.0);",
+        why: "No projection that can be stated tilts its planes of equal depth: the distance ahead is the same all over the picture.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/shadow_blur.wgsl",
+        before: "let texel = clamp(center + shadow_blur.step * i, shadow_blur.first, shadow_blur.last);",
+        after: "let texel = clamp(center - shadow_blur.step * i, shadow_blur.first, shadow_blur.last);",
+        why: "Taps are as many on both sides and weigh the same.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/taa.wgsl",
+        before: "return select(vec3<f32>(uv, 1.0), vec3<f32>(place, f32(shown)), REPROJECT);",
+        after: "return select(vec3<f32>(uv, 1.1), vec3<f32>(place, f32(shown)), REPROJECT);",
+        why: "What reads it asks whether it is above 0.",
+    },
+    Explained {
+        file: "shaders/wgsl/pass/taa.wgsl",
+        before: "let usable = all_finite3(before) && place.z > 0.0;",
+        after: "let usable = all_finite3(before) && place.z > 0.1;",
+        why: "It is 0 or 1.",
+    },
+    Explained {
+        file: "shaders/wgsl/shading/contact_shadow.wgsl",
+        before: "let texel = vec2<i32>(clamp(at.xy * size, vec2<f32>(0.0), size - 1.0));",
+        after: "let texel = vec2<i32>(clamp(at.xy * size, vec2<f32>(0.1), size - 1.0));",
+        why: "What is below 1 is the first texel.",
+    },
+    Explained {
+        file: "shaders/wgsl/shading/surface.wgsl",
+        before: "var under = real3(0.0);",
+        after: "var under = real3(0.1);",
+        why: "Both branches that follow give it another value.",
+    },
+    Explained {
+        file: "shaders/wgsl/shading/surface.wgsl",
+        before: "t = normalize_or(t, vec3<f32>(1.0, 0.0, 0.0));",
+        after: "",
+        why: "What comes of it is made as long as one whatever length it has.",
+    },
+    Explained {
+        file: "shaders/wgsl/shading/surface.wgsl",
+        before: "let b = cross(front, t) * tangent.w;",
+        after: "let b = cross(front, t) / tangent.w;",
+        why: "Handedness is 1 or −1.",
+    },
+    Explained {
+        file: "shaders/wgsl/shading/vertex.wgsl",
+        before: "vec3<f32>(0.0, 0.0, 1.0),",
+        after: "vec3<f32>(0.1, 0.0, 1.0),",
+        why: "No triangle that covers a pixel has no area there; what stands in for its normal is not seen.",
+    },
 ];
 
 /// Why a fault that survived is no gap, if that is known.

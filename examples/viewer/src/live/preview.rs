@@ -15,6 +15,8 @@ pub struct Found {
     pub texels: Texels,
     /// The same as numbers.
     pub numbers: Vec<[f32; 4]>,
+    /// The least and the greatest finite number of the channels that there are; 0 where none is finite.
+    pub span: [f32; 2],
     /// As they are shown.
     pub picture: DisplayImage,
     /// Counts which picture it is.
@@ -153,7 +155,8 @@ impl Preview {
         let found = found.map_err(|e| e.to_string())?;
         let (title, numbers) = (found.title(), found.texels.numbers());
         let picture = DisplayImage { rgba8: Vec::new(), range: [0.0; 2], non_finite: 0 };
-        Ok(Found { title, texels: found.texels, numbers, picture, made: 0, histogram: Vec::new() })
+        let span = span(&numbers, found.texels.channels());
+        Ok(Found { title, texels: found.texels, numbers, span, picture, made: 0, histogram: Vec::new() })
     }
 
     /// Makes the picture of what was found, where it is to be shown otherwise than it is.
@@ -166,7 +169,7 @@ impl Preview {
             found.picture = found.texels.display(self.mode, near_m);
             self.made += 1;
             found.made = self.made;
-            found.histogram = histogram(&found.numbers, found.texels.channels(), found.span());
+            found.histogram = histogram(&found.numbers, found.texels.channels(), found.span);
             self.shown = Some(self.mode);
         }
     }
@@ -178,14 +181,13 @@ impl Found {
         let [width, height] = self.texels.size;
         (x < width && y < height).then(|| self.numbers[(y * width + x) as usize])
     }
+}
 
-    /// The least and the greatest finite number of the channels that there are.
-    pub fn span(&self) -> [f32; 2] {
-        let channels = self.texels.channels();
-        let finite = || self.numbers.iter().flat_map(|texel| &texel[..channels]).copied().filter(|x| x.is_finite());
-        let (low, high) = (finite().fold(f32::INFINITY, f32::min), finite().fold(f32::NEG_INFINITY, f32::max));
-        if low <= high { [low, high] } else { [0.0, 0.0] }
-    }
+/// The least and the greatest finite number of the first `channels` of all texels; 0 where none is finite.
+pub fn span(numbers: &[[f32; 4]], channels: usize) -> [f32; 2] {
+    let finite = numbers.iter().flat_map(|texel| &texel[..channels]).copied().filter(|x| x.is_finite());
+    let [low, high] = finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+    if low <= high { [low, high] } else { [0.0; 2] }
 }
 
 /// How many numbers of each channel lie in each part of a span; what is not finite lies in none.

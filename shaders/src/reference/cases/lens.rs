@@ -132,7 +132,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     case(
         ["dof", "inverse_distance"],
-        &[Linear(0.0, 1.0), Values(&[0.0, 0.01]), Values(&[0.1, 1.0]), Values(&[-1.0]), Values(&[0.0])],
+        &[Linear(0.0, 1.0), Values(&[0.0, 0.01]), Values(&[0.1, 1.0]), Linear(-1.5, -0.5), Linear(0.0, 0.05)],
         "inverse_distance(x[0], vec4<f32>(x[1], x[2], x[3], x[4]))",
         SCALAR,
         |x| vec![dof::inverse_distance(x[0], glam::DVec4::new(x[1], x[2], x[3], x[4]))],

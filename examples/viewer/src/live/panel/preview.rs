@@ -143,7 +143,7 @@ fn modes(ui: &mut Ui, preview: &mut Preview) {
             preview.again();
         }
     });
-    let span = preview.found.as_ref().map(Found::span).unwrap_or_default();
+    let span = preview.found.as_ref().map(|found| found.span).unwrap_or_default();
     ui.horizontal_wrapped(|ui| match &mut preview.mode {
         DisplayMode::Color { stops } => {
             ui.add(egui::Slider::new(stops, -16.0..=16.0).text("stops"));
@@ -217,7 +217,7 @@ fn histogram(ui: &mut Ui, found: &Found) {
             .collect();
         painter.add(egui::Shape::line(points, egui::Stroke::new(1.2, Color32::from_rgb(r, g, b))));
     }
-    let [low, high] = found.span();
+    let [low, high] = found.span;
     response.on_hover_text(format!(
         "how often numbers from {low} to {high} occur: red, green, blue, alpha; heights are square roots"
     ));
