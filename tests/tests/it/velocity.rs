@@ -48,8 +48,7 @@ fn moment(frame: f64) -> (DVec3, DVec3) {
     (DVec3::new(-0.9 + 0.12 * frame, 0.7 + 0.25 * frame.sin(), 0.1 * frame), DVec3::new(0.02 * frame, 1.0, 4.0))
 }
 
-fn camera(frame: f64) -> Result<Camera, Box<dyn Error>> {
-    let eye = moment(frame).1;
+fn camera(eye: DVec3) -> Result<Camera, Box<dyn Error>> {
     Ok(Camera::look_at(eye, eye - DVec3::new(0.0, 0.1, 1.0), DVec3::Y, Projection::perspective(0.8, 0.1))?)
 }
 
@@ -61,6 +60,8 @@ struct Film<'g> {
     frame: Frame<World>,
     executor: Executor,
     size_px: [u32; 2],
+    /// Where the ball and the eye are in a frame.
+    path: fn(f64) -> (DVec3, DVec3),
 }
 
 impl<'g> Film<'g> {
@@ -72,7 +73,7 @@ impl<'g> Film<'g> {
         let floor = scene.add_mesh(plane(Vec2::splat(4.0), 1, Vec2::ONE));
         scene.add_instance("ball", ball, red, DMat4::IDENTITY);
         scene.add_instance("floor", floor, grey, DMat4::IDENTITY);
-        Self { gpu, scene, world: None, frame: Frame::new(), executor: Executor::new(gpu), size_px }
+        Self { gpu, scene, world: None, frame: Frame::new(), executor: Executor::new(gpu), size_px, path: moment }
     }
 
     /// The ball is moved vertex by vertex, as joints and morph targets move a body, instead of as a whole.
@@ -108,7 +109,7 @@ impl<'g> Film<'g> {
         number: u32,
         wanted: fn(&Handles) -> Option<Texture>,
     ) -> Result<Vec<[f32; 4]>, Box<dyn Error>> {
-        let at = moment(number.into()).0;
+        let (at, eye) = (self.path)(number.into());
         let mut placed = DMat4::from_translation(at);
         if let Some(body) = self.scene.motion.bodies.first() {
             placed = DMat4::IDENTITY;
@@ -119,7 +120,7 @@ impl<'g> Film<'g> {
         self.scene.instances[0].world_from_model = placed;
         self.scene.instances[0].bounds = self.scene.meshes[0].bounds.transformed(&placed);
         let seen = ViewSettings {
-            camera: camera(number.into())?,
+            camera: camera(eye)?,
             size_px: self.size_px,
             ev100: 0.0,
             environment_intensity: 1.0,
@@ -158,10 +159,10 @@ impl<'g> Film<'g> {
 fn truth(frame: f64, uv: DVec2, aspect: f64) -> Result<Option<DVec2>, Box<dyn Error>> {
     let [(ball, _), (earlier_ball, _)] = [moment(frame), moment(frame - 1.0)];
     let clip = |frame: f64| -> Result<DMat4, Box<dyn Error>> {
-        let camera = camera(frame)?;
+        let camera = camera(moment(frame).1)?;
         Ok(camera.clip_from_view(aspect) * camera.view_from_world())
     };
-    let eye = camera(frame)?.eye;
+    let eye = moment(frame).1;
     let ndc = DVec3::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y, 0.5);
     let way = (clip(frame)?.inverse().project_point3(ndc) - eye).normalize();
     let (along, apart) = (way.dot(ball - eye), (ball - eye).length_squared());
@@ -226,6 +227,41 @@ fn what_a_mask_keeps_moves_as_a_whole() -> TestResult {
     for uv_set in [0, 1] {
         assert!(told(Film::new(&gpu, size).masked(uv_set))? == whole, "set {uv_set}");
     }
+    Ok(())
+}
+
+/// A ball that goes with the eye is summed as if both stood still: what is told of its way leads to the same place of the sum.
+#[test]
+fn what_goes_with_the_eye_is_summed_as_if_it_stood() -> TestResult {
+    let Some(gpu) = gpu("what_goes_with_the_eye_is_summed_as_if_it_stood") else { return Ok(()) };
+    const SIZE: [u32; 2] = [72, 48];
+    let summed = |path| -> Result<_, Box<dyn Error>> {
+        let mut film = Film { path, ..Film::new(&gpu, SIZE) };
+        // Bands of seven pixels, so that a sum that is moved shows.
+        let ball = &mut film.scene.meshes[0];
+        let band = |at: &Vec3| Vec3::splat(0.5 + 0.45 * (12.0 * (at.x + at.y)).sin()).extend(1.0);
+        ball.colors = ball.positions.iter().map(band).collect();
+        let mut sum = Vec::new();
+        for frame in 0..12 {
+            sum = film.shoot(MOVING, frame, |handles| handles.find(Slot::HDR))?;
+        }
+        Ok(sum)
+    };
+    const BALL: DVec3 = DVec3::new(0.0, 1.0, 0.0);
+    const EYE: DVec3 = DVec3::new(0.0, 1.0, 4.0);
+    let still = summed(|_| (BALL, EYE))?;
+    let moved = summed(|frame| (BALL + DVec3::new(0.3, 0.1, 0.0) * frame, EYE + DVec3::new(0.3, 0.1, 0.0) * frame))?;
+    // Well within the outline, which is before a floor that moves.
+    let middle = |at: usize| {
+        let [x, y] = [at as u32 % SIZE[0], at as u32 / SIZE[0]].map(f64::from);
+        (x + 0.5 - 36.0).hypot(y + 0.5 - 19.0) < 5.0
+    };
+    let both: Vec<_> = (0..still.len()).filter(|at| middle(*at)).map(|at| (still[at][0], moved[at][0])).collect();
+    let least = both.iter().map(|(still, _)| *still).fold(f32::INFINITY, f32::min);
+    let most = both.iter().map(|(still, _)| *still).fold(0.0, f32::max);
+    let apart = both.iter().map(|(still, moved)| (still - moved).abs()).fold(0.0, f32::max);
+    assert!(most > 2.0 * least, "bands from {least} to {most}");
+    assert!(apart < 2e-3 * most, "{apart} apart, of {most}");
     Ok(())
 }
 

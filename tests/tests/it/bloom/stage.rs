@@ -102,6 +102,7 @@ pub fn made<const N: usize>(
     assert_eq!(executor.executed(), plan.counts(), "executed against planned");
     let texture = executor.texture(&plan, result).ok_or("there is no result")?;
     let pixels = read_texture(gpu, texture)?;
+    assert!(pixels.rgba().iter().all(|texel| texel[3] == 1.0), "alpha stays");
     let rgb = |[r, g, b, _]: [f32; 4]| DVec3::new(r.into(), g.into(), b.into());
     Ok((Image { size: pixels.texels, texels: pixels.rgba().into_iter().map(rgb).collect() }, plan))
 }

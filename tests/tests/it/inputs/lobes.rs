@@ -41,6 +41,9 @@ fn a_coat_is_its_channels_over_what_is_below() -> TestResult {
     let (bump, dent) = ([200, 90, 220, 0], [100, 150, 230, 0]);
     let own_normal = shown(&mut board, 8, TextureRole::Normal, bump);
     let base_normal = shown(&mut board, 11, TextureRole::Normal, dent);
+    // Away from the red lamp and the green one, which light what is below.
+    let steep = [13, 128, 153, 0];
+    let steep_normal = shown(&mut board, 4, TextureRole::Normal, steep);
     let base = Vec3::new(0.9, 0.5, 0.3);
     let bare = Material { normal_texture: base_normal, normal_scale: 0.7, ..Material::metal("metal", base, 0.4) };
     let below = Surface::metal_rough(base.as_dvec3(), 1.0, 0.4, 0.04, mapped(dent, 0.7));
@@ -55,6 +58,11 @@ fn a_coat_is_its_channels_over_what_is_below() -> TestResult {
             "textures",
             under(&bare, textured),
             under_lamps(&Surface { coat: coated(mapped(bump, 0.5), 0.9 * 0.8, 0.7 * 0.6), ..below }),
+        ),
+        (
+            "turned away",
+            under(&black(), ClearCoat { normal_texture: steep_normal, normal_scale: 1.0, ..plain }),
+            under_lamps(&Surface { coat: coated(mapped(steep, 1.0), 0.9, 0.7), ..nothing() }),
         ),
         (
             "over nothing",
