@@ -79,19 +79,30 @@ fn group(mut triangles: Vec<[DVec3; 3]>, groups: &mut Vec<(Aabb, Vec<[DVec3; 3]>
     group(rest, groups);
 }
 
-/// Whether a ray passes through a box (Kay and Kajiya 1986).
+/// Whether a ray passes through a box (Kay and Kajiya 1986). It is most of what rays take, and tests are built without
+/// optimization, where each operator of a vector and each `min` is a call.
 fn passes(bounds: &Aabb, from: DVec3, along: DVec3) -> bool {
     let (mut enter, mut leave) = (-1e-9_f64, f64::INFINITY);
-    for axis in 0..3 {
-        let (low, high) = (bounds.min[axis] - 1e-9 - from[axis], bounds.max[axis] + 1e-9 - from[axis]);
-        if along[axis] == 0.0 {
+    let (least, most) = (bounds.min.to_array(), bounds.max.to_array());
+    let (from, along) = (from.to_array(), along.to_array());
+    let mut axis = 0;
+    while axis < 3 {
+        let (low, high) = (least[axis] - 1e-9 - from[axis], most[axis] + 1e-9 - from[axis]);
+        let way = along[axis];
+        if way == 0.0 {
             if low > 0.0 || high < 0.0 {
                 return false;
             }
-            continue;
+        } else {
+            let (near, far) = if way > 0.0 { (low / way, high / way) } else { (high / way, low / way) };
+            if near > enter {
+                enter = near;
+            }
+            if far < leave {
+                leave = far;
+            }
         }
-        let (a, b) = (low / along[axis], high / along[axis]);
-        (enter, leave) = (enter.max(a.min(b)), leave.min(a.max(b)));
+        axis += 1;
     }
     enter <= leave
 }
