@@ -12,12 +12,28 @@ use framegraph_scene::{Environment, Scene, progress};
 use framegraph_wgpu::{FrameLoop, Gpu};
 use glam::{DVec3, Vec3};
 use std::error::Error;
+use std::path::PathBuf;
+use std::sync::OnceLock;
+use std::time::UNIX_EPOCH;
 
-/// Where tests and programs of this package find light that another of them made: a folder beside them in the target folder,
-/// never the user's own. An entry's name says all that it was made from, so that what is changed is made anew.
+/// Where a program of this package finds light that it made: a folder beside it in the target folder, never the user's own. A program
+/// that is built anew finds none: what makes light may have changed, and its tests are to notice.
 #[must_use]
 pub fn light_cache() -> Cache {
-    std::env::current_exe().map_or_else(|_| Cache::off(), |program| Cache::at(program.with_file_name("light")))
+    static CACHE: OnceLock<Cache> = OnceLock::new();
+    CACHE.get_or_init(|| own_folder().map_or_else(|_| Cache::off(), Cache::at)).clone()
+}
+
+fn own_folder() -> std::io::Result<PathBuf> {
+    let program = std::env::current_exe()?;
+    let built = program.metadata()?.modified()?.duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
+    let all = program.with_extension("light");
+    let own = all.join(built.to_string());
+    if !own.exists() {
+        // What an earlier build has left.
+        let _ = std::fs::remove_dir_all(&all);
+    }
+    Ok(own)
 }
 
 /// A scene with all that drawing it takes, under an even sky.

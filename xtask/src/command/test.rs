@@ -28,8 +28,8 @@ Tests that replay streams under Vulkan's validation layers and tests that open
 windows want those layers and Xvfb, which are installed like a driver; where
 they cannot be, such tests are skipped.
 
-Tests of many cases that draw for long run a third of them, or of more than
-twenty a sixth, each of which stands for its neighbors; docs/time.md lists them.
+Tests of many cases that draw for long run a third of them, each of which stands
+for its neighbors; docs/time.md lists them.
 
   --all         all of their cases, in release, and rustdoc of programs too
 

@@ -144,13 +144,13 @@ pub const EXPLAINED: &[Explained] = &[
         file: "shaders/wgsl/pass/dof.wgsl",
         before: "override TEXEL_PX: f32 = 1.0;",
         after: "override TEXEL_PX: f32 = 1.1;",
-        why: "Every pipeline states its own; the number is for tools that compile the text alone.",
+        why: "Every pipeline sets it.",
     },
     Explained {
         file: "shaders/wgsl/pass/dof.wgsl",
         before: "override RINGS_EVEN: f32 = 5.0;",
         after: "override RINGS_EVEN: f32 = 5.5;",
-        why: "Every pipeline states its own; the number is for tools that compile the text alone.",
+        why: "Every pipeline sets it.",
     },
     Explained {
         file: "shaders/wgsl/pass/dof.wgsl",

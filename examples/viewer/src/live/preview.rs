@@ -184,7 +184,7 @@ impl Found {
 }
 
 /// The least and the greatest finite number of the first `channels` of all texels; 0 where none is finite.
-pub fn span(numbers: &[[f32; 4]], channels: usize) -> [f32; 2] {
+fn span(numbers: &[[f32; 4]], channels: usize) -> [f32; 2] {
     let finite = numbers.iter().flat_map(|texel| &texel[..channels]).copied().filter(|x| x.is_finite());
     let [low, high] = finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
     if low <= high { [low, high] } else { [0.0; 2] }
