@@ -22,6 +22,8 @@ use wgpu::{Buffer, Face, FrontFace, PrimitiveState, VertexAttribute, VertexStepM
 pub struct SurfaceVariant {
     /// The lobes of its material.
     pub lobes: Lobes,
+    /// The textures of its material, a bit for each of its [slots](framegraph_scene::Material::slots).
+    pub textures: u32,
     /// Its material is taken from an array, where the shader can ([`Feature::MATERIAL_TABLE`]).
     pub material_table: bool,
 }
@@ -50,7 +52,8 @@ pub struct SurfaceDraw<'a> {
     pub program: &'a ProgramOf<'a>,
     /// What the pass binds in group 0, in the order of its interface.
     pub frame: &'a [Option<Binding>],
-    /// Values of the constants of the pass's interface; those that a shader lacks are left out.
+    /// Values of the constants of the pass's interface behind the first, [`Self::TEXTURES`]; those that a shader lacks are left
+    /// out.
     pub constants: &'a [f64],
     /// Depth test.
     pub depth: Depth,
@@ -103,7 +106,9 @@ impl PipelineKey {
     fn of(instance: &InstanceDraw, indirect: bool, scene: &GpuScene) -> Self {
         let InstanceDraw { double_sided, mirrored, material, .. } = *instance;
         let material_table = indirect && scene.is_in_table(material);
-        Self { surface: SurfaceVariant { lobes: scene.lobes(material), material_table }, double_sided, mirrored }
+        let surface =
+            SurfaceVariant { lobes: scene.lobes(material), textures: scene.texture_slots(material), material_table };
+        Self { surface, double_sided, mirrored }
     }
 }
 
@@ -171,6 +176,9 @@ impl SharedState {
 }
 
 impl SurfaceDraw<'_> {
+    /// The first constant of a pass that draws surfaces: the textures of the material.
+    pub const TEXTURES: &'static str = "TEXTURES";
+
     /// Draws a list of the scene's instances, in order. What a draw has in common with the one before it is not set again, and
     /// batches in a row that differ in their arguments alone are one call.
     ///
@@ -281,10 +289,12 @@ impl SurfaceDraw<'_> {
                 attributes,
             })
             .collect();
+        let constants: Vec<f64> =
+            std::iter::once(key.surface.textures.into()).chain(constants.iter().copied()).collect();
         let pipeline = cx.raster_pipeline(&Raster {
             vertex: program.vertex,
             fragment: program.fragment,
-            constants: Constants(&program.constants(constants)),
+            constants: Constants(&program.constants(&constants)),
             buffers: &buffers,
             primitive: PrimitiveState {
                 cull_mode: if key.double_sided { None } else { Some(Face::Back) },

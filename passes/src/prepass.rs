@@ -1,6 +1,6 @@
 //! Depth prepass: the depth of the visible surfaces, so that the color pass shades each pixel once.
 
-use crate::draw::DepthDraw;
+use crate::draw::{DepthDraw, SurfaceDraw};
 use crate::program::{Interface, Programs};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS};
 use crate::view::{ViewId, Views};
@@ -13,8 +13,10 @@ pub const DEPTH_FORMAT: Format = Format::Depth32Float;
 
 static SHADER: Module<'static> = library::pass("pass/prepass.wgsl").unwrap();
 
-static INTERFACE: Interface =
-    Interface { groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &[] };
+static INTERFACE: Interface = Interface {
+    groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects", "origins"]],
+    constants: &[SurfaceDraw::TEXTURES],
+};
 
 /// Draws opaque and masked surfaces into a new depth texture; depth is reversed and cleared to the far plane.
 #[derive(Clone, Copy, Debug)]

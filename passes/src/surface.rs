@@ -16,6 +16,7 @@ use framegraph_scene::Lobe;
 use framegraph_scene::environment::ShBands;
 use framegraph_shaders::{Feature, Features, Module, library};
 use framegraph_wgpu::{Binding, Cx, Depth, Epilogue, Output, RecordError, SamplerDesc};
+use glam::Vec3;
 use std::sync::Arc;
 use wgpu::{AddressMode, BlendState};
 
@@ -32,14 +33,22 @@ pub(crate) static SKY_SHADER: Module<'static> = library::pass("pass/sky.wgsl").u
 pub static SURFACE: Interface =
     Interface { groups: &[FRAME_BINDINGS, &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &CONSTANTS };
 
-/// Those of shading, whether ambient occlusion has bent normals, and the steps of contact shadows.
-const CONSTANTS: [&str; Shading::CONSTANTS.len() + 2] = {
-    let mut names = ["BENT_NORMALS"; Shading::CONSTANTS.len() + 2];
-    names[Shading::CONSTANTS.len() + 1] = "CONTACT_STEPS";
-    let mut index = 0;
-    while index < Shading::CONSTANTS.len() {
-        names[index] = Shading::CONSTANTS[index];
-        index += 1;
+/// What is known of light, beside shading and shadows: whether ambient occlusion has bent normals, there is a sun, and there
+/// are lamps.
+const LIGHT_CONSTANTS: [&str; 3] = ["BENT_NORMALS", "SUN", "LAMPS"];
+
+/// The material's, those of shading, of light and of shadows.
+const CONSTANTS: [&str; 1 + Shading::CONSTANTS.len() + LIGHT_CONSTANTS.len() + ShadowBindings::CONSTANTS.len()] = {
+    let parts: [&[&str]; 3] = [&Shading::CONSTANTS, &LIGHT_CONSTANTS, &ShadowBindings::CONSTANTS];
+    let mut names = [SurfaceDraw::TEXTURES; _];
+    let (mut at, mut part) = (1, 0);
+    while part < parts.len() {
+        let mut index = 0;
+        while index < parts[part].len() {
+            names[at] = parts[part][index];
+            (at, index) = (at + 1, index + 1);
+        }
+        part += 1;
     }
     names
 };
@@ -144,10 +153,10 @@ pub(crate) struct SurfaceBindings {
     bands: ShBands,
     /// There is a picture of what is behind transmissive surfaces.
     transmits: bool,
-    /// Ambient occlusion has the mean open direction.
-    bent_normals: bool,
-    /// Steps of the ray of contact shadows.
-    contact_steps: u32,
+    /// In the order of [`LIGHT_CONSTANTS`].
+    light: [bool; LIGHT_CONSTANTS.len()],
+    /// In the order of [`ShadowBindings::CONSTANTS`].
+    shadows: [f64; ShadowBindings::CONSTANTS.len()],
     /// What the plan inlined into the pass.
     pub epilogue: Epilogue,
 }
@@ -208,20 +217,25 @@ impl SurfaceBindings {
             shading: *shading,
             bands: lighting.image.bands,
             transmits: inputs.scene.is_some(),
-            bent_normals: inputs.occlusion.is_some_and(|input| input.bent_normals),
-            contact_steps: shadows.contact_steps,
+            light: [
+                inputs.occlusion.is_some_and(|input| input.bent_normals),
+                view.view.frame.sun_illuminance != Vec3::ZERO,
+                view.view.frame.light_count > 0,
+            ],
+            shadows: shadows.constants,
             epilogue,
         })
     }
 
     /// The program of a variant of surfaces.
     pub fn program(&self, programs: &Programs, variant: SurfaceVariant) -> Result<Arc<Program>, PassError> {
-        let SurfaceVariant { lobes, material_table } = variant;
+        let SurfaceVariant { lobes, material_table, .. } = variant;
         if lobes.contains(Lobe::Transmission) && !self.transmits {
             return Err(PassError::TransmissionUndeclared);
         }
         let features = features_of(lobes).iter().fold(self.features.clone(), Features::with);
-        let features = &features.with_if(Feature::MATERIAL_TABLE, material_table);
+        let features = features.with_if(Feature::MATERIAL_TABLE, material_table);
+        let features = &features.with_if(Feature::TEXTURED, variant.textures > 0);
         programs.get(&ProgramDesc { features, epilogue: &self.epilogue, ..ProgramDesc::new(&SURFACE_SHADER, &SURFACE) })
     }
 
@@ -230,11 +244,11 @@ impl SurfaceBindings {
         Features::NONE.with_if(Feature::FOG, self.features.contains(Feature::FOG))
     }
 
-    /// The values of the shader's constants, then those of the effects.
+    /// The values of the shader's constants behind the material's, then those of the effects.
     pub fn constants(&self, alpha: AlphaUse) -> Vec<f64> {
         let effects = self.epilogue.constants.iter().map(|(_, value)| *value);
         let shading = self.shading.constants(alpha, self.bands).into_iter();
-        shading.chain([f64::from(self.bent_normals), self.contact_steps.into()]).chain(effects).collect()
+        shading.chain(self.light.map(f64::from)).chain(self.shadows).chain(effects).collect()
     }
 }
 
@@ -285,7 +299,7 @@ mod tests {
     /// Every lobe at once binds more textures than WebGPU promises; one lobe does not.
     #[test]
     fn a_material_over_the_devices_limit_is_named() -> Result<(), PassError> {
-        let frame = Features::NONE.with(Feature::SHADOWS).with(Feature::ENVIRONMENT_MAP);
+        let frame = [Feature::SHADOWS, Feature::ENVIRONMENT_MAP, Feature::TEXTURED].into_iter().collect::<Features>();
         let outcome = |lobes: Lobes, limits: &wgpu::Limits| {
             let program = color(&features_of(lobes).iter().fold(frame.clone(), Features::with))?;
             Ok::<_, PassError>(fits(&program, lobes, "opal", limits).map_err(|error| error.to_string()))

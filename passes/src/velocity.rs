@@ -21,8 +21,10 @@ const SLOT: u8 = 1;
 
 static SHADER: Module<'static> = library::pass("pass/velocity.wgsl").unwrap();
 
-static INTERFACE: Interface =
-    Interface { groups: &[&["frame", "motions"], &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &[] };
+static INTERFACE: Interface = Interface {
+    groups: &[&["frame", "motions"], &MATERIAL_BINDINGS, &["objects", "origins"]],
+    constants: &[SurfaceDraw::TEXTURES],
+};
 
 /// Draws velocity of opaque and masked surfaces that moved since the frame before ([`CameraView::after`](crate::CameraView::after)).
 #[derive(Clone, Copy, Debug)]

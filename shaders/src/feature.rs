@@ -42,6 +42,8 @@ impl Feature {
     pub const TRANSMISSION: Self = Self("TRANSMISSION");
     /// Strength and tint of the dielectric specular reflection (KHR_materials_specular).
     pub const SPECULAR: Self = Self("SPECULAR");
+    /// The material has a texture: its coordinates come with the vertices.
+    pub const TEXTURED: Self = Self("TEXTURED");
     /// Materials are elements of one array, each surface's by the number that its instance has; without it each is bound alone.
     pub const MATERIAL_TABLE: Self = Self("MATERIAL_TABLE");
     /// Shading computes in f16 where that is safe; the device must have `SHADER_F16`.
@@ -62,6 +64,7 @@ impl Feature {
         Self::FOG,
         Self::VELOCITY,
         Self::ENVIRONMENT_MAP,
+        Self::TEXTURED,
         Self::MATERIAL_TABLE,
         Self::HALF,
     ];

@@ -1,13 +1,13 @@
 //! The pass that follows mirrored rays.
 
 use super::settings::ReflectionSettings;
-use crate::draw::SurfaceDraw;
+use crate::draw::{SurfaceDraw, SurfaceVariant};
 use crate::program::{Interface, ProgramDesc, Programs};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS};
 use crate::view::{CameraView, ViewId, Views};
 use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Previous, Texture, TextureDesc, View};
 use framegraph_shaders::layout::ReflectionUniforms;
-use framegraph_shaders::{Module, library};
+use framegraph_shaders::{Feature, Features, Module, library};
 use framegraph_wgpu::{Cx, Depth, Record, RecordError, SamplerDesc};
 
 /// Format of what was found: radiance as the frame has it, and how much it counts.
@@ -21,7 +21,7 @@ static INTERFACE: Interface = Interface {
         &MATERIAL_BINDINGS,
         &["objects", "origins"],
     ],
-    constants: &[],
+    constants: &[SurfaceDraw::TEXTURES],
 };
 
 /// Follows the mirrored ray of each pixel of opaque and masked surfaces through the structure of a view. Positions and depths
@@ -83,13 +83,12 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
             Some(cx.view(io.earlier)?.into()),
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
         ];
-        let surfaces = SurfaceDraw {
-            program: &|_| programs.get(&ProgramDesc::new(&SHADER, &INTERFACE)),
-            frame: &frame,
-            constants: &[],
-            depth: Depth::EQUAL,
-            colors: &[],
+        let program = |variant: SurfaceVariant| {
+            let features = &Features::NONE.with_if(Feature::TEXTURED, variant.textures > 0);
+            programs.get(&ProgramDesc { features, ..ProgramDesc::new(&SHADER, &INTERFACE) })
         };
+        let surfaces =
+            SurfaceDraw { program: &program, frame: &frame, constants: &[], depth: Depth::EQUAL, colors: &[] };
         let [opaque, masked] = &seen.view.draws.surfaces;
         surfaces.draw(opaque, seen.instances(world.as_ref()), cx)?;
         surfaces.draw(masked, seen.instances(world.as_ref()), cx)

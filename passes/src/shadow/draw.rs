@@ -18,8 +18,10 @@ pub const SHADOW_FORMAT: Format = Format::Depth32Float;
 
 static SHADER: Module<'static> = library::pass("pass/shadow.wgsl").unwrap();
 
-static INTERFACE: Interface =
-    Interface { groups: &[&["shadow_view"], &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &[] };
+static INTERFACE: Interface = Interface {
+    groups: &[&["shadow_view"], &MATERIAL_BINDINGS, &["objects", "origins"]],
+    constants: &[SurfaceDraw::TEXTURES],
+};
 
 /// A layer of the shadow maps, and which of its maps a pass draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -29,14 +29,17 @@ pub(crate) struct ShadowBindings {
     /// In the order of [`ShadowBindings::NAMES`].
     pub bindings: [Option<Binding>; Self::NAMES.len()],
     pub features: Features,
-    /// Steps of the ray of contact shadows, where the settings have them.
-    pub contact_steps: u32,
+    /// In the order of [`ShadowBindings::CONSTANTS`].
+    pub constants: [f64; Self::CONSTANTS.len()],
 }
 
 impl ShadowBindings {
     /// Names of the variables.
     pub const NAMES: [&'static str; 6] =
         ["shadow", "shadow_maps", "shadow_map", "shadow_sampler", "shadow_depth", "shadow_moments"];
+
+    /// Names of the `override` constants: steps of the ray of contact shadows, and what there are maps of.
+    pub const CONSTANTS: [&'static str; 4] = ["CONTACT_STEPS", "CASCADES", "LAMP_SHADOWS", "SHOW_CASCADES"];
 
     /// The bindings for a view: none where it has no maps.
     pub fn new(input: Option<ShadowInput>, view: &GpuView, cx: &mut Cx<'_>) -> Result<Self, RecordError> {
@@ -57,7 +60,13 @@ impl ShadowBindings {
             texture.clone(),
             texture,
         ];
-        let contact_steps = shadows.settings.contact.map_or(0, |contact| contact.steps.max(1));
-        Ok(Self { bindings: bindings.map(Some), features: Features::NONE.with(feature), contact_steps })
+        let constants = [
+            shadows.settings.contact.map_or(0, |contact| contact.steps.max(1)),
+            shadows.cascades as u32,
+            u32::from(shadows.maps.len() > shadows.cascades),
+            u32::from(shadows.settings.show_cascades),
+        ];
+        let features = Features::NONE.with(feature);
+        Ok(Self { bindings: bindings.map(Some), features, constants: constants.map(f64::from) })
     }
 }

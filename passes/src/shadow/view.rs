@@ -18,6 +18,8 @@ const BULB_M: f32 = 0.02;
 pub struct ViewShadows {
     /// What shaders read that is the same for all maps.
     pub uniforms: ShadowUniforms,
+    /// How many of the maps are cascades of the sun.
+    pub cascades: usize,
     /// Cascades, then those of local lights.
     pub maps: Vec<ShadowMap>,
     /// What each map is made of.
@@ -73,7 +75,6 @@ impl ViewShadows {
         let fades = settings.far_m.is_some_and(|limit| limit <= far_m * (1.0 + 1e-9));
         let uniforms = ShadowUniforms {
             far_ends: Vec4::new(ends(0), ends(1), ends(2), ends(3)),
-            cascades: cascades as u32,
             filter_kind: settings.filter.code(),
             texels: settings.map_texels as f32,
             // Filament's bias moves by half a texel.
@@ -82,11 +83,10 @@ impl ViewShadows {
             exponent,
             variance_floor: (moments.min_variance_scale * 0.01 * exponent).powi(2),
             bleed: moments.bleed,
-            show_cascades: u32::from(settings.show_cascades),
             contact_m: settings.contact.map_or(0.0, |contact| contact.distance_m),
-            _pad: [0.0; 2],
         };
-        Self { uniforms, maps: fitted.into_iter().enumerate().map(map).collect(), keys, of_lights, settings: *settings }
+        let maps = fitted.into_iter().enumerate().map(map).collect();
+        Self { uniforms, cascades, maps, keys, of_lights, settings: *settings }
     }
 
     /// What shaders read of each map.

@@ -50,13 +50,14 @@ pub struct GpuScene {
 struct Surface {
     name: String,
     lobes: Lobes,
-    textured: bool,
+    textures: u32,
 }
 
 impl Surface {
     fn of(material: &Material) -> Self {
-        let textured = material.slots().iter().any(Option::is_some);
-        Self { name: material.name.clone(), lobes: material.lobes(), textured }
+        let slots = material.slots();
+        let textures = (0..SLOT_COUNT).filter(|slot| slots[*slot].is_some()).map(|slot| 1 << slot).sum();
+        Self { name: material.name.clone(), lobes: material.lobes(), textures }
     }
 }
 
@@ -144,6 +145,16 @@ impl GpuScene {
         self.surfaces[material.index()].lobes
     }
 
+    /// The textures of a material, a bit for each of its [slots](Material::slots).
+    ///
+    /// # Panics
+    ///
+    /// For a material of another, larger scene.
+    #[must_use]
+    pub fn texture_slots(&self, material: MaterialId) -> u32 {
+        self.surfaces[material.index()].textures
+    }
+
     /// Whether a material can be taken from the [table](Self::material_table): there is one, and it has no textures.
     ///
     /// # Panics
@@ -151,7 +162,7 @@ impl GpuScene {
     /// For a material of another, larger scene.
     #[must_use]
     pub fn is_in_table(&self, material: MaterialId) -> bool {
-        self.material_table.is_some() && !self.surfaces[material.index()].textured
+        self.material_table.is_some() && self.texture_slots(material) == 0
     }
 
     /// The name of a material, for messages; may be empty.

@@ -9,8 +9,6 @@ use glam::{IVec2, Mat4, Vec2, Vec3, Vec4};
 pub struct ShadowUniforms {
     /// Distance ahead of the eye in m at which each cascade of the sun ends.
     pub far_ends: Vec4,
-    /// How many cascades there are; they come first among the maps.
-    pub cascades: u32,
     /// 0 PCF, 1 DPCF, 2 PCSS.
     pub filter_kind: u32,
     /// Width and height of a layer in texels.
@@ -25,12 +23,8 @@ pub struct ShadowUniforms {
     pub variance_floor: f32,
     /// Share of light that is taken for bled and removed, 0…1.
     pub bleed: f32,
-    /// Not 0: tint what is lit by the number of its cascade.
-    pub show_cascades: u32,
     /// Length of a contact shadow's ray in m.
     pub contact_m: f32,
-    /// Padding to 16 bytes; zero.
-    pub _pad: [f32; 2],
 }
 
 /// One shadow map as shaders read it.
@@ -106,7 +100,6 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
     vec![
         layout_of!(ShadowUniforms {
             far_ends,
-            cascades,
             filter_kind,
             texels,
             normal_bias_texels,
@@ -114,9 +107,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             exponent,
             variance_floor,
             bleed,
-            show_cascades,
             contact_m,
-            _pad,
         }),
         layout_of!(ShadowMapUniforms {
             clip_from_world,

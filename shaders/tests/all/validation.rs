@@ -95,7 +95,9 @@ fn every_feature_makes_a_difference_and_only_to_what_shades() {
             "dfg" => vec![Feature::HALF],
             "occlusion" => vec![Feature::HALF],
             // Its vertices hand on what those of the color pass do.
-            "reflection" => vec![Feature::MATERIAL_TABLE, Feature::TRANSMISSION],
+            "reflection" => {
+                vec![Feature::TEXTURED, Feature::MATERIAL_TABLE, Feature::ANISOTROPY, Feature::TRANSMISSION]
+            }
             // They read materials too, but are never asked to take them from an array.
             "prepass" | "shadow" | "velocity" => vec![Feature::MATERIAL_TABLE],
             _ => Vec::new(),

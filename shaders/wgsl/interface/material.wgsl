@@ -191,6 +191,31 @@ var<private> material: MaterialUniforms;
 @if(SPECULAR)
 @group(1) @binding(30) var specular_color_sampler: sampler;
 
+/// Textures that the material has, a bit for each of `Material::slots`. What it lacks is no part of
+/// the shader: where branches are not skipped, as some software does, its samples would be taken.
+override TEXTURES: u32 = 0x7fffu;
+
+const SLOT_BASE_COLOR: u32 = 0u;
+const SLOT_METALLIC_ROUGHNESS: u32 = 1u;
+const SLOT_NORMAL: u32 = 2u;
+const SLOT_OCCLUSION: u32 = 3u;
+const SLOT_EMISSIVE: u32 = 4u;
+const SLOT_CLEAR_COAT: u32 = 5u;
+const SLOT_CLEAR_COAT_ROUGHNESS: u32 = 6u;
+const SLOT_CLEAR_COAT_NORMAL: u32 = 7u;
+const SLOT_SHEEN_COLOR: u32 = 8u;
+const SLOT_SHEEN_ROUGHNESS: u32 = 9u;
+const SLOT_ANISOTROPY: u32 = 10u;
+const SLOT_TRANSMISSION: u32 = 11u;
+const SLOT_THICKNESS: u32 = 12u;
+const SLOT_SPECULAR: u32 = 13u;
+const SLOT_SPECULAR_COLOR: u32 = 14u;
+
+/// Whether the texture of a slot is to be read.
+fn has_texture(slot: u32, map: TextureMap) -> bool {
+    return (TEXTURES & (1u << slot)) != 0u && map.present != 0u;
+}
+
 /// Texture coordinates of a map; `uv` holds set 0 in xy and set 1 in zw.
 fn map_uv(map: TextureMap, uv: vec4<f32>) -> vec2<f32> {
     let chosen = select(uv.xy, uv.zw, map.uv_set == 1u);
@@ -200,7 +225,7 @@ fn map_uv(map: TextureMap, uv: vec4<f32>) -> vec2<f32> {
 /// Linear base color with straight alpha: factor, texture and vertex color multiplied.
 fn base_color(uv: vec4<f32>, vertex_color: vec4<f32>) -> vec4<f32> {
     var color = material.base_color * vertex_color;
-    if material.base_color_map.present != 0u {
+    if has_texture(SLOT_BASE_COLOR, material.base_color_map) {
         let at = map_uv(material.base_color_map, uv);
         color *= textureSample(base_color_texture, base_color_sampler, at);
     }
@@ -210,7 +235,7 @@ fn base_color(uv: vec4<f32>, vertex_color: vec4<f32>) -> vec4<f32> {
 /// Metalness in x and perceptual roughness in y.
 fn metallic_roughness(uv: vec4<f32>) -> vec2<f32> {
     var values = vec2<f32>(material.metallic, material.roughness);
-    if material.metallic_roughness_map.present != 0u {
+    if has_texture(SLOT_METALLIC_ROUGHNESS, material.metallic_roughness_map) {
         let at = map_uv(material.metallic_roughness_map, uv);
         values *= textureSample(metallic_roughness_texture, metallic_roughness_sampler, at).bg;
     }
@@ -219,7 +244,7 @@ fn metallic_roughness(uv: vec4<f32>) -> vec2<f32> {
 
 /// Visibility of the ambient light from the occlusion texture, 0…1: 1 is unoccluded.
 fn occlusion(uv: vec4<f32>) -> f32 {
-    if material.occlusion_map.present == 0u {
+    if !has_texture(SLOT_OCCLUSION, material.occlusion_map) {
         return 1.0;
     }
     let at = map_uv(material.occlusion_map, uv);
@@ -230,7 +255,7 @@ fn occlusion(uv: vec4<f32>) -> f32 {
 /// Emitted radiance before exposure.
 fn emission(uv: vec4<f32>) -> vec3<f32> {
     var color = material.emissive;
-    if material.emissive_map.present != 0u {
+    if has_texture(SLOT_EMISSIVE, material.emissive_map) {
         let at = map_uv(material.emissive_map, uv);
         color *= textureSample(emissive_texture, emissive_sampler, at).rgb;
     }
@@ -242,10 +267,10 @@ fn emission(uv: vec4<f32>) -> vec3<f32> {
 fn clear_coat(uv: vec4<f32>) -> vec2<f32> {
     let coat = material.clear_coat;
     var values = vec2<f32>(coat.factor, coat.roughness);
-    if coat.map.present != 0u {
+    if has_texture(SLOT_CLEAR_COAT, coat.map) {
         values.x *= textureSample(clear_coat_texture, clear_coat_sampler, map_uv(coat.map, uv)).r;
     }
-    if coat.roughness_map.present != 0u {
+    if has_texture(SLOT_CLEAR_COAT_ROUGHNESS, coat.roughness_map) {
         let at = map_uv(coat.roughness_map, uv);
         values.y *= textureSample(clear_coat_roughness_texture, clear_coat_roughness_sampler, at).g;
     }
@@ -257,7 +282,7 @@ fn clear_coat(uv: vec4<f32>) -> vec2<f32> {
 @if(CLEAR_COAT)
 fn clear_coat_tangent_normal(uv: vec4<f32>) -> vec3<f32> {
     let coat = material.clear_coat;
-    if coat.normal_map.present == 0u {
+    if !has_texture(SLOT_CLEAR_COAT_NORMAL, coat.normal_map) {
         return vec3<f32>(0.0, 0.0, 1.0);
     }
     let at = map_uv(coat.normal_map, uv);
@@ -270,12 +295,12 @@ fn clear_coat_tangent_normal(uv: vec4<f32>) -> vec3<f32> {
 fn sheen(uv: vec4<f32>) -> vec4<f32> {
     let given = material.sheen;
     var values = vec4<f32>(given.color, given.roughness);
-    if given.color_map.present != 0u {
+    if has_texture(SLOT_SHEEN_COLOR, given.color_map) {
         let at = map_uv(given.color_map, uv);
         let texel = textureSample(sheen_color_texture, sheen_color_sampler, at).rgb;
         values *= vec4<f32>(texel, 1.0);
     }
-    if given.roughness_map.present != 0u {
+    if has_texture(SLOT_SHEEN_ROUGHNESS, given.roughness_map) {
         let at = map_uv(given.roughness_map, uv);
         values.w *= textureSample(sheen_roughness_texture, sheen_roughness_sampler, at).a;
     }
@@ -289,7 +314,7 @@ fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
     let given = material.anisotropy;
     var direction = vec2<f32>(1.0, 0.0);
     var strength = given.strength;
-    if given.map.present != 0u {
+    if has_texture(SLOT_ANISOTROPY, given.map) {
         let at = map_uv(given.map, uv);
         let texel = textureSample(anisotropy_texture, anisotropy_sampler, at).xyz;
         strength *= texel.z;
@@ -314,11 +339,11 @@ fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
 fn transmission(uv: vec4<f32>) -> vec2<f32> {
     let given = material.transmission;
     var values = vec2<f32>(given.factor, given.thickness);
-    if given.map.present != 0u {
+    if has_texture(SLOT_TRANSMISSION, given.map) {
         let at = map_uv(given.map, uv);
         values.x *= textureSample(transmission_texture, transmission_sampler, at).r;
     }
-    if given.thickness_map.present != 0u {
+    if has_texture(SLOT_THICKNESS, given.thickness_map) {
         let at = map_uv(given.thickness_map, uv);
         values.y *= textureSample(thickness_texture, thickness_sampler, at).g;
     }
@@ -332,11 +357,11 @@ fn specular_factors(uv: vec4<f32>) -> vec4<f32> {
     let given = material.specular;
     var color = given.color;
     var factor = given.factor;
-    if given.color_map.present != 0u {
+    if has_texture(SLOT_SPECULAR_COLOR, given.color_map) {
         let at = map_uv(given.color_map, uv);
         color *= textureSample(specular_color_texture, specular_color_sampler, at).rgb;
     }
-    if given.map.present != 0u {
+    if has_texture(SLOT_SPECULAR, given.map) {
         factor *= textureSample(specular_texture, specular_sampler, map_uv(given.map, uv)).a;
     }
     let f0 = min(material.dielectric_f0 * color, vec3<f32>(1.0));

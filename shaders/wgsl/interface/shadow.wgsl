@@ -7,8 +7,6 @@
 struct ShadowUniforms {
     /// Distance ahead of the eye in m at which each cascade of the sun ends.
     far_ends: vec4<f32>,
-    /// How many cascades there are; they come first among the maps.
-    cascades: u32,
     /// How penumbrae are found: SHADOW_FILTER_DPCF or SHADOW_FILTER_PCSS; 0 where there are none.
     filter_kind: u32,
     /// Width and height of a layer in texels.
@@ -23,8 +21,6 @@ struct ShadowUniforms {
     variance_floor: f32,
     /// Share of light that is taken for bled and removed, 0…1.
     bleed: f32,
-    /// Not 0: tint what is lit by the number of its cascade.
-    show_cascades: u32,
     /// Length of a contact shadow's ray in m.
     contact_m: f32,
 }
@@ -66,6 +62,13 @@ struct ShadowMapUniforms {
 /// Values of `ShadowUniforms::filter_kind`.
 const SHADOW_FILTER_DPCF: u32 = 1u;
 const SHADOW_FILTER_PCSS: u32 = 2u;
+
+/// How many cascades there are; they come first among the maps.
+override CASCADES: u32 = 4u;
+/// Whether there are maps of local lights.
+override LAMP_SHADOWS: bool = true;
+/// Tint what is lit by the number of its cascade.
+override SHOW_CASCADES: bool = false;
 
 @group(0) @binding(30) var<uniform> shadow: ShadowUniforms;
 @group(0) @binding(31) var<storage, read> shadow_maps: array<ShadowMapUniforms>;

@@ -12,13 +12,13 @@
 // ray through the scene's structure completes them), AMBIENT_OCCLUSION or OCCLUSION_UPSAMPLED (a
 // picture of it is read, interface/ambient_occlusion.wgsl), FROXELS (lights are found by lists),
 // REFLECTIONS (what rays found in the picture, interface/reflection.wgsl), FOG
-// (interface/fog.wgsl), MATERIAL_TABLE (materials lie in an array), ENVIRONMENT_MAP (lobes read the
-// prefiltered environment; without it they see three bands of spherical harmonics); and the lobes
-// of the material: CLEAR_COAT, SHEEN, ANISOTROPY, TRANSMISSION, SPECULAR. They change what is
-// bound, so they are compiled in or out; what only changes arithmetic is an `override`. HALF
-// shades in half floats: what a surface is made of and what it reflects of one light
-// (lib/real.wgsl). Light itself, and everything that has a place,
-// stays in f32.
+// (interface/fog.wgsl), TEXTURED (the material has a texture), MATERIAL_TABLE (materials lie in an
+// array), ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands
+// of spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
+// TRANSMISSION, SPECULAR. They change what is bound or comes from the vertices, so they are
+// compiled in or out; what only changes arithmetic is an `override`. HALF shades in half floats:
+// what a surface is made of and what it reflects of one light (lib/real.wgsl). Light itself, and
+// everything that has a place, stays in f32.
 
 import package::interface::epilogue::epilogue;
 @if(FOG)
@@ -34,7 +34,11 @@ import package::interface::scene::radiance_behind;
 @if(TRANSMISSION)
 import package::lib::refraction::{refracted_path, transmittance, transmission_spread};
 @if(CLEAR_COAT)
-import package::interface::material::{clear_coat, clear_coat_tangent_normal};
+import package::interface::material::clear_coat;
+@if(CLEAR_COAT && TEXTURED)
+import package::interface::material::{
+    SLOT_CLEAR_COAT_NORMAL, has_texture, clear_coat_tangent_normal,
+};
 @if(SHEEN)
 import package::interface::material::sheen;
 @if(ANISOTROPY)
@@ -78,14 +82,18 @@ import package::shading::surface::Sheen;
 import package::shading::surface::{Anisotropy, anisotropy_direction};
 import package::shading::vertex::{
     SurfaceVertex, surface_vertex, face_sign, geometric_normal, smooth_normal, shading_normal,
+    texture_uv,
 };
-@if(CLEAR_COAT)
+@if(CLEAR_COAT && TEXTURED)
 import package::shading::vertex::mapped_normal;
 
 /// 0 opaque: alpha is one. 1 mask: fragments below the cutoff are discarded, alpha is one. 2
 /// blend: color is premultiplied by alpha (blend One, OneMinusSrcAlpha). After a prepass
 /// masked geometry is drawn as opaque, its holes being in the depth already.
 override ALPHA_MODE: u32 = 0u;
+
+/// Whether there is a sun: without it, it is no part of the shader.
+override SUN: bool = true;
 
 /// Whether the material says itself what it reflects at grazing: that is not faded. A constant and
 /// no `@if` around its use, for every variant must have the same overrides.
@@ -139,11 +147,13 @@ fn refract_scene(
 /// The clear coat of a fragment.
 @if(CLEAR_COAT)
 fn coat_of(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32, view: vec3<f32>) -> ClearCoat {
-    let values = clear_coat(vertex.uv);
+    let values = clear_coat(texture_uv(vertex));
     let roughness = shaded_roughness(values.y, smooth_side);
     var normal = smooth_side;
-    if material.clear_coat.normal_map.present != 0u {
-        normal = mapped_normal(vertex, smooth_side, side, clear_coat_tangent_normal(vertex.uv));
+    @if(TEXTURED) {
+        if has_texture(SLOT_CLEAR_COAT_NORMAL, material.clear_coat.normal_map) {
+            normal = mapped_normal(vertex, smooth_side, side, clear_coat_tangent_normal(vertex.uv));
+        }
     }
     return ClearCoat(
         normal,
@@ -178,7 +188,7 @@ fn anisotropy_of(
     side: f32,
     alpha: real,
 ) -> Anisotropy {
-    let values = anisotropy(vertex.uv);
+    let values = anisotropy(texture_uv(vertex));
     let tangent = anisotropy_direction(normal, normal * side, vertex.tangent, values.xy);
     let floor = real(ROUGHNESS_FLOOR * ROUGHNESS_FLOOR);
     return Anisotropy(
@@ -191,7 +201,8 @@ fn anisotropy_of(
 
 /// The lit color of a fragment, pre-exposed.
 fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) -> vec3<f32> {
-    let metal_rough = metallic_roughness(vertex.uv);
+    let uv = texture_uv(vertex);
+    let metal_rough = metallic_roughness(uv);
     let metallic = real(saturate(metal_rough.x));
     let smooth_side = smooth_normal(vertex, geometric, side);
     var roughness = shaded_roughness(metal_rough.y, smooth_side);
@@ -200,7 +211,7 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     let view = normalize_or(to_viewer, normal);
     let nov = clamp_nov(real(dot(normal, view)));
     let color = to_real3(base);
-    let dielectric = specular_factors(vertex.uv);
+    let dielectric = specular_factors(uv);
     var f0 = f0_from_base_color(color, metallic, real3(dielectric.rgb));
     var surface: Surface;
     @if(CLEAR_COAT) {
@@ -220,7 +231,7 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     }
     var diffuse = diffuse_from_base_color(color, metallic);
     // What is transmitted is tinted as what is scattered would be, and taken from it.
-    @if(TRANSMISSION) let glass = transmission(vertex.uv);
+    @if(TRANSMISSION) let glass = transmission(uv);
     @if(TRANSMISSION) let through = diffuse * real(saturate(glass.x));
     @if(TRANSMISSION) diffuse -= through;
     surface.base = StandardSurface(
@@ -233,7 +244,7 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
         f90,
         compensation,
     );
-    @if(SHEEN) surface.sheen = sheen_of(vertex.uv, f32(nov));
+    @if(SHEEN) surface.sheen = sheen_of(uv, f32(nov));
     @if(ANISOTROPY)
     surface.anisotropy = anisotropy_of(vertex, normal, side, surface.base.alpha);
 
@@ -241,23 +252,25 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     let slope = vec2<f32>(dpdx(vertex.position.z), dpdy(vertex.position.z));
     let on_screen = ALPHA_MODE != 2u;
     let visibility =
-        ambient_visibility(surface.base, vertex.uv, vertex.position, slope, on_screen);
+        ambient_visibility(surface.base, uv, vertex.position, slope, on_screen);
     var below = reflect_environment(
         surface, normal, view, roughness, dfg, visibility, vertex.position, vertex.world, on_screen,
     );
     @if(TRANSMISSION) below += vec3<f32>(through * (1.0 - specular_albedo(f0, f90, dfg)))
         * refract_scene(vertex, view, normal, f32(surface.base.alpha), glass.y);
     var radiance = add_layers(surface, normal, view, below, visibility);
-    let sun = frame.sun_illuminance * reflect_surface(surface, real3(frame.sun_direction))
-        * micro_visibility(vertex.uv, dot(normal, frame.sun_direction));
     let receiver = Receiver(vertex.world, geometric, vertex.position.xy, slope);
-    if any(sun > vec3<f32>(0.0)) {
-        radiance += sun * sun_visibility(receiver) * contact_visibility(receiver);
+    if SUN {
+        let sun = frame.sun_illuminance * reflect_surface(surface, real3(frame.sun_direction))
+            * micro_visibility(uv, dot(normal, frame.sun_direction));
+        if any(sun > vec3<f32>(0.0)) {
+            radiance += sun * sun_visibility(receiver) * contact_visibility(receiver);
+        }
     }
     radiance = add_punctual(radiance, surface, receiver);
     radiance *= cascade_tint(vertex.world);
     let emissive_exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
-    return radiance + emission(vertex.uv) * (emissive_exposure * layer_transmittance(surface));
+    return radiance + emission(uv) * (emissive_exposure * layer_transmittance(surface));
 }
 
 @fragment
@@ -268,7 +281,7 @@ fn fs_main(
     @if(MATERIAL_TABLE) material = materials[vertex.material];
     // Derivatives need every lane of the quad, so the discard comes last.
     let geometric = geometric_normal(vertex);
-    let base = base_color(vertex.uv, vertex.color);
+    let base = base_color(texture_uv(vertex), vertex.color);
     let side = face_sign(front_facing);
     var color = base.rgb;
     if (material.flags & MATERIAL_UNLIT) == 0u {

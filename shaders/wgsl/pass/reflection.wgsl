@@ -21,6 +21,7 @@ import package::lib::screen_ray::{
 import package::lib::unproject::{Projection, ndc_from_view, view_position, view_z};
 import package::shading::vertex::{
     SurfaceVertex, surface_vertex, face_sign, geometric_normal, smooth_normal, shading_normal,
+    texture_uv,
 };
 
 /// Settings. Mirrored by `layout::ReflectionUniforms`.
@@ -176,7 +177,7 @@ fn fs_main(
     let geometric = geometric_normal(vertex);
     let side = face_sign(front_facing);
     let normal = shading_normal(vertex, smooth_normal(vertex, geometric, side), side);
-    let traced = roughness_fade(metallic_roughness(vertex.uv).y, settings.most_roughness);
+    let traced = roughness_fade(metallic_roughness(texture_uv(vertex)).y, settings.most_roughness);
     if traced <= 0.0 || (material.flags & MATERIAL_UNLIT) != 0u {
         return NOTHING;
     }

@@ -3,7 +3,9 @@
 // Features: SHADOWS reads depth through a tent, SHADOW_SOFT depth with penumbrae, SHADOW_MOMENTS
 // moments. Without any every light reaches everything.
 
-import package::interface::shadow::{shadow, shadow_maps};
+import package::interface::shadow::{
+    shadow, shadow_maps, CASCADES, LAMP_SHADOWS, SHOW_CASCADES,
+};
 import package::lib::shadow::{
     normal_offset, shadow_uvz_from_clip, cascade_at, faded_visibility, cube_face_of,
 };
@@ -20,10 +22,12 @@ import package::shading::shadow_moments::moments_visibility;
 fn sun_visibility(receiver: Receiver) -> f32 {
     let ahead = ahead_m(receiver.world);
     let cascade = cascade_at(ahead, shadow.far_ends);
-    if cascade >= shadow.cascades {
+    if cascade >= CASCADES {
         return 1.0;
     }
-    return faded_visibility(map_visibility(cascade, receiver), ahead, shadow.inv_far2);
+    // A single map has a number that the compiler knows.
+    let visibility = map_visibility(min(cascade, CASCADES - 1u), receiver);
+    return faded_visibility(visibility, ahead, shadow.inv_far2);
 }
 
 @else
@@ -35,7 +39,7 @@ fn sun_visibility(receiver: Receiver) -> f32 {
 /// leads from the light to the receiver. A point light has six maps, a spot one.
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn light_visibility(first: u32, is_point: bool, from_light: vec3<f32>, receiver: Receiver) -> f32 {
-    if first == 0u {
+    if !LAMP_SHADOWS || first == 0u {
         return 1.0;
     }
     let face = select(0u, cube_face_of(from_light), is_point);
@@ -50,7 +54,7 @@ fn light_visibility(first: u32, is_point: bool, from_light: vec3<f32>, receiver:
 /// A color for each cascade, where they are to be seen; else white.
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn cascade_tint(world: vec3<f32>) -> vec3<f32> {
-    if shadow.show_cascades == 0u {
+    if !SHOW_CASCADES {
         return vec3<f32>(1.0);
     }
     let cascade = cascade_at(ahead_m(world), shadow.far_ends);
@@ -58,7 +62,7 @@ fn cascade_tint(world: vec3<f32>) -> vec3<f32> {
         vec3<f32>(1.0, 0.25, 0.25), vec3<f32>(0.25, 1.0, 0.25), vec3<f32>(0.25, 0.25, 1.0),
         vec3<f32>(1.0, 1.0, 0.25), vec3<f32>(1.0),
     );
-    return tints[min(select(4u, cascade, cascade < shadow.cascades), 4u)];
+    return tints[min(select(4u, cascade, cascade < CASCADES), 4u)];
 }
 
 @else

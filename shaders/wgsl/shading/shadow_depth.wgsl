@@ -12,22 +12,23 @@ import package::lib::shadow::{
 };
 import package::shading::shadow_map::{Receiver, texel_m, layer_uv, uvz_along};
 
-/// Whether depth `z` is lit, filtered over the four nearest texels.
-fn compare(map: ShadowMapUniforms, uv: vec2<f32>, z: f32) -> f32 {
-    let at = layer_uv(map, uv, 0.0);
-    return textureSampleCompareLevel(shadow_map, shadow_sampler, at, map.layer, z);
+/// Whether depth `z` is lit at a place in a layer, filtered over the four nearest texels.
+fn compare(layer: u32, at: vec2<f32>, z: f32) -> f32 {
+    return textureSampleCompareLevel(shadow_map, shadow_sampler, at, layer, z);
 }
 
 /// A tent of 3×3 texels.
 fn tent_visibility(map: ShadowMapUniforms, at: vec3<f32>) -> f32 {
     let taps = tent_3x3(at.xy, vec2<f32>(shadow.texels * map.uv_scale));
+    let low = layer_uv(map, vec2<f32>(taps.u.x, taps.v.x), 0.0);
+    let high = layer_uv(map, vec2<f32>(taps.u.y, taps.v.y), 0.0);
     let top = vec2<f32>(
-        compare(map, vec2<f32>(taps.u.x, taps.v.x), at.z),
-        compare(map, vec2<f32>(taps.u.y, taps.v.x), at.z),
+        compare(map.layer, low, at.z),
+        compare(map.layer, vec2<f32>(high.x, low.y), at.z),
     );
     let bottom = vec2<f32>(
-        compare(map, vec2<f32>(taps.u.x, taps.v.y), at.z),
-        compare(map, vec2<f32>(taps.u.y, taps.v.y), at.z),
+        compare(map.layer, vec2<f32>(low.x, high.y), at.z),
+        compare(map.layer, high, at.z),
     );
     let rows = vec2<f32>(dot(top, taps.column_weight), dot(bottom, taps.column_weight));
     return dot(rows, taps.row_weight);
@@ -94,7 +95,8 @@ fn soft_visibility(
     var lit = 0.0;
     for (var i = 0u; i < PCSS_TAPS; i++) {
         let offset = vogel_tap(i, PCSS_TAPS, turn) * radius / size;
-        lit += compare(map, at.xy + offset, at.z + dot(slope, offset));
+        let tap = layer_uv(map, at.xy + offset, 0.0);
+        lit += compare(map.layer, tap, at.z + dot(slope, offset));
     }
     return lit / f32(PCSS_TAPS);
 }

@@ -1,4 +1,7 @@
 // A surface as it is drawn: what the vertex stage hands on, and the normals made of it.
+//
+// Feature TEXTURED: the material has a texture; without it no texture coordinates are handed on,
+// and tangents only where anisotropy follows them.
 
 import package::interface::object::{
     objects, world_position, clip_position, world_normal, world_tangent,
@@ -6,7 +9,8 @@ import package::interface::object::{
 @if(TRANSMISSION)
 import package::interface::object::mesh_scale_m;
 import package::interface::material::{
-    material, MATERIAL_DOUBLE_SIDED, map_uv, normal_texture, normal_sampler,
+    material, MATERIAL_DOUBLE_SIDED, SLOT_NORMAL, has_texture, map_uv, normal_texture,
+    normal_sampler,
 };
 import package::lib::normal_map::{unpack_normal, vertex_normal, apply_normal_map};
 import package::lib::numerics::normalize_or;
@@ -17,7 +21,9 @@ struct SurfaceVertex {
     @location(0) world: vec3<f32>,
     @location(1) normal: vec3<f32>,
     /// World tangent; w is the sign of the bitangent in world space.
+    @if(TEXTURED || ANISOTROPY)
     @location(2) tangent: vec4<f32>,
+    @if(TEXTURED)
     @location(3) uv: vec4<f32>,
     @location(4) color: vec4<f32>,
     /// Meters a unit of the mesh, the mean over its axes.
@@ -42,13 +48,20 @@ fn surface_vertex(
     vertex.position = clip_position(world);
     vertex.world = world;
     vertex.normal = world_normal(normal, instance);
+    @if(TEXTURED || ANISOTROPY)
     vertex.tangent =
         vec4<f32>(world_tangent(tangent.xyz, instance), tangent.w * objects[instance].handedness);
-    vertex.uv = uv;
+    @if(TEXTURED) vertex.uv = uv;
     vertex.color = color;
     @if(TRANSMISSION) vertex.scale_m = mesh_scale_m(instance);
     @if(MATERIAL_TABLE) vertex.material = objects[instance].material;
     return vertex;
+}
+
+/// Both sets of texture coordinates, where a texture is there to be read.
+fn texture_uv(vertex: SurfaceVertex) -> vec4<f32> {
+    @if(TEXTURED) return vertex.uv;
+    @else return vec4<f32>(0.0);
 }
 
 /// The triangle's own normal, toward the viewer: window y runs downward, hence the order of the
@@ -76,8 +89,9 @@ fn smooth_normal(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32) -> vec3
 }
 
 /// Unit shading normal in world space: `smooth_side` (of `smooth_normal`) with the normal map.
+@if(TEXTURED)
 fn shading_normal(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32) -> vec3<f32> {
-    if material.normal_map.present == 0u {
+    if !has_texture(SLOT_NORMAL, material.normal_map) {
         return smooth_side;
     }
     let at = map_uv(material.normal_map, vertex.uv);
@@ -85,7 +99,13 @@ fn shading_normal(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32) -> v
     return mapped_normal(vertex, smooth_side, side, unpack_normal(texel, material.normal_scale));
 }
 
+@else
+fn shading_normal(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32) -> vec3<f32> {
+    return smooth_side;
+}
+
 /// A tangent-space normal in world space, facing the side that is seen.
+@if(TEXTURED)
 fn mapped_normal(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32, tangent_space: vec3<f32>)
     -> vec3<f32>
 {
