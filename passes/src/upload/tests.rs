@@ -57,10 +57,26 @@ fn built_in_scenes_upload_without_complaint() {
             }
             assert!(binding(MATERIAL_BINDINGS.len()).is_none());
             assert_eq!(uploaded.lobes(material), scene.materials[i].lobes());
+            for (slot, texture) in scene.materials[i].slots().iter().enumerate() {
+                assert_eq!(uploaded.texture_slots(material) & 1 << slot != 0, texture.is_some(), "{name}, slot {slot}");
+            }
             assert_eq!(uploaded.material_name(material), scene.materials[i].name);
         }
         // Vertices, indices and materials at least; images with a third more for their levels.
         assert!(uploaded.size_bytes > vertices * 60, "{name}");
+    }
+}
+
+/// The bits by which a shader knows what textures there are have the order of what is bound.
+#[test]
+fn slots_of_textures_are_numbered_as_they_are_bound() {
+    let text = framegraph_shaders::library::text("interface/material.wgsl").expect("an embedded file");
+    let textures = MATERIAL_BINDINGS.iter().filter_map(|name| name.strip_suffix("_texture"));
+    let slots: Vec<_> = textures.enumerate().collect();
+    assert_eq!(slots.len(), 15);
+    for (slot, name) in slots {
+        let constant = format!("const SLOT_{}: u32 = {slot}u;", name.to_uppercase());
+        assert!(text.contains(&constant), "`{constant}` is not in it");
     }
 }
 
