@@ -7,7 +7,7 @@ use framegraph_shaders::layout::{
     SpecularUniforms, TextureMap, TransmissionUniforms,
 };
 use framegraph_shaders::{Feature, Features};
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 /// The variables of `wgsl/interface/material.wgsl`, in the order in which [`GpuScene::material_binding`](super::GpuScene::material_binding) counts them: the
 /// factors, then for each of [`Material::slots`] its texture and its sampler, and the array of all factors.
@@ -63,7 +63,7 @@ pub fn features_of(lobes: Lobes) -> Features {
 pub fn material_uniforms(material: &Material) -> MaterialUniforms {
     let flag = |set: bool, bit: u32| if set { bit } else { 0 };
     let map = |slot: Option<TextureSlot>| {
-        slot.map_or(TextureMap::ABSENT, |slot| {
+        slot.map_or(TextureMap::IDENTITY, |slot| {
             let transform = slot.transform;
             TextureMap::new(slot.uv_set, transform.offset, transform.rotation_rad, transform.scale)
         })
@@ -89,8 +89,7 @@ pub fn material_uniforms(material: &Material) -> MaterialUniforms {
         metallic_roughness_map: map(material.metallic_roughness_texture),
         normal_map: map(material.normal_texture),
         occlusion_map: map(material.occlusion_texture),
-        // What nothing shines through is not fetched.
-        emissive_map: map(material.emissive_texture.filter(|_| material.emissive != Vec3::ZERO)),
+        emissive_map: map(material.emissive_texture),
         clear_coat: material.clear_coat.map_or_else(Default::default, |coat| ClearCoatUniforms {
             factor: coat.factor,
             roughness: coat.roughness,
@@ -148,7 +147,7 @@ mod tests {
     use framegraph_scene::TextureId;
     use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular, Transmission, Volume};
     use framegraph_scene::texture::UvTransform;
-    use glam::Mat3;
+    use glam::{Mat3, Vec3};
 
     /// Both sides spell KHR_texture_transform out; they must agree.
     #[test]
@@ -164,10 +163,10 @@ mod tests {
         };
         let packed = material_uniforms(&material);
         let map = packed.normal_map;
-        assert_eq!((map.uv_set, map.present), (1, 1));
+        assert_eq!(map.uv_set, 1);
         let columns = Mat3::from_cols(map.x_axis.extend(0.0), map.y_axis.extend(0.0), map.offset.extend(1.0));
         assert!(columns.abs_diff_eq(transform.matrix(), 1e-6));
-        assert_eq!(packed.base_color_map, TextureMap::ABSENT);
+        assert_eq!(packed.base_color_map, TextureMap::IDENTITY);
         assert_eq!(packed.flags, MATERIAL_UNLIT);
         assert_eq!((packed.alpha_cutoff, packed.metallic), (0.3, 1.0));
         assert_eq!(packed.emissive_exposure_weight, 1.0);

@@ -9,7 +9,7 @@ pub const MATERIAL_UNLIT: u32 = 1;
 /// Bit of [`MaterialUniforms::flags`]: back faces are drawn and shaded with reversed normals.
 pub const MATERIAL_DOUBLE_SIDED: u32 = 2;
 
-/// How texture coordinates of the mesh lead to a texture (KHR_texture_transform), and whether there is one.
+/// How texture coordinates of the mesh lead to a texture (KHR_texture_transform); that of no texture is not read.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct TextureMap {
@@ -21,31 +21,25 @@ pub struct TextureMap {
     pub offset: Vec2,
     /// Texture coordinate set of the mesh, 0 or 1.
     pub uv_set: u32,
-    /// 1 where the texture exists; 0 reads nothing, and the factor alone counts.
-    pub present: u32,
+    /// Padding to 8 bytes; zero.
+    pub _pad: u32,
 }
 
 impl Default for TextureMap {
     fn default() -> Self {
-        Self::ABSENT
+        Self::IDENTITY
     }
 }
 
 impl TextureMap {
-    /// No texture: the factor alone counts.
-    pub const ABSENT: Self = Self { x_axis: Vec2::X, y_axis: Vec2::Y, offset: Vec2::ZERO, uv_set: 0, present: 0 };
+    /// Set 0 as it is.
+    pub const IDENTITY: Self = Self { x_axis: Vec2::X, y_axis: Vec2::Y, offset: Vec2::ZERO, uv_set: 0, _pad: 0 };
 
     /// A texture with the transform of KHR_texture_transform, offset · rotation · scale:
     /// `rotation_rad` counter-clockwise in texture space, whose v runs downward.
     pub fn new(uv_set: u32, offset: Vec2, rotation_rad: f32, scale: Vec2) -> Self {
         let (sin, cos) = rotation_rad.sin_cos();
-        Self {
-            x_axis: Vec2::new(cos, -sin) * scale.x,
-            y_axis: Vec2::new(sin, cos) * scale.y,
-            offset,
-            uv_set,
-            present: 1,
-        }
+        Self { x_axis: Vec2::new(cos, -sin) * scale.x, y_axis: Vec2::new(sin, cos) * scale.y, offset, uv_set, _pad: 0 }
     }
 }
 
@@ -197,11 +191,11 @@ impl Default for MaterialUniforms {
             dielectric_f0: 0.04,
             flags: 0,
             _pad: 0,
-            base_color_map: TextureMap::ABSENT,
-            metallic_roughness_map: TextureMap::ABSENT,
-            normal_map: TextureMap::ABSENT,
-            occlusion_map: TextureMap::ABSENT,
-            emissive_map: TextureMap::ABSENT,
+            base_color_map: TextureMap::IDENTITY,
+            metallic_roughness_map: TextureMap::IDENTITY,
+            normal_map: TextureMap::IDENTITY,
+            occlusion_map: TextureMap::IDENTITY,
+            emissive_map: TextureMap::IDENTITY,
             clear_coat: ClearCoatUniforms::default(),
             sheen: SheenUniforms::default(),
             anisotropy: AnisotropyUniforms::default(),
@@ -214,7 +208,7 @@ impl Default for MaterialUniforms {
 #[cfg(test)]
 pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
     vec![
-        layout_of!(TextureMap { x_axis, y_axis, offset, uv_set, present }),
+        layout_of!(TextureMap { x_axis, y_axis, offset, uv_set, _pad }),
         layout_of!(MaterialUniforms {
             base_color,
             emissive,
@@ -278,6 +272,6 @@ mod tests {
             assert!((ours - theirs).length() < 1e-6, "{uv}: {ours} against {theirs}");
         }
         let none = TextureMap::new(0, Vec2::ZERO, 0.0, Vec2::ONE);
-        assert_eq!(TextureMap { present: 0, ..none }, TextureMap::ABSENT);
+        assert_eq!(none, TextureMap::IDENTITY);
     }
 }

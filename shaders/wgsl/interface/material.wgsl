@@ -9,7 +9,7 @@
 import package::lib::normal_map::unpack_normal;
 import package::lib::uv_transform::transform_uv;
 
-/// Where a texture lies on the mesh (KHR_texture_transform), and whether there is one.
+/// Where a texture lies on the mesh (KHR_texture_transform).
 /// Mirrored by `layout::TextureMap`.
 struct TextureMap {
     /// Columns of the 2×2 matrix rotation · scale.
@@ -18,8 +18,6 @@ struct TextureMap {
     offset: vec2<f32>,
     /// Which texture coordinate set of the mesh: 0 or 1.
     uv_set: u32,
-    /// 1 where the texture exists; 0 leaves the factor alone and reads nothing.
-    present: u32,
 }
 
 /// Clear coat (KHR_materials_clearcoat). Mirrored by `layout::ClearCoatUniforms`.
@@ -211,9 +209,9 @@ const SLOT_THICKNESS: u32 = 12u;
 const SLOT_SPECULAR: u32 = 13u;
 const SLOT_SPECULAR_COLOR: u32 = 14u;
 
-/// Whether the texture of a slot is to be read.
-fn has_texture(slot: u32, map: TextureMap) -> bool {
-    return (TEXTURES & (1u << slot)) != 0u && map.present != 0u;
+/// Whether the material has the texture of a slot.
+fn has_texture(slot: u32) -> bool {
+    return (TEXTURES & (1u << slot)) != 0u;
 }
 
 /// Texture coordinates of a map; `uv` holds set 0 in xy and set 1 in zw.
@@ -225,7 +223,7 @@ fn map_uv(map: TextureMap, uv: vec4<f32>) -> vec2<f32> {
 /// Linear base color with straight alpha: factor, texture and vertex color multiplied.
 fn base_color(uv: vec4<f32>, vertex_color: vec4<f32>) -> vec4<f32> {
     var color = material.base_color * vertex_color;
-    if has_texture(SLOT_BASE_COLOR, material.base_color_map) {
+    if has_texture(SLOT_BASE_COLOR) {
         let at = map_uv(material.base_color_map, uv);
         color *= textureSample(base_color_texture, base_color_sampler, at);
     }
@@ -235,7 +233,7 @@ fn base_color(uv: vec4<f32>, vertex_color: vec4<f32>) -> vec4<f32> {
 /// Metalness in x and perceptual roughness in y.
 fn metallic_roughness(uv: vec4<f32>) -> vec2<f32> {
     var values = vec2<f32>(material.metallic, material.roughness);
-    if has_texture(SLOT_METALLIC_ROUGHNESS, material.metallic_roughness_map) {
+    if has_texture(SLOT_METALLIC_ROUGHNESS) {
         let at = map_uv(material.metallic_roughness_map, uv);
         values *= textureSample(metallic_roughness_texture, metallic_roughness_sampler, at).bg;
     }
@@ -244,7 +242,7 @@ fn metallic_roughness(uv: vec4<f32>) -> vec2<f32> {
 
 /// Visibility of the ambient light from the occlusion texture, 0…1: 1 is unoccluded.
 fn occlusion(uv: vec4<f32>) -> f32 {
-    if !has_texture(SLOT_OCCLUSION, material.occlusion_map) {
+    if !has_texture(SLOT_OCCLUSION) {
         return 1.0;
     }
     let at = map_uv(material.occlusion_map, uv);
@@ -255,7 +253,7 @@ fn occlusion(uv: vec4<f32>) -> f32 {
 /// Emitted radiance before exposure.
 fn emission(uv: vec4<f32>) -> vec3<f32> {
     var color = material.emissive;
-    if has_texture(SLOT_EMISSIVE, material.emissive_map) {
+    if has_texture(SLOT_EMISSIVE) {
         let at = map_uv(material.emissive_map, uv);
         color *= textureSample(emissive_texture, emissive_sampler, at).rgb;
     }
@@ -267,10 +265,10 @@ fn emission(uv: vec4<f32>) -> vec3<f32> {
 fn clear_coat(uv: vec4<f32>) -> vec2<f32> {
     let coat = material.clear_coat;
     var values = vec2<f32>(coat.factor, coat.roughness);
-    if has_texture(SLOT_CLEAR_COAT, coat.map) {
+    if has_texture(SLOT_CLEAR_COAT) {
         values.x *= textureSample(clear_coat_texture, clear_coat_sampler, map_uv(coat.map, uv)).r;
     }
-    if has_texture(SLOT_CLEAR_COAT_ROUGHNESS, coat.roughness_map) {
+    if has_texture(SLOT_CLEAR_COAT_ROUGHNESS) {
         let at = map_uv(coat.roughness_map, uv);
         values.y *= textureSample(clear_coat_roughness_texture, clear_coat_roughness_sampler, at).g;
     }
@@ -282,7 +280,7 @@ fn clear_coat(uv: vec4<f32>) -> vec2<f32> {
 @if(CLEAR_COAT)
 fn clear_coat_tangent_normal(uv: vec4<f32>) -> vec3<f32> {
     let coat = material.clear_coat;
-    if !has_texture(SLOT_CLEAR_COAT_NORMAL, coat.normal_map) {
+    if !has_texture(SLOT_CLEAR_COAT_NORMAL) {
         return vec3<f32>(0.0, 0.0, 1.0);
     }
     let at = map_uv(coat.normal_map, uv);
@@ -295,12 +293,12 @@ fn clear_coat_tangent_normal(uv: vec4<f32>) -> vec3<f32> {
 fn sheen(uv: vec4<f32>) -> vec4<f32> {
     let given = material.sheen;
     var values = vec4<f32>(given.color, given.roughness);
-    if has_texture(SLOT_SHEEN_COLOR, given.color_map) {
+    if has_texture(SLOT_SHEEN_COLOR) {
         let at = map_uv(given.color_map, uv);
         let texel = textureSample(sheen_color_texture, sheen_color_sampler, at).rgb;
         values *= vec4<f32>(texel, 1.0);
     }
-    if has_texture(SLOT_SHEEN_ROUGHNESS, given.roughness_map) {
+    if has_texture(SLOT_SHEEN_ROUGHNESS) {
         let at = map_uv(given.roughness_map, uv);
         values.w *= textureSample(sheen_roughness_texture, sheen_roughness_sampler, at).a;
     }
@@ -314,7 +312,7 @@ fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
     let given = material.anisotropy;
     var direction = vec2<f32>(1.0, 0.0);
     var strength = given.strength;
-    if has_texture(SLOT_ANISOTROPY, given.map) {
+    if has_texture(SLOT_ANISOTROPY) {
         let at = map_uv(given.map, uv);
         let texel = textureSample(anisotropy_texture, anisotropy_sampler, at).xyz;
         strength *= texel.z;
@@ -339,11 +337,11 @@ fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
 fn transmission(uv: vec4<f32>) -> vec2<f32> {
     let given = material.transmission;
     var values = vec2<f32>(given.factor, given.thickness);
-    if has_texture(SLOT_TRANSMISSION, given.map) {
+    if has_texture(SLOT_TRANSMISSION) {
         let at = map_uv(given.map, uv);
         values.x *= textureSample(transmission_texture, transmission_sampler, at).r;
     }
-    if has_texture(SLOT_THICKNESS, given.thickness_map) {
+    if has_texture(SLOT_THICKNESS) {
         let at = map_uv(given.thickness_map, uv);
         values.y *= textureSample(thickness_texture, thickness_sampler, at).g;
     }
@@ -357,11 +355,11 @@ fn specular_factors(uv: vec4<f32>) -> vec4<f32> {
     let given = material.specular;
     var color = given.color;
     var factor = given.factor;
-    if has_texture(SLOT_SPECULAR_COLOR, given.color_map) {
+    if has_texture(SLOT_SPECULAR_COLOR) {
         let at = map_uv(given.color_map, uv);
         color *= textureSample(specular_color_texture, specular_color_sampler, at).rgb;
     }
-    if has_texture(SLOT_SPECULAR, given.map) {
+    if has_texture(SLOT_SPECULAR) {
         factor *= textureSample(specular_texture, specular_sampler, map_uv(given.map, uv)).a;
     }
     let f0 = min(material.dielectric_f0 * color, vec3<f32>(1.0));

@@ -151,7 +151,7 @@ fn coat_of(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32, view: vec3<
     let roughness = shaded_roughness(values.y, smooth_side);
     var normal = smooth_side;
     @if(TEXTURED) {
-        if has_texture(SLOT_CLEAR_COAT_NORMAL, material.clear_coat.normal_map) {
+        if has_texture(SLOT_CLEAR_COAT_NORMAL) {
             normal = mapped_normal(vertex, smooth_side, side, clear_coat_tangent_normal(vertex.uv));
         }
     }

@@ -91,7 +91,7 @@ fn smooth_normal(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32) -> vec3
 /// Unit shading normal in world space: `smooth_side` (of `smooth_normal`) with the normal map.
 @if(TEXTURED)
 fn shading_normal(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32) -> vec3<f32> {
-    if !has_texture(SLOT_NORMAL, material.normal_map) {
+    if !has_texture(SLOT_NORMAL) {
         return smooth_side;
     }
     let at = map_uv(material.normal_map, vertex.uv);
