@@ -112,6 +112,11 @@ impl Part {
         self.texture
     }
 
+    /// The format that it is seen through, where that is another than the texture's.
+    pub const fn view_format(self) -> Option<Format> {
+        self.range.view
+    }
+
     /// The same part, without the right to write it.
     pub const fn read_only(self) -> ReadOnly {
         ReadOnly { tag: self.texture.tag, version: self.texture.version, range: self.range }

@@ -6,13 +6,13 @@
 use crate::error::PassError;
 use crate::indirect::{ARGUMENTS_BYTES, DrawList, LEAST_RUN, draws_indirectly};
 use crate::program::{Interface, Program, ProgramDesc, Programs};
-use crate::upload::{GpuScene, InstanceDraw, MATERIAL_BINDINGS, features_of};
+use crate::upload::{GpuScene, InstanceDraw, MATERIAL_BINDINGS, TEXTURE_TRAITS, features_of};
 use framegraph_scene::{Batch, Lobes, MaterialId};
 use framegraph_shaders::layout::{
-    STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexFormat,
-    stream_stride_bytes,
+    OBJECT_ATTRIBUTES, ObjectAttributes, STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION,
+    TRAIT_DOUBLE_SIDED, VERTEX_ATTRIBUTES, VertexFormat, stream_stride_bytes,
 };
-use framegraph_shaders::{Feature, Module};
+use framegraph_shaders::{Feature, Features, Module};
 use framegraph_wgpu::{Binding, Constants, Cx, Depth, Output, Raster, RasterPipeline, RecordError, VertexBuffer};
 use std::sync::Arc;
 use wgpu::{Buffer, Face, FrontFace, PrimitiveState, VertexAttribute, VertexStepMode};
@@ -22,10 +22,25 @@ use wgpu::{Buffer, Face, FrontFace, PrimitiveState, VertexAttribute, VertexStepM
 pub struct SurfaceVariant {
     /// The lobes of its material.
     pub lobes: Lobes,
-    /// The textures of its material, a bit for each of its [slots](framegraph_scene::Material::slots).
-    pub textures: u32,
+    /// What its material has ([`material_traits`](crate::upload::material_traits)).
+    pub traits: u32,
+    /// Its mesh has colors.
+    pub colored: bool,
     /// Its material is taken from an array, where the shader can ([`Feature::MATERIAL_TABLE`]).
     pub material_table: bool,
+    /// Instances bring their objects along ([`Instances::Stream`]).
+    pub instance_stream: bool,
+}
+
+impl SurfaceVariant {
+    /// The features of how vertices come to a shader.
+    #[must_use]
+    pub fn vertex_features(self) -> Features {
+        Features::NONE
+            .with_if(Feature::INSTANCE_STREAM, self.instance_stream)
+            .with_if(Feature::TEXTURED, self.traits & TEXTURE_TRAITS > 0)
+            .with_if(Feature::VERTEX_COLORS, self.colored)
+    }
 }
 
 /// Finds the program for a variant.
@@ -36,14 +51,35 @@ pub type ProgramOf<'a> = dyn Fn(SurfaceVariant) -> Result<Arc<Program>, PassErro
 pub struct InstanceSource<'a> {
     /// Meshes, materials and textures.
     pub scene: &'a GpuScene,
-    /// `layout::ObjectUniforms` of each instance, by its number.
-    pub objects: &'a Buffer,
-    /// Where the zero point of each instance's mesh is, relative to the eye, by its number.
-    pub origins: &'a Buffer,
-    /// Vertex buffer of instance numbers, of which batches are ranges.
-    pub numbers: &'a Buffer,
+    /// Where instances are, and what draws take of them.
+    pub instances: Instances<'a>,
     /// Arguments of long lists of draws.
     pub arguments: &'a Buffer,
+}
+
+/// The stream of instances, of which batches are ranges.
+#[derive(Clone, Copy, Debug)]
+pub enum Instances<'a> {
+    /// A vertex buffer of `layout::ObjectAttributes`, which shaders need nothing else beside.
+    Stream(&'a Buffer),
+    /// Numbers of elements of other buffers.
+    Numbers {
+        /// A vertex buffer.
+        numbers: &'a Buffer,
+        /// `layout::ObjectUniforms` of each instance, by its number.
+        objects: &'a Buffer,
+        /// Where the zero point of each instance's mesh is, relative to the eye, by its number.
+        origins: &'a Buffer,
+    },
+}
+
+impl<'a> Instances<'a> {
+    /// The vertex buffer.
+    const fn buffer(self) -> &'a Buffer {
+        match self {
+            Self::Stream(buffer) | Self::Numbers { numbers: buffer, .. } => buffer,
+        }
+    }
 }
 
 /// How batches of instances are drawn.
@@ -52,7 +88,7 @@ pub struct SurfaceDraw<'a> {
     pub program: &'a ProgramOf<'a>,
     /// What the pass binds in group 0, in the order of its interface.
     pub frame: &'a [Option<Binding>],
-    /// Values of the constants of the pass's interface behind the first, [`Self::TEXTURES`]; those that a shader lacks are left
+    /// Values of the constants of the pass's interface behind the first, [`Self::TRAITS`]; those that a shader lacks are left
     /// out.
     pub constants: &'a [f64],
     /// Depth test.
@@ -85,7 +121,8 @@ impl DepthDraw<'_> {
         let of = |vertex, fragment| ProgramDesc { vertex, fragment, ..ProgramDesc::new(shader, interface) };
         let programs_of = [of("vs_opaque", None), of("vs_mask", Some("fs_mask"))];
         for (desc, batches) in programs_of.iter().zip(*batches) {
-            let program = |_| programs.get(desc);
+            let program =
+                |variant: SurfaceVariant| programs.get(&ProgramDesc { features: &variant.vertex_features(), ..*desc });
             let surface = SurfaceDraw { program: &program, frame, constants: &[], depth: depth.clone(), colors: &[] };
             surface.draw(batches, from, cx)?;
         }
@@ -97,18 +134,22 @@ impl DepthDraw<'_> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct PipelineKey {
     surface: SurfaceVariant,
-    double_sided: bool,
     mirrored: bool,
 }
 
 impl PipelineKey {
     /// That of an instance, `indirect` where many are drawn by one call.
-    fn of(instance: &InstanceDraw, indirect: bool, scene: &GpuScene) -> Self {
-        let InstanceDraw { double_sided, mirrored, material, .. } = *instance;
-        let material_table = indirect && scene.is_in_table(material);
-        let surface =
-            SurfaceVariant { lobes: scene.lobes(material), textures: scene.texture_slots(material), material_table };
-        Self { surface, double_sided, mirrored }
+    fn of(instance: &InstanceDraw, indirect: bool, from: InstanceSource<'_>) -> Self {
+        let InstanceDraw { mesh, material, mirrored } = *instance;
+        let scene = from.scene;
+        let surface = SurfaceVariant {
+            lobes: scene.lobes(material),
+            traits: scene.traits(material),
+            colored: scene.mesh(mesh).colored,
+            material_table: indirect && scene.is_in_table(material),
+            instance_stream: matches!(from.instances, Instances::Stream(_)),
+        };
+        Self { surface, mirrored }
     }
 }
 
@@ -118,7 +159,8 @@ struct SharedState {
     program: Arc<Program>,
     pipeline: RasterPipeline,
     frame: wgpu::BindGroup,
-    objects: wgpu::BindGroup,
+    /// Group 2, where objects are read from buffers.
+    objects: Option<wgpu::BindGroup>,
     materials: Materials,
     /// By the number of [`Materials::group`], those that a draw asked for.
     groups: Vec<Option<wgpu::BindGroup>>,
@@ -176,8 +218,8 @@ impl SharedState {
 }
 
 impl SurfaceDraw<'_> {
-    /// The first constant of a pass that draws surfaces: the textures of the material.
-    pub const TEXTURES: &'static str = "TEXTURES";
+    /// The first constant of a pass that draws surfaces: what the material has.
+    pub const TRAITS: &'static str = "MATERIAL_TRAITS";
 
     /// Draws a list of the scene's instances, in order. What a draw has in common with the one before it is not set again, and
     /// batches in a row that differ in their arguments alone are one call.
@@ -185,14 +227,14 @@ impl SurfaceDraw<'_> {
     /// # Errors
     /// What the shader or the device refuses.
     pub fn draw(&self, list: &DrawList, from: InstanceSource<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let InstanceSource { scene, numbers, arguments, .. } = from;
+        let InstanceSource { scene, instances, arguments } = from;
         if list.is_empty() {
             return Ok(());
         }
         let pass = cx.render_pass()?;
         pass.set_vertex_buffer(STREAM_POSITION, scene.positions.slice(..));
         pass.set_vertex_buffer(STREAM_ATTRIBUTES, scene.attributes.slice(..));
-        pass.set_vertex_buffer(STREAM_INSTANCE, numbers.slice(..));
+        pass.set_vertex_buffer(STREAM_INSTANCE, instances.buffer().slice(..));
         pass.set_vertex_buffer(STREAM_EARLIER, scene.earlier_positions().slice(..));
         let first_arguments = list.first_arguments().filter(|_| draws_indirectly(cx.gpu()));
         let indirect = first_arguments.is_some();
@@ -204,7 +246,7 @@ impl SurfaceDraw<'_> {
         let mut at = 0;
         while at < list.len() {
             let instance = &scene.instances[list[at].instance as usize];
-            let key = PipelineKey::of(instance, indirect, scene);
+            let key = PipelineKey::of(instance, indirect, from);
             let state = match set {
                 Some(state) if states[state].key == key => state,
                 _ => {
@@ -219,7 +261,9 @@ impl SurfaceDraw<'_> {
                     let pass = cx.render_pass()?;
                     pass.set_pipeline(pipeline);
                     pass.set_bind_group(0, frame, &[]);
-                    pass.set_bind_group(2, objects, &[]);
+                    if let Some(objects) = objects {
+                        pass.set_bind_group(2, objects, &[]);
+                    }
                     (set, bound) = (Some(state), None);
                     state
                 }
@@ -243,7 +287,7 @@ impl SurfaceDraw<'_> {
             }
             let goes_on = |batch: &&Batch| {
                 let other = &scene.instances[batch.instance as usize];
-                PipelineKey::of(other, indirect, scene) == key
+                PipelineKey::of(other, indirect, from) == key
                     && materials.group(other.material) == group
                     && scene.mesh(other.mesh).short == short
             };
@@ -279,25 +323,28 @@ impl SurfaceDraw<'_> {
         let Self { program, frame, constants, depth, colors, .. } = self;
         let program = program(key.surface)?;
         fits(&program, key.surface.lobes, from.scene.material_name(material), &cx.gpu().device.limits())?;
-        let buffers = vertex_buffers();
+        let streamed = key.surface.instance_stream;
+        let buffers = vertex_buffers(streamed);
         let buffers: Vec<VertexBuffer<'_>> = buffers
             .iter()
             .enumerate()
             .map(|(stream, attributes)| VertexBuffer {
-                stride_bytes: stream_stride_bytes(stream as u32),
+                stride_bytes: match stream as u32 {
+                    STREAM_INSTANCE if streamed => size_of::<ObjectAttributes>() as u64,
+                    stream => stream_stride_bytes(stream),
+                },
                 step: if stream as u32 == STREAM_INSTANCE { VertexStepMode::Instance } else { VertexStepMode::Vertex },
                 attributes,
             })
             .collect();
-        let constants: Vec<f64> =
-            std::iter::once(key.surface.textures.into()).chain(constants.iter().copied()).collect();
+        let constants: Vec<f64> = std::iter::once(key.surface.traits.into()).chain(constants.iter().copied()).collect();
         let pipeline = cx.raster_pipeline(&Raster {
             vertex: program.vertex,
             fragment: program.fragment,
             constants: Constants(&program.constants(&constants)),
             buffers: &buffers,
             primitive: PrimitiveState {
-                cull_mode: if key.double_sided { None } else { Some(Face::Back) },
+                cull_mode: if key.surface.traits & 1 << TRAIT_DOUBLE_SIDED != 0 { None } else { Some(Face::Back) },
                 front_face: if key.mirrored { FrontFace::Cw } else { FrontFace::Ccw },
                 ..PrimitiveState::default()
             },
@@ -306,8 +353,14 @@ impl SurfaceDraw<'_> {
             ..Raster::new(program.shader())
         })?;
         let frame = program.bind(cx, &pipeline, 0, |slot| frame.get(slot).cloned().flatten())?;
-        let placement = [from.objects, from.origins];
-        let objects = program.bind(cx, &pipeline, 2, |slot| Some(placement.get(slot).copied()?.clone().into()))?;
+        let objects = match from.instances {
+            Instances::Stream(_) => None,
+            Instances::Numbers { objects, origins, .. } => {
+                let placement = [objects, origins];
+                let binding = |slot: usize| Some(placement.get(slot).copied()?.clone().into());
+                Some(program.bind(cx, &pipeline, 2, binding)?)
+            }
+        };
         let materials = Materials::of(&program);
         Ok(SharedState { key, program, pipeline, frame, objects, materials, groups: Vec::new() })
     }
@@ -325,10 +378,11 @@ pub(crate) fn fits(program: &Program, lobes: Lobes, material: &str, limits: &wgp
     Ok(())
 }
 
-/// The attributes of the vertex streams, as wgpu takes them.
-fn vertex_buffers() -> [Vec<VertexAttribute>; 4] {
+/// The attributes of the vertex streams, as wgpu takes them; `streamed` if instances bring their objects along.
+fn vertex_buffers(streamed: bool) -> [Vec<VertexAttribute>; 4] {
     [STREAM_POSITION, STREAM_ATTRIBUTES, STREAM_INSTANCE, STREAM_EARLIER].map(|stream| {
-        let own = VERTEX_ATTRIBUTES.iter().filter(|a| a.stream == stream);
+        let all: &[_] = if streamed && stream == STREAM_INSTANCE { &OBJECT_ATTRIBUTES } else { &VERTEX_ATTRIBUTES };
+        let own = all.iter().filter(|a| a.stream == stream);
         own.map(|a| VertexAttribute {
             format: vertex_format(a.format),
             offset: a.offset_bytes,

@@ -93,7 +93,7 @@ mod tests {
 
     #[test]
     fn arguments_are_those_of_the_direct_draw() {
-        let mesh = MeshRange { short: true, first_index: 30, index_count: 6, base_vertex: -2 };
+        let mesh = MeshRange { first_index: 30, index_count: 6, base_vertex: -2, ..MeshRange::default() };
         let batch = |first| Batch { instance: 7, first, count: 3 };
         let mut long = DrawList::from((0..LEAST_BATCHES as u32).map(batch).collect::<Vec<_>>());
         let mut short = DrawList::from(vec![batch(0); LEAST_BATCHES - 1]);

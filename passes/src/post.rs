@@ -157,6 +157,8 @@ pub struct Post {
 pub struct PostIo {
     hdr: View,
     bloom: Option<MixViews>,
+    /// What the target is seen through.
+    view: Option<Format>,
     /// The picture: sRGB encoded, by the target's format or (for an edge filter) by the shader; linear before the last
     /// effect.
     pub ldr: Texture,
@@ -193,7 +195,7 @@ impl Pass for Post {
             _ => ("ldr", if self.for_fxaa { Format::Rgba8Unorm } else { Format::Rgba8UnormSrgb }),
         };
         let into = pass.target(self.into, name, TextureDesc::new(extent, format));
-        Ok(PostIo { hdr, bloom, ldr: pass.color(into, Intent::Overwrite)? })
+        Ok(PostIo { hdr, bloom, view: into.view_format(), ldr: pass.color(into, Intent::Overwrite)? })
     }
 }
 
@@ -286,8 +288,9 @@ impl Post {
                     (effect, Vec::new(), names.into_iter().zip([table.view.into(), sampler]).collect())
                 }
                 PostEffect::Encode => {
+                    let written = io.view.map_or_else(|| cx.format_of(io.ldr), Ok)?;
                     let constants = vec![
-                        (const { SettingName::new("OUTPUT_ENCODED") }, flag(!cx.format_of(io.ldr)?.is_srgb())),
+                        (const { SettingName::new("OUTPUT_ENCODED") }, flag(!written.is_srgb())),
                         (const { SettingName::new("INPUT_ENCODED") }, flag(settings.by != GradeBy::Direct)),
                         (const { SettingName::new("LUMA_IN_ALPHA") }, flag(*for_fxaa)),
                     ];

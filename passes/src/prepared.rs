@@ -140,6 +140,11 @@ impl Placements {
         self.0.iter().map(|chunk| chunk.objects.len()).sum()
     }
 
+    /// What shaders read of an instance.
+    pub(crate) fn object(&self, instance: usize) -> Option<&ObjectUniforms> {
+        self.0.get(instance / CHUNK)?.objects.get(instance % CHUNK)
+    }
+
     /// Model to world space of an instance.
     pub(crate) fn of(&self, instance: usize) -> Option<&DMat4> {
         self.0.get(instance / CHUNK)?.world_from_model.get(instance % CHUNK)

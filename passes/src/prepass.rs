@@ -13,10 +13,8 @@ pub const DEPTH_FORMAT: Format = Format::Depth32Float;
 
 static SHADER: Module<'static> = library::pass("pass/prepass.wgsl").unwrap();
 
-static INTERFACE: Interface = Interface {
-    groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects", "origins"]],
-    constants: &[SurfaceDraw::TEXTURES],
-};
+static INTERFACE: Interface =
+    Interface { groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &[SurfaceDraw::TRAITS] };
 
 /// Draws opaque and masked surfaces into a new depth texture; depth is reversed and cleared to the far plane.
 #[derive(Clone, Copy, Debug)]

@@ -269,7 +269,7 @@ mod tests {
                 "shadow_sampler",
                 "shadow_map",
                 "shadow",
-                "shadow_maps",
+                "local_maps",
                 "light_sampler",
                 "lights",
                 "frame",

@@ -40,7 +40,7 @@ const LIGHT_CONSTANTS: [&str; 3] = ["BENT_NORMALS", "SUN", "LAMPS"];
 /// The material's, those of shading, of light and of shadows.
 const CONSTANTS: [&str; 1 + Shading::CONSTANTS.len() + LIGHT_CONSTANTS.len() + ShadowBindings::CONSTANTS.len()] = {
     let parts: [&[&str]; 3] = [&Shading::CONSTANTS, &LIGHT_CONSTANTS, &ShadowBindings::CONSTANTS];
-    let mut names = [SurfaceDraw::TEXTURES; _];
+    let mut names = [SurfaceDraw::TRAITS; _];
     let (mut at, mut part) = (1, 0);
     while part < parts.len() {
         let mut index = 0;
@@ -233,9 +233,9 @@ impl SurfaceBindings {
         if lobes.contains(Lobe::Transmission) && !self.transmits {
             return Err(PassError::TransmissionUndeclared);
         }
-        let features = features_of(lobes).iter().fold(self.features.clone(), Features::with);
-        let features = features.with_if(Feature::MATERIAL_TABLE, material_table);
-        let features = &features.with_if(Feature::TEXTURED, variant.textures > 0);
+        let vertices = variant.vertex_features();
+        let features = features_of(lobes).iter().chain(vertices.iter()).fold(self.features.clone(), Features::with);
+        let features = &features.with_if(Feature::MATERIAL_TABLE, material_table);
         programs.get(&ProgramDesc { features, epilogue: &self.epilogue, ..ProgramDesc::new(&SURFACE_SHADER, &SURFACE) })
     }
 

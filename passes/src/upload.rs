@@ -19,7 +19,7 @@ mod textures;
 pub use environment::GpuEnvironment;
 pub use error::UploadError;
 pub use instances::InstanceDraw;
-pub use material::{MATERIAL_BINDINGS, features_of};
+pub use material::{MATERIAL_BINDINGS, TEXTURE_TRAITS, features_of, material_traits};
 pub use mesh_range::MeshRange;
 pub use scene::GpuScene;
 

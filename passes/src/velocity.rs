@@ -23,7 +23,7 @@ static SHADER: Module<'static> = library::pass("pass/velocity.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface {
     groups: &[&["frame", "motions"], &MATERIAL_BINDINGS, &["objects", "origins"]],
-    constants: &[SurfaceDraw::TEXTURES],
+    constants: &[SurfaceDraw::TRAITS],
 };
 
 /// Draws velocity of opaque and masked surfaces that moved since the frame before ([`CameraView::after`](crate::CameraView::after)).
@@ -61,8 +61,9 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
         let of_moved = |batches: &[Batch]| seen.view.draws.only(batches, |instance| seen.view.moves(instance as usize));
         for (batches, fragment) in seen.view.draws.depth.iter().zip(["fs_opaque", "fs_mask"]) {
             let surfaces = SurfaceDraw {
-                program: &|_| {
-                    programs.get(&ProgramDesc { fragment: Some(fragment), ..ProgramDesc::new(&SHADER, &INTERFACE) })
+                program: &|variant| {
+                    let (fragment, features) = (Some(fragment), &variant.vertex_features());
+                    programs.get(&ProgramDesc { fragment, features, ..ProgramDesc::new(&SHADER, &INTERFACE) })
                 },
                 frame: &frame,
                 constants: &[],

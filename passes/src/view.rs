@@ -9,7 +9,7 @@
 mod gpu;
 mod motion;
 
-pub use gpu::{GpuView, ViewId, Views};
+pub use gpu::{GpuView, MOST_STREAMED, ViewId, Views};
 
 use crate::draws::ViewDraws;
 use crate::ibl::ImageLight;
@@ -111,6 +111,10 @@ pub struct CameraView {
     pub origins: Vec<Vec4>,
     /// How each instance is turned and scaled.
     pub placements: Placements,
+    /// Whether draws bring the objects of their instances along: a copy of each for each list that draws it, as often as the
+    /// view changes. So it is made up to [`MOST_STREAMED`] instances; vertices of more rather read the scene's, which stay where
+    /// they are. The picture is the same.
+    pub streams_objects: bool,
     /// Where instances are and were in clip space, where any has moved since the frame before; of others it is zeros.
     pub motions: Vec<MotionUniforms>,
     /// Shadow maps, relative to this view's eye; none for a frame without.
@@ -175,7 +179,9 @@ impl CameraView {
             },
             || renderables.origins().iter().map(from_eye).collect(),
         );
-        Self { draws, visible, origins, placements: prepared.placements().clone(), ..self }
+        let placements = prepared.placements().clone();
+        let streams_objects = placements.count() <= MOST_STREAMED;
+        Self { draws, visible, origins, placements, streams_objects, ..self }
     }
 
     /// What is seen and what lights it are found side by side.
@@ -324,6 +330,7 @@ impl CameraView {
             draws: ViewDraws::default(),
             origins: Vec::new(),
             placements: Placements::default(),
+            streams_objects: true,
             motions: Vec::new(),
             shadows: None,
             eye: camera.eye,

@@ -44,8 +44,12 @@ impl Feature {
     pub const SPECULAR: Self = Self("SPECULAR");
     /// The material has a texture: its coordinates come with the vertices.
     pub const TEXTURED: Self = Self("TEXTURED");
+    /// The mesh has colors at its vertices.
+    pub const VERTEX_COLORS: Self = Self("VERTEX_COLORS");
     /// Materials are elements of one array, each surface's by the number that its instance has; without it each is bound alone.
     pub const MATERIAL_TABLE: Self = Self("MATERIAL_TABLE");
+    /// What a vertex has to know of its object comes in the stream of instances; without it the object's number does.
+    pub const INSTANCE_STREAM: Self = Self("INSTANCE_STREAM");
     /// Shading computes in f16 where that is safe; the device must have `SHADER_F16`.
     pub const HALF: Self = Self("HALF");
 
@@ -65,7 +69,9 @@ impl Feature {
         Self::VELOCITY,
         Self::ENVIRONMENT_MAP,
         Self::TEXTURED,
+        Self::VERTEX_COLORS,
         Self::MATERIAL_TABLE,
+        Self::INSTANCE_STREAM,
         Self::HALF,
     ];
 

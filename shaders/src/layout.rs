@@ -73,7 +73,7 @@ pub use ibl::{IBL_KERNEL_ROWS, IblKernelUniforms, IblUniforms};
 pub use light::{LightError, LightUniforms, Punctual};
 pub use material::*;
 pub use motion::MotionUniforms;
-pub use object::ObjectUniforms;
+pub use object::{ObjectAttributes, ObjectUniforms};
 pub use occlusion::{BilateralUniforms, ConeUniforms, OcclusionUniforms, Projection};
 pub use post::{EdgeFade, EdgeFadeUniforms, EncodingUniforms, ExposureUniforms, FxaaUniforms, VignetteUniforms};
 pub use reflection::ReflectionUniforms;
@@ -83,6 +83,6 @@ pub use sky::SkyUniforms;
 pub use taa::TaaUniforms;
 pub use tone::{GenericCurve, ToneMap};
 pub use vertex::{
-    STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION, VERTEX_ATTRIBUTES, VertexAttribute,
-    VertexAttributes, VertexFormat, VertexPosition, stream_stride_bytes,
+    OBJECT_ATTRIBUTES, STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION, VERTEX_ATTRIBUTES,
+    VertexAttribute, VertexAttributes, VertexFormat, VertexPosition, stream_stride_bytes,
 };

@@ -7,7 +7,7 @@ use crate::upload::{GpuScene, MATERIAL_BINDINGS};
 use crate::view::{CameraView, ViewId, Views};
 use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Previous, Texture, TextureDesc, View};
 use framegraph_shaders::layout::ReflectionUniforms;
-use framegraph_shaders::{Feature, Features, Module, library};
+use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Record, RecordError, SamplerDesc};
 
 /// Format of what was found: radiance as the frame has it, and how much it counts.
@@ -21,7 +21,7 @@ static INTERFACE: Interface = Interface {
         &MATERIAL_BINDINGS,
         &["objects", "origins"],
     ],
-    constants: &[SurfaceDraw::TEXTURES],
+    constants: &[SurfaceDraw::TRAITS],
 };
 
 /// Follows the mirrored ray of each pixel of opaque and masked surfaces through the structure of a view. Positions and depths
@@ -84,7 +84,7 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
         ];
         let program = |variant: SurfaceVariant| {
-            let features = &Features::NONE.with_if(Feature::TEXTURED, variant.textures > 0);
+            let features = &variant.vertex_features();
             programs.get(&ProgramDesc { features, ..ProgramDesc::new(&SHADER, &INTERFACE) })
         };
         let surfaces =

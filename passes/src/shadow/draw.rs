@@ -20,7 +20,7 @@ static SHADER: Module<'static> = library::pass("pass/shadow.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface {
     groups: &[&["shadow_view"], &MATERIAL_BINDINGS, &["objects", "origins"]],
-    constants: &[SurfaceDraw::TEXTURES],
+    constants: &[SurfaceDraw::TRAITS],
 };
 
 /// A layer of the shadow maps, and which of its maps a pass draws.
@@ -136,7 +136,7 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
             let batches = view.view.draws.casters.get(number).map_or(&[][..], |own| own);
             for (desc, batches) in [opaque, masked].into_iter().zip(batches) {
                 let draw = SurfaceDraw {
-                    program: &|_| programs.get(&desc),
+                    program: &|variant| programs.get(&ProgramDesc { features: &variant.vertex_features(), ..desc }),
                     frame: &frame,
                     constants: &[],
                     depth: Depth { bias, ..Depth::NEARER },

@@ -36,7 +36,7 @@ pub(crate) struct ShadowBindings {
 impl ShadowBindings {
     /// Names of the variables.
     pub const NAMES: [&'static str; 6] =
-        ["shadow", "shadow_maps", "shadow_map", "shadow_sampler", "shadow_depth", "shadow_moments"];
+        ["shadow", "local_maps", "shadow_map", "shadow_sampler", "shadow_depth", "shadow_moments"];
 
     /// Names of the `override` constants: steps of the ray of contact shadows, and what there are maps of.
     pub const CONSTANTS: [&'static str; 4] = ["CONTACT_STEPS", "CASCADES", "LAMP_SHADOWS", "SHOW_CASCADES"];
@@ -54,7 +54,7 @@ impl ShadowBindings {
         let texture: Binding = cx.view_part(maps, part)?.into();
         let bindings = [
             cx.uniform(&shadows.uniforms),
-            view.shadow_maps.clone().into(),
+            view.local_maps.clone().into(),
             texture.clone(),
             cx.sampler(SamplerDesc::SHADOW).into(),
             texture.clone(),

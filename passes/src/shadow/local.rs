@@ -83,8 +83,7 @@ pub(super) fn layers(bounds: &Aabb, lights: &[&Light], eye: DVec3, settings: &Sh
     atlas::layers(squares(lights, &chosen(lights, bounds, eye, settings)))
 }
 
-/// For each light of `lights` the number of its first map, counted from that of the first map behind the cascades, if it has
-/// any; and the maps.
+/// For each light of `lights` the number of its first map, if it has any; and the maps.
 pub(super) fn fit(
     scene: &Renderables,
     lights: &[&Light],
@@ -99,7 +98,7 @@ pub(super) fn fit(
     let (mut starts, mut maps) = (vec![None; lights.len()], Vec::new());
     for (index, _) in chosen {
         let light = lights[index];
-        starts[index] = Some(u32::from(cascades) + maps.len() as u32);
+        starts[index] = Some(maps.len() as u32);
         let (position, far_m) = (light.position, reach_m(light, &bounds));
         // As many as the light has squares.
         match light.kind {

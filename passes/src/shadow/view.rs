@@ -16,7 +16,7 @@ const BULB_M: f32 = 0.02;
 /// other layers.
 #[derive(Clone, Debug)]
 pub struct ViewShadows {
-    /// What shaders read that is the same for all maps.
+    /// What shaders read that is the same for all maps, and of the sun's.
     pub uniforms: ShadowUniforms,
     /// How many of the maps are cascades of the sun.
     pub cascades: usize,
@@ -24,7 +24,7 @@ pub struct ViewShadows {
     pub maps: Vec<ShadowMap>,
     /// What each map is made of.
     pub(super) keys: Vec<MapKey>,
-    /// Of each punctual light of the view, the number of its first map.
+    /// Of each punctual light of the view, the number of its first map among those of local lights.
     pub(crate) of_lights: Vec<Option<u32>>,
     /// As asked for.
     pub settings: ShadowSettings,
@@ -73,7 +73,7 @@ impl ViewShadows {
         let moments = &settings.moments;
         let exponent = settings.filter.exponent();
         let fades = settings.far_m.is_some_and(|limit| limit <= far_m * (1.0 + 1e-9));
-        let uniforms = ShadowUniforms {
+        let mut uniforms = ShadowUniforms {
             far_ends: Vec4::new(ends(0), ends(1), ends(2), ends(3)),
             filter_kind: settings.filter.code(),
             texels: settings.map_texels as f32,
@@ -84,14 +84,18 @@ impl ViewShadows {
             variance_floor: (moments.min_variance_scale * 0.01 * exponent).powi(2),
             bleed: moments.bleed,
             contact_m: settings.contact.map_or(0.0, |contact| contact.distance_m),
+            cascades: Default::default(),
         };
-        let maps = fitted.into_iter().enumerate().map(map).collect();
+        let maps: Vec<ShadowMap> = fitted.into_iter().enumerate().map(map).collect();
+        for (own, map) in uniforms.cascades.iter_mut().zip(&maps[..cascades]) {
+            *own = map.uniforms;
+        }
         Self { uniforms, cascades, maps, keys, of_lights, settings: *settings }
     }
 
-    /// What shaders read of each map.
-    pub(crate) fn map_uniforms(&self) -> Vec<ShadowMapUniforms> {
-        self.maps.iter().map(|map| map.uniforms).collect()
+    /// What shaders read of each map of a local light.
+    pub(crate) fn local_uniforms(&self) -> Vec<ShadowMapUniforms> {
+        self.maps[self.cascades..].iter().map(|map| map.uniforms).collect()
     }
 }
 

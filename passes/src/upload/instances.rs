@@ -1,6 +1,6 @@
 //! What drawing an instance takes beside its placement.
 
-use framegraph_scene::{Instance, MaterialId, MeshId, Scene};
+use framegraph_scene::{Instance, MaterialId, MeshId};
 
 /// An instance as draws need it, whatever the view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,16 +9,13 @@ pub struct InstanceDraw {
     pub mesh: MeshId,
     /// Its material.
     pub material: MaterialId,
-    /// Its triangles are visible from behind: they are not culled.
-    pub double_sided: bool,
     /// Its transform mirrors: front faces wind clockwise.
     pub mirrored: bool,
 }
 
 impl InstanceDraw {
-    pub(super) fn new(scene: &Scene, instance: &Instance) -> Self {
+    pub(super) fn new(instance: &Instance) -> Self {
         let Instance { mesh, material, .. } = *instance;
-        let double_sided = scene.materials[material.index()].double_sided;
-        Self { mesh, material, double_sided, mirrored: instance.is_mirrored() }
+        Self { mesh, material, mirrored: instance.is_mirrored() }
     }
 }

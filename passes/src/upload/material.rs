@@ -3,11 +3,11 @@
 use framegraph_scene::material::{AlphaMode, EmissiveUnit, Lobe, Lobes, Material, SLOT_COUNT};
 use framegraph_scene::texture::TextureSlot;
 use framegraph_shaders::layout::{
-    AnisotropyUniforms, ClearCoatUniforms, MATERIAL_DOUBLE_SIDED, MATERIAL_UNLIT, MaterialUniforms, SheenUniforms,
-    SpecularUniforms, TextureMap, TransmissionUniforms,
+    AnisotropyUniforms, ClearCoatUniforms, MaterialUniforms, SheenUniforms, SpecularUniforms, TRAIT_DOUBLE_SIDED,
+    TRAIT_EMITS, TRAIT_UNLIT, TextureMap, TransmissionUniforms,
 };
 use framegraph_shaders::{Feature, Features};
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 /// The variables of `wgsl/interface/material.wgsl`, in the order in which [`GpuScene::material_binding`](super::GpuScene::material_binding) counts them: the
 /// factors, then for each of [`Material::slots`] its texture and its sampler, and the array of all factors.
@@ -58,10 +58,25 @@ pub fn features_of(lobes: Lobes) -> Features {
     lobes.iter().map(feature).collect()
 }
 
+/// The bits of textures among [`material_traits`].
+pub const TEXTURE_TRAITS: u32 = (1 << SLOT_COUNT) - 1;
+
+/// What a material has, as the constant `MATERIAL_TRAITS` of shaders: a bit for each texture of its
+/// [slots](Material::slots), and those of `layout::TRAIT_*`.
+#[must_use]
+pub fn material_traits(material: &Material) -> u32 {
+    let textures = material.slots().map(|slot| slot.is_some()).into_iter().zip(0..);
+    let others = [
+        (material.emissive != Vec3::ZERO, TRAIT_EMITS),
+        (material.double_sided, TRAIT_DOUBLE_SIDED),
+        (material.unlit, TRAIT_UNLIT),
+    ];
+    textures.chain(others).filter(|(is, _)| *is).map(|(_, bit)| 1 << bit).sum()
+}
+
 /// The factors of a material and where its textures lie.
 #[must_use]
 pub fn material_uniforms(material: &Material) -> MaterialUniforms {
-    let flag = |set: bool, bit: u32| if set { bit } else { 0 };
     let map = |slot: Option<TextureSlot>| {
         slot.map_or(TextureMap::IDENTITY, |slot| {
             let transform = slot.transform;
@@ -84,7 +99,6 @@ pub fn material_uniforms(material: &Material) -> MaterialUniforms {
             AlphaMode::Opaque | AlphaMode::Blend => 0.0,
         },
         dielectric_f0: material.dielectric_f0(),
-        flags: flag(material.unlit, MATERIAL_UNLIT) | flag(material.double_sided, MATERIAL_DOUBLE_SIDED),
         base_color_map: map(material.base_color_texture),
         metallic_roughness_map: map(material.metallic_roughness_texture),
         normal_map: map(material.normal_texture),
@@ -147,7 +161,7 @@ mod tests {
     use framegraph_scene::TextureId;
     use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular, Transmission, Volume};
     use framegraph_scene::texture::UvTransform;
-    use glam::{Mat3, Vec3};
+    use glam::Mat3;
 
     /// Both sides spell KHR_texture_transform out; they must agree.
     #[test]
@@ -167,7 +181,7 @@ mod tests {
         let columns = Mat3::from_cols(map.x_axis.extend(0.0), map.y_axis.extend(0.0), map.offset.extend(1.0));
         assert!(columns.abs_diff_eq(transform.matrix(), 1e-6));
         assert_eq!(packed.base_color_map, TextureMap::IDENTITY);
-        assert_eq!(packed.flags, MATERIAL_UNLIT);
+        assert_eq!(material_traits(&material), 1 << 2 | 1 << TRAIT_EMITS | 1 << TRAIT_UNLIT);
         assert_eq!((packed.alpha_cutoff, packed.metallic), (0.3, 1.0));
         assert_eq!(packed.emissive_exposure_weight, 1.0);
         assert!((packed.dielectric_f0 - 0.04).abs() < 1e-7);

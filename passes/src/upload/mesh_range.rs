@@ -7,6 +7,8 @@ use framegraph_scene::Mesh;
 pub struct MeshRange {
     /// Whether its indices have 16 bits: it has 65,536 vertices at most. Others have 32.
     pub short: bool,
+    /// Whether its vertices have colors.
+    pub colored: bool,
     /// First index of the mesh among those of its kind in [`GpuScene::indices`](super::GpuScene::indices).
     pub first_index: u32,
     /// Number of indices: three a triangle.
@@ -30,7 +32,13 @@ pub(crate) fn mesh_ranges(meshes: &[Mesh]) -> Vec<MeshRange> {
         // Half the bytes where 16 bits are enough.
         let short = mesh.vertex_count() <= 1 << 16;
         let first = if short { &mut first_short } else { &mut first_long };
-        let own = MeshRange { short, first_index: *first, index_count: mesh.indices.len() as u32, base_vertex };
+        let own = MeshRange {
+            short,
+            colored: !mesh.colors.is_empty(),
+            first_index: *first,
+            index_count: mesh.indices.len() as u32,
+            base_vertex,
+        };
         *first += own.index_count;
         base_vertex += mesh.vertex_count() as i32;
         own

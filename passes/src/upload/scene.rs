@@ -11,7 +11,7 @@ use framegraph_wgpu::{Binding, Gpu};
 use super::buffers;
 use super::error::UploadError;
 use super::instances::InstanceDraw;
-use super::material::material_uniforms;
+use super::material::{TEXTURE_TRAITS, material_traits, material_uniforms};
 use super::mesh_range::MeshRange;
 use super::textures::{Images, MaterialTextures};
 
@@ -50,14 +50,12 @@ pub struct GpuScene {
 struct Surface {
     name: String,
     lobes: Lobes,
-    textures: u32,
+    traits: u32,
 }
 
 impl Surface {
     fn of(material: &Material) -> Self {
-        let slots = material.slots();
-        let textures = (0..SLOT_COUNT).filter(|slot| slots[*slot].is_some()).map(|slot| 1 << slot).sum();
-        Self { name: material.name.clone(), lobes: material.lobes(), textures }
+        Self { name: material.name.clone(), lobes: material.lobes(), traits: material_traits(material) }
     }
 }
 
@@ -117,7 +115,7 @@ impl GpuScene {
             material_table,
             warnings,
             size_bytes,
-            instances: scene.instances.iter().map(|instance| InstanceDraw::new(scene, instance)).collect(),
+            instances: scene.instances.iter().map(InstanceDraw::new).collect(),
             earlier: None,
             meshes,
             textures,
@@ -145,14 +143,14 @@ impl GpuScene {
         self.surfaces[material.index()].lobes
     }
 
-    /// The textures of a material, a bit for each of its [slots](Material::slots).
+    /// What a material has, of which its pipelines are made ([`material_traits`]).
     ///
     /// # Panics
     ///
     /// For a material of another, larger scene.
     #[must_use]
-    pub fn texture_slots(&self, material: MaterialId) -> u32 {
-        self.surfaces[material.index()].textures
+    pub fn traits(&self, material: MaterialId) -> u32 {
+        self.surfaces[material.index()].traits
     }
 
     /// Whether a material can be taken from the [table](Self::material_table): there is one, and it has no textures.
@@ -162,7 +160,7 @@ impl GpuScene {
     /// For a material of another, larger scene.
     #[must_use]
     pub fn is_in_table(&self, material: MaterialId) -> bool {
-        self.material_table.is_some() && self.texture_slots(material) == 0
+        self.material_table.is_some() && self.traits(material) & TEXTURE_TRAITS == 0
     }
 
     /// The name of a material, for messages; may be empty.
@@ -182,12 +180,13 @@ impl GpuScene {
     /// # Errors
     ///
     /// When the material has other lobes than the one that was uploaded, or there was none of that number.
-    pub fn write_material(&self, gpu: &Gpu, id: MaterialId, material: &Material) -> Result<(), UploadError> {
-        let surface = self.surfaces.get(id.index());
-        if surface.is_none_or(|surface| surface.lobes != material.lobes()) {
+    pub fn write_material(&mut self, gpu: &Gpu, id: MaterialId, material: &Material) -> Result<(), UploadError> {
+        let surface = self.surfaces.get_mut(id.index());
+        let Some(surface) = surface.filter(|surface| surface.lobes == material.lobes()) else {
             let (name, number) = (material.name.clone(), id.index());
             return Err(UploadError::OtherMaterial { name, number });
-        }
+        };
+        surface.traits = surface.traits & TEXTURE_TRAITS | material_traits(material) & !TEXTURE_TRAITS;
         let (number, packed) = (id.index() as u64, material_uniforms(material));
         gpu.queue.write_buffer(&self.materials, number * self.material_stride_bytes, bytemuck::bytes_of(&packed));
         if let Some(table) = &self.material_table {

@@ -58,7 +58,7 @@ fn built_in_scenes_upload_without_complaint() {
             assert!(binding(MATERIAL_BINDINGS.len()).is_none());
             assert_eq!(uploaded.lobes(material), scene.materials[i].lobes());
             for (slot, texture) in scene.materials[i].slots().iter().enumerate() {
-                assert_eq!(uploaded.texture_slots(material) & 1 << slot != 0, texture.is_some(), "{name}, slot {slot}");
+                assert_eq!(uploaded.traits(material) & 1 << slot != 0, texture.is_some(), "{name}, slot {slot}");
             }
             assert_eq!(uploaded.material_name(material), scene.materials[i].name);
         }

@@ -4,17 +4,20 @@
 //! scene's and shared. How instances are turned and scaled is uploaded once, and again where it changed.
 
 use super::CameraView;
-use crate::draw::InstanceSource;
+use crate::draw::{InstanceSource, Instances};
 use crate::error::PassError;
 use crate::indirect::draws_indirectly;
 use crate::prepared::Placements;
 use crate::shadow::ViewShadows;
 use crate::upload::GpuScene;
 use bytemuck::cast_slice;
-use framegraph_shaders::layout::ObjectUniforms;
+use framegraph_shaders::layout::{ObjectAttributes, ObjectUniforms};
 use framegraph_wgpu::{DeviceError, Gpu};
 use glam::DVec2;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages};
+
+/// The most instances of a scene whose objects come with the draws ([`CameraView::streams_objects`]).
+pub const MOST_STREAMED: usize = 1024;
 
 /// Which of a frame's views a pass draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -36,15 +39,15 @@ pub struct GpuView {
     pub lights: Buffer,
     /// The words of the lists of lights.
     pub light_lists: Buffer,
-    /// `layout::ShadowMapUniforms` of the shadow maps.
-    pub shadow_maps: Buffer,
+    /// `layout::ShadowMapUniforms` of the shadow maps of local lights.
+    pub local_maps: Buffer,
     /// `layout::ObjectUniforms` of each instance, by its number; and those that were uploaded.
     objects: Buffer,
     uploaded: Placements,
     /// Where the zero point of each instance's mesh is, relative to the eye.
     origins: Buffer,
-    /// Numbers of instances, as draws take them.
-    numbers: Buffer,
+    /// Instances as draws take them: `layout::ObjectAttributes` where objects are streamed, else their numbers.
+    instances: Buffer,
     /// Arguments of indirect draws.
     arguments: Buffer,
     id: ViewId,
@@ -58,11 +61,11 @@ impl GpuView {
             uploaded: Placements::default(),
             motions: storage("motions"),
             origins: storage("origins"),
-            numbers: buffer(gpu, "instances", BufferUsages::VERTEX, 0),
+            instances: buffer(gpu, "instances", BufferUsages::VERTEX, 0),
             arguments: buffer(gpu, "draws", BufferUsages::INDIRECT, 0),
             lights: storage("lights"),
             light_lists: storage("light lists"),
-            shadow_maps: storage("shadow maps"),
+            local_maps: storage("local maps"),
             view,
             id,
         };
@@ -73,6 +76,27 @@ impl GpuView {
     /// Uploads the view.
     fn fill(&mut self, gpu: &Gpu) {
         let view = &self.view;
+        let light_words = view.light_lists.as_ref().map_or(&[][..], |lists| &lists.words);
+        let maps = view.shadows.as_ref().map(ViewShadows::local_uniforms).unwrap_or_default();
+        let storage = BufferUsages::STORAGE;
+        refill(gpu, &mut self.motions, "motions", storage, cast_slice(&view.motions));
+        if draws_indirectly(gpu) {
+            refill(gpu, &mut self.arguments, "draws", BufferUsages::INDIRECT, cast_slice(&view.draws.arguments));
+        }
+        refill(gpu, &mut self.lights, "lights", storage, cast_slice(&view.lights));
+        refill(gpu, &mut self.light_lists, "light lists", storage, cast_slice(light_words));
+        refill(gpu, &mut self.local_maps, "local maps", storage, cast_slice(&maps));
+        if view.streams_objects {
+            let attributes = |number: &u32| {
+                let object = view.placements.object(*number as usize)?;
+                Some(ObjectAttributes::new(*number, object, *view.origins.get(*number as usize)?))
+            };
+            let objects: Vec<_> = view.draws.numbers.iter().filter_map(attributes).collect();
+            refill(gpu, &mut self.instances, "instances", BufferUsages::VERTEX, cast_slice(&objects));
+            return;
+        }
+        refill(gpu, &mut self.instances, "instances", BufferUsages::VERTEX, cast_slice(&view.draws.numbers));
+        refill(gpu, &mut self.origins, "origins", storage, cast_slice(&view.origins));
         let placements = &view.placements;
         let bytes = (placements.count() * size_of::<ObjectUniforms>()) as u64;
         if fit(gpu, &mut self.objects, "objects", BufferUsages::STORAGE, bytes) {
@@ -83,24 +107,16 @@ impl GpuView {
             gpu.queue.write_buffer(&self.objects, offset, cast_slice(piece));
         }
         self.uploaded = placements.clone();
-        let light_words = view.light_lists.as_ref().map_or(&[][..], |lists| &lists.words);
-        let maps = view.shadows.as_ref().map(ViewShadows::map_uniforms).unwrap_or_default();
-        let storage = BufferUsages::STORAGE;
-        refill(gpu, &mut self.motions, "motions", storage, cast_slice(&view.motions));
-        refill(gpu, &mut self.origins, "origins", storage, cast_slice(&view.origins));
-        refill(gpu, &mut self.numbers, "instances", BufferUsages::VERTEX, cast_slice(&view.draws.numbers));
-        if draws_indirectly(gpu) {
-            refill(gpu, &mut self.arguments, "draws", BufferUsages::INDIRECT, cast_slice(&view.draws.arguments));
-        }
-        refill(gpu, &mut self.lights, "lights", storage, cast_slice(&view.lights));
-        refill(gpu, &mut self.light_lists, "light lists", storage, cast_slice(light_words));
-        refill(gpu, &mut self.shadow_maps, "shadow maps", storage, cast_slice(&maps));
     }
 
     /// Where its draws take instances from.
     pub fn instances<'a>(&'a self, scene: &'a GpuScene) -> InstanceSource<'a> {
-        let Self { objects, origins, numbers, arguments, .. } = self;
-        InstanceSource { scene, objects, origins, numbers, arguments }
+        let Self { objects, origins, instances, arguments, view, .. } = self;
+        let instances = match view.streams_objects {
+            true => Instances::Stream(instances),
+            false => Instances::Numbers { numbers: instances, objects, origins },
+        };
+        InstanceSource { scene, instances, arguments }
     }
 
     /// The view's shadow maps for a frame that declares so many layers of them.

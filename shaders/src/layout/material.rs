@@ -4,10 +4,12 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec4};
 
-/// Bit of [`MaterialUniforms::flags`]: base color is the result (KHR_materials_unlit).
-pub const MATERIAL_UNLIT: u32 = 1;
-/// Bit of [`MaterialUniforms::flags`]: back faces are drawn and shaded with reversed normals.
-pub const MATERIAL_DOUBLE_SIDED: u32 = 2;
+/// Number of the bit of the constant `MATERIAL_TRAITS` of a material that emits light. Below are those of textures.
+pub const TRAIT_EMITS: u32 = 15;
+/// Number of the bit of one whose back faces are drawn and shaded with reversed normals.
+pub const TRAIT_DOUBLE_SIDED: u32 = 16;
+/// Number of the bit of one whose base color is shown as it is (KHR_materials_unlit).
+pub const TRAIT_UNLIT: u32 = 17;
 
 /// How texture coordinates of the mesh lead to a texture (KHR_texture_transform); that of no texture is not read.
 #[repr(C)]
@@ -65,10 +67,8 @@ pub struct MaterialUniforms {
     pub alpha_cutoff: f32,
     /// Reflectance of the dielectric part at normal incidence; 0.04 for an index of refraction of 1.5.
     pub dielectric_f0: f32,
-    /// [`MATERIAL_UNLIT`] and [`MATERIAL_DOUBLE_SIDED`].
-    pub flags: u32,
     /// Padding to 16 bytes; zero.
-    pub _pad: u32,
+    pub _pad: [u32; 2],
     /// Texture of the base color.
     pub base_color_map: TextureMap,
     /// Texture of roughness and metalness.
@@ -189,8 +189,7 @@ impl Default for MaterialUniforms {
             occlusion_strength: 1.0,
             alpha_cutoff: 0.5,
             dielectric_f0: 0.04,
-            flags: 0,
-            _pad: 0,
+            _pad: [0; 2],
             base_color_map: TextureMap::IDENTITY,
             metallic_roughness_map: TextureMap::IDENTITY,
             normal_map: TextureMap::IDENTITY,
@@ -219,7 +218,6 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             occlusion_strength,
             alpha_cutoff,
             dielectric_f0,
-            flags,
             _pad,
             base_color_map,
             metallic_roughness_map,
@@ -259,7 +257,7 @@ mod tests {
         let m = MaterialUniforms::default();
         assert_eq!((m.base_color, m.emissive, m.emissive_exposure_weight), (Vec4::ONE, Vec3::ZERO, 0.0));
         assert_eq!([m.metallic, m.roughness, m.normal_scale, m.occlusion_strength], [0.0, 1.0, 1.0, 1.0]);
-        assert_eq!((m.alpha_cutoff, m.dielectric_f0, m.flags), (0.5, 0.04, 0));
+        assert_eq!((m.alpha_cutoff, m.dielectric_f0), (0.5, 0.04));
     }
 
     #[test]

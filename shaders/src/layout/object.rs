@@ -1,7 +1,7 @@
 //! Mirror of `wgsl/interface/object.wgsl`: placement of an object.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{DMat3, DVec3, Mat4, Vec3};
+use glam::{DMat3, DVec3, Mat4, Vec3, Vec4};
 
 /// Transform of an object; one element of the `objects` array.
 #[repr(C)]
@@ -23,6 +23,49 @@ pub struct ObjectUniforms {
     pub normal_column_z: Vec3,
     /// Padding to 16 bytes; zero.
     pub _pad: f32,
+}
+
+/// The same and where the object is, as an element of the stream of instances.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct ObjectAttributes {
+    /// First column of the matrix from model to world space.
+    pub column_x: Vec4,
+    /// Second column.
+    pub column_y: Vec4,
+    /// Third column.
+    pub column_z: Vec4,
+    /// Where the zero point of the object's mesh is, relative to the eye, in m; xyz.
+    pub origin: Vec4,
+    /// First column of the normal matrix; the sign of the determinant.
+    pub normal_column_x: Vec4,
+    /// Second column of the normal matrix.
+    pub normal_column_y: Vec3,
+    /// Number of the object's material among the scene's.
+    pub material: u32,
+    /// Third column of the normal matrix.
+    pub normal_column_z: Vec3,
+    /// Number of the object.
+    pub number: u32,
+}
+
+impl ObjectAttributes {
+    /// Of the object of that number.
+    #[must_use]
+    pub fn new(number: u32, object: &ObjectUniforms, origin: Vec4) -> Self {
+        let ObjectUniforms { world_from_model: m, handedness, material, .. } = *object;
+        Self {
+            column_x: m.x_axis,
+            column_y: m.y_axis,
+            column_z: m.z_axis,
+            origin,
+            normal_column_x: object.normal_column_x.extend(handedness),
+            normal_column_y: object.normal_column_y,
+            material,
+            normal_column_z: object.normal_column_z,
+            number,
+        }
+    }
 }
 
 impl ObjectUniforms {

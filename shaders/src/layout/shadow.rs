@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{IVec2, Mat4, Vec2, Vec3, Vec4};
 
-/// What is the same for all shadow maps of a view.
+/// What is the same for all shadow maps of a view, and the maps of the sun.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ShadowUniforms {
@@ -25,6 +25,8 @@ pub struct ShadowUniforms {
     pub bleed: f32,
     /// Length of a contact shadow's ray in m.
     pub contact_m: f32,
+    /// Maps of the sun; zero beyond the last.
+    pub cascades: [ShadowMapUniforms; 4],
 }
 
 /// One shadow map as shaders read it.
@@ -108,6 +110,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             variance_floor,
             bleed,
             contact_m,
+            cascades,
         }),
         layout_of!(ShadowMapUniforms {
             clip_from_world,

@@ -1,10 +1,11 @@
-//! The vertex format: two streams of vertices and one of instances; and where vertices were in the frame before.
+//! The vertex format: two streams of vertices and one of instances, in either of two forms; and where vertices were in the frame before.
 //!
 //! Positions lie in a stream of their own, everything else in a second one. Shadow maps and
 //! the depth prepass of opaque geometry read positions alone: 12 bytes a vertex instead of
 //! 64, and a tiler that bins by position first gains the same in the color pass. The
 //! rest is interleaved, because a stage that reads one of these attributes reads most of them.
 
+use super::ObjectAttributes;
 use bytemuck::{Pod, Zeroable};
 use half::f16;
 
@@ -12,7 +13,7 @@ use half::f16;
 pub const STREAM_POSITION: u32 = 0;
 /// Index of the vertex buffer with [`VertexAttributes`].
 pub const STREAM_ATTRIBUTES: u32 = 1;
-/// Index of the vertex buffer with a `u32` an instance: the number of the object.
+/// Index of the vertex buffer with a `u32` an instance, the number of the object; or with [`ObjectAttributes`].
 pub const STREAM_INSTANCE: u32 = 2;
 /// Index of the vertex buffer with [`VertexPosition`] in the frame before, which velocity reads of what joints and morph
 /// targets move.
@@ -79,7 +80,7 @@ const fn attribute(location: u32, stream: u32, offset_bytes: usize, format: Vert
     VertexAttribute { location, stream, offset_bytes: offset_bytes as u64, format }
 }
 
-/// All attributes by location: position, normal, tangent, uv0, uv1, color, number of the object, position in the frame before.
+/// Attributes by location: position, normal, tangent, uv0, uv1, color, number of the object, position in the frame before.
 pub const VERTEX_ATTRIBUTES: [VertexAttribute; 8] = {
     use VertexAttributes as A;
     use std::mem::offset_of;
@@ -93,6 +94,24 @@ pub const VERTEX_ATTRIBUTES: [VertexAttribute; 8] = {
         attribute(5, REST, offset_of!(A, color), VertexFormat::Float16x4),
         attribute(6, STREAM_INSTANCE, 0, VertexFormat::Uint32),
         attribute(7, STREAM_EARLIER, 0, VertexFormat::Float32x3),
+    ]
+};
+
+/// What stands in [`STREAM_INSTANCE`] for shaders with the feature `INSTANCE_STREAM`, in the order of [`ObjectAttributes`].
+pub const OBJECT_ATTRIBUTES: [VertexAttribute; 9] = {
+    use ObjectAttributes as O;
+    use std::mem::offset_of;
+    const OWN: u32 = STREAM_INSTANCE;
+    [
+        attribute(8, OWN, offset_of!(O, column_x), VertexFormat::Float32x4),
+        attribute(9, OWN, offset_of!(O, column_y), VertexFormat::Float32x4),
+        attribute(10, OWN, offset_of!(O, column_z), VertexFormat::Float32x4),
+        attribute(11, OWN, offset_of!(O, origin), VertexFormat::Float32x4),
+        attribute(12, OWN, offset_of!(O, normal_column_x), VertexFormat::Float32x4),
+        attribute(13, OWN, offset_of!(O, normal_column_y), VertexFormat::Float32x3),
+        attribute(15, OWN, offset_of!(O, material), VertexFormat::Uint32),
+        attribute(14, OWN, offset_of!(O, normal_column_z), VertexFormat::Float32x3),
+        attribute(6, OWN, offset_of!(O, number), VertexFormat::Uint32),
     ]
 };
 
@@ -148,5 +167,11 @@ mod tests {
             }
             assert_eq!(stream_stride_bytes(stream), end_bytes);
         }
+        let mut end_bytes = 0;
+        for attribute in OBJECT_ATTRIBUTES {
+            assert_eq!(attribute.offset_bytes, end_bytes, "location {}", attribute.location);
+            end_bytes += attribute.format.size_bytes();
+        }
+        assert_eq!(size_of::<ObjectAttributes>() as u64, end_bytes);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use framegraph_shaders::layout::VERTEX_ATTRIBUTES;
+use framegraph_shaders::layout::{OBJECT_ATTRIBUTES, VERTEX_ATTRIBUTES};
 use framegraph_shaders::reflect::{BindingKind, Sample, Slot, Stage};
 use framegraph_shaders::{Feature, Features, resolve};
 
@@ -51,7 +51,8 @@ fn one_place_holds_one_variable_within_a_pass() {
 
 #[test]
 fn the_color_pass_binds_frame_material_and_objects() {
-    let groups = color(Feature::all().collect());
+    assert_eq!(color(Feature::all().collect()).len(), 2, "instances bring their objects along");
+    let groups = color(Feature::all().filter(|feature| *feature != Feature::INSTANCE_STREAM).collect());
     let names = |group: usize| -> Vec<&str> { groups[group].iter().map(|slot| slot.binding.name.as_str()).collect() };
     assert_eq!(groups.len(), 3);
     assert!(names(GROUP_FRAME).contains(&"frame") && names(GROUP_FRAME).contains(&"lights"));
@@ -110,14 +111,14 @@ fn features_add_what_they_bind_and_lobes_add_to_the_material() {
         with.difference(&plain).cloned().collect()
     };
     let of_frame = |names: &[&str]| -> Vec<(u32, String)> { names.iter().map(|n| (0, (*n).to_owned())).collect() };
-    let depth = ["shadow", "shadow_map", "shadow_maps", "shadow_sampler"];
+    let depth = ["local_maps", "shadow", "shadow_map", "shadow_sampler"];
     assert_eq!(added(Feature::SHADOWS), of_frame(&depth));
     assert_eq!(
         added(Feature::SHADOW_SOFT),
-        of_frame(&["shadow", "shadow_depth", "shadow_map", "shadow_maps", "shadow_sampler"])
+        of_frame(&["local_maps", "shadow", "shadow_depth", "shadow_map", "shadow_sampler"])
     );
     assert_eq!(added(Feature::CONTACT_SHADOWS), of_frame(&["shadow", "structure"]));
-    assert_eq!(added(Feature::SHADOW_MOMENTS), of_frame(&["shadow", "shadow_maps", "shadow_moments"]));
+    assert_eq!(added(Feature::SHADOW_MOMENTS), of_frame(&["local_maps", "shadow", "shadow_moments"]));
     // The cube shares the sampler of the table.
     assert_eq!(added(Feature::ENVIRONMENT_MAP), of_frame(&["specular_map"]));
     assert_eq!(added(Feature::AMBIENT_OCCLUSION), of_frame(&["ambient_occlusion"]));
@@ -156,12 +157,13 @@ fn vertex_stages_read_what_the_vertex_format_stores() {
         for entry in &variant.shader.reflection.entry_points {
             assert!(entry.stage == Stage::Vertex || entry.vertex_inputs.is_empty());
             for input in &entry.vertex_inputs {
-                let stored = VERTEX_ATTRIBUTES.iter().find(|a| a.location == input.location);
+                let stored = VERTEX_ATTRIBUTES.iter().chain(&OBJECT_ATTRIBUTES).find(|a| a.location == input.location);
                 let stored = stored.unwrap_or_else(|| panic!("{} {input:?}", variant.name()));
                 assert_eq!(stored.format.components(), input.components);
                 read.insert(input.location);
             }
         }
     }
-    assert_eq!(read.len(), VERTEX_ATTRIBUTES.len(), "an attribute that no shader reads");
+    // The number of the object is in both.
+    assert_eq!(read.len(), VERTEX_ATTRIBUTES.len() + OBJECT_ATTRIBUTES.len() - 1, "an attribute that no shader reads");
 }

@@ -95,11 +95,16 @@ fn every_feature_makes_a_difference_and_only_to_what_shades() {
             "dfg" => vec![Feature::HALF],
             "occlusion" => vec![Feature::HALF],
             // Its vertices hand on what those of the color pass do.
-            "reflection" => {
-                vec![Feature::TEXTURED, Feature::MATERIAL_TABLE, Feature::ANISOTROPY, Feature::TRANSMISSION]
-            }
+            "reflection" => vec![
+                Feature::TEXTURED,
+                Feature::VERTEX_COLORS,
+                Feature::MATERIAL_TABLE,
+                Feature::INSTANCE_STREAM,
+                Feature::ANISOTROPY,
+                Feature::TRANSMISSION,
+            ],
             // They read materials too, but are never asked to take them from an array.
-            "prepass" | "shadow" | "velocity" => vec![Feature::MATERIAL_TABLE],
+            "prepass" | "shadow" | "velocity" => vec![Feature::MATERIAL_TABLE, Feature::INSTANCE_STREAM],
             _ => Vec::new(),
         };
         assert_eq!(variants::features_of(&pass), expected, "{}", pass.path);

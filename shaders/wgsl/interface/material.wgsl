@@ -98,9 +98,7 @@ struct MaterialUniforms {
     /// Alpha mode MASK: fragments with less alpha are discarded.
     alpha_cutoff: f32,
     /// Reflectance of the dielectric part at normal incidence; 0.04 for an index of 1.5.
-    dielectric_f0: f32,
-    /// MATERIAL_* bits.
-    flags: u32,
+    @size(12) dielectric_f0: f32,
     base_color_map: TextureMap,
     metallic_roughness_map: TextureMap,
     normal_map: TextureMap,
@@ -112,10 +110,6 @@ struct MaterialUniforms {
     transmission: TransmissionUniforms,
     specular: SpecularUniforms,
 }
-
-/// Bits of `MaterialUniforms::flags`.
-const MATERIAL_UNLIT: u32 = 1u;
-const MATERIAL_DOUBLE_SIDED: u32 = 2u;
 
 @if(MATERIAL_TABLE)
 @group(1) @binding(0) var<storage, read> materials: array<MaterialUniforms>;
@@ -189,9 +183,10 @@ var<private> material: MaterialUniforms;
 @if(SPECULAR)
 @group(1) @binding(30) var specular_color_sampler: sampler;
 
-/// Textures that the material has, a bit for each of `Material::slots`. What it lacks is no part of
-/// the shader: where branches are not skipped, as some software does, its samples would be taken.
-override TEXTURES: u32 = 0x7fffu;
+/// What the material has, a bit for each SLOT_* (textures, as in `Material::slots`) and TRAIT_*.
+/// What it lacks is no part of the shader: where branches are not skipped, as in some software, it
+/// would be computed.
+override MATERIAL_TRAITS: u32 = 0x1ffffu;
 
 const SLOT_BASE_COLOR: u32 = 0u;
 const SLOT_METALLIC_ROUGHNESS: u32 = 1u;
@@ -208,10 +203,16 @@ const SLOT_TRANSMISSION: u32 = 11u;
 const SLOT_THICKNESS: u32 = 12u;
 const SLOT_SPECULAR: u32 = 13u;
 const SLOT_SPECULAR_COLOR: u32 = 14u;
+/// It emits light.
+const TRAIT_EMITS: u32 = 15u;
+/// Back faces are drawn and shaded with reversed normals.
+const TRAIT_DOUBLE_SIDED: u32 = 16u;
+/// The base color is shown as it is (KHR_materials_unlit).
+const TRAIT_UNLIT: u32 = 17u;
 
-/// Whether the material has the texture of a slot.
-fn has_texture(slot: u32) -> bool {
-    return (TEXTURES & (1u << slot)) != 0u;
+/// Whether the material has the texture of a slot, or a trait.
+fn material_has(what: u32) -> bool {
+    return (MATERIAL_TRAITS & (1u << what)) != 0u;
 }
 
 /// Texture coordinates of a map; `uv` holds set 0 in xy and set 1 in zw.
@@ -223,7 +224,7 @@ fn map_uv(map: TextureMap, uv: vec4<f32>) -> vec2<f32> {
 /// Linear base color with straight alpha: factor, texture and vertex color multiplied.
 fn base_color(uv: vec4<f32>, vertex_color: vec4<f32>) -> vec4<f32> {
     var color = material.base_color * vertex_color;
-    if has_texture(SLOT_BASE_COLOR) {
+    if material_has(SLOT_BASE_COLOR) {
         let at = map_uv(material.base_color_map, uv);
         color *= textureSample(base_color_texture, base_color_sampler, at);
     }
@@ -233,7 +234,7 @@ fn base_color(uv: vec4<f32>, vertex_color: vec4<f32>) -> vec4<f32> {
 /// Metalness in x and perceptual roughness in y.
 fn metallic_roughness(uv: vec4<f32>) -> vec2<f32> {
     var values = vec2<f32>(material.metallic, material.roughness);
-    if has_texture(SLOT_METALLIC_ROUGHNESS) {
+    if material_has(SLOT_METALLIC_ROUGHNESS) {
         let at = map_uv(material.metallic_roughness_map, uv);
         values *= textureSample(metallic_roughness_texture, metallic_roughness_sampler, at).bg;
     }
@@ -242,7 +243,7 @@ fn metallic_roughness(uv: vec4<f32>) -> vec2<f32> {
 
 /// Visibility of the ambient light from the occlusion texture, 0…1: 1 is unoccluded.
 fn occlusion(uv: vec4<f32>) -> f32 {
-    if !has_texture(SLOT_OCCLUSION) {
+    if !material_has(SLOT_OCCLUSION) {
         return 1.0;
     }
     let at = map_uv(material.occlusion_map, uv);
@@ -253,7 +254,7 @@ fn occlusion(uv: vec4<f32>) -> f32 {
 /// Emitted radiance before exposure.
 fn emission(uv: vec4<f32>) -> vec3<f32> {
     var color = material.emissive;
-    if has_texture(SLOT_EMISSIVE) {
+    if material_has(SLOT_EMISSIVE) {
         let at = map_uv(material.emissive_map, uv);
         color *= textureSample(emissive_texture, emissive_sampler, at).rgb;
     }
@@ -265,10 +266,10 @@ fn emission(uv: vec4<f32>) -> vec3<f32> {
 fn clear_coat(uv: vec4<f32>) -> vec2<f32> {
     let coat = material.clear_coat;
     var values = vec2<f32>(coat.factor, coat.roughness);
-    if has_texture(SLOT_CLEAR_COAT) {
+    if material_has(SLOT_CLEAR_COAT) {
         values.x *= textureSample(clear_coat_texture, clear_coat_sampler, map_uv(coat.map, uv)).r;
     }
-    if has_texture(SLOT_CLEAR_COAT_ROUGHNESS) {
+    if material_has(SLOT_CLEAR_COAT_ROUGHNESS) {
         let at = map_uv(coat.roughness_map, uv);
         values.y *= textureSample(clear_coat_roughness_texture, clear_coat_roughness_sampler, at).g;
     }
@@ -280,7 +281,7 @@ fn clear_coat(uv: vec4<f32>) -> vec2<f32> {
 @if(CLEAR_COAT)
 fn clear_coat_tangent_normal(uv: vec4<f32>) -> vec3<f32> {
     let coat = material.clear_coat;
-    if !has_texture(SLOT_CLEAR_COAT_NORMAL) {
+    if !material_has(SLOT_CLEAR_COAT_NORMAL) {
         return vec3<f32>(0.0, 0.0, 1.0);
     }
     let at = map_uv(coat.normal_map, uv);
@@ -293,12 +294,12 @@ fn clear_coat_tangent_normal(uv: vec4<f32>) -> vec3<f32> {
 fn sheen(uv: vec4<f32>) -> vec4<f32> {
     let given = material.sheen;
     var values = vec4<f32>(given.color, given.roughness);
-    if has_texture(SLOT_SHEEN_COLOR) {
+    if material_has(SLOT_SHEEN_COLOR) {
         let at = map_uv(given.color_map, uv);
         let texel = textureSample(sheen_color_texture, sheen_color_sampler, at).rgb;
         values *= vec4<f32>(texel, 1.0);
     }
-    if has_texture(SLOT_SHEEN_ROUGHNESS) {
+    if material_has(SLOT_SHEEN_ROUGHNESS) {
         let at = map_uv(given.roughness_map, uv);
         values.w *= textureSample(sheen_roughness_texture, sheen_roughness_sampler, at).a;
     }
@@ -312,7 +313,7 @@ fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
     let given = material.anisotropy;
     var direction = vec2<f32>(1.0, 0.0);
     var strength = given.strength;
-    if has_texture(SLOT_ANISOTROPY) {
+    if material_has(SLOT_ANISOTROPY) {
         let at = map_uv(given.map, uv);
         let texel = textureSample(anisotropy_texture, anisotropy_sampler, at).xyz;
         strength *= texel.z;
@@ -337,11 +338,11 @@ fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
 fn transmission(uv: vec4<f32>) -> vec2<f32> {
     let given = material.transmission;
     var values = vec2<f32>(given.factor, given.thickness);
-    if has_texture(SLOT_TRANSMISSION) {
+    if material_has(SLOT_TRANSMISSION) {
         let at = map_uv(given.map, uv);
         values.x *= textureSample(transmission_texture, transmission_sampler, at).r;
     }
-    if has_texture(SLOT_THICKNESS) {
+    if material_has(SLOT_THICKNESS) {
         let at = map_uv(given.thickness_map, uv);
         values.y *= textureSample(thickness_texture, thickness_sampler, at).g;
     }
@@ -355,11 +356,11 @@ fn specular_factors(uv: vec4<f32>) -> vec4<f32> {
     let given = material.specular;
     var color = given.color;
     var factor = given.factor;
-    if has_texture(SLOT_SPECULAR_COLOR) {
+    if material_has(SLOT_SPECULAR_COLOR) {
         let at = map_uv(given.color_map, uv);
         color *= textureSample(specular_color_texture, specular_color_sampler, at).rgb;
     }
-    if has_texture(SLOT_SPECULAR) {
+    if material_has(SLOT_SPECULAR) {
         factor *= textureSample(specular_texture, specular_sampler, map_uv(given.map, uv)).a;
     }
     let f0 = min(material.dielectric_f0 * color, vec3<f32>(1.0));

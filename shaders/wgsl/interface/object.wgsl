@@ -1,5 +1,7 @@
-// Group 2: one element per object. Draws are instanced: the number of the object comes with the
-// instance, from the third vertex stream.
+// Objects: where they are and how they are turned. Draws are instanced; the third vertex stream is
+// of instances. It brings the number of the object, an element of the buffers of group 2; or, under
+// INSTANCE_STREAM, all there is to know of the object. Mesa's software driver loads from buffers
+// vertex by vertex, and from such a stream once.
 
 import package::interface::frame::frame;
 import package::lib::numerics::normalize_or;
@@ -21,15 +23,91 @@ struct ObjectUniforms {
     normal_column_z: vec3<f32>,
 }
 
+@if(!INSTANCE_STREAM)
 @group(2) @binding(0) var<storage, read> objects: array<ObjectUniforms>;
 /// Where the zero point of each object's mesh is, in m; xyz.
+@if(!INSTANCE_STREAM)
 @group(2) @binding(1) var<storage, read> origins: array<vec4<f32>>;
 
+/// An object as its draw brings it: the attributes of `layout::OBJECT_ATTRIBUTES`.
+@if(INSTANCE_STREAM)
+struct Instance {
+    @location(6) number: u32,
+    /// Columns of the matrix from model to world space, in m.
+    @location(8) column_x: vec4<f32>,
+    @location(9) column_y: vec4<f32>,
+    @location(10) column_z: vec4<f32>,
+    @location(11) origin: vec4<f32>,
+    /// Columns of the normal matrix; the first with the sign of the determinant.
+    @location(12) normal_column_x: vec4<f32>,
+    @location(13) normal_column_y: vec3<f32>,
+    @location(14) normal_column_z: vec3<f32>,
+    @location(15) material: u32,
+}
+
+@else
+struct Instance {
+    @location(6) number: u32,
+}
+
+/// Model to world space, in m.
+@if(INSTANCE_STREAM)
+fn world_from_model(instance: Instance) -> mat4x4<f32> {
+    return mat4x4<f32>(
+        instance.column_x, instance.column_y, instance.column_z,
+        vec4<f32>(instance.origin.xyz, 1.0),
+    );
+}
+
+@else
+fn world_from_model(instance: Instance) -> mat4x4<f32> {
+    let turned = objects[instance.number].world_from_model;
+    let origin = vec4<f32>(origins[instance.number].xyz, 1.0);
+    return mat4x4<f32>(turned[0], turned[1], turned[2], origin);
+}
+
+/// The matrix that carries normals.
+@if(INSTANCE_STREAM)
+fn normal_matrix(instance: Instance) -> mat3x3<f32> {
+    return mat3x3<f32>(
+        instance.normal_column_x.xyz, instance.normal_column_y, instance.normal_column_z,
+    );
+}
+
+@else
+fn normal_matrix(instance: Instance) -> mat3x3<f32> {
+    return mat3x3<f32>(
+        objects[instance.number].normal_column_x,
+        objects[instance.number].normal_column_y,
+        objects[instance.number].normal_column_z,
+    );
+}
+
+/// Sign of the determinant, ±1: -1 for mirrored objects.
+@if(INSTANCE_STREAM)
+fn handedness(instance: Instance) -> f32 {
+    return instance.normal_column_x.w;
+}
+
+@else
+fn handedness(instance: Instance) -> f32 {
+    return objects[instance.number].handedness;
+}
+
+/// Number of the object's material.
+@if(INSTANCE_STREAM)
+fn material_number(instance: Instance) -> u32 {
+    return instance.material;
+}
+
+@else
+fn material_number(instance: Instance) -> u32 {
+    return objects[instance.number].material;
+}
+
 /// World position in m of a model position.
-fn world_position(position: vec3<f32>, instance: u32) -> vec3<f32> {
-    let turned = objects[instance].world_from_model;
-    let origin = vec4<f32>(origins[instance].xyz, 1.0);
-    return (mat4x4<f32>(turned[0], turned[1], turned[2], origin) * vec4<f32>(position, 1.0)).xyz;
+fn world_position(position: vec3<f32>, instance: Instance) -> vec3<f32> {
+    return (world_from_model(instance) * vec4<f32>(position, 1.0)).xyz;
 }
 
 /// Clip position of a world position. The depth prepass and the color pass must agree to the
@@ -41,22 +119,21 @@ fn clip_position(world: vec3<f32>) -> vec4<f32> {
 
 /// World-space unit normal of a model normal, or zero where the transform flattens it away;
 /// the fragment stage then falls back to the triangle's own normal.
-fn world_normal(normal: vec3<f32>, instance: u32) -> vec3<f32> {
-    let n = objects[instance].normal_column_x * normal.x
-        + objects[instance].normal_column_y * normal.y
-        + objects[instance].normal_column_z * normal.z;
+fn world_normal(normal: vec3<f32>, instance: Instance) -> vec3<f32> {
+    let m = normal_matrix(instance);
+    let n = m[0] * normal.x + m[1] * normal.y + m[2] * normal.z;
     return normalize_or(n, vec3<f32>(0.0));
 }
 
 /// Meters that a unit of the mesh becomes, the mean over its axes.
-fn mesh_scale_m(instance: u32) -> f32 {
-    let m = objects[instance].world_from_model;
+fn mesh_scale_m(instance: Instance) -> f32 {
+    let m = world_from_model(instance);
     return (length(m[0].xyz) + length(m[1].xyz) + length(m[2].xyz)) / 3.0;
 }
 
 /// World-space unit tangent of a model tangent, or zero where there is none.
-fn world_tangent(tangent: vec3<f32>, instance: u32) -> vec3<f32> {
-    let m = objects[instance].world_from_model;
+fn world_tangent(tangent: vec3<f32>, instance: Instance) -> vec3<f32> {
+    let m = world_from_model(instance);
     let t = m[0].xyz * tangent.x + m[1].xyz * tangent.y + m[2].xyz * tangent.z;
     return normalize_or(t, vec3<f32>(0.0));
 }

@@ -3,28 +3,6 @@
 //
 // A pass binds only those that its shader reaches: depth, or moments.
 
-/// What is the same for all maps of a view. Mirrored by `layout::ShadowUniforms`.
-struct ShadowUniforms {
-    /// Distance ahead of the eye in m at which each cascade of the sun ends.
-    far_ends: vec4<f32>,
-    /// How penumbrae are found: SHADOW_FILTER_DPCF or SHADOW_FILTER_PCSS; 0 where there are none.
-    filter_kind: u32,
-    /// Width and height of a layer in texels.
-    texels: f32,
-    /// Offset of receivers along their normals, in texels where the map is seen at grazing.
-    normal_bias_texels: f32,
-    /// 1/m² of the distance by which the sun's shadows have faded; 0: they do not fade.
-    inv_far2: f32,
-    /// Exponent of the warp of moments.
-    exponent: f32,
-    /// Least variance of warped depth, over its square.
-    variance_floor: f32,
-    /// Share of light that is taken for bled and removed, 0…1.
-    bleed: f32,
-    /// Length of a contact shadow's ray in m.
-    contact_m: f32,
-}
-
 /// One map. Mirrored by `layout::ShadowMapUniforms`.
 struct ShadowMapUniforms {
     /// World to the light's clip space, reversed-Z.
@@ -59,11 +37,37 @@ struct ShadowMapUniforms {
     warped: u32,
 }
 
+/// What is the same for all maps of a view, and the maps of the sun. Mirrored by
+/// `layout::ShadowUniforms`.
+struct ShadowUniforms {
+    /// Distance ahead of the eye in m at which each cascade of the sun ends.
+    far_ends: vec4<f32>,
+    /// How penumbrae are found: SHADOW_FILTER_DPCF or SHADOW_FILTER_PCSS; 0 where there are none.
+    filter_kind: u32,
+    /// Width and height of a layer in texels.
+    texels: f32,
+    /// Offset of receivers along their normals, in texels where the map is seen at grazing.
+    normal_bias_texels: f32,
+    /// 1/m² of the distance by which the sun's shadows have faded; 0: they do not fade.
+    inv_far2: f32,
+    /// Exponent of the warp of moments.
+    exponent: f32,
+    /// Least variance of warped depth, over its square.
+    variance_floor: f32,
+    /// Share of light that is taken for bled and removed, 0…1.
+    bleed: f32,
+    /// Length of a contact shadow's ray in m.
+    contact_m: f32,
+    /// Maps of the sun, CASCADES of them. Not with the others: Mesa's software driver loads from
+    /// storage fragment by fragment.
+    cascades: array<ShadowMapUniforms, 4>,
+}
+
 /// Values of `ShadowUniforms::filter_kind`.
 const SHADOW_FILTER_DPCF: u32 = 1u;
 const SHADOW_FILTER_PCSS: u32 = 2u;
 
-/// How many cascades there are; they come first among the maps.
+/// How many cascades there are.
 override CASCADES: u32 = 4u;
 /// Whether there are maps of local lights.
 override LAMP_SHADOWS: bool = true;
@@ -71,7 +75,8 @@ override LAMP_SHADOWS: bool = true;
 override SHOW_CASCADES: bool = false;
 
 @group(0) @binding(30) var<uniform> shadow: ShadowUniforms;
-@group(0) @binding(31) var<storage, read> shadow_maps: array<ShadowMapUniforms>;
+/// Maps of local lights.
+@group(0) @binding(31) var<storage, read> local_maps: array<ShadowMapUniforms>;
 /// Depth, reversed: 1 nearest the light, cleared to 0.
 @group(0) @binding(32) var shadow_map: texture_depth_2d_array;
 /// Linear filter, clamp to edge, compare GreaterEqual.

@@ -12,7 +12,7 @@
 // ray through the scene's structure completes them), AMBIENT_OCCLUSION or OCCLUSION_UPSAMPLED (a
 // picture of it is read, interface/ambient_occlusion.wgsl), FROXELS (lights are found by lists),
 // REFLECTIONS (what rays found in the picture, interface/reflection.wgsl), FOG
-// (interface/fog.wgsl), TEXTURED (the material has a texture), MATERIAL_TABLE (materials lie in an
+// (interface/fog.wgsl), TEXTURED (the material has a texture), VERTEX_COLORS (the mesh has colors), MATERIAL_TABLE (materials lie in an
 // array), ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands
 // of spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
 // TRANSMISSION, SPECULAR. They change what is bound or comes from the vertices, so they are
@@ -25,10 +25,12 @@ import package::interface::epilogue::epilogue;
 import package::interface::fog::in_fog;
 import package::interface::frame::frame;
 import package::interface::material::{
-    material, MATERIAL_UNLIT, base_color, metallic_roughness, emission, specular_factors,
+    material, TRAIT_EMITS, TRAIT_UNLIT, material_has, base_color, metallic_roughness, emission,
+    specular_factors,
 };
 @if(MATERIAL_TABLE)
 import package::interface::material::materials;
+import package::interface::object::Instance;
 @if(TRANSMISSION)
 import package::interface::scene::radiance_behind;
 @if(TRANSMISSION)
@@ -36,9 +38,7 @@ import package::lib::refraction::{refracted_path, transmittance, transmission_sp
 @if(CLEAR_COAT)
 import package::interface::material::clear_coat;
 @if(CLEAR_COAT && TEXTURED)
-import package::interface::material::{
-    SLOT_CLEAR_COAT_NORMAL, has_texture, clear_coat_tangent_normal,
-};
+import package::interface::material::{SLOT_CLEAR_COAT_NORMAL, clear_coat_tangent_normal};
 @if(SHEEN)
 import package::interface::material::sheen;
 @if(ANISOTROPY)
@@ -82,7 +82,7 @@ import package::shading::surface::Sheen;
 import package::shading::surface::{Anisotropy, anisotropy_direction};
 import package::shading::vertex::{
     SurfaceVertex, surface_vertex, face_sign, geometric_normal, smooth_normal, shading_normal,
-    texture_uv,
+    texture_uv, vertex_color,
 };
 @if(CLEAR_COAT && TEXTURED)
 import package::shading::vertex::mapped_normal;
@@ -104,7 +104,7 @@ const F90_IS_GIVEN: bool = false;
 
 @vertex
 fn vs_main(
-    @location(6) instance: u32,
+    instance: Instance,
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) tangent: vec4<f32>,
@@ -151,7 +151,7 @@ fn coat_of(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32, view: vec3<
     let roughness = shaded_roughness(values.y, smooth_side);
     var normal = smooth_side;
     @if(TEXTURED) {
-        if has_texture(SLOT_CLEAR_COAT_NORMAL) {
+        if material_has(SLOT_CLEAR_COAT_NORMAL) {
             normal = mapped_normal(vertex, smooth_side, side, clear_coat_tangent_normal(vertex.uv));
         }
     }
@@ -269,8 +269,11 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     }
     radiance = add_punctual(radiance, surface, receiver);
     radiance *= cascade_tint(vertex.world);
-    let emissive_exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
-    return radiance + emission(uv) * (emissive_exposure * layer_transmittance(surface));
+    if material_has(TRAIT_EMITS) {
+        let exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
+        radiance += emission(uv) * (exposure * layer_transmittance(surface));
+    }
+    return radiance;
 }
 
 @fragment
@@ -281,10 +284,10 @@ fn fs_main(
     @if(MATERIAL_TABLE) material = materials[vertex.material];
     // Derivatives need every lane of the quad, so the discard comes last.
     let geometric = geometric_normal(vertex);
-    let base = base_color(texture_uv(vertex), vertex.color);
+    let base = base_color(texture_uv(vertex), vertex_color(vertex));
     let side = face_sign(front_facing);
     var color = base.rgb;
-    if (material.flags & MATERIAL_UNLIT) == 0u {
+    if !material_has(TRAIT_UNLIT) {
         color = shade(vertex, geometric, side, base.rgb);
     }
     if ALPHA_MODE == 1u && base.a < material.alpha_cutoff {

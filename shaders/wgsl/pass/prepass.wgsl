@@ -5,7 +5,7 @@
 // interface/object.wgsl and mark it @invariant, and masked geometry decides on the same alpha.
 // Reversed-Z, compare Greater, cleared to 0.
 
-import package::interface::object::{objects, world_position, clip_position};
+import package::interface::object::{Instance, world_position, clip_position};
 import package::interface::material::{material, base_color};
 
 struct OpaqueVertex {
@@ -21,7 +21,7 @@ struct MaskVertex {
 /// Opaque geometry; no fragment stage.
 @vertex
 fn vs_opaque(
-    @location(6) instance: u32,
+    instance: Instance,
     @location(0) position: vec3<f32>,
 ) -> OpaqueVertex {
     return OpaqueVertex(clip_position(world_position(position, instance)));
@@ -30,7 +30,7 @@ fn vs_opaque(
 /// Alpha-masked geometry.
 @vertex
 fn vs_mask(
-    @location(6) instance: u32,
+    instance: Instance,
     @location(0) position: vec3<f32>,
     @location(3) uv0: vec2<f32>,
     @location(4) uv1: vec2<f32>,

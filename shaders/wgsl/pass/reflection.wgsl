@@ -6,7 +6,8 @@
 // is how long the ray's way was, by which a rough surface blurs.
 
 import package::interface::frame::frame;
-import package::interface::material::{material, MATERIAL_UNLIT, metallic_roughness};
+import package::interface::material::{TRAIT_UNLIT, material_has, metallic_roughness};
+import package::interface::object::Instance;
 import package::interface::structure::{
     structure, structure_ndc, structure_depth, structure_position,
 };
@@ -51,7 +52,7 @@ struct ReflectionUniforms {
 
 @vertex
 fn vs_main(
-    @location(6) instance: u32,
+    instance: Instance,
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) tangent: vec4<f32>,
@@ -178,7 +179,7 @@ fn fs_main(
     let side = face_sign(front_facing);
     let normal = shading_normal(vertex, smooth_normal(vertex, geometric, side), side);
     let traced = roughness_fade(metallic_roughness(texture_uv(vertex)).y, settings.most_roughness);
-    if traced <= 0.0 || (material.flags & MATERIAL_UNLIT) != 0u {
+    if traced <= 0.0 || material_has(TRAIT_UNLIT) {
         return NOTHING;
     }
     let view_from_world = transpose(mat3x3<f32>(

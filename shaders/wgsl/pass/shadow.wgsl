@@ -7,7 +7,7 @@
 // normal is applied by the receiver (lib/shadow.wgsl). Moments (lib/shadow_moments.wgsl) are
 // of depth along the light, which is linear whatever the view's perspective.
 
-import package::interface::object::{objects, world_position};
+import package::interface::object::{Instance, world_position};
 import package::interface::material::{material, base_color};
 import package::lib::fullscreen::fullscreen_position;
 import package::lib::shadow_moments::depth_moments;
@@ -48,7 +48,7 @@ fn vs_far(@builtin(vertex_index) index: u32) -> OpaqueVertex {
 /// Opaque geometry.
 @vertex
 fn vs_opaque(
-    @location(6) instance: u32,
+    instance: Instance,
     @location(0) position: vec3<f32>,
 ) -> OpaqueVertex {
     let world = vec4<f32>(world_position(position, instance), 1.0);
@@ -58,7 +58,7 @@ fn vs_opaque(
 /// Alpha-masked geometry.
 @vertex
 fn vs_mask(
-    @location(6) instance: u32,
+    instance: Instance,
     @location(0) position: vec3<f32>,
     @location(3) uv0: vec2<f32>,
     @location(4) uv1: vec2<f32>,

@@ -6,7 +6,7 @@
 // not, over it, is the mean of those that did.
 
 import package::interface::material::{material, base_color};
-import package::interface::object::{objects, world_position, clip_position};
+import package::interface::object::{Instance, world_position, clip_position};
 
 /// Clip space of this frame and of the one before, from model space. Mirrored by
 /// `layout::MotionUniforms`.
@@ -27,7 +27,7 @@ struct VelocityVertex {
 
 @vertex
 fn vs_main(
-    @location(6) instance: u32,
+    instance: Instance,
     @location(0) position: vec3<f32>,
     @location(3) uv0: vec2<f32>,
     @location(4) uv1: vec2<f32>,
@@ -36,8 +36,8 @@ fn vs_main(
 ) -> VelocityVertex {
     return VelocityVertex(
         clip_position(world_position(position, instance)),
-        (motions[instance].clip_from_model * vec4<f32>(position, 1.0)).xyw,
-        (motions[instance].earlier_clip_from_model * vec4<f32>(earlier, 1.0)).xyw,
+        (motions[instance.number].clip_from_model * vec4<f32>(position, 1.0)).xyw,
+        (motions[instance.number].earlier_clip_from_model * vec4<f32>(earlier, 1.0)).xyw,
         vec4<f32>(uv0, uv1),
         color.a,
     );

@@ -3,7 +3,7 @@
 @if(AMBIENT_OCCLUSION || OCCLUSION_UPSAMPLED)
 import package::interface::ambient_occlusion::screen_occlusion;
 import package::interface::ambient_occlusion::BENT_NORMALS;
-import package::interface::material::{SLOT_OCCLUSION, has_texture, occlusion};
+import package::interface::material::{SLOT_OCCLUSION, material_has, occlusion};
 @if(REFLECTIONS)
 import package::interface::reflection::found_reflection;
 @if(ANISOTROPY)
@@ -54,7 +54,7 @@ fn ambient_visibility(
     on_screen: bool,
 ) -> AmbientVisibility {
     var ambient = 1.0;
-    if has_texture(SLOT_OCCLUSION) {
+    if material_has(SLOT_OCCLUSION) {
         ambient = saturate(occlusion(uv));
     }
     var around = vec4<f32>(1.0, 0.0, 0.0, 0.0);

@@ -4,7 +4,7 @@
 // moments. Without any every light reaches everything.
 
 import package::interface::shadow::{
-    shadow, shadow_maps, CASCADES, LAMP_SHADOWS, SHOW_CASCADES,
+    shadow, local_maps, ShadowMapUniforms, CASCADES, LAMP_SHADOWS, SHOW_CASCADES,
 };
 import package::lib::shadow::{
     normal_offset, shadow_uvz_from_clip, cascade_at, faded_visibility, cube_face_of,
@@ -26,7 +26,8 @@ fn sun_visibility(receiver: Receiver) -> f32 {
         return 1.0;
     }
     // A single map has a number that the compiler knows.
-    let visibility = map_visibility(min(cascade, CASCADES - 1u), receiver);
+    let map = shadow.cascades[min(cascade, CASCADES - 1u)];
+    let visibility = map_visibility(map, receiver);
     return faded_visibility(visibility, ahead, shadow.inv_far2);
 }
 
@@ -35,7 +36,7 @@ fn sun_visibility(receiver: Receiver) -> f32 {
     return 1.0;
 }
 
-/// Visibility of a local light whose first map is number `first` - 1, 0 being none; `from_light`
+/// Visibility of a local light whose first map is `local_maps[first - 1]`, 0 being none; `from_light`
 /// leads from the light to the receiver. A point light has six maps, a spot one.
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn light_visibility(first: u32, is_point: bool, from_light: vec3<f32>, receiver: Receiver) -> f32 {
@@ -43,7 +44,7 @@ fn light_visibility(first: u32, is_point: bool, from_light: vec3<f32>, receiver:
         return 1.0;
     }
     let face = select(0u, cube_face_of(from_light), is_point);
-    return map_visibility(first - 1u + face, receiver);
+    return map_visibility(local_maps[first - 1u + face], receiver);
 }
 
 @else
@@ -72,8 +73,7 @@ fn cascade_tint(world: vec3<f32>) -> vec3<f32> {
 
 /// Visibility by one map; what lies outside of it is lit.
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
-fn map_visibility(number: u32, receiver: Receiver) -> f32 {
-    let map = shadow_maps[number];
+fn map_visibility(map: ShadowMapUniforms, receiver: Receiver) -> f32 {
     let w = dot(vec4<f32>(receiver.world, 1.0), transpose(map.clip_from_world)[3]);
     let offset = normal_offset(
         receiver.normal, map.right, map.up, texel_m(map, w), shadow.normal_bias_texels,

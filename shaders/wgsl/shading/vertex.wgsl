@@ -1,15 +1,17 @@
 // A surface as it is drawn: what the vertex stage hands on, and the normals made of it.
 //
 // Feature TEXTURED: the material has a texture; without it no texture coordinates are handed on,
-// and tangents only where anisotropy follows them.
+// and tangents only where anisotropy follows them. VERTEX_COLORS: the mesh has colors.
 
 import package::interface::object::{
-    objects, world_position, clip_position, world_normal, world_tangent,
+    Instance, world_position, clip_position, world_normal, world_tangent, handedness,
 };
 @if(TRANSMISSION)
 import package::interface::object::mesh_scale_m;
+@if(MATERIAL_TABLE)
+import package::interface::object::material_number;
 import package::interface::material::{
-    material, MATERIAL_DOUBLE_SIDED, SLOT_NORMAL, has_texture, map_uv, normal_texture,
+    material, SLOT_NORMAL, TRAIT_DOUBLE_SIDED, material_has, map_uv, normal_texture,
     normal_sampler,
 };
 import package::lib::normal_map::{unpack_normal, vertex_normal, apply_normal_map};
@@ -25,6 +27,7 @@ struct SurfaceVertex {
     @location(2) tangent: vec4<f32>,
     @if(TEXTURED)
     @location(3) uv: vec4<f32>,
+    @if(VERTEX_COLORS)
     @location(4) color: vec4<f32>,
     /// Meters a unit of the mesh, the mean over its axes.
     @if(TRANSMISSION)
@@ -36,7 +39,7 @@ struct SurfaceVertex {
 
 /// What a vertex of a mesh hands on; `uv` has both sets.
 fn surface_vertex(
-    instance: u32,
+    instance: Instance,
     position: vec3<f32>,
     normal: vec3<f32>,
     tangent: vec4<f32>,
@@ -50,11 +53,11 @@ fn surface_vertex(
     vertex.normal = world_normal(normal, instance);
     @if(TEXTURED || ANISOTROPY)
     vertex.tangent =
-        vec4<f32>(world_tangent(tangent.xyz, instance), tangent.w * objects[instance].handedness);
+        vec4<f32>(world_tangent(tangent.xyz, instance), tangent.w * handedness(instance));
     @if(TEXTURED) vertex.uv = uv;
-    vertex.color = color;
+    @if(VERTEX_COLORS) vertex.color = color;
     @if(TRANSMISSION) vertex.scale_m = mesh_scale_m(instance);
-    @if(MATERIAL_TABLE) vertex.material = objects[instance].material;
+    @if(MATERIAL_TABLE) vertex.material = material_number(instance);
     return vertex;
 }
 
@@ -62,6 +65,12 @@ fn surface_vertex(
 fn texture_uv(vertex: SurfaceVertex) -> vec4<f32> {
     @if(TEXTURED) return vertex.uv;
     @else return vec4<f32>(0.0);
+}
+
+/// What the base color is multiplied by.
+fn vertex_color(vertex: SurfaceVertex) -> vec4<f32> {
+    @if(VERTEX_COLORS) return vertex.color;
+    @else return vec4<f32>(1.0);
 }
 
 /// The triangle's own normal, toward the viewer: window y runs downward, hence the order of the
@@ -77,7 +86,7 @@ fn geometric_normal(vertex: SurfaceVertex) -> vec3<f32> {
 /// no visible back faces: the pipeline culls them. It flips its winding for mirrored objects, so
 /// their fronts are fronts here.
 fn face_sign(front_facing: bool) -> f32 {
-    if (material.flags & MATERIAL_DOUBLE_SIDED) == 0u {
+    if !material_has(TRAIT_DOUBLE_SIDED) {
         return 1.0;
     }
     return select(-1.0, 1.0, front_facing);
@@ -91,7 +100,7 @@ fn smooth_normal(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32) -> vec3
 /// Unit shading normal in world space: `smooth_side` (of `smooth_normal`) with the normal map.
 @if(TEXTURED)
 fn shading_normal(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32) -> vec3<f32> {
-    if !has_texture(SLOT_NORMAL) {
+    if !material_has(SLOT_NORMAL) {
         return smooth_side;
     }
     let at = map_uv(material.normal_map, vertex.uv);

@@ -4,7 +4,7 @@ use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Options, Plan, Scratch, compile};
 use framegraph_passes::indirect::{LEAST_BATCHES, draws_indirectly};
 use framegraph_passes::shadow::{MomentSettings, ShadowFilter, ShadowSettings};
-use framegraph_passes::view::Background;
+use framegraph_passes::view::{Background, MOST_STREAMED};
 use framegraph_passes::{CameraView, PreparedScene, Settings, ViewId, ViewSettings, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::geometry::{cuboid, plane, sphere};
@@ -85,6 +85,44 @@ fn short_and_long_indices_draw_the_same_picture() -> TestResult {
     let short = picture(|_| false)?;
     assert!(short == picture(|index| index == 1)?, "indices of both kinds draw another picture");
     assert!(short == picture(|_| true)?, "indices of 32 bits draw another picture");
+    Ok(())
+}
+
+/// Objects that come with their instances make the picture that those in buffers do: all kinds of surfaces, turned and mirrored
+/// under a normal map, with colors at vertices and without, also where materials are taken from an array.
+#[test]
+fn objects_in_a_stream_and_in_buffers_are_the_same_picture() -> TestResult {
+    let Some(gpu) = gpu("objects_in_a_stream_and_in_buffers_are_the_same_picture") else { return Ok(()) };
+    let mut crowd = crowd();
+    let tilted = Image { name: "tilted.png".into(), width: 1, height: 1, rgba8: vec![200, 90, 220, 255] };
+    let texture = crowd.add_texture(tilted, TextureRole::Normal, Sampler::default());
+    let slot = TextureSlot { texture, uv_set: 0, transform: UvTransform::default() };
+    crowd.materials[1].normal_texture = Some(slot);
+    let vertices = crowd.meshes[1].positions.iter();
+    crowd.meshes[1].colors = vertices.map(|at| (at.abs() * 3.0).min(Vec3::ONE).extend(1.0)).collect();
+    let settings = Settings { shadows: Some(ShadowSettings::texels(128)), ..Settings::DEFAULT };
+    let shot = Shot { size_px: [96, 64], options: Options::for_frame(96, 64), ..Shot::small(settings) };
+    let environment = Sky::default().environment(128)?;
+    for (scene, variant) in [(crowd, "VERTEX_COLORS"), (wall(MOST_STREAMED), "MATERIAL_TABLE")] {
+        let settings = settings.for_scene(&scene, shot.size_px);
+        let picture = |streamed: bool| -> Result<_, Box<dyn Error>> {
+            let lighting = lighting(&gpu, &environment, &settings.shading)?;
+            let view = view_of(&scene, &lighting.image, &Background::Environment, &shot);
+            assert!(view.streams_objects);
+            let view = CameraView { streams_objects: streamed, ..view };
+            let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;
+            let picture = draw(&gpu, &world, &settings, &shot.options)?;
+            let made = world.programs.made();
+            let made = |feature: &str| made.iter().filter(|program| program.name().contains(feature)).count();
+            Ok((picture, made("INSTANCE_STREAM"), made(variant)))
+        };
+        let ((streamed, streams, own), (read, none, other)) = (picture(true)?, picture(false)?);
+        assert!(streams > 2 && none == 0 && own > 0 && other > 0, "{streams} and {none} variants, {own} and {other}");
+        assert!(streamed == read, "{variant}: objects in a stream are another picture");
+    }
+    let larger = wall(MOST_STREAMED + 1);
+    let image = lighting(&gpu, &environment, &settings.shading)?.image;
+    assert!(!view_of(&larger, &image, &Background::Environment, &shot).streams_objects);
     Ok(())
 }
 
