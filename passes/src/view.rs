@@ -9,7 +9,7 @@
 mod gpu;
 mod motion;
 
-pub use gpu::{GpuView, MOST_STREAMED, ViewId, Views};
+pub use gpu::{GpuView, ViewId, Views};
 
 use crate::draws::ViewDraws;
 use crate::ibl::ImageLight;
@@ -89,6 +89,9 @@ impl BackgroundUniforms {
         }
     }
 }
+
+/// The most instances of a scene whose objects come with the draws ([`CameraView::streams_objects`]).
+pub const MOST_STREAMED: usize = 1024;
 
 /// One view of one frame, on the CPU.
 #[derive(Clone, Debug)]

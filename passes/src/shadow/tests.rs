@@ -303,7 +303,7 @@ fn local_maps_are_as_large_as_their_lights_are_important() {
         let layers = maps.iter().map(|map| map.place.layer).max().map_or(0, |last| last - 1);
         assert_eq!(layers, u16::from(local_layers(&scene, DVec3::ZERO, settings)));
         assert!(layers <= settings.local_layers() && maps.iter().all(|map| map.place.layer >= 2));
-        let side = |start: &Option<u32>| start.map(|first| maps[first as usize - 2].place.texels);
+        let side = |start: &Option<u32>| start.map(|first| maps[first as usize].place.texels);
         [0, 1, 2, 3].map(|light: usize| side(&starts[light]))
     };
     assert_eq!(sides(&settings), [256, 1024, 64, 512].map(Some));

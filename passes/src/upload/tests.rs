@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use framegraph_shaders::layout::{VertexAttributes, VertexPosition};
-use glam::DVec3;
+use framegraph_shaders::layout::{TRAIT_DOUBLE_SIDED, TRAIT_EMITS, VertexAttributes, VertexPosition};
+use glam::{DVec3, Vec3};
 
 use super::*;
 use crate::adapter::working;
@@ -78,6 +78,20 @@ fn slots_of_textures_are_numbered_as_they_are_bound() {
         let constant = format!("const SLOT_{}: u32 = {slot}u;", name.to_uppercase());
         assert!(text.contains(&constant), "`{constant}` is not in it");
     }
+}
+
+/// A material that is written anew is drawn as what it has become; its textures stay.
+#[test]
+fn a_written_material_has_other_traits() {
+    let (gpu, scene) = (noop(), with_image(1, 1, [255; 4]));
+    let mut uploaded = GpuScene::upload(&gpu, &scene, &mut silent).expect("nothing to refuse");
+    let id = MaterialId::new(0);
+    let traits = |bits: &[u32]| 1 << 3 | bits.iter().map(|bit| 1 << bit).sum::<u32>();
+    assert_eq!(uploaded.traits(id), traits(&[]));
+    let glowing = Material { emissive: Vec3::X, double_sided: true, ..scene.materials[0].clone() };
+    let without = Material { occlusion_texture: None, ..glowing };
+    uploaded.write_material(&gpu, id, &without).expect("it has the same lobes");
+    assert_eq!(uploaded.traits(id), traits(&[TRAIT_EMITS, TRAIT_DOUBLE_SIDED]));
 }
 
 #[test]

@@ -16,9 +16,6 @@ use framegraph_wgpu::{DeviceError, Gpu};
 use glam::DVec2;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
-/// The most instances of a scene whose objects come with the draws ([`CameraView::streams_objects`]).
-pub const MOST_STREAMED: usize = 1024;
-
 /// Which of a frame's views a pass draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ViewId(pub u32);

@@ -12,9 +12,10 @@
 // ray through the scene's structure completes them), AMBIENT_OCCLUSION or OCCLUSION_UPSAMPLED (a
 // picture of it is read, interface/ambient_occlusion.wgsl), FROXELS (lights are found by lists),
 // REFLECTIONS (what rays found in the picture, interface/reflection.wgsl), FOG
-// (interface/fog.wgsl), TEXTURED (the material has a texture), VERTEX_COLORS (the mesh has colors), MATERIAL_TABLE (materials lie in an
-// array), ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands
-// of spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
+// (interface/fog.wgsl), TEXTURED (the material has a texture), VERTEX_COLORS (the mesh has colors),
+// MATERIAL_TABLE (materials lie in an array), INSTANCE_STREAM (interface/object.wgsl),
+// ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands of
+// spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
 // TRANSMISSION, SPECULAR. They change what is bound or comes from the vertices, so they are
 // compiled in or out; what only changes arithmetic is an `override`. HALF shades in half floats:
 // what a surface is made of and what it reflects of one light (lib/real.wgsl). Light itself, and

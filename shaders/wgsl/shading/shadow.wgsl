@@ -36,8 +36,8 @@ fn sun_visibility(receiver: Receiver) -> f32 {
     return 1.0;
 }
 
-/// Visibility of a local light whose first map is `local_maps[first - 1]`, 0 being none; `from_light`
-/// leads from the light to the receiver. A point light has six maps, a spot one.
+/// Visibility of a local light whose first map is `local_maps[first - 1]`, 0 being none;
+/// `from_light` leads from the light to the receiver. A point light has six maps, a spot one.
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn light_visibility(first: u32, is_point: bool, from_light: vec3<f32>, receiver: Receiver) -> f32 {
     if !LAMP_SHADOWS || first == 0u {

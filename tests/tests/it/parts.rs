@@ -147,6 +147,15 @@ fn post_and_fxaa_run_on_a_picture_without_a_scene() -> TestResult {
         }
     }
 
+    // A target of sRGB that is seen without it is given the same codes.
+    let (codes, _) = filtered(&gpu, &parts, picture, |frame, hdr| {
+        let into = frame.graph_mut().texture("codes", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
+        let into = into.viewed_as(Format::Rgba8Unorm).into();
+        Ok(frame.add("post", Post { into, ..post(hdr, false) })?.ldr)
+    })?;
+    let all = |pixels: &framegraph_wgpu::Pixels| pixels.rgba8();
+    assert!(all(&plain).iter().zip(all(&codes)).all(|(a, b)| a.abs_diff(b) <= 1), "codes are written as light");
+
     let (smooth, plan) = filtered(&gpu, &parts, picture, |frame, hdr| {
         let ldr = frame.add("post", post(hdr, true))?.ldr;
         Ok(frame.add("fxaa", Fxaa { ldr, into: Target::New, settings: FxaaUniforms::default() })?.output)

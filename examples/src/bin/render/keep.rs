@@ -62,9 +62,9 @@ pub fn declare(settings: &Settings, facts: &Facts, linear: bool, own: Own<'_>) -
     }
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
     let output = frame.graph_mut().texture("output", desc);
-    // The picture is dithered in codes of sRGB, which are written as they are: the device need not make them once more.
-    let codes = output.viewed_as(Format::Rgba8Unorm);
-    let handles = stages(settings).declare(&mut frame, handles, Target::from(codes)).map_err(device)?;
+    // The edge filter has codes of sRGB, which are written as they are: the device need not make them once more.
+    let target = if settings.fxaa { output.viewed_as(Format::Rgba8Unorm).into() } else { Target::from(output) };
+    let handles = stages(settings).declare(&mut frame, handles, target).map_err(device)?;
     let slot = |slot| handles.get(slot).map_err(device);
     let measured = MeasuredTextures::of(&handles);
     let io = FrameIo { hdr: slot(Slot::HDR)?, output: slot(Slot::PICTURE)?, measured };
