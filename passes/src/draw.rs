@@ -6,16 +6,16 @@
 use crate::error::PassError;
 use crate::indirect::{ARGUMENTS_BYTES, DrawList, LEAST_RUN, draws_indirectly};
 use crate::program::{Interface, Program, ProgramDesc, Programs};
+use crate::streams::{Instances, stream_attributes, vertex_buffers};
 use crate::upload::{GpuScene, InstanceDraw, MATERIAL_BINDINGS, TEXTURE_TRAITS, features_of};
 use framegraph_scene::{Batch, Lobes, MaterialId};
 use framegraph_shaders::layout::{
-    OBJECT_ATTRIBUTES, ObjectAttributes, STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION,
-    TRAIT_DOUBLE_SIDED, VERTEX_ATTRIBUTES, VertexFormat, stream_stride_bytes,
+    STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION, TRAIT_DOUBLE_SIDED,
 };
 use framegraph_shaders::{Feature, Features, Module};
-use framegraph_wgpu::{Binding, Constants, Cx, Depth, Output, Raster, RasterPipeline, RecordError, VertexBuffer};
+use framegraph_wgpu::{Binding, Constants, Cx, Depth, Output, Raster, RasterPipeline, RecordError};
 use std::sync::Arc;
-use wgpu::{Buffer, Face, FrontFace, PrimitiveState, VertexAttribute, VertexStepMode};
+use wgpu::{Buffer, Face, FrontFace, PrimitiveState};
 
 /// Which variant of a shader draws a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,31 +55,6 @@ pub struct InstanceSource<'a> {
     pub instances: Instances<'a>,
     /// Arguments of long lists of draws.
     pub arguments: &'a Buffer,
-}
-
-/// The stream of instances, of which batches are ranges.
-#[derive(Clone, Copy, Debug)]
-pub enum Instances<'a> {
-    /// A vertex buffer of `layout::ObjectAttributes`, which shaders need nothing else beside.
-    Stream(&'a Buffer),
-    /// Numbers of elements of other buffers.
-    Numbers {
-        /// A vertex buffer.
-        numbers: &'a Buffer,
-        /// `layout::ObjectUniforms` of each instance, by its number.
-        objects: &'a Buffer,
-        /// Where the zero point of each instance's mesh is, relative to the eye, by its number.
-        origins: &'a Buffer,
-    },
-}
-
-impl<'a> Instances<'a> {
-    /// The vertex buffer.
-    const fn buffer(self) -> &'a Buffer {
-        match self {
-            Self::Stream(buffer) | Self::Numbers { numbers: buffer, .. } => buffer,
-        }
-    }
 }
 
 /// How batches of instances are drawn.
@@ -323,20 +298,8 @@ impl SurfaceDraw<'_> {
         let Self { program, frame, constants, depth, colors, .. } = self;
         let program = program(key.surface)?;
         fits(&program, key.surface.lobes, from.scene.material_name(material), &cx.gpu().device.limits())?;
-        let streamed = key.surface.instance_stream;
-        let buffers = vertex_buffers(streamed);
-        let buffers: Vec<VertexBuffer<'_>> = buffers
-            .iter()
-            .enumerate()
-            .map(|(stream, attributes)| VertexBuffer {
-                stride_bytes: match stream as u32 {
-                    STREAM_INSTANCE if streamed => size_of::<ObjectAttributes>() as u64,
-                    stream => stream_stride_bytes(stream),
-                },
-                step: if stream as u32 == STREAM_INSTANCE { VertexStepMode::Instance } else { VertexStepMode::Vertex },
-                attributes,
-            })
-            .collect();
+        let attributes = stream_attributes(key.surface.instance_stream);
+        let buffers = vertex_buffers(&attributes, key.surface.instance_stream);
         let constants: Vec<f64> = std::iter::once(key.surface.traits.into()).chain(constants.iter().copied()).collect();
         let pipeline = cx.raster_pipeline(&Raster {
             vertex: program.vertex,
@@ -376,28 +339,4 @@ pub(crate) fn fits(program: &Program, lobes: Lobes, material: &str, limits: &wgp
         }
     }
     Ok(())
-}
-
-/// The attributes of the vertex streams, as wgpu takes them; `streamed` if instances bring their objects along.
-fn vertex_buffers(streamed: bool) -> [Vec<VertexAttribute>; 4] {
-    [STREAM_POSITION, STREAM_ATTRIBUTES, STREAM_INSTANCE, STREAM_EARLIER].map(|stream| {
-        let all: &[_] = if streamed && stream == STREAM_INSTANCE { &OBJECT_ATTRIBUTES } else { &VERTEX_ATTRIBUTES };
-        let own = all.iter().filter(|a| a.stream == stream);
-        own.map(|a| VertexAttribute {
-            format: vertex_format(a.format),
-            offset: a.offset_bytes,
-            shader_location: a.location,
-        })
-        .collect()
-    })
-}
-
-const fn vertex_format(format: VertexFormat) -> wgpu::VertexFormat {
-    match format {
-        VertexFormat::Float32x2 => wgpu::VertexFormat::Float32x2,
-        VertexFormat::Float32x3 => wgpu::VertexFormat::Float32x3,
-        VertexFormat::Float32x4 => wgpu::VertexFormat::Float32x4,
-        VertexFormat::Float16x4 => wgpu::VertexFormat::Float16x4,
-        VertexFormat::Uint32 => wgpu::VertexFormat::Uint32,
-    }
 }

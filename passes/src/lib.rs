@@ -66,6 +66,7 @@ pub mod shadow;
 pub mod sharpen;
 pub mod stages;
 pub mod stand;
+pub mod streams;
 pub mod structure;
 pub mod sun;
 pub mod surface;

@@ -141,8 +141,8 @@ impl Placements {
     }
 
     /// What shaders read of an instance.
-    pub(crate) fn object(&self, instance: usize) -> Option<&ObjectUniforms> {
-        self.0.get(instance / CHUNK)?.objects.get(instance % CHUNK)
+    pub(crate) fn object(&self, instance: usize) -> &ObjectUniforms {
+        &self.0[instance / CHUNK].objects[instance % CHUNK]
     }
 
     /// Model to world space of an instance.

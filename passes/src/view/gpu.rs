@@ -4,11 +4,12 @@
 //! scene's and shared. How instances are turned and scaled is uploaded once, and again where it changed.
 
 use super::CameraView;
-use crate::draw::{InstanceSource, Instances};
+use crate::draw::InstanceSource;
 use crate::error::PassError;
 use crate::indirect::draws_indirectly;
 use crate::prepared::Placements;
 use crate::shadow::ViewShadows;
+use crate::streams::Instances;
 use crate::upload::GpuScene;
 use bytemuck::cast_slice;
 use framegraph_shaders::layout::{ObjectAttributes, ObjectUniforms};
@@ -45,6 +46,8 @@ pub struct GpuView {
     origins: Buffer,
     /// Instances as draws take them: `layout::ObjectAttributes` where objects are streamed, else their numbers.
     instances: Buffer,
+    /// Those of `instances` that are objects; kept for its memory.
+    streamed: Vec<ObjectAttributes>,
     /// Arguments of indirect draws.
     arguments: Buffer,
     id: ViewId,
@@ -59,6 +62,7 @@ impl GpuView {
             motions: storage("motions"),
             origins: storage("origins"),
             instances: buffer(gpu, "instances", BufferUsages::VERTEX, 0),
+            streamed: Vec::new(),
             arguments: buffer(gpu, "draws", BufferUsages::INDIRECT, 0),
             lights: storage("lights"),
             light_lists: storage("light lists"),
@@ -85,11 +89,12 @@ impl GpuView {
         refill(gpu, &mut self.local_maps, "local maps", storage, cast_slice(&maps));
         if view.streams_objects {
             let attributes = |number: &u32| {
-                let object = view.placements.object(*number as usize)?;
-                Some(ObjectAttributes::new(*number, object, *view.origins.get(*number as usize)?))
+                let index = *number as usize;
+                ObjectAttributes::new(*number, view.placements.object(index), view.origins[index])
             };
-            let objects: Vec<_> = view.draws.numbers.iter().filter_map(attributes).collect();
-            refill(gpu, &mut self.instances, "instances", BufferUsages::VERTEX, cast_slice(&objects));
+            self.streamed.clear();
+            self.streamed.extend(view.draws.numbers.iter().map(attributes));
+            refill(gpu, &mut self.instances, "instances", BufferUsages::VERTEX, cast_slice(&self.streamed));
             return;
         }
         refill(gpu, &mut self.instances, "instances", BufferUsages::VERTEX, cast_slice(&view.draws.numbers));

@@ -21,7 +21,8 @@ pub struct LightUniforms {
     pub spot_scale: f32,
     /// Spot lights: -cos outer · `spot_scale`.
     pub spot_offset: f32,
-    /// Number of the light's first shadow map, counted from 1; 0: it casts none.
+    /// Number of the light's first shadow map among those of local lights, counted from 1; 0: it
+    /// casts none.
     pub shadow_map: u32,
     /// Padding to 16 bytes; zero.
     pub _pad: [f32; 2],

@@ -32,7 +32,7 @@ fn wgsl_structs() -> BTreeMap<String, StructLayout> {
     let mut structs: BTreeMap<String, StructLayout> = BTreeMap::new();
     for pass in library::passes() {
         let effects = if pass.wgsl.contains("epilogue(") { effects.as_slice() } else { &[] };
-        // Objects are read from buffers without the last feature alone.
+        // Without INSTANCE_STREAM objects are read from buffers.
         let without = Feature::all().filter(|feature| *feature != Feature::INSTANCE_STREAM).collect();
         for features in [Feature::all().collect(), without] {
             for found in resolve(&pass, &features, effects).unwrap().reflection.structs {

@@ -61,7 +61,8 @@ struct LightUniforms {
     spot_scale: f32,
     /// -cos outer · spot_scale.
     spot_offset: f32,
-    /// Number of the light's first shadow map, counted from 1; 0: it casts none.
+    /// Number of the light's first shadow map among those of local lights, counted from 1; 0: it
+    /// casts none.
     shadow_map: u32,
 }
 

@@ -153,8 +153,9 @@ fn post_and_fxaa_run_on_a_picture_without_a_scene() -> TestResult {
         let into = into.viewed_as(Format::Rgba8Unorm).into();
         Ok(frame.add("post", Post { into, ..post(hdr, false) })?.ldr)
     })?;
-    let all = |pixels: &framegraph_wgpu::Pixels| pixels.rgba8();
-    assert!(all(&plain).iter().zip(all(&codes)).all(|(a, b)| a.abs_diff(b) <= 1), "codes are written as light");
+    // The device encodes within 0.6 of a code (Vulkan's allowance), the shader to the nearest one.
+    let same = plain.rgba8().iter().zip(codes.rgba8()).all(|(a, b)| a.abs_diff(b) <= 1);
+    assert!(same, "light is written where codes are asked for");
 
     let (smooth, plan) = filtered(&gpu, &parts, picture, |frame, hdr| {
         let ldr = frame.add("post", post(hdr, true))?.ldr;
