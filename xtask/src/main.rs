@@ -6,6 +6,7 @@
 //! # Map
 //! - [`command`]: a command a file. To add one, write the file and name it in [`command::ALL`].
 //! - [`adapter`]: is there a GPU or software driver, and if not, which packages bring one.
+//! - [`lints`]: this program in the place of the compiler, to lint and document what it compiles.
 //! - [`mutant`]: faults planted in sources, to see whether a test falls.
 //! - [`source`]: the Rust files of the rooms: product code, modules, circles.
 //! - [`rustc_time`]: this program in the place of the compiler, to time crates.
@@ -17,6 +18,7 @@
 
 mod adapter;
 mod command;
+mod lints;
 mod mutant;
 mod options;
 mod rustc_time;
@@ -53,6 +55,9 @@ impl fmt::Display for Failure {
 fn main() -> ExitCode {
     if let Some(log) = std::env::var_os(rustc_time::LOG) {
         return rustc_time::wrap(std::env::args_os().skip(1), &log);
+    }
+    if let Some(document) = std::env::var_os(lints::DOCUMENT) {
+        return lints::wrap(std::env::args_os().skip(1), &document);
     }
     match run() {
         Ok(()) => program::exit(0),

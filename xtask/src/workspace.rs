@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 use std::process::Command;
 
+use crate::Failure;
+
 /// The workspace's root folder.
 ///
 /// `cargo run` tells where this package lies; a program started without cargo falls back on the
@@ -19,6 +21,16 @@ pub fn cargo(arguments: &[&str]) -> Command {
     // Mesa's device selection layer complains about a missing session on standard error.
     command.current_dir(root()).args(arguments).env("NODEVICE_SELECT", "1");
     command
+}
+
+/// The folder for what this program writes for itself, made where it is not there.
+///
+/// # Errors
+/// Where it cannot be made.
+pub fn scratch() -> Result<PathBuf, Failure> {
+    let folder = root().join("target/xtask");
+    std::fs::create_dir_all(&folder).map_err(|error| Failure::Failed(format!("{}: {error}", folder.display())))?;
+    Ok(folder)
 }
 
 #[cfg(test)]

@@ -67,7 +67,7 @@ pub struct ShadowMap {
 }
 
 impl ShadowMap {
-    /// The map as a view at `eye` sees it, The eye is subtracted in double precision.
+    /// The map as a view at `eye` sees it. The eye is subtracted in double precision.
     pub(super) fn new(fitted: Fitted, eye: DVec3, settings: &ShadowSettings, penumbra: Penumbra) -> Self {
         let ShadowSettings { map_texels, filter, bias, .. } = *settings;
         // The variance of moments takes the place of a bias.

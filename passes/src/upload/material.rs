@@ -1,10 +1,10 @@
 //! A material in the terms of the shaders: the names of what it binds, the features that it calls for, its factors.
 
 use framegraph_scene::material::{AlphaMode, EmissiveUnit, Lobe, Lobes, Material, SLOT_COUNT};
-use framegraph_scene::texture::TextureSlot;
+use framegraph_scene::texture::{TextureSlot, UvTransform};
 use framegraph_shaders::layout::{
     AnisotropyUniforms, ClearCoatUniforms, MaterialUniforms, SheenUniforms, SpecularUniforms, TRAIT_DOUBLE_SIDED,
-    TRAIT_EMITS, TRAIT_UNLIT, TextureMap, TransmissionUniforms,
+    TRAIT_EMITS, TRAIT_PACKED_OCCLUSION, TRAIT_PLAIN_UV, TRAIT_UNLIT, TextureMap, TransmissionUniforms,
 };
 use framegraph_shaders::{Feature, Features};
 use glam::{Vec2, Vec3};
@@ -61,15 +61,27 @@ pub fn features_of(lobes: Lobes) -> Features {
 /// The bits of textures among [`material_traits`].
 pub const TEXTURE_TRAITS: u32 = (1 << SLOT_COUNT) - 1;
 
+/// The bits of [`material_traits`] of a material that is written anew and keeps the textures of the one before.
+pub(super) fn traits_with_textures_of(before: u32, material: &Material) -> u32 {
+    let (new, packed) = (material_traits(material), 1 << TRAIT_PACKED_OCCLUSION);
+    before & TEXTURE_TRAITS | new & !(TEXTURE_TRAITS | packed) | before & new & packed
+}
+
 /// What a material has, as the constant `MATERIAL_TRAITS` of shaders: a bit for each texture of its
 /// [slots](Material::slots), and those of `layout::TRAIT_*`.
 #[must_use]
 pub fn material_traits(material: &Material) -> u32 {
-    let textures = material.slots().map(|slot| slot.is_some()).into_iter().zip(0..);
+    let slots = material.slots();
+    let textures = slots.map(|slot| slot.is_some()).into_iter().zip(0..);
+    let plain = |slot: &TextureSlot| slot.uv_set == 0 && slot.transform == UvTransform::default();
+    let packed =
+        material.occlusion_texture.is_some() && material.occlusion_texture == material.metallic_roughness_texture;
     let others = [
         (material.emissive != Vec3::ZERO, TRAIT_EMITS),
         (material.double_sided, TRAIT_DOUBLE_SIDED),
         (material.unlit, TRAIT_UNLIT),
+        (slots.iter().any(Option::is_some) && slots.iter().flatten().all(plain), TRAIT_PLAIN_UV),
+        (packed, TRAIT_PACKED_OCCLUSION),
     ];
     textures.chain(others).filter(|(is, _)| *is).map(|(_, bit)| 1 << bit).sum()
 }
@@ -160,7 +172,6 @@ mod tests {
     use super::*;
     use framegraph_scene::TextureId;
     use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular, Transmission, Volume};
-    use framegraph_scene::texture::UvTransform;
     use glam::Mat3;
 
     /// Both sides spell KHR_texture_transform out; they must agree.
@@ -185,6 +196,40 @@ mod tests {
         assert_eq!((packed.alpha_cutoff, packed.metallic), (0.3, 1.0));
         assert_eq!(packed.emissive_exposure_weight, 1.0);
         assert!((packed.dielectric_f0 - 0.04).abs() < 1e-7);
+    }
+
+    #[test]
+    fn textures_that_are_looked_up_alike_are_told() {
+        let slot =
+            |texture| TextureSlot { texture: TextureId::new(texture), uv_set: 0, transform: UvTransform::default() };
+        let moved = UvTransform { offset: Vec2::X, ..UvTransform::default() };
+        let traits = |rough, occlusion| {
+            let bits = material_traits(&Material {
+                metallic_roughness_texture: rough,
+                occlusion_texture: occlusion,
+                ..Material::default()
+            });
+            [TRAIT_PLAIN_UV, TRAIT_PACKED_OCCLUSION].map(|bit| bits & 1 << bit != 0)
+        };
+        assert_eq!(traits(None, None), [false, false]);
+        assert_eq!(traits(Some(slot(0)), None), [true, false]);
+        assert_eq!(traits(Some(slot(0)), Some(slot(1))), [true, false]);
+        assert_eq!(traits(Some(slot(0)), Some(slot(0))), [true, true]);
+        let (turned, second) = (TextureSlot { transform: moved, ..slot(0) }, TextureSlot { uv_set: 1, ..slot(0) });
+        for other in [turned, second] {
+            assert_eq!(traits(Some(slot(0)), Some(other)), [false, false]);
+            assert_eq!(traits(Some(other), Some(other)), [false, true]);
+        }
+        // What is written anew may part textures, but not bind others.
+        let both = |rough, occlusion| Material {
+            metallic_roughness_texture: rough,
+            occlusion_texture: occlusion,
+            ..Material::default()
+        };
+        let (packed, apart) = (both(Some(slot(0)), Some(slot(0))), both(Some(slot(0)), Some(turned)));
+        let has =
+            |before, now| traits_with_textures_of(material_traits(before), now) & 1 << TRAIT_PACKED_OCCLUSION != 0;
+        assert!(has(&packed, &packed) && !has(&packed, &apart) && !has(&apart, &packed));
     }
 
     /// A lobe's factors and each of its texture slots, told apart by their offsets, are packed where shaders read them.

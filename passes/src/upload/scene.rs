@@ -11,7 +11,7 @@ use framegraph_wgpu::{Binding, Gpu};
 use super::buffers;
 use super::error::UploadError;
 use super::instances::InstanceDraw;
-use super::material::{TEXTURE_TRAITS, material_traits, material_uniforms};
+use super::material::{TEXTURE_TRAITS, material_traits, material_uniforms, traits_with_textures_of};
 use super::mesh_range::MeshRange;
 use super::textures::{Images, MaterialTextures};
 
@@ -186,7 +186,7 @@ impl GpuScene {
             let (name, number) = (material.name.clone(), id.index());
             return Err(UploadError::OtherMaterial { name, number });
         };
-        surface.traits = surface.traits & TEXTURE_TRAITS | material_traits(material) & !TEXTURE_TRAITS;
+        surface.traits = traits_with_textures_of(surface.traits, material);
         let (number, packed) = (id.index() as u64, material_uniforms(material));
         gpu.queue.write_buffer(&self.materials, number * self.material_stride_bytes, bytemuck::bytes_of(&packed));
         if let Some(table) = &self.material_table {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use framegraph_shaders::layout::{TRAIT_DOUBLE_SIDED, TRAIT_EMITS, VertexAttributes, VertexPosition};
+use framegraph_shaders::layout::{TRAIT_DOUBLE_SIDED, TRAIT_EMITS, TRAIT_PLAIN_UV, VertexAttributes, VertexPosition};
 use glam::{DVec3, Vec3};
 
 use super::*;
@@ -87,7 +87,7 @@ fn a_written_material_has_other_traits() {
     let mut uploaded = GpuScene::upload(&gpu, &scene, &mut silent).expect("nothing to refuse");
     let id = MaterialId::new(0);
     let traits = |bits: &[u32]| 1 << 3 | bits.iter().map(|bit| 1 << bit).sum::<u32>();
-    assert_eq!(uploaded.traits(id), traits(&[]));
+    assert_eq!(uploaded.traits(id), traits(&[TRAIT_PLAIN_UV]));
     let glowing = Material { emissive: Vec3::X, double_sided: true, ..scene.materials[0].clone() };
     let without = Material { occlusion_texture: None, ..glowing };
     uploaded.write_material(&gpu, id, &without).expect("it has the same lobes");

@@ -10,6 +10,10 @@ pub const TRAIT_EMITS: u32 = 15;
 pub const TRAIT_DOUBLE_SIDED: u32 = 16;
 /// Number of the bit of one whose base color is shown as it is (KHR_materials_unlit).
 pub const TRAIT_UNLIT: u32 = 17;
+/// Number of the bit of one all textures of which are looked up by set 0 of texture coordinates as it is.
+pub const TRAIT_PLAIN_UV: u32 = 18;
+/// Number of the bit of one whose occlusion is in red of its metallic-roughness texture, looked up alike.
+pub const TRAIT_PACKED_OCCLUSION: u32 = 19;
 
 /// How texture coordinates of the mesh lead to a texture (KHR_texture_transform); that of no texture is not read.
 #[repr(C)]

@@ -96,6 +96,8 @@ fn constants_have_the_same_values_on_both_sides() {
     assert_eq!(material("TRAIT_EMITS"), layout::TRAIT_EMITS);
     assert_eq!(material("TRAIT_DOUBLE_SIDED"), layout::TRAIT_DOUBLE_SIDED);
     assert_eq!(material("TRAIT_UNLIT"), layout::TRAIT_UNLIT);
+    assert_eq!(material("TRAIT_PLAIN_UV"), layout::TRAIT_PLAIN_UV);
+    assert_eq!(material("TRAIT_PACKED_OCCLUSION"), layout::TRAIT_PACKED_OCCLUSION);
 
     use glam::Vec3;
     let kind = |shape| LightUniforms::punctual(shape, Vec3::ONE, 1.0, 1.0).unwrap().kind;

@@ -209,6 +209,10 @@ const TRAIT_EMITS: u32 = 15u;
 const TRAIT_DOUBLE_SIDED: u32 = 16u;
 /// The base color is shown as it is (KHR_materials_unlit).
 const TRAIT_UNLIT: u32 = 17u;
+/// Every texture is looked up by set 0 as it is.
+const TRAIT_PLAIN_UV: u32 = 18u;
+/// Occlusion is in red of the metallic-roughness texture, which is read once for both.
+const TRAIT_PACKED_OCCLUSION: u32 = 19u;
 
 /// Whether the material has the texture of a slot, or a trait.
 fn material_has(what: u32) -> bool {
@@ -217,6 +221,9 @@ fn material_has(what: u32) -> bool {
 
 /// Texture coordinates of a map; `uv` holds set 0 in xy and set 1 in zw.
 fn map_uv(map: TextureMap, uv: vec4<f32>) -> vec2<f32> {
+    if material_has(TRAIT_PLAIN_UV) {
+        return uv.xy;
+    }
     let chosen = select(uv.xy, uv.zw, map.uv_set == 1u);
     return transform_uv(chosen, map.x_axis, map.y_axis, map.offset);
 }
@@ -246,8 +253,14 @@ fn occlusion(uv: vec4<f32>) -> f32 {
     if !material_has(SLOT_OCCLUSION) {
         return 1.0;
     }
-    let at = map_uv(material.occlusion_map, uv);
-    let texel = textureSample(occlusion_texture, occlusion_sampler, at).r;
+    var texel: f32;
+    if material_has(TRAIT_PACKED_OCCLUSION) {
+        let at = map_uv(material.metallic_roughness_map, uv);
+        texel = textureSample(metallic_roughness_texture, metallic_roughness_sampler, at).r;
+    } else {
+        let at = map_uv(material.occlusion_map, uv);
+        texel = textureSample(occlusion_texture, occlusion_sampler, at).r;
+    }
     return 1.0 + material.occlusion_strength * (texel - 1.0);
 }
 

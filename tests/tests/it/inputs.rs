@@ -200,6 +200,7 @@ fn occlusion_is_its_channel_by_its_strength() -> TestResult {
     let Some(gpu) = gpu("occlusion_is_its_channel_by_its_strength") else { return Ok(()) };
     let mut board = Board::default();
     let texture = shown(&mut board, 4, TextureRole::Linear, TEXEL);
+    let others = [11, 0].map(|place| shown(&mut board, place, TextureRole::Linear, TEXEL));
     let albedo = Vec3::new(0.8, 0.4, 0.2);
     let chalk = |strength: f32| Material {
         occlusion_texture: texture,
@@ -208,11 +209,15 @@ fn occlusion_is_its_channel_by_its_strength() -> TestResult {
         ..Material::dielectric("chalk", albedo, 1.0)
     };
     let light = DVec3::new(1.0, 0.5, 0.25);
-    let cases = [1.0, 0.5, 0.0].map(|strength: f64| {
-        let open = 1.0 + strength * (0.2 - 1.0);
-        ("occluded", chalk(strength as f32), albedo.as_dvec3() * light * open)
-    });
-    compare(&gpu, board, &Environment::uniform(light)?, &Quality::Low.shading(), HALF_FLOATS, cases.into())?;
+    let open = |strength: f64| albedo.as_dvec3() * light * (1.0 + strength * (0.2 - 1.0));
+    let mut cases = [1.0, 0.5, 0.0].map(|strength| ("occluded", chalk(strength as f32), open(strength))).to_vec();
+    // Of one texture in one place, and of one in two.
+    let rough = |texture| Material { metallic_roughness_texture: texture, ..chalk(1.0) };
+    cases.extend([("packed", rough(texture), open(1.0)), ("apart", rough(others[0]), open(1.0))]);
+    // Looked up by the first coordinates as they are, alone and packed.
+    let plain = |texture| Material { occlusion_texture: others[1], metallic_roughness_texture: texture, ..chalk(1.0) };
+    cases.extend([None, others[1]].map(|texture| ("plain", plain(texture), open(1.0))));
+    compare(&gpu, board, &Environment::uniform(light)?, &Quality::Low.shading(), HALF_FLOATS, cases)?;
     let mut board = lit();
     let _ = shown(&mut board, 4, TextureRole::Linear, TEXEL);
     let hidden = (NORMAL.dot(TOWARD[2]) / (1.0_f64 - 0.2).sqrt()).min(1.0).powi(2);

@@ -9,7 +9,7 @@ use super::Command;
 use crate::options::Options;
 use crate::stage::{self, Outcome};
 use crate::tally::{self, Reported, Totals};
-use crate::{Failure, adapter, workspace};
+use crate::{Failure, adapter, lints, workspace};
 
 /// The command.
 pub const COMMAND: Command = Command {
@@ -18,9 +18,9 @@ pub const COMMAND: Command = Command {
     details: "\
 Stages, all of which run even if one fails:
   format  cargo fmt --all -- --check
-  clippy  every target of the workspace, fuzz targets and the program beside a
-          peer too, warnings are errors
-  docs    rustdoc of libraries, with private items, warnings are errors
+  build   every target of the workspace, fuzz targets and the program beside a
+          peer too: each is linted by clippy, and each library documented with
+          its private items; warnings are errors
   deny    deny.toml but for advisories, where cargo-deny is installed
   tests   unit, integration and documentation tests
 
@@ -41,15 +41,19 @@ or if one skipped for a reason that is not among the known ones.
 };
 
 /// Features without which what needs more than the workspace does is not built.
+///
+/// With the same features everywhere, what the packages depend on is compiled once for all commands.
 const ON_DEMAND: &str = "framegraph-fuzz/fuzzer,tests-fuzz/fuzzer,peers/peer";
 
 fn run(options: &Options) -> Result<(), Failure> {
     let expected = adapter::ready(options)?;
     adapter::checks(options);
+    let all = options.has("--all");
+    let wrapper = lints::Wrapper::new(&workspace::scratch()?)?;
+    let building = |command: &[&str]| building(&wrapper, all, command);
     let mut outcomes = vec![
         stage::run("format", &mut workspace::cargo(&["fmt", "--all", "--", "--check"])),
-        stage::run("clippy", checking("clippy", &["--all-targets"]).args(["--", "-D", "warnings"])),
-        stage::run("docs", &mut documented(options.has("--all"))),
+        stage::run("build", &mut building(&["build", "--keep-going", "--all-targets"])),
     ];
     // Where the tool is not at hand, a test reads the same lists. Advisories are that test's alone: the tool fetches theirs, and
     // a run without a network, or on a day with new ones, would say nothing of this commit.
@@ -57,43 +61,32 @@ fn run(options: &Options) -> Result<(), Failure> {
         let check = ["deny", "--all-features", "check", "bans", "licenses", "sources"];
         outcomes.push(stage::run("deny", &mut workspace::cargo(&check)));
     }
-    let (outcome, totals, reported) = tests(options.has("--all"))?;
+    let (outcome, totals, reported) = tests(building(&["test", "--no-fail-fast"]), all)?;
     outcomes.push(outcome);
     program::print(summary(&outcomes, totals, &reported, &expected));
     verdict(&outcomes)
 }
 
-/// A command that checks all packages and links nothing: with what is not built unless it is asked for.
-///
-/// With the same features everywhere, what the packages depend on is checked once for all of these commands.
-fn checking(what: &str, more: &[&str]) -> std::process::Command {
-    let mut command = workspace::cargo(&[what, "--workspace", "--ignore-rust-version", "--features", ON_DEMAND]);
-    // The fuzzer's own library would ask for a compiler of C++.
-    command.args(more).env("CUSTOM_LIBFUZZER_PATH", "./none");
-    command
-}
-
-/// The documentation of libraries, or of programs too: each program takes as long as a library, whose links are most.
-fn documented(programs: bool) -> std::process::Command {
-    let mut command = checking("doc", &["--no-deps", "--document-private-items"]);
-    if !programs {
-        command.arg("--lib");
+/// A command of cargo for the whole workspace that lints and documents what it compiles; in release, and with the
+/// documentation of programs, for all cases.
+fn building(wrapper: &lints::Wrapper, all: bool, command: &[&str]) -> std::process::Command {
+    let mut cargo = workspace::cargo(command);
+    // What is built on demand may ask for a newer compiler than the workspace does.
+    cargo.args(["--workspace", "--ignore-rust-version", "--features", ON_DEMAND]);
+    if all {
+        cargo.arg("--release");
     }
-    command.env("RUSTDOCFLAGS", "-D warnings");
-    command
+    wrapper.around(&mut cargo, all);
+    cargo
 }
 
 /// Runs the tests, in all cases or with a share of some, with a file for what they have to report.
-fn tests(all: bool) -> Result<(Outcome, Totals, Reported), Failure> {
-    let folder = workspace::root().join("target/xtask");
-    let log = folder.join("skips.log");
-    fs::create_dir_all(&folder)
-        .and_then(|()| fs::write(&log, ""))
-        .map_err(|error| Failure::Failed(format!("{}: {error}", log.display())))?;
-    let mut command = workspace::cargo(&["test", "--workspace", "--no-fail-fast"]);
+fn tests(mut command: std::process::Command, all: bool) -> Result<(Outcome, Totals, Reported), Failure> {
+    let log = workspace::scratch()?.join("skips.log");
+    fs::write(&log, "").map_err(|error| Failure::Failed(format!("{}: {error}", log.display())))?;
     command.env(tally::SKIP_LOG, &log);
     if all {
-        command.arg("--release").env("FRAMEGRAPH_TESTS", "all");
+        command.env("FRAMEGRAPH_TESTS", "all");
     }
     let mut totals = Totals::default();
     let mut outcome = stage::run_reading("tests", &mut command, |line| totals.add(line));

@@ -1,0 +1,201 @@
+//! This program in the place of `rustc` for the workspace's own crates: it compiles a crate, asks clippy about it and has
+//! rustdoc document it.
+//!
+//! `cargo clippy` and `cargo doc` would first check all that the workspace depends on, which tests have to compile anyway.
+//! Here all three read what was compiled. Cargo starts the program named in `RUSTC_WORKSPACE_WRAPPER` with the compiler and
+//! its arguments; a crate that clippy or rustdoc find fault with counts as one that does not compile.
+
+use std::ffi::{OsStr, OsString};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+use crate::Failure;
+
+/// The environment variable that says what is documented, [`LIBRARIES`] or [`PROGRAMS`] too; where it is set, this program
+/// is the wrapper.
+pub const DOCUMENT: &str = "FRAMEGRAPH_DOCUMENT";
+const LIBRARIES: &str = "libraries";
+const PROGRAMS: &str = "programs";
+/// What cargo says of fuzz targets, which are compiled and not linked: that takes a compiler of C++ and another of Rust.
+const FUZZER: &str = "feature=\"fuzzer\"";
+
+/// What cargo is told to start in the place of the compiler.
+pub struct Wrapper {
+    program: PathBuf,
+    /// A library of the fuzzer without anything in it; its own would ask for a compiler of C++.
+    fuzzer: PathBuf,
+}
+
+impl Wrapper {
+    /// A copy of this program in a folder, since compiling the workspace may write a new one.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn new(folder: &Path) -> Result<Self, Failure> {
+        let program = folder.join(format!("lints{}", std::env::consts::EXE_SUFFIX));
+        let fuzzer = folder.join(if cfg!(target_env = "msvc") { "fuzzer.lib" } else { "libfuzzer.a" });
+        // A new time of what is there would have crates compiled again.
+        let written = std::env::current_exe().and_then(|own| {
+            renew(&program, &fs::read(&own)?, Some(fs::metadata(&own)?.permissions()))?;
+            renew(&fuzzer, b"!<arch>\n", None)
+        });
+        written.map_err(|error| Failure::Failed(format!("{}: {error}", folder.display())))?;
+        Ok(Self { program, fuzzer })
+    }
+
+    /// Has a command of cargo lint and document what it compiles: libraries, or `programs` too, each of which takes as long
+    /// to document as a library, whose links are most.
+    pub fn around(&self, cargo: &mut Command, programs: bool) {
+        cargo.env("RUSTC_WORKSPACE_WRAPPER", &self.program).env("CUSTOM_LIBFUZZER_PATH", &self.fuzzer);
+        cargo.env(DOCUMENT, if programs { PROGRAMS } else { LIBRARIES });
+    }
+}
+
+/// Writes a file anew if it holds something else, with permissions of its own if there are some.
+fn renew(file: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> std::io::Result<()> {
+    if fs::read(file).is_ok_and(|there| there == bytes) {
+        return Ok(());
+    }
+    // What is there may be running for another build.
+    let part = file.with_extension(format!("{}.part", std::process::id()));
+    fs::write(&part, bytes)?;
+    if let Some(permissions) = permissions {
+        fs::set_permissions(&part, permissions)?;
+    }
+    fs::rename(&part, file)
+}
+
+/// Compiles, lints and documents; `arguments` are the compiler's path and its own arguments.
+pub fn wrap(mut arguments: impl Iterator<Item = OsString>, document: &OsStr) -> ExitCode {
+    let Some(compiler) = arguments.next().map(PathBuf::from) else { return ExitCode::from(2) };
+    let arguments: Vec<OsString> = arguments.collect();
+    // Cargo asks the compiler about itself, too.
+    if !arguments.iter().any(|word| word.to_string_lossy().starts_with("--emit")) {
+        return code(Command::new(&compiler).args(&arguments));
+    }
+    let is = |kind: &str| value(&arguments, "--crate-type").is_some_and(|value| value == kind);
+    let tested = arguments.iter().any(|word| word == "--test");
+    let scratch = PathBuf::from(value(&arguments, "--out-dir").unwrap_or_default()).join("../lints");
+    let mut steps = Vec::new();
+    if is("bin") && arguments.iter().any(|word| word == FUZZER) {
+        // Cargo looks for the program.
+        if let Err(error) = fs::write(program(&arguments), []) {
+            program::note(format_args!("xtask: {}: {error}", program(&arguments).display()));
+            return ExitCode::FAILURE;
+        }
+        let emit = "--emit=dep-info,metadata".into();
+        steps.push((compiler.clone(), with(&arguments, &["--emit"], &[emit, "--cap-lints=allow".into()])));
+    } else {
+        steps.push((compiler.clone(), with(&arguments, &[], &["--cap-lints=allow".into()])));
+    }
+    let out = ["--out-dir".into(), scratch.clone().into_os_string()];
+    let lint = [&["--emit=metadata".into(), "-Dwarnings".into()], out.as_slice()].concat();
+    let left_out = ["--emit", "--out-dir", "incremental"];
+    steps.push((compiler.with_file_name("clippy-driver"), quiet(with(&arguments, &left_out, &lint))));
+    if !tested && (is("lib") || document == PROGRAMS && is("bin")) {
+        let out = ["--out-dir".into(), scratch.join("doc").into_os_string()];
+        let document = [&["--document-private-items".into(), "-Dwarnings".into()], out.as_slice()].concat();
+        let left_out = ["--emit", "--out-dir", "-C", "--warn", "--deny", "--allow", "--forbid", "--diagnostic-width"];
+        steps.push((compiler.with_file_name("rustdoc"), quiet(with(&arguments, &left_out, &document))));
+    }
+    // All of them, so that one run shows what each has to say, if the crate compiles at all.
+    let mut steps = steps.into_iter();
+    let compiled = steps.next().map_or(ExitCode::SUCCESS, |(tool, words)| code(Command::new(tool).args(words)));
+    if compiled != ExitCode::SUCCESS {
+        return compiled;
+    }
+    steps
+        .map(|(tool, words)| code(Command::new(tool).args(words)))
+        .fold(ExitCode::SUCCESS, |all, one| if all == ExitCode::SUCCESS { one } else { all })
+}
+
+/// Where a program is linked to.
+fn program(arguments: &[OsString]) -> PathBuf {
+    let folder = PathBuf::from(value(arguments, "--out-dir").unwrap_or_default());
+    let own = |word: &OsString| word.to_str().and_then(|word| word.strip_prefix("extra-filename=")).map(str::to_owned);
+    let mut name = value(arguments, "--crate-name").unwrap_or_default();
+    name.push(arguments.iter().find_map(own).unwrap_or_default());
+    name.push(std::env::consts::EXE_SUFFIX);
+    folder.join(name)
+}
+
+/// The value of an option, in a word of its own.
+fn value(arguments: &[OsString], option: &str) -> Option<OsString> {
+    arguments.iter().skip_while(|word| *word != option).nth(1).cloned()
+}
+
+/// The arguments without some options and their values, be they in words of their own or behind `=`, and with others.
+/// `-C` and what follows it is left out too where the option is that of the code generator.
+fn with(arguments: &[OsString], left_out: &[&str], more: &[OsString]) -> Vec<OsString> {
+    let mut kept = Vec::with_capacity(arguments.len() + more.len());
+    let mut words = arguments.iter().peekable();
+    while let Some(word) = words.next() {
+        let text = word.to_string_lossy();
+        let option = text.split('=').next().unwrap_or_default();
+        let generated = |next: &OsString| left_out.iter().any(|name| next.to_string_lossy().starts_with(name));
+        if option == "-C" && (left_out.contains(&"-C") || words.peek().copied().is_some_and(generated)) {
+            words.next();
+        } else if left_out.contains(&option) {
+            if !text.contains('=') {
+                words.next();
+            }
+        } else {
+            kept.push(word.clone());
+        }
+    }
+    kept.extend(more.iter().cloned());
+    kept
+}
+
+/// The arguments without the request to name the files that were written: cargo has heard of the crate's own.
+fn quiet(arguments: Vec<OsString>) -> Vec<OsString> {
+    let plain = |word: OsString| match word.to_str().and_then(|text| text.strip_prefix("--json=")) {
+        Some(kinds) => {
+            let kinds: Vec<&str> = kinds.split(',').filter(|kind| *kind != "artifacts").collect();
+            format!("--json={}", kinds.join(",")).into()
+        }
+        None => word,
+    };
+    arguments.into_iter().map(plain).collect()
+}
+
+/// Runs a command; how it ended.
+fn code(command: &mut Command) -> ExitCode {
+    match command.status() {
+        Ok(status) if status.success() => ExitCode::SUCCESS,
+        Ok(status) => ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)),
+        Err(error) => {
+            program::note(format_args!("xtask: {}: {error}", command.get_program().display()));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(text: &str) -> Vec<OsString> {
+        text.split(' ').map(OsString::from).collect()
+    }
+
+    const ASKED: &str = "--crate-name one --edition=2024 src/main.rs --json=future-incompat,artifacts --emit=dep-info,link \
+                         -C opt-level=1 -C incremental=/t/i -C extra-filename=-1f --out-dir /t/deps --warn=missing_docs";
+
+    #[test]
+    fn options_are_left_out_with_their_values() {
+        let left_out = ["--emit", "--out-dir", "incremental"];
+        let linted = "--crate-name one --edition=2024 src/main.rs --json=future-incompat -C opt-level=1 -C \
+                      extra-filename=-1f --warn=missing_docs --emit=metadata";
+        assert_eq!(quiet(with(&words(ASKED), &left_out, &["--emit=metadata".into()])), words(linted));
+        let documented = "--crate-name one --edition=2024 src/main.rs --json=future-incompat,artifacts";
+        assert_eq!(with(&words(ASKED), &["--emit", "--out-dir", "-C", "--warn"], &[]), words(documented));
+    }
+
+    #[test]
+    fn a_program_lies_where_cargo_looks_for_it() {
+        let name = format!("/t/deps/one-1f{}", std::env::consts::EXE_SUFFIX);
+        assert_eq!(program(&words(ASKED)), PathBuf::from(name));
+    }
+}
