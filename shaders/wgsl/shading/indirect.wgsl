@@ -35,6 +35,12 @@ struct AmbientVisibility {
     ambient: f32,
 }
 
+/// Whether the picture's own occlusion is read.
+@if(AMBIENT_OCCLUSION || OCCLUSION_UPSAMPLED)
+const SCREEN_OCCLUSION: bool = true;
+@else
+const SCREEN_OCCLUSION: bool = false;
+
 /// Visibility for a specular lobe where `ambient` is that of the cosine-weighted hemisphere.
 fn specular_visibility(nov: f32, ambient: f32, alpha: f32) -> f32 {
     if SPECULAR_OCCLUSION {
@@ -64,7 +70,7 @@ fn ambient_visibility(
             ambient = min(ambient, saturate(around.x));
         }
     }
-    if ambient == 1.0 {
+    if !material_has(SLOT_OCCLUSION) && !SCREEN_OCCLUSION {
         return AmbientVisibility(vec3<f32>(1.0), vec3<f32>(1.0), 1.0);
     }
     var specular = specular_visibility(f32(s.nov), ambient, f32(s.alpha));
@@ -74,14 +80,17 @@ fn ambient_visibility(
         let r = reflect(-vec3<f32>(s.view), normal);
         specular = specular_occlusion_cones(open, r, ambient, f32(s.alpha));
     }
+    var visible = AmbientVisibility(vec3<f32>(ambient), vec3<f32>(specular), ambient);
     if MULTI_BOUNCE_OCCLUSION {
-        return AmbientVisibility(
-            gtao_multi_bounce(ambient, vec3<f32>(s.diffuse)),
-            gtao_multi_bounce(specular, vec3<f32>(s.f0)),
-            ambient,
-        );
+        visible.diffuse = gtao_multi_bounce(ambient, vec3<f32>(s.diffuse));
+        visible.specular = gtao_multi_bounce(specular, vec3<f32>(s.f0));
     }
-    return AmbientVisibility(vec3<f32>(ambient), vec3<f32>(specular), ambient);
+    // Chosen and not branched on: where a branch hangs on a uniform (the strength of the texture)
+    // and a texel, Mesa 22.3's software driver may crash.
+    let open = ambient == 1.0;
+    visible.diffuse = select(visible.diffuse, vec3<f32>(1.0), open);
+    visible.specular = select(visible.specular, vec3<f32>(1.0), open);
+    return visible;
 }
 
 /// Radiance that the base reflects; `normal` and `view` are those of the surface, in f32 since a

@@ -5,8 +5,9 @@
 
 mod lobes;
 
-use crate::stage::{gpu, lighting};
-use framegraph_passes::{Quality, Shading};
+use crate::stage::{Set, Shot, gpu, lighting};
+use framegraph_passes::view::Background;
+use framegraph_passes::{Quality, Settings, Shading};
 use framegraph_scene::material::{AlphaMode, EmissiveUnit};
 use framegraph_scene::texture::{Filter, Sampler, TextureRole, TextureSlot, UvTransform};
 use framegraph_scene::{Environment, Material, Mesh, Specular};
@@ -224,4 +225,25 @@ fn occlusion_is_its_channel_by_its_strength() -> TestResult {
     let expected = under_lamps(&Surface::chalk(albedo.as_dvec3(), NORMAL)) * DVec3::new(1.0, 1.0, hidden);
     let lamp = vec![("by a lamp", chalk(1.0), expected)];
     compare(&gpu, board, &Environment::uniform(DVec3::ZERO)?, &Quality::Low.shading(), HALF_FLOATS, lamp)
+}
+
+/// Without a shadow map, post-processing in the shader of the surface: of that and a texture of occlusion Mesa 22.3's
+/// software driver crashed, of a branch that hung on the texture's strength and on a texel.
+#[test]
+fn occlusion_shows_where_nothing_casts_shadows() -> TestResult {
+    let Some(gpu) = gpu("occlusion_shows_where_nothing_casts_shadows") else { return Ok(()) };
+    let shot = Shot::small(Settings { shadows: None, ..Settings::DEFAULT });
+    let picture = |strength: f32| -> Result<Vec<u8>, Box<dyn Error>> {
+        let mut board = Board::default();
+        let occlusion_texture = shown(&mut board, 4, TextureRole::Linear, TEXEL);
+        let chalk = Material::dielectric("chalk", Vec3::splat(0.5), 1.0);
+        let id = board.scene.add_material(Material { occlusion_texture, occlusion_strength: strength, ..chalk });
+        let card = board.scene.add_mesh(mesh());
+        board.scene.add_instance("card", card, id, DMat4::IDENTITY);
+        Ok(Set::of(&gpu, board.scene, &shot, &Background::Environment)?.shoot(&gpu, &shot)?.0)
+    };
+    let [open, occluded] = [picture(0.0)?, picture(1.0)?];
+    let darker = open.iter().zip(&occluded).filter(|(open, occluded)| occluded < open).count();
+    assert!(darker > 300, "{darker} channels are darker");
+    Ok(())
 }
