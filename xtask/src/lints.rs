@@ -7,6 +7,7 @@
 
 use std::ffi::{OsStr, OsString};
 use std::fs;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
@@ -28,12 +29,15 @@ pub struct Wrapper {
 }
 
 impl Wrapper {
-    /// A copy of this program in a folder, since compiling the workspace may write a new one.
+    /// A copy of this program in a folder, since compiling the workspace may write a new one, with a name for each text of
+    /// `settings`, clippy's own: cargo compiles anew what another wrapper compiled.
     ///
     /// # Errors
     /// Where it cannot be written.
-    pub fn new(folder: &Path) -> Result<Self, Failure> {
-        let program = folder.join(format!("lints{}", std::env::consts::EXE_SUFFIX));
+    pub fn new(folder: &Path, settings: &Path) -> Result<Self, Failure> {
+        let mut hasher = DefaultHasher::new();
+        fs::read(settings).unwrap_or_default().hash(&mut hasher);
+        let program = folder.join(format!("lints-{:016x}{}", hasher.finish(), std::env::consts::EXE_SUFFIX));
         let fuzzer = folder.join(if cfg!(target_env = "msvc") { "fuzzer.lib" } else { "libfuzzer.a" });
         // A new time of what is there would have crates compiled again.
         let written = std::env::current_exe().and_then(|own| {
