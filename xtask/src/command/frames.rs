@@ -108,9 +108,8 @@ fn filled(command: &str, [scene, preset, size]: [&str; 3]) -> String {
 }
 
 fn ours([scene, preset, size]: [&str; 3], more: &[&str], with: &[String]) -> Result<f64, Failure> {
-    let root = workspace::root();
-    let program = root.join("target/release").join(format!("render{}", std::env::consts::EXE_SUFFIX));
-    let out = root.join("target/xtask/bench.png");
+    let program = workspace::root().join("target/release").join(format!("render{}", std::env::consts::EXE_SUFFIX));
+    let out = workspace::scratch()?.join("bench.png");
     let mut command = Command::new(program);
     command.args([scene, "--preset", preset, "--size", size, "--frames", "6", "--timing", "--out"]).arg(&out);
     let text = output(command.args(more).args(with), &format!("render {scene} --preset {preset}"))?;
