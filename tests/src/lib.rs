@@ -13,7 +13,6 @@ pub mod mirror;
 pub mod reference;
 pub mod soak;
 pub mod stage;
-pub mod truth;
 
 /// The examples of the README, run as doc tests.
 #[cfg(doctest)]

@@ -15,7 +15,6 @@ pub mod chart;
 pub mod color;
 pub mod document;
 pub mod examine;
-pub mod flip;
 pub mod fog;
 pub mod light;
 pub mod metrics;

@@ -1,13 +1,12 @@
-//! This program in the place of `rustc` for the workspace's own crates: it compiles a crate, asks clippy about it and has
-//! rustdoc document it.
+//! This program in the place of `rustc` for the workspace's own crates: it has clippy compile a crate and rustdoc document it.
 //!
-//! `cargo clippy` and `cargo doc` would first check all that the workspace depends on, which tests have to compile anyway.
-//! Here all three read what was compiled. Cargo starts the program named in `RUSTC_WORKSPACE_WRAPPER` with the compiler and
-//! its arguments; a crate that clippy or rustdoc find fault with counts as one that does not compile.
+//! `cargo clippy` and `cargo doc` would first check all that the workspace depends on, which tests have to compile anyway, and
+//! clippy would read each crate a second time. But clippy's driver is the compiler with more lints: it makes programs too, with
+//! less optimization of its own before LLVM's. Cargo starts the program named in `RUSTC_WORKSPACE_WRAPPER` with the compiler
+//! and its arguments; a crate that clippy or rustdoc find fault with counts as one that does not compile.
 
 use std::ffi::{OsStr, OsString};
 use std::fs;
-use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
@@ -29,15 +28,12 @@ pub struct Wrapper {
 }
 
 impl Wrapper {
-    /// A copy of this program in a folder, since compiling the workspace may write a new one, with a name for each text of
-    /// `settings`, clippy's own: cargo compiles anew what another wrapper compiled.
+    /// A copy of this program in a folder, since compiling the workspace may write a new one.
     ///
     /// # Errors
     /// Where it cannot be written.
-    pub fn new(folder: &Path, settings: &Path) -> Result<Self, Failure> {
-        let mut hasher = DefaultHasher::new();
-        fs::read(settings).unwrap_or_default().hash(&mut hasher);
-        let program = folder.join(format!("lints-{:016x}{}", hasher.finish(), std::env::consts::EXE_SUFFIX));
+    pub fn new(folder: &Path) -> Result<Self, Failure> {
+        let program = folder.join(format!("lints{}", std::env::consts::EXE_SUFFIX));
         let fuzzer = folder.join(if cfg!(target_env = "msvc") { "fuzzer.lib" } else { "libfuzzer.a" });
         // A new time of what is there would have crates compiled again.
         let written = std::env::current_exe().and_then(|own| {
@@ -70,7 +66,7 @@ fn renew(file: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> std
     fs::rename(&part, file)
 }
 
-/// Compiles, lints and documents; `arguments` are the compiler's path and its own arguments.
+/// Compiles with lints and documents; `arguments` are the compiler's path and its own arguments.
 pub fn wrap(mut arguments: impl Iterator<Item = OsString>, document: &OsStr) -> ExitCode {
     let Some(compiler) = arguments.next().map(PathBuf::from) else { return ExitCode::from(2) };
     let arguments: Vec<OsString> = arguments.collect();
@@ -80,38 +76,24 @@ pub fn wrap(mut arguments: impl Iterator<Item = OsString>, document: &OsStr) -> 
     }
     let is = |kind: &str| value(&arguments, "--crate-type").is_some_and(|value| value == kind);
     let tested = arguments.iter().any(|word| word == "--test");
-    let scratch = PathBuf::from(value(&arguments, "--out-dir").unwrap_or_default()).join("../lints");
-    let mut steps = Vec::new();
+    let mut compiled = arguments.clone();
     if is("bin") && arguments.iter().any(|word| word == FUZZER) {
         // Cargo looks for the program.
         if let Err(error) = fs::write(program(&arguments), []) {
             program::note(format_args!("xtask: {}: {error}", program(&arguments).display()));
             return ExitCode::FAILURE;
         }
-        let emit = "--emit=dep-info,metadata".into();
-        steps.push((compiler.clone(), with(&arguments, &["--emit"], &[emit, "--cap-lints=allow".into()])));
-    } else {
-        steps.push((compiler.clone(), with(&arguments, &[], &["--cap-lints=allow".into()])));
+        compiled = with(&arguments, &["--emit"], &["--emit=dep-info,metadata".into()]);
     }
-    let out = ["--out-dir".into(), scratch.clone().into_os_string()];
-    let lint = [&["--emit=metadata".into(), "-Dwarnings".into()], out.as_slice()].concat();
-    let left_out = ["--emit", "--out-dir", "incremental"];
-    steps.push((compiler.with_file_name("clippy-driver"), quiet(with(&arguments, &left_out, &lint))));
-    if !tested && (is("lib") || document == PROGRAMS && is("bin")) {
-        let out = ["--out-dir".into(), scratch.join("doc").into_os_string()];
-        let document = [&["--document-private-items".into(), "-Dwarnings".into()], out.as_slice()].concat();
-        let left_out = ["--emit", "--out-dir", "-C", "--warn", "--deny", "--allow", "--forbid", "--diagnostic-width"];
-        steps.push((compiler.with_file_name("rustdoc"), quiet(with(&arguments, &left_out, &document))));
-    }
-    // All of them, so that one run shows what each has to say, if the crate compiles at all.
-    let mut steps = steps.into_iter();
-    let compiled = steps.next().map_or(ExitCode::SUCCESS, |(tool, words)| code(Command::new(tool).args(words)));
-    if compiled != ExitCode::SUCCESS {
+    compiled.push("-Dwarnings".into());
+    let compiled = code(Command::new(compiler.with_file_name("clippy-driver")).args(compiled));
+    if compiled != ExitCode::SUCCESS || tested || !(is("lib") || document == PROGRAMS && is("bin")) {
         return compiled;
     }
-    steps
-        .map(|(tool, words)| code(Command::new(tool).args(words)))
-        .fold(ExitCode::SUCCESS, |all, one| if all == ExitCode::SUCCESS { one } else { all })
+    let folder = PathBuf::from(value(&arguments, "--out-dir").unwrap_or_default()).join("../doc_lints");
+    let document = ["--document-private-items".into(), "-Dwarnings".into(), "--out-dir".into(), folder.into()];
+    let left_out = ["--emit", "--out-dir", "-C", "--warn", "--deny", "--allow", "--forbid", "--diagnostic-width"];
+    code(Command::new(compiler.with_file_name("rustdoc")).args(quiet(with(&arguments, &left_out, &document))))
 }
 
 /// Where a program is linked to.
@@ -130,17 +112,13 @@ fn value(arguments: &[OsString], option: &str) -> Option<OsString> {
 }
 
 /// The arguments without some options and their values, be they in words of their own or behind `=`, and with others.
-/// `-C` and what follows it is left out too where the option is that of the code generator.
 fn with(arguments: &[OsString], left_out: &[&str], more: &[OsString]) -> Vec<OsString> {
     let mut kept = Vec::with_capacity(arguments.len() + more.len());
-    let mut words = arguments.iter().peekable();
+    let mut words = arguments.iter();
     while let Some(word) = words.next() {
         let text = word.to_string_lossy();
         let option = text.split('=').next().unwrap_or_default();
-        let generated = |next: &OsString| left_out.iter().any(|name| next.to_string_lossy().starts_with(name));
-        if option == "-C" && (left_out.contains(&"-C") || words.peek().copied().is_some_and(generated)) {
-            words.next();
-        } else if left_out.contains(&option) {
+        if left_out.contains(&option) {
             if !text.contains('=') {
                 words.next();
             }
@@ -189,10 +167,9 @@ mod tests {
 
     #[test]
     fn options_are_left_out_with_their_values() {
-        let left_out = ["--emit", "--out-dir", "incremental"];
-        let linted = "--crate-name one --edition=2024 src/main.rs --json=future-incompat -C opt-level=1 -C \
-                      extra-filename=-1f --warn=missing_docs --emit=metadata";
-        assert_eq!(quiet(with(&words(ASKED), &left_out, &["--emit=metadata".into()])), words(linted));
+        let linked = "--crate-name one --edition=2024 src/main.rs --json=future-incompat -C opt-level=1 -C \
+                      incremental=/t/i -C extra-filename=-1f --out-dir /t/deps --warn=missing_docs --emit=metadata";
+        assert_eq!(quiet(with(&words(ASKED), &["--emit"], &["--emit=metadata".into()])), words(linked));
         let documented = "--crate-name one --edition=2024 src/main.rs --json=future-incompat,artifacts";
         assert_eq!(with(&words(ASKED), &["--emit", "--out-dir", "-C", "--warn"], &[]), words(documented));
     }

@@ -1,11 +1,11 @@
 //! The DFG table, looked up as shaders do, against a grid of half vectors.
 
 use crate::lookup;
-use crate::truth::albedo::{Masking, cloth, ggx};
-use crate::truth::microsurface::Random;
 use framegraph_passes::ibl::DfgTable;
 use framegraph_wgpu::Gpu;
 use std::error::Error;
+use truth::albedo::{Masking, cloth, ggx};
+use truth::microsurface::Random;
 
 /// How far the table is off, over points with n·v above 0.05 and roughness above 0.089.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

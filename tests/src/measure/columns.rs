@@ -4,7 +4,6 @@ use crate::reference::asset::Sources;
 use crate::reference::document::Document;
 use crate::reference::picture::Picture;
 use crate::reference::studio;
-use crate::truth::occlusion::VisibilityMap;
 use framegraph_passes::occlusion::OcclusionSettings;
 use framegraph_wgpu::Gpu;
 use std::error::Error;
@@ -18,6 +17,28 @@ pub struct Columns {
     truth: VisibilityMap,
     /// Where something is: what is lit.
     covered: Vec<bool>,
+}
+
+/// A picture of one channel: visibility, rows from the top.
+#[derive(Clone, Debug)]
+struct VisibilityMap {
+    /// Width and height.
+    size_px: [u32; 2],
+    /// 0 to 1.
+    visibility: Vec<f32>,
+}
+
+impl VisibilityMap {
+    /// Reads an OpenEXR picture; fails where it has several channels.
+    fn read(path: &Path) -> Result<Self, exr::error::Error> {
+        let image = exr::prelude::read_first_flat_layer_from_file(path)?;
+        let layer = image.layer_data;
+        let [channel] = layer.channel_data.list.as_slice() else {
+            return Err(exr::error::Error::NotSupported("more than one channel".into()));
+        };
+        let size_px = [layer.size.width() as u32, layer.size.height() as u32];
+        Ok(Self { size_px, visibility: channel.sample_data.values_as_f32().collect() })
+    }
 }
 
 /// How far visibility is off.

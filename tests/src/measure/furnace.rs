@@ -2,13 +2,13 @@
 
 use super::cards::{Card, Wall};
 use crate::lookup;
-use crate::truth::microsurface::{self, Random};
 use framegraph_passes::Shading;
 use framegraph_passes::ibl::DfgTable;
 use framegraph_scene::{Environment, Material};
 use framegraph_wgpu::Gpu;
 use glam::{DVec3, Vec3};
 use std::error::Error;
+use truth::microsurface::{self, Random};
 
 /// Reflectances at normal incidence that are compared.
 pub const F0: [f64; 5] = [1.0, 0.9, 0.6, 0.3, 0.04];

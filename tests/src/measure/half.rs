@@ -1,12 +1,12 @@
 //! What half floats do to the GGX distribution, against its value at the true angle.
 
 use crate::mirror;
-use crate::truth::sphere::{directions, frame};
 use framegraph_shaders::reference::cases::{self, Case};
 use framegraph_shaders::reference::ggx::d_ggx;
 use framegraph_shaders::reference::quantize::quantize_mantissa;
 use framegraph_wgpu::Gpu;
 use std::error::Error;
+use truth::sphere::{directions, frame};
 
 /// How the sine of the half angle comes about, and in which numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

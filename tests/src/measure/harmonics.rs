@@ -1,10 +1,10 @@
 //! Irradiance from spherical harmonics against integration over the hemisphere.
 
 use super::averaged_map;
-use crate::truth::sphere::{directions, irradiance_over_pi};
 use framegraph_scene::environment::{EquirectMap, Sh, ShBands, ShWindow};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
+use truth::sphere::{directions, irradiance_over_pi};
 
 /// Width of the maps in texels.
 const WIDTH: u32 = 512;

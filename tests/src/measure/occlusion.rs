@@ -2,7 +2,6 @@
 
 pub mod mirror;
 
-use crate::truth::occlusion as truth;
 use framegraph::{Entry, Exit, Extent, Format, Intent, Options, Plan, Scratch, Texture, TextureDesc, compile};
 use framegraph_passes::occlusion::{AmbientOcclusion, Axis, OcclusionBlur, OcclusionSettings};
 use framegraph_passes::program::Programs;
@@ -14,6 +13,7 @@ use framegraph_wgpu::{Depth, Executor, Frame, Gpu, Imports, Raster, Shader, read
 use glam::{DVec2, DVec3, Vec3};
 use std::error::Error;
 use std::time::Instant;
+use truth::occlusion as truth;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{CompareFunction, Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
 

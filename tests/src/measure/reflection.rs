@@ -1,6 +1,5 @@
 //! Reflections of a room on a device: where rays find what mirrors show, against the truth.
 
-use crate::truth::reflection::{Lens, Mirrored, Room};
 use framegraph::{Extent, Format, Intent, Options, Plan, Scratch, Texture, compile};
 use framegraph_passes::program::Programs;
 use framegraph_passes::reflection::{ReflectionSettings, reflections};
@@ -14,6 +13,7 @@ use framegraph_scene::{Camera, Material, Projection, Scene, progress};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports, Raster, Shader, read_texture};
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 use std::error::Error;
+use truth::reflection::{Lens, Mirrored, Room};
 
 /// What stands in for the radiance of the frame before: its texture coordinates, so that what is reflected says where it was
 /// found; or what no shader should ever make, in the left half.

@@ -2,13 +2,13 @@
 
 use super::averaged_map;
 use crate::lookup::{self, Mapping};
-use crate::truth::lobe::{gathered, gathered_of_disc};
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{IblSettings, ImageLight};
 use framegraph_scene::{Environment, progress};
 use framegraph_wgpu::Gpu;
 use glam::DVec3;
 use std::error::Error;
+use truth::lobe::{gathered, gathered_of_disc};
 
 /// An environment in black and white with one feature, and a line of directions across it.
 #[derive(Clone, Copy, Debug, PartialEq)]

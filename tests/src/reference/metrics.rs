@@ -1,7 +1,7 @@
 //! How far a picture is from its reference.
 
-use super::flip::{PIXELS_PER_DEGREE, flip};
 use super::picture::Picture;
+use truth::flip::{PIXELS_PER_DEGREE, flip};
 
 /// The numbers of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]

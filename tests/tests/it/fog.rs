@@ -11,7 +11,7 @@ use framegraph_scene::{Camera, Environment, Light, Projection, Scene, progress};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
 use glam::{DVec3, Vec3};
 use std::error::Error;
-use tests::truth::lobe::gathered;
+use truth::lobe::gathered;
 
 type TestResult = Result<(), Box<dyn Error>>;
 

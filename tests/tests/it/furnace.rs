@@ -10,7 +10,7 @@ use std::error::Error;
 use tests::measure::board::Seen;
 use tests::measure::cards::{Card, Wall};
 use tests::measure::furnace::{F0, frame_errors, truth};
-use tests::truth::albedo::{Masking, ggx};
+use truth::albedo::{Masking, ggx};
 
 type TestResult = Result<(), Box<dyn Error>>;
 

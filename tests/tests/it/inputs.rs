@@ -15,7 +15,7 @@ use framegraph_wgpu::Gpu;
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::error::Error;
 use tests::measure::board::{Board, EXPOSURE, card, lamps};
-use tests::truth::surface::Surface;
+use truth::surface::Surface;
 
 type TestResult = Result<(), Box<dyn Error>>;
 

@@ -8,7 +8,7 @@ use glam::{DMat4, DVec3, Vec3};
 use std::error::Error;
 use std::f64::consts::PI;
 use tests::measure::board::{Board, Eye, card};
-use tests::truth::surface::Surface;
+use truth::surface::Surface;
 
 type TestResult = Result<(), Box<dyn Error>>;
 

@@ -16,8 +16,8 @@ use tests::measure::furnace::{Compensation, F0};
 use tests::measure::harmonics::Scene;
 use tests::measure::specular::Feature;
 use tests::measure::{albedo, furnace, harmonics, specular};
-use tests::truth::albedo::Masking;
-use tests::truth::sphere::directions;
+use truth::albedo::Masking;
+use truth::sphere::directions;
 
 type TestResult = Result<(), Box<dyn Error>>;
 

@@ -11,7 +11,7 @@ use glam::{DVec3, Vec2, Vec3};
 use std::error::Error;
 use std::f64::consts::PI;
 use tests::measure::cards::{Card, Wall};
-use tests::truth::albedo::cloth;
+use truth::albedo::cloth;
 
 type TestResult = Result<(), Box<dyn Error>>;
 

@@ -9,7 +9,7 @@ use glam::{DMat3, DMat4, DQuat, DVec3, Vec2, Vec3};
 use std::error::Error;
 use std::f64::consts::PI;
 use tests::measure::board::{Board, card, lamps};
-use tests::truth::surface::Surface;
+use truth::surface::Surface;
 
 type TestResult = Result<(), Box<dyn Error>>;
 

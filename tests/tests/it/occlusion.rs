@@ -19,7 +19,7 @@ use tests::measure::occlusion::mirror::Mirror;
 use tests::measure::occlusion::{
     Stage, column, corner, corner_columns, corner_error, corner_stage, ground, mean_and_deviation,
 };
-use tests::truth::occlusion as truth;
+use truth::occlusion as truth;
 
 type TestResult = Result<(), Box<dyn Error>>;
 

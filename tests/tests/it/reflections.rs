@@ -13,7 +13,7 @@ use framegraph_passes::{OcclusionSettings, Settings};
 use glam::DVec3;
 use std::error::Error;
 use tests::measure::reflection::{Found, Stage};
-use tests::truth::reflection::{Lens, Room};
+use truth::reflection::{Lens, Room};
 
 type TestResult = Result<(), Box<dyn Error>>;
 

@@ -22,7 +22,7 @@ use tests::files::{asset, references};
 use tests::reference::document::Document;
 use tests::reference::examine::{How, render};
 use tests::reference::picture::Picture;
-use tests::truth::rays::{Hit, Triangles};
+use truth::rays::{Hit, Triangles};
 
 type TestResult = Result<(), Box<dyn Error>>;
 
@@ -116,6 +116,15 @@ impl Set {
         Ok(with.iter().zip(&without).map(share).collect())
     }
 
+    /// All triangles, whatever they are made of.
+    fn triangles(&self) -> Triangles {
+        Triangles::of(self.scene.instances.iter().map(|instance| {
+            let mesh = &self.scene.meshes[instance.mesh.index()];
+            let at = |i: &u32| instance.world_from_model.transform_point3(mesh.positions[*i as usize].as_dvec3());
+            mesh.indices.chunks_exact(3).map(|t| [at(&t[0]), at(&t[1]), at(&t[2])]).collect()
+        }))
+    }
+
     /// What each pixel's middle shows.
     fn seen(&self, triangles: &Triangles) -> Vec<Option<Hit>> {
         let aspect = f64::from(SIZE[0]) / f64::from(SIZE[1]);
@@ -160,7 +169,7 @@ impl Set {
         shadows: ShadowSettings,
         blur_m: impl Fn(f64) -> f64,
     ) -> Result<[u32; 3], Box<dyn Error>> {
-        let triangles = Triangles::of(&self.scene);
+        let triangles = self.triangles();
         let found = self.visibility(gpu, shadows)?;
         let (mut wrong, mut count, mut dark) = (0, 0, 0);
         for (visibility, hit) in found.iter().zip(self.seen(&triangles)) {
@@ -197,7 +206,7 @@ fn contact_shadows_find_what_the_map_misses() -> TestResult {
     });
     let scene = scene_of(&[floor].into_iter().chain(small).collect::<Vec<_>>());
     let set = Set::new(scene, camera([0.4, 1.3, 3.4], [0.0, 0.0, 0.2], 45.0)?, DVec3::new(0.6, 0.5, 0.2));
-    let triangles = Triangles::of(&set.scene);
+    let triangles = set.triangles();
     let truth: Vec<Option<bool>> =
         set.seen(&triangles).iter().map(|hit| hit.map(|hit| set.is_lit(&triangles, &hit, hit.point))).collect();
     let half = Some(OcclusionSettings { resolution: Resolution::Half, ..OcclusionSettings::SAO });

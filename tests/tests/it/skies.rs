@@ -17,8 +17,8 @@ use glam::{DMat4, DVec3, Vec3};
 use std::error::Error;
 use tests::measure::board::{Board, card};
 use tests::stage::light_cache;
-use tests::truth::lobe::gathered;
-use tests::truth::surface::{self, Coat, Grooves, Surface};
+use truth::lobe::gathered;
+use truth::surface::{self, Coat, Grooves, Surface};
 
 type TestResult = Result<(), Box<dyn Error>>;
 

@@ -49,7 +49,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     let expected = adapter::ready(options)?;
     adapter::checks(options);
     let all = options.has("--all");
-    let wrapper = lints::Wrapper::new(&workspace::scratch()?, &workspace::root().join("clippy.toml"))?;
+    let wrapper = lints::Wrapper::new(&workspace::scratch()?)?;
     let building = |command: &[&str]| building(&wrapper, all, command);
     let mut outcomes = vec![
         stage::run("format", &mut workspace::cargo(&["fmt", "--all", "--", "--check"])),

@@ -16,7 +16,7 @@ use tests::measure::harmonics::Scene;
 use tests::measure::specular::Feature;
 use tests::measure::{albedo, furnace, harmonics, specular};
 use tests::mirror;
-use tests::truth::albedo::Masking;
+use truth::albedo::Masking;
 
 type Section = fn(&Gpu) -> Result<bool, Box<dyn Error>>;
 

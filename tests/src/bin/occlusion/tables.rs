@@ -10,7 +10,7 @@ use tests::measure::columns::{Columns, Off};
 use tests::measure::occlusion::{
     Stage, column, corner_columns, corner_error, corner_stage, ground, mean_and_deviation,
 };
-use tests::truth::occlusion as truth;
+use truth::occlusion as truth;
 
 type Outcome = Result<(), Box<dyn Error>>;
 

@@ -1,7 +1,7 @@
 //! `reflections`: where rays find what mirrors show, on the adapter that there is.
 //!
 //! `cargo run --release -p tests --bin reflections` prints the table of `docs/reflections.md`: three balls over a floor, all of
-//! them mirrors, against the formulas of `tests::truth::reflection`.
+//! them mirrors, against the formulas of `truth::reflection`.
 
 use framegraph_passes::ReflectionSettings;
 use framegraph_passes::structure::Resolution;

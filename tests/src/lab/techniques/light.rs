@@ -5,7 +5,6 @@ use crate::lab::studio::Truth;
 use crate::lab::technique::Measured;
 use crate::measure::harmonics::Scene as Around;
 use crate::measure::{albedo, furnace, half, harmonics};
-use crate::truth::albedo::Masking;
 use framegraph_passes::Precision;
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, DfgTable};
@@ -14,6 +13,7 @@ use framegraph_scene::environment::{ShBands, ShWindow};
 use framegraph_scene::progress;
 use framegraph_shaders::reference::dfg::Visibility;
 use framegraph_wgpu::Gpu;
+use truth::albedo::Masking;
 
 /// Which of [`furnace::F0`] is looked at: at 1 the table is right by its making.
 const METAL: usize = 2;

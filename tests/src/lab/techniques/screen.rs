@@ -4,7 +4,6 @@ use super::{Choice, Technique, base, formula, nowhere, number, pictures};
 use crate::lab::studio::{Setup, Truth};
 use crate::lab::technique::Measured;
 use crate::measure::occlusion::{column, corner_columns, corner_error, corner_stage, mean_and_deviation};
-use crate::truth::occlusion as truth;
 use framegraph_passes::occlusion::{Gtao, Method, OcclusionSettings};
 use framegraph_passes::punctual::FroxelSettings;
 use framegraph_passes::shadow::{ShadowFilter, ShadowSettings, Splits};
@@ -12,6 +11,7 @@ use framegraph_passes::structure::Resolution;
 use framegraph_passes::{FrameSettings, LightSearch, Precision};
 use framegraph_wgpu::Gpu;
 use glam::Vec3;
+use truth::occlusion as truth;
 
 /// How far occluders count, in m.
 const RADIUS_M: f64 = 0.3;

@@ -5,10 +5,6 @@ use crate::lab::technique::Measured;
 use crate::lookup::Mapping;
 use crate::measure::albedo;
 use crate::measure::specular::{Feature, errors, light_of};
-use crate::truth::albedo::{Masking, ggx};
-use crate::truth::lobe::{gathered, gathered_of_disc};
-use crate::truth::microsurface::Random;
-use crate::truth::sphere::frame;
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, DfgTable};
 use framegraph_scene::progress;
@@ -17,6 +13,10 @@ use framegraph_shaders::reference::environment::specular_dominant_direction;
 use framegraph_wgpu::Gpu;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
+use truth::albedo::{Masking, ggx};
+use truth::lobe::{gathered, gathered_of_disc};
+use truth::microsurface::Random;
+use truth::sphere::frame;
 
 pub(super) fn techniques() -> Vec<Technique> {
     vec![diffuse(), table_fit(), prefilter_samples(), split_sum()]

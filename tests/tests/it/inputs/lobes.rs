@@ -10,8 +10,8 @@ use framegraph_scene::texture::TextureRole;
 use framegraph_scene::{Environment, Material};
 use glam::{DMat3, DMat4, DQuat, DVec2, DVec3, Vec3};
 use tests::measure::board::{Board, card};
-use tests::truth::albedo::cloth;
-use tests::truth::surface::{self, Coat, Grooves, Surface};
+use truth::albedo::cloth;
+use truth::surface::{self, Coat, Grooves, Surface};
 
 fn punctual() -> Shading {
     Shading { compensate_punctual: false, ..Shading::default() }

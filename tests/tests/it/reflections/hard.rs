@@ -7,7 +7,7 @@ use framegraph_passes::structure::Resolution;
 use framegraph_scene::Projection;
 use glam::{DVec3, Vec3};
 use tests::measure::reflection::{BROKEN, Stage};
-use tests::truth::reflection::{Lens, Room};
+use truth::reflection::{Lens, Room};
 
 const SIZE: [u32; 2] = [96, 64];
 

@@ -11,7 +11,7 @@ use framegraph_scene::{Camera, Environment, Material, Projection, Scene, Transmi
 use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 use std::error::Error;
-use tests::truth::reflection::Lens;
+use truth::reflection::Lens;
 
 /// Radiance of the light from everywhere, in nits.
 const NITS: f64 = 1000.0;

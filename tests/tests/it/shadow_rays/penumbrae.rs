@@ -7,7 +7,6 @@ use framegraph_scene::{Light, LightKind};
 use framegraph_wgpu::Gpu;
 use glam::{DVec3, Vec3};
 use std::error::Error;
-use tests::truth::rays::Triangles;
 
 /// Share of a disc that a straight edge leaves open, `t` radii from its middle.
 fn open_share(t: f64) -> f64 {
@@ -18,7 +17,7 @@ fn open_share(t: f64) -> f64 {
 /// RMS and mean of what the floor about a plate's edge over x = 0 shows, less the exact visibility of a light whose penumbra
 /// there is so wide to either side.
 fn error(gpu: &Gpu, set: &Set, settings: ShadowSettings, radius_m: f64) -> Result<[f64; 2], Box<dyn Error>> {
-    let seen = set.seen(&Triangles::of(&set.scene));
+    let seen = set.seen(&set.triangles());
     let (mut squares, mut sum, mut count) = (0.0, 0.0, 0.0);
     for (found, hit) in set.visibility(gpu, settings)?.iter().zip(&seen) {
         let (Some(found), Some(hit)) = (found, hit) else { continue };

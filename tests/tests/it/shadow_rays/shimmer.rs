@@ -7,7 +7,7 @@ use framegraph_scene::Camera;
 use framegraph_wgpu::Gpu;
 use glam::{DQuat, DVec2, DVec3, Vec2};
 use std::error::Error;
-use tests::truth::rays::{Hit, Triangles};
+use truth::rays::Hit;
 
 /// Pictures of a path.
 const FRAMES: u32 = 7;
@@ -57,7 +57,7 @@ fn shimmer(
         let mut set = Set { moved_texels: moved(frame), ..field()? };
         set.camera.eye += step * f64::from(frame);
         set.camera.world_from_view = DQuat::from_rotation_y(turn_rad * f64::from(frame)) * set.camera.world_from_view;
-        let hits = set.seen(&Triangles::of(&set.scene));
+        let hits = set.seen(&set.triangles());
         let now = Seen { visibility: set.visibility(gpu, settings)?, hits, camera: set.camera };
         for (visibility, hit) in now.visibility.iter().zip(&now.hits) {
             let (Some(visibility), Some(hit), Some(before)) = (visibility, hit, &before) else { continue };

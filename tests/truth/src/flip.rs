@@ -156,14 +156,9 @@ fn columns(plane: &Plane, width: usize, kernel: &[f32]) -> Plane {
     out
 }
 
-/// Adds weighted texels. It is most of what FLIP takes, and tests are built without optimization, where an iterator is calls.
+/// Adds weighted texels, which is most of what FLIP takes.
 fn add(out: &mut [f32], texels: &[f32], weight: f32) {
-    let texels = &texels[..out.len()];
-    let mut i = 0;
-    while i < out.len() {
-        out[i] += texels[i] * weight;
-        i += 1;
-    }
+    out.iter_mut().zip(texels).for_each(|(sum, texel)| *sum += texel * weight);
 }
 
 fn linear(encoded: f64) -> f64 {

@@ -1,12 +1,18 @@
 //! What rays meet in a scene: every triangle of every group that a ray's path comes near, in f64.
 
-use framegraph_scene::{Aabb, Scene};
 use glam::DVec3;
 
-/// The triangles of a scene, in the world, in groups of neighbors with a box about each.
+/// Triangles in groups of neighbors with a box about each.
 #[derive(Clone, Debug)]
 pub struct Triangles {
-    groups: Vec<(Aabb, Vec<[DVec3; 3]>)>,
+    groups: Vec<Group>,
+}
+
+#[derive(Clone, Debug)]
+struct Group {
+    min: DVec3,
+    max: DVec3,
+    triangles: Vec<[DVec3; 3]>,
 }
 
 /// Triangles of a group at most.
@@ -22,14 +28,11 @@ pub struct Hit {
 }
 
 impl Triangles {
-    /// All triangles, whatever they are made of.
-    #[must_use]
-    pub fn of(scene: &Scene) -> Self {
+    /// Triangles of meshes, those of a mesh near each other.
+    pub fn of(meshes: impl Iterator<Item = Vec<[DVec3; 3]>>) -> Self {
         let mut groups = Vec::new();
-        for instance in &scene.instances {
-            let mesh = &scene.meshes[instance.mesh.index()];
-            let at = |i: &u32| instance.world_from_model.transform_point3(mesh.positions[*i as usize].as_dvec3());
-            group(mesh.indices.chunks_exact(3).map(|t| [at(&t[0]), at(&t[1]), at(&t[2])]).collect(), &mut groups);
+        for triangles in meshes {
+            group(triangles, &mut groups);
         }
         Self { groups }
     }
@@ -58,19 +61,20 @@ impl Triangles {
     }
 
     fn near(&self, from: DVec3, along: DVec3) -> impl Iterator<Item = &[DVec3; 3]> {
-        self.groups.iter().filter(move |(bounds, _)| passes(bounds, from, along)).flat_map(|(_, own)| own)
+        self.groups.iter().filter(move |group| group.is_near(from, along)).flat_map(|group| &group.triangles)
     }
 }
 
 /// Halves triangles along the longest side of their box until few are left together.
-fn group(mut triangles: Vec<[DVec3; 3]>, groups: &mut Vec<(Aabb, Vec<[DVec3; 3]>)>) {
-    let corners = triangles.iter().flatten();
-    let bounds = corners.fold(Aabb::EMPTY, |all, at| all.union(Aabb { min: *at, max: *at }));
+fn group(mut triangles: Vec<[DVec3; 3]>, groups: &mut Vec<Group>) {
+    let corners = || triangles.iter().flatten();
+    let min = corners().fold(DVec3::INFINITY, |least, at| least.min(*at));
+    let max = corners().fold(DVec3::NEG_INFINITY, |most, at| most.max(*at));
     if triangles.len() <= GROUP {
-        groups.push((bounds, triangles));
+        groups.push(Group { min, max, triangles });
         return;
     }
-    let size = bounds.half_extent();
+    let size = max - min;
     let axis = (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(0);
     let along = |[a, b, c]: &[DVec3; 3]| a[axis] + b[axis] + c[axis];
     triangles.sort_by(|a, b| along(a).total_cmp(&along(b)));
@@ -79,32 +83,25 @@ fn group(mut triangles: Vec<[DVec3; 3]>, groups: &mut Vec<(Aabb, Vec<[DVec3; 3]>
     group(rest, groups);
 }
 
-/// Whether a ray passes through a box (Kay and Kajiya 1986). It is most of what rays take, and tests are built without
-/// optimization, where each operator of a vector and each `min` is a call.
-fn passes(bounds: &Aabb, from: DVec3, along: DVec3) -> bool {
-    let (mut enter, mut leave) = (-1e-9_f64, f64::INFINITY);
-    let (least, most) = (bounds.min.to_array(), bounds.max.to_array());
-    let (from, along) = (from.to_array(), along.to_array());
-    let mut axis = 0;
-    while axis < 3 {
-        let (low, high) = (least[axis] - 1e-9 - from[axis], most[axis] + 1e-9 - from[axis]);
-        let way = along[axis];
-        if way == 0.0 {
-            if low > 0.0 || high < 0.0 {
-                return false;
+impl Group {
+    /// Whether a ray passes through the box (Kay and Kajiya 1986), which is most of what rays take.
+    fn is_near(&self, from: DVec3, along: DVec3) -> bool {
+        let (mut enter, mut leave) = (-1e-9_f64, f64::INFINITY);
+        for axis in 0..3 {
+            let (low, high) = (self.min[axis] - 1e-9 - from[axis], self.max[axis] + 1e-9 - from[axis]);
+            let way = along[axis];
+            if way == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return false;
+                }
+                continue;
             }
-        } else {
             let (near, far) = if way > 0.0 { (low / way, high / way) } else { (high / way, low / way) };
-            if near > enter {
-                enter = near;
-            }
-            if far < leave {
-                leave = far;
-            }
+            enter = enter.max(near);
+            leave = leave.min(far);
         }
-        axis += 1;
+        enter <= leave
     }
-    enter <= leave
 }
 
 /// Distance along a ray to a triangle, above 0 (Möller and Trumbore 1997).
@@ -126,17 +123,18 @@ fn meets(&[a, b, c]: &[DVec3; 3], from: DVec3, along: DVec3) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use framegraph_scene::geometry::cuboid;
-    use framegraph_scene::{Material, Scene};
-    use glam::{DMat4, Vec3};
 
     #[test]
     fn a_box_is_met_on_its_near_side() {
-        let mut scene = Scene::default();
-        let material = scene.add_material(Material::default());
-        let mesh = scene.add_mesh(cuboid(Vec3::ONE));
-        scene.add_instance("box", mesh, material, DMat4::from_translation(DVec3::new(0.0, 0.0, -5.0)));
-        let triangles = Triangles::of(&scene);
+        // Two triangles of each side of a box of two meters, from 4 to 6 meters ahead.
+        let sides = (0..3).flat_map(|axis| [-1.0, 1.0].map(|side| (axis, side))).flat_map(|(axis, side)| {
+            let mut normal = DVec3::ZERO;
+            normal[axis] = side;
+            let (u, v) = normal.any_orthonormal_pair();
+            let at = |s: f64, t: f64| normal + s * u + t * v - 5.0 * DVec3::Z;
+            [[at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0)], [at(-1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]]
+        });
+        let triangles = Triangles::of(std::iter::once(sides.collect()));
         let hit = triangles.first(DVec3::new(0.3, 0.2, 0.0), DVec3::NEG_Z).expect("the box is ahead");
         assert!((hit.point - DVec3::new(0.3, 0.2, -4.0)).length() < 1e-12 && hit.normal == DVec3::Z, "{hit:?}");
         assert_eq!(triangles.first(DVec3::new(1.1, 0.0, 0.0), DVec3::NEG_Z), None);

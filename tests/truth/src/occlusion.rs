@@ -2,32 +2,6 @@
 //! unhindered.
 
 use std::f64::consts::PI;
-use std::path::Path;
-
-/// A picture of one channel: visibility, rows from the top.
-#[derive(Clone, Debug)]
-pub struct VisibilityMap {
-    /// Width and height.
-    pub size_px: [u32; 2],
-    /// 0 to 1.
-    pub visibility: Vec<f32>,
-}
-
-impl VisibilityMap {
-    /// Reads an OpenEXR picture of one channel.
-    ///
-    /// # Errors
-    /// When it cannot be read, or has several channels.
-    pub fn read(path: &Path) -> Result<Self, exr::error::Error> {
-        let image = exr::prelude::read_first_flat_layer_from_file(path)?;
-        let layer = image.layer_data;
-        let [channel] = layer.channel_data.list.as_slice() else {
-            return Err(exr::error::Error::NotSupported("more than one channel".into()));
-        };
-        let size_px = [layer.size.width() as u32, layer.size.height() as u32];
-        Ok(Self { size_px, visibility: channel.sample_data.values_as_f32().collect() })
-    }
-}
 
 /// On the floor of a corner of two infinite planes at right angles, `distance_m` from the other: what is farther than
 /// `radius_m` does not count. Seen along the normal, the hemisphere is a disc in which areas are shares; the wall takes the
