@@ -56,7 +56,7 @@ pub fn errors(
 }
 
 /// The same of what the color pass renders of cards under an even environment of one nit, shaded as `shading` says.
-/// `truth` is [`truth`].
+/// `truth` is [`truth()`].
 ///
 /// # Errors
 /// When the device refuses or fails.
