@@ -1,6 +1,6 @@
 //! From an embedded pass, or a source of one's own, to one plain WGSL text.
 //!
-//! 1. `token` and `code` read a file into tokens with matched brackets.
+//! 1. `token` and `code` read a file into tokens with matched brackets; `embedded` keeps those of embedded files.
 //! 2. `condition` leaves out what `@if` attributes switch off.
 //! 3. `module` finds imports and declarations.
 //! 4. `link` follows imports and writes the declarations that entry points reach, each under a comment with the file and
@@ -13,11 +13,15 @@
 mod check;
 mod code;
 mod condition;
+mod embedded;
 mod fault;
 mod link;
 mod module;
 mod token;
 
+use std::borrow::Cow;
+
+use self::code::Code;
 use crate::effect::{self, Effect, SOCKET};
 use crate::{Feature, Features, Module, Reflection, ShaderError, library};
 
@@ -54,12 +58,18 @@ pub fn resolve(module: &Module<'_>, features: &Features, effects: &[Effect<'_>])
     let load = |path: &str| {
         let own = overlay.iter().find(|(p, _)| *p == path).map(|(_, text)| text.as_ref());
         let listed = || module.sources.iter().find(|source| source.path == path).map(|source| source.wgsl);
-        own.or_else(|| library::in_use(path)).or_else(listed)
+        if let (None, Some(embedded)) = (own, embedded::code(path)?) {
+            return Ok(Some(Cow::Borrowed(embedded)));
+        }
+        own.or_else(listed).map(|text| Code::new(text).map(Cow::Owned)).transpose()
     };
     let is_on = |name: &str| known(name).then(|| features.iter().any(|feature| feature.name() == name));
-    let embedded = library::text(module.path) == Some(module.wgsl);
-    let own = library::in_use(module.path).filter(|_| embedded).unwrap_or(module.wgsl);
-    let linked = link::link(module.path, own, &load, &is_on)?;
+    let is_embedded = library::text(module.path) == Some(module.wgsl);
+    let known = if is_embedded { embedded::code(module.path) } else { Ok(None) };
+    let own = || Code::new(module.wgsl).map(Cow::Owned);
+    let root = known.and_then(|known| known.map_or_else(own, |code| Ok(Cow::Borrowed(code))));
+    let root = root.map_err(|fault| fault.at(module.path))?;
+    let linked = link::link(module.path, &root, &load, &is_on)?;
     #[cfg(feature = "replaced")]
     crate::replaced::note(linked.lines());
     if !effects.is_empty() && !linked.files.iter().any(|file| file == SOCKET) {

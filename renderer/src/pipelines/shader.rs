@@ -6,6 +6,7 @@ use crate::hash::{FNV_START, fnv_append};
 use crate::pipelines::bounds::first_unproved;
 use crate::pipelines::loops::first_endless;
 use crate::pipelines::pipeline::Source;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
@@ -143,10 +144,15 @@ impl ShaderModules {
     /// # Errors
     /// As [`ShaderModules::get`].
     pub(crate) fn compile(device: &Device, name: &str, text: &str) -> Result<Compiled, ShaderError> {
-        let scopes = ErrorScopes::open(device);
-        let source = ShaderSource::Wgsl(text.into());
-        let module = create_module(device, ShaderModuleDescriptor { label: Some(name), source }, text);
-        scopes.close("a shader").map_err(|error| match error {
+        let of_source = |source: ShaderSource<'_>| {
+            let scopes = ErrorScopes::open(device);
+            let module = create_module(device, ShaderModuleDescriptor { label: Some(name), source });
+            scopes.close("a shader").map(|()| module)
+        };
+        // What naga has read is not read again. Of a module wgpu could not quote the line that it refuses.
+        let read = wgsl::parse_str(text).ok().and_then(|read| of_source(ShaderSource::Naga(Cow::Owned(read))).ok());
+        let module = read.map_or_else(|| of_source(ShaderSource::Wgsl(text.into())), Ok);
+        let module = module.map_err(|error| match error {
             DeviceError::Refused { message, .. } => ShaderError::Module { name: name.to_owned(), message },
             other => ShaderError::Device(other),
         })?;
@@ -161,15 +167,15 @@ impl ShaderModules {
 
 /// A module in which loops are not counted if they are proved to end, and indices not tested if they are proved to be in range.
 #[allow(unsafe_code, reason = "wgpu takes the promise that loops end, and indices are in range, by a call of its own")]
-fn create_module(device: &Device, descriptor: ShaderModuleDescriptor<'_>, text: &str) -> ShaderModule {
-    let Ok(module) = wgsl::parse_str(text) else { return device.create_shader_module(descriptor) };
-    let (force_loop_bounding, bounds_checks) = (first_endless(&module).is_some(), first_unproved(&module).is_some());
+fn create_module(device: &Device, descriptor: ShaderModuleDescriptor<'_>) -> ShaderModule {
+    let ShaderSource::Naga(module) = &descriptor.source else { return device.create_shader_module(descriptor) };
+    let (force_loop_bounding, bounds_checks) = (first_endless(module).is_some(), first_unproved(module).is_some());
     if force_loop_bounding && bounds_checks {
         return device.create_shader_module(descriptor);
     }
     let checks = ShaderRuntimeChecks { force_loop_bounding, bounds_checks, ..ShaderRuntimeChecks::checked() };
     // SAFETY: all checks stay but two. One asks that no loop is endless, the other that no index is out of range; each loop was proved
-    // to end, or each index to be in range, on the text that is compiled, and a text that cannot be read has no module.
+    // to end, or each index to be in range, of the module that is compiled.
     unsafe { device.create_shader_module_trusted(descriptor, checks) }
 }
 
@@ -194,14 +200,14 @@ mod tests {
     #[test]
     fn a_wrong_text_is_an_error_with_name_and_place() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
-        let bad = Shader::new("effects/bad", "fn f() -> f32 {\n  return nonsense;\n}");
-        let told = ShaderModules::default()
-            .get(&gpu.device, &bad)
-            .map(|_| ())
-            .map_err(|e| e.to_string())
-            .err()
-            .unwrap_or_default();
-        assert!(told.contains("effects/bad") && told.contains("nonsense") && told.contains("2:"), "{told}");
+        // What cannot be read, and what can but makes no sense.
+        for line in ["return nonsense;", "return array<f32, 2>()[4u32];", "if 1.0 { } return 0.0;"] {
+            let text = format!("fn f() -> f32 {{\n  {line}\n}}\n@fragment fn fs() {{ _ = f(); }}");
+            let refused = ShaderModules::default().get(&gpu.device, &Shader::new("effects/bad", &text));
+            let told = refused.map(|_| ()).map_err(|error| error.to_string()).err().unwrap_or_default();
+            let placed = told.contains("2:") || told.contains("2 │");
+            assert!(told.contains("effects/bad") && told.contains(line) && placed, "{told}");
+        }
         Ok(())
     }
 }

@@ -1,16 +1,18 @@
 //! Joining a file with what it imports: one text, of what its entry points reach.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use super::code::Code;
 use super::condition::IsOn;
 use super::fault::Fault;
 use super::module::{Declaration, Module};
 use crate::ShaderError;
 use crate::effect::FOLDER;
 
-/// Text of a file by its path; `None` where there is none.
-pub(super) type Load<'a, 'b> = dyn Fn(&str) -> Option<&'a str> + 'b;
+/// Tokens of a file by its path; `None` where there is none.
+pub(super) type Load<'a, 'b> = dyn Fn(&str) -> Result<Option<Cow<'a, Code<'a>>>, Fault> + 'b;
 
 /// The joined text, and where each of its lines came from.
 pub(super) struct Linked {
@@ -74,17 +76,17 @@ struct Modules<'a> {
     by_path: BTreeMap<String, usize>,
 }
 
-/// Joins the text of `file` with what it imports.
+/// Joins a file, `root`, with what it imports.
 ///
 /// # Errors
 /// With file and line where a text cannot be read, an import names nothing, or a name is declared in two files.
 pub(super) fn link<'a>(
     file: &str,
-    text: &'a str,
+    root: &Code<'a>,
     load: &Load<'a, '_>,
     features: &IsOn<'_>,
 ) -> Result<Linked, ShaderError> {
-    let modules = Modules::read(file, text, load, features)?;
+    let modules = Modules::read(file, root, load, features)?;
     let reached = modules.reached();
     modules.refuse_doubles(&reached)?;
 
@@ -124,8 +126,8 @@ pub(super) fn link<'a>(
 
 impl<'a> Modules<'a> {
     /// Reads the root and all that it imports, directly or not. Files may import each other.
-    fn read(file: &str, text: &'a str, load: &Load<'a, '_>, features: &IsOn<'_>) -> Result<Self, ShaderError> {
-        let root = Module::read(text, features).map_err(|fault| fault.at(file))?;
+    fn read(file: &str, root: &Code<'a>, load: &Load<'a, '_>, features: &IsOn<'_>) -> Result<Self, ShaderError> {
+        let root = Module::read(root, features).map_err(|fault| fault.at(file))?;
         let mut modules = Self { list: vec![(file.to_owned(), root)], by_path: BTreeMap::new() };
         let mut next = 0;
         while next < modules.list.len() {
@@ -136,8 +138,9 @@ impl<'a> Modules<'a> {
                     continue;
                 }
                 let missing = || Fault::new(import.line, format!("there is no file `{}` to import", import.path));
-                let text = load(&import.path).ok_or_else(|| missing().at(file))?;
-                let imported = Module::read(text, features).map_err(|fault| fault.at(&import.path))?;
+                let code =
+                    load(&import.path).map_err(|fault| fault.at(&import.path))?.ok_or_else(|| missing().at(file))?;
+                let imported = Module::read(&code, features).map_err(|fault| fault.at(&import.path))?;
                 found.push((import.path.clone(), imported));
             }
             for (path, module) in found {

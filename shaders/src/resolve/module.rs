@@ -54,9 +54,9 @@ impl<'a> Module<'a> {
     /// Reads a file.
     ///
     /// # Errors
-    /// When brackets or conditions are wrong, an import cannot be read, or a name is declared twice.
-    pub fn read(text: &'a str, features: &IsOn<'_>) -> Result<Self, Fault> {
-        let code = translate(&Code::new(text)?, features)?;
+    /// When conditions are wrong, an import cannot be read, or a name is declared twice.
+    pub fn read(code: &Code<'a>, features: &IsOn<'_>) -> Result<Self, Fault> {
+        let code = translate(code, features)?;
         let (mut directives, mut declarations) = (Vec::new(), Vec::new());
         let (mut imports, mut named) = (BTreeMap::<&str, Import>::new(), BTreeMap::<&str, usize>::new());
         let mut start = 0;
@@ -177,7 +177,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<Module<'_>, Fault> {
-        Module::read(text, &|_| None)
+        Module::read(&Code::new(text)?, &|_| None)
     }
 
     #[test]

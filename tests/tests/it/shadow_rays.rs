@@ -107,13 +107,23 @@ impl Set {
 
     /// Visibility of the light at each pixel by its shadow map: none where it would not light the surface anyway.
     fn visibility(&self, gpu: &Gpu, shadows: ShadowSettings) -> Result<Vec<Option<f64>>, Box<dyn Error>> {
-        let (with, without) = (self.radiance(gpu, Some(shadows))?, self.radiance(gpu, None)?);
+        self.visibility_beside(gpu, &self.radiance(gpu, None)?, shadows)
+    }
+
+    /// The same, with what [`Set::radiance`] is without shadows.
+    fn visibility_beside(
+        &self,
+        gpu: &Gpu,
+        without: &[f32],
+        shadows: ShadowSettings,
+    ) -> Result<Vec<Option<f64>>, Box<dyn Error>> {
+        let with = self.radiance(gpu, Some(shadows))?;
         assert!(with.iter().all(|light| light.to_bits() & 0x7f80_0000 != 0x7f80_0000), "light that is not finite");
         let brightest = without.iter().copied().fold(0.0, f32::max);
         let share = |(with, without): (&f32, &f32)| {
             (*without > 0.02 * brightest).then(|| f64::from(*with) / f64::from(*without))
         };
-        Ok(with.iter().zip(&without).map(share).collect())
+        Ok(with.iter().zip(without).map(share).collect())
     }
 
     /// All triangles, whatever they are made of.
@@ -153,36 +163,50 @@ impl Set {
         hit.normal.dot(toward) > 0.0 && triangles.is_open(from, to, 1e-4)
     }
 
+    /// What rays and light without shadows say of the picture.
+    fn judge<'a>(&'a self, gpu: &'a Gpu) -> Result<Judge<'a>, Box<dyn Error>> {
+        let triangles = self.triangles();
+        let seen = self.seen(&triangles);
+        Ok(Judge { set: self, gpu, triangles, seen, without: self.radiance(gpu, None)? })
+    }
+}
+
+/// What the shadows of a set are judged by.
+struct Judge<'a> {
+    set: &'a Set,
+    gpu: &'a Gpu,
+    triangles: Triangles,
+    seen: Vec<Option<Hit>>,
+    /// The picture without shadows.
+    without: Vec<f32>,
+}
+
+impl Judge<'_> {
     /// Pixels, in thousandths, that a shadow map lights or darkens where rays say otherwise all around within
     /// `blur_m(distance)`: acne and light that leaks in.
-    fn wrong(&self, gpu: &Gpu, shadows: ShadowSettings, blur_m: impl Fn(f64) -> f64) -> Result<f64, Box<dyn Error>> {
-        let [wrong, count, dark] = self.compared(gpu, shadows, blur_m)?;
+    fn wrong(&self, shadows: ShadowSettings, blur_m: impl Fn(f64) -> f64) -> Result<f64, Box<dyn Error>> {
+        let [wrong, count, dark] = self.compared(shadows, blur_m)?;
         assert!(count >= JUDGED && dark > 50, "{count} pixels, {dark} in shadow");
         Ok(1000.0 * f64::from(wrong) / f64::from(count))
     }
 
     /// Such pixels, pixels in all, and those that rays find in shadow.
     #[allow(clippy::print_stdout, reason = "shown with --nocapture")]
-    fn compared(
-        &self,
-        gpu: &Gpu,
-        shadows: ShadowSettings,
-        blur_m: impl Fn(f64) -> f64,
-    ) -> Result<[u32; 3], Box<dyn Error>> {
-        let triangles = self.triangles();
-        let found = self.visibility(gpu, shadows)?;
+    fn compared(&self, shadows: ShadowSettings, blur_m: impl Fn(f64) -> f64) -> Result<[u32; 3], Box<dyn Error>> {
+        let Self { set, gpu, triangles, seen, without } = self;
+        let found = set.visibility_beside(gpu, without, shadows)?;
         let (mut wrong, mut count, mut dark) = (0, 0, 0);
-        for (visibility, hit) in found.iter().zip(self.seen(&triangles)) {
+        for (visibility, hit) in found.iter().zip(seen) {
             let (Some(visibility), Some(hit)) = (visibility, hit) else { continue };
             // Where light grazes, an interpolated normal is lit and the flat triangle is not.
-            if hit.normal.dot(self.toward(hit.point).1).abs() < GRAZING {
+            if hit.normal.dot(set.toward(hit.point).1).abs() < GRAZING {
                 continue;
             }
-            let off = blur_m((hit.point - self.camera.eye).length());
+            let off = blur_m((hit.point - set.camera.eye).length());
             let side = hit.normal.any_orthonormal_vector();
             let around = [side, -side, hit.normal.cross(side), -hit.normal.cross(side)];
-            let lit = self.is_lit(&triangles, &hit, hit.point);
-            if around.iter().any(|way| self.is_lit(&triangles, &hit, hit.point + *way * off) != lit) {
+            let lit = set.is_lit(triangles, hit, hit.point);
+            if around.iter().any(|way| set.is_lit(triangles, hit, hit.point + *way * off) != lit) {
                 continue;
             }
             count += 1;
@@ -295,17 +319,21 @@ fn hard_case_42_a_field_of_100_m_agrees_with_rays() -> TestResult {
     let grazing = Set::new(steep.scene.clone(), steep.camera.clone(), DVec3::new(0.7, 0.12, 0.5));
     let precisions = precisions("hard_case_42_a_field_of_100_m_agrees_with_rays", &gpu);
     let all = kinds().into_iter().flat_map(|kind| precisions.iter().map(move |p| (kind, *p)));
-    for (settings, precision) in test_report::share(all) {
-        for (set, most) in [(&steep, 1.0), (&grazing, 4.0)] {
-            let set = Set { precision, ..set.clone() };
-            let wrong = set.wrong(&gpu, settings, |distance_m| (0.01 * distance_m).max(0.05))?;
-            assert!(wrong <= most, "{settings:?} in {precision:?}: {wrong} of a thousand");
+    let all = test_report::share(all);
+    for (set, most) in [(&steep, 1.0), (&grazing, 4.0)] {
+        for precision in &precisions {
+            let set = Set { precision: *precision, ..set.clone() };
+            let judge = set.judge(&gpu)?;
+            for (settings, _) in all.iter().filter(|(_, own)| own == precision) {
+                let wrong = judge.wrong(*settings, |distance_m| (0.01 * distance_m).max(0.05))?;
+                assert!(wrong <= most, "{settings:?} in {precision:?}: {wrong} of a thousand");
+            }
         }
     }
     // Without any bias the floor shadows itself: the test can fail.
     let none = ShadowBias { constant_m: 0.0, normal: 0.0, slope: 0.0, steps: 0 };
     let acne = ShadowSettings { bias: none, ..ShadowSettings::DEFAULT };
-    assert!(steep.wrong(&gpu, acne, |distance_m| (0.01 * distance_m).max(0.05))? > 10.0);
+    assert!(steep.judge(&gpu)?.wrong(acne, |distance_m| (0.01 * distance_m).max(0.05))? > 10.0);
     Ok(())
 }
 
@@ -319,7 +347,7 @@ fn columns_agree_with_rays() -> TestResult {
     for (camera, cascades) in [(scene.cameras[0].clone(), 1), (scene.cameras[1].clone(), 4)] {
         let set = Set::new(scene.clone(), camera, toward);
         let settings = ShadowSettings { cascades, ..ShadowSettings::DEFAULT };
-        let wrong = set.wrong(&gpu, settings, |_| 0.04)?;
+        let wrong = set.judge(&gpu)?.wrong(settings, |_| 0.04)?;
         assert!(wrong <= 3.0, "{wrong} of a thousand");
     }
     Ok(())
@@ -339,7 +367,7 @@ fn the_helmet_agrees_with_rays() -> TestResult {
     let clay = scene.add_material(Material::dielectric("clay", Vec3::splat(0.5), 1.0));
     scene.instances.iter_mut().for_each(|instance| instance.material = clay);
     let set = Set::new(scene, camera([0.28, 0.55, 0.42], [0.0, 0.45, 0.05], 40.0)?, DVec3::new(0.8, 0.7, 0.3));
-    let wrong = set.wrong(&gpu, ShadowSettings::DEFAULT, |_| 0.003)?;
+    let wrong = set.judge(&gpu)?.wrong(ShadowSettings::DEFAULT, |_| 0.003)?;
     assert!(wrong <= 10.0, "{wrong} of a thousand");
     Ok(())
 }
@@ -375,7 +403,7 @@ fn hard_case_46_local_lights_agree_with_rays() -> TestResult {
             let settings = ShadowSettings { cascades: 0, local_maps, map_texels: 1024, ..ShadowSettings::DEFAULT };
             for precision in precisions("hard_case_46_local_lights_agree_with_rays", &gpu) {
                 let set = Set { lamp: Lamp::Local(lamp.clone()), precision, ..set.clone() };
-                let wrong = set.wrong(&gpu, settings, |_| 0.05)?;
+                let wrong = set.judge(&gpu)?.wrong(settings, |_| 0.05)?;
                 assert!(wrong <= 2.0, "{precision:?}: {wrong} of a thousand");
             }
         }

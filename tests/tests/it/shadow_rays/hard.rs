@@ -12,10 +12,11 @@ const FITS: [Fit; 3] = [Fit::Tight { lispsm: true }, Fit::Tight { lispsm: false 
 /// Every fit in every precision: as many pixels in a thousand as rays may contradict, and the least that they find in shadow.
 fn each_fit(test: &str, gpu: &Gpu, set: &Set, most: u32, least_dark: u32) -> TestResult {
     for precision in precisions(test, gpu) {
+        let set = Set { precision, ..set.clone() };
+        let judge = set.judge(gpu)?;
         for fit in FITS {
-            let set = Set { precision, ..set.clone() };
             let settings = ShadowSettings { fit, cascades: 2, ..ShadowSettings::DEFAULT };
-            let [wrong, count, dark] = set.compared(gpu, settings, |distance_m| (0.01 * distance_m).max(0.08))?;
+            let [wrong, count, dark] = judge.compared(settings, |distance_m| (0.01 * distance_m).max(0.08))?;
             let told = format!("{test}: {fit:?} in {precision:?}: {wrong} of {count} wrong, {dark} dark");
             assert!(count >= JUDGED && dark >= least_dark && 1000 * wrong <= most * count, "{told}");
         }
@@ -65,7 +66,8 @@ fn hard_cases_43_to_45_a_floor_without_blockers_is_lit() -> TestResult {
             let settings = ShadowSettings { filter, ..ShadowSettings::DEFAULT };
             let told = format!("{filter:?} in {precision:?}");
             if matches!(filter, ShadowFilter::Vsm | ShadowFilter::Evsm) {
-                let dark = set.visibility(&gpu, settings)?.into_iter().flatten().filter(|v| *v < 0.99).count();
+                let dark =
+                    set.visibility_beside(&gpu, &plain, settings)?.into_iter().flatten().filter(|v| *v < 0.99).count();
                 assert_eq!(dark, 0, "{told}");
             } else {
                 let with = set.radiance(&gpu, Some(settings))?;
@@ -84,9 +86,10 @@ fn hard_case_43_blockers_at_both_ends_shade_as_rays_do() -> TestResult {
     let set = field()?;
     for precision in precisions(test, &gpu) {
         let set = Set { precision, ..set.clone() };
+        let judge = set.judge(&gpu)?;
         for filter in [ShadowFilter::Pcss, ShadowFilter::Dpcf] {
             let settings = ShadowSettings { filter, cascades: 2, bulb_m: Some(0.02), ..ShadowSettings::DEFAULT };
-            let wrong = set.wrong(&gpu, settings, |distance_m| (0.01 * distance_m).max(0.05))?;
+            let wrong = judge.wrong(settings, |distance_m| (0.01 * distance_m).max(0.05))?;
             assert!(wrong <= 2.0, "{filter:?} in {precision:?}: {wrong} of a thousand");
         }
     }
@@ -99,17 +102,20 @@ fn hard_case_45_moments_agree_with_rays() -> TestResult {
     let Some(gpu) = gpu("hard_case_45_moments_agree_with_rays") else { return Ok(()) };
     let (filters, set) = ([ShadowFilter::Vsm, ShadowFilter::Evsm], field()?);
     let precisions = precisions("hard_case_45_moments_agree_with_rays", &gpu);
-    for (filter, precision) in filters.into_iter().flat_map(|filter| precisions.iter().map(move |p| (filter, *p))) {
+    for precision in precisions {
         let set = Set { precision, ..set.clone() };
-        let mut settings = ShadowSettings { filter, cascades: 2, ..ShadowSettings::DEFAULT };
-        // Sixteen bits let some light through near the feet of what casts: a hundredth of the pixels.
-        let most = if filter == ShadowFilter::Vsm { 30.0 } else { 10.0 };
-        let plain = set.wrong(&gpu, settings, |distance_m| (0.01 * distance_m).max(0.1))?;
-        settings.moments.blur_texels = 5.0;
-        settings.moments.levels = 3;
-        settings.moments.samples = 4;
-        let filtered = set.wrong(&gpu, settings, |distance_m| (0.015 * distance_m).max(0.15))?;
-        assert!(plain <= most && filtered <= most, "{filter:?} in {precision:?}: {plain} {filtered} of a thousand");
+        let judge = set.judge(&gpu)?;
+        for filter in filters {
+            let mut settings = ShadowSettings { filter, cascades: 2, ..ShadowSettings::DEFAULT };
+            // Sixteen bits let some light through near the feet of what casts: a hundredth of the pixels.
+            let most = if filter == ShadowFilter::Vsm { 30.0 } else { 10.0 };
+            let plain = judge.wrong(settings, |distance_m| (0.01 * distance_m).max(0.1))?;
+            settings.moments.blur_texels = 5.0;
+            settings.moments.levels = 3;
+            settings.moments.samples = 4;
+            let filtered = judge.wrong(settings, |distance_m| (0.015 * distance_m).max(0.15))?;
+            assert!(plain <= most && filtered <= most, "{filter:?} in {precision:?}: {plain} {filtered} of a thousand");
+        }
     }
     Ok(())
 }
