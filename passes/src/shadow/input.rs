@@ -38,8 +38,9 @@ impl ShadowBindings {
     pub const NAMES: [&'static str; 6] =
         ["shadow", "local_maps", "shadow_map", "shadow_sampler", "shadow_depth", "shadow_moments"];
 
-    /// Names of the `override` constants: steps of the ray of contact shadows, and what there are maps of.
-    pub const CONSTANTS: [&'static str; 4] = ["CONTACT_STEPS", "CASCADES", "LAMP_SHADOWS", "SHOW_CASCADES"];
+    /// Names of the `override` constants: steps of the ray of contact shadows, what there are maps of, and whether the sun's have an end.
+    pub const CONSTANTS: [&'static str; 5] =
+        ["CONTACT_STEPS", "CASCADES", "SHADOWS_END", "LAMP_SHADOWS", "SHOW_CASCADES"];
 
     /// The bindings for a view: none where it has no maps.
     pub fn new(input: Option<ShadowInput>, view: &GpuView, cx: &mut Cx<'_>) -> Result<Self, RecordError> {
@@ -63,6 +64,7 @@ impl ShadowBindings {
         let constants = [
             shadows.settings.contact.map_or(0, |contact| contact.steps.max(1)),
             shadows.cascades as u32,
+            u32::from(shadows.settings.far_m.is_some()),
             u32::from(shadows.maps.len() > shadows.cascades),
             u32::from(shadows.settings.show_cascades),
         ];

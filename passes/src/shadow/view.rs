@@ -77,13 +77,12 @@ impl ViewShadows {
             far_ends: Vec4::new(ends(0), ends(1), ends(2), ends(3)),
             filter_kind: settings.filter.code(),
             texels: settings.map_texels as f32,
-            // Filament's bias moves by half a texel.
-            normal_bias_texels: if settings.filter.moments().is_some() { 0.0 } else { 0.5 * settings.bias.normal },
             inv_far2: if fades { (1.0 / (far_m * far_m)) as f32 } else { 0.0 },
             exponent,
             variance_floor: (moments.min_variance_scale * 0.01 * exponent).powi(2),
             bleed: moments.bleed,
             contact_m: settings.contact.map_or(0.0, |contact| contact.distance_m),
+            _pad: 0.0,
             cascades: Default::default(),
         };
         let maps: Vec<ShadowMap> = fitted.into_iter().enumerate().map(map).collect();

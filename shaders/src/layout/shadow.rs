@@ -13,8 +13,6 @@ pub struct ShadowUniforms {
     pub filter_kind: u32,
     /// Width and height of a layer in texels.
     pub texels: f32,
-    /// Offset of receivers along their normals, in texels where the map is seen at grazing.
-    pub normal_bias_texels: f32,
     /// 1/m² of the distance by which the sun's shadows have faded; 0: they do not fade.
     pub inv_far2: f32,
     /// Exponent of the warp of moments.
@@ -25,6 +23,8 @@ pub struct ShadowUniforms {
     pub bleed: f32,
     /// Length of a contact shadow's ray in m.
     pub contact_m: f32,
+    /// Padding to 16 bytes; zero.
+    pub _pad: f32,
     /// Maps of the sun; zero beyond the last.
     pub cascades: [ShadowMapUniforms; 4],
 }
@@ -37,11 +37,11 @@ pub struct ShadowMapUniforms {
     pub clip_from_world: Mat4,
     /// World to depth away from the light: 0 at the near end of the map, 1 at the far end.
     pub linear_depth: Vec4,
-    /// Unit vector across the map.
+    /// Across the map, as long in m as receivers are offset along a normal that points there, where w = 1.
     pub right: Vec3,
     /// World size of a texel across in m where w = 1; it grows with w.
     pub texel_right_m: f32,
-    /// Unit vector up the map.
+    /// The same up the map.
     pub up: Vec3,
     /// World size of a texel up the map; it grows with w, of a warped map with w².
     pub texel_up_m: f32,
@@ -104,12 +104,12 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             far_ends,
             filter_kind,
             texels,
-            normal_bias_texels,
             inv_far2,
             exponent,
             variance_floor,
             bleed,
             contact_m,
+            _pad,
             cascades,
         }),
         layout_of!(ShadowMapUniforms {

@@ -5,8 +5,8 @@ use glam::{DVec2, DVec3, DVec4};
 use super::math::saturate;
 
 /// Offset in m along the normal.
-pub fn normal_offset(normal: DVec3, right: DVec3, up: DVec3, texel_m: DVec2, texels: f64) -> DVec3 {
-    normal * (DVec2::new(normal.dot(right), normal.dot(up)).abs().dot(texel_m) * texels)
+pub fn normal_offset(normal: DVec3, right: DVec3, up: DVec3, scale: DVec2) -> DVec3 {
+    normal * DVec2::new(normal.dot(right), normal.dot(up)).abs().dot(scale)
 }
 
 /// (u, v, depth) inside the map.
@@ -154,12 +154,13 @@ mod tests {
     fn hard_case_42_bias_covers_the_kernel_and_no_more() {
         let (right, up, toward) = (DVec3::X, DVec3::Y, DVec3::Z);
         let (texel, reach) = (DVec2::new(0.01, 0.03), 2.0);
+        let (right, up) = (right * texel.x * reach, up * texel.y * reach);
         for degrees in [0.0, 10.0, 45.0, 80.0, 89.9, 90.0] {
             for turn in 0..12 {
                 let (tilt, turn) = (f64::to_radians(degrees), f64::from(turn) * 0.5);
                 let across = DVec3::new(turn.cos(), turn.sin(), 0.0);
                 let normal = across * tilt.sin() + toward * tilt.cos();
-                let offset = normal_offset(normal, right, up, texel, reach);
+                let offset = normal_offset(normal, right, up, DVec2::ONE);
                 assert!(offset.length() <= reach * texel.length() + 1e-12, "{degrees}: {offset}");
                 // Any point of the plane within the reach lies behind the moved receiver, seen along the light.
                 for corner in [DVec2::new(1.0, 1.0), DVec2::new(1.0, -1.0), DVec2::new(-1.0, 1.0), -DVec2::ONE] {
@@ -169,7 +170,7 @@ mod tests {
                 }
             }
         }
-        assert_eq!(normal_offset(toward, right, up, texel, reach), DVec3::ZERO);
+        assert_eq!(normal_offset(toward, right, up, DVec2::ONE), DVec3::ZERO);
     }
 
     #[test]

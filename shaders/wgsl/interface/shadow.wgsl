@@ -9,11 +9,12 @@ struct ShadowMapUniforms {
     clip_from_world: mat4x4<f32>,
     /// World to depth away from the light: 0 at the near end of the map, 1 at the far end.
     linear_depth: vec4<f32>,
-    /// Unit vector across the map.
+    /// Across the map, as long in m as receivers are offset along a normal that points there,
+    /// where w = 1; it grows as texels do.
     right: vec3<f32>,
     /// World size of a texel across in m where w = 1; it grows with w.
     texel_right_m: f32,
-    /// Unit vector up the map.
+    /// The same up the map.
     up: vec3<f32>,
     /// World size of a texel up the map; it grows with w, of a warped map with w².
     texel_up_m: f32,
@@ -46,8 +47,6 @@ struct ShadowUniforms {
     filter_kind: u32,
     /// Width and height of a layer in texels.
     texels: f32,
-    /// Offset of receivers along their normals, in texels where the map is seen at grazing.
-    normal_bias_texels: f32,
     /// 1/m² of the distance by which the sun's shadows have faded; 0: they do not fade.
     inv_far2: f32,
     /// Exponent of the warp of moments.
@@ -58,8 +57,8 @@ struct ShadowUniforms {
     bleed: f32,
     /// Length of a contact shadow's ray in m.
     contact_m: f32,
-    /// Maps of the sun, CASCADES of them. Not with the others: Mesa's software driver loads from
-    /// storage fragment by fragment.
+    /// Maps of the sun, CASCADES of them, each of which takes the whole layer of its number. Not
+    /// with the others: Mesa's software driver loads from storage fragment by fragment.
     cascades: array<ShadowMapUniforms, 4>,
 }
 
@@ -69,6 +68,8 @@ const SHADOW_FILTER_PCSS: u32 = 2u;
 
 /// How many cascades there are.
 override CASCADES: u32 = 4u;
+/// Whether the sun's shadows end at a distance, and not where nothing is left to fall on.
+override SHADOWS_END: bool = true;
 /// Whether there are maps of local lights.
 override LAMP_SHADOWS: bool = true;
 /// Tint what is lit by the number of its cascade.

@@ -3,20 +3,18 @@
 // Shadow maps are reversed-Z like every depth here: 1 nearest the light, 0 farthest, cleared
 // to 0, compared with GreaterEqual (lit where the receiver is at least as near as the map).
 
-/// Offset in m to add to a receiver's position along its geometric normal, so that a kernel that
-/// reaches `texels` along both axes of the map stays on the lit side of the receiver's plane.
-/// `right` and `up` are the axes, `texel_m` the world size of a texel along each. Zero facing
-/// the light, the whole reach edge-on, and never more, where a tangent would grow without limit
-/// (hard case 42).
+/// Offset in m to add to a receiver's position along its geometric normal, so that a kernel stays
+/// on the lit side of the receiver's plane. `right` and `up` are the axes of the map, each as long
+/// in m as the kernel reaches along it; `scale` is by how much it reaches farther. Zero facing the
+/// light, the whole reach edge-on, and never more, where a tangent would grow without limit (hard
+/// case 42).
 fn normal_offset(
     normal: vec3<f32>,
     right: vec3<f32>,
     up: vec3<f32>,
-    texel_m: vec2<f32>,
-    texels: f32,
+    scale: vec2<f32>,
 ) -> vec3<f32> {
-    let slope = abs(vec2<f32>(dot(normal, right), dot(normal, up)));
-    return normal * (dot(slope, texel_m) * texels);
+    return normal * dot(abs(vec2<f32>(dot(normal, right), dot(normal, up))), scale);
 }
 
 /// (u, v, depth) in [0, 1]³ inside the map from light clip space: y is flipped because

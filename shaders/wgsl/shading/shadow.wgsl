@@ -4,7 +4,7 @@
 // moments. Without any every light reaches everything.
 
 import package::interface::shadow::{
-    shadow, local_maps, ShadowMapUniforms, CASCADES, LAMP_SHADOWS, SHOW_CASCADES,
+    shadow, local_maps, ShadowMapUniforms, CASCADES, SHADOWS_END, LAMP_SHADOWS, SHOW_CASCADES,
 };
 import package::lib::shadow::{
     normal_offset, shadow_uvz_from_clip, cascade_at, faded_visibility, cube_face_of,
@@ -13,7 +13,7 @@ import package::lib::shadow::{
 import package::shading::shadow_depth::tent_visibility;
 @if(SHADOW_SOFT && !SHADOW_MOMENTS)
 import package::shading::shadow_depth::soft_visibility;
-import package::shading::shadow_map::{Receiver, ahead_m, texel_m};
+import package::shading::shadow_map::{Receiver, ahead_m, texel_scale};
 @if(SHADOW_MOMENTS)
 import package::shading::shadow_moments::moments_visibility;
 
@@ -21,14 +21,20 @@ import package::shading::shadow_moments::moments_visibility;
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn sun_visibility(receiver: Receiver) -> f32 {
     let ahead = ahead_m(receiver.world);
-    let cascade = cascade_at(ahead, shadow.far_ends);
+    // Of a single map the compiler knows the number.
+    let only = select(0u, u32(shadow.far_ends.x < ahead), SHADOWS_END);
+    let cascade = select(cascade_at(ahead, shadow.far_ends), only, CASCADES == 1u);
     if cascade >= CASCADES {
         return 1.0;
     }
-    // A single map has a number that the compiler knows.
-    let map = shadow.cascades[min(cascade, CASCADES - 1u)];
+    var map = shadow.cascades[min(cascade, CASCADES - 1u)];
+    // And of any what is the same for all.
+    map.uv_corner = vec2<f32>(0.0);
+    map.uv_scale = 1.0;
+    map.layer = min(cascade, CASCADES - 1u);
+    map.near_over_range = 0.0;
     let visibility = map_visibility(map, receiver);
-    return faded_visibility(visibility, ahead, shadow.inv_far2);
+    return select(visibility, faded_visibility(visibility, ahead, shadow.inv_far2), SHADOWS_END);
 }
 
 @else
@@ -75,9 +81,7 @@ fn cascade_tint(world: vec3<f32>) -> vec3<f32> {
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn map_visibility(map: ShadowMapUniforms, receiver: Receiver) -> f32 {
     let w = dot(vec4<f32>(receiver.world, 1.0), transpose(map.clip_from_world)[3]);
-    let offset = normal_offset(
-        receiver.normal, map.right, map.up, texel_m(map, w), shadow.normal_bias_texels,
-    );
+    let offset = normal_offset(receiver.normal, map.right, map.up, texel_scale(map, w));
     let world = vec4<f32>(receiver.world + offset, 1.0);
     let clip = map.clip_from_world * world;
     let at = shadow_uvz_from_clip(clip);

@@ -17,14 +17,23 @@ fn ahead_m(world: vec3<f32>) -> f32 {
     return -dot(frame.world_from_view[2].xyz, world);
 }
 
+/// By how much a texel of the map is larger along its axes than where w = 1.
+fn texel_scale(map: ShadowMapUniforms, w: f32) -> vec2<f32> {
+    return vec2<f32>(w, w * select(1.0, w, map.warped != 0u));
+}
+
 /// World size in m of a texel of the map along its axes, at this w.
 fn texel_m(map: ShadowMapUniforms, w: f32) -> vec2<f32> {
-    return vec2<f32>(map.texel_right_m, map.texel_up_m * select(1.0, w, map.warped != 0u)) * w;
+    return vec2<f32>(map.texel_right_m, map.texel_up_m) * texel_scale(map, w);
 }
 
 /// Coordinates in the layer of coordinates in the map: taps beyond its edge take the edge, which of
-/// `level` lies half a texel of that level inside. So no filter reaches what lies beside the map.
+/// `level` lies half a texel of that level inside. So no filter reaches what lies beside the map. Of
+/// a map that takes the whole layer samplers see to that.
 fn layer_uv(map: ShadowMapUniforms, uv: vec2<f32>, level: f32) -> vec2<f32> {
+    if map.uv_scale == 1.0 {
+        return uv;
+    }
     let half = min(0.5 * exp2(level) / shadow.texels, 0.5 * map.uv_scale);
     return clamp(
         map.uv_corner + uv * map.uv_scale,

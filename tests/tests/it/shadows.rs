@@ -189,7 +189,7 @@ fn edges_are_blurred_by_a_tent_of_three_texels() -> TestResult {
         let sides: Vec<f64> = sides.collect();
         sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0)
     };
-    let slope = f64::from(map.right.z.abs() * map.texel_right_m + map.up.z.abs() * map.texel_up_m);
+    let slope = f64::from(map.right.z.abs() + map.up.z.abs());
     let mut partly = 0;
     for (index, seen) in seen[..79].iter().enumerate() {
         let offset = DVec3::Z * slope;
