@@ -28,8 +28,8 @@ fn texel_m(map: ShadowMapUniforms, w: f32) -> vec2<f32> {
 }
 
 /// Coordinates in the layer of coordinates in the map: taps beyond its edge take the edge, which of
-/// `level` lies half a texel of that level inside. So no filter reaches what lies beside the map. Of
-/// a map that takes the whole layer samplers see to that.
+/// `level` lies half a texel of that level inside. So no filter reaches what lies beside the map.
+/// Of a map that takes the whole layer samplers see to that.
 fn layer_uv(map: ShadowMapUniforms, uv: vec2<f32>, level: f32) -> vec2<f32> {
     if map.uv_scale == 1.0 {
         return uv;
