@@ -21,18 +21,15 @@ import package::shading::shadow_moments::moments_visibility;
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn sun_visibility(receiver: Receiver) -> f32 {
     let ahead = ahead_m(receiver.world);
-    // Of a single map the compiler knows the number.
-    let only = select(0u, u32(shadow.far_ends.x < ahead), SHADOWS_END);
-    let cascade = select(cascade_at(ahead, shadow.far_ends), only, CASCADES == 1u);
+    // Of a single map the compiler knows the number; where it has an end, shadows have faded there.
+    let cascade = select(cascade_at(ahead, shadow.far_ends), 0u, CASCADES == 1u);
     if cascade >= CASCADES {
         return 1.0;
     }
     var map = shadow.cascades[min(cascade, CASCADES - 1u)];
-    // And of any what is the same for all.
-    map.uv_corner = vec2<f32>(0.0);
+    // And of any that it takes the whole layer of its number.
     map.uv_scale = 1.0;
     map.layer = min(cascade, CASCADES - 1u);
-    map.near_over_range = 0.0;
     let visibility = map_visibility(map, receiver);
     return select(visibility, faded_visibility(visibility, ahead, shadow.inv_far2), SHADOWS_END);
 }

@@ -337,6 +337,36 @@ fn hard_case_42_a_field_of_100_m_agrees_with_rays() -> TestResult {
     Ok(())
 }
 
+/// Shadows that end at a distance have faded there, over the last tenth of the way: what rays find dark all around is as
+/// light as the formula says.
+#[test]
+fn shadows_fade_out_before_their_end() -> TestResult {
+    const END_M: f64 = 13.0;
+    let Some(gpu) = gpu("shadows_fade_out_before_their_end") else { return Ok(()) };
+    let Set { scene, camera, .. } = field()?;
+    // Long shadows.
+    let set = Set::new(scene, camera, DVec3::new(0.8, 0.2, 0.3));
+    let Judge { triangles, seen, without, .. } = set.judge(&gpu)?;
+    for cascades in [1, 4] {
+        let settings = ShadowSettings { cascades, far_m: Some(END_M), ..ShadowSettings::DEFAULT };
+        // Not faded, fading, faded.
+        let mut counts = [0; 3];
+        for (visibility, hit) in set.visibility_beside(&gpu, &without, settings)?.iter().zip(&seen) {
+            let (Some(visibility), Some(hit)) = (visibility, hit) else { continue };
+            let (u, v) = hit.normal.any_orthonormal_pair();
+            if [DVec3::ZERO, u, -u, v, -v].iter().any(|way| set.is_lit(&triangles, hit, hit.point + *way * 0.1)) {
+                continue;
+            }
+            let ahead = (hit.point - set.camera.eye).dot(set.camera.forward()) / END_M;
+            let share = (5.0 - 5.0 * ahead * ahead).clamp(0.0, 1.0);
+            counts[if share == 1.0 { 0 } else { 1 + usize::from(share == 0.0) }] += 1;
+            assert!((1.0 - share - visibility).abs() < 0.1, "{cascades}, {ahead} of the way: {visibility}");
+        }
+        assert!(counts.iter().all(|count| *count > 10), "{counts:?}");
+    }
+    Ok(())
+}
+
 /// The colonnade, which had stripes on its plinths and a bright ring under its capitals: at most three pixels in a thousand
 /// are otherwise than rays say farther than 4 cm from an edge.
 #[test]
