@@ -22,6 +22,7 @@ mod token;
 use std::borrow::Cow;
 
 use self::code::Code;
+use self::fault::Fault;
 use crate::effect::{self, Effect, SOCKET};
 use crate::{Feature, Features, Module, Reflection, ShaderError, library};
 
@@ -32,6 +33,10 @@ pub struct Shader {
     pub wgsl: String,
     /// Entry points, bindings and override constants.
     pub reflection: Reflection,
+}
+
+fn read(text: &str) -> Result<Cow<'_, Code<'_>>, Fault> {
+    Code::new(text).map(Cow::Owned)
 }
 
 /// Resolves a shader with `features`, ending with `effects` in this order. Features that it does not test make no
@@ -56,18 +61,18 @@ pub fn resolve(module: &Module<'_>, features: &Features, effects: &[Effect<'_>])
     }
     let overlay = effect::overlay(effects)?;
     let load = |path: &str| {
-        let own = overlay.iter().find(|(p, _)| *p == path).map(|(_, text)| text.as_ref());
-        let listed = || module.sources.iter().find(|source| source.path == path).map(|source| source.wgsl);
-        if let (None, Some(embedded)) = (own, embedded::code(path)?) {
-            return Ok(Some(Cow::Borrowed(embedded)));
+        if let Some((_, own)) = overlay.iter().find(|(p, _)| *p == path) {
+            return read(own).map(Some);
         }
-        own.or_else(listed).map(|text| Code::new(text).map(Cow::Owned)).transpose()
+        if let Some(code) = embedded::code(path)? {
+            return Ok(Some(Cow::Borrowed(code)));
+        }
+        module.sources.iter().find(|source| source.path == path).map(|source| read(source.wgsl)).transpose()
     };
     let is_on = |name: &str| known(name).then(|| features.iter().any(|feature| feature.name() == name));
     let is_embedded = library::text(module.path) == Some(module.wgsl);
     let known = if is_embedded { embedded::code(module.path) } else { Ok(None) };
-    let own = || Code::new(module.wgsl).map(Cow::Owned);
-    let root = known.and_then(|known| known.map_or_else(own, |code| Ok(Cow::Borrowed(code))));
+    let root = known.and_then(|known| known.map_or_else(|| read(module.wgsl), |code| Ok(Cow::Borrowed(code))));
     let root = root.map_err(|fault| fault.at(module.path))?;
     let linked = link::link(module.path, &root, &load, &is_on)?;
     #[cfg(feature = "replaced")]

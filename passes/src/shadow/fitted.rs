@@ -70,12 +70,9 @@ impl ShadowMap {
     /// The map as a view at `eye` sees it. The eye is subtracted in double precision.
     pub(super) fn new(fitted: Fitted, eye: DVec3, settings: &ShadowSettings, penumbra: Penumbra) -> Self {
         let ShadowSettings { map_texels, filter, bias, .. } = *settings;
-        // The variance of moments takes the place of a bias. Filament's moves by half a texel.
-        let (back_m, offset) = if settings.has_moments() {
-            (0.0, 0.0)
-        } else {
-            (f64::from(bias.constant_m), 0.5 * f64::from(bias.normal))
-        };
+        // The variance of moments takes the place of a bias. That along normals counts half texels, as Filament's does.
+        let biases = if settings.has_moments() { [0.0; 2] } else { [bias.constant_m, 0.5 * bias.normal] };
+        let [back_m, offset_texels] = biases.map(f64::from);
         let Fitted { axes: [right, up, toward], linear_depth, place, .. } = fitted;
         let share = |texels: u32| texels as f32 / map_texels.max(1) as f32;
         let clip_from_relative = fitted.clip_from_world * DMat4::from_translation(eye);
@@ -92,9 +89,9 @@ impl ShadowMap {
             uniforms: ShadowMapUniforms {
                 clip_from_world: clip_from_relative.as_mat4(),
                 linear_depth: linear.as_vec4(),
-                right: (right * fitted.texel_m[0] * offset).as_vec3(),
+                right: (right * fitted.texel_m[0] * offset_texels).as_vec3(),
                 texel_right_m: fitted.texel_m[0] as f32,
-                up: (up * fitted.texel_m[1] * offset).as_vec3(),
+                up: (up * fitted.texel_m[1] * offset_texels).as_vec3(),
                 texel_up_m: fitted.texel_m[1] as f32,
                 depth_m: fitted.depth_m as f32,
                 near_over_range: fitted.near_over_range as f32,

@@ -38,7 +38,8 @@ impl ShadowBindings {
     pub const NAMES: [&'static str; 6] =
         ["shadow", "local_maps", "shadow_map", "shadow_sampler", "shadow_depth", "shadow_moments"];
 
-    /// Names of the `override` constants: steps of the ray of contact shadows, what there are maps of, and whether the sun's have an end.
+    /// Names of the `override` constants: steps of the ray of contact shadows, what there are maps of, and whether shadows of
+    /// the sun have an end.
     pub const CONSTANTS: [&'static str; 5] =
         ["CONTACT_STEPS", "CASCADES", "SHADOWS_END", "LAMP_SHADOWS", "SHOW_CASCADES"];
 
