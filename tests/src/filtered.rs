@@ -1,8 +1,9 @@
 //! One pass over a picture of eight bits a channel, with nothing but its shaders.
 
+use crate::executors;
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Options, Plan, Scratch, Texture, TextureDesc, compile};
 use framegraph_passes::program::Programs;
-use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use std::error::Error;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
@@ -41,7 +42,7 @@ pub fn filtered(
     );
     let mut imports = Imports::new();
     imports.texture(given, &texture);
-    let mut executor = Executor::new(gpu);
+    let mut executor = executors::lend(gpu);
     executor.execute(&plan, &frame, &Programs::new(), &imports)?;
     Ok(read_texture(gpu, executor.texture(&plan, output).ok_or("there is no picture")?)?.rgba8())
 }

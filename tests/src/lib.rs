@@ -2,6 +2,7 @@
 
 pub mod compare;
 pub mod cube_file;
+pub mod executors;
 pub mod files;
 pub mod filtered;
 pub mod fuzz;

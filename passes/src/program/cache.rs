@@ -3,20 +3,54 @@
 use super::{Program, ProgramDesc};
 use crate::error::PassError;
 use std::collections::HashMap;
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 
-/// The programs of a device's passes, each made when it is first asked for: which effects a shader ends with is the plan's
-/// choice.
+/// The programs of a world's passes, each made when it is first asked for: which effects a shader ends with is the plan's
+/// choice. What it is made of is static, so what another `Programs` of the process has made is taken and not made again.
 #[derive(Debug, Default)]
 pub struct Programs {
-    known: RwLock<HashMap<u64, Vec<Known>>>,
+    known: Table,
 }
+
+/// Programs of this process.
+static MADE: LazyLock<Table> = LazyLock::new(Table::default);
+
+/// Programs by the hashes of their descriptions.
+#[derive(Debug, Default)]
+struct Table(RwLock<HashMap<u64, Vec<Known>>>);
 
 /// A program with the description that it was made from.
 #[derive(Debug)]
 struct Known {
     addresses: Box<[(usize, usize)]>,
     program: Arc<Program>,
+}
+
+impl Table {
+    /// The program of a description that has that hash; what `make` returns, where there is none.
+    fn get(
+        &self,
+        desc: &ProgramDesc<'_>,
+        hash: u64,
+        make: impl FnOnce() -> Result<Arc<Program>, PassError>,
+    ) -> Result<Arc<Program>, PassError> {
+        let same = |known: &&Known| known.addresses.iter().copied().eq(desc.addresses());
+        // A panic in another thread leaves the table as it was.
+        let known = self.0.read().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = known.get(&hash).and_then(|bucket| bucket.iter().find(same)) {
+            return Ok(Arc::clone(&known.program));
+        }
+        drop(known);
+        let program = make()?;
+        let mut known = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        let bucket = known.entry(hash).or_default();
+        // Another thread may have been quicker; all are to hold one program.
+        if let Some(known) = bucket.iter().find(same) {
+            return Ok(Arc::clone(&known.program));
+        }
+        bucket.push(Known { addresses: desc.addresses().collect(), program: Arc::clone(&program) });
+        Ok(program)
+    }
 }
 
 impl Programs {
@@ -31,29 +65,13 @@ impl Programs {
     /// As [`Program::new`].
     pub fn get(&self, desc: &ProgramDesc<'_>) -> Result<Arc<Program>, PassError> {
         let hash = desc.hash();
-        let same = |known: &&Known| known.addresses.iter().copied().eq(desc.addresses());
-        // A panic in another thread leaves the table as it was.
-        let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = known.get(&hash).and_then(|bucket| bucket.iter().find(same)) {
-            return Ok(Arc::clone(&known.program));
-        }
-        drop(known);
-        let program = Arc::new(Program::new(desc)?);
-        let mut known = self.known.write().unwrap_or_else(PoisonError::into_inner);
-        let bucket = known.entry(hash).or_default();
-        // Another thread may have been quicker; all are to hold one program.
-        if let Some(known) = bucket.iter().find(same) {
-            return Ok(Arc::clone(&known.program));
-        }
-        let addresses = desc.addresses().collect();
-        bucket.push(Known { addresses, program: Arc::clone(&program) });
-        Ok(program)
+        self.known.get(desc, hash, || MADE.get(desc, hash, || Program::new(desc).map(Arc::new)))
     }
 
     /// All that were made so far, ordered by the hashes of their shaders: for who reloads them
     /// ([`Executor::reload_shader`](framegraph_wgpu::Executor::reload_shader)).
     pub fn made(&self) -> Vec<Arc<Program>> {
-        let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
+        let known = self.known.0.read().unwrap_or_else(PoisonError::into_inner);
         let mut made: Vec<_> = known.values().flatten().map(|known| Arc::clone(&known.program)).collect();
         made.sort_by_key(|program| program.shader().hash());
         made
@@ -94,6 +112,10 @@ mod tests {
         let made = programs.made();
         assert!(made.len() == 2 && [&red, &blue].iter().all(|own| made.iter().any(|other| Arc::ptr_eq(own, other))));
         assert!(Arc::ptr_eq(&red, &programs.get(&ProgramDesc::new(&IN_RED, &NOTHING))?));
+        let others = Programs::new();
+        assert!(others.made().is_empty());
+        assert!(Arc::ptr_eq(&red, &others.get(&ProgramDesc::new(&IN_RED, &NOTHING))?));
+        assert_eq!(others.made().len(), 1);
         Ok(())
     }
 }

@@ -44,6 +44,13 @@ pub struct Gpu {
     pub(super) attached_layers: Arc<OnceLock<u32>>,
 }
 
+/// Of one device opened once; handles of wgpu alone may be equal for devices of two instances.
+impl PartialEq for Gpu {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.errors, &other.errors)
+    }
+}
+
 /// No device could be opened.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
@@ -351,6 +358,7 @@ mod tests {
     fn nothing_is_opened_unless_asked_for() -> Result<(), OpenError> {
         let noop = Gpu::noop()?;
         assert_eq!(noop.info().backend, Backend::Noop);
+        assert!(noop == noop.clone() && noop != Gpu::noop()?, "devices of two instances are two");
         let named = AdapterRequest {
             backends: Backends::NOOP,
             name: Some("no such adapter".into()),

@@ -3,6 +3,7 @@
 //!
 //! The board hangs across the view, in the plane z = 0 about its origin; the eye is five meters in front of it.
 
+use crate::executors;
 use crate::stage::light_cache;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
 use framegraph_passes::grading::Look;
@@ -14,7 +15,7 @@ use framegraph_passes::{CameraView, LightSearch, Lighting, PostSettings, Setting
 use framegraph_scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
 use framegraph_scene::{Aabb, Camera, Environment, Light, Material, Mesh, Projection, Scene, progress};
 use framegraph_shaders::layout::ToneMap;
-use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::error::Error;
 
@@ -158,7 +159,7 @@ impl Board {
         let mut plan = Plan::new();
         let options = Options::for_frame(size_px[0], size_px[1]);
         compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
-        let mut executor = Executor::new(gpu);
+        let mut executor = executors::lend(gpu);
         executor.execute(&plan, &frame, &world, &Imports::new())?;
         let texture = |handle| executor.texture(&plan, handle).ok_or("the frame left no picture");
         let codes = read_texture(gpu, texture(io.output)?)?.rgba8();

@@ -1,6 +1,7 @@
 //! The tables of `docs/half-floats.md`, as rows: printed by the program `shading_errors`, found again by tests.
 
 use crate::compare::{Difference, compare};
+use crate::executors;
 use crate::measure::half::{Form, LobeError, lobe_error};
 use crate::mirror;
 use crate::stage::light_cache;
@@ -16,7 +17,7 @@ use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
 use framegraph_shaders::reference::cases::{self, Case, Deviation};
 use framegraph_wgpu::Frame;
-use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Gpu, Imports, read_texture};
 use std::error::Error;
 
 /// Points of each function's domain, a quarter of which are corners.
@@ -121,7 +122,7 @@ impl Studio {
         let mut plan = Plan::new();
         let options = Options::for_frame(self.size_px[0], self.size_px[1]);
         compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
-        let mut executor = Executor::new(gpu);
+        let mut executor = executors::lend(gpu);
         executor.execute(&plan, &frame, &self.world, &Imports::new())?;
         let texture = executor.texture(&plan, io.output).ok_or("the frame left no picture")?;
         Ok(read_texture(gpu, texture)?.rgba8())

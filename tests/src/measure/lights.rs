@@ -1,5 +1,6 @@
 //! Many lights: a scene at night, with its lights found by froxels and with all of them looked at everywhere.
 
+use crate::executors;
 use crate::stage::light_cache;
 use framegraph::{Extent, Options, Plan, Scratch, Target, Texture, compile};
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
@@ -9,7 +10,7 @@ use framegraph_passes::shadow::{KeptShadows, maps_slot};
 use framegraph_passes::view::{Background, ViewSettings, Views};
 use framegraph_passes::{CameraView, Handles, LightSearch, Lighting, Settings, Slot, ViewId, World, stages};
 use framegraph_scene::{Camera, Environment, Light, LightKind, Scene, progress};
-use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use glam::DVec3;
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -150,7 +151,7 @@ impl Night {
         let mut plan = Plan::new();
         let [width, height] = self.seen.size_px;
         compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
-        let mut executor = Executor::new(gpu);
+        let mut executor = executors::lend(gpu);
         let mut ms = f64::INFINITY;
         for _ in 0..frames.max(1) {
             let start = Instant::now();

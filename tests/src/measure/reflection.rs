@@ -1,5 +1,6 @@
 //! Reflections of a room on a device: where rays find what mirrors show, against the truth.
 
+use crate::executors;
 use framegraph::{Extent, Format, Intent, Options, Plan, Scratch, Texture, compile};
 use framegraph_passes::program::Programs;
 use framegraph_passes::reflection::{ReflectionSettings, reflections};
@@ -10,7 +11,7 @@ use framegraph_passes::view::Views;
 use framegraph_passes::{CameraView, Handles, LightSearch, PreparedScene, ViewId, ViewSettings};
 use framegraph_scene::geometry::{plane, sphere};
 use framegraph_scene::{Camera, Material, Projection, Scene, progress};
-use framegraph_wgpu::{Executor, Frame, Gpu, Imports, Raster, Shader, read_texture};
+use framegraph_wgpu::{Frame, Gpu, Imports, Raster, Shader, read_texture};
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 use std::error::Error;
 use truth::reflection::{Lens, Mirrored, Room};
@@ -164,7 +165,7 @@ impl Stage {
         frame.graph_mut().readback(found)?;
         let mut plan = Plan::new();
         compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
-        let mut executor = Executor::new(gpu);
+        let mut executor = executors::lend(gpu);
         let mut read = || -> Result<_, Box<dyn Error>> {
             executor.execute(&plan, &frame, &parts, &Imports::new())?;
             Ok(read_texture(gpu, executor.texture(&plan, found).ok_or("there is no result")?)?.rgba())

@@ -9,6 +9,7 @@ use super::light::around;
 use super::occlusion;
 use super::picture::Picture;
 use super::temporal;
+use crate::executors;
 use crate::filtered::filtered;
 use crate::stage::light_cache;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
@@ -28,7 +29,7 @@ use framegraph_scene::{Camera, Environment, Light, LightKind, Projection, Scene,
 use framegraph_shaders::layout::FxaaUniforms;
 use framegraph_shaders::reference::dfg::Visibility;
 use framegraph_wgpu::Frame;
-use framegraph_wgpu::{Executor, Gpu, Imports, Pixels, read_texture};
+use framegraph_wgpu::{Gpu, Imports, Pixels, read_texture};
 use glam::{DVec3, DVec4, Vec3};
 use std::error::Error;
 
@@ -141,7 +142,7 @@ fn rendered(
     let [width, height] = stated.resolution;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
-    let mut executor = Executor::new(gpu);
+    let mut executor = executors::lend(gpu);
     let imports = Imports::new();
     let frames = match (&settings.taa, settings.reflections) {
         (Some(_), _) => temporal::FRAMES,

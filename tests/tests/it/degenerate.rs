@@ -8,9 +8,10 @@ use framegraph_scene::environment::Sky;
 use framegraph_scene::geometry::{plane, sphere};
 use framegraph_scene::light::LightKind;
 use framegraph_scene::{Camera, Light, Material, Projection, Scene, progress};
-use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Gpu, Imports, read_texture};
 use glam::{DMat4, DQuat, DVec3, Vec2, Vec3};
 use std::error::Error;
+use tests::executors;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
@@ -56,7 +57,7 @@ fn radiance(
     frame.graph_mut().readback(io.hdr)?;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
-    let mut executor = Executor::new(gpu);
+    let mut executor = executors::lend(gpu);
     executor.execute(&plan, &frame, &world, &Imports::new())?;
     let texture = executor.texture(&plan, io.hdr).ok_or("the frame left no radiance")?;
     Ok(read_texture(gpu, texture)?.rgba())

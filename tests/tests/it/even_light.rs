@@ -6,9 +6,10 @@ use framegraph_passes::view::Background;
 use framegraph_passes::{Settings, World};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::{Environment, Scene, progress};
-use framegraph_wgpu::{Executor, Imports, read_texture};
+use framegraph_wgpu::{Imports, read_texture};
 use glam::{DVec3, Vec3};
 use std::error::Error;
+use tests::executors;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
@@ -28,7 +29,7 @@ fn even_light_is_shaded_without_the_cube() -> TestResult {
         let (frame, io) = stage::declared(&settings);
         let mut plan = Plan::new();
         compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
-        let mut executor = Executor::new(&gpu);
+        let mut executor = executors::lend(&gpu);
         executor.execute(&plan, &frame, &world, &Imports::new())?;
         let texture = executor.texture(&plan, io.output).ok_or("the frame left no picture")?;
         let mapped = world.programs.made().iter().any(|program| program.name().contains("ENVIRONMENT_MAP"));

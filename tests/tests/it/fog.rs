@@ -8,9 +8,10 @@ use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, FogSettings, LightSearch, Settings, Shading, World, standard};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::{Camera, Environment, Light, Projection, Scene, progress};
-use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use glam::{DVec3, Vec3};
 use std::error::Error;
+use tests::executors;
 use truth::lobe::gathered;
 
 type TestResult = Result<(), Box<dyn Error>>;
@@ -57,7 +58,7 @@ fn shoot_under(
     frame.graph_mut().readback(io.hdr)?;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &Options::for_frame(SIZE[0], SIZE[1]), &mut Scratch::new(), &mut plan)?;
-    let mut executor = Executor::new(gpu);
+    let mut executor = executors::lend(gpu);
     executor.execute(&plan, &frame, &world, &Imports::new())?;
     let texture = executor.texture(&plan, io.hdr).ok_or("the frame left no radiance")?;
     Ok(read_texture(gpu, texture)?.rgba())

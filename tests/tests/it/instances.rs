@@ -10,9 +10,10 @@ use framegraph_scene::environment::Sky;
 use framegraph_scene::geometry::{cuboid, plane, sphere};
 use framegraph_scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
 use framegraph_scene::{AlphaMode, ClearCoat, Light, Material, MaterialId, Scene, Transmission, progress};
-use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Gpu, Imports, read_texture};
 use glam::{DMat4, DVec3, Vec3};
 use std::error::Error;
+use tests::executors;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
@@ -47,7 +48,7 @@ fn draw(gpu: &Gpu, world: &World, settings: &Settings, options: &Options) -> Res
     let (frame, io) = declared(settings);
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), options, &mut Scratch::new(), &mut plan)?;
-    let mut executor = Executor::new(gpu);
+    let mut executor = executors::lend(gpu);
     executor.execute(&plan, &frame, world, &Imports::new())?;
     let picture = executor.texture(&plan, io.output).ok_or("the frame left no picture")?;
     Ok(read_texture(gpu, picture)?.rgba8())

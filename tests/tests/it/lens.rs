@@ -12,9 +12,10 @@ use framegraph_scene::{Camera, Environment, Light, Projection, Scene, progress};
 use framegraph_shaders::layout::{EdgeFade, Grading, ToneMap};
 use framegraph_shaders::reference::sky;
 use framegraph_shaders::reference::sky::Preetham;
-use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Gpu, Imports, read_texture};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use std::error::Error;
+use tests::executors;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
@@ -54,7 +55,7 @@ fn shoot(
     frame.graph_mut().readback(io.hdr)?;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &Options::for_frame(SIZE[0], SIZE[1]), &mut Scratch::new(), &mut plan)?;
-    let mut executor = Executor::new(gpu);
+    let mut executor = executors::lend(gpu);
     executor.execute(&plan, &frame, &world, &Imports::new())?;
     let texture = |handle| executor.texture(&plan, handle).ok_or("the frame left no picture");
     let codes = read_texture(gpu, texture(io.output)?)?.rgba8();

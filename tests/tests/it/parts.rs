@@ -17,9 +17,10 @@ use framegraph_passes::{CameraView, FrameIndex, LightSearch, PostSettings, ViewI
 use framegraph_scene::{Camera, Projection};
 use framegraph_shaders::layout::{FxaaUniforms, ToneMap};
 use framegraph_shaders::reference::srgb::srgb_from_linear_channel;
-use framegraph_wgpu::{Depth, Executor, Frame, Gpu, Imports, Raster, Shader, read_texture};
+use framegraph_wgpu::{Depth, Frame, Gpu, Imports, Raster, Shader, read_texture};
 use glam::DVec3;
 use std::error::Error;
+use tests::executors;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
 
@@ -91,7 +92,7 @@ fn filtered(
     compile(frame.graph(), &gpu.caps(), &Options::for_frame(SIZE[0], SIZE[1]), &mut Scratch::new(), &mut plan)?;
     let mut imports = Imports::new();
     imports.texture(import, picture);
-    let mut executor = Executor::new(gpu);
+    let mut executor = executors::lend(gpu);
     executor.execute(&plan, &frame, parts, &imports)?;
     assert_eq!(executor.executed(), plan.counts(), "executed against planned");
     let texture = executor.texture(&plan, result).ok_or("there is no result")?;

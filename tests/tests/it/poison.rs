@@ -11,8 +11,9 @@ use framegraph_passes::{BloomSettings, DofSettings, Settings, TaaSettings, World
 use framegraph_scene::{Scene, progress};
 use framegraph_shaders::Module;
 use framegraph_wgpu::inspect::{Inspector, all_targets};
-use framegraph_wgpu::{Cx, Executor, Frame, Gpu, Imports, Record, RecordError};
+use framegraph_wgpu::{Cx, Frame, Gpu, Imports, Record, RecordError};
 use std::error::Error;
+use tests::executors;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
@@ -122,7 +123,7 @@ fn frame(
 fn counted(gpu: &Gpu, set: &Set, shot: &Shot, frame: &Frame<World>) -> Result<Vec<(String, usize)>, Box<dyn Error>> {
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
-    let (mut executor, imports) = (Executor::new(gpu), Imports::new());
+    let (mut executor, imports) = (executors::lend(gpu), Imports::new());
     executor.execute(&plan, frame, set.world(), &imports)?;
     let mut inspector = Inspector::new(gpu);
     let mut counts = Vec::new();

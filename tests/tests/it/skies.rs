@@ -12,9 +12,10 @@ use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular};
 use framegraph_scene::texture::{Sampler, TextureRole};
 use framegraph_scene::{Camera, Environment, Material, Projection, Scene, progress};
 use framegraph_shaders::reference::occlusion::specular_occlusion;
-use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Gpu, Imports, read_texture};
 use glam::{DMat4, DVec3, Vec3};
 use std::error::Error;
+use tests::executors;
 use tests::measure::board::{Board, card};
 use tests::stage::light_cache;
 use truth::lobe::gathered;
@@ -204,7 +205,7 @@ fn sky_seen_by(
     frame.graph_mut().readback(io.hdr)?;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
-    let mut executor = Executor::new(gpu);
+    let mut executor = executors::lend(gpu);
     executor.execute(&plan, &frame, &world, &Imports::new())?;
     Ok(read_texture(gpu, executor.texture(&plan, io.hdr).ok_or("the frame left no picture")?)?.rgba())
 }

@@ -9,8 +9,9 @@ use framegraph_passes::{CameraView, FrameIo, LightSearch, Lighting, Precision, S
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Environment, Scene, progress};
 use framegraph_wgpu::Frame;
-use framegraph_wgpu::{AdapterRequest, Executor, Gpu, Imports, read_texture};
+use framegraph_wgpu::{AdapterRequest, Gpu, Imports, read_texture};
 use std::error::Error;
+use tests::executors;
 use tests::stage::light_cache;
 
 /// The standard frame with its picture read back.
@@ -119,7 +120,7 @@ impl Set {
         options: &Options,
     ) -> Result<(Vec<u8>, Plan), Box<dyn Error>> {
         let mut plan = Plan::new();
-        let mut executor = Executor::new(gpu);
+        let mut executor = executors::lend(gpu);
         executor.compile(frame.graph(), options, &mut Scratch::new(), &mut plan)?;
         executor.execute(&plan, frame, &self.world, &Imports::new())?;
         assert_eq!(executor.executed(), plan.counts(), "executed against planned");

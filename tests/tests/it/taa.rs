@@ -8,6 +8,7 @@ use framegraph_passes::{Settings, Shading, TaaSettings, ViewId};
 use framegraph_scene::Scene;
 use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
 use std::error::Error;
+use tests::executors;
 use tests::measure::temporal::{Painted, Stage, ghost, still, table};
 
 type TestResult = Result<(), Box<dyn Error>>;
@@ -97,7 +98,7 @@ fn shown(gpu: &Gpu, taa: Option<TaaSettings>, size_px: [u32; 2], frames: u32) ->
     frame.graph_mut().readback(io.hdr)?;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
-    let mut executor = Executor::new(gpu);
+    let mut executor = executors::lend(gpu);
     for index in 0..frames {
         let jitter_px = taa.map_or_else(Default::default, |taa| taa.jitter_px(index));
         set.world_mut().views.again(ViewId::MAIN, jitter_px)?;

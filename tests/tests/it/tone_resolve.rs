@@ -11,9 +11,10 @@ use framegraph_passes::tone_resolve::ToneResolve;
 use framegraph_passes::{BloomSettings, Settings};
 use framegraph_shaders::Module;
 use framegraph_shaders::reference::bloom::firefly_weight;
-use framegraph_wgpu::{Cx, Executor, Frame, Imports, Record, RecordError, read_texture};
+use framegraph_wgpu::{Cx, Frame, Imports, Record, RecordError, read_texture};
 use glam::DVec3;
 use std::error::Error;
+use tests::executors;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
@@ -58,7 +59,7 @@ fn a_bright_sample_does_not_rule_its_texel() -> TestResult {
     frame.graph_mut().readback(hdr)?;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &Options::for_frame(5, 3), &mut Scratch::new(), &mut plan)?;
-    let mut executor = Executor::new(&gpu);
+    let mut executor = executors::lend(&gpu);
     executor.execute(&plan, &frame, &Programs::new(), &Imports::new())?;
     let found = read_texture(&gpu, executor.texture(&plan, hdr).ok_or("there is no picture")?)?.rgba();
     for (at, found) in found.iter().enumerate() {

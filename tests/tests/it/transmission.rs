@@ -10,9 +10,10 @@ use framegraph_passes::{Settings, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::geometry::plane;
 use framegraph_scene::{Camera, Material, MaterialId, Projection, Scene, Specular, Transmission, Volume, progress};
-use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Gpu, Imports, read_texture};
 use glam::{DMat4, DQuat, DVec3, Vec2, Vec3};
 use std::error::Error;
+use tests::executors;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
@@ -115,7 +116,7 @@ fn texels(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<Vec3>, Box
     frame.graph_mut().readback(io.hdr)?;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
-    let mut executor = Executor::new(gpu);
+    let mut executor = executors::lend(gpu);
     executor.execute(&plan, &frame, &world, &Imports::new())?;
     assert_eq!(executor.executed(), plan.counts(), "executed against planned");
     let texture = executor.texture(&plan, io.hdr).ok_or("the frame left no picture")?;

@@ -13,10 +13,11 @@ use framegraph_passes::{
 };
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
-use framegraph_wgpu::{Cx, Executor, Frame, Gpu, Imports, Record, RecordError, read_texture};
+use framegraph_wgpu::{Cx, Frame, Gpu, Imports, Record, RecordError, read_texture};
 use glam::DVec3;
 use std::error::Error;
 use tests::compare::compare;
+use tests::executors;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
@@ -105,7 +106,7 @@ fn render(
     let mut plan = Plan::new();
     let options = Options::for_frame(size[0], size[1]);
     compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
-    let mut executor = Executor::new(gpu);
+    let mut executor = executors::lend(gpu);
     executor.execute(&plan, frame, world, &Imports::new())?;
     assert_eq!(executor.executed(), plan.counts(), "executed against planned");
     let texture = executor.texture(&plan, *picture).ok_or("the frame left no picture")?;

@@ -3,10 +3,11 @@
 use crate::parts::Parts;
 use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Texture, TextureDesc, compile};
 use framegraph_passes::StageError;
-use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use glam::DVec3;
 use half::f16;
 use std::error::Error;
+use tests::executors;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
 
@@ -97,7 +98,7 @@ pub fn made<const N: usize>(
     imports.iter().zip(&textures).for_each(|(import, texture)| {
         bound.texture(*import, texture);
     });
-    let mut executor = Executor::new(gpu);
+    let mut executor = executors::lend(gpu);
     executor.execute(&plan, &frame, parts, &bound)?;
     assert_eq!(executor.executed(), plan.counts(), "executed against planned");
     let texture = executor.texture(&plan, result).ok_or("there is no result")?;

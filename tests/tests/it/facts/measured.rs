@@ -5,8 +5,9 @@ use crate::stage::gpu;
 use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Texture, TextureDesc, compile};
 use framegraph_passes::measure::{MeasurePass, MeasureStep};
 use framegraph_passes::program::Programs;
-use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use half::f16;
+use tests::executors;
 
 /// What a step makes of texels of half floats, `channels` of them each, row by row.
 fn measured(
@@ -46,7 +47,7 @@ fn measured(
     let mut plan = Plan::new();
     let options = Options::for_frame(width, height);
     compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
-    let mut executor = Executor::new(gpu);
+    let mut executor = executors::lend(gpu);
     executor.execute(&plan, &frame, &Programs::new(), &imports)?;
     let found = read_texture(gpu, executor.texture(&plan, result).ok_or("nothing was measured")?)?;
     Ok(found.rgba().iter().map(|found| [found[0], found[1]]).collect())

@@ -8,9 +8,10 @@ use framegraph_passes::view::Background;
 use framegraph_passes::{Precision, ReflectionSettings, Settings, ViewId, World};
 use framegraph_scene::geometry::plane;
 use framegraph_scene::{Camera, Environment, Material, Projection, Scene, Transmission, progress};
-use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Gpu, Imports, read_texture};
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 use std::error::Error;
+use tests::executors;
 use truth::reflection::Lens;
 
 /// Radiance of the light from everywhere, in nits.
@@ -60,7 +61,7 @@ fn exposed(gpu: &Gpu, scene: &Scene, settings: Settings, ev100: &[f32]) -> Resul
     frame.graph_mut().readback(io.hdr)?;
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
-    let mut executor = Executor::new(gpu);
+    let mut executor = executors::lend(gpu);
     let mut render = |world: &World| -> Result<_, Box<dyn Error>> {
         executor.execute(&plan, &frame, world, &Imports::new())?;
         assert_eq!(executor.executed(), plan.counts(), "executed against planned");

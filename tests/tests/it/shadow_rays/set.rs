@@ -9,9 +9,10 @@ use framegraph_passes::{
     CameraView, LightSearch, Precision, Quality, Settings, Shading, ViewSettings, World, standard,
 };
 use framegraph_scene::{Camera, Environment, Light, LightKind, Projection, Scene, progress};
-use framegraph_wgpu::{Executor, Frame, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use glam::{DVec3, Mat4, Vec2};
 use std::error::Error;
+use tests::executors;
 use truth::rays::{Hit, Triangles};
 
 /// Pixels across and down.
@@ -87,7 +88,7 @@ impl Set {
         frame.graph_mut().readback(io.hdr)?;
         let mut plan = Plan::new();
         compile(frame.graph(), &gpu.caps(), &Options::for_frame(SIZE[0], SIZE[1]), &mut Scratch::new(), &mut plan)?;
-        let mut executor = Executor::new(gpu);
+        let mut executor = executors::lend(gpu);
         executor.execute(&plan, &frame, &world, &Imports::new())?;
         let texture = executor.texture(&plan, io.hdr).ok_or("the frame left no picture")?;
         Ok(read_texture(gpu, texture)?.rgba().into_iter().map(|[red, ..]| red).collect())
