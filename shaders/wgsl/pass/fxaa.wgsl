@@ -42,14 +42,22 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> FxaaVertex {
 
 /// The filtered encoded color at texture coordinates `uv`.
 fn filter_edge(uv: vec2<f32>) -> vec3<f32> {
-    let texel = 1.0 / vec2<f32>(textureDimensions(ldr, 0));
-    let half_texel = 0.5 * texel;
-    let centre = textureSampleLevel(ldr, ldr_sampler, uv, 0.0);
-    let nw = textureSampleLevel(ldr, ldr_sampler, uv - half_texel, 0.0).a;
-    let se = textureSampleLevel(ldr, ldr_sampler, uv + half_texel, 0.0).a;
-    let up_right = vec2<f32>(half_texel.x, -half_texel.y);
-    let ne = textureSampleLevel(ldr, ldr_sampler, uv + up_right, 0.0).a;
-    let sw = textureSampleLevel(ldr, ldr_sampler, uv - up_right, 0.0).a;
+    let size = vec2<i32>(textureDimensions(ldr, 0));
+    let texel = 1.0 / vec2<f32>(size);
+    let pixel = vec2<i32>(uv * vec2<f32>(size));
+    let first = max(pixel - 1, vec2<i32>(0));
+    let last = min(pixel + 1, size - 1);
+    // Luma of the pixel and its eight neighbours, loaded and not filtered: a gather has the four
+    // texels about a corner as (bottom left, bottom right, top right, top left).
+    let centre = textureLoad(ldr, pixel, 0);
+    let around_nw = textureGather(3, ldr, ldr_sampler, uv - 0.5 * texel);
+    let around_se = textureGather(3, ldr, ldr_sampler, uv + 0.5 * texel);
+    let top_right = textureLoad(ldr, vec2<i32>(last.x, first.y), 0).a;
+    let bottom_left = textureLoad(ldr, vec2<i32>(first.x, last.y), 0).a;
+    let nw = dot(around_nw, vec4<f32>(0.25));
+    let ne = 0.25 * (around_nw.z + top_right + centre.a + around_se.z);
+    let sw = 0.25 * (around_nw.x + centre.a + bottom_left + around_se.x);
+    let se = dot(around_se, vec4<f32>(0.25));
 
     let corner_min = min(min(nw, ne), min(sw, se));
     let corner_max = max(max(nw, ne), max(sw, se));
