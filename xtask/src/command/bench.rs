@@ -31,7 +31,8 @@ merging, inlining and aliasing. Hours on a software driver; less of it by
   --preset NAME     one preset
   --size WxH        one size
   --rounds N        runs of each, in turns (3)
-  --with ARGS       more arguments for `render`, with spaces between
+  --with ARGS       more arguments for `render`, with spaces between; of six
+                    frames each the median, unless `--frames N` is among them
   --beside COMMAND  in turns with a command of another renderer, of whose output
                     the last number before `ms` is its time; in it {scene}, {size}
                     and {preset} are those of the row. The last column is what our

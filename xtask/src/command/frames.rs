@@ -22,6 +22,9 @@ const WITHOUT: [(&str, &[&str]); 6] = [
 /// How often each is run unless it is said, in turns, so that all see the same machine.
 const ROUNDS: usize = 3;
 
+/// Of how many frames the median is taken, unless `--with` says so.
+const FRAMES: [&str; 2] = ["--frames", "6"];
+
 /// What a table is made with.
 struct Asked<'a> {
     /// Runs of each.
@@ -111,7 +114,10 @@ fn ours([scene, preset, size]: [&str; 3], more: &[&str], with: &[String]) -> Res
     let program = workspace::root().join("target/release").join(format!("render{}", std::env::consts::EXE_SUFFIX));
     let out = workspace::scratch()?.join("bench.png");
     let mut command = Command::new(program);
-    command.args([scene, "--preset", preset, "--size", size, "--frames", "6", "--timing", "--out"]).arg(&out);
+    command.args([scene, "--preset", preset, "--size", size, "--timing", "--out"]).arg(&out);
+    if !with.iter().any(|word| word.starts_with("--frames")) {
+        command.args(FRAMES);
+    }
     let text = output(command.args(more).args(with), &format!("render {scene} --preset {preset}"))?;
     frame_ms(&text).ok_or_else(|| Failure::Failed(format!("render {scene}: no row of the frame was printed")))
 }
