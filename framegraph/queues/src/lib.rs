@@ -9,7 +9,8 @@
 //! [`share_memory()`] by the schedule. [`check()`] and [`check_memory()`] judge both without the analysis that
 //! made them.
 //!
-//! [`stream()`] is all of it, and the plan, as commands in order.
+//! [`stream()`] is all of it, and the plan, as commands in order; with memory that is shared by the schedule
+//! [`PlanStream::stream_in`].
 //!
 //! ```
 //! use framegraph::{Caps, Extent, Format, Graph, Intent, Options, Plan, Scratch, TextureDesc, compile};
@@ -41,6 +42,7 @@ mod assign;
 mod check;
 mod clocks;
 mod estimate;
+mod hand_over;
 mod hazards;
 mod layout;
 mod memory;

@@ -1,6 +1,8 @@
 //! A plan as a stream of commands, in the terms of Vulkan: what a back end that knows nothing of graphs does, in order.
 
+use crate::hand_over::hand_overs;
 use crate::layout::QueueId;
+use crate::memory::SharedMemory;
 use crate::schedule::{Schedule, Wait};
 use framegraph::{Join, PassId, Placement, Plan, ResourceId, SlotId, StepId};
 
@@ -27,7 +29,8 @@ pub enum Memory {
 pub enum Command {
     /// Allocate a heap.
     Heap {
-        /// It is that of buffers; of a plan with one heap for all, both are that of textures.
+        /// It is that of buffers; of a plan with one heap for all, both are that of textures. Memory that is shared by a schedule
+        /// has one of each.
         of_buffers: bool,
         /// Its size.
         bytes: u64,
@@ -56,13 +59,24 @@ pub enum Command {
         /// Index into [`Schedule::transfers`].
         transfer: u32,
     },
+    /// All that the queue did so far to a resource is over, and written, before it goes on: another gets memory that this one had.
+    /// The other's own barriers come next, and its contents are undefined.
+    HandOver {
+        /// Where it is recorded.
+        queue: QueueId,
+        /// Who had the memory.
+        from: ResourceId,
+        /// Who gets it.
+        to: ResourceId,
+    },
     /// A barrier: layout transition, hand-over of memory, or wait.
     Barrier {
         /// Where it is recorded.
         queue: QueueId,
         /// Index into [`framegraph::Plan::barriers`].
         barrier: u32,
-        /// What it waits for was on another queue: a semaphore has waited for it, and it names no stages of its own before.
+        /// What it waits for is waited for in front of all stages already, and it names none of its own before: a semaphore has
+        /// waited for another queue, or a [`HandOver`](Command::HandOver) for who had the memory.
         behind_semaphore: bool,
     },
     /// Begin a render pass with the step's attachments, or compute or copy work.
@@ -112,7 +126,12 @@ pub enum Command {
 /// When `schedule` is of another plan.
 #[must_use]
 pub fn stream(plan: &Plan, schedule: Option<&Schedule>) -> Vec<Command> {
-    let mut commands = memory(plan, schedule.map_or(&[], |schedule| &schedule.concurrent));
+    commands(plan, schedule, None)
+}
+
+fn commands(plan: &Plan, schedule: Option<&Schedule>, shared: Option<&SharedMemory>) -> Vec<Command> {
+    let mut commands = memory(plan, schedule.map_or(&[], |schedule| &schedule.concurrent), shared);
+    let handed = schedule.zip(shared).map_or_else(Vec::new, |(schedule, shared)| hand_overs(plan, schedule, shared));
     let queue_of = |step: StepId| schedule.map_or(QueueId::MAIN, |schedule| schedule.lanes[step.index()]);
     // One semaphore a wait, and one for the end of each other queue.
     let waits: &[Wait] = schedule.map_or(&[], |schedule| &schedule.waits);
@@ -131,8 +150,13 @@ pub fn stream(plan: &Plan, schedule: Option<&Schedule>) -> Vec<Command> {
         commands.extend(waited.map(|(semaphore, _)| Command::Wait { queue, semaphore }));
         let acquired = numbered().filter(|(_, t)| t.to.1 == Some(step));
         commands.extend(acquired.map(|(transfer, _)| Command::Acquire { queue, transfer }));
+        let handed = || handed.iter().filter(|row| row.before == step);
+        commands.extend(handed().map(|row| Command::HandOver { queue, from: row.from, to: row.to }));
         while let Some((barrier, row)) = barriers.next_if(|(_, row)| row.before == step) {
-            let behind_semaphore = !row.after.is_none() && queue_of(row.after) != queue;
+            let behind_semaphore = match row.after.is_none() {
+                true => handed().any(|handed| handed.to == row.resource),
+                false => queue_of(row.after) != queue,
+            };
             commands.push(Command::Barrier { queue, barrier, behind_semaphore });
         }
         commands.push(Command::Begin { queue, step });
@@ -176,6 +200,13 @@ pub trait PlanStream {
     /// # Panics
     /// When `schedule` is of another plan.
     fn stream_on(&self, schedule: &Schedule) -> Vec<Command>;
+
+    /// The same with memory that is shared by the schedule: each resource lies where [`share_memory`](crate::share_memory) put it, and
+    /// is handed over ([`Command::HandOver`]) where a queue gets memory that it has touched before.
+    ///
+    /// # Panics
+    /// When `schedule` or `shared` is of another plan.
+    fn stream_in(&self, schedule: &Schedule, shared: &SharedMemory) -> Vec<Command>;
 }
 
 impl PlanStream for Plan {
@@ -186,13 +217,16 @@ impl PlanStream for Plan {
     fn stream_on(&self, schedule: &Schedule) -> Vec<Command> {
         stream(self, Some(schedule))
     }
+
+    fn stream_in(&self, schedule: &Schedule, shared: &SharedMemory) -> Vec<Command> {
+        commands(self, Some(schedule), Some(shared))
+    }
 }
 
 /// Heaps, and everything that lies in them or elsewhere.
-fn memory(plan: &Plan, concurrent: &[ResourceId]) -> Vec<Command> {
+fn memory(plan: &Plan, concurrent: &[ResourceId], shared: Option<&SharedMemory>) -> Vec<Command> {
     let is_buffer = |resource: ResourceId| plan.graph().resources()[resource.index()].desc.texture().is_none();
-    let mut commands = Vec::new();
-    for of_buffers in [false, true] {
+    let of_plan = |of_buffers: bool| {
         let own = |resource: &ResourceId| (is_buffer(*resource) && plan.caps().separate_heaps) == of_buffers;
         let end = plan.graph().resource_ids().filter(own).filter_map(|resource| {
             let row = &plan.resources()[resource.index()];
@@ -201,16 +235,20 @@ fn memory(plan: &Plan, concurrent: &[ResourceId]) -> Vec<Command> {
                 _ => None,
             }
         });
-        commands.extend(end.max().map(|bytes| Command::Heap { of_buffers, bytes }));
-    }
+        end.max().unwrap_or_default()
+    };
+    let [of_textures, of_buffers] = shared.map_or_else(|| [false, true].map(of_plan), |shared| shared.heap_bytes);
+    let heaps = [(false, of_textures), (true, of_buffers)].into_iter().filter(|(_, bytes)| *bytes > 0);
+    let mut commands: Vec<_> = heaps.map(|(of_buffers, bytes)| Command::Heap { of_buffers, bytes }).collect();
     for resource in plan.graph().resource_ids() {
-        let memory = match plan.resources()[resource.index()].placement {
-            Placement::Unused | Placement::Inlined => continue,
-            Placement::Memoryless => Memory::Tile,
-            Placement::Slot(slot) => Memory::Slot(slot),
-            Placement::Heap { offset } => Memory::Heap { offset },
-            Placement::External => Memory::External,
-            Placement::Own => Memory::Own,
+        let offset = shared.and_then(|shared| shared.offset(resource));
+        let memory = match (plan.resources()[resource.index()].placement, offset) {
+            (Placement::Unused | Placement::Inlined, _) => continue,
+            (_, Some(offset)) | (Placement::Heap { offset }, None) => Memory::Heap { offset },
+            (Placement::Memoryless, None) => Memory::Tile,
+            (Placement::Slot(slot), None) => Memory::Slot(slot),
+            (Placement::External, None) => Memory::External,
+            (Placement::Own, None) => Memory::Own,
         };
         commands.push(Command::Create { resource, memory, concurrent: concurrent.contains(&resource) });
     }

@@ -6,7 +6,9 @@ use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{
     Access, AccessKind, Alias, Caps, Join, Options, PassKind, Placement, Plan, ResourceId, Scratch, State, compile,
 };
-use framegraph_queues::{Command, Memory, PlanStream, QueueId, QueueLayout, Schedule, Transfer, schedule};
+use framegraph_queues::{
+    Command, Memory, PlanStream, QueueId, QueueLayout, Schedule, Transfer, schedule, share_memory,
+};
 use std::collections::{BTreeMap, BTreeSet};
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
@@ -21,8 +23,14 @@ struct Machine<'a> {
     owners: BTreeMap<ResourceId, Option<QueueId>>,
     /// The state of each part of each resource.
     states: BTreeMap<(ResourceId, u32), State>,
-    /// Who has had the memory of whom.
-    handed: BTreeSet<ResourceId>,
+    /// Which queue waited for all that it did to one resource, for another to get its memory.
+    handed: BTreeSet<(QueueId, ResourceId, ResourceId)>,
+    /// What was touched, by which queues.
+    touched: BTreeMap<ResourceId, BTreeSet<QueueId>>,
+    /// Memory is shared by the schedule, and not by the plan's own barriers.
+    shared: bool,
+    /// What lies in memory that another got.
+    gone: BTreeSet<ResourceId>,
     signalled: BTreeSet<u32>,
     open: BTreeMap<QueueId, u32>,
     ran: Vec<u32>,
@@ -77,9 +85,15 @@ impl Machine<'_> {
                     }
                     *state = row.to;
                 }
-                self.handed.insert(row.resource);
                 Ok(())
             }
+            Command::HandOver { queue, from, to } => match self.open.contains_key(&queue) {
+                true => Err(format!("queue {queue:?} waits within a step")),
+                false => {
+                    self.handed.insert((queue, from, to));
+                    Ok(())
+                }
+            },
             Command::Begin { queue, step } => {
                 self.ran.push(step.index() as u32);
                 match self.open.insert(queue, step.index() as u32) {
@@ -106,9 +120,44 @@ impl Machine<'_> {
                     let placement = plan.resources()[access.resource.index()].placement;
                     !matches!(placement, Placement::Inlined | Placement::Unused | Placement::Memoryless)
                 };
-                accesses.iter().filter(lives).try_for_each(|access| self.own(access, queue))
+                accesses.iter().filter(lives).try_for_each(|access| {
+                    self.own(access, queue)?;
+                    self.lie(access.resource, queue)
+                })
             }
         }
+    }
+
+    /// A queue touches a resource, whose memory others may have had in a schedule that shares it: what this queue did to them is
+    /// waited for, and nobody touches them any more. That other queues are over is told by semaphores, which have a judge.
+    fn lie(&mut self, resource: ResourceId, queue: QueueId) -> Result<(), String> {
+        let is_texture = |id: ResourceId| self.plan.graph().resources()[id.index()].desc.texture().is_some();
+        let span = |id: ResourceId| match self.created.get(&id) {
+            Some(Memory::Heap { offset }) => Some((*offset, offset + self.plan.resources()[id.index()].bytes)),
+            _ => None,
+        };
+        let known = self.touched.contains_key(&resource);
+        if let Some((begin, end)) = span(resource).filter(|_| self.shared && !known) {
+            for (other, queues) in &self.touched {
+                let Some((other_begin, other_end)) = span(*other) else { continue };
+                let overlap = is_texture(*other) == is_texture(resource) && other_begin < end && begin < other_end;
+                if overlap && queues.contains(&queue) && !self.handed.contains(&(queue, *other, resource)) {
+                    return Err(format!(
+                        "resource {} lies where {} was, and nobody waited",
+                        resource.index(),
+                        other.index()
+                    ));
+                }
+                if overlap {
+                    self.gone.insert(*other);
+                }
+            }
+        }
+        if self.gone.contains(&resource) {
+            return Err(format!("resource {} has lost its memory", resource.index()));
+        }
+        self.touched.entry(resource).or_default().insert(queue);
+        Ok(())
     }
 
     /// The resource of a transfer of the queue.
@@ -181,6 +230,7 @@ impl Machine<'_> {
 }
 
 fn run(plan: &Plan, schedule: Option<&Schedule>, commands: &[Command]) -> Result<Vec<u32>, String> {
+    let in_heap = |command: &Command| matches!(command, Command::Create { memory: Memory::Heap { .. }, .. });
     let mut machine = Machine {
         plan,
         schedule,
@@ -189,6 +239,9 @@ fn run(plan: &Plan, schedule: Option<&Schedule>, commands: &[Command]) -> Result
         owners: BTreeMap::new(),
         states: BTreeMap::new(),
         handed: BTreeSet::new(),
+        touched: BTreeMap::new(),
+        shared: schedule.is_some() && commands.iter().any(in_heap),
+        gone: BTreeSet::new(),
         signalled: BTreeSet::new(),
         open: BTreeMap::new(),
         ran: Vec::new(),
@@ -271,5 +324,43 @@ fn a_machine_runs_streams_on_several_queues() -> TestResult {
     println!("{semaphores} semaphores, {moved} steps on the second queue, {late} barriers behind semaphores");
     assert!(semaphores > 50 && moved > 50 && late > 10, "{semaphores} {moved} {late}");
     assert!(kept > 20 && alone > 5, "{kept} streams need their transfers, {alone} what is concurrent");
+    Ok(())
+}
+
+/// Memory that a schedule shares is handed over within each queue, and is handed over by no one where it is not shared.
+#[test]
+fn a_machine_runs_streams_that_share_memory() -> TestResult {
+    let (mut ran, mut noticed, mut handed, mut elsewhere) = (0, 0, 0, 0);
+    for seed in 0..400 {
+        let Some(plan) = planned(seed, Alias::Off) else { continue };
+        let costs: Vec<f64> =
+            (0..plan.steps().len()).map(|step| (seed as usize * 37 + step * 101) as f64 % 400.0).collect();
+        let found = schedule(&plan, &QueueLayout::async_compute(), &costs)?;
+        let memory = share_memory(&plan, &found, 256);
+        let commands = plan.stream_in(&found, &memory);
+        run(&plan, Some(&found), &commands).map_err(|e| format!("seed {seed}: {e}"))?;
+        let heaps: u64 = commands.iter().map(|c| if let Command::Heap { bytes, .. } = c { *bytes } else { 0 }).sum();
+        assert_eq!(heaps, memory.bytes(), "seed {seed}");
+        let is_hand_over = |c: &&Command| matches!(c, Command::HandOver { .. });
+        let rest: Vec<_> = commands.iter().filter(|c| !is_hand_over(c)).copied().collect();
+        let count = commands.len() - rest.len();
+        elsewhere +=
+            commands.iter().filter(|c| matches!(c, Command::HandOver { queue, .. } if *queue != QueueId::MAIN)).count();
+        assert!(!plan.stream_on(&found).iter().any(|c| is_hand_over(&c)), "seed {seed}");
+        ran += usize::from(count > 0);
+        handed += count;
+        // Each is missed.
+        for left_out in 0..count {
+            let mut index = 0;
+            let kept = commands.iter().copied().filter(|c| {
+                let own = is_hand_over(&c);
+                index += usize::from(own);
+                !own || index != left_out + 1
+            });
+            noticed += usize::from(run(&plan, Some(&found), &kept.collect::<Vec<_>>()).is_err());
+        }
+    }
+    println!("{ran} streams with {handed} hand-overs, {elsewhere} of them on the second queue; {noticed} are missed");
+    assert!(ran > 50 && handed > 200 && elsewhere > 2 && noticed == handed, "{ran} {handed} {elsewhere} {noticed}");
     Ok(())
 }

@@ -5,7 +5,9 @@
 use crate::vulkan::device::{Device, Object, Trouble};
 use crate::vulkan::states::{buffer_usage, format, image_usage};
 use ash::vk;
-use framegraph::{Desc, Dimension, Entry, Format, Kind, Plan, ResourceId, SlotId, State, TextureDesc, Usage};
+use framegraph::{
+    Desc, Dimension, Entry, Format, Kind, Placement, Plan, ResourceId, SlotId, State, TextureDesc, Usage,
+};
 use framegraph_queues::Memory;
 use std::collections::BTreeMap;
 
@@ -37,7 +39,8 @@ impl Objects {
         let mut types = u32::MAX;
         for (id, row) in plan.graph().resource_ids().zip(plan.resources()) {
             let of = plan.graph().resources()[id.index()].desc;
-            if matches!(row.placement, framegraph::Placement::Heap { .. }) && of.texture().is_none() == of_buffers {
+            let is_placed = matches!(row.placement, Placement::Heap { .. } | Placement::Slot(_));
+            if is_placed && of.texture().is_none() == of_buffers {
                 types &= asked(device, plan, id)?.memory_type_bits;
             }
         }

@@ -101,6 +101,7 @@ impl<'a> Replay<'a> {
             }
             // All queues are of one family, which owns everything.
             Command::Release { .. } | Command::Acquire { .. } => Ok(()),
+            Command::HandOver { queue, .. } => self.wait_for_all(queue),
             Command::Barrier { queue, barrier, behind_semaphore } => {
                 self.barriers += 1;
                 self.barrier(queue, &self.plan.barriers()[barrier as usize], behind_semaphore)
@@ -223,6 +224,20 @@ impl<'a> Replay<'a> {
         unsafe {
             let none = vk::DependencyFlags::empty();
             self.device.raw.cmd_pipeline_barrier(commands, from_stages, to_stages, none, memory, &buffers, &images);
+        }
+        Ok(())
+    }
+
+    /// Everything that the queue was given is over, and written, before it goes on.
+    fn wait_for_all(&mut self, queue: QueueId) -> Result<(), Trouble> {
+        let all = vk::PipelineStageFlags::ALL_COMMANDS;
+        let (reads, writes) = (vk::AccessFlags::MEMORY_READ, vk::AccessFlags::MEMORY_WRITE);
+        let memory = [vk::MemoryBarrier::default().src_access_mask(writes).dst_access_mask(reads | writes)];
+        let commands = self.record(queue)?;
+        // SAFETY: the commands are being recorded, outside of a render pass.
+        unsafe {
+            let none = vk::DependencyFlags::empty();
+            self.device.raw.cmd_pipeline_barrier(commands, all, all, none, &memory, &[], &[]);
         }
         Ok(())
     }
