@@ -4,9 +4,9 @@ use framegraph_wgpu::{Executor, Gpu};
 use std::ops::{Deref, DerefMut};
 use std::sync::{Mutex, PoisonError};
 
-/// Executors that nobody uses, the last one given back last. They keep their devices open, hence the few.
+/// Executors that nobody uses, the last one given back last. They keep their devices open, so there are no more of them than
+/// tests run at once.
 static IDLE: Mutex<Vec<Executor>> = Mutex::new(Vec::new());
-const MOST: usize = 2;
 
 /// An executor of a device, which may have drawn other frames. It has no histories.
 #[derive(Debug)]
@@ -49,7 +49,8 @@ impl Drop for Lent {
         executor.trim();
         let mut idle = IDLE.lock().unwrap_or_else(PoisonError::into_inner);
         idle.push(executor);
-        let gone = (idle.len() > MOST).then(|| idle.remove(0));
+        let most = std::thread::available_parallelism().map_or(1, usize::from);
+        let gone = (idle.len() > most).then(|| idle.remove(0));
         drop(idle);
         drop(gone);
     }

@@ -75,8 +75,9 @@ pub enum Command {
         queue: QueueId,
         /// Index into [`framegraph::Plan::barriers`].
         barrier: u32,
-        /// What it waits for is waited for in front of all stages already, and it names none of its own before: a semaphore has
-        /// waited for another queue, or a [`HandOver`](Command::HandOver) for who had the memory.
+        /// What it waits for is waited for in front of all stages already, by a semaphore or a
+        /// [`HandOver`](Command::HandOver): in the place of stages before it names those that wait, so that it comes behind.
+        /// So does each first use of a part in memory that a schedule shares.
         behind_semaphore: bool,
     },
     /// Begin a render pass with the step's attachments, or compute or copy work.
@@ -150,11 +151,11 @@ fn commands(plan: &Plan, schedule: Option<&Schedule>, shared: Option<&SharedMemo
         commands.extend(waited.map(|(semaphore, _)| Command::Wait { queue, semaphore }));
         let acquired = numbered().filter(|(_, t)| t.to.1 == Some(step));
         commands.extend(acquired.map(|(transfer, _)| Command::Acquire { queue, transfer }));
-        let handed = || handed.iter().filter(|row| row.before == step);
-        commands.extend(handed().map(|row| Command::HandOver { queue, from: row.from, to: row.to }));
+        let handed = handed.iter().filter(|row| row.before == step);
+        commands.extend(handed.map(|row| Command::HandOver { queue, from: row.from, to: row.to }));
         while let Some((barrier, row)) = barriers.next_if(|(_, row)| row.before == step) {
             let behind_semaphore = match row.after.is_none() {
-                true => handed().any(|handed| handed.to == row.resource),
+                true => shared.is_some_and(|shared| shared.offset(row.resource).is_some()),
                 false => queue_of(row.after) != queue,
             };
             commands.push(Command::Barrier { queue, barrier, behind_semaphore });

@@ -76,8 +76,12 @@ impl Machine<'_> {
                     _ => Err(format!("resource {} is acquired and was not released", transfer.index())),
                 }
             }
-            Command::Barrier { barrier, .. } => {
+            Command::Barrier { barrier, behind_semaphore, .. } => {
                 let row = &self.plan.barriers()[barrier as usize];
+                let in_heap = matches!(self.created.get(&row.resource), Some(Memory::Heap { .. }));
+                if self.shared && in_heap && row.after.is_none() && !behind_semaphore {
+                    return Err(format!("barrier {barrier} may come before what had the memory is over"));
+                }
                 for part in row.first_part..row.first_part + row.parts {
                     let state = self.states.entry((row.resource, part)).or_insert(row.from);
                     if row.from != State::Undefined && *state != row.from {

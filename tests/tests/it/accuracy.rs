@@ -84,10 +84,10 @@ fn no_swap_of_a_chosen_frame_errs_less() -> Result<(), Box<dyn std::error::Error
     let mut measured = record.budget.clone().ok_or("docs/accuracy.json has what frames are chosen from")?;
     let studio = Studio::new(&gpu, record.size_px, Rounds::QUICK);
     let mut bench = Bench::new(&studio);
-    let verified = |bench: &mut Bench<'_>, measured: &Measured, budgets| {
-        verify(bench, measured, budgets, &mut |_, _, given, set| Ok(given.predicted(set).ms), &mut |_| ())
+    let verified = |bench: &mut Bench<'_>, measured: &Measured| {
+        verify(bench, measured, 3, &mut |_, _, given, set| Ok(given.predicted(set).ms), &mut |_| ())
     };
-    let found = verified(&mut bench, &measured, 2)?;
+    let found = verified(&mut bench, &measured)?;
     assert!(found.within == found.budgets && found.swaps > 10 && found.better.is_empty(), "{found:?}");
     // A record that takes frames without ambient occlusion and shadows for the finest chooses them, which is noticed.
     let worthless =
@@ -97,7 +97,7 @@ fn no_swap_of_a_chosen_frame_errs_less() -> Result<(), Box<dyn std::error::Error
         group.options.iter_mut().for_each(|option| option.codes = finest - option.codes);
     }
     measured.pairs.clear();
-    let found = verified(&mut bench, &measured, 2)?;
+    let found = verified(&mut bench, &measured)?;
     assert!(!found.better.is_empty(), "{found:?}");
     Ok(())
 }

@@ -19,7 +19,7 @@ use framegraph::{Alias, Caps, Desc, Extent, Graph, Options, Placement, Plan, Scr
 use framegraph_passes::Settings;
 use framegraph_passes::occlusion::OcclusionSettings;
 use framegraph_passes::shadow::ShadowSettings;
-use framegraph_queues::{Command, PlanStream, QueueId, QueueLayout, Schedule, schedule, share_memory};
+use framegraph_queues::{Command, PlanStream, QueueId, QueueLayout, Schedule, SharedMemory, schedule, share_memory};
 use replay::Replay;
 
 /// Small, since layers take their time over texels too; shadow maps keep their size.
@@ -175,13 +175,14 @@ fn streams_of_random_graphs_are_replayed_and_the_layers_are_silent() -> Result<(
     Ok(())
 }
 
-/// A frame's plan without aliasing, and its schedule on two queues.
-fn on_two_queues(device: &Device, graph: &Graph) -> Result<(Plan, Schedule), Trouble> {
+/// A frame's plan without aliasing, its schedule on two queues, and the memory that it shares.
+fn on_two_queues(device: &Device, graph: &Graph) -> Result<(Plan, Schedule, SharedMemory), Trouble> {
     let options = Options { alias: Alias::Off, ..Options::for_frame(FRAME[0], FRAME[1]) };
     let plan = planned(device, graph, &options)?;
     let costs: Vec<f64> = (0..plan.steps().len()).map(|step| (step * 101) as f64 % 400.0).collect();
     let found = schedule(&plan, &QueueLayout::async_compute(), &costs)?;
-    Ok((plan, found))
+    let memory = share_memory(&plan, &found, plan.caps().texture_alignment_bytes);
+    Ok((plan, found, memory))
 }
 
 #[test]
@@ -189,8 +190,7 @@ fn streams_on_two_queues_are_replayed_and_the_layers_are_silent() -> Result<(), 
     let Some(device) = device("streams_on_two_queues_are_replayed_and_the_layers_are_silent") else { return Ok(()) };
     let mut elsewhere = 0;
     for (name, graph) in frames() {
-        let (plan, found) = on_two_queues(&device, &graph)?;
-        let memory = share_memory(&plan, &found, plan.caps().texture_alignment_bytes);
+        let (plan, found, memory) = on_two_queues(&device, &graph)?;
         for (shares, commands) in [(false, plan.stream_on(&found)), (true, plan.stream_in(&found, &memory))] {
             let (messages, [_, _, submissions]) = told(&device, &plan, &commands)?;
             assert!(messages.is_empty(), "{name}, shared {shares}: {}", messages[0]);
@@ -212,8 +212,7 @@ fn memory_that_is_not_handed_over_is_noticed() -> Result<(), Trouble> {
     let Some(device) = device("memory_that_is_not_handed_over_is_noticed") else { return Ok(()) };
     let mut all = 0;
     for (name, graph) in frames() {
-        let (plan, found) = on_two_queues(&device, &graph)?;
-        let memory = share_memory(&plan, &found, plan.caps().texture_alignment_bytes);
+        let (plan, found, memory) = on_two_queues(&device, &graph)?;
         let commands = plan.stream_in(&found, &memory);
         let is_first = |barrier: u32| plan.barriers()[barrier as usize].after.is_none();
         let alone = |command: &Command| match *command {

@@ -115,7 +115,7 @@ fn ours([scene, preset, size]: [&str; 3], more: &[&str], with: &[String]) -> Res
     let out = workspace::scratch()?.join("bench.png");
     let mut command = Command::new(program);
     command.args([scene, "--preset", preset, "--size", size, "--timing", "--out"]).arg(&out);
-    if !with.iter().any(|word| word.starts_with("--frames")) {
+    if !with.iter().any(|word| word == "--frames" || word.starts_with("--frames=")) {
         command.args(FRAMES);
     }
     let text = output(command.args(more).args(with), &format!("render {scene} --preset {preset}"))?;
