@@ -63,13 +63,15 @@ fn soft_visibility(
     let search = penumbra_texels(search_m, per_m, is_disc);
     let is_pcss = shadow.filter_kind == SHADOW_FILTER_PCSS;
     let count = select(DPCF_TAPS, PCSS_TAPS, is_pcss);
+    let last = vec2<f32>(shadow.texels - 1.0);
 
     var blockers = 0.0;
     var depth_sum = 0.0;
     for (var i = 0u; i < count; i++) {
         let offset = vogel_tap(i, count, turn) * search / size;
-        let texel = vec2<i32>(layer_uv(map, at.xy + offset, 0.0) * shadow.texels);
-        let depth = textureLoad(shadow_depth, texel, map.layer, 0).r;
+        // What is loaded has no sampler that takes the edge for what is beyond it.
+        let texel = clamp(layer_uv(map, at.xy + offset, 0.0) * shadow.texels, vec2<f32>(0.0), last);
+        let depth = textureLoad(shadow_depth, vec2<i32>(texel), map.layer, 0).r;
         if depth - at.z > dot(slope, offset) {
             blockers += 1.0;
             depth_sum += depth;

@@ -53,7 +53,7 @@ fn nothing_bleeds_from_map_to_map() -> Result<(), Box<dyn Error>> {
     let camera = Camera::look_at(DVec3::new(0.0, 10.0, 17.0), DVec3::ZERO, DVec3::Y, projection)?;
     let moments = MomentSettings { blur_texels: 9.0, levels: 8, ..ShadowSettings::DEFAULT.moments };
     let shared = ShadowSettings { cascades: 0, local_maps: 9, local_layers: 2, ..ShadowSettings::texels(LAYER) };
-    for filter in test_report::share(ShadowFilter::ALL) {
+    for filter in ShadowFilter::ALL {
         let shared = ShadowSettings { filter, moments, bulb_m: Some(0.4), ..shared };
         // Levels down to a texel a map, which the maps of 64 texels in layers of 256 end with too.
         let own_levels = MomentSettings { levels: 7, ..moments };
