@@ -120,7 +120,7 @@ impl PipelineKey {
         let surface = SurfaceVariant {
             lobes: scene.lobes(material),
             traits: scene.traits(material),
-            colored: scene.mesh(mesh).colored,
+            colored: scene.mesh(mesh, 0).colored,
             material_table: indirect && scene.is_in_table(material),
             instance_stream: matches!(from.instances, Instances::Stream(_)),
         };
@@ -251,7 +251,7 @@ impl SurfaceDraw<'_> {
                     cx.render_pass()?.set_bind_group(1, material, &[]);
                 }
             }
-            let short = scene.mesh(instance.mesh).short;
+            let short = scene.mesh(instance.mesh, 0).short;
             let pass = cx.render_pass()?;
             if indexed.replace(short) != Some(short) {
                 let (of, format) = match short {
@@ -264,7 +264,7 @@ impl SurfaceDraw<'_> {
                 let other = &scene.instances[batch.instance as usize];
                 PipelineKey::of(other, indirect, from) == key
                     && materials.group(other.material) == group
-                    && scene.mesh(other.mesh).short == short
+                    && scene.mesh(other.mesh, 0).short == short
             };
             let run = match first_arguments {
                 Some(_) => 1 + list[at + 1..].iter().take_while(goes_on).count(),
@@ -277,7 +277,7 @@ impl SurfaceDraw<'_> {
                 }
                 _ => {
                     for batch in &list[at..at + run] {
-                        let mesh = scene.mesh(scene.instances[batch.instance as usize].mesh);
+                        let mesh = scene.mesh(scene.instances[batch.instance as usize].mesh, batch.level);
                         pass.draw_indexed(mesh.indices(), mesh.base_vertex, batch.range());
                     }
                 }

@@ -27,12 +27,12 @@ pub struct ViewDraws {
 }
 
 impl ViewDraws {
-    /// Those of what is visible and what casts.
-    pub(crate) fn new(of: &Renderables, visible: &DrawLists, shadows: Option<&ViewShadows>) -> Self {
+    /// Those of what is visible and of what casts, in these levels of detail by the numbers of instances.
+    pub(crate) fn new(of: &Renderables, visible: &DrawLists, levels: &[u8], shadows: Option<&ViewShadows>) -> Self {
         let DrawLists { opaque, mask, transmit, blend, .. } = visible;
         let mut numbers = Vec::with_capacity(2 * (opaque.len() + mask.len()) + transmit.len() + blend.len());
         let mut batches = |groups: &framegraph_scene::Groups, order, list: &[u32]| {
-            DrawList::from(groups.batches(list, order, &mut numbers))
+            DrawList::from(groups.batches(list, levels, order, &mut numbers))
         };
         let (surfaces, depths) = (of.surfaces(), of.depths());
         let depth = [opaque, mask].map(|list| batches(depths, BatchOrder::FirstFirst, list));
@@ -44,13 +44,15 @@ impl ViewDraws {
         let casters = maps.map(|map| &map.casters).map(of_map).collect();
         let first = numbers.len() as u32;
         numbers.extend_from_slice(transmit);
-        let transmit = (first..).zip(transmit).map(|(first, instance)| Batch { instance: *instance, first, count: 1 });
-        let transmit = transmit.collect();
+        let level = |instance: u32| levels.get(instance as usize).copied().unwrap_or(0);
+        let alone =
+            |(first, instance): (u32, &u32)| Batch { instance: *instance, first, count: 1, level: level(*instance) };
+        let transmit = (first..).zip(transmit).map(alone).collect();
         Self { depth, surfaces: shaded, transmit, blend: blended, casters, numbers, arguments: Vec::new() }
     }
 
-    /// The same with arguments for long lists. `mesh` is that of an instance.
-    pub(crate) fn indirect(mut self, mesh: impl Fn(u32) -> MeshRange) -> Self {
+    /// The same with arguments for long lists. `mesh` is that of an instance in a level.
+    pub(crate) fn indirect(mut self, mesh: impl Fn(u32, u8) -> MeshRange) -> Self {
         let Self { depth, surfaces, blend, casters, arguments, .. } = &mut self;
         for list in depth.iter_mut().chain(surfaces).chain([blend]).chain(casters.iter_mut().flatten()) {
             list.argue(&mesh, arguments);
@@ -63,8 +65,12 @@ impl ViewDraws {
     pub fn one_by_one(self) -> Self {
         let Self { numbers, depth, surfaces, transmit, blend, casters, .. } = self;
         let each = |batches: DrawList| {
-            let alone = |first: u32| Batch { instance: numbers[first as usize], first, count: 1 };
-            DrawList::from(batches.iter().flat_map(Batch::range).map(alone).collect::<Vec<_>>())
+            let alone = |batch: &Batch| {
+                let own = *batch;
+                let numbers = &numbers;
+                batch.range().map(move |first| Batch { instance: numbers[first as usize], first, count: 1, ..own })
+            };
+            DrawList::from(batches.iter().flat_map(alone).collect::<Vec<_>>())
         };
         Self {
             depth: depth.map(each),
@@ -85,7 +91,7 @@ impl ViewDraws {
             for first in batch.range().filter(|at| wanted(self.numbers[*at as usize])) {
                 match parts[start..].last_mut() {
                     Some(part) if part.range().end == first => part.count += 1,
-                    _ => parts.push(Batch { instance: self.numbers[first as usize], first, count: 1 }),
+                    _ => parts.push(Batch { instance: self.numbers[first as usize], first, count: 1, ..*batch }),
                 }
             }
         }

@@ -12,6 +12,9 @@ pub struct FrameSettings {
     pub quality: Quality,
     /// How shading finds the lights that reach a place.
     pub lights: LightSearch,
+    /// How far a mesh that has [levels of detail](framegraph_scene::MeshLevel) may be drawn from where it is, in pixels and in texels of
+    /// shadow maps; 0 draws all meshes whole.
+    pub lod_error_px: f32,
     /// Post-processing goes into the color pass's shader where that is sound.
     pub inline: bool,
     /// The frame.
@@ -30,6 +33,7 @@ impl FrameSettings {
     pub const DEFAULT: Self = Self {
         quality: Quality::High,
         lights: LightSearch::Auto(FroxelSettings::DEFAULT),
+        lod_error_px: 0.0,
         inline: true,
         settings: Settings::DEFAULT,
     };

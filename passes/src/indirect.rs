@@ -37,11 +37,12 @@ impl DrawList {
         self.first_arguments
     }
 
-    /// Appends the arguments of its batches to `arguments`, where it is long enough. `mesh` is that of an instance.
-    pub(crate) fn argue(&mut self, mesh: impl Fn(u32) -> MeshRange, arguments: &mut Vec<Arguments>) {
+    /// Appends the arguments of its batches to `arguments`, where it is long enough. `mesh` is that of an instance in a
+    /// level.
+    pub(crate) fn argue(&mut self, mesh: impl Fn(u32, u8) -> MeshRange, arguments: &mut Vec<Arguments>) {
         if self.batches.len() >= LEAST_BATCHES {
             self.first_arguments = Some(arguments.len() as u32);
-            arguments.extend(self.batches.iter().map(|batch| of_batch(*batch, mesh(batch.instance))));
+            arguments.extend(self.batches.iter().map(|batch| of_batch(*batch, mesh(batch.instance, batch.level))));
         }
     }
 }
@@ -94,12 +95,13 @@ mod tests {
     #[test]
     fn arguments_are_those_of_the_direct_draw() {
         let mesh = MeshRange { first_index: 30, index_count: 6, base_vertex: -2, ..MeshRange::default() };
-        let batch = |first| Batch { instance: 7, first, count: 3 };
+        let batch = |first| Batch { instance: 7, first, count: 3, level: 1 };
         let mut long = DrawList::from((0..LEAST_BATCHES as u32).map(batch).collect::<Vec<_>>());
         let mut short = DrawList::from(vec![batch(0); LEAST_BATCHES - 1]);
         let mut arguments = vec![[0; 5]; 2];
-        short.argue(|_| mesh, &mut arguments);
-        long.argue(|_| mesh, &mut arguments);
+        let of = |_, level| if level == 1 { mesh } else { MeshRange::default() };
+        short.argue(of, &mut arguments);
+        long.argue(of, &mut arguments);
         assert_eq!((short.first_arguments(), long.first_arguments()), (None, Some(2)));
         let own = arguments[2 + 9];
         let expected = wgpu::util::DrawIndexedIndirectArgs {

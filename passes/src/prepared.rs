@@ -1,9 +1,9 @@
 //! What of a scene's instances stays from view to view: made once, updated where something moves.
 
 use crate::upload::MeshRange;
-use crate::upload::mesh_range::mesh_ranges;
+use crate::upload::mesh_range::MeshRanges;
 use crate::upload::pack::object_uniforms;
-use framegraph_scene::{Instance, Renderables, Scene};
+use framegraph_scene::{Instance, MeshId, Renderables, Scene};
 use framegraph_shaders::layout::ObjectUniforms;
 use framegraph_wgpu::Workers;
 use glam::DMat4;
@@ -40,8 +40,9 @@ const WORTH_A_THREAD: usize = 4096;
 pub struct PreparedScene {
     renderables: Renderables,
     placements: Placements,
-    /// Where each instance's mesh lies.
-    ranges: Vec<MeshRange>,
+    /// The mesh of each instance, and where meshes lie.
+    meshes: Vec<MeshId>,
+    ranges: MeshRanges,
     /// Threads on which views are made, beside the caller's.
     pub workers: Option<Workers>,
 }
@@ -50,12 +51,11 @@ impl PreparedScene {
     /// That of `scene`, of which one thread makes views.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        let of_meshes = mesh_ranges(&scene.meshes);
-        let range = |instance: &Instance| of_meshes.get(instance.mesh.index()).copied().unwrap_or_default();
         Self {
             renderables: Renderables::new(scene),
             placements: Placements::new(scene),
-            ranges: scene.instances.iter().map(range).collect(),
+            meshes: scene.instances.iter().map(|instance| instance.mesh).collect(),
+            ranges: MeshRanges::new(&scene.meshes),
             workers: None,
         }
     }
@@ -74,9 +74,9 @@ impl PreparedScene {
         }
     }
 
-    /// Where the mesh of an instance lies in the scene's buffers.
-    pub(crate) fn mesh(&self, instance: u32) -> MeshRange {
-        self.ranges[instance as usize]
+    /// Where the mesh of an instance lies in the scene's buffers in a level of detail.
+    pub(crate) fn mesh(&self, instance: u32, level: u8) -> MeshRange {
+        self.ranges.of(self.meshes[instance as usize], level)
     }
 
     /// The threads beside the caller's.

@@ -3,7 +3,7 @@
 //! Each is the most accurate set of options of [`GROUPS`](crate::budget::GROUPS) that takes no more than its share
 //! ([`Preset::share`]) of what the finest frame takes beyond the fastest: [`Preset::choose`] finds it in any record, and
 //! [`Preset::frame`] has what it found in the record of this repository, `docs/accuracy.json`. Lamps have no part in that
-//! record; how many cast shadows is set by hand.
+//! record, nor have levels of detail; how many cast shadows, and how far a mesh may be drawn from where it is, is set by hand.
 
 mod chosen;
 
@@ -88,13 +88,13 @@ impl Preset {
 
     /// Its frame.
     pub fn frame(self) -> FrameSettings {
-        let local_maps = match self {
-            Self::Low => 0,
-            Self::Medium => 6,
-            Self::High => 12,
-            Self::Ultra => 24,
+        let (local_maps, lod_error_px) = match self {
+            Self::Low => (0, 1.0),
+            Self::Medium => (6, 0.5),
+            Self::High => (12, 0.25),
+            Self::Ultra => (24, 0.0),
         };
-        let mut frame = FrameSettings::DEFAULT;
+        let mut frame = FrameSettings { lod_error_px, ..FrameSettings::DEFAULT };
         frame.settings.shadows = Some(ShadowSettings { local_maps, ..ShadowSettings::DEFAULT });
         for (group, options) in chosen::CHOSEN {
             if let Some(option) = Group::of(group).and_then(|group| group.option(options[self as usize])) {

@@ -104,6 +104,7 @@ impl FrameSettings {
     pub fn ranges(&self) -> Vec<(&'static str, f64, f64, f64)> {
         let s = &self.settings;
         let mut all = vec![
+            ("lod_error_px", self.lod_error_px.into(), 0.0, 16.0),
             (
                 "settings.glass_layers",
                 f64::from(s.glass_layers),

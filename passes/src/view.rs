@@ -7,6 +7,7 @@
 //! meshes, materials and textures are the scene's and shared.
 
 mod gpu;
+mod levels;
 mod motion;
 
 pub use gpu::{GpuView, ViewId, Views};
@@ -42,6 +43,9 @@ pub struct ViewSettings {
     pub shadows: Option<ShadowSettings>,
     /// How shading finds the lights that reach a place.
     pub lights: LightSearch,
+    /// How far a mesh that has [levels of detail](framegraph_scene::MeshLevel) may be drawn from where it is, in pixels and in texels of
+    /// shadow maps; 0 draws all meshes whole.
+    pub lod_error_px: f32,
 }
 
 /// What stands behind everything.
@@ -168,17 +172,32 @@ impl CameraView {
 
     /// The surfaces of a scene that was prepared, without any light.
     pub fn unlit(prepared: &PreparedScene, settings: &ViewSettings) -> Self {
-        Self::empty(settings).with_surfaces(prepared, seen(prepared, settings), settings)
+        Self::empty(settings).with_surfaces(
+            prepared,
+            seen(prepared, settings),
+            settings,
+            settings.unlimited_levels(prepared.renderables()),
+        )
     }
 
-    /// Puts what is seen into a view that has its shadows.
-    fn with_surfaces(self, prepared: &PreparedScene, visible: DrawLists, settings: &ViewSettings) -> Self {
+    /// Puts what is seen into a view that has its shadows, in `levels` of detail at the most.
+    fn with_surfaces(
+        mut self,
+        prepared: &PreparedScene,
+        visible: DrawLists,
+        settings: &ViewSettings,
+        mut levels: Vec<u8>,
+    ) -> Self {
         let (renderables, eye) = (prepared.renderables(), settings.camera.eye);
         let from_eye = |origin: &DVec3| (*origin - eye).as_vec3().extend(0.0);
+        if !levels.is_empty() {
+            settings.limit_levels(renderables, &visible, &mut levels);
+            self.shadows.iter_mut().for_each(|shadows| shadows.set_levels(&levels));
+        }
         let (draws, origins) = prepared.both(
             || {
-                let draws = ViewDraws::new(renderables, &visible, self.shadows.as_ref());
-                draws.indirect(|instance| prepared.mesh(instance))
+                let draws = ViewDraws::new(renderables, &visible, &levels, self.shadows.as_ref());
+                draws.indirect(|instance, level| prepared.mesh(instance, level))
             },
             || renderables.origins().iter().map(from_eye).collect(),
         );
@@ -197,11 +216,14 @@ impl CameraView {
         sharing: &[ViewSettings],
     ) -> Self {
         let lit = || Self::lit(scene, prepared, light, background, settings, sharing);
-        let (visible, lit) = prepared.both(|| seen(prepared, settings), lit);
-        lit.with_surfaces(prepared, visible, settings)
+        let (visible, (lit, mut levels)) = prepared.both(|| seen(prepared, settings), lit);
+        let others = if levels.is_empty() { &[][..] } else { sharing };
+        let others = others.iter().filter(|other| !std::ptr::eq(*other, settings));
+        others.for_each(|other| other.limit_levels(prepared.renderables(), &seen(prepared, other), &mut levels));
+        lit.with_surfaces(prepared, visible, settings, levels)
     }
 
-    /// A view with its lights and shadows, and no surface.
+    /// A view with its lights and shadows, and no surface; and the levels of detail that its shadow maps allow.
     fn lit(
         scene: &Scene,
         prepared: &PreparedScene,
@@ -209,7 +231,7 @@ impl CameraView {
         background: &Background,
         settings: &ViewSettings,
         sharing: &[ViewSettings],
-    ) -> Self {
+    ) -> (Self, Vec<u8>) {
         let renderables = prepared.renderables();
         let ViewSettings { camera, environment_intensity, .. } = settings;
         let empty = Self::empty(settings);
@@ -220,10 +242,12 @@ impl CameraView {
         let selection = punctual::select(scene, renderables, sun, &cameras);
         let packed = selection.kept.iter().filter_map(|own| light_uniforms(own, camera.eye, exposure).ok());
         let mut lights: Vec<LightUniforms> = packed.collect();
-        let shadows = sharing
-            .first()
-            .and_then(|first| first.shadows)
-            .map(|shadows| ViewShadows::fit(renderables, sun, &selection.kept, &cameras, camera.eye, &shadows));
+        let (mut shadows, mut levels) = (None, settings.unlimited_levels(renderables));
+        if let Some((first, asked)) = sharing.first().and_then(|first| Some((first, first.shadows?))) {
+            let all = (first.lod_error_px, first.unlimited_levels(renderables));
+            let fitted = ViewShadows::fit(renderables, sun, &selection.kept, &cameras, camera.eye, &asked, all);
+            (shadows, levels) = (Some(fitted.0), fitted.1);
+        }
         let first_maps = shadows.iter().flat_map(|shadows| &shadows.of_lights);
         for (light, first) in lights.iter_mut().zip(first_maps) {
             light.shadow_map = first.map_or(0, |first| first + 1);
@@ -245,15 +269,8 @@ impl CameraView {
             sh: light.exposed_irradiance(environment_scale),
             ..empty.frame
         };
-        Self {
-            frame,
-            background: BackgroundUniforms::new(background, exposure, environment_scale),
-            lights,
-            light_lists,
-            light_report,
-            shadows,
-            ..empty
-        }
+        let background = BackgroundUniforms::new(background, exposure, environment_scale);
+        (Self { frame, background, lights, light_lists, light_report, shadows, ..empty }, levels)
     }
 
     /// The same view in a frame that follows one with the view `before`: passes that read the earlier picture find places in

@@ -1,4 +1,4 @@
-//! Instances of one mesh, surface and side, drawn by one instanced draw.
+//! Instances of one mesh in one level of detail, of one surface and side, drawn by one instanced draw.
 
 /// Instances that one draw draws: a range of an array of instance numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,6 +9,8 @@ pub struct Batch {
     pub first: u32,
     /// How many they are.
     pub count: u32,
+    /// The level of detail of their mesh; 0 is the mesh itself.
+    pub level: u8,
 }
 
 impl Batch {
@@ -51,10 +53,12 @@ impl Groups {
     }
 
     /// Appends the instances of `list` to `numbers` as they are drawn, within a group in the order of the list, and returns
-    /// the draws.
+    /// the draws. `levels` has the level of detail of each instance by its number, or nothing where all are drawn whole.
     #[must_use]
-    pub fn batches(&self, list: &[u32], order: BatchOrder, numbers: &mut Vec<u32>) -> Vec<Batch> {
-        let group = |instance: u32| self.of[instance as usize] as usize;
+    pub fn batches(&self, list: &[u32], levels: &[u8], order: BatchOrder, numbers: &mut Vec<u32>) -> Vec<Batch> {
+        let level = |instance: u32| levels.get(instance as usize).copied().unwrap_or(0);
+        let deep = 1 + list.iter().map(|instance| usize::from(level(*instance))).max().unwrap_or(0);
+        let group = |instance: u32| self.of[instance as usize] as usize * deep + usize::from(level(instance));
         let base = numbers.len() as u32;
         let mut batches: Vec<Batch> = Vec::new();
         if order == BatchOrder::Kept {
@@ -62,19 +66,24 @@ impl Groups {
             for (first, instance) in (base..).zip(list.iter().copied()) {
                 match batches.last_mut() {
                     Some(last) if group(last.instance) == group(instance) => last.count += 1,
-                    _ => batches.push(Batch { instance, first, count: 1 }),
+                    _ => batches.push(Batch { instance, first, count: 1, level: level(instance) }),
                 }
             }
             return batches;
         }
-        if self.count == 1 {
+        if self.count == 1 && deep == 1 {
             let instance = list.first().copied();
-            batches.extend(instance.map(|instance| Batch { instance, first: base, count: list.len() as u32 }));
+            batches.extend(instance.map(|instance| Batch {
+                instance,
+                first: base,
+                count: list.len() as u32,
+                level: 0,
+            }));
             numbers.extend_from_slice(list);
             return batches;
         }
-        let groups: Vec<u32> = list.iter().map(|instance| self.of[*instance as usize]).collect();
-        let mut counts = vec![0_u32; self.count as usize];
+        let groups: Vec<u32> = list.iter().map(|instance| group(*instance) as u32).collect();
+        let mut counts = vec![0_u32; self.count as usize * deep];
         for group in &groups {
             counts[*group as usize] += 1;
         }
@@ -84,7 +93,7 @@ impl Groups {
         let mut open = |group: usize, places: &mut [u32]| {
             let count = counts[group];
             places[group] = next;
-            batches.push(Batch { instance: 0, first: next, count });
+            batches.push(Batch { instance: 0, first: next, count, level: (group % deep) as u8 });
             next += count;
         };
         if order == BatchOrder::ByGroup {
@@ -117,7 +126,7 @@ mod tests {
         let list = [5, 3, 0, 2, 4];
         let drawn = |order| {
             let mut numbers = vec![77];
-            let batches = groups.batches(&list, order, &mut numbers);
+            let batches = groups.batches(&list, &[], order, &mut numbers);
             assert!(batches.iter().all(|batch| numbers[batch.first as usize] == batch.instance));
             let of = |batch: &Batch| numbers[batch.range().start as usize..batch.range().end as usize].to_vec();
             batches.iter().map(of).collect::<Vec<_>>()
@@ -125,9 +134,26 @@ mod tests {
         assert_eq!(drawn(BatchOrder::Kept), [vec![5], vec![3], vec![0, 2], vec![4]]);
         assert_eq!(drawn(BatchOrder::FirstFirst), [vec![5, 0, 2], vec![3], vec![4]]);
         assert_eq!(drawn(BatchOrder::ByGroup), [vec![4], vec![5, 0, 2], vec![3]]);
-        let alike = Groups::new(&[7; 6]).batches(&list, BatchOrder::FirstFirst, &mut vec![1, 2]);
-        assert_eq!(alike, [Batch { instance: 5, first: 2, count: 5 }]);
-        assert_eq!(Groups::new(&[7; 6]).batches(&[], BatchOrder::ByGroup, &mut Vec::new()), []);
-        assert_eq!(Groups::default().batches(&[], BatchOrder::ByGroup, &mut Vec::new()), []);
+        let alike = Groups::new(&[7; 6]).batches(&list, &[], BatchOrder::FirstFirst, &mut vec![1, 2]);
+        assert_eq!(alike, [Batch { instance: 5, first: 2, count: 5, level: 0 }]);
+        assert_eq!(Groups::new(&[7; 6]).batches(&[], &[], BatchOrder::ByGroup, &mut Vec::new()), []);
+        assert_eq!(Groups::default().batches(&[], &[], BatchOrder::ByGroup, &mut Vec::new()), []);
+    }
+
+    /// Of a group what is drawn in the same level is drawn together.
+    #[test]
+    fn levels_are_drawn_apart() {
+        let levels = [0, 2, 1, 0, 2, 1];
+        for (groups, apart) in [(Groups::new(&[7; 6]), 3), (Groups::new(&["b", "a", "b", "c", "a", "b"]), 4)] {
+            for order in [BatchOrder::FirstFirst, BatchOrder::ByGroup, BatchOrder::Kept] {
+                let (list, mut numbers) = ([5, 3, 0, 2, 4], vec![77]);
+                let batches = groups.batches(&list, &levels, order, &mut numbers);
+                let all = batches.iter().flat_map(|batch| batch.range().map(move |at| (at, batch.level)));
+                assert!(all.clone().all(|(at, level)| levels[numbers[at as usize] as usize] == level), "{batches:?}");
+                assert!(batches.iter().all(|batch| numbers[batch.first as usize] == batch.instance));
+                assert_eq!(all.count(), list.len());
+                assert!(order == BatchOrder::Kept || batches.len() == apart, "{batches:?}");
+            }
+        }
     }
 }

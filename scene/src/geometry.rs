@@ -1,10 +1,11 @@
-//! Vertex work that needs no file: parametric shapes, an order that is drawn faster, and for import flat normals, tangents and splitting.
+//! Vertex work that needs no file: parametric shapes, levels of detail, an order that is drawn faster, and for import flat normals, tangents and splitting.
 
 mod box_shape;
 #[cfg(feature = "gltf")]
 mod flat;
 #[cfg(feature = "gltf")]
 mod frame;
+mod levels;
 mod order;
 mod plane;
 mod revolve;
@@ -16,6 +17,7 @@ mod weld;
 pub use box_shape::cuboid;
 #[cfg(feature = "gltf")]
 pub(crate) use flat::make_flat;
+pub use levels::{ReadStreams, levels_of_detail};
 pub use order::{order_for_drawing, shaded_vertices};
 pub use plane::plane;
 pub use revolve::{ProfilePoint, cylinder, profile_of_revolution, sphere, torus};

@@ -31,6 +31,7 @@ pub mod id;
 #[cfg(feature = "gltf")]
 pub mod import;
 pub mod instance;
+pub mod levels;
 pub mod light;
 pub mod material;
 pub mod memory;
@@ -66,13 +67,14 @@ pub use error::SceneError;
 pub use frustum::Frustum;
 pub use id::Id;
 pub use instance::Instance;
+pub use levels::InstanceLevels;
 pub use light::{Light, LightKind};
 pub use material::{
     AlphaMode, Anisotropy, ClearCoat, EmissiveUnit, Lobe, Lobes, Material, MaterialId, Sheen, Specular, Transmission,
     Volume,
 };
 pub use memory::Memory;
-pub use mesh::{Mesh, MeshError, MeshId};
+pub use mesh::{Mesh, MeshError, MeshId, MeshLevel};
 pub use options::LoadOptions;
 pub use overlap::{SHADED_POINTS, shaded_at_points};
 pub use progress::{Progress, ProgressFn, Stage};

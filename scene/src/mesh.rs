@@ -34,10 +34,23 @@ pub struct Mesh {
     pub colors: Vec<Vec4>,
     /// Three vertex numbers a triangle, each below the number of vertices.
     pub indices: Vec<u32>,
+    /// The same surface in fewer and fewer triangles ([`Scene::make_levels`](crate::Scene::make_levels)); none of a mesh that is always
+    /// drawn whole. Who changes anything else of the mesh clears them.
+    pub levels: Vec<MeshLevel>,
     /// The smallest box around all positions.
     pub bounds: Aabb,
     /// What moves the vertices, until a [`Body`](crate::motion::Body) is made of it.
     pub moves: Option<Box<Moves>>,
+}
+
+/// A level of detail of a [`Mesh`]: other triangles over the same vertices.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshLevel {
+    /// Three vertex numbers a triangle, each below the number of vertices of the mesh.
+    pub indices: Vec<u32>,
+    /// How far, in meters of the mesh's own space, what is drawn may be from where the mesh has it: surfaces, textures and highlights on
+    /// them, and colors. From level to level no less.
+    pub error_m: f32,
 }
 
 impl Mesh {
@@ -58,6 +71,18 @@ impl Mesh {
         self.indices.chunks_exact(3).map(|t| [t[0] as usize, t[1] as usize, t[2] as usize])
     }
 
+    /// The indices of the mesh, then those of its levels.
+    pub fn all_indices(&self) -> impl Iterator<Item = &[u32]> {
+        std::iter::once(self.indices.as_slice()).chain(self.levels.iter().map(|level| level.indices.as_slice()))
+    }
+
+    /// The indices of a level, 0 for the mesh itself; of the coarsest where there are fewer.
+    #[must_use]
+    pub fn indices_in(&self, level: u8) -> &[u32] {
+        let last = self.levels.len().min(usize::from(level));
+        last.checked_sub(1).map_or(&self.indices, |level| &self.levels[level].indices)
+    }
+
     /// The texture coordinates of a set: 0 or 1; empty when the mesh has none.
     #[must_use]
     pub fn uv(&self, set: u32) -> &[Vec2] {
@@ -69,12 +94,13 @@ impl Mesh {
     }
 
     /// Replaces the vertices by copies of `source[i]`, in that order: how vertices are split or
-    /// reordered. Indices are left alone.
+    /// reordered. Indices are left alone; levels go, whose indices would be of other vertices.
     ///
     /// # Panics
     ///
     /// When a source is not a vertex of this mesh.
     pub(crate) fn gather_vertices(&mut self, source: &[u32]) {
+        self.levels.clear();
         gather(&mut self.positions, source);
         gather(&mut self.normals, source);
         gather(&mut self.tangents, source);
@@ -104,11 +130,20 @@ impl Mesh {
                 return Err(MeshError::Length { stream, length, vertices });
             }
         }
-        if !self.indices.len().is_multiple_of(3) {
-            return Err(MeshError::Triangles { indices: self.indices.len() });
+        for indices in self.all_indices() {
+            if !indices.len().is_multiple_of(3) {
+                return Err(MeshError::Triangles { indices: indices.len() });
+            }
+            if let Some(&index) = indices.iter().find(|&&i| i as usize >= vertices) {
+                return Err(MeshError::Index { index, vertices });
+            }
         }
-        if let Some(&index) = self.indices.iter().find(|&&i| i as usize >= vertices) {
-            return Err(MeshError::Index { index, vertices });
+        let mut least = 0.0;
+        for (level, error_m) in self.levels.iter().map(|level| level.error_m).enumerate() {
+            if !error_m.is_finite() || error_m < least {
+                return Err(MeshError::Level { level: level + 1, error_m });
+            }
+            least = error_m;
         }
         first_bad("position", &self.positions, |p| p.is_finite())?;
         first_bad("normal", &self.normals, |n| (n.length() - 1.0).abs() < 1e-3)?;
@@ -159,6 +194,14 @@ pub enum MeshError {
         /// How many vertices there are.
         vertices: usize,
     },
+    /// What a level states of its error is not finite, or less than what the one before states.
+    #[error("level {level} is {error_m} m from the mesh")]
+    Level {
+        /// Its number; the mesh itself is 0.
+        level: usize,
+        /// What it states.
+        error_m: f32,
+    },
     /// A number is not finite, or a direction is not of unit length.
     #[error("{element} of vertex {vertex} is {value:?}")]
     Value {
@@ -196,7 +239,12 @@ mod tests {
     fn every_broken_promise_is_found() {
         assert_eq!(triangle().check(), Ok(()));
         type Damage = fn(&mut Mesh);
-        let broken: [(&str, Damage); 7] = [
+        let broken: [(&str, Damage); 10] = [
+            ("index 7 of 3 vertices", |m| m.levels = vec![MeshLevel { indices: vec![0, 7, 2], error_m: 0.0 }]),
+            ("level 1 is NaN m", |m| m.levels = vec![MeshLevel { error_m: f32::NAN, ..MeshLevel::default() }]),
+            ("level 2 is 0.5 m", |m| {
+                m.levels = [1.0, 0.5].map(|error_m| MeshLevel { error_m, ..MeshLevel::default() }).to_vec();
+            }),
             ("2 normals for 3 vertices", |m| m.normals.truncate(2)),
             ("1 uv1 for 3 vertices", |m| m.uv1.push(Vec2::ZERO)),
             ("2 indices are not triangles", |m| m.indices.truncate(2)),

@@ -6,6 +6,7 @@ use super::batch::Groups;
 use super::bounds::Aabb;
 use super::boxes::BoxArrays;
 use super::instance::Instance;
+use super::levels::InstanceLevels;
 use super::material::{AlphaMode, Lobe, Lobes};
 use super::scene::Scene;
 
@@ -52,6 +53,7 @@ pub struct Renderables {
     solid_casters: Aabb,
     surfaces: Groups,
     depths: Groups,
+    levels: InstanceLevels,
 }
 
 /// What instances that are drawn together share, in the order in which changing it is dear: shaders, culling, textures,
@@ -78,6 +80,7 @@ impl Renderables {
             mirrored: keys.iter().map(|key| key.2).collect(),
             surfaces: Groups::new(&keys),
             depths: Groups::new(&depth_keys),
+            levels: InstanceLevels::new(scene),
             bounds,
             kinds,
             ..Self::default()
@@ -102,6 +105,7 @@ impl Renderables {
             self.bounds[number] = instance.bounds;
             self.origins[number] = instance.world_from_model.w_axis.truncate();
             self.stamps[number] = stamp(&instance.world_from_model);
+            self.levels.update(scene, number);
         }
         self.boxes.replace(moved.iter().map(|number| (*number, &scene.instances[*number].bounds)));
         self.sum_up();
@@ -208,6 +212,12 @@ impl Renderables {
     #[must_use]
     pub fn depths(&self) -> &Groups {
         &self.depths
+    }
+
+    /// Of which level of detail each may be drawn.
+    #[must_use]
+    pub fn levels(&self) -> &InstanceLevels {
+        &self.levels
     }
 }
 

@@ -13,6 +13,8 @@ pub enum Stage {
     Images,
     /// Building vertex streams, normals and tangents.
     Geometry,
+    /// Making levels of detail.
+    Levels,
     /// Decoding or evaluating an environment.
     Environment,
     /// Filtering an environment on the GPU, and integrating the tables that go with it.
@@ -30,6 +32,7 @@ impl fmt::Display for Stage {
             Self::Headers => "reading headers of images",
             Self::Images => "decoding images",
             Self::Geometry => "building geometry",
+            Self::Levels => "making levels of detail",
             Self::Environment => "preparing the environment",
             Self::Lighting => "filtering the environment",
             Self::Vertices => "packing vertices",

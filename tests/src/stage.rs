@@ -108,6 +108,7 @@ fn view(
         environment_intensity: 1.0,
         shadows: settings.shadows,
         lights: LightSearch::default(),
+        lod_error_px: 0.0,
     };
     CameraView::prepared(scene, prepared, &lighting.image, &Background::Constant(Vec3::ONE), &seen)
 }

@@ -62,6 +62,7 @@ fn row(gpu: &Gpu, workload: &Workload) -> Result<(), Box<dyn Error>> {
         environment_intensity: 1.0,
         shadows: settings.shadows,
         lights: LightSearch::default(),
+        lod_error_px: 0.0,
     };
     let background = Background::Constant(glam::Vec3::ONE);
     let view = |frame, lighting: &Lighting| {

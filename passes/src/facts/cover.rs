@@ -155,6 +155,7 @@ mod tests {
             environment_intensity: 1.0,
             shadows: None,
             lights: LightSearch::All,
+            lod_error_px: 0.0,
         }
     }
 

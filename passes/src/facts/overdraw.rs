@@ -34,13 +34,20 @@ pub(super) fn rules(case: &Case<'_>, facts: &mut Facts) {
     let (mut triangles, mut seen_px, mut saved_px) = (0, 0.0, 0.0);
     let seen = case.input.views.iter().zip(&case.seen.lists);
     for (view, lists) in seen.filter(|(_, lists)| lists.opaque.len() + lists.mask.len() > 0) {
+        let (renderables, scene) = (&case.seen.renderables, case.seen.scene);
         let mut numbers = Vec::with_capacity(lists.opaque.len() + lists.mask.len());
+        let mut levels = view.unlimited_levels(renderables);
+        view.limit_levels(renderables, lists, &mut levels);
         for list in [&lists.opaque, &lists.mask] {
-            _ = case.seen.renderables.surfaces().batches(list, BatchOrder::FirstFirst, &mut numbers);
+            _ = renderables.surfaces().batches(list, &levels, BatchOrder::FirstFirst, &mut numbers);
         }
-        let drawn = numbers.iter().map(|number| &case.seen.scene.instances[*number as usize]);
-        triangles += drawn.clone().map(|instance| case.input.survey.shape(instance).triangles).sum::<usize>();
-        let bounds = drawn.map(|instance| &instance.bounds);
+        // Shadow maps may ask for more.
+        let in_level = |number: &u32| {
+            let mesh = &scene.meshes[scene.instances[*number as usize].mesh.index()];
+            mesh.indices_in(levels.get(*number as usize).copied().unwrap_or(0)).len() / 3
+        };
+        triangles += numbers.iter().map(in_level).sum::<usize>();
+        let bounds = numbers.iter().map(|number| &scene.instances[*number as usize].bounds);
         let [seen, shaded] = shaded_at_points(bounds, &view.camera, fit_camera(view).width_over_height);
         let point_px = view.size_px.map(f64::from).iter().product::<f64>() / f64::from(SHADED_POINTS * SHADED_POINTS);
         seen_px += f64::from(seen) * point_px;

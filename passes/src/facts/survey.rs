@@ -22,7 +22,7 @@ impl Survey {
     pub fn new(scene: &Scene) -> Self {
         let moves = |mesh: usize| scene.motion.bodies.iter().any(|body| body.mesh.index() == mesh);
         let shape = |(number, mesh): (usize, &Mesh)| {
-            if moves(number) { Shape { triangles: mesh.triangle_count(), ..Shape::UNKNOWN } } else { Shape::of(mesh) }
+            if moves(number) { Shape::UNKNOWN } else { Shape::of(mesh) }
         };
         let surfaces = scene.materials.iter().map(Surface::of);
         Self { shapes: scene.meshes.iter().enumerate().map(shape).collect(), surfaces: surfaces.collect() }
@@ -50,12 +50,11 @@ pub(super) struct Shape {
     pub convex: bool,
     /// Colors of vertices may be beyond 1.
     pub colored: bool,
-    pub triangles: usize,
 }
 
 impl Shape {
     /// Of what may be of another shape in the next frame.
-    const UNKNOWN: Self = Self { facing: None, turn_per_m: f64::INFINITY, convex: false, colored: true, triangles: 0 };
+    const UNKNOWN: Self = Self { facing: None, turn_per_m: f64::INFINITY, convex: false, colored: true };
 
     fn of(mesh: &Mesh) -> Self {
         Self {
@@ -63,7 +62,6 @@ impl Shape {
             turn_per_m: turn_per_m(mesh),
             convex: is_convex(mesh),
             colored: !mesh.colors.is_empty(),
-            triangles: mesh.triangle_count(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::atlas::Place;
 use super::settings::ShadowSettings;
-use framegraph_scene::DrawLists;
+use framegraph_scene::{Aabb, DrawLists, Renderables};
 use framegraph_shaders::layout::{ShadowMapUniforms, ShadowViewUniforms};
 use glam::{DMat4, DVec3, DVec4};
 
@@ -41,6 +41,28 @@ impl Fitted {
             casters: DrawLists::default(),
             place: Place::default(),
         }
+    }
+}
+
+impl Fitted {
+    /// Whether texels grow with the square of w along the second axis.
+    fn is_warped(&self) -> bool {
+        self.clip_from_world.transpose().w_axis.truncate() != DVec3::ZERO && self.near_over_range == 0.0
+    }
+
+    /// Limits levels of detail to what is so many texels from the meshes at most.
+    pub fn limit_levels(&self, scene: &Renderables, error_texels: f64, levels: &mut [u8]) {
+        let row = self.clip_from_world.transpose().w_axis;
+        let (warped, along) = (self.is_warped(), row.truncate());
+        // What is drawn of a meter, in texels: along both axes, and where it changes w, at the edge of the map.
+        let most_texels = |bounds: &Aabb| {
+            let w = (along.dot(bounds.center()) + row.w - along.abs().dot(bounds.half_extent())).max(1e-9);
+            let [first, second] = [w, if warped { w * w } else { w }];
+            let of = [first * self.texel_m[0], second * self.texel_m[1]].map(|texel_m| 1.0 / texel_m);
+            DVec3::new(of[0], of[1], 0.5 * f64::from(self.place.texels) * along.length() / w).length()
+        };
+        let most_m = |i: u32| error_texels / most_texels(&scene.bounds()[i as usize]);
+        scene.levels().limit(levels, self.casters.opaque.iter().chain(&self.casters.mask), most_m);
     }
 }
 
@@ -83,8 +105,7 @@ impl ShadowMap {
             Penumbra::Bulb(radius_m) => (radius_m, 0.0),
             Penumbra::Disc(tangent) => (0.0, tangent),
         };
-        let warped =
-            fitted.clip_from_world.transpose().w_axis.truncate() != DVec3::ZERO && fitted.near_over_range == 0.0;
+        let warped = fitted.is_warped();
         Self {
             uniforms: ShadowMapUniforms {
                 clip_from_world: clip_from_relative.as_mat4(),
@@ -118,11 +139,11 @@ impl ShadowMap {
 
 /// What a map is made of: equal keys make equal maps.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct MapKey {
+pub(crate) struct MapKey {
     /// World to the light's clip space.
     pub clip_from_world: DMat4,
     /// Where it is drawn.
     pub place: Place,
-    /// What casts, by the number of the instance, and the stamp of where it stands.
-    pub casters: Vec<(u32, u64)>,
+    /// What casts, by the number of the instance, the stamp of where it stands, and its level of detail.
+    pub casters: Vec<(u32, u64, u8)>,
 }

@@ -3,7 +3,8 @@
 //! A map depends on its light, on what it is fitted to and on what casts into it, and not on where the eye is; maps of local
 //! lights are fitted to the light alone. So over a still scene they are drawn once, wherever the camera goes, and cascades
 //! are drawn while the camera moves. What is compared is what maps are made of, number by number, in the view of this frame
-//! against that of the frame which drew the map last. Meshes and materials of a scene are taken to stay what they are.
+//! against that of the frame which drew the map last. Meshes and materials of a scene are taken to stay what they are. A map
+//! with an instance that is seen in another level of detail than before, since the eye is nearer or farther, is drawn anew.
 
 use super::declare::draw_maps;
 use super::draw::{ShadowLayer, maps_desc};
@@ -24,7 +25,7 @@ pub enum Redraw {
     First,
     /// Its light moved, what it is fitted to did, or it has another size or place.
     Light,
-    /// Something that casts into it moved, came or went.
+    /// Something that casts into it moved, came or went, or is drawn in another level of detail.
     Casters,
 }
 

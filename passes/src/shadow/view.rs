@@ -23,7 +23,7 @@ pub struct ViewShadows {
     /// Cascades, then those of local lights.
     pub maps: Vec<ShadowMap>,
     /// What each map is made of.
-    pub(super) keys: Vec<MapKey>,
+    pub(crate) keys: Vec<MapKey>,
     /// Of each punctual light of the view, the number of its first map among those of local lights.
     pub(crate) of_lights: Vec<Option<u32>>,
     /// As asked for.
@@ -32,7 +32,8 @@ pub struct ViewShadows {
 
 impl ViewShadows {
     /// Fits maps for a view at `eye` that shares them with other cameras: all see what they need in them. The first camera
-    /// of `cameras` is the one that cascades are told apart by, and whose perspective the maps follow if it is alone.
+    /// of `cameras` is the one that cascades are told apart by, and whose perspective the maps follow if it is alone. `levels` are
+    /// limited to what is `lod_error_texels` from the meshes at most.
     pub(crate) fn fit(
         scene: &Renderables,
         sun: Option<&Light>,
@@ -40,7 +41,8 @@ impl ViewShadows {
         cameras: &[FitCamera<'_>],
         eye: DVec3,
         settings: &ShadowSettings,
-    ) -> Self {
+        (lod_error_texels, mut levels): (f32, Vec<u8>),
+    ) -> (Self, Vec<u8>) {
         let toward = sun.map_or(DVec3::Y, |sun| -sun.direction.as_dvec3());
         let mut fitted = Vec::new();
         let (mut far_ends, mut far_m) = (Vec::new(), 0.0);
@@ -52,6 +54,7 @@ impl ViewShadows {
         let first_eye = cameras.first().map_or(eye, |camera| camera.camera.eye);
         let (of_lights, local) = local::fit(scene, lights, first_eye, settings);
         fitted.extend(local);
+        fitted.iter().for_each(|map| map.limit_levels(scene, lod_error_texels.into(), &mut levels));
         let angle = sun.map_or(0.0, |sun| match sun.kind {
             LightKind::Directional { angular_radius_rad, .. } => angular_radius_rad,
             _ => 0.0,
@@ -60,7 +63,7 @@ impl ViewShadows {
         let of_local = Penumbra::Bulb(settings.bulb_m.unwrap_or(BULB_M));
         let key = |fitted: &Fitted| {
             let DrawLists { opaque, mask, .. } = &fitted.casters;
-            let stands = |i: &u32| (*i, scene.stamps()[*i as usize]);
+            let stands = |i: &u32| (*i, scene.stamps()[*i as usize], 0);
             let casters = opaque.iter().chain(mask).map(stands).collect();
             MapKey { clip_from_world: fitted.clip_from_world, place: fitted.place, casters }
         };
@@ -89,7 +92,14 @@ impl ViewShadows {
         for (own, map) in uniforms.cascades.iter_mut().zip(&maps[..cascades]) {
             *own = map.uniforms;
         }
-        Self { uniforms, cascades, maps, keys, of_lights, settings: *settings }
+        (Self { uniforms, cascades, maps, keys, of_lights, settings: *settings }, levels)
+    }
+
+    /// Notes in which level of detail each instance is drawn, by its number.
+    pub(crate) fn set_levels(&mut self, levels: &[u8]) {
+        for (number, _, level) in self.keys.iter_mut().flat_map(|key| &mut key.casters) {
+            *level = levels.get(*number as usize).copied().unwrap_or(0);
+        }
     }
 
     /// What shaders read of each map of a local light.

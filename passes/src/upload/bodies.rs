@@ -18,7 +18,7 @@ impl GpuScene {
     /// # Panics
     /// For another, larger scene than the one that was uploaded.
     pub fn repose(&mut self, gpu: &Gpu, scene: &Scene) -> Result<(), DeviceError> {
-        let first_vertex = |mesh: MeshId| self.mesh(mesh).base_vertex as u64;
+        let first_vertex = |mesh: MeshId| self.mesh(mesh, 0).base_vertex as u64;
         let bodies: Vec<(MeshId, u64)> =
             scene.motion.bodies.iter().map(|body| (body.mesh, first_vertex(body.mesh))).collect();
         if bodies.is_empty() {

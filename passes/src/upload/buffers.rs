@@ -8,12 +8,12 @@ use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
 use super::error::UploadError;
 use super::material::material_uniforms;
-use super::mesh_range::{MeshRange, mesh_ranges};
+use super::mesh_range::{MeshRanges, indices_of};
 use super::pack::{colors_are_cut, vertex_attributes, vertex_positions};
 use crate::indirect::{LEAST_BATCHES, binds_materials};
-use framegraph_scene::Scene;
 use framegraph_scene::error::{Quantity, SceneError};
 use framegraph_scene::progress::{Progress, ProgressFn, Stage, report};
+use framegraph_scene::{MeshId, Scene};
 use framegraph_wgpu::Gpu;
 
 /// The three buffers that draws share.
@@ -31,33 +31,33 @@ pub(super) fn vertices(
     scene: &Scene,
     warnings: &mut Vec<String>,
     progress: &mut ProgressFn<'_>,
-) -> Result<(Vertices, Vec<MeshRange>), UploadError> {
+) -> Result<(Vertices, MeshRanges), UploadError> {
     let count = |of: fn(&framegraph_scene::Mesh) -> usize| scene.meshes.iter().map(of).sum::<usize>();
-    let (vertex_count, index_count) = (count(|m| m.vertex_count()), count(|m| m.indices.len()));
+    let (vertex_count, index_count) = (count(|m| m.vertex_count()), count(|m| m.all_indices().map(<[u32]>::len).sum()));
     // Base vertices are signed 32-bit numbers, first indices unsigned ones.
     for (what, value) in [(Quantity::Vertices, vertex_count), (Quantity::Indices, index_count)] {
         limit(&scene.name, what, value as u64, i32::MAX as u64)?;
     }
     let mut positions: Vec<VertexPosition> = Vec::with_capacity(vertex_count);
     let mut attributes: Vec<VertexAttributes> = Vec::with_capacity(vertex_count);
-    let ranges = mesh_ranges(&scene.meshes);
-    let long_count: usize = ranges.iter().filter(|range| !range.short).map(|range| range.index_count as usize).sum();
-    let mut long: Vec<u32> = Vec::with_capacity(long_count);
-    let mut short: Vec<u16> = Vec::with_capacity(index_count - long_count);
-    for (index, (mesh, range)) in scene.meshes.iter().zip(&ranges).enumerate() {
+    let ranges = MeshRanges::new(&scene.meshes);
+    for (index, mesh) in scene.meshes.iter().enumerate() {
         positions.extend(vertex_positions(mesh));
         attributes.extend(vertex_attributes(mesh));
-        if range.short {
-            short.extend(mesh.indices.iter().map(|index| *index as u16));
-        } else {
-            long.extend(&mesh.indices);
-        }
         if colors_are_cut(mesh) {
             warnings
                 .push(format!("{}: vertex colors of mesh {:?} outside 0…65504 were clamped", scene.name, mesh.name));
         }
         let step = Progress { stage: Stage::Vertices, done: index + 1, total: scene.meshes.len(), item: &mesh.name };
         report(progress, Path::new(&scene.name), step)?;
+    }
+    let (mut long, mut short): (Vec<u32>, Vec<u16>) = (Vec::new(), Vec::new());
+    for (mesh, _, indices) in indices_of(&scene.meshes) {
+        if ranges.of(MeshId::new(mesh), 0).short {
+            short.extend(indices.iter().map(|index| *index as u16));
+        } else {
+            long.extend(indices);
+        }
     }
     let mut bytes: Vec<u8> = cast_slice(&long).to_vec();
     bytes.extend_from_slice(cast_slice(&short));

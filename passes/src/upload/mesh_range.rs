@@ -1,8 +1,8 @@
-//! Meshes as ranges of shared buffers.
+//! Meshes and their levels of detail as ranges of shared buffers.
 
-use framegraph_scene::Mesh;
+use framegraph_scene::{Mesh, MeshId};
 
-/// The part of the shared buffers that holds a mesh.
+/// The part of the shared buffers that holds a mesh in one level of detail.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeshRange {
     /// Whether its indices have 16 bits: it has 65,536 vertices at most. Others have 32.
@@ -25,23 +25,47 @@ impl MeshRange {
     }
 }
 
-/// Where each mesh lies when all are laid one after another: vertices together, indices of 32 bits apart from those of 16.
-pub(crate) fn mesh_ranges(meshes: &[Mesh]) -> Vec<MeshRange> {
-    let (mut base_vertex, mut first_long, mut first_short) = (0, 0, 0);
-    let range = |mesh: &Mesh| {
-        // Half the bytes where 16 bits are enough.
-        let short = mesh.vertex_count() <= 1 << 16;
-        let first = if short { &mut first_short } else { &mut first_long };
-        let own = MeshRange {
-            short,
-            colored: !mesh.colors.is_empty(),
-            first_index: *first,
-            index_count: mesh.indices.len() as u32,
-            base_vertex,
+/// Where meshes lie when all are laid one after another: vertices together, indices of 32 bits apart from those of 16, those of levels
+/// behind those of all meshes, so that it does not depend on levels where meshes lie.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MeshRanges(Vec<Vec<MeshRange>>);
+
+impl MeshRanges {
+    pub fn new(meshes: &[Mesh]) -> Self {
+        let mut base_vertex = 0;
+        let whole = |mesh: &Mesh| {
+            // Half the bytes where 16 bits are enough.
+            let (short, colored) = (mesh.vertex_count() <= 1 << 16, !mesh.colors.is_empty());
+            let own = MeshRange { short, colored, base_vertex, ..MeshRange::default() };
+            base_vertex += mesh.vertex_count() as i32;
+            vec![own; 1 + mesh.levels.len()]
         };
-        *first += own.index_count;
-        base_vertex += mesh.vertex_count() as i32;
+        let mut own = Self(meshes.iter().map(whole).collect());
+        let mut firsts = [0, 0];
+        for (mesh, level, indices) in indices_of(meshes) {
+            let range = &mut own.0[mesh][level];
+            let first = &mut firsts[usize::from(range.short)];
+            (range.first_index, range.index_count) = (*first, indices.len() as u32);
+            *first += range.index_count;
+        }
         own
-    };
-    meshes.iter().map(range).collect()
+    }
+
+    /// A mesh in a level, 0 for the mesh itself; in the coarsest where it has fewer.
+    ///
+    /// # Panics
+    /// Where there is no such mesh.
+    pub fn of(&self, mesh: MeshId, level: u8) -> MeshRange {
+        let own = &self.0[mesh.index()];
+        own[usize::from(level).min(own.len() - 1)]
+    }
+}
+
+/// All indices in the order in which they lie: mesh, level, and indices.
+pub(super) fn indices_of(meshes: &[Mesh]) -> impl Iterator<Item = (usize, usize, &[u32])> {
+    let whole = meshes.iter().enumerate().map(|(number, mesh)| (number, 0, mesh.indices.as_slice()));
+    let levels = meshes.iter().enumerate().flat_map(|(number, mesh)| {
+        mesh.all_indices().enumerate().skip(1).map(move |(level, indices)| (number, level, indices))
+    });
+    whole.chain(levels)
 }

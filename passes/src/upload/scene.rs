@@ -12,7 +12,7 @@ use super::buffers;
 use super::error::UploadError;
 use super::instances::InstanceDraw;
 use super::material::{TEXTURE_TRAITS, material_traits, material_uniforms, traits_with_textures_of};
-use super::mesh_range::MeshRange;
+use super::mesh_range::{MeshRange, MeshRanges};
 use super::textures::{Images, MaterialTextures};
 
 /// A scene's resources on one device. Dropping it frees them once no submitted work needs them.
@@ -40,7 +40,7 @@ pub struct GpuScene {
     pub instances: Vec<InstanceDraw>,
     /// Where vertices were in the frame before; none while no body has moved.
     pub(super) earlier: Option<wgpu::Buffer>,
-    meshes: Vec<MeshRange>,
+    meshes: MeshRanges,
     textures: MaterialTextures,
     surfaces: Vec<Surface>,
 }
@@ -123,14 +123,14 @@ impl GpuScene {
         })
     }
 
-    /// The part of the buffers that holds a mesh.
+    /// The part of the buffers that holds a mesh in a level of detail, 0 for the mesh itself; the coarsest where it has fewer.
     ///
     /// # Panics
     ///
     /// For a mesh of another, larger scene.
     #[must_use]
-    pub fn mesh(&self, mesh: MeshId) -> MeshRange {
-        self.meshes[mesh.index()]
+    pub fn mesh(&self, mesh: MeshId, level: u8) -> MeshRange {
+        self.meshes.of(mesh, level)
     }
 
     /// The lobes that shading a material has to evaluate.

@@ -2,6 +2,9 @@
 
 use std::ops::ControlFlow;
 
+use super::material::material_uniforms;
+use framegraph_scene::Stage;
+use framegraph_shaders::layout::MaterialUniforms;
 use framegraph_shaders::layout::{TRAIT_DOUBLE_SIDED, TRAIT_EMITS, TRAIT_PLAIN_UV, VertexAttributes, VertexPosition};
 use glam::{DVec3, Vec3};
 
@@ -33,7 +36,7 @@ fn built_in_scenes_upload_without_complaint() {
         assert_eq!(uploaded.attributes.size(), vertices * size_of::<VertexAttributes>() as u64);
         let mut first = [0; 2];
         for (i, mesh) in scene.meshes.iter().enumerate() {
-            let range = uploaded.mesh(MeshId::new(i));
+            let range = uploaded.mesh(MeshId::new(i), 0);
             assert_eq!(range.short, mesh.vertex_count() <= 65_536);
             let first = &mut first[usize::from(range.short)];
             assert_eq!(range.first_index, *first);
@@ -94,6 +97,47 @@ fn a_written_material_has_other_traits() {
     assert_eq!(uploaded.traits(id), traits(&[TRAIT_EMITS, TRAIT_DOUBLE_SIDED]));
 }
 
+/// Each material lies at its number times the distance from one to the next, and in the table one after another.
+#[test]
+fn a_material_is_written_where_its_number_says() {
+    let Some(gpu) = working("a_material_is_written_where_its_number_says") else { return };
+    let mut scene = builtin("spheres").expect("built in");
+    let first = scene.instances[0].clone();
+    scene.instances.resize(LEAST_BATCHES, first);
+    let mut uploaded = GpuScene::upload(&gpu, &scene, &mut silent).expect("nothing to refuse");
+    let table = uploaded.material_table.clone().expect("as many instances as a table is made for");
+    let buffers = [(uploaded.materials.clone(), uploaded.material_stride_bytes as usize), (table, 0)];
+    let size = size_of::<MaterialUniforms>();
+    let held = |(buffer, stride): &(wgpu::Buffer, usize)| {
+        let bytes = read_buffer(&gpu, buffer, buffer.size()).expect("the buffer can be copied");
+        let at = |number: usize| number * (*stride).max(size);
+        (0..scene.materials.len()).map(|number| bytes[at(number)..at(number) + size].to_vec()).collect::<Vec<_>>()
+    };
+    let number = 2;
+    let glowing = Material { emissive: Vec3::new(1.0, 2.0, 3.0), ..scene.materials[number].clone() };
+    let before = buffers.each_ref().map(held);
+    assert_eq!(before[0], before[1]);
+    uploaded.write_material(&gpu, MaterialId::new(number), &glowing).expect("it has the same lobes");
+    let mut expected = before[0].clone();
+    expected[number] = bytemuck::bytes_of(&material_uniforms(&glowing)).to_vec();
+    assert_eq!(buffers.each_ref().map(held), [expected.clone(), expected]);
+}
+
+/// Each mesh and each picture is told of when it is done.
+#[test]
+fn progress_is_told_of_every_mesh_and_picture() {
+    let scene = with_image(4, 4, [1; 4]);
+    let mut told = Vec::new();
+    let mut tell = |p: framegraph_scene::Progress<'_>| {
+        told.push((p.stage, p.done, p.total));
+        ControlFlow::Continue(())
+    };
+    GpuScene::upload(&noop(), &scene, &mut tell).expect("nothing to refuse");
+    let all = |stage, total| (1..=total).map(move |done| (stage, done, total));
+    let expected = all(Stage::Vertices, scene.meshes.len()).chain(all(Stage::Upload, scene.images.len()));
+    assert_eq!(told, expected.collect::<Vec<_>>());
+}
+
 #[test]
 fn an_empty_scene_uploads() {
     let scene = Scene::default();
@@ -145,6 +189,15 @@ fn texels_go_as_they_are_uploaded_and_the_budget_knows() {
     // Three textures with all their levels are what is taken now.
     let textures = 3 * (1..=7).map(|level| (128_u64 >> level).pow(2) * 4).sum::<u64>();
     assert_eq!(memory.lend(u64::MAX).map(drop).map_err(|short| short.left_bytes), Err((1 << 20) - textures));
+    // Of one picture: its levels and a copy of all that waits for the device, beside a texture that is the machine's memory too.
+    let mut one = scene.clone();
+    one.textures.truncate(1);
+    one.images.truncate(1);
+    one.materials.iter_mut().for_each(|material| material.occlusion_texture = None);
+    let bytes = 64 * 64 * 4;
+    let least = bytes / 3 + 2 * (bytes * 4 / 3);
+    upload(&Memory::new(least), &mut one.clone()).expect("there is enough");
+    upload(&Memory::new(least - 1), &mut one).expect_err("a byte is missing");
     let error = upload(&Memory::new(30_000), &mut scene).expect_err("no room for levels").to_string();
     assert!(error.contains(": mip levels and upload, 64×64"), "{error}");
 }

@@ -24,23 +24,30 @@ pub fn shaded_vertices(mesh: &Mesh) -> usize {
 /// Orders the triangles of `mesh`, and its vertices by their first use, if fewer vertices are shaded for it; vertices that no triangle uses
 /// go then. The surface is the same; where triangles blend over or lie in one another, another may be the last.
 pub fn order_for_drawing(mesh: &mut Mesh) {
-    let count = mesh.vertex_count();
-    let before = shaded_vertices(mesh);
-    let used = first_uses(&mesh.indices, count).1.len();
-    if before <= used {
-        return;
+    let order = drawn_order(mesh, &mesh.indices);
+    if order != mesh.indices {
+        let (indices, source) = first_uses(&order, mesh.vertex_count());
+        mesh.indices = indices;
+        mesh.gather_vertices(&source);
     }
-    let (local, clusters) = by_locality(&mesh.indices, count);
-    let after = misses(&local, &mut Cache::new(count));
+}
+
+/// Triangles over the vertices of `mesh` in another order, if fewer vertices are shaded for it.
+pub(super) fn drawn_order(mesh: &Mesh, indices: &[u32]) -> Vec<u32> {
+    let count = mesh.vertex_count();
+    let shaded = |indices: &[u32]| misses(indices, &mut Cache::new(count));
+    let before = shaded(indices);
+    if before <= first_uses(indices, count).1.len() {
+        return indices.to_vec();
+    }
+    let (local, clusters) = by_locality(indices, count);
+    let after = shaded(&local);
     if after >= before {
-        return;
+        return indices.to_vec();
     }
     let sorted = outward_first(mesh, &local, &clusters);
-    let fair = misses(&sorted, &mut Cache::new(count)) as f64 <= (after as f64 * WHOLE_MORE).min(before as f64);
-    let order = if fair { sorted } else { local };
-    let (indices, source) = first_uses(&order, count);
-    mesh.indices = indices;
-    mesh.gather_vertices(&source);
+    let fair = shaded(&sorted) as f64 <= (after as f64 * WHOLE_MORE).min(before as f64);
+    if fair { sorted } else { local }
 }
 
 /// A cache of vertices, first in, first out: when each went in, by the count of those that did.
@@ -93,13 +100,13 @@ fn first_uses(indices: &[u32], vertices: usize) -> (Vec<u32>, Vec<u32>) {
 }
 
 /// The triangles of each vertex, one vertex after the other.
-struct Fans {
+pub(super) struct Fans {
     first: Vec<u32>,
     triangles: Vec<u32>,
 }
 
 impl Fans {
-    fn new(indices: &[u32], vertices: usize) -> Self {
+    pub fn new(indices: &[u32], vertices: usize) -> Self {
         let mut first = vec![0_u32; vertices + 1];
         indices.iter().for_each(|vertex| first[*vertex as usize + 1] += 1);
         for vertex in 0..vertices {
@@ -113,7 +120,7 @@ impl Fans {
         Self { first, triangles }
     }
 
-    fn of(&self, vertex: u32) -> &[u32] {
+    pub fn of(&self, vertex: u32) -> &[u32] {
         &self.triangles[self.first[vertex as usize] as usize..self.first[vertex as usize + 1] as usize]
     }
 }

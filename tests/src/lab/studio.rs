@@ -108,6 +108,7 @@ impl<'a> Studio<'a> {
             environment_intensity: if setup.sun.is_some() { 0.3 } else { 1.0 },
             shadows: setup.settings.shadows,
             lights: setup.lights,
+            lod_error_px: 0.0,
         };
         let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
         let world = World::new(self.gpu, &scene, lighting, [view], &mut progress::silent)?;

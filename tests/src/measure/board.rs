@@ -190,6 +190,7 @@ impl Board {
             environment_intensity: 1.0,
             shadows: self.shadows,
             lights: LightSearch::default(),
+            lod_error_px: 0.0,
         };
         Ok(CameraView::new(&self.placed(), &lighting.image, &Background::Environment, &moment))
     }

@@ -194,6 +194,7 @@ impl Case {
             environment_intensity: 1.0,
             shadows: settings.shadows,
             lights: LightSearch::All,
+            lod_error_px: 0.0,
         }
     }
 }

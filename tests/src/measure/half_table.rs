@@ -101,6 +101,7 @@ impl Studio {
             environment_intensity: 1.0,
             shadows: settings.shadows,
             lights: LightSearch::default(),
+            lod_error_px: 0.0,
         };
         let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
         let settings = settings.for_scene(&scene, size_px);

@@ -63,6 +63,7 @@ impl Night {
             environment_intensity: 1.0,
             shadows: settings.shadows,
             lights: LightSearch::default(),
+            lod_error_px: 0.0,
         };
         let view = CameraView::new(&scene, &lighting.image, &Background::None, &seen);
         let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;

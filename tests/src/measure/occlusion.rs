@@ -142,6 +142,7 @@ impl Stage {
             environment_intensity: 1.0,
             shadows: None,
             lights: LightSearch::default(),
+            lod_error_px: 0.0,
         };
         let mut view = CameraView::empty(&seen);
         if let Some(toward) = self.toward_sun {

@@ -137,6 +137,7 @@ impl Stage {
             environment_intensity: 1.0,
             shadows: None,
             lights: LightSearch::default(),
+            lod_error_px: 0.0,
         };
         Ok(CameraView::unlit(&PreparedScene::new(&self.scene), &seen))
     }

@@ -222,6 +222,7 @@ fn view_settings(document: &Document) -> Result<ViewSettings, Box<dyn Error>> {
         environment_intensity: stated.ibl.as_ref().map_or(1.0, |ibl| ibl.intensity as f32),
         shadows: shadows(document),
         lights: LightSearch::default(),
+        lod_error_px: 0.0,
     })
 }
 

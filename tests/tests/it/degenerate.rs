@@ -50,6 +50,7 @@ fn radiance(
         environment_intensity: 1.0,
         shadows: shot.settings.shadows,
         lights: LightSearch::default(),
+        lod_error_px: 0.0,
     };
     let view = CameraView::new(scene, &lighting.image, &Background::Environment, &moment);
     let world = World::new(gpu, scene, lighting, [view], &mut progress::silent)?;

@@ -30,6 +30,7 @@ fn parts(gpu: &Gpu) -> Result<Parts, Box<dyn Error>> {
         environment_intensity: 1.0,
         shadows: None,
         lights: LightSearch::default(),
+        lod_error_px: 0.0,
     };
     Ok(Parts { views: Views::new(gpu, [CameraView::empty(&moment)])?, ..Parts::default() })
 }

@@ -50,6 +50,7 @@ fn shoot_under(
         environment_intensity: 1.0,
         shadows: None,
         lights: LightSearch::default(),
+        lod_error_px: 0.0,
     };
     let view = CameraView::new(&scene, &lighting.image, background, &moment);
     let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;

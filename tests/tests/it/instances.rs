@@ -78,8 +78,9 @@ fn short_and_long_indices_draw_the_same_picture() -> TestResult {
         let lighting = lighting(&gpu, &environment, &settings.shading)?;
         let view = view_of(&scene, &lighting.image, &Background::Environment, &shot);
         let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;
-        let found: Vec<bool> =
-            (0..scene.meshes.len()).map(|mesh| world.scene.mesh(framegraph_scene::MeshId::new(mesh)).short).collect();
+        let found: Vec<bool> = (0..scene.meshes.len())
+            .map(|mesh| world.scene.mesh(framegraph_scene::MeshId::new(mesh), 0).short)
+            .collect();
         assert!(found.iter().enumerate().all(|(index, short)| *short != long(index)), "{found:?}");
         draw(&gpu, &world, &settings, &shot.options)
     };
@@ -128,11 +129,12 @@ fn objects_in_a_stream_and_in_buffers_are_the_same_picture() -> TestResult {
 }
 
 /// Moments as a shadow map, which unlike depth show the order of equally near ones; masked, blended and transmissive surfaces, mirrored ones: the same bytes from instanced
-/// draws as from a draw for each. What moves is where a scene prepared anew has it, in the buffers too.
+/// draws as from a draw for each, in levels of detail as whole. What moves is where a scene prepared anew has it, in the buffers too.
 #[test]
 fn instanced_draws_are_the_same_picture() -> TestResult {
     let Some(gpu) = gpu("instanced_draws_are_the_same_picture") else { return Ok(()) };
     let mut scene = crowd();
+    scene.make_levels(&mut progress::silent)?;
     let moments = MomentSettings { samples: 1, ..ShadowSettings::DEFAULT.moments };
     let shadows = ShadowSettings { filter: ShadowFilter::Vsm, moments, ..ShadowSettings::texels(128) };
     let settings = Settings { shadows: Some(shadows), ..Settings::DEFAULT };
@@ -152,12 +154,6 @@ fn instanced_draws_are_the_same_picture() -> TestResult {
     let first = draw(&gpu, &world, &settings, &shot.options)?;
     world.set_view(&gpu, ViewId::MAIN, apart)?;
     assert!(first == draw(&gpu, &world, &settings, &shot.options)?, "a draw for each is another picture");
-
-    let mut prepared = PreparedScene::new(&scene);
-    let moved = &mut scene.instances[7];
-    moved.world_from_model = DMat4::from_translation(DVec3::Y) * moved.world_from_model * DMat4::from_rotation_x(1.0);
-    moved.bounds = scene.meshes[moved.mesh.index()].bounds.transformed(&moved.world_from_model);
-    prepared.update(&scene, &[7]);
     let seen = ViewSettings {
         camera: scene.default_camera(1.5),
         size_px: shot.size_px,
@@ -165,7 +161,26 @@ fn instanced_draws_are_the_same_picture() -> TestResult {
         environment_intensity: 1.0,
         shadows: settings.shadows,
         lights: framegraph_passes::LightSearch::default(),
+        lod_error_px: 2.0,
     };
+    let coarse = CameraView::new(&scene, &world.lighting.image, &background, &seen);
+    let levels =
+        |list: &framegraph_passes::indirect::DrawList| list.iter().map(|batch| batch.level).collect::<Vec<_>>();
+    let drawn = levels(&coarse.draws.surfaces[0]);
+    assert!(drawn.contains(&0) && drawn.iter().any(|level| *level > 0), "{drawn:?}");
+    let apart = CameraView { draws: coarse.draws.clone().one_by_one(), ..coarse.clone() };
+    world.set_view(&gpu, ViewId::MAIN, coarse)?;
+    let levelled = draw(&gpu, &world, &settings, &shot.options)?;
+    world.set_view(&gpu, ViewId::MAIN, apart)?;
+    assert!(levelled == draw(&gpu, &world, &settings, &shot.options)?, "a draw for each is another picture");
+    assert_ne!(levelled, first, "levels are the meshes themselves");
+
+    let mut prepared = PreparedScene::new(&scene);
+    let moved = &mut scene.instances[7];
+    moved.world_from_model = DMat4::from_translation(DVec3::Y) * moved.world_from_model * DMat4::from_rotation_x(1.0);
+    moved.bounds = scene.meshes[moved.mesh.index()].bounds.transformed(&moved.world_from_model);
+    prepared.update(&scene, &[7]);
+    let seen = ViewSettings { camera: scene.default_camera(1.5), lod_error_px: 0.0, ..seen };
     let image = &world.lighting.image;
     let own = CameraView::prepared(&scene, &prepared, image, &background, &seen);
     let anew = CameraView::new(&scene, image, &background, &seen);

@@ -28,6 +28,7 @@ mod kept_shadows;
 mod lamps;
 mod lens;
 mod lens_document;
+mod levels;
 mod light;
 mod light_document;
 mod lights;

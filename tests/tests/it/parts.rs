@@ -199,6 +199,7 @@ fn a_scene_copy_takes_a_camera_and_no_scene() -> TestResult {
         environment_intensity: 1.0,
         shadows: None,
         lights: LightSearch::default(),
+        lod_error_px: 0.0,
     };
     let parts = Parts { views: Views::new(&gpu, [CameraView::empty(&seen)])?, ..Parts::default() };
     let picture = uploaded(&gpu, TextureFormat::Rgba16Float, &ramp());

@@ -61,6 +61,7 @@ fn decided(scene: &Scene, asked: Settings) -> (bool, String) {
         environment_intensity: 1.0,
         shadows: None,
         lights: LightSearch::All,
+        lod_error_px: 3.0,
     };
     let irradiance = &[Vec4::ONE; 18];
     let input = FactInput {
@@ -85,7 +86,10 @@ fn decided(scene: &Scene, asked: Settings) -> (bool, String) {
 fn a_prepass_is_drawn_where_it_saves_more_than_it_costs() {
     let plain = Settings { shadows: None, ..Settings::DEFAULT };
     let block = || cuboid(Vec3::splat(0.5));
+    let mut in_levels = over_a_floor(sphere(0.5, 96, 48), 2.0, 0);
+    in_levels.make_levels(&mut progress::silent).expect("levels");
     let cases = [
+        (in_levels, false, "and it saves "),
         (over_a_floor(block(), 2.0, 0), false, "and it saves "),
         (over_a_floor(block(), -4.0, 0), true, "and it saves 0 thousand"),
         (over_a_floor(sphere(0.5, 96, 48), 2.0, 0), true, "and it saves "),

@@ -149,6 +149,7 @@ pub fn view_of(scene: &Scene, light: &ImageLight, background: &Background, shot:
         environment_intensity: 1.0,
         shadows: settings.shadows,
         lights: LightSearch::default(),
+        lod_error_px: 0.0,
     };
     CameraView::new(scene, light, background, &moment)
 }

@@ -67,6 +67,7 @@ fn views(scene: &Scene, light: &ImageLight, settings: &Settings) -> Vec<CameraVi
             environment_intensity: 1.0,
             shadows: settings.shadows,
             lights: LightSearch::default(),
+            lod_error_px: 0.0,
         }
     });
     CameraView::together(scene, light, &Background::Environment, &seen)

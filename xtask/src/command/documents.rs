@@ -173,10 +173,11 @@ mod tests {
     }
 
     /// Marked tables that tests compare by themselves, each with a file that does.
-    const TESTED: [(&str, &str); 11] = [
+    const TESTED: [(&str, &str); 12] = [
         ("facts", "tests/tests/it/facts/table.rs"),
         ("features of the color pass", "shaders/tests/all/operations.rs"),
         ("grading", "tests/tests/it/grading.rs"),
+        ("levels", "tests/tests/it/levels.rs"),
         ("loop counters", "shaders/tests/all/operations.rs"),
         ("loops", "tests/tests/it/loops.rs"),
         ("indices", "tests/tests/it/loops.rs"),

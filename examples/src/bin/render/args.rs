@@ -349,7 +349,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 39] = [
+        let cases: [(&[&str], &str); 40] = [
             (&["--threads", "0"], "--threads 0"),
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
@@ -360,6 +360,7 @@ mod tests {
             (&["--ev100", "99"], "--ev100 99"),
             (&["--tone-map", "sepia"], "--tone-map sepia"),
             (&["--inline", "maybe"], "--inline maybe"),
+            (&["--lod", "17"], "--lod 17"),
             (&["--alias", "heaps"], "--alias heaps"),
             (&["--quality", "best"], "--quality best"),
             (&["--precision", "f64"], "--precision f64"),

@@ -217,7 +217,13 @@ impl Args {
             fxaa: self.fxaa,
             ..self.base
         };
-        FrameSettings { quality: self.quality, lights: self.lighting.lights, inline: self.inline, settings }
+        FrameSettings {
+            quality: self.quality,
+            lights: self.lighting.lights,
+            lod_error_px: self.effects.lod_error_px,
+            inline: self.inline,
+            settings,
+        }
     }
 
     /// The same command line with what groups are about as a frame has it.

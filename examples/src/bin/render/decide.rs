@@ -165,7 +165,7 @@ fn value(args: &[OsString], option: &str) -> Option<OsString> {
 impl Args {
     /// Begins with a frame, which other options change.
     pub fn begin_with(&mut self, frame: &FrameSettings) {
-        let FrameSettings { quality, lights, inline, settings } = *frame;
+        let FrameSettings { quality, lights, lod_error_px, inline, settings } = *frame;
         (self.quality, self.lighting.lights, self.inline) = (quality, lights, inline);
         (self.samples, self.shading, self.post, self.fxaa) =
             (settings.samples, settings.shading, settings.post, settings.fxaa);
@@ -174,8 +174,19 @@ impl Args {
         let Settings { occlusion, reflections, tone_resolve, taa, upscale, dof, bloom, fog, glass_layers, .. } =
             settings;
         let own = Effects::default();
-        self.effects =
-            Effects { occlusion, reflections, tone_resolve, taa, upscale, dof, bloom, fog, glass_layers, ..own };
+        self.effects = Effects {
+            occlusion,
+            reflections,
+            tone_resolve,
+            taa,
+            upscale,
+            dof,
+            bloom,
+            fog,
+            lod_error_px,
+            glass_layers,
+            ..own
+        };
     }
 }
 

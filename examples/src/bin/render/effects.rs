@@ -1,5 +1,5 @@
 //! Options of effects: ambient occlusion, reflections, glass through glass, fog, bloom, depth of field,
-//! anti-aliasing over time.
+//! anti-aliasing over time; and levels of detail.
 
 use crate::look::number;
 use framegraph_passes::transmission::MOST_GLASS_LAYERS;
@@ -52,6 +52,8 @@ pub const HELP: &str = "
   --sharpness X        how much it is sharpened then, 0 to 1 (0.9)
   --dynamic-resolution MS[:LEAST]  in --turntable and --sequence, draw each frame as large as those before let it be, so that
                        it takes MS milliseconds; no smaller than LEAST percent of its sides, 25 to 100 (50)
+  --lod PX             meshes are drawn in fewer triangles where they are no farther than so many pixels from where they are, or
+                       texels of shadow maps, 0 to 16; 0 draws all triangles (0)
   --glass-layers N     layers of glass that is seen through glass, 1 to 4; 1 shows what is opaque alone (1)
 ";
 
@@ -78,12 +80,14 @@ pub struct Effects {
     pub upscale: Option<Upscale>,
     /// Drawn as large as a time lets it be.
     pub dynamic: Option<DynamicResolution>,
+    /// How far a mesh may be drawn from where it is, in pixels; 0 draws it whole.
+    pub lod_error_px: f32,
     /// Layers of glass.
     pub glass_layers: u8,
 }
 
 impl Default for Effects {
-    /// None of them, and glass in one layer.
+    /// None of them, whole meshes, and glass in one layer.
     fn default() -> Self {
         Self {
             occlusion: None,
@@ -96,6 +100,7 @@ impl Default for Effects {
             bloom: None,
             dirt: None,
             fog: None,
+            lod_error_px: 0.0,
             glass_layers: 1,
         }
     }
@@ -144,6 +149,7 @@ impl Effects {
             "sharpness" => {
                 self.upscale.get_or_insert_default().sharpness = number("--sharpness", &value()?, 0.0..=1.0)?;
             }
+            "lod" => self.lod_error_px = number("--lod", &value()?, 0.0..=16.0)?,
             "resolve" => {
                 self.tone_resolve = match value()?.as_str() {
                     "linear" => false,

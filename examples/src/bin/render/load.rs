@@ -47,6 +47,9 @@ pub fn colors(args: &Args) -> Result<Option<ColorTable>, String> {
 pub fn load(args: &Args, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let mut shown = Shown::default();
     let mut scene = Scene::open_with(&args.scene, options, &mut |p| show(&mut shown, p))?;
+    if args.effects.lod_error_px > 0.0 {
+        scene.make_levels(&mut |p| show(&mut shown, p))?;
+    }
     let asked = &args.lighting;
     let mut environment = match &asked.around {
         Around::File(path) => Environment::load_with(path, options, &mut |p| show(&mut shown, p))?,
@@ -132,6 +135,7 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
         environment_intensity: args.lighting.intensity,
         shadows,
         lights: args.lighting.lights,
+        lod_error_px: args.effects.lod_error_px,
     })
 }
 

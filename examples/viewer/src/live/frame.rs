@@ -191,7 +191,7 @@ impl Running {
 
     /// What is drawn of the settings: what the scene has nothing for, and what facts leave out, is not.
     fn settings(&mut self, size_px: [u32; 2], document: &Document, asked: &Asked) -> Settings {
-        let FrameSettings { lights, settings, .. } = document.frame;
+        let FrameSettings { lights, lod_error_px, settings, .. } = document.frame;
         let look = &document.look;
         self.loaded.set_sun(look.sun, self.turned_rad(look));
         let Self { loaded, rig, memory, .. } = self;
@@ -222,6 +222,7 @@ impl Running {
             environment_intensity: look.environment_intensity,
             shadows,
             lights,
+            lod_error_px,
         };
         self.facts = decide(
             &FactInput {
@@ -273,6 +274,7 @@ impl Running {
             environment_intensity: look.environment_intensity,
             shadows: settings.shadows,
             lights: document.frame.lights,
+            lod_error_px: document.frame.lod_error_px,
         };
         let background = self.loaded.background(look.behind);
         let mut view = CameraView::prepared(scene, prepared, &world.lighting.image, &background, &seen);

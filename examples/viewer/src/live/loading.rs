@@ -98,6 +98,8 @@ pub fn load(
     if scene.instances.is_empty() {
         return Err(format!("{name}: the scene shows nothing: it has no mesh in it"));
     }
+    // Settings may ask for them at any time.
+    scene.make_levels(&mut |p| told(handle, p)).map_err(|e| e.to_string())?;
     let Lit { around, settings, lighting, sun, background, metered_ev100, mut warnings } =
         light(gpu, &scene, around, settings, handle)?;
     warnings.splice(0..0, scene.warnings.iter().cloned());
@@ -112,6 +114,7 @@ pub fn load(
         environment_intensity: 1.0,
         shadows: None,
         lights: LightSearch::All,
+        lod_error_px: 0.0,
     };
     let view = CameraView::prepared(&scene, &prepared, &lighting.image, &background, &first);
     let world = World::of(gpu, uploaded, lighting, [view]).map_err(|e| e.to_string())?;

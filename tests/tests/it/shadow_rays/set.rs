@@ -75,6 +75,7 @@ impl Set {
             environment_intensity: 1.0,
             shadows: settings.shadows,
             lights: LightSearch::default(),
+            lod_error_px: 0.0,
         };
         let mut view = CameraView::new(&scene, &lighting.image, &Background::None, &seen);
         for map in view.shadows.iter_mut().flat_map(|shadows| &mut shadows.maps) {

@@ -1,0 +1,279 @@
+//! Fewer triangles for the same surface: edges collapse, one end onto the other, where that changes least first.
+//!
+//! By quadrics (M. Garland, P. Heckbert, "Surface Simplification Using Quadric Error Metrics", SIGGRAPH 1997). No vertex moves and none
+//! is made, so that all levels of a mesh share its vertices (half-edge collapses: L. Kobbelt, S. Campagna, H.-P. Seidel, "A General
+//! Framework for Mesh Decimation", Graphics Interface 1998). Vertices at one place are one point of the surface; where they differ in
+//! what else they have there is a seam, which stays a seam, as a border stays a border.
+
+use super::fan::{Corner, Fan, MOST_CORNERS, Spoke};
+use super::quadric::{Quadric, Shift};
+use super::stream::Stream;
+use crate::bounds::Aabb;
+use crate::mesh::Mesh;
+use glam::DVec3;
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashMap};
+use std::hash::Hash;
+
+/// Weight of planes upright on borders and seams, in times the square of their length; those of the surface count by area, so that it
+/// does not matter how finely it is divided.
+const BORDER_WEIGHT: f64 = 1.0;
+/// Weight of how far a point goes, in times the square of its square: where the surface is flat what is near comes first.
+const MOVED_WEIGHT: f64 = 1e-6;
+/// Cosine of how far a triangle may turn.
+const MOST_TURN: f64 = 0.5;
+/// Height of a triangle over its longest side, in times that side, below which it is a splinter, unless it was one.
+const LEAST_WIDTH: f64 = 0.05;
+
+/// A surface while its edges collapse.
+pub(super) struct Collapse {
+    /// Where vertices are, from the middle of the mesh.
+    positions: Vec<DVec3>,
+    /// The point of each vertex: the first at its place.
+    point: Vec<u32>,
+    /// What vertices have beside their places: `width` numbers each.
+    values: Vec<f64>,
+    width: usize,
+    /// Of the places of vertices, from what they have; and of each of their numbers.
+    of_values: Vec<Quadric>,
+    shifts: Vec<Shift>,
+    /// Of points, as is what follows.
+    quadrics: Vec<Quadric>,
+    /// The triangles about each.
+    about: Vec<Vec<u32>>,
+    /// How often what is about each has changed.
+    changed: Vec<u32>,
+    /// The points that may go with what that changes, the cheapest first; of which some are there as they were before a change.
+    candidates: BinaryHeap<Reverse<Candidate>>,
+    /// None where it is gone.
+    triangles: Vec<Option<[u32; 3]>>,
+    /// Where each triangle faced at first.
+    facing: Vec<DVec3>,
+    left: usize,
+}
+
+/// Places are the same that differ by less than this many times the radius of the mesh.
+const SAME_PLACE: f64 = 1e-6;
+
+/// Of each key the number of the first that is equal.
+fn firsts<K: Hash + Eq>(keys: impl Iterator<Item = K>) -> Vec<u32> {
+    let mut first = HashMap::new();
+    (0..).zip(keys).map(|(i, key)| *first.entry(key).or_insert(i)).collect()
+}
+
+/// What it changes that a point goes to the other end of an edge: bits of a number that is 0 or more, which are in its order; then the
+/// point, the other end, and how often what is about the point had changed.
+type Candidate = (u64, u32, u32, u32);
+
+impl Collapse {
+    /// That of `mesh`, whose vertices, as far as it has triangles of them, lie in `used`.
+    pub fn new(mesh: &Mesh, streams: &[Stream<'_>], used: &Aabb) -> Self {
+        let middle = used.center();
+        // Vertices at one place are a point, and those of them that have the same beside it are one.
+        let grid = SAME_PLACE * used.radius().max(f64::MIN_POSITIVE);
+        let place = |i: usize| ((mesh.positions[i].as_dvec3() - middle) / grid).round().as_i64vec3();
+        let numbers = |i: usize| streams.iter().flat_map(move |s| (s.of(i as u32) / s.unseen).round().to_array());
+        let point = firsts((0..mesh.vertex_count()).map(place));
+        let one =
+            firsts((0..mesh.vertex_count()).map(|i| (place(i), numbers(i).map(|x| x as i64).collect::<Vec<_>>())));
+        let (count, width) = (mesh.vertex_count(), streams.iter().map(|stream| stream.width).sum());
+        let of_vertex = |vertex| streams.iter().flat_map(move |s| s.of(vertex).to_array().into_iter().take(s.width));
+        let mut own = Self {
+            values: (0..count as u32).flat_map(of_vertex).map(f64::from).collect(),
+            width,
+            of_values: vec![Quadric::NONE; if width > 0 { count } else { 0 }],
+            shifts: vec![Shift::NONE; count * width],
+            positions: mesh.positions.iter().map(|p| p.as_dvec3() - middle).collect(),
+            quadrics: vec![Quadric::NONE; count],
+            about: vec![Vec::new(); count],
+            changed: vec![0; count],
+            candidates: BinaryHeap::new(),
+            triangles: Vec::with_capacity(mesh.triangle_count()),
+            facing: Vec::with_capacity(mesh.triangle_count()),
+            left: 0,
+            point,
+        };
+        for triangle in mesh.triangles() {
+            let [a, b, c] = triangle.map(|vertex| own.point[vertex]);
+            if a != b && b != c && c != a {
+                let number = own.triangles.len() as u32;
+                [a, b, c].into_iter().for_each(|point| own.about[point as usize].push(number));
+                let [a, b, c] = triangle.map(|vertex| own.positions[vertex]);
+                own.facing.push((b - a).cross(c - a).normalize_or_zero());
+                own.triangles.push(Some(triangle.map(|vertex| one[vertex])));
+            }
+        }
+        own.left = own.triangles.len();
+        own.measure_values(streams, used.radius());
+        let mut fans = [Fan::default(), Fan::default()];
+        (0..count as u32).for_each(|hub| own.quadrics[hub as usize] = own.planes(hub, &mut fans[0]));
+        (0..count as u32).for_each(|hub| own.consider(hub, &mut fans));
+        own
+    }
+
+    /// How many triangles are left.
+    pub fn left(&self) -> usize {
+        self.left
+    }
+
+    /// Three vertices of the mesh for each of them.
+    pub fn indices(&self) -> Vec<u32> {
+        self.triangles.iter().flatten().flatten().copied().collect()
+    }
+
+    /// Collapses edges until `target` triangles are left; fewer where more would tear or fold the surface.
+    pub fn reduce(&mut self, target: usize) {
+        let mut fans = [Fan::default(), Fan::default()];
+        while self.left > target {
+            let Some(Reverse((_, hub, rim, changed))) = self.candidates.pop() else { return };
+            if self.changed[hub as usize] != changed {
+                continue;
+            }
+            let [fan, other] = &mut fans;
+            self.fill(hub, fan);
+            self.fill(rim, other);
+            let spoke = fan.spokes.iter().find(|spoke| spoke.rim == rim);
+            match spoke.filter(|spoke| fan.stays_whole(spoke, other)) {
+                Some(spoke) => self.go(hub, spoke),
+                // What is about the other end has changed.
+                None => {
+                    self.consider(hub, &mut fans);
+                    continue;
+                }
+            }
+            let around: Vec<u32> = fan.spokes.iter().map(|spoke| spoke.rim).collect();
+            for point in around {
+                self.changed[point as usize] += 1;
+                self.consider(point, &mut fans);
+            }
+        }
+    }
+
+    /// Moves a point to the other end of an edge.
+    fn go(&mut self, hub: u32, edge: &Spoke) {
+        let rim = edge.rim as usize;
+        self.quadrics[rim] = self.quadrics[rim].plus(self.quadrics[hub as usize]);
+        self.changed[hub as usize] += 1;
+        for [from, to] in edge.pairs().filter(|_| self.width > 0).map(|pair| pair.map(|vertex| vertex as usize)) {
+            self.of_values[to] = self.of_values[to].plus(self.of_values[from]);
+            for number in 0..self.width {
+                let (from, to) = (from * self.width + number, to * self.width + number);
+                self.shifts[to] = self.shifts[to].plus(self.shifts[from]);
+            }
+        }
+        for number in std::mem::take(&mut self.about[hub as usize]) {
+            let Some(triangle) = &mut self.triangles[number as usize] else { continue };
+            let points = triangle.map(|vertex| self.point[vertex as usize]);
+            if points.contains(&edge.rim) {
+                points.iter().for_each(|point| self.about[*point as usize].retain(|other| *other != number));
+                self.triangles[number as usize] = None;
+                self.left -= 1;
+                continue;
+            }
+            for vertex in triangle.iter_mut().filter(|vertex| self.point[**vertex as usize] == hub) {
+                *vertex = edge.pairs().find(|[from, _]| from == vertex).map_or(*vertex, |[_, to]| to);
+            }
+            self.about[rim].push(number);
+        }
+    }
+
+    /// Notes where a point changes least if it goes.
+    fn consider(&mut self, hub: u32, [fan, other]: &mut [Fan; 2]) {
+        self.fill(hub, fan);
+        let (here, mut best) = (self.positions[hub as usize], None);
+        for edge in fan.spokes.iter().filter(|edge| fan.may_go(edge)) {
+            let there = self.positions[edge.rim as usize];
+            let sum = self.quadrics[hub as usize].plus(self.quadrics[edge.rim as usize]).at(there).max(0.0);
+            let sum = sum + edge.pairs().map(|pair| self.shifted(pair, there)).sum::<f64>();
+            let cost = (sum + MOVED_WEIGHT * there.distance_squared(here).powi(2)).to_bits();
+            if best.is_none_or(|(least, _)| cost < least) && !self.folds(hub, fan, edge.rim) {
+                self.fill(edge.rim, other);
+                if fan.stays_whole(edge, other) {
+                    best = Some((cost, edge.rim));
+                }
+            }
+        }
+        self.candidates.extend(best.map(|(cost, rim)| Reverse((cost, hub, rim, self.changed[hub as usize]))));
+    }
+
+    /// The sum of squares of how far what a vertex has is displaced where it goes into another.
+    fn shifted(&self, [from, to]: [u32; 2], there: DVec3) -> f64 {
+        if self.width == 0 {
+            return 0.0;
+        }
+        let numbers = |vertex: u32| vertex as usize * self.width..(vertex as usize + 1) * self.width;
+        let pairs = self.shifts[numbers(from)].iter().zip(&self.shifts[numbers(to)]).zip(&self.values[numbers(to)]);
+        let of_places = self.of_values[from as usize].plus(self.of_values[to as usize]).at(there);
+        pairs.fold(of_places, |sum, ((a, b), value)| sum + a.plus(*b).at(there, *value)).max(0.0)
+    }
+
+    /// How what vertices have changes about each.
+    fn measure_values(&mut self, streams: &[Stream<'_>], radius_m: f64) {
+        let Self { positions, values, width, of_values, shifts, .. } = self;
+        let least = streams.iter().flat_map(|stream| {
+            std::iter::repeat_n(f64::from(stream.unseen) / radius_m.max(f64::MIN_POSITIVE), stream.width)
+        });
+        let least: Vec<f64> = least.collect();
+        for triangle in self.triangles.iter().flatten() {
+            let corners = triangle.map(|vertex| positions[vertex as usize]);
+            for (number, least) in least.iter().enumerate() {
+                let place = |vertex: u32| vertex as usize * *width + number;
+                let (shift, quadric) = Shift::of_triangle(corners, triangle.map(|v| values[place(v)]), *least);
+                for vertex in triangle {
+                    shifts[place(*vertex)] = shifts[place(*vertex)].plus(shift);
+                    of_values[*vertex as usize] = of_values[*vertex as usize].plus(quadric);
+                }
+            }
+        }
+    }
+
+    /// Whether a triangle about a point turns too far when the point goes to `rim`, or becomes a splinter.
+    fn folds(&self, hub: u32, fan: &Fan, rim: u32) -> bool {
+        let at = |vertex: u32| self.positions[vertex as usize];
+        // The triangle's normal, and its height over its longest side in times that side.
+        let shape = |[apex, next, last]: [DVec3; 3]| {
+            let normal = (next - apex).cross(last - apex);
+            let sides = [next - apex, last - apex, next - last].map(DVec3::length_squared);
+            (normal, normal.length() / sides.into_iter().fold(0.0, f64::max))
+        };
+        let stays = |(corner, _): &(&Corner, &u32)| corner.iter().all(|vertex| self.point[*vertex as usize] != rim);
+        fan.corners.iter().zip(&self.about[hub as usize]).filter(stays).any(|(corner, number)| {
+            let [apex, next, last] = corner.map(at);
+            let (_, width) = shape([apex, next, last]);
+            let ((normal, then), facing) = (shape([at(rim), next, last]), self.facing[*number as usize]);
+            let turned = facing != DVec3::ZERO && normal.dot(facing) < MOST_TURN * normal.length();
+            turned || then < LEAST_WIDTH.min(0.5 * width) || normal == DVec3::ZERO
+        })
+    }
+
+    /// The planes about a point: of its triangles, and upright on borders and seams.
+    fn planes(&self, hub: u32, fan: &mut Fan) -> Quadric {
+        self.fill(hub, fan);
+        let here = self.positions[hub as usize];
+        let normal = |corner: &Corner| {
+            let [a, b, c] = corner.map(|vertex| self.positions[vertex as usize]);
+            (b - a).cross(c - a)
+        };
+        let plane = |normal: DVec3, weight: f64| Quadric::of_plane(normal.normalize_or_zero(), here, weight);
+        let about = self.about[hub as usize].iter().filter_map(|number| self.triangles[*number as usize].as_ref());
+        let surface = about.map(normal).map(|normal| plane(normal, 0.5 * normal.length()));
+        let bounds = fan.spokes.iter().filter(|spoke| spoke.is_border() || spoke.is_seam()).flat_map(|spoke| {
+            let along = self.positions[spoke.rim as usize] - here;
+            let beside = |corner: &&Corner| corner.iter().any(|vertex| self.point[*vertex as usize] == spoke.rim);
+            let upright = move |corner| plane(along.cross(normal(corner)), BORDER_WEIGHT * along.length_squared());
+            fan.corners.iter().filter(beside).map(upright)
+        });
+        surface.chain(bounds).fold(Quadric::NONE, Quadric::plus)
+    }
+
+    fn fill(&self, hub: u32, fan: &mut Fan) {
+        let corner = |vertices: [u32; 3]| {
+            let at = vertices.iter().position(|vertex| self.point[*vertex as usize] == hub).unwrap_or(0);
+            [0, 1, 2].map(|step| vertices[(at + step) % 3])
+        };
+        let about = &self.about[hub as usize];
+        let about = if about.len() > MOST_CORNERS { &[][..] } else { about };
+        let about = about.iter().filter_map(|number| self.triangles[*number as usize]);
+        fan.fill(about.map(corner), &self.point);
+    }
+}

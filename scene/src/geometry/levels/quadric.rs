@@ -1,0 +1,75 @@
+//! Sums of squared distances: of places from planes, and of what vertices have from where triangles have it.
+
+use glam::{DMat3, DVec3};
+
+/// A sum of squared distances from planes: p·Ap + 2 b·p + c (M. Garland, P. Heckbert, "Surface Simplification Using Quadric Error
+/// Metrics", SIGGRAPH 1997).
+#[derive(Clone, Copy)]
+pub(super) struct Quadric {
+    a: DMat3,
+    b: DVec3,
+    c: f64,
+}
+
+impl Quadric {
+    /// Of no planes.
+    pub const NONE: Self = Self { a: DMat3::ZERO, b: DVec3::ZERO, c: 0.0 };
+
+    /// That of the plane through `point`, upright on the unit vector `normal`.
+    pub fn of_plane(normal: DVec3, point: DVec3, weight: f64) -> Self {
+        let (n, d) = (normal * weight, -normal.dot(point));
+        Self { a: DMat3::from_cols(n * normal.x, n * normal.y, n * normal.z), b: n * d, c: weight * d * d }
+    }
+
+    pub fn plus(self, other: Self) -> Self {
+        Self { a: self.a + other.a, b: self.b + other.b, c: self.c + other.c }
+    }
+
+    /// The sum at `p`; rounding may leave it below 0.
+    pub fn at(&self, p: DVec3) -> f64 {
+        p.dot(self.a * p) + 2.0 * self.b.dot(p) + self.c
+    }
+}
+
+/// The same for a number that changes linearly over each of some triangles: squared distances by which a value at a place is from where
+/// the triangle has it.
+#[derive(Clone, Copy)]
+pub(super) struct Shift {
+    /// Sums of gradients, of values at the zero point, and of weights.
+    gradient: DVec3,
+    zero: f64,
+    weight: f64,
+}
+
+impl Shift {
+    /// Of no triangles.
+    pub const NONE: Self = Self { gradient: DVec3::ZERO, zero: 0.0, weight: 0.0 };
+
+    /// That of a triangle, and what it adds to the quadric of the places. Values that change by less than `least` a meter are taken to
+    /// change by that.
+    pub fn of_triangle(corners: [DVec3; 3], values: [f64; 3], least: f64) -> (Self, Quadric) {
+        let [a, b, c] = corners;
+        let (normal, [second, third]) = ((b - a).cross(c - a), [values[1] - values[0], values[2] - values[0]]);
+        let scale = 1.0 / normal.length_squared().max(f64::MIN_POSITIVE);
+        let gradient = scale * (second * (c - a).cross(normal) + third * normal.cross(b - a));
+        let zero = values[0] - gradient.dot(a);
+        let weight = 0.5 * normal.length() / (gradient.length_squared() + least * least);
+        let g = weight * gradient;
+        let quadric = Quadric {
+            a: DMat3::from_cols(g * gradient.x, g * gradient.y, g * gradient.z),
+            b: g * zero,
+            c: weight * zero * zero,
+        };
+        (Self { gradient: g, zero: weight * zero, weight }, quadric)
+    }
+
+    pub fn plus(self, other: Self) -> Self {
+        let weight = self.weight + other.weight;
+        Self { gradient: self.gradient + other.gradient, zero: self.zero + other.zero, weight }
+    }
+
+    /// The sum for `value` at `p`, but for what the quadric of the places has of it.
+    pub fn at(&self, p: DVec3, value: f64) -> f64 {
+        value * (self.weight * value - 2.0 * (self.gradient.dot(p) + self.zero))
+    }
+}
