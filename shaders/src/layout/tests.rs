@@ -117,3 +117,10 @@ fn defaults_of_the_overrides_are_the_defaults_of_the_settings() {
     let tone_map = post.reflection.overrides.iter().find(|o| o.name == "TONE_MAP").unwrap();
     assert_eq!(tone_map.default, ToneMap::default().number().map(f64::from));
 }
+
+/// What a fade is where nothing else is asked for: Filament's `VignetteOptions`, half of everything, to black.
+#[test]
+fn the_usual_fade_is_filaments() {
+    let layout::EdgeFade { middle, roundness, feather, color, multiple_px } = layout::EdgeFade::DEFAULT;
+    assert_eq!(([middle, roundness, feather], color, multiple_px), ([0.5; 3], [0.0; 3], 1));
+}

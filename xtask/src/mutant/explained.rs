@@ -218,6 +218,18 @@ pub const EXPLAINED: &[Explained] = &[
         after: "vec3<f32>(0.1, 0.0, 1.0),",
         why: "No triangle that covers a pixel has no area there; what stands in for its normal is not seen.",
     },
+    Explained {
+        file: "shaders/wgsl/shading/shadow.wgsl",
+        before: "return tints[min(select(4u, cascade, cascade < CASCADES), 4u)];",
+        after: "return tints[min(select(5u, cascade, cascade < CASCADES), 4u)];",
+        why: "What is beyond the last is taken for the last, which is 4.",
+    },
+    Explained {
+        file: "passes/src/upload/textures.rs",
+        before: "gpu.wait()?;",
+        after: "",
+        why: "It waits for copies that are queued, so that their memory is free before more is queued: the same is uploaded without.",
+    },
 ];
 
 /// Why a fault that survived is no gap, if that is known.
