@@ -57,7 +57,8 @@ impl Groups {
     #[must_use]
     pub fn batches(&self, list: &[u32], levels: &[u8], order: BatchOrder, numbers: &mut Vec<u32>) -> Vec<Batch> {
         let level = |instance: u32| levels.get(instance as usize).copied().unwrap_or(0);
-        let deep = 1 + list.iter().map(|instance| usize::from(level(*instance))).max().unwrap_or(0);
+        let deepest = || list.iter().map(|instance| level(*instance)).max();
+        let deep = if levels.is_empty() { 1 } else { 1 + usize::from(deepest().unwrap_or(0)) };
         let group = |instance: u32| self.of[instance as usize] as usize * deep + usize::from(level(instance));
         let base = numbers.len() as u32;
         let mut batches: Vec<Batch> = Vec::new();
