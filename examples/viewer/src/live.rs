@@ -135,13 +135,13 @@ impl Live {
     /// Loads a scene on a thread of its own. The one that is shown stays until it is there, or if it is none.
     pub fn load(&mut self, name: &str) {
         let (gpu, name, around) = (self.screen.gpu.clone(), name.to_owned(), self.wanted.clone());
-        let settings = self.light_settings();
+        let (settings, levels) = (self.light_settings(), self.document().frame.lod_error_px > 0.0);
         let wake = self.wake.clone();
         self.relighting = None;
         self.loading = Some(Job::start(
             format!("loading {name}"),
             move || wake(),
-            move |handle| loading::load(&gpu, &name, &around, &settings, handle),
+            move |handle| loading::load(&gpu, &name, &around, &settings, levels, handle),
         ));
     }
 
@@ -273,16 +273,16 @@ impl Live {
                 _ => {}
             }
         }
-        let toward = match self.document().look.sun {
-            sun @ Sun::Given { .. } => sun.toward(),
-            _ => None,
-        };
+        let sun = self.document().look.sun;
         if let Around::Sky(own) = &mut self.wanted {
-            *own = toward;
+            *own = if let Sun::Given { .. } = sun { sun.toward() } else { None };
         }
-        let settings = self.light_settings();
-        let Some(running) = &self.running else { return };
-        let loaded = &running.loaded;
+        let (settings, levels) = (self.light_settings(), self.document().frame.lod_error_px > 0.0);
+        let Some(loaded) = self.running.as_mut().map(|running| &mut running.loaded) else { return };
+        if self.loading.is_none() && levels && !std::mem::replace(&mut loaded.levels, true) {
+            let name = loaded.name.clone();
+            return self.load(&name);
+        }
         let other = loaded.around != self.wanted || loaded.light_settings != settings;
         if !other || self.relighting.is_some() || self.loading.is_some() || self.refused.is_some() {
             return;

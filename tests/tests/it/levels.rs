@@ -22,9 +22,9 @@ fn rows() -> Result<Scene, Box<dyn Error>> {
     let clay = scene.add_material(Material::dielectric("clay", Vec3::new(0.8, 0.3, 0.2), 0.35));
     let floor = scene.add_mesh(plane(Vec2::splat(60.0), 1, Vec2::ONE));
     scene.add_instance("floor", floor, clay, DMat4::IDENTITY);
-    for i in 0..12_u32 {
-        let mesh = scene.add_mesh(if i % 3 == 2 { torus(0.4, 0.12, 48, 24) } else { sphere(0.45, 64, 32) });
-        let at = DVec3::new(1.1 * f64::from(i % 3) - 1.1, 0.5, -2.5 * f64::from(i / 3));
+    for i in 0..8_u32 {
+        let mesh = scene.add_mesh(if i % 3 == 2 { torus(0.4, 0.12, 40, 20) } else { sphere(0.45, 56, 28) });
+        let at = DVec3::new(1.1 * f64::from(i % 2) - 0.55, 0.5, -2.5 * f64::from(i / 2));
         let turned = DMat4::from_rotation_x(f64::from(i)) * DMat4::from_scale(DVec3::new(1.0, 1.0, 1.1));
         scene.add_instance("one", mesh, clay, DMat4::from_translation(at) * turned);
     }
@@ -98,7 +98,7 @@ fn a_pixel_off_is_hardly_seen_and_surfaces_shadow_nothing_of_their_own() -> Resu
     }
     // A pixel is the most that anything is off: of edges some pixels are others.
     let pixel = table[2];
-    assert!(pixel.1 * 2 < table[0].1 && pixel.2 < 0.02 && pixel.3 > 38.0, "{table:?}");
+    assert!(pixel.1 * 3 < table[0].1 * 2 && pixel.2 < 0.02 && pixel.3 > 38.0, "{table:?}");
     world.set_view(&gpu, ViewId::MAIN, mixed)?;
     let (share, _) = apart(&shoot(&gpu, &world, &settings)?, &first);
     assert!(share > table[5].2 + 0.005, "another level's shadow is not seen: {share} after {table:?}");

@@ -79,9 +79,11 @@ pub struct Loaded {
     pub background: Background,
     /// The exposure value for its light.
     pub metered_ev100: f32,
+    /// Its meshes have levels of detail.
+    pub levels: bool,
 }
 
-/// Loads a scene and its light. The second value is what was repaired, a line each.
+/// Loads a scene and its light, with levels of detail where settings ask for any. The second value is what was repaired, a line each.
 ///
 /// # Errors
 /// One line that names the file and the reason; also when the work was cancelled.
@@ -90,6 +92,7 @@ pub fn load(
     name: &str,
     around: &Around,
     settings: &LightSettings,
+    levels: bool,
     handle: &Handle,
 ) -> Result<(Loaded, Vec<String>), String> {
     let options = LoadOptions::default();
@@ -98,8 +101,9 @@ pub fn load(
     if scene.instances.is_empty() {
         return Err(format!("{name}: the scene shows nothing: it has no mesh in it"));
     }
-    // Settings may ask for them at any time.
-    scene.make_levels(&mut |p| told(handle, p)).map_err(|e| e.to_string())?;
+    if levels {
+        scene.make_levels(&mut |p| told(handle, p)).map_err(|e| e.to_string())?;
+    }
     let Lit { around, settings, lighting, sun, background, metered_ev100, mut warnings } =
         light(gpu, &scene, around, settings, handle)?;
     warnings.splice(0..0, scene.warnings.iter().cloned());
@@ -121,8 +125,20 @@ pub fn load(
     let (lights, survey) = (scene.lights.clone(), Arc::new(Survey::new(&scene)));
     let name = name.to_owned();
     let light_settings = settings;
-    let loaded =
-        Loaded { name, scene, lights, survey, prepared, world, sun, around, light_settings, background, metered_ev100 };
+    let loaded = Loaded {
+        name,
+        scene,
+        lights,
+        survey,
+        prepared,
+        world,
+        sun,
+        around,
+        light_settings,
+        background,
+        metered_ev100,
+        levels,
+    };
     Ok((loaded, warnings))
 }
 

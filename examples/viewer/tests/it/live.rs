@@ -4,7 +4,7 @@ use crate::folder;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use framegraph::Caps;
-use framegraph_passes::{Effect, Preset, Settings};
+use framegraph_passes::{Effect, FrameSettings, Preset, Settings};
 use framegraph_wgpu::debug::{Mode, Modes};
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::sync::Arc;
@@ -19,9 +19,10 @@ use viewer::what_if::WhatIf;
 /// Loading and making light take longer than this only where something hangs.
 const PATIENCE: Duration = Duration::from_secs(300);
 
-/// The frame of the cheapest preset with ambient occlusion, of a scene with a light that casts shadows.
+/// The frame of the cheapest preset with ambient occlusion, of a scene with a light that casts shadows; of whole meshes, since levels of
+/// detail take longer to make than the rest.
 pub fn document() -> Document {
-    let mut frame = Preset::Low.frame();
+    let mut frame = FrameSettings { lod_error_px: 0.0, ..Preset::Low.frame() };
     frame.settings = Settings::with(frame.settings, Effect::Occlusion);
     Document { frame, ..Document::default() }
 }
@@ -123,6 +124,22 @@ fn what_facts_drop_is_told_beside_its_switch() {
         facts.rows.iter().find(|row| facts.dropped().contains(row.effect)).expect("the scene needs not everything");
     let told = format!("dropped because {}", row.reason);
     assert!(harness.query_all_by_label_contains(&told).count() > 0, "{told}");
+}
+
+/// Whoever asks for levels of detail of a scene that has none waits for them once.
+#[test]
+fn levels_of_detail_are_made_when_they_are_asked_for() {
+    let Some(mut harness) = harness("levels_of_detail_are_made_when_they_are_asked_for", "spheres") else { return };
+    let levels = |harness: &mut Harness<'_, Viewer>| {
+        let loaded = &live(harness).running.as_ref().expect("a frame").loaded;
+        loaded.scene.meshes.iter().map(|mesh| mesh.levels.len()).sum::<usize>()
+    };
+    assert_eq!(levels(&mut harness), 0);
+    let asked = live(&mut harness).document().clone();
+    let frame = FrameSettings { lod_error_px: 1.0, ..asked.frame };
+    live(&mut harness).set(Document { frame, ..asked }, false);
+    settled(&mut harness);
+    assert!(levels(&mut harness) > 2);
 }
 
 #[test]
