@@ -3,6 +3,7 @@
 use crate::indirect::{Arguments, DrawList};
 use crate::shadow::ViewShadows;
 use crate::upload::MeshRange;
+use framegraph_scene::levels::level_of;
 use framegraph_scene::{Batch, BatchOrder, DrawLists, Renderables};
 
 /// What is drawn of a view, each list as the draws that make it up: all instances of one mesh and material are one draw where
@@ -44,9 +45,12 @@ impl ViewDraws {
         let casters = maps.map(|map| &map.casters).map(of_map).collect();
         let first = numbers.len() as u32;
         numbers.extend_from_slice(transmit);
-        let level = |instance: u32| levels.get(instance as usize).copied().unwrap_or(0);
-        let alone =
-            |(first, instance): (u32, &u32)| Batch { instance: *instance, first, count: 1, level: level(*instance) };
+        let alone = |(first, instance): (u32, &u32)| Batch {
+            instance: *instance,
+            first,
+            count: 1,
+            level: level_of(levels, *instance),
+        };
         let transmit = (first..).zip(transmit).map(alone).collect();
         Self { depth, surfaces: shaded, transmit, blend: blended, casters, numbers, arguments: Vec::new() }
     }

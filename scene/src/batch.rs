@@ -1,5 +1,7 @@
 //! Instances of one mesh in one level of detail, of one surface and side, drawn by one instanced draw.
 
+use crate::levels::level_of;
+
 /// Instances that one draw draws: a range of an array of instance numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Batch {
@@ -56,7 +58,7 @@ impl Groups {
     /// the draws. `levels` has the level of detail of each instance by its number, or nothing where all are drawn whole.
     #[must_use]
     pub fn batches(&self, list: &[u32], levels: &[u8], order: BatchOrder, numbers: &mut Vec<u32>) -> Vec<Batch> {
-        let level = |instance: u32| levels.get(instance as usize).copied().unwrap_or(0);
+        let level = |instance: u32| level_of(levels, instance);
         let deepest = || list.iter().map(|instance| level(*instance)).max();
         let deep = if levels.is_empty() { 1 } else { 1 + usize::from(deepest().unwrap_or(0)) };
         let group = |instance: u32| self.of[instance as usize] as usize * deep + usize::from(level(instance));

@@ -10,8 +10,8 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 impl Scene {
-    /// Makes [levels](crate::mesh::Mesh::levels) of every mesh that is drawn and has none, on all cores: of 100,000 triangles in about a
-    /// second. Meshes of [bodies](crate::motion::Body) are drawn whole. To be called before the scene is uploaded and prepared.
+    /// Makes [levels](crate::mesh::Mesh::levels) of every mesh that is drawn and has none, on all cores, which for hundreds of
+    /// thousands of triangles takes seconds. Meshes of [bodies](crate::motion::Body) are drawn whole. To be called before the scene is uploaded and prepared.
     ///
     /// # Errors
     /// When `progress` asks to stop.
@@ -58,6 +58,12 @@ impl Scene {
         made.into_iter().for_each(|(number, levels)| self.meshes[number].levels = levels);
         Ok(())
     }
+}
+
+/// The level of an instance in an array by the numbers of instances, which is empty where all are drawn whole.
+#[must_use]
+pub fn level_of(levels: &[u8], instance: u32) -> u8 {
+    levels.get(instance as usize).copied().unwrap_or(0)
 }
 
 /// What choosing levels for the instances of a scene takes.

@@ -8,6 +8,7 @@ use super::decided::Facts;
 use super::effect::Effect;
 use super::fact::{Fact, Proof};
 use super::seen::fit_camera;
+use framegraph_scene::levels::level_of;
 use framegraph_scene::{BatchOrder, SHADED_POINTS, shaded_at_points};
 
 /// What drawing a triangle into depth takes, in times of shading a pixel: as measured (`docs/facts.md`).
@@ -44,7 +45,7 @@ pub(super) fn rules(case: &Case<'_>, facts: &mut Facts) {
         // Shadow maps may ask for more.
         let in_level = |number: &u32| {
             let mesh = &scene.meshes[scene.instances[*number as usize].mesh.index()];
-            mesh.indices_in(levels.get(*number as usize).copied().unwrap_or(0)).len() / 3
+            mesh.indices_in(level_of(&levels, *number)).len() / 3
         };
         triangles += numbers.iter().map(in_level).sum::<usize>();
         let bounds = numbers.iter().map(|number| &scene.instances[*number as usize].bounds);

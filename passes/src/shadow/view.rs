@@ -5,6 +5,7 @@ use super::local;
 use super::settings::{MOST_MAPS, ShadowSettings};
 use super::sun::SunScene;
 use super::volume::FitCamera;
+use framegraph_scene::levels::level_of;
 use framegraph_scene::{DrawLists, Light, LightKind, Renderables, Scene};
 use framegraph_shaders::layout::{ShadowMapUniforms, ShadowUniforms};
 use glam::{DVec3, Vec4};
@@ -98,7 +99,7 @@ impl ViewShadows {
     /// Notes in which level of detail each instance is drawn, by its number.
     pub(crate) fn set_levels(&mut self, levels: &[u8]) {
         for (number, _, level) in self.keys.iter_mut().flat_map(|key| &mut key.casters) {
-            *level = levels.get(*number as usize).copied().unwrap_or(0);
+            *level = level_of(levels, *number);
         }
     }
 

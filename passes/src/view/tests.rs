@@ -134,6 +134,10 @@ fn an_instance_has_one_level_of_detail_in_all_that_is_drawn() -> Result<(), Box<
     assert!(level(&view(&seen(27.0, 1.0, 4096))) < found[3], "texels of maps are as small as that");
     let together = CameraView::together(&scene, &light, &Background::None, &[coarse(27.0), coarse(1.0), coarse(9.0)]);
     assert_eq!(together.iter().map(level).collect::<Vec<_>>(), [found[0]; 3]);
+    // One of which may be drawn coarser than the one whose maps they are.
+    let together = CameraView::together(&scene, &light, &Background::None, &[seen(27.0, 1.0, 64), seen(27.0, 4.0, 64)]);
+    let levels: Vec<u8> = together.iter().map(level).collect();
+    assert!(levels[0] == levels[1] && level(&view(&seen(27.0, 4.0, 64))) > levels[0], "{levels:?}");
     // Of the lamp's maps, which do not depend on the eye while that is near.
     let keys = |far_m, lod_error_px| {
         let shadows = view(&seen(far_m, lod_error_px, 64)).shadows;
