@@ -81,7 +81,7 @@ impl Collapse {
         let mut own = Self {
             values: (0..count as u32).flat_map(of_vertex).map(f64::from).collect(),
             width,
-            of_values: vec![Quadric::NONE; if width > 0 { count } else { 0 }],
+            of_values: vec![Quadric::NONE; count],
             shifts: vec![Shift::NONE; count * width],
             positions: mesh.positions.iter().map(|p| p.as_dvec3() - middle).collect(),
             quadrics: vec![Quadric::NONE; count],
@@ -154,7 +154,7 @@ impl Collapse {
         let rim = edge.rim as usize;
         self.quadrics[rim] = self.quadrics[rim].plus(self.quadrics[hub as usize]);
         self.changed[hub as usize] += 1;
-        for [from, to] in edge.pairs().filter(|_| self.width > 0).map(|pair| pair.map(|vertex| vertex as usize)) {
+        for [from, to] in edge.pairs().map(|pair| pair.map(|vertex| vertex as usize)) {
             self.of_values[to] = self.of_values[to].plus(self.of_values[from]);
             for number in 0..self.width {
                 let (from, to) = (from * self.width + number, to * self.width + number);
@@ -198,9 +198,6 @@ impl Collapse {
 
     /// The sum of squares of how far what a vertex has is displaced where it goes into another.
     fn shifted(&self, [from, to]: [u32; 2], there: DVec3) -> f64 {
-        if self.width == 0 {
-            return 0.0;
-        }
         let numbers = |vertex: u32| vertex as usize * self.width..(vertex as usize + 1) * self.width;
         let pairs = self.shifts[numbers(from)].iter().zip(&self.shifts[numbers(to)]).zip(&self.values[numbers(to)]);
         let of_places = self.of_values[from as usize].plus(self.of_values[to as usize]).at(there);
