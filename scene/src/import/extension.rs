@@ -1,29 +1,120 @@
-//! Which extensions are understood.
+//! Extensions of glTF: which ones the importer reads, and what happens to a file that uses another one.
 
 use std::path::Path;
 
 use gltf_json::Root;
 
-use super::lobes;
 use super::source::Warnings;
 use crate::error::{SceneError, Unsupported};
 
-/// The extensions that this importer honours in full beside those of [`lobes`].
-const SUPPORTED: [&str; 6] = [
-    "KHR_lights_punctual",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_unlit",
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",
-];
-
-fn is_supported(name: &str) -> bool {
-    SUPPORTED.contains(&name) || lobes::EXTENSIONS.contains(&name)
+/// How the importer treats an extension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Support {
+    /// Everything the extension specifies is read.
+    Full,
+    /// The extension is read in a build with this feature of the crate.
+    Feature(&'static str),
+    /// The extension is not read. A file that uses it loads with a warning; a file that requires it is refused.
+    None,
 }
 
-/// Refuses a document that requires something else, and warns of what will be ignored: optional
-/// extensions by name and number of materials, and animation, skins and morph targets.
+/// One extension of glTF and its support.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extension {
+    /// Name in `extensionsUsed`.
+    pub name: &'static str,
+    /// Whether the importer reads it.
+    pub support: Support,
+    /// One line on what is read, what is converted, or what a file loses without it.
+    pub note: &'static str,
+}
+
+const fn full(name: &'static str, note: &'static str) -> Extension {
+    Extension { name, support: Support::Full, note }
+}
+
+const fn none(name: &'static str, note: &'static str) -> Extension {
+    Extension { name, support: Support::None, note }
+}
+
+/// Every Khronos (`KHR_`) and multi-vendor (`EXT_`) extension of glTF 2.0, sorted by name. `docs/files.md` prints this
+/// table.
+pub const EXTENSIONS: &[Extension] = &[
+    none("EXT_instance_features", "feature identifiers of instances are not read"),
+    none("EXT_lights_ies", "light profiles are not read; the light shines evenly"),
+    none("EXT_lights_image_based", "the environment of the program is used"),
+    none("EXT_mesh_features", "feature identifiers of vertices are not read"),
+    none("EXT_mesh_gpu_instancing", "a mesh is drawn once, at its node"),
+    none("EXT_mesh_manifold", "the mesh is drawn; its manifold indices are not read"),
+    none("EXT_mesh_primitive_edge_visibility", "edges are not drawn"),
+    none("EXT_mesh_primitive_restart", "an index that restarts a strip is refused as out of range"),
+    none("EXT_meshopt_compression", "compressed buffer views are not decoded"),
+    none("EXT_structural_metadata", "metadata is not read"),
+    none("EXT_texture_astc", "ASTC images are not decoded"),
+    none("EXT_texture_webp", "WebP images are not decoded; the fallback image is used"),
+    none("KHR_accessor_float64", "accessors of 64-bit floats are refused"),
+    none("KHR_animation_pointer", "the channels that use it are ignored"),
+    none("KHR_audio_emitter", "there is no sound"),
+    none("KHR_draco_mesh_compression", "compressed primitives are not decoded"),
+    none("KHR_gaussian_splatting", "splats are not drawn"),
+    none("KHR_implicit_shapes", "shapes are not drawn; they serve physics"),
+    none("KHR_interactivity", "behavior graphs are not run"),
+    full("KHR_lights_punctual", "directional, point and spot lights"),
+    full("KHR_materials_anisotropy", ""),
+    full("KHR_materials_clearcoat", ""),
+    none("KHR_materials_diffuse_transmission", "the surface is opaque"),
+    none("KHR_materials_dispersion", "all wavelengths refract alike"),
+    full("KHR_materials_emissive_strength", "emission is in nits"),
+    full("KHR_materials_ior", ""),
+    none("KHR_materials_iridescence", "the surface has no thin film"),
+    none("KHR_materials_pbrSpecularGlossiness", "the metal-rough fallback is used"),
+    full("KHR_materials_sheen", ""),
+    full("KHR_materials_specular", ""),
+    full("KHR_materials_transmission", ""),
+    full("KHR_materials_unlit", ""),
+    none("KHR_materials_variants", "every primitive has its default material"),
+    full("KHR_materials_volume", ""),
+    none("KHR_materials_volume_scatter", "the volume absorbs and does not scatter"),
+    full("KHR_mesh_quantization", ""),
+    none("KHR_meshopt_compression", "compressed buffer views are not decoded"),
+    none("KHR_node_hoverability", "it concerns input, which a scene has none of"),
+    none("KHR_node_selectability", "it concerns input, which a scene has none of"),
+    none("KHR_node_visibility", "hidden nodes are drawn"),
+    none("KHR_physics_rigid_bodies", "nothing is simulated"),
+    none("KHR_techniques_webgl", "shaders in files are not read"),
+    none("KHR_texture_basisu", "KTX2 images are not decoded; the fallback image is used"),
+    none("KHR_texture_procedurals", "procedural textures are not evaluated"),
+    full("KHR_texture_transform", ""),
+    none("KHR_xmp", "metadata is not read"),
+    none("KHR_xmp_json_ld", "metadata is not read"),
+];
+
+/// Returns whether this build reads the extension.
+pub(super) fn is_supported(name: &str) -> bool {
+    let known = EXTENSIONS.iter().find(|extension| extension.name == name);
+    known.is_some_and(|extension| match extension.support {
+        Support::Full => true,
+        Support::Feature(feature) => is_enabled(feature),
+        Support::None => false,
+    })
+}
+
+/// Returns whether this crate was compiled with the feature.
+fn is_enabled(feature: &str) -> bool {
+    match feature {
+        "png" => cfg!(feature = "png"),
+        "jpeg" => cfg!(feature = "jpeg"),
+        _ => false,
+    }
+}
+
+/// Checks the version and the extensions of a document.
+///
+/// Warns once for each optional extension that is not read.
+///
+/// # Errors
+///
+/// Fails for a version other than 2, and for a required extension that is not read.
 pub(super) fn check(file: &Path, root: &Root, warnings: &mut Warnings) -> Result<(), SceneError> {
     let unsupported = |feature| SceneError::Unsupported { file: file.into(), feature };
     let version = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
@@ -44,11 +135,23 @@ pub(super) fn check(file: &Path, root: &Root, warnings: &mut Warnings) -> Result
             .iter()
             .filter(|m| m.extensions.as_ref().is_some_and(|e| e.others.contains_key(name)))
             .count();
+        let known = EXTENSIONS.iter().find(|extension| extension.name == name);
+        let effect = known.map_or(String::new(), |extension| format!(": {}", extension.note));
         if materials > 0 {
-            warnings.push(format!("{name} is ignored ({materials} materials use it)"));
+            warnings.push(format!("{name} is ignored ({materials} materials use it){effect}"));
         } else {
-            warnings.push(format!("{name} is ignored"));
+            warnings.push(format!("{name} is ignored{effect}"));
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extensions_are_sorted_and_unique() {
+        assert!(EXTENSIONS.windows(2).all(|pair| pair[0].name < pair[1].name));
+    }
 }

@@ -12,16 +12,6 @@ use crate::error::SceneError;
 use crate::material::{Anisotropy, ClearCoat, Material, Sheen, Specular, Transmission, Volume};
 use crate::texture::{TextureRole, TextureSlot};
 
-/// The extensions that are read here.
-pub(super) const EXTENSIONS: [&str; 6] = [
-    "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",
-    "KHR_materials_sheen",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-    "KHR_materials_volume",
-];
-
 /// What reading a material needs beside its JSON.
 struct Reading<'a, 'b> {
     source: &'a Source<'a>,
