@@ -16,7 +16,7 @@ mod weld;
 
 pub use box_shape::cuboid;
 #[cfg(feature = "gltf")]
-pub(crate) use flat::make_flat;
+pub(crate) use flat::{make_flat, repair_normals};
 pub use levels::{ReadStreams, levels_of_detail};
 pub use order::{order_for_drawing, shaded_vertices};
 pub use plane::plane;

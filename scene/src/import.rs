@@ -16,6 +16,7 @@ mod accessor;
 mod buffer;
 mod camera;
 mod container;
+mod document;
 mod encoding;
 mod extension;
 mod images;
@@ -36,8 +37,6 @@ mod uri;
 
 use std::collections::BTreeMap;
 use std::path::Path;
-
-use gltf_json::Root;
 
 use self::material::Materials;
 use self::node::FlatNode;
@@ -105,17 +104,19 @@ pub fn load_bytes_with(
     options: &LoadOptions,
     progress: &mut ProgressFn<'_>,
 ) -> Result<Scene, SceneError> {
-    let (json, blob) = container::split(path, bytes)?;
-    let root: Root =
-        gltf_json::deserialize::from_slice(json).map_err(|e| SceneError::malformed(path, "JSON", e.to_string()))?;
+    let parts = container::split(path, bytes)?;
+    let document = document::parse(path, parts.json)?;
     let mut warnings = Warnings::new(path);
-    extension::check(path, &root, &mut warnings)?;
-    let mut source = Source::new(path, &root, options);
+    if parts.is_unpadded {
+        warnings.push("GLB container: a chunk is not padded to four bytes; the next one is read behind it");
+    }
+    extension::check(path, &document.root, &mut warnings)?;
+    let mut source = Source::new(path, &document, options);
     source.note_file(path);
-    source.buffers = buffer::load(&source, blob, progress)?;
+    source.buffers = buffer::load(&source, parts.blob, progress)?;
     let source = source;
 
-    let nodes = node::flatten(&source)?;
+    let nodes = node::flatten(&source, &mut warnings)?;
     let mut scene = Scene {
         name: path.file_stem().map_or_else(String::new, |stem| one_line(&stem.to_string_lossy())),
         ..Scene::default()

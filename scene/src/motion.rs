@@ -12,7 +12,7 @@ mod body;
 mod pose;
 mod sample;
 
-pub use crate::moves::{MorphTarget, Moves};
+pub use crate::moves::{InfluenceSet, MorphTarget, Moves};
 pub use body::{Body, Shape, Skin};
 pub use pose::PoseError;
 pub use sample::{Curve, Interpolation};

@@ -2,22 +2,32 @@
 
 use glam::Vec3;
 
-/// What moves the vertices of a mesh.
+/// Skin influences and morph targets of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Moves {
-    /// The joints of each vertex, places in [`Skin::joints`](crate::motion::Skin::joints); none without a skin.
-    pub joints: Vec<[u16; 4]>,
-    /// How much it follows each; their sum is 1.
-    pub weights: Vec<[f32; 4]>,
-    /// What is added by each weight of the node.
+    /// Skin influences in sets of four, as glTF stores them (`JOINTS_n`, `WEIGHTS_n`); empty without a skin. Over all sets
+    /// the weights of a vertex add up to 1.
+    pub influences: Vec<InfluenceSet>,
+    /// Morph targets, one for each weight of the node.
     pub targets: Vec<MorphTarget>,
+}
+
+/// Four skin influences for each vertex.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InfluenceSet {
+    /// Places in [`Skin::joints`](crate::motion::Skin::joints).
+    pub joints: Vec<[u16; 4]>,
+    /// Weight of each joint, 0 to 1.
+    pub weights: Vec<[f32; 4]>,
 }
 
 impl Moves {
     /// Replaces vertices by copies of `source[i]`, as `Mesh::gather_vertices` does.
     pub(crate) fn gather_vertices(&mut self, source: &[u32]) {
-        gather(&mut self.joints, source);
-        gather(&mut self.weights, source);
+        for set in &mut self.influences {
+            gather(&mut set.joints, source);
+            gather(&mut set.weights, source);
+        }
         for target in &mut self.targets {
             gather(&mut target.positions, source);
             gather(&mut target.normals, source);

@@ -42,7 +42,7 @@ impl fmt::Display for Unsupported {
         let feature = |name: &str| format!("; compile framegraph-scene with its feature `{name}`");
         let of_kind = |kind: &FileKind| kind.feature().map(feature);
         match self {
-            Self::GltfVersion(version) => write!(f, "glTF version {version:?} is not supported"),
+            Self::GltfVersion(version) => write!(f, "glTF version {version:?} is not supported; convert the file to glTF 2.0"),
             Self::Extensions(names) => {
                 let names = names.join(", ");
                 write!(f, "the required extension {names} is not supported; export the file without it")

@@ -1,6 +1,9 @@
-//! Flat normals for meshes that bring none (glTF 2.0, section 3.7.2.1).
+//! Normals from triangles: flat ones for meshes without any (glTF 2.0, section 3.7.2.1), smooth ones in place of unusable
+//! ones.
 
-use glam::Vec3;
+use std::collections::BTreeMap;
+
+use glam::{DVec3, Vec3};
 
 use super::weld::split_by_key;
 use crate::mesh::Mesh;
@@ -26,6 +29,40 @@ pub(crate) fn make_flat(mesh: &mut Mesh) -> usize {
     mesh.normals = split.source_corner.iter().map(|&corner| normals[corner as usize / 3]).collect();
     mesh.indices = split.indices;
     before - mesh.triangle_count()
+}
+
+/// Normalizes the normals of a mesh. One that is not finite or shorter than 1e-6 is recomputed from the triangles at its
+/// vertex, weighted by area; a vertex without area gets the normal +z. Returns the number of recomputed normals.
+pub(crate) fn repair_normals(mesh: &mut Mesh) -> usize {
+    let unit = |normal: Vec3| {
+        let (normal, length) = (normal.as_dvec3(), normal.as_dvec3().length());
+        (length.is_finite() && length >= 1e-6).then(|| (normal / length).as_vec3())
+    };
+    let mut bad = BTreeMap::new();
+    for (vertex, normal) in mesh.normals.iter_mut().enumerate() {
+        match unit(*normal) {
+            Some(unit) => *normal = unit,
+            None => _ = bad.insert(vertex, DVec3::ZERO),
+        }
+    }
+    if bad.is_empty() {
+        return 0;
+    }
+    // Areas relative to the mesh's size neither vanish nor overflow.
+    let size = mesh.bounds.half_extent().max_element().max(f64::MIN_POSITIVE);
+    for corners in mesh.triangles() {
+        let [a, b, c] = corners.map(|corner| mesh.positions[corner].as_dvec3() / size);
+        let area = (b - a).cross(c - a);
+        for corner in corners {
+            if let Some(sum) = bad.get_mut(&corner) {
+                *sum += area;
+            }
+        }
+    }
+    for (vertex, sum) in &bad {
+        mesh.normals[*vertex] = sum.try_normalize().unwrap_or(DVec3::Z).as_vec3();
+    }
+    bad.len()
 }
 
 /// The unit normal of a counter-clockwise triangle; `None` without area. Computed in f64 on edges

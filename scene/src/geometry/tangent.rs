@@ -24,7 +24,7 @@ pub(crate) fn generate_tangents(mesh: &mut Mesh, uv_set: u32) {
     repair_tangents(mesh);
 }
 
-/// Makes every tangent a unit vector perpendicular to its normal, with w = ±1. Tangents that are
+/// Makes every tangent a unit vector perpendicular to its normal, with w = ±1. Tangents that are not finite,
 /// zero or along the normal (collapsed texture coordinates) are replaced by some perpendicular
 /// vector; their number is returned.
 pub(crate) fn repair_tangents(mesh: &mut Mesh) -> usize {
@@ -34,7 +34,7 @@ pub(crate) fn repair_tangents(mesh: &mut Mesh) -> usize {
         let along = tangent.truncate();
         // Below a thousandth of a radian from the normal the direction is rounding noise.
         let across = along - normal * along.dot(normal);
-        let usable = across.length_squared() > 1e-6 * along.length_squared().max(1e-12);
+        let usable = across.is_finite() && across.length_squared() > 1e-6 * along.length_squared().max(1e-12);
         let direction = if usable {
             across.normalize()
         } else {

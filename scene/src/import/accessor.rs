@@ -15,14 +15,14 @@ struct Elements<'a> {
     stride: usize,
     count: usize,
     component: ComponentType,
-    /// Components an element: 1 to 4.
+    /// Components an element: 1 to 4, or 16 of a matrix.
     width: usize,
     normalized: bool,
     /// Positions to replace, and the bytes that replace them.
     sparse: Option<(Vec<u32>, &'a [u8], usize)>,
 }
 
-/// Reads an accessor of vectors of `N` components as f32. Integer components count as normalized
+/// Reads an accessor of vectors of `N` components, or of 4×4 matrices for an `N` of 16, as f32. Integer components count as normalized
 /// where the accessor says so, and as plain numbers otherwise (KHR_mesh_quantization).
 pub(super) fn floats<const N: usize>(
     source: &Source<'_>,
@@ -88,8 +88,9 @@ fn resolve<'a>(source: &'a Source<'_>, index: usize, user: &str) -> Result<Eleme
         return Err(source.malformed(&at, "unknown component type or element type"));
     };
     let component = component.0;
-    if matches!(kind, Type::Mat2 | Type::Mat3 | Type::Mat4) {
-        return Err(source.malformed(&at, "holds matrices, not vectors"));
+    // Columns of the smaller matrices may be padded, and nothing reads them. Columns of four never are (section 3.6.2.4).
+    if matches!(kind, Type::Mat2 | Type::Mat3) {
+        return Err(source.malformed(&at, "it holds 2×2 or 3×3 matrices, which nothing here reads"));
     }
     let count = accessor.count.0;
     if count == 0 {

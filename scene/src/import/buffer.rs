@@ -8,12 +8,13 @@ use crate::error::SceneError;
 use crate::progress::{Progress, ProgressFn, Stage, report};
 use crate::read::{file_bytes, read_file};
 
-/// The bytes of every buffer; a buffer without a URI is the binary chunk `blob`.
+/// Returns the bytes of every buffer. Buffer 0 without a URI is the binary chunk `blob`; another one without a URI has no
+/// bytes.
 pub(super) fn load<'a>(
     source: &Source<'_>,
     blob: Option<&'a [u8]>,
     progress: &mut ProgressFn<'_>,
-) -> Result<Vec<Cow<'a, [u8]>>, SceneError> {
+) -> Result<Vec<Option<Cow<'a, [u8]>>>, SceneError> {
     let all = &source.root.buffers;
     let mut buffers = Vec::new();
     for (i, buffer) in all.iter().enumerate() {
@@ -32,13 +33,16 @@ pub(super) fn load<'a>(
                 }
             },
             (None, Some(blob)) if i == 0 => Cow::Borrowed(blob),
-            (None, _) => return Err(source.malformed(&at, "it has neither a URI nor a binary chunk")),
+            (None, _) => {
+                buffers.push(None);
+                continue;
+            }
         };
         let (promised, found) = (buffer.byte_length.0, bytes.len() as u64);
         if found < promised {
             return Err(source.malformed(&at, format!("truncated: {promised} bytes are promised, {found} are there")));
         }
-        buffers.push(bytes);
+        buffers.push(Some(bytes));
         report(progress, source.file, Progress { stage: Stage::Files, done: i + 1, total: all.len(), item: &at })?;
     }
     Ok(buffers)

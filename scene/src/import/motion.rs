@@ -1,18 +1,23 @@
 //! Nodes, skins and animations.
 
-use glam::DMat4;
+use std::collections::BTreeMap;
+
+use glam::{DMat4, DVec4};
 use gltf_json::animation::{Interpolation as Way, Property as Path};
 use gltf_json::validation::Checked;
 
 use super::accessor::{floats, width};
+use super::document::NO_NODE;
 use super::node::FlatNode;
 use super::source::{Source, Warnings, beyond};
 use crate::error::{SceneError, one_line};
-use crate::motion::{Animation, Body, Channel, Curve, Interpolation, Motion, Node, Property, Shape, Skin};
+use crate::motion::{Animation, Body, Channel, Curve, Interpolation, Motion, Moves, Node, Property, Shape, Skin};
 use crate::scene::Scene;
 
-/// What moves in the file, for a scene whose instances hang on `instance_nodes`, places in `nodes`. Nothing where the file has
-/// neither animations nor skins nor morph targets.
+/// Imports nodes, skins, bodies and animations into [`Scene::motion`], and poses the scene at rest.
+///
+/// `instance_nodes` has the place in `nodes` of each instance's node. A file without animations, skins and morph targets
+/// imports nothing.
 pub(super) fn import(
     source: &Source<'_>,
     nodes: &[FlatNode],
@@ -23,39 +28,27 @@ pub(super) fn import(
     let mut motion = Motion { nodes: nodes.iter().map(|node| rig_node(source, node)).collect(), ..Motion::default() };
     let mut places = vec![None; source.root.nodes.len()];
     nodes.iter().enumerate().for_each(|(place, node)| places[node.index] = Some(place));
-    for (number, skin) in source.root.skins.iter().enumerate() {
-        motion.skins.push(read_skin(source, number, skin, &places)?);
-    }
+    // Skins by their index in the file. Skins that no mesh uses are not read.
+    let mut skins = BTreeMap::new();
     for (instance, place) in instance_nodes.iter().enumerate() {
         let id = scene.instances[instance].mesh;
         let mesh = &mut scene.meshes[id.index()];
         let Some(moves) = mesh.moves.take() else { continue };
-        let node = &nodes[*place];
-        let skin = node.skin.filter(|_| !moves.joints.is_empty());
-        if let Some(number) = skin {
-            let known = motion
-                .skins
-                .get(number)
-                .ok_or_else(|| source.malformed(&node.at, beyond("skin", number, &motion.skins)))?;
-            let joints = moves.joints.iter().zip(&moves.weights).enumerate();
-            for (vertex, (own, weights)) in joints {
-                let wrong = own
-                    .iter()
-                    .zip(weights)
-                    .find(|(joint, weight)| usize::from(**joint) >= known.joints.len() && **weight > 0.0);
-                if let Some((joint, _)) = wrong {
-                    let reason = format!(
-                        "vertex {vertex} of its mesh follows joint {joint}, but its skin has {}",
-                        known.joints.len()
-                    );
-                    return Err(source.malformed(&node.at, reason));
-                }
-            }
-        }
         let mut moves = *moves;
-        // What counts nothing follows the first joint, which there is.
-        for (own, weights) in moves.joints.iter_mut().zip(&moves.weights) {
-            own.iter_mut().zip(weights).filter(|(_, weight)| **weight <= 0.0).for_each(|(joint, _)| *joint = 0);
+        let node = &nodes[*place];
+        let skin = match node.skin.filter(|_| !moves.influences.is_empty()) {
+            Some(number) => Some(match skins.get(&number) {
+                Some(skin) => *skin,
+                None => {
+                    motion.skins.push(read_skin(source, &node.at, number, &places, warnings)?);
+                    *skins.entry(number).or_insert(motion.skins.len() - 1)
+                }
+            }),
+            None => None,
+        };
+        if let Some(skin) = skin {
+            let joints = motion.skins[skin].joints.len();
+            check_joints(&mut moves, joints).map_err(|reason| source.malformed(&node.at, reason))?;
         }
         let weights = &mut motion.nodes[*place].weights;
         weights.resize(weights.len().max(moves.targets.len()), 0.0);
@@ -74,6 +67,22 @@ pub(super) fn import(
     scene.pose(None, 0.0).map_err(|error| source.malformed("skins", error.to_string()))
 }
 
+/// Checks that every joint with a weight is one of `joints`. Joints without a weight become joint 0.
+fn check_joints(moves: &mut Moves, joints: usize) -> Result<(), String> {
+    for set in &mut moves.influences {
+        for (vertex, (own, weights)) in set.joints.iter_mut().zip(&set.weights).enumerate() {
+            for (joint, weight) in own.iter_mut().zip(weights) {
+                if *weight <= 0.0 {
+                    *joint = 0;
+                } else if usize::from(*joint) >= joints {
+                    return Err(format!("vertex {vertex} of its mesh follows joint {joint}, but its skin has {joints}"));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
 fn rig_node(source: &Source<'_>, node: &FlatNode) -> Node {
     let of_mesh = || source.root.meshes.get(node.mesh?)?.weights.clone();
     let weights = node.weights.clone().or_else(of_mesh).unwrap_or_default();
@@ -81,39 +90,50 @@ fn rig_node(source: &Source<'_>, node: &FlatNode) -> Node {
     Node { parent: node.parent, rest: node.rest, weights }
 }
 
+/// Reads the skin that the node `at` uses.
 fn read_skin(
     source: &Source<'_>,
+    at: &str,
     number: usize,
-    skin: &gltf_json::Skin,
     places: &[Option<usize>],
+    warnings: &mut Warnings,
 ) -> Result<Skin, SceneError> {
+    let skins = &source.root.skins;
+    let skin = skins.get(number).ok_or_else(|| source.malformed(at, beyond("skin", number, skins)))?;
     let at = format!("skin {number}");
     let place = |joint: &gltf_json::Index<gltf_json::Node>| {
         let index = joint.value();
         let found =
             places.get(index).ok_or_else(|| source.malformed(&at, beyond("node", index, &source.root.nodes)))?;
-        found.ok_or_else(|| source.malformed(&at, format!("its joint, node {index}, is not in the scene")))
+        found.ok_or_else(|| source.malformed(&at, format!("its joint, node {index}, hangs on no root")))
     };
     let joints: Vec<usize> = skin.joints.iter().map(place).collect::<Result<_, _>>()?;
     if joints.is_empty() {
         return Err(source.malformed(&at, "it has no joints"));
     }
-    let joint_from_mesh = match skin.inverse_bind_matrices {
-        Some(accessor) => {
-            let user = format!("{at} inverseBindMatrices");
-            let matrices = floats::<16>(source, accessor.value(), &user)?;
-            matrices.into_iter().map(|m| DMat4::from_cols_array(&m.map(f64::from))).collect()
-        }
-        None => vec![DMat4::IDENTITY; joints.len()],
+    let matrices = match skin.inverse_bind_matrices {
+        Some(accessor) => floats::<16>(source, accessor.value(), &format!("{at} inverseBindMatrices"))?,
+        None => vec![DMat4::IDENTITY.as_mat4().to_cols_array(); joints.len()],
     };
-    if joint_from_mesh.len() < joints.len() {
-        let reason = format!("{} inverse bind matrices for {} joints", joint_from_mesh.len(), joints.len());
+    if matrices.len() < joints.len() {
+        let reason = format!("{} inverse bind matrices for {} joints", matrices.len(), joints.len());
         return Err(source.malformed(&at, reason));
     }
-    match joint_from_mesh.iter().position(|matrix| !matrix.is_finite()) {
-        Some(joint) => Err(source.malformed(&at, format!("inverse bind matrix {joint} is not finite"))),
-        None => Ok(Skin { joints, joint_from_mesh }),
+    let mut joint_from_mesh = Vec::with_capacity(joints.len());
+    for (joint, matrix) in matrices.iter().take(joints.len()).enumerate() {
+        let mut matrix = DMat4::from_cols_array(&matrix.map(f64::from));
+        if !matrix.is_finite() {
+            return Err(source.malformed(&at, format!("inverse bind matrix {joint} is not finite")));
+        }
+        if matrix.row(3) != DVec4::W {
+            warnings.push(format!("{at}: the last row of an inverse bind matrix is not 0, 0, 0, 1; it was replaced"));
+            for column in 0..4 {
+                matrix.col_mut(column).w = if column == 3 { 1.0 } else { 0.0 };
+            }
+        }
+        joint_from_mesh.push(matrix);
     }
+    Ok(Skin { joints, joint_from_mesh })
 }
 
 fn read_animation(
@@ -129,6 +149,10 @@ fn read_animation(
     for (index, channel) in animation.channels.iter().enumerate() {
         let at = format!("animation {number} channel {index}");
         let target = channel.target.node.value();
+        // A channel without a node is ignored (section 5.5.1, "node").
+        if target == NO_NODE as usize {
+            continue;
+        }
         let place =
             places.get(target).ok_or_else(|| source.malformed(&at, beyond("node", target, &source.root.nodes)))?;
         let Some(node) = *place else {

@@ -1,57 +1,65 @@
-//! What moves the vertices of a primitive: joints with weights, and morph targets.
+//! Skin influences and morph targets of a primitive.
 
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 use gltf_json::mesh::{Primitive, Semantic};
 use gltf_json::validation::Checked;
 
-use super::source::Source;
+use super::source::{Repair, Source, Warnings};
 use super::stream::{finite, stream};
 use crate::error::SceneError;
-use crate::motion::{MorphTarget, Moves};
+use crate::motion::{InfluenceSet, MorphTarget, Moves};
 
-/// How far the weights of a vertex may be from a sum of 1, as bytes round them; what is nearer is made 1.
-const LOOSE_SUM: f32 = 0.02;
+/// Largest distance from 1 at which the sum of a vertex's weights counts as rounding: bytes round each of four weights by
+/// up to 0.002. A sum farther off is normalized with a warning.
+const ROUNDING: f32 = 0.02;
 
-/// Accessors of what moves a mesh, and of which node it is.
+/// Accessors of skin influences and morph targets, and the node whose mesh they move.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct MovesKey {
     node: usize,
-    joints: Option<[usize; 2]>,
+    /// Joints and weights of each set.
+    influences: Vec<[usize; 2]>,
     targets: Vec<[Option<usize>; 3]>,
 }
 
 impl MovesKey {
-    /// None where nothing moves the vertices.
+    /// Returns the accessors of a primitive, or `None` for one that nothing deforms.
     pub fn new(primitive: &Primitive, node: usize, skinned: bool) -> Option<Self> {
         let accessor = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
-        let joints = accessor(Semantic::Joints(0)).zip(accessor(Semantic::Weights(0))).filter(|_| skinned);
+        let set = |number| accessor(Semantic::Joints(number)).zip(accessor(Semantic::Weights(number)));
+        let sets = (0..).map_while(|number| set(number).filter(|_| skinned));
+        let influences: Vec<_> = sets.map(|(joints, weights)| [joints, weights]).collect();
         let value = |index: Option<gltf_json::Index<_>>| index.map(|index| index.value());
         let targets = primitive.targets.iter().flatten();
         let targets: Vec<_> = targets.map(|t| [value(t.positions), value(t.normals), value(t.tangents)]).collect();
-        let joints = joints.map(|(joints, weights)| [joints, weights]);
-        (joints.is_some() || !targets.is_empty()).then_some(Self { node, joints, targets })
+        (!influences.is_empty() || !targets.is_empty()).then_some(Self { node, influences, targets })
     }
 }
 
-/// Reads what moves `vertices`. Weights are made to add up to 1; joints are checked where the skin is known.
-pub(super) fn read(source: &Source<'_>, key: &MovesKey, at: &str, vertices: usize) -> Result<Moves, SceneError> {
+/// Reads the influences and targets of `vertices` vertices. Weights are normalized; joints are checked where the skin is
+/// known.
+pub(super) fn read(
+    source: &Source<'_>,
+    key: &MovesKey,
+    at: &str,
+    vertices: usize,
+    warnings: &mut Warnings,
+) -> Result<Moves, SceneError> {
     let count = Some(vertices);
     let mut moves = Moves::default();
-    if let Some([joints, weights]) = key.joints {
-        moves.joints = stream(source, at, "JOINTS_0", joints, count, |joints: [f32; 4]| joints.map(|j| j as u16))?;
-        let weights = stream(source, at, "WEIGHTS_0", weights, count, Vec4::from_array)?;
-        finite(source, at, "WEIGHTS_0", &weights, |w| w.is_finite())?;
-        for (vertex, own) in weights.iter().enumerate() {
-            let sum = own.element_sum();
-            if own.min_element() < 0.0 || (sum - 1.0).abs() > LOOSE_SUM {
-                let reason = format!(
-                    "WEIGHTS_0 of vertex {vertex} are {own}, of sum {sum}: none below 0 and a sum of 1 are needed"
-                );
-                return Err(source.malformed(at, reason));
-            }
-            moves.weights.push((*own / sum).to_array());
+    for (number, [joints, weights]) in key.influences.iter().enumerate() {
+        let what = format!("JOINTS_{number}");
+        let joints = stream(source, at, &what, *joints, count, |joints: [f32; 4]| joints)?;
+        let fits = |joint: &f32| (0.0..=f32::from(u16::MAX)).contains(joint);
+        if let Some(vertex) = joints.iter().position(|own| !own.iter().all(fits)) {
+            return Err(source.malformed(at, format!("{what} of vertex {vertex} are {:?}, not 0 to 65535", joints[vertex])));
         }
+        let joints = joints.into_iter().map(|own| own.map(|joint| joint as u16)).collect();
+        let weights = stream(source, at, &format!("WEIGHTS_{number}"), *weights, count, |weights: [f32; 4]| weights)?;
+        moves.influences.push(InfluenceSet { joints, weights });
     }
+    let repaired = normalize(&mut moves.influences, vertices);
+    warnings.count(Repair::Weights, at, repaired);
     for (number, target) in key.targets.iter().enumerate() {
         let read = |place: usize, name: &str| -> Result<Vec<Vec3>, SceneError> {
             let Some(accessor) = target[place] else { return Ok(Vec::new()) };
@@ -64,4 +72,31 @@ pub(super) fn read(source: &Source<'_>, key: &MovesKey, at: &str, vertices: usiz
         moves.targets.push(MorphTarget { positions, normals, tangents });
     }
     Ok(moves)
+}
+
+/// Makes the weights of each vertex add up to 1 over all sets; returns the number of vertices whose weights were wrong.
+///
+/// Negative and non-finite weights count as 0. A vertex without any weight follows its first joint, as in three.js.
+fn normalize(sets: &mut [InfluenceSet], vertices: usize) -> usize {
+    let mut repaired = 0;
+    for vertex in 0..if sets.is_empty() { 0 } else { vertices } {
+        let mut is_wrong = false;
+        let mut sum = 0.0;
+        for weight in sets.iter_mut().flat_map(|set| &mut set.weights[vertex]) {
+            if !(*weight >= 0.0 && weight.is_finite()) {
+                (*weight, is_wrong) = (0.0, true);
+            }
+            sum += *weight;
+        }
+        is_wrong |= (sum - 1.0).abs() > ROUNDING;
+        if sum > 0.0 && sum.is_finite() {
+            sets.iter_mut().flat_map(|set| &mut set.weights[vertex]).for_each(|weight| *weight /= sum);
+        } else {
+            for (number, set) in sets.iter_mut().enumerate() {
+                set.weights[vertex] = if number == 0 { [1.0, 0.0, 0.0, 0.0] } else { [0.0; 4] };
+            }
+        }
+        repaired += usize::from(is_wrong);
+    }
+    repaired
 }

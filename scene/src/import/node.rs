@@ -1,10 +1,11 @@
 //! The node hierarchy, flattened to world transforms.
 
 use glam::{DMat4, DQuat, DVec3};
+use gltf_json::Value;
 use gltf_json::scene::Node;
 
 use super::limits::MAX_NODES;
-use super::source::{Source, beyond};
+use super::source::{Source, Warnings, beyond};
 use crate::error::{Quantity, SceneError, one_line};
 use crate::motion::Transform;
 
@@ -23,6 +24,8 @@ pub(super) struct FlatNode {
     pub rest: Transform,
     /// Transform to world axes, in meters.
     pub world_from_node: DMat4,
+    /// Whether the node and all its ancestors are visible (KHR_node_visibility).
+    pub is_visible: bool,
     /// Index of its skin in the file, unchecked.
     pub skin: Option<usize>,
     /// Weights of its mesh's morph targets, if it has its own.
@@ -38,56 +41,116 @@ pub(super) struct FlatNode {
 /// Walks the default scene, or the first, or all roots, parents before children. Transforms
 /// accumulate in f64.
 ///
+/// The trees of joints that are not in that scene follow; of those nodes only the transforms count.
+///
 /// The hierarchy must be a forest (section 3.5.2): a node that is reached twice, by a cycle or from
 /// two parents, is an error. The walk keeps its own stack, so depth is no danger.
-pub(super) fn flatten(source: &Source<'_>) -> Result<Vec<FlatNode>, SceneError> {
+pub(super) fn flatten(source: &Source<'_>, warnings: &mut Warnings) -> Result<Vec<FlatNode>, SceneError> {
     let nodes = &source.root.nodes;
     if nodes.len() > MAX_NODES {
         return Err(source.too_large(Quantity::Nodes, nodes.len() as u64, MAX_NODES as u64));
     }
-    let mut reached = vec![false; nodes.len()];
-    let mut flat: Vec<FlatNode> = Vec::new();
-    let mut stack: Vec<(usize, Option<usize>)> = Vec::new();
-    let push_all = |stack: &mut Vec<_>, children: Vec<usize>, parent: Option<usize>| {
-        stack.extend(children.into_iter().rev().map(|child| (child, parent)));
-    };
-    push_all(&mut stack, roots(source)?, None);
-    while let Some((index, parent)) = stack.pop() {
-        let node = nodes.get(index).ok_or_else(|| source.malformed("node hierarchy", beyond("node", index, nodes)))?;
-        let name = one_line(node.name.as_deref().unwrap_or_default());
-        let at = if name.is_empty() { format!("node {index}") } else { format!("node {index} {name:?}") };
-        if std::mem::replace(&mut reached[index], true) {
-            return Err(source.malformed(&at, "it has two parents or is its own ancestor"));
+    let mut walk = Walk { source, reached: vec![false; nodes.len()], flat: Vec::new() };
+    let parents = parents(nodes);
+    walk.walk(roots(source, &parents)?, true)?;
+    let joints = source.root.skins.iter().enumerate().flat_map(|(skin, json)| {
+        json.joints.iter().map(move |joint| (skin, joint.value()))
+    });
+    for (skin, joint) in joints {
+        if walk.reached.get(joint) != Some(&false) {
+            continue;
         }
-        let rest = own_transform(node).map_err(|reason| source.malformed(&at, reason))?;
-        let world_from_parent = parent.map_or(DMat4::IDENTITY, |parent: usize| flat[parent].world_from_node);
-        let world_from_node = world_from_parent * rest.matrix();
-        if !world_from_node.is_finite() {
-            return Err(source.malformed(&at, "its transform overflows"));
+        warnings.push(format!("skin {skin}: joints outside of the scene keep their place in their own hierarchy"));
+        // The root, or any node of a cycle.
+        let mut root = joint;
+        let mut steps = 0;
+        while let Some(parent) = parents[root].filter(|parent| !walk.reached[*parent] && steps < nodes.len()) {
+            (root, steps) = (parent, steps + 1);
         }
-        let children = node.children.as_deref().unwrap_or_default();
-        let children = children.iter().map(|child| child.value()).collect();
-        push_all(&mut stack, children, Some(flat.len()));
-        let light = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-        flat.push(FlatNode {
-            name,
-            at,
-            index,
-            parent,
-            rest,
-            world_from_node,
-            skin: node.skin.map(|i| i.value()),
-            weights: node.weights.clone(),
-            mesh: node.mesh.map(|i| i.value()),
-            camera: node.camera.map(|i| i.value()),
-            light: light.map(|l| l.light.value()),
-        });
+        walk.walk(vec![root], false)?;
     }
-    Ok(flat)
+    Ok(walk.flat)
+}
+
+/// A walk over the hierarchy and the nodes it reached.
+struct Walk<'a> {
+    source: &'a Source<'a>,
+    reached: Vec<bool>,
+    flat: Vec<FlatNode>,
+}
+
+impl Walk<'_> {
+    /// Appends the trees below `roots`. Nodes that are not in the scene carry no mesh, camera or light.
+    fn walk(&mut self, roots: Vec<usize>, is_in_scene: bool) -> Result<(), SceneError> {
+        let (source, nodes) = (self.source, &self.source.root.nodes);
+        let mut stack: Vec<(usize, Option<usize>)> = Vec::new();
+        let push_all = |stack: &mut Vec<_>, children: Vec<usize>, parent: Option<usize>| {
+            stack.extend(children.into_iter().rev().map(|child| (child, parent)));
+        };
+        push_all(&mut stack, roots, None);
+        while let Some((index, parent)) = stack.pop() {
+            let node =
+                nodes.get(index).ok_or_else(|| source.malformed("node hierarchy", beyond("node", index, nodes)))?;
+            let name = one_line(node.name.as_deref().unwrap_or_default());
+            let at = if name.is_empty() { format!("node {index}") } else { format!("node {index} {name:?}") };
+            if std::mem::replace(&mut self.reached[index], true) {
+                if !is_in_scene {
+                    continue;
+                }
+                return Err(source.malformed(&at, "it has two parents or is its own ancestor"));
+            }
+            let rest = own_transform(node).map_err(|reason| source.malformed(&at, reason))?;
+            let parent_node = parent.map(|parent: usize| &self.flat[parent]);
+            let world_from_parent = parent_node.map_or(DMat4::IDENTITY, |parent| parent.world_from_node);
+            let world_from_node = world_from_parent * rest.matrix();
+            if !world_from_node.is_finite() {
+                return Err(source.malformed(&at, "its transform overflows"));
+            }
+            let is_visible = parent_node.is_none_or(|parent| parent.is_visible) && is_visible(node);
+            let children = node.children.as_deref().unwrap_or_default();
+            let children = children.iter().map(|child| child.value()).collect();
+            push_all(&mut stack, children, Some(self.flat.len()));
+            let light = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+            self.flat.push(FlatNode {
+                name,
+                at,
+                index,
+                parent,
+                rest,
+                world_from_node,
+                is_visible,
+                skin: node.skin.map(|i| i.value()),
+                weights: node.weights.clone(),
+                mesh: node.mesh.map(|i| i.value()).filter(|_| is_in_scene && is_visible),
+                camera: node.camera.map(|i| i.value()).filter(|_| is_in_scene),
+                light: light.map(|l| l.light.value()).filter(|_| is_in_scene && is_visible),
+            });
+        }
+        Ok(())
+    }
+}
+
+/// Returns the node's own visibility (KHR_node_visibility), `true` by default.
+fn is_visible(node: &Node) -> bool {
+    let extension = node.extensions.as_ref().and_then(|e| e.others.get("KHR_node_visibility"));
+    extension.and_then(|extension| extension.get("visible")).and_then(Value::as_bool).unwrap_or(true)
+}
+
+/// Returns the parent of each node; of two parents the first.
+fn parents(nodes: &[Node]) -> Vec<Option<usize>> {
+    let mut parents = vec![None; nodes.len()];
+    for (parent, node) in nodes.iter().enumerate() {
+        for child in node.children.as_deref().unwrap_or_default() {
+            if let Some(slot) = parents.get_mut(child.value()) {
+                slot.get_or_insert(parent);
+            }
+        }
+    }
+    parents
 }
 
 /// The nodes to start from.
-fn roots(source: &Source<'_>) -> Result<Vec<usize>, SceneError> {
+fn roots(source: &Source<'_>, parents: &[Option<usize>]) -> Result<Vec<usize>, SceneError> {
     let scenes = &source.root.scenes;
     if let Some(default) = source.root.scene
         && default.value() >= scenes.len()
@@ -99,14 +162,7 @@ fn roots(source: &Source<'_>) -> Result<Vec<usize>, SceneError> {
     if let Some(scene) = scenes.get(default) {
         return Ok(scene.nodes.iter().map(|node| node.value()).collect());
     }
-    let nodes = &source.root.nodes;
-    let mut is_child = vec![false; nodes.len()];
-    for child in nodes.iter().flat_map(|n| n.children.as_deref().unwrap_or_default()) {
-        if let Some(flag) = is_child.get_mut(child.value()) {
-            *flag = true;
-        }
-    }
-    Ok((0..nodes.len()).filter(|i| !is_child[*i]).collect())
+    Ok((0..parents.len()).filter(|i| parents[*i].is_none()).collect())
 }
 
 /// A node's own transform (section 3.5.3): a column-major matrix, or scale, rotation, translation.

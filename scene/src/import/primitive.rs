@@ -6,12 +6,12 @@ use gltf_json::validation::Checked;
 
 use super::accessor::{integers, width};
 use super::moves::{self, MovesKey};
-use super::source::{Source, Warnings};
+use super::source::{Repair, Source, Warnings};
 use super::stream::{finite, stream};
 use super::topology::{Triangles, triangles};
 use crate::bounds::Aabb;
 use crate::error::{SceneError, one_line};
-use crate::geometry::{generate_tangents, make_flat, order_for_drawing, repair_tangents};
+use crate::geometry::{generate_tangents, make_flat, order_for_drawing, repair_normals, repair_tangents};
 use crate::material::{AlphaMode, Material};
 use crate::mesh::Mesh;
 
@@ -67,7 +67,8 @@ pub(super) fn build(
     warnings: &mut Warnings,
 ) -> Result<Option<Mesh>, SceneError> {
     let Some(position) = key.position else {
-        return Err(source.malformed(at, "it has no POSITION"));
+        warnings.push(format!("{at}: it has no POSITION and is not drawn"));
+        return Ok(None);
     };
     let positions = stream(source, at, "POSITION", position, None, Vec3::from_array)?;
     finite(source, at, "POSITION", &positions, |p| p.is_finite())?;
@@ -80,37 +81,35 @@ pub(super) fn build(
         Mesh { name: one_line(name), bounds: Aabb::from_points(&positions), positions, indices, ..Mesh::default() };
     let count = Some(vertices);
     if let Some(key) = &key.moves {
-        mesh.moves = Some(Box::new(moves::read(source, key, at, vertices)?));
+        mesh.moves = Some(Box::new(moves::read(source, key, at, vertices, warnings)?));
     }
     for (set, stored) in [&mut mesh.uv0, &mut mesh.uv1].into_iter().enumerate() {
         if let Some(index) = key.uv[set] {
             let what = format!("TEXCOORD_{set}");
             *stored = stream(source, at, &what, index, count, Vec2::from_array)?;
-            finite(source, at, &what, stored, |uv| uv.is_finite())?;
+            let bad = stored.iter_mut().filter(|uv| !uv.is_finite());
+            let repaired = bad.map(|uv| *uv = Vec2::ZERO).count();
+            warnings.count(Repair::TexCoords, at, repaired);
         }
     }
     if let Some(index) = key.color {
-        mesh.colors = colors(source, at, index, vertices)?;
+        mesh.colors = colors(source, at, index, vertices, warnings)?;
     }
     match key.normal {
         Some(index) => {
-            mesh.normals = normals(source, at, index, vertices)?;
+            mesh.normals = stream(source, at, "NORMAL", index, count, Vec3::from_array)?;
+            let repaired = repair_normals(&mut mesh);
+            warnings.count(Repair::Normals, at, repaired);
             // Tangents without normals are to be ignored (section 3.7.2.1).
             if let Some(index) = key.tangent {
-                let tangents = stream(source, at, "TANGENT", index, count, Vec4::from_array)?;
-                finite(source, at, "TANGENT", &tangents, |t| t.is_finite())?;
-                mesh.tangents = tangents;
-                let replaced = repair_tangents(&mut mesh);
-                if replaced > 0 {
-                    warnings.push(format!("{at}: {replaced} unusable tangents were replaced"));
-                }
+                mesh.tangents = stream(source, at, "TANGENT", index, count, Vec4::from_array)?;
+                let repaired = repair_tangents(&mut mesh);
+                warnings.count(Repair::Tangents, at, repaired);
             }
         }
         None => {
             let dropped = make_flat(&mut mesh);
-            if dropped > 0 {
-                warnings.push(format!("{at}: {dropped} triangles without area were dropped"));
-            }
+            warnings.count(Repair::Triangles, at, dropped);
         }
     }
     if let Some(uv_set) = key.tangent_uv
@@ -175,29 +174,23 @@ fn corners(
     }
 }
 
-/// Reads normals to unit length; a zero-length one is an error, since no direction can stand for it.
-fn normals(source: &Source<'_>, at: &str, index: usize, vertices: usize) -> Result<Vec<Vec3>, SceneError> {
-    let mut normals = stream(source, at, "NORMAL", index, Some(vertices), Vec3::from_array)?;
-    finite(source, at, "NORMAL", &normals, |n| n.is_finite())?;
-    for (i, normal) in normals.iter_mut().enumerate() {
-        let length = normal.as_dvec3().length();
-        if length < 1e-6 {
-            return Err(source.malformed(at, format!("NORMAL of vertex {i} has zero length")));
-        }
-        *normal = (normal.as_dvec3() / length).as_vec3();
-    }
-    Ok(normals)
-}
-
-/// Reads RGB or RGBA vertex colors.
-fn colors(source: &Source<'_>, at: &str, index: usize, vertices: usize) -> Result<Vec<Vec4>, SceneError> {
+/// Reads RGB or RGBA vertex colors. Channels that are not finite become 0.
+fn colors(
+    source: &Source<'_>,
+    at: &str,
+    index: usize,
+    vertices: usize,
+    warnings: &mut Warnings,
+) -> Result<Vec<Vec4>, SceneError> {
     let count = Some(vertices);
-    let colors = if width(source, index) == Some(3) {
+    let mut colors = if width(source, index) == Some(3) {
         let opaque = |rgb| Vec3::from_array(rgb).extend(1.0);
         stream(source, at, "COLOR_0", index, count, opaque)?
     } else {
         stream(source, at, "COLOR_0", index, count, Vec4::from_array)?
     };
-    finite(source, at, "COLOR_0", &colors, |c| c.is_finite())?;
+    let bad = colors.iter_mut().filter(|color| !color.is_finite());
+    let repaired = bad.map(|color| *color = Vec4::select(color.is_finite_mask(), *color, Vec4::ZERO)).count();
+    warnings.count(Repair::Colors, at, repaired);
     Ok(colors)
 }

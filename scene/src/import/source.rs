@@ -5,8 +5,9 @@ use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
-use gltf_json::Root;
+use gltf_json::{Root, Value};
 
+use super::document::Document;
 use super::uri::{Resource, resolve};
 use crate::error::{Quantity, SceneError, one_line};
 use crate::memory::{Memory, OverBudget};
@@ -18,8 +19,11 @@ pub(super) struct Source<'a> {
     pub file: &'a Path,
     /// The JSON as the schema types have it. Indices in it are unchecked.
     pub root: &'a Root,
-    /// The bytes of each buffer, at least as long as the JSON says.
-    pub buffers: Vec<Cow<'a, [u8]>>,
+    /// The JSON as it is, for extensions that the schema types leave out.
+    pub json: &'a Value,
+    /// The bytes of each buffer, at least as long as the JSON says. `None` for one without URI and binary chunk, which
+    /// is an error once it is read.
+    pub buffers: Vec<Option<Cow<'a, [u8]>>>,
     /// The budget of everything that is decoded.
     pub memory: &'a Memory,
     allow_outside: bool,
@@ -35,10 +39,12 @@ pub(super) struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    pub fn new(file: &'a Path, root: &'a Root, options: &'a LoadOptions) -> Self {
+    pub fn new(file: &'a Path, document: &'a Document, options: &'a LoadOptions) -> Self {
+        let Document { root, json } = document;
         Self {
             file,
             root,
+            json,
             buffers: Vec::new(),
             memory: &options.memory,
             allow_outside: options.allow_outside,
@@ -121,6 +127,9 @@ impl<'a> Source<'a> {
         let buffer = view.buffer.value();
         let data =
             self.buffers.get(buffer).ok_or_else(|| self.malformed(at, beyond("buffer", buffer, &self.buffers)))?;
+        let data = data.as_ref().ok_or_else(|| {
+            self.malformed(at, format!("it reads buffer {buffer}, which has neither a URI nor a binary chunk"))
+        })?;
         let start = view.byte_offset.map_or(0, |offset| offset.0);
         let length = view.byte_length.0;
         let bytes = slice(data, start, length).ok_or_else(|| {
@@ -169,15 +178,57 @@ pub(super) fn beyond<T>(what: &str, index: usize, all: &[T]) -> String {
     format!("names {what} {index}, but there are {}", all.len())
 }
 
+/// A fault of a file that the importer repairs. All of one kind are one warning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Repair {
+    /// Normals that are not finite or have no length.
+    Normals,
+    /// Tangents that are not finite, have no length or lie along the normal.
+    Tangents,
+    /// Texture coordinates that are not finite.
+    TexCoords,
+    /// Vertex colors that are not finite.
+    Colors,
+    /// Skin weights that are negative, not finite or do not add up to 1.
+    Weights,
+    /// Triangles without area in a mesh without normals.
+    Triangles,
+}
+
+impl Repair {
+    /// Says what was wrong with `count` elements, and what the importer does.
+    fn sentence(self, count: usize) -> String {
+        match self {
+            Self::Normals => format!("{count} normals have no direction; they were recomputed from the triangles"),
+            Self::Tangents => format!("{count} unusable tangents were replaced"),
+            Self::TexCoords => format!("{count} texture coordinates are not finite; (0, 0) is used"),
+            Self::Colors => format!("{count} vertex colors are not finite; 0 is used for their channels"),
+            Self::Weights => format!("the skin weights of {count} vertices do not add up to 1; they were normalized"),
+            Self::Triangles => format!("{count} triangles without area were dropped"),
+        }
+    }
+}
+
+/// Repairs of one kind.
+struct Repaired {
+    /// The first place, for messages.
+    first: String,
+    /// Number of places.
+    places: usize,
+    /// Number of elements over all places.
+    count: usize,
+}
+
 /// Warnings of one load, each once.
 pub(super) struct Warnings {
     file: String,
     lines: Vec<String>,
+    repairs: BTreeMap<Repair, Repaired>,
 }
 
 impl Warnings {
     pub fn new(file: &Path) -> Self {
-        Self { file: one_line(&file.display().to_string()), lines: Vec::new() }
+        Self { file: one_line(&file.display().to_string()), lines: Vec::new(), repairs: BTreeMap::new() }
     }
 
     /// Adds `text` after the file's name, unless it was said before. After 100 only their number
@@ -195,7 +246,27 @@ impl Warnings {
         }
     }
 
-    pub fn into_lines(self) -> Vec<String> {
+    /// Counts `count` repaired elements at a place; none are no warning.
+    pub fn count(&mut self, repair: Repair, at: &str, count: usize) {
+        if count == 0 {
+            return;
+        }
+        let new = || Repaired { first: at.into(), places: 0, count: 0 };
+        let repaired = self.repairs.entry(repair).or_insert_with(new);
+        repaired.places += 1;
+        repaired.count += count;
+    }
+
+    /// Returns all warnings: one for each kind of repair behind the others.
+    pub fn into_lines(mut self) -> Vec<String> {
+        for (repair, Repaired { first, places, count }) in std::mem::take(&mut self.repairs) {
+            let others = match places - 1 {
+                0 => String::new(),
+                1 => " and one other place".into(),
+                others => format!(" and {others} other places"),
+            };
+            self.push(format!("{first}{others}: {}", repair.sentence(count)));
+        }
         self.lines
     }
 }

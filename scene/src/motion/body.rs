@@ -60,10 +60,12 @@ impl Body {
             let side = self.rest.tangents.get(vertex).map(|tangent| tangent.w);
             let rest = self.rest.tangents.get(vertex).map_or(DVec3::ZERO, |tangent| tangent.truncate().as_dvec3());
             let mut tangent = sum(rest, |target| &target.tangents);
-            if let (Some(own), Some(shares)) = (self.moves.joints.get(vertex), self.moves.weights.get(vertex)) {
-                let matrices =
-                    own.iter().zip(shares).map(|(joint, share)| joints[usize::from(*joint)] * f64::from(*share));
-                let matrix = matrices.fold(DMat4::ZERO, |sum, matrix| sum + matrix);
+            if !self.moves.influences.is_empty() {
+                let sets = self.moves.influences.iter();
+                let pairs = sets.flat_map(|set| set.joints[vertex].iter().zip(&set.weights[vertex]));
+                let matrix = pairs.fold(DMat4::ZERO, |sum, (joint, weight)| {
+                    sum + joints[usize::from(*joint)] * f64::from(*weight)
+                });
                 position = matrix.transform_point3(position);
                 let linear = DMat3::from_mat4(matrix);
                 normal = cofactor(linear) * normal;

@@ -30,7 +30,8 @@ fn broken_containers_say_what_is_wrong() {
         bytes[at..at + 4].copy_from_slice(&word.to_le_bytes());
         message(&bytes)
     };
-    assert!(patched(4, 1).contains("version 1"));
+    assert!(patched(4, 1).contains("glTF version \"1.0\" is not supported"));
+    assert!(patched(4, 3).contains("version 3"));
     // Less than the header itself: the crate's reader subtracts without looking.
     assert!(patched(8, 3).contains("truncated"));
     assert!(patched(12, 0xffff_fff0).contains("a chunk promises"));
