@@ -117,6 +117,16 @@ pub enum SceneError {
         /// The names there are.
         known: &'static [&'static str],
     },
+    /// The scene has no material variant of this name.
+    #[error("{}: it has no material variant {:?} (its variants: {})", shown(file), one_line(name), names(known))]
+    UnknownVariant {
+        /// The file, or the name of the scene.
+        file: PathBuf,
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: Vec<String>,
+    },
     /// The built-in scene of lamps has no such number of them.
     #[error("lamps:{}: a whole number from 0 to {most} is needed", one_line(count))]
     LampCount {

@@ -20,6 +20,7 @@ mod document;
 mod encoding;
 mod extension;
 mod images;
+mod instancing;
 mod light;
 mod limits;
 mod lobes;
@@ -30,18 +31,23 @@ mod node;
 mod object;
 mod primitive;
 mod source;
+mod spec_gloss;
 mod stream;
 mod texture;
 mod topology;
 mod uri;
+mod variants;
 
 use std::collections::BTreeMap;
 use std::path::Path;
+
+use glam::DMat4;
 
 use self::material::Materials;
 use self::node::FlatNode;
 use self::primitive::GeometryKey;
 use self::source::{Source, Warnings};
+use self::variants::Variants;
 use super::error::{Quantity, SceneError, one_line};
 use super::instance::Instance;
 use super::material::MaterialId;
@@ -123,30 +129,48 @@ pub fn load_bytes_with(
     };
     light::import(&source, &nodes, &mut scene.lights, &mut warnings)?;
     camera::import(&source, &nodes, &mut scene.cameras, &mut warnings)?;
+    let variants = Variants::read(&source, options.variant.as_deref())?;
     let mut materials = Materials::new(&source);
-    let instance_nodes = import_meshes(&source, &nodes, &mut scene, &mut materials, &mut warnings, progress)?;
-    motion::import(&source, &nodes, instance_nodes, &mut scene, &mut warnings)?;
+    let placed = import_meshes(&source, &nodes, &mut scene, (&variants, &mut materials), &mut warnings, progress)?;
+    scene.variants = variants.names;
+    motion::import(&source, &nodes, placed, &mut scene, &mut warnings)?;
     let tables = materials.finish();
     scene.materials = tables.materials;
     scene.textures = tables.textures;
     scene.samplers = tables.samplers;
     scene.images = images::decode(&source, &tables.images, progress)?;
+    for roughness in &tables.computed {
+        let image = &scene.images[roughness.image.index()];
+        let (bytes, at) = (image.rgba8.len() as u64, image.name.clone());
+        source.keep(bytes).map_err(|budget| SceneError::Memory { file: path.into(), at, budget })?;
+        scene.images.push(roughness.compute(&scene.images));
+    }
     scene.files = source.files();
     scene.warnings = warnings.into_lines();
     source.finish();
     Ok(scene)
 }
 
-/// Turns each (node, primitive) into an instance; equal geometry is built once. Returns the node of each instance.
+/// Nodes and places of the instances of a scene, in their order.
+#[derive(Default)]
+struct Placed {
+    /// Place of each instance's node in the list of nodes.
+    nodes: Vec<usize>,
+    /// Transform of each instance to its node's axes.
+    node_from_model: Vec<DMat4>,
+}
+
+/// Turns each (node, primitive) into an instance, or into as many as EXT_mesh_gpu_instancing lists. Equal geometry is
+/// built once.
 fn import_meshes(
     source: &Source<'_>,
     nodes: &[FlatNode],
     scene: &mut Scene,
-    materials: &mut Materials<'_>,
+    (variants, materials): (&Variants, &mut Materials<'_>),
     warnings: &mut Warnings,
     progress: &mut ProgressFn<'_>,
-) -> Result<Vec<usize>, SceneError> {
-    let mut instance_nodes = Vec::new();
+) -> Result<Placed, SceneError> {
+    let mut placed = Placed::default();
     let mut built: BTreeMap<GeometryKey, Option<MeshId>> = BTreeMap::new();
     let drawn: Vec<(usize, &FlatNode, usize)> =
         nodes.iter().enumerate().filter_map(|(place, node)| Some((place, node, node.mesh?))).collect();
@@ -160,9 +184,15 @@ fn import_meshes(
             .meshes
             .get(*mesh_index)
             .ok_or_else(|| source.malformed(&node.at, source::beyond("mesh", *mesh_index, &source.root.meshes)))?;
+        let mut places = instancing::read(source, node.index, &node.at)?;
+        if places.is_some() && node.skin.is_some() {
+            warnings.push(format!("{}: EXT_mesh_gpu_instancing of a skinned mesh is ignored", node.at));
+            places = None;
+        }
+        let places = places.unwrap_or_else(|| vec![DMat4::IDENTITY]);
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let at = format!("mesh {mesh_index} primitive {i}");
-            let material = materials.import(primitive.material, &at, warnings)?;
+            let material = materials.import(variants.material(source, &at, primitive)?, &at, warnings)?;
             let surface = materials.get(material);
             let key = GeometryKey::new(primitive, surface, node.index, node.skin.is_some());
             let mesh_id = match built.get(&key) {
@@ -180,17 +210,20 @@ fn import_meshes(
             };
             if let Some(mesh_id) = mesh_id {
                 warn_of_missing_uv(scene, mesh_id, surface, &at, warnings);
-                place(source, node, mesh_id, material, scene)?;
-                instance_nodes.push(*place_of_node);
+                for node_from_model in &places {
+                    place(source, node, mesh_id, material, *node_from_model, scene)?;
+                    placed.nodes.push(*place_of_node);
+                    placed.node_from_model.push(*node_from_model);
+                }
             }
             done += 1;
             report(progress, source.file, Progress { stage: Stage::Geometry, done, total, item: &node.name })?;
         }
     }
     if scene.instances.is_empty() {
-        warnings.push("the scene draws no triangles");
+        warnings.push("the scene draws nothing: no visible node of it has a mesh with triangles");
     }
-    Ok(instance_nodes)
+    Ok(placed)
 }
 
 fn place(
@@ -198,10 +231,11 @@ fn place(
     node: &FlatNode,
     mesh: MeshId,
     material: MaterialId,
+    node_from_model: DMat4,
     scene: &mut Scene,
 ) -> Result<(), SceneError> {
     let bounds = &scene.meshes[mesh.index()].bounds;
-    let instance = Instance::new(&node.name, mesh, material, node.world_from_node, bounds);
+    let instance = Instance::new(&node.name, mesh, material, node.world_from_node * node_from_model, bounds);
     let reach = instance.bounds.min.abs().max(instance.bounds.max.abs());
     let reach = reach.max_element();
     if reach > MAX_COORDINATE_M || reach.is_nan() {

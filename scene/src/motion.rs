@@ -26,6 +26,9 @@ pub struct Motion {
     pub nodes: Vec<Node>,
     /// The node that each instance hangs on, in the order of the scene's instances; empty for a scene without nodes.
     pub instance_nodes: Vec<usize>,
+    /// Transform of each instance to its node's axes: the identity, or a place of EXT_mesh_gpu_instancing. One for each
+    /// of `instance_nodes`.
+    pub node_from_model: Vec<DMat4>,
     /// Joints that bodies follow.
     pub skins: Vec<Skin>,
     /// Meshes whose vertices move.

@@ -28,14 +28,20 @@ impl Scene {
     ///
     /// One line that names the file and the reason; for a name that is neither, the built-in names.
     pub fn open_with(name: &str, options: &LoadOptions, progress: &mut ProgressFn<'_>) -> Result<Self, SceneError> {
+        let built_in = |name: &str| match (builtin(name), &options.variant) {
+            (Ok(scene), Some(variant)) => {
+                Err(SceneError::UnknownVariant { file: scene.name.into(), name: variant.clone(), known: Vec::new() })
+            }
+            (scene, _) => scene,
+        };
         if NAMES.contains(&name) {
-            return builtin(name);
+            return built_in(name);
         }
         let path = Path::new(name);
         // A bare word that is no file is a misspelt name rather than a missing file.
         let bare = !name.contains(['/', '\\', '.']);
         if bare && !path.exists() {
-            return builtin(name);
+            return built_in(name);
         }
         load_with(path, options, progress)
     }

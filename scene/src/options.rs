@@ -14,4 +14,6 @@ pub struct LoadOptions {
     /// Triangles and vertices stay in the order of the file; otherwise meshes that do not blend get one that is drawn faster
     /// ([`order_for_drawing`](crate::geometry::order_for_drawing)).
     pub keep_order: bool,
+    /// Name of the material variant to load (KHR_materials_variants); `None` for the default materials.
+    pub variant: Option<String>,
 }

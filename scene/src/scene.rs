@@ -55,6 +55,9 @@ pub struct Scene {
     /// Diffuse albedo of level ground that goes on where the scene's own ends, linear Rec.709 in 0…1: what a sky is to show
     /// below the horizon, so that the two meet unseen. None for a scene that does not say.
     pub ground_albedo: Option<Vec3>,
+    /// Names of the file's material variants (KHR_materials_variants);
+    /// [`LoadOptions::variant`](crate::LoadOptions::variant) chooses one.
+    pub variants: Vec<String>,
     /// The files that it was read from, with buffers and images beside it; none for a built-in scene.
     pub files: Vec<PathBuf>,
     /// What was ignored or repaired while loading, a line each.

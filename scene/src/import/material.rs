@@ -10,7 +10,8 @@ use gltf_json::{Index, material};
 use super::lobes;
 use super::object::Object;
 use super::source::{Source, Warnings, beyond};
-use super::texture::{Reference, Textures, TransformSource};
+use super::spec_gloss;
+use super::texture::{Reference, Roughness, Textures, TransformSource};
 use crate::error::{SceneError, one_line};
 use crate::material::MaterialId;
 use crate::material::{AlphaMode, EmissiveUnit, Material};
@@ -32,6 +33,8 @@ pub(super) struct Tables {
     pub samplers: Vec<Sampler>,
     /// Indices of images in the file.
     pub images: Vec<usize>,
+    /// Images that are computed from those of the file, behind them.
+    pub computed: Vec<Roughness>,
 }
 
 impl<'a> Materials<'a> {
@@ -42,11 +45,10 @@ impl<'a> Materials<'a> {
     /// The material of a primitive, named `at`.
     pub fn import(
         &mut self,
-        index: Option<Index<json::Material>>,
+        index: Option<usize>,
         at: &str,
         warnings: &mut Warnings,
     ) -> Result<MaterialId, SceneError> {
-        let index = index.map(|i| i.value());
         if let Some(id) = self.known.get(&index) {
             return Ok(*id);
         }
@@ -68,12 +70,14 @@ impl<'a> Materials<'a> {
         &self.materials[id.index()]
     }
 
-    pub fn finish(self) -> Tables {
+    pub fn finish(mut self) -> Tables {
+        self.textures.number_computed();
         Tables {
             materials: self.materials,
             textures: self.textures.textures,
             samplers: self.textures.samplers,
             images: self.textures.images,
+            computed: self.textures.computed,
         }
     }
 
@@ -133,6 +137,7 @@ impl<'a> Materials<'a> {
             ..Material::default()
         };
         lobes::read(source, &at, json, &mut self.textures, warnings, &mut material)?;
+        spec_gloss::read(source, &at, json, &mut self.textures, warnings, &mut material)?;
         Ok(material)
     }
 }

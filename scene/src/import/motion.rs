@@ -7,6 +7,7 @@ use gltf_json::animation::{Interpolation as Way, Property as Path};
 use gltf_json::validation::Checked;
 
 use super::accessor::{floats, width};
+use super::Placed;
 use super::document::NO_NODE;
 use super::node::FlatNode;
 use super::source::{Source, Warnings, beyond};
@@ -16,12 +17,12 @@ use crate::scene::Scene;
 
 /// Imports nodes, skins, bodies and animations into [`Scene::motion`], and poses the scene at rest.
 ///
-/// `instance_nodes` has the place in `nodes` of each instance's node. A file without animations, skins and morph targets
+/// `placed` has the node and place of each instance. A file without animations, skins and morph targets
 /// imports nothing.
 pub(super) fn import(
     source: &Source<'_>,
     nodes: &[FlatNode],
-    instance_nodes: Vec<usize>,
+    placed: Placed,
     scene: &mut Scene,
     warnings: &mut Warnings,
 ) -> Result<(), SceneError> {
@@ -30,7 +31,7 @@ pub(super) fn import(
     nodes.iter().enumerate().for_each(|(place, node)| places[node.index] = Some(place));
     // Skins by their index in the file. Skins that no mesh uses are not read.
     let mut skins = BTreeMap::new();
-    for (instance, place) in instance_nodes.iter().enumerate() {
+    for (instance, place) in placed.nodes.iter().enumerate() {
         let id = scene.instances[instance].mesh;
         let mesh = &mut scene.meshes[id.index()];
         let Some(moves) = mesh.moves.take() else { continue };
@@ -62,7 +63,8 @@ pub(super) fn import(
     if motion.animations.is_empty() && motion.bodies.is_empty() {
         return Ok(());
     }
-    motion.instance_nodes = instance_nodes;
+    motion.instance_nodes = placed.nodes;
+    motion.node_from_model = placed.node_from_model;
     scene.motion = motion;
     scene.pose(None, 0.0).map_err(|error| source.malformed("skins", error.to_string()))
 }

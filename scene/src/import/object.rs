@@ -59,16 +59,21 @@ impl<'a> Object<'a> {
 
     /// A color with channels in 0…`most`; others are clamped with a warning.
     pub fn color(&self, key: &str, default: Vec3, most: f32, warnings: &mut Warnings) -> Result<Vec3, SceneError> {
+        Ok(self.clamped(key, Vec3::from_array(self.vector(key, default.to_array())?), most, warnings))
+    }
+
+    /// `N` numbers that fit 32 bits, or `default`.
+    pub fn vector<const N: usize>(&self, key: &str, default: [f32; N]) -> Result<[f32; N], SceneError> {
         let Some(value) = self.json.get(key) else {
             return Ok(default);
         };
-        let channels = value.as_array().filter(|channels| channels.len() == 3);
-        let channels = channels.ok_or_else(|| self.malformed(format!("its {key} is not three numbers")))?;
-        let mut color = Vec3::ZERO;
-        for (channel, value) in channels.iter().enumerate() {
-            color[channel] = self.finite(key, value)?;
+        let channels = value.as_array().filter(|channels| channels.len() == N);
+        let channels = channels.ok_or_else(|| self.malformed(format!("its {key} is not {N} numbers")))?;
+        let mut vector = [0.0; N];
+        for (channel, value) in vector.iter_mut().zip(channels) {
+            *channel = self.finite(key, value)?;
         }
-        Ok(self.clamped(key, color, most, warnings))
+        Ok(vector)
     }
 
     /// A texture reference.

@@ -1,5 +1,7 @@
 //! Texture references: image, role, sampler, coordinates.
 
+use std::collections::BTreeMap;
+
 use glam::Vec2;
 use gltf_json::extensions::texture::TextureTransform;
 use gltf_json::texture::{MagFilter, MinFilter, WrappingMode};
@@ -7,7 +9,7 @@ use gltf_json::validation::Checked;
 
 use super::source::{Source, Warnings, beyond};
 use crate::error::SceneError;
-use crate::texture::{Filter, Sampler, Texture, TextureRole, TextureSlot, UvTransform, Wrap};
+use crate::texture::{Filter, Image, Sampler, Texture, TextureRole, TextureSlot, UvTransform, Wrap};
 use crate::texture::{ImageId, SamplerId, TextureId};
 
 /// The three ways in which the schema writes a texture reference, as one.
@@ -32,9 +34,62 @@ pub(super) struct Textures {
     pub images: Vec<usize>,
     pub samplers: Vec<Sampler>,
     pub textures: Vec<Texture>,
+    /// Images that are computed from others; their ids are settled by [`Textures::number_computed`].
+    pub computed: Vec<Roughness>,
+    /// For each texture the computed image that it shows, if any.
+    shows_computed: BTreeMap<TextureId, usize>,
+}
+
+/// An image of roughness that is computed from one of glossiness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Roughness {
+    /// The image whose alpha is glossiness.
+    pub image: ImageId,
+    /// Factor of the glossiness, 0 to 1.
+    pub glossiness: f32,
+}
+
+impl Roughness {
+    /// Returns the image: G is 1 − factor · glossiness, B (metallic) is 0.
+    pub fn compute(&self, images: &[Image]) -> Image {
+        let source = &images[self.image.index()];
+        let texel = |rgba: &[u8]| {
+            let glossiness = self.glossiness * f32::from(rgba[3]) / 255.0;
+            [0, ((1.0 - glossiness) * 255.0).round() as u8, 0, 255]
+        };
+        Image {
+            name: format!("{}: roughness", source.name),
+            rgba8: source.rgba8.chunks_exact(4).flat_map(texel).collect(),
+            ..*source
+        }
+    }
 }
 
 impl Textures {
+    /// Returns the slot of the roughness that belongs to a slot of glossiness.
+    pub fn roughness_of_glossiness(&mut self, slot: TextureSlot, glossiness: f32) -> TextureSlot {
+        let source = self.textures[slot.texture.index()];
+        let computed = place_of(&mut self.computed, Roughness { image: source.image, glossiness });
+        let shows = |(texture, shown): (&TextureId, &usize)| {
+            *shown == computed && self.textures[texture.index()].sampler == source.sampler
+        };
+        let known = self.shows_computed.iter().find(|pair| shows(*pair)).map(|(texture, _)| *texture);
+        let texture = known.unwrap_or_else(|| {
+            self.textures.push(Texture { role: TextureRole::Linear, ..source });
+            let texture = TextureId::new(self.textures.len() - 1);
+            self.shows_computed.insert(texture, computed);
+            texture
+        });
+        TextureSlot { texture, ..slot }
+    }
+
+    /// Gives computed images the ids behind those of the file, whose number is known now.
+    pub fn number_computed(&mut self) {
+        for (texture, computed) in &self.shows_computed {
+            self.textures[texture.index()].image = ImageId::new(self.images.len() + computed);
+        }
+    }
+
     /// Resolves a reference; `None` with a warning when it uses coordinates that are not imported.
     pub fn slot(
         &mut self,
@@ -71,7 +126,15 @@ impl Textures {
             role,
             sampler: SamplerId::new(place_of(&mut self.samplers, sampler)),
         };
-        Ok(Some(TextureSlot { texture: TextureId::new(place_of(&mut self.textures, texture)), uv_set, transform }))
+        // A texture of a computed image looks like one of the image it is made of, until it is numbered.
+        let known = (0..self.textures.len()).find(|place| {
+            self.textures[*place] == texture && !self.shows_computed.contains_key(&TextureId::new(*place))
+        });
+        let place = known.unwrap_or_else(|| {
+            self.textures.push(texture);
+            self.textures.len() - 1
+        });
+        Ok(Some(TextureSlot { texture: TextureId::new(place), uv_set, transform }))
     }
 }
 

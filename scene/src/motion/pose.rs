@@ -88,7 +88,8 @@ impl Scene {
         if let Some(node) = world.iter().position(|matrix| !matrix.is_finite()) {
             return Err(not_finite(format!("the transform of the scene's node {node}")));
         }
-        let mut placed: Vec<DMat4> = self.motion.instance_nodes.iter().map(|node| world[*node]).collect();
+        let places = self.motion.instance_nodes.iter().zip(&self.motion.node_from_model);
+        let mut placed: Vec<DMat4> = places.map(|(node, node_from_model)| world[*node] * *node_from_model).collect();
         for body in &self.motion.bodies {
             let mesh = &mut self.meshes[body.mesh.index()];
             let mut joints = Vec::new();

@@ -1,0 +1,52 @@
+//! KHR_materials_pbrSpecularGlossiness as metal-rough materials.
+//!
+//! Filament shades such a material with the specular color as f0, the perceptual roughness 1 − glossiness, and the diffuse
+//! color times 1 − max(f0) (`shading_model_specularGlossiness`). KHR_materials_specular says the same with an index of
+//! refraction of 0: a dielectric of f0 1, tinted by the specular color. The roughness of a textured material becomes an
+//! image of its own, since glossiness is stored in alpha and inverted.
+
+use glam::{Vec3, Vec4};
+use gltf_json as json;
+
+use super::object::Object;
+use super::source::{Source, Warnings};
+use super::texture::Textures;
+use crate::error::SceneError;
+use crate::material::{Material, Specular};
+use crate::texture::TextureRole;
+
+/// Replaces the metal-rough parameters of `material` where the glTF material `json`, named `at`, has the extension.
+pub(super) fn read(
+    source: &Source<'_>,
+    at: &str,
+    json: &json::Material,
+    textures: &mut Textures,
+    warnings: &mut Warnings,
+    material: &mut Material,
+) -> Result<(), SceneError> {
+    let Some(json) = Object::of_material(source, at, json, "KHR_materials_pbrSpecularGlossiness")? else {
+        return Ok(());
+    };
+    let diffuse = json.vector("diffuseFactor", Vec4::ONE.to_array())?;
+    let diffuse = Vec4::from_array(diffuse).clamp(Vec4::ZERO, Vec4::ONE);
+    let specular = json.color("specularFactor", Vec3::ONE, 1.0, warnings)?;
+    let glossiness = json.unit("glossinessFactor", 1.0, warnings)?;
+    let mut slot = |key: &str| match json.texture(key)? {
+        Some(reference) => textures.slot(source, json.at(), &reference, TextureRole::Color, warnings),
+        None => Ok(None),
+    };
+    let base_color_texture = slot("diffuseTexture")?;
+    let color_texture = slot("specularGlossinessTexture")?;
+    let metallic_roughness_texture = color_texture.map(|slot| textures.roughness_of_glossiness(slot, glossiness));
+    *material = Material {
+        base_color: diffuse,
+        base_color_texture,
+        metallic: 0.0,
+        roughness: if metallic_roughness_texture.is_some() { 1.0 } else { 1.0 - glossiness },
+        metallic_roughness_texture,
+        ior: 0.0,
+        specular: Some(Specular { factor: 1.0, color: specular, texture: None, color_texture }),
+        ..std::mem::take(material)
+    };
+    Ok(())
+}
