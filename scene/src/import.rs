@@ -29,6 +29,7 @@ mod motion;
 mod moves;
 mod node;
 mod object;
+mod pointer;
 mod primitive;
 mod source;
 mod spec_gloss;
@@ -46,7 +47,7 @@ use glam::DMat4;
 use self::material::Materials;
 use self::node::FlatNode;
 use self::primitive::GeometryKey;
-use self::source::{Source, Warnings};
+use self::source::{Repair, Source, Warnings};
 use self::variants::Variants;
 use super::error::{Quantity, SceneError, one_line};
 use super::instance::Instance;
@@ -127,17 +128,18 @@ pub fn load_bytes_with(
         name: path.file_stem().map_or_else(String::new, |stem| one_line(&stem.to_string_lossy())),
         ..Scene::default()
     };
-    light::import(&source, &nodes, &mut scene.lights, &mut warnings)?;
-    camera::import(&source, &nodes, &mut scene.cameras, &mut warnings)?;
+    let lights = light::import(&source, &nodes, &mut scene.lights, &mut warnings)?;
+    let cameras = camera::import(&source, &nodes, &mut scene.cameras, &mut warnings)?;
     let variants = Variants::read(&source, options.variant.as_deref())?;
     let mut materials = Materials::new(&source);
     let placed = import_meshes(&source, &nodes, &mut scene, (&variants, &mut materials), &mut warnings, progress)?;
     scene.variants = variants.names;
-    motion::import(&source, &nodes, placed, &mut scene, &mut warnings)?;
     let tables = materials.finish();
     scene.materials = tables.materials;
     scene.textures = tables.textures;
     scene.samplers = tables.samplers;
+    let attached = motion::Attachments { placed, lights, cameras, materials: tables.known };
+    motion::import(&source, &nodes, attached, &mut scene, &mut warnings)?;
     scene.images = images::decode(&source, &tables.images, progress)?;
     for roughness in &tables.computed {
         let image = &scene.images[roughness.image.index()];
@@ -145,6 +147,8 @@ pub fn load_bytes_with(
         source.keep(bytes).map_err(|budget| SceneError::Memory { file: path.into(), at, budget })?;
         scene.images.push(roughness.compute(&scene.images));
     }
+    let absent = source.buffers.iter().enumerate().filter(|(_, buffer)| buffer.is_read_and_absent());
+    absent.for_each(|(number, _)| warnings.count(Repair::Absent, &format!("buffer {number}"), 1));
     scene.files = source.files();
     scene.warnings = warnings.into_lines();
     source.finish();

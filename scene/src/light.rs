@@ -46,6 +46,9 @@ pub struct Light {
     pub position: DVec3,
     /// The unit direction in which the light *travels*. Without meaning for a point light.
     pub direction: Vec3,
+    /// Place in [`Rest::lights`](crate::motion::Rest::lights) of a light that hangs on a node; `None` for others, which
+    /// [`Scene::pose`](crate::Scene::pose) leaves alone.
+    pub rest: Option<usize>,
 }
 
 impl Light {
@@ -58,6 +61,7 @@ impl Light {
             color: Vec3::ONE,
             position: DVec3::ZERO,
             direction: direction.normalize_or(Vec3::NEG_Y),
+            rest: None,
         }
     }
 

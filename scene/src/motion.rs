@@ -1,5 +1,5 @@
-//! What moves in a scene: nodes in a hierarchy, animations that change them, and bodies whose vertices follow joints and morph
-//! targets (glTF 2.0, sections 3.5, 3.7.3 and 3.11).
+//! Motion of a scene: nodes in a hierarchy, animations that change nodes, materials, lights and cameras, and bodies whose
+//! vertices follow joints and morph targets (glTF 2.0, sections 3.5, 3.7.3 and 3.11; KHR_animation_pointer).
 //!
 //! ```text
 //! Animation ─ sample ─> nodes' transforms and weights ─ pose ─> Instance::world_from_model
@@ -10,14 +10,20 @@
 
 mod body;
 mod pose;
+pub(crate) mod property;
 mod sample;
 
 pub use crate::moves::{InfluenceSet, MorphTarget, Moves};
 pub use body::{Body, Shape, Skin};
 pub use pose::PoseError;
+pub use property::{CameraProperty, LightProperty, MaterialProperty, NodeProperty, Target, TransformPart};
 pub use sample::{Curve, Interpolation};
 
 use glam::{DMat4, DQuat, DVec3};
+
+use crate::camera::Camera;
+use crate::light::Light;
+use crate::material::{Material, MaterialId};
 
 /// What moves. A scene from code has none of it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,6 +41,19 @@ pub struct Motion {
     pub bodies: Vec<Body>,
     /// What moves them, in the order of the file.
     pub animations: Vec<Animation>,
+    /// Lights, cameras and materials at rest.
+    pub rest: Rest,
+}
+
+/// Lights, cameras and materials while nothing moves them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rest {
+    /// Lights that hang on nodes, each with its node; [`Light::rest`] is a place in this list.
+    pub lights: Vec<(usize, Light)>,
+    /// Cameras that hang on nodes, each with its node: the first cameras of the scene, in their order.
+    pub cameras: Vec<(usize, Camera)>,
+    /// Materials that animations change.
+    pub materials: Vec<(MaterialId, Material)>,
 }
 
 /// A node of the hierarchy.
@@ -86,28 +105,13 @@ pub struct Animation {
     pub channels: Vec<Channel>,
 }
 
-/// What changes a property of a node.
+/// The values of one property over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// The node.
-    pub node: usize,
-    /// Which of its properties.
-    pub property: Property,
-    /// The values over time: 3 numbers of a translation or scale, 4 of a rotation, one a target of weights.
+    /// The property.
+    pub target: Target,
+    /// Its values over time.
     pub curve: Curve,
-}
-
-/// A property of a node that animations change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Property {
-    /// Where it is.
-    Translation,
-    /// How it is turned.
-    Rotation,
-    /// How large it is.
-    Scale,
-    /// How much of each morph target its mesh has.
-    Weights,
 }
 
 impl Animation {

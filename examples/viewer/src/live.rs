@@ -134,6 +134,13 @@ impl Live {
 
     /// Loads a scene on a thread of its own. The one that is shown stays until it is there, or if it is none.
     pub fn load(&mut self, name: &str) {
+        let shown = self.running.as_ref().map(|running| &running.loaded).filter(|loaded| loaded.name == name);
+        let variant = shown.and_then(|loaded| loaded.variant.clone());
+        self.load_variant(name, variant);
+    }
+
+    /// Loads a scene with the materials of a variant, as [`load`](Self::load) does.
+    pub fn load_variant(&mut self, name: &str, variant: Option<String>) {
         let (gpu, name, around) = (self.screen.gpu.clone(), name.to_owned(), self.wanted.clone());
         let (settings, levels) = (self.light_settings(), self.document().frame.lod_error_px > 0.0);
         let wake = self.wake.clone();
@@ -141,7 +148,7 @@ impl Live {
         self.loading = Some(Job::start(
             format!("loading {name}"),
             move || wake(),
-            move |handle| loading::load(&gpu, &name, &around, &settings, levels, handle),
+            move |handle| loading::load(&gpu, &name, &around, &settings, (levels, variant), handle),
         ));
     }
 

@@ -1,30 +1,34 @@
-//! Bodies on the device: vertices that joints and morph targets have moved.
+//! A posed scene on the device: vertices that joints and morph targets have moved, and materials that animations change.
 
+use super::error::UploadError;
 use super::pack::{vertex_attributes, vertex_positions};
 use super::scene::GpuScene;
 use bytemuck::cast_slice;
 use framegraph_scene::{MeshId, Scene};
 use framegraph_shaders::layout::{VertexAttributes, VertexPosition};
-use framegraph_wgpu::{DeviceError, Gpu};
+use framegraph_wgpu::Gpu;
 use wgpu::{BufferDescriptor, BufferUsages, CommandEncoderDescriptor};
 
 impl GpuScene {
-    /// Uploads the vertices of bodies as [`Scene::pose`] has put them, and keeps where they were for velocity: to be called once
-    /// for each frame in which the scene was posed, and once more after the last.
+    /// Uploads the vertices of bodies and the animated materials as [`Scene::pose`] has left them, and keeps the earlier
+    /// positions for velocity. Call it once for each frame in which the scene was posed, and once more after the last.
     ///
     /// # Errors
     /// When the device fails.
     ///
     /// # Panics
     /// For another, larger scene than the one that was uploaded.
-    pub fn repose(&mut self, gpu: &Gpu, scene: &Scene) -> Result<(), DeviceError> {
+    pub fn repose(&mut self, gpu: &Gpu, scene: &Scene) -> Result<(), UploadError> {
+        for (material, _) in &scene.motion.rest.materials {
+            self.write_material(gpu, *material, &scene.materials[material.index()])?;
+        }
         let first_vertex = |mesh: MeshId| self.mesh(mesh, 0).base_vertex as u64;
         let bodies: Vec<(MeshId, u64)> =
             scene.motion.bodies.iter().map(|body| (body.mesh, first_vertex(body.mesh))).collect();
         if bodies.is_empty() {
             return Ok(());
         }
-        gpu.guard("the vertices of bodies", || {
+        let written = gpu.guard("the vertices of bodies", || {
             let mut encoder = gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("bodies") });
             let earlier = self.earlier.get_or_insert_with(|| {
                 let usage = BufferUsages::VERTEX | BufferUsages::COPY_DST;
@@ -49,7 +53,8 @@ impl GpuScene {
                 let attributes: Vec<VertexAttributes> = vertex_attributes(own).collect();
                 gpu.queue.write_buffer(&self.attributes, first * attribute_bytes, cast_slice(&attributes));
             }
-        })
+        });
+        Ok(written?)
     }
 
     /// Vertex buffer of `layout::VertexPosition`, as it was in the frame before.

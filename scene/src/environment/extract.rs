@@ -188,6 +188,7 @@ impl Removed {
             color: (illuminance / lux).as_vec3(),
             position: DVec3::ZERO,
             direction: (-toward).as_vec3(),
+            rest: None,
         })
     }
 }

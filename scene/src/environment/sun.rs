@@ -62,5 +62,6 @@ pub fn sun_light(toward_sun: DVec3, turbidity: f64) -> Option<Light> {
         color: color.as_vec3(),
         position: DVec3::ZERO,
         direction: (-toward_sun).as_vec3(),
+        rest: None,
     })
 }

@@ -1,20 +1,21 @@
 //! Loading the buffers of a document.
 
 use std::borrow::Cow;
+use std::cell::OnceCell;
 
-use super::source::Source;
+use super::source::{Buffer, Source};
 use super::uri::Resource;
 use crate::error::SceneError;
 use crate::progress::{Progress, ProgressFn, Stage, report};
 use crate::read::{file_bytes, read_file};
 
-/// Returns the bytes of every buffer. Buffer 0 without a URI is the binary chunk `blob`; another one without a URI has no
-/// bytes.
+/// Returns the bytes of every buffer. Buffer 0 without a URI is the binary chunk `blob`; another one without a URI is
+/// absent.
 pub(super) fn load<'a>(
     source: &Source<'_>,
     blob: Option<&'a [u8]>,
     progress: &mut ProgressFn<'_>,
-) -> Result<Vec<Option<Cow<'a, [u8]>>>, SceneError> {
+) -> Result<Vec<Buffer<'a>>, SceneError> {
     let all = &source.root.buffers;
     let mut buffers = Vec::new();
     for (i, buffer) in all.iter().enumerate() {
@@ -34,7 +35,7 @@ pub(super) fn load<'a>(
             },
             (None, Some(blob)) if i == 0 => Cow::Borrowed(blob),
             (None, _) => {
-                buffers.push(None);
+                buffers.push(Buffer::Absent(OnceCell::new()));
                 continue;
             }
         };
@@ -42,7 +43,7 @@ pub(super) fn load<'a>(
         if found < promised {
             return Err(source.malformed(&at, format!("truncated: {promised} bytes are promised, {found} are there")));
         }
-        buffers.push(Some(bytes));
+        buffers.push(Buffer::Bytes(bytes));
         report(progress, source.file, Progress { stage: Stage::Files, done: i + 1, total: all.len(), item: &at })?;
     }
     Ok(buffers)

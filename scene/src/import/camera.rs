@@ -5,26 +5,33 @@ use std::f64::consts::PI;
 use gltf_json::camera::{Camera as JsonCamera, Type};
 use gltf_json::validation::Checked;
 
-use super::node::FlatNode;
+use super::node::{Attached, FlatNode};
 use super::source::{Source, Warnings, beyond};
 use crate::camera::{Camera, Projection};
 use crate::error::{SceneError, one_line};
 
 /// Appends the cameras of all nodes. A camera goes by its own name; one without, or one that
-/// several nodes share, by its node's; failing both by `camera N`.
+/// several nodes share, by its node's; failing both by `camera N`. Returns the node of each, by its place, and its index in
+/// the file.
 pub(super) fn import(
     source: &Source<'_>,
     nodes: &[FlatNode],
     cameras: &mut Vec<Camera>,
     warnings: &mut Warnings,
-) -> Result<(), SceneError> {
+) -> Result<Vec<Attached>, SceneError> {
+    let mut attached = Vec::new();
     let all = &source.root.cameras;
-    for node in nodes {
+    for (place, node) in nodes.iter().enumerate() {
         let Some(index) = node.camera else {
             continue;
         };
         let json = all.get(index).ok_or_else(|| source.malformed(&node.at, beyond("camera", index, all)))?;
         let at = format!("camera {index}");
+        // A field of view of π or more is valid by the letter of section 5.15.4, and shows nothing.
+        if json.perspective.as_ref().is_some_and(|p| p.yfov.is_finite() && f64::from(p.yfov) >= PI) {
+            warnings.push(format!("{at}: its yfov is not below π radians; it is left out"));
+            continue;
+        }
         let projection = projection(json).map_err(|reason| source.malformed(&at, reason))?;
         let own = one_line(json.name.as_deref().unwrap_or_default());
         let free = |name: &str| !name.is_empty() && cameras.iter().all(|c| c.name != name);
@@ -33,11 +40,14 @@ pub(super) fn import(
             .find(|name| free(name))
             .unwrap_or_else(|| format!("camera {}", cameras.len()));
         match Camera::of_node(&name, &node.world_from_node, projection) {
-            Some(camera) => cameras.push(camera),
+            Some(camera) => {
+                cameras.push(camera);
+                attached.push(Attached { node: place, index });
+            }
             None => warnings.push(format!("{}: its camera looks nowhere and is left out", node.at)),
         }
     }
-    Ok(())
+    Ok(attached)
 }
 
 fn projection(json: &JsonCamera) -> Result<Projection, String> {

@@ -72,7 +72,10 @@ pub const EXTENSIONS: &[Extension] = &[
     full("KHR_materials_specular", ""),
     full("KHR_materials_transmission", ""),
     full("KHR_materials_unlit", ""),
-    full("KHR_materials_variants", "`LoadOptions::variant` or `--variant` chooses one; the default materials otherwise"),
+    full(
+        "KHR_materials_variants",
+        "`LoadOptions::variant` or `--variant` chooses one; the default materials otherwise",
+    ),
     full("KHR_materials_volume", ""),
     none("KHR_materials_volume_scatter", "the volume absorbs and does not scatter"),
     full("KHR_mesh_quantization", ""),

@@ -1,10 +1,10 @@
 //! EXT_mesh_gpu_instancing: one mesh at many places of its node.
 
-use glam::{DMat4, DQuat, DVec3};
 use super::accessor::floats;
 use super::limits::MAX_INSTANCES;
 use super::source::Source;
 use crate::error::{Quantity, SceneError};
+use glam::{DMat4, DQuat, DVec3};
 
 /// Reads the transforms of a node's instances to the node's axes; `None` for a node without the extension.
 ///
@@ -25,12 +25,14 @@ pub(super) fn read(source: &Source<'_>, node: usize, at: &str) -> Result<Option<
             None => Err(source.malformed(&at, format!("its {name} is no index of an accessor"))),
         },
     };
-    let vectors = |name: &str| accessor(name)?.map(|index| floats::<3>(source, index, &format!("{at} {name}"))).transpose();
+    let vectors =
+        |name: &str| accessor(name)?.map(|index| floats::<3>(source, index, &format!("{at} {name}"))).transpose();
     let translations = vectors("TRANSLATION")?;
     let scales = vectors("SCALE")?;
     let rotations =
         accessor("ROTATION")?.map(|index| floats::<4>(source, index, &format!("{at} ROTATION"))).transpose()?;
-    let lengths = [translations.as_ref().map(Vec::len), rotations.as_ref().map(Vec::len), scales.as_ref().map(Vec::len)];
+    let lengths =
+        [translations.as_ref().map(Vec::len), rotations.as_ref().map(Vec::len), scales.as_ref().map(Vec::len)];
     let Some(count) = lengths.into_iter().flatten().next() else {
         // Custom attributes alone place nothing.
         return Ok(None);

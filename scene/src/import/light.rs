@@ -7,26 +7,31 @@ use gltf_json::extensions::scene::khr_lights_punctual::Light as JsonLight;
 use gltf_json::extensions::scene::khr_lights_punctual::Type;
 use gltf_json::validation::Checked;
 
-use super::node::FlatNode;
+use super::node::{Attached, FlatNode};
 use super::source::{Source, Warnings, beyond};
 use crate::error::{SceneError, one_line};
 use crate::light::{Light, LightKind};
 
-/// Appends the lights of all nodes.
+/// Appends the lights of all nodes. Returns the node of each, by its place, and its index in the file.
 pub(super) fn import(
     source: &Source<'_>,
     nodes: &[FlatNode],
     lights: &mut Vec<Light>,
     warnings: &mut Warnings,
-) -> Result<(), SceneError> {
+) -> Result<Vec<Attached>, SceneError> {
+    let mut attached = Vec::new();
     let extensions = source.root.extensions.as_ref();
     let all: &[JsonLight] = extensions.and_then(|e| e.khr_lights_punctual.as_ref()).map_or(&[], |e| &e.lights);
-    for node in nodes {
+    for (place, node) in nodes.iter().enumerate() {
         let Some(index) = node.light else {
             continue;
         };
         let json = all.get(index).ok_or_else(|| source.malformed(&node.at, beyond("light", index, all)))?;
         let at = format!("light {index}");
+        if json.type_ == Checked::Invalid {
+            warnings.push(format!("{at}: its type is unknown; it is left out"));
+            continue;
+        }
         let kind = kind(json, &at, warnings).map_err(|reason| source.malformed(&at, reason))?;
         let color = Vec3::from_array(json.color);
         if !(color.is_finite() && color.min_element() >= 0.0) {
@@ -46,9 +51,11 @@ pub(super) fn import(
             _ => node.world_from_node.w_axis.truncate(),
         };
         let name = json.name.as_deref().filter(|name| !name.is_empty());
-        lights.push(Light { name: one_line(name.unwrap_or(&node.name)), kind, color, position, direction });
+        let name = one_line(name.unwrap_or(&node.name));
+        lights.push(Light { name, kind, color, position, direction, rest: Some(attached.len()) });
+        attached.push(Attached { node: place, index });
     }
-    Ok(())
+    Ok(attached)
 }
 
 /// The shape and strength, every number in range.

@@ -28,6 +28,8 @@ pub(super) struct Materials<'a> {
 
 /// What the materials of a scene came to.
 pub(super) struct Tables {
+    /// Ids by the index in the file; `None` is glTF's default material.
+    pub known: BTreeMap<Option<usize>, MaterialId>,
     pub materials: Vec<Material>,
     pub textures: Vec<Texture>,
     pub samplers: Vec<Sampler>,
@@ -73,6 +75,7 @@ impl<'a> Materials<'a> {
     pub fn finish(mut self) -> Tables {
         self.textures.number_computed();
         Tables {
+            known: self.known,
             materials: self.materials,
             textures: self.textures.textures,
             samplers: self.textures.samplers,

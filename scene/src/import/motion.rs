@@ -1,28 +1,43 @@
 //! Nodes, skins and animations.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DMat4, DVec4};
 use gltf_json::animation::{Interpolation as Way, Property as Path};
 use gltf_json::validation::Checked;
 
-use super::accessor::{floats, width};
 use super::Placed;
+use super::accessor::{floats, width as components};
 use super::document::NO_NODE;
-use super::node::FlatNode;
+use super::node::{Attached, FlatNode};
+use super::pointer::{self, Pointed, Scale};
 use super::source::{Source, Warnings, beyond};
 use crate::error::{SceneError, one_line};
-use crate::motion::{Animation, Body, Channel, Curve, Interpolation, Motion, Moves, Node, Property, Shape, Skin};
+use crate::material::MaterialId;
+use crate::motion::{
+    Animation, Body, Channel, Curve, Interpolation, Motion, Moves, Node, NodeProperty, Rest, Shape, Skin, Target,
+};
 use crate::scene::Scene;
+
+/// What hangs on the nodes of a scene.
+pub(super) struct Attachments {
+    /// Nodes and places of instances.
+    pub placed: Placed,
+    /// Nodes of lights.
+    pub lights: Vec<Attached>,
+    /// Nodes of cameras.
+    pub cameras: Vec<Attached>,
+    /// Materials by their index in the file.
+    pub materials: BTreeMap<Option<usize>, MaterialId>,
+}
 
 /// Imports nodes, skins, bodies and animations into [`Scene::motion`], and poses the scene at rest.
 ///
-/// `placed` has the node and place of each instance. A file without animations, skins and morph targets
-/// imports nothing.
+/// A file without animations, skins and morph targets imports nothing.
 pub(super) fn import(
     source: &Source<'_>,
     nodes: &[FlatNode],
-    placed: Placed,
+    attached: Attachments,
     scene: &mut Scene,
     warnings: &mut Warnings,
 ) -> Result<(), SceneError> {
@@ -31,7 +46,7 @@ pub(super) fn import(
     nodes.iter().enumerate().for_each(|(place, node)| places[node.index] = Some(place));
     // Skins by their index in the file. Skins that no mesh uses are not read.
     let mut skins = BTreeMap::new();
-    for (instance, place) in placed.nodes.iter().enumerate() {
+    for (instance, place) in attached.placed.nodes.iter().enumerate() {
         let id = scene.instances[instance].mesh;
         let mesh = &mut scene.meshes[id.index()];
         let Some(moves) = mesh.moves.take() else { continue };
@@ -57,14 +72,36 @@ pub(super) fn import(
             Shape { positions: mesh.positions.clone(), normals: mesh.normals.clone(), tangents: mesh.tangents.clone() };
         motion.bodies.push(Body { mesh: id, instance, node: *place, skin, rest, moves });
     }
-    for (number, animation) in source.root.animations.iter().enumerate() {
-        motion.animations.push(read_animation(source, number, animation, &places, &motion, warnings)?);
-    }
+    let indices = |all: &[Attached]| all.iter().map(|own| own.index).collect::<Vec<_>>();
+    let (lights, cameras) = (indices(&attached.lights), indices(&attached.cameras));
+    let parts = pointer::Parts {
+        places: &places,
+        lights: &lights,
+        cameras: &cameras,
+        material: &|index| attached.materials.get(&Some(index)).copied(),
+        targets: &|place| motion.nodes[place].weights.len(),
+    };
+    let all = source.root.animations.iter().enumerate();
+    let animations = all.map(|(number, animation)| read_animation(source, number, animation, &parts, warnings));
+    motion.animations = animations.collect::<Result<_, _>>()?;
     if motion.animations.is_empty() && motion.bodies.is_empty() {
         return Ok(());
     }
-    motion.instance_nodes = placed.nodes;
-    motion.node_from_model = placed.node_from_model;
+    let lit = |(place, own): (usize, &Attached)| (own.node, scene.lights[place].clone());
+    let seen = |(place, own): (usize, &Attached)| (own.node, scene.cameras[place].clone());
+    let materials: BTreeSet<MaterialId> = motion
+        .animations
+        .iter()
+        .flat_map(|animation| &animation.channels)
+        .filter_map(|channel| if let Target::Material(id, _) = channel.target { Some(id) } else { None })
+        .collect();
+    motion.rest = Rest {
+        lights: attached.lights.iter().enumerate().map(lit).collect(),
+        cameras: attached.cameras.iter().enumerate().map(seen).collect(),
+        materials: materials.into_iter().map(|id| (id, scene.materials[id.index()].clone())).collect(),
+    };
+    motion.instance_nodes = attached.placed.nodes;
+    motion.node_from_model = attached.placed.node_from_model;
     scene.motion = motion;
     scene.pose(None, 0.0).map_err(|error| source.malformed("skins", error.to_string()))
 }
@@ -77,7 +114,9 @@ fn check_joints(moves: &mut Moves, joints: usize) -> Result<(), String> {
                 if *weight <= 0.0 {
                     *joint = 0;
                 } else if usize::from(*joint) >= joints {
-                    return Err(format!("vertex {vertex} of its mesh follows joint {joint}, but its skin has {joints}"));
+                    return Err(format!(
+                        "vertex {vertex} of its mesh follows joint {joint}, but its skin has {joints}"
+                    ));
                 }
             }
         }
@@ -142,83 +181,121 @@ fn read_animation(
     source: &Source<'_>,
     number: usize,
     animation: &gltf_json::Animation,
-    places: &[Option<usize>],
-    motion: &Motion,
+    parts: &pointer::Parts<'_>,
     warnings: &mut Warnings,
 ) -> Result<Animation, SceneError> {
     let name = one_line(animation.name.as_deref().unwrap_or_default());
     let mut channels = Vec::new();
     for (index, channel) in animation.channels.iter().enumerate() {
         let at = format!("animation {number} channel {index}");
-        let target = channel.target.node.value();
-        // A channel without a node is ignored (section 5.5.1, "node").
-        if target == NO_NODE as usize {
+        let Some(Pointed { targets, width, scale }) =
+            aim(source, (number, index), &at, &channel.target, parts, warnings)?
+        else {
             continue;
-        }
-        let place =
-            places.get(target).ok_or_else(|| source.malformed(&at, beyond("node", target, &source.root.nodes)))?;
-        let Some(node) = *place else {
-            warnings.push(format!("{at}: node {target} is not in the scene; it is left out"));
-            continue;
-        };
-        let (property, wide) = match channel.target.path {
-            Checked::Valid(Path::Translation) => (Property::Translation, 3),
-            Checked::Valid(Path::Scale) => (Property::Scale, 3),
-            Checked::Valid(Path::Rotation) => (Property::Rotation, 4),
-            Checked::Valid(Path::MorphTargetWeights) => (Property::Weights, motion.nodes[node].weights.len()),
-            Checked::Invalid => {
-                warnings.push(format!("{at}: it changes what is not known; it is left out"));
-                continue;
-            }
         };
         let sampler = channel.sampler.value();
         let sampler = animation
             .samplers
             .get(sampler)
             .ok_or_else(|| source.malformed(&at, beyond("sampler", sampler, &animation.samplers)))?;
-        channels.push(Channel { node, property, curve: read_curve(source, &at, sampler, wide)? });
+        match read_curve(source, &at, sampler, width)? {
+            Ok(curve) => {
+                let width = if matches!(scale, Scale::Spread(_)) { 3 } else { curve.width };
+                let curve = Curve { values: scale.apply(curve.values), width, ..curve };
+                channels.extend(targets.into_iter().map(|target| Channel { target, curve: curve.clone() }));
+            }
+            Err(reason) => warnings.push(format!("{at}: {reason}; the channel is left out")),
+        }
     }
     Ok(Animation { name, channels })
 }
 
+/// Finds the property that a channel changes; `None` for a channel that is ignored.
+fn aim(
+    source: &Source<'_>,
+    (animation, channel): (usize, usize),
+    at: &str,
+    target: &gltf_json::animation::Target,
+    parts: &pointer::Parts<'_>,
+    warnings: &mut Warnings,
+) -> Result<Option<Pointed>, SceneError> {
+    if let Some(pointer) = pointer::of_channel(source, animation, channel) {
+        let pointed = pointer::resolve(source, pointer, parts);
+        if pointed.is_none() {
+            warnings.push(format!("{at}: the property {pointer:?} cannot be animated; the channel is left out"));
+        }
+        return Ok(pointed.filter(|pointed| !pointed.targets.is_empty()));
+    }
+    let node = target.node.value();
+    // A channel without a node is ignored (section 5.5.1, "node").
+    if node == NO_NODE as usize {
+        return Ok(None);
+    }
+    let place = parts.places.get(node).ok_or_else(|| source.malformed(at, beyond("node", node, &source.root.nodes)))?;
+    let Some(place) = *place else {
+        warnings.push(format!("{at}: node {node} is not in the scene; the channel is left out"));
+        return Ok(None);
+    };
+    let (property, width) = match target.path {
+        Checked::Valid(Path::Translation) => (NodeProperty::Translation, 3),
+        Checked::Valid(Path::Scale) => (NodeProperty::Scale, 3),
+        Checked::Valid(Path::Rotation) => (NodeProperty::Rotation, 4),
+        Checked::Valid(Path::MorphTargetWeights) => (NodeProperty::Weights, (parts.targets)(place)),
+        Checked::Invalid => {
+            warnings.push(format!("{at}: its path is unknown; the channel is left out"));
+            return Ok(None);
+        }
+    };
+    Ok(Some(Pointed { targets: vec![Target::Node(place, property)], width, scale: Scale::None }))
+}
+
+/// Reads the keys of a sampler. Keys that no curve can have are a reason to leave the channel out: the inner error.
+///
+/// # Errors
+///
+/// Fails for accessors that are not there or exceed their bytes.
 fn read_curve(
     source: &Source<'_>,
     at: &str,
     sampler: &gltf_json::animation::Sampler,
-    wide: usize,
-) -> Result<Curve, SceneError> {
+    width: usize,
+) -> Result<Result<Curve, String>, SceneError> {
     let interpolation = match sampler.interpolation {
         Checked::Valid(Way::Step) => Interpolation::Step,
         Checked::Valid(Way::Linear) => Interpolation::Linear,
         Checked::Valid(Way::CubicSpline) => Interpolation::Cubic,
-        Checked::Invalid => return Err(source.malformed(at, "its interpolation is not STEP, LINEAR or CUBICSPLINE")),
+        Checked::Invalid => return Ok(Err("its interpolation is not STEP, LINEAR or CUBICSPLINE".into())),
     };
     let accessor = source.root.accessors.get(sampler.input.value());
-    if wide == 0 || accessor.is_some_and(|accessor| accessor.count.0 == 0) {
-        return Err(source.malformed(at, "it has no keys, or nothing that they change"));
+    if width == 0 || accessor.is_some_and(|accessor| accessor.count.0 == 0) {
+        return Ok(Err("it has no keys, or nothing that they change".into()));
     }
     let times = floats::<1>(source, sampler.input.value(), &format!("{at} input"))?;
-    let times_s: Vec<f64> = times.into_iter().map(|[time]| f64::from(time)).collect();
-    if let Some(key) = times_s.iter().position(|time| !time.is_finite()) {
-        return Err(source.malformed(at, format!("the time of key {key} is {}, not a finite number", times_s[key])));
-    }
-    if let Some(key) = times_s.windows(2).position(|pair| pair[1] <= pair[0]) {
-        let reason = format!("key {} is at {} s, not after key {key} at {} s", key + 1, times_s[key + 1], times_s[key]);
-        return Err(source.malformed(at, reason));
-    }
     let (accessor, user) = (sampler.output.value(), format!("{at} output"));
-    let values: Vec<f32> = match width(source, accessor) {
+    let values: Vec<f32> = match components(source, accessor) {
+        Some(2) => floats::<2>(source, accessor, &user)?.into_iter().flatten().collect(),
         Some(3) => floats::<3>(source, accessor, &user)?.into_iter().flatten().collect(),
         Some(4) => floats::<4>(source, accessor, &user)?.into_iter().flatten().collect(),
         _ => floats::<1>(source, accessor, &user)?.into_iter().flatten().collect(),
     };
-    let needed = times_s.len() * Curve::parts(interpolation) * wide;
+    let times_s: Vec<f64> = times.into_iter().map(|[time]| f64::from(time)).collect();
+    if let Some(key) = times_s.iter().position(|time| !time.is_finite()) {
+        return Ok(Err(format!("the time of key {key} is {}, not a finite number", times_s[key])));
+    }
+    if let Some(key) = times_s.windows(2).position(|pair| pair[1] <= pair[0]) {
+        let (earlier, later) = (times_s[key], times_s[key + 1]);
+        return Ok(Err(format!("key {} is at {later} s, not after key {key} at {earlier} s", key + 1)));
+    }
+    let needed = times_s.len() * Curve::parts(interpolation) * width;
     if values.len() != needed {
-        let reason = format!("its output has {} numbers, and its {} keys need {needed}", values.len(), times_s.len());
-        return Err(source.malformed(at, reason));
+        return Ok(Err(format!(
+            "its output has {} numbers, and its {} keys need {needed}",
+            values.len(),
+            times_s.len()
+        )));
     }
     if let Some(place) = values.iter().position(|value| !value.is_finite()) {
-        return Err(source.malformed(at, format!("number {place} of its output is {}, not finite", values[place])));
+        return Ok(Err(format!("number {place} of its output is {}, not finite", values[place])));
     }
-    Ok(Curve { times_s, width: wide, values: values.into_iter().map(f64::from).collect(), interpolation })
+    Ok(Ok(Curve { times_s, width, values: values.into_iter().map(f64::from).collect(), interpolation }))
 }

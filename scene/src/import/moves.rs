@@ -52,7 +52,9 @@ pub(super) fn read(
         let joints = stream(source, at, &what, *joints, count, |joints: [f32; 4]| joints)?;
         let fits = |joint: &f32| (0.0..=f32::from(u16::MAX)).contains(joint);
         if let Some(vertex) = joints.iter().position(|own| !own.iter().all(fits)) {
-            return Err(source.malformed(at, format!("{what} of vertex {vertex} are {:?}, not 0 to 65535", joints[vertex])));
+            return Err(
+                source.malformed(at, format!("{what} of vertex {vertex} are {:?}, not 0 to 65535", joints[vertex]))
+            );
         }
         let joints = joints.into_iter().map(|own| own.map(|joint| joint as u16)).collect();
         let weights = stream(source, at, &format!("WEIGHTS_{number}"), *weights, count, |weights: [f32; 4]| weights)?;

@@ -38,6 +38,15 @@ pub(super) struct FlatNode {
     pub light: Option<usize>,
 }
 
+/// A light or camera that hangs on a node.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Attached {
+    /// Place of the node in the list of nodes.
+    pub node: usize,
+    /// Index of the light or camera in the file.
+    pub index: usize,
+}
+
 /// Walks the default scene, or the first, or all roots, parents before children. Transforms
 /// accumulate in f64.
 ///
@@ -53,9 +62,12 @@ pub(super) fn flatten(source: &Source<'_>, warnings: &mut Warnings) -> Result<Ve
     let mut walk = Walk { source, reached: vec![false; nodes.len()], flat: Vec::new() };
     let parents = parents(nodes);
     walk.walk(roots(source, &parents)?, true)?;
-    let joints = source.root.skins.iter().enumerate().flat_map(|(skin, json)| {
-        json.joints.iter().map(move |joint| (skin, joint.value()))
-    });
+    let joints = source
+        .root
+        .skins
+        .iter()
+        .enumerate()
+        .flat_map(|(skin, json)| json.joints.iter().map(move |joint| (skin, joint.value())));
     for (skin, joint) in joints {
         if walk.reached.get(joint) != Some(&false) {
             continue;

@@ -1,7 +1,7 @@
 //! A parsed file with its bytes: what every part of the importer reads from.
 
 use std::borrow::Cow;
-use std::cell::{Cell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
@@ -21,9 +21,8 @@ pub(super) struct Source<'a> {
     pub root: &'a Root,
     /// The JSON as it is, for extensions that the schema types leave out.
     pub json: &'a Value,
-    /// The bytes of each buffer, at least as long as the JSON says. `None` for one without URI and binary chunk, which
-    /// is an error once it is read.
-    pub buffers: Vec<Option<Cow<'a, [u8]>>>,
+    /// The bytes of each buffer, at least as long as the JSON says.
+    pub buffers: Vec<Buffer<'a>>,
     /// The budget of everything that is decoded.
     pub memory: &'a Memory,
     allow_outside: bool,
@@ -36,6 +35,22 @@ pub(super) struct Source<'a> {
     /// What was taken for encoded bytes, which go with this.
     file_bytes: Cell<u64>,
     files: RefCell<BTreeSet<PathBuf>>,
+}
+
+/// The bytes of a buffer.
+pub(super) enum Buffer<'a> {
+    /// Bytes of the file, a data URI or another file.
+    Bytes(Cow<'a, [u8]>),
+    /// A buffer with neither a URI nor a binary chunk, which an extension or application may fill (section 3.6.1.1).
+    /// Zeros are made once it is read.
+    Absent(OnceCell<Vec<u8>>),
+}
+
+impl Buffer<'_> {
+    /// Returns whether zeros were read from an absent buffer.
+    pub fn is_read_and_absent(&self) -> bool {
+        matches!(self, Self::Absent(zeros) if zeros.get().is_some())
+    }
 }
 
 impl<'a> Source<'a> {
@@ -127,9 +142,16 @@ impl<'a> Source<'a> {
         let buffer = view.buffer.value();
         let data =
             self.buffers.get(buffer).ok_or_else(|| self.malformed(at, beyond("buffer", buffer, &self.buffers)))?;
-        let data = data.as_ref().ok_or_else(|| {
-            self.malformed(at, format!("it reads buffer {buffer}, which has neither a URI nor a binary chunk"))
-        })?;
+        let data = match data {
+            Buffer::Bytes(bytes) => bytes.as_ref(),
+            Buffer::Absent(zeros) => {
+                let length = self.root.buffers[buffer].byte_length.0;
+                if zeros.get().is_none() {
+                    self.keep_file(&format!("buffer {buffer}"), length)?;
+                }
+                zeros.get_or_init(|| vec![0; length as usize]).as_slice()
+            }
+        };
         let start = view.byte_offset.map_or(0, |offset| offset.0);
         let length = view.byte_length.0;
         let bytes = slice(data, start, length).ok_or_else(|| {
@@ -193,6 +215,8 @@ pub(super) enum Repair {
     Weights,
     /// Triangles without area in a mesh without normals.
     Triangles,
+    /// Absent buffers that are read.
+    Absent,
 }
 
 impl Repair {
@@ -205,6 +229,7 @@ impl Repair {
             Self::Colors => format!("{count} vertex colors are not finite; 0 is used for their channels"),
             Self::Weights => format!("the skin weights of {count} vertices do not add up to 1; they were normalized"),
             Self::Triangles => format!("{count} triangles without area were dropped"),
+            Self::Absent => "the buffer has neither a URI nor a binary chunk; zeros are read from it".into(),
         }
     }
 }

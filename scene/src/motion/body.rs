@@ -63,9 +63,8 @@ impl Body {
             if !self.moves.influences.is_empty() {
                 let sets = self.moves.influences.iter();
                 let pairs = sets.flat_map(|set| set.joints[vertex].iter().zip(&set.weights[vertex]));
-                let matrix = pairs.fold(DMat4::ZERO, |sum, (joint, weight)| {
-                    sum + joints[usize::from(*joint)] * f64::from(*weight)
-                });
+                let matrix = pairs
+                    .fold(DMat4::ZERO, |sum, (joint, weight)| sum + joints[usize::from(*joint)] * f64::from(*weight));
                 position = matrix.transform_point3(position);
                 let linear = DMat3::from_mat4(matrix);
                 normal = cofactor(linear) * normal;

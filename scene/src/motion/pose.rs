@@ -1,8 +1,12 @@
 //! A scene at a moment of an animation.
 
-use super::{Motion, Property, Transform};
+use std::collections::BTreeMap;
+
+use super::{Motion, NodeProperty, Target, Transform};
 use crate::bounds::Aabb;
+use crate::camera::Camera;
 use crate::error::one_line;
+use crate::light::{Light, LightKind};
 use crate::scene::Scene;
 use glam::{DMat4, DVec3};
 
@@ -45,16 +49,17 @@ impl Motion {
         let mut weights: Vec<Vec<f64>> = self.nodes.iter().map(|node| node.weights.clone()).collect();
         let found = animation.and_then(|number| self.animations.get(number));
         for channel in found.map_or(&[][..], |found| &found.channels) {
-            if channel.property == Property::Weights {
-                weights[channel.node] = channel.curve.at(time_s);
+            let Target::Node(node, property) = channel.target else { continue };
+            if property == NodeProperty::Weights {
+                weights[node] = channel.curve.at(time_s);
             }
             // A node with a matrix is not to be moved (section 3.11); such channels do nothing.
-            let Transform::Parts { translation, rotation, scale } = &mut own[channel.node] else { continue };
-            match channel.property {
-                Property::Translation => *translation = DVec3::from_slice(&channel.curve.at(time_s)),
-                Property::Scale => *scale = DVec3::from_slice(&channel.curve.at(time_s)),
-                Property::Rotation => *rotation = channel.curve.rotation_at(time_s),
-                Property::Weights => {}
+            let Transform::Parts { translation, rotation, scale } = &mut own[node] else { continue };
+            match property {
+                NodeProperty::Translation => *translation = DVec3::from_slice(&channel.curve.at(time_s)),
+                NodeProperty::Scale => *scale = DVec3::from_slice(&channel.curve.at(time_s)),
+                NodeProperty::Rotation => *rotation = channel.curve.rotation_at(time_s),
+                NodeProperty::Weights => {}
             }
         }
         let mut world: Vec<DMat4> = Vec::with_capacity(own.len());
@@ -67,9 +72,9 @@ impl Motion {
 }
 
 impl Scene {
-    /// Moves instances and the vertices of bodies to where they are at a time, in seconds, of one of the scene's animations;
-    /// without one, to where they rest. Before its first and after its last key, nothing moves. Cameras and lights stay as
-    /// they were loaded.
+    /// Poses the scene at a time, in seconds, of one of its animations, or at rest without one: instances, vertices of
+    /// bodies, lights, cameras, and the materials that animations change. Before its first and after its last key, an
+    /// animation stands still.
     ///
     /// # Errors
     /// When there is no such animation, or something is moved beyond all bounds; the scene is as it was then, or partly moved.
@@ -108,10 +113,50 @@ impl Scene {
             }
             mesh.bounds = Aabb::from_points(&mesh.positions);
         }
+        self.pose_attached(animation, time_s, &world);
         for (instance, world_from_model) in self.instances.iter_mut().zip(placed) {
             instance.world_from_model = world_from_model;
             instance.bounds = self.meshes[instance.mesh.index()].bounds.transformed(&world_from_model);
         }
         Ok(())
+    }
+
+    /// Poses lights, cameras and materials, with nodes at `world`.
+    fn pose_attached(&mut self, animation: Option<usize>, time_s: f64, world: &[DMat4]) {
+        let Self { motion, lights, cameras, materials, .. } = self;
+        let mut attached: BTreeMap<usize, &mut Light> = BTreeMap::new();
+        for light in lights {
+            let Some((place, (node, rest))) =
+                light.rest.and_then(|place| Some((place, motion.rest.lights.get(place)?)))
+            else {
+                continue;
+            };
+            *light = rest.clone();
+            light.direction = Light::direction_of_node(&world[*node]).unwrap_or(rest.direction);
+            if !matches!(light.kind, LightKind::Directional { .. }) {
+                light.position = world[*node].w_axis.truncate();
+            }
+            attached.insert(place, light);
+        }
+        for (camera, (node, rest)) in cameras.iter_mut().zip(&motion.rest.cameras) {
+            *camera = Camera::of_node(&rest.name, &world[*node], rest.projection).unwrap_or_else(|| rest.clone());
+        }
+        for (material, rest) in &motion.rest.materials {
+            materials[material.index()] = rest.clone();
+        }
+        let found = animation.and_then(|number| motion.animations.get(number));
+        for channel in found.map_or(&[][..], |found| &found.channels) {
+            let value = || channel.curve.at(time_s);
+            match channel.target {
+                Target::Node(..) => {}
+                Target::Material(material, property) => property.write(&mut materials[material.index()], &value()),
+                Target::Light(light, property) => {
+                    attached.get_mut(&light).into_iter().for_each(|light| property.write(light, &value()));
+                }
+                Target::Camera(camera, property) => {
+                    cameras.get_mut(camera).into_iter().for_each(|camera| property.write(camera, &value()));
+                }
+            }
+        }
     }
 }

@@ -231,6 +231,12 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
         f90 = f90_from_f0(f0);
     }
     var diffuse = diffuse_from_base_color(color, metallic);
+    // An index of refraction of 0 is the specular-glossiness model. Filament takes its reflectance from the diffuse color.
+    @if(SPECULAR) {
+        if material.dielectric_f0 >= 1.0 {
+            diffuse *= 1.0 - real(max(dielectric.r, max(dielectric.g, dielectric.b)));
+        }
+    }
     // What is transmitted is tinted as what is scattered would be, and taken from it.
     @if(TRANSMISSION) let glass = transmission(uv);
     @if(TRANSMISSION) let through = diffuse * real(saturate(glass.x));

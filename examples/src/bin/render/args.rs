@@ -45,6 +45,7 @@ lamps 1000), lobes, materials.
   --camera WHICH       a camera of the scene by name, `orbit` (the whole scene), or EX,EY,EZ:TX,TY,TZ:FOVY with eye and
                        target in meters and the vertical field of view in degrees; default: the scene's first, else orbit
   --camera-from-gltf   the first camera of the file, or that of --camera NAME; an error where it has none
+  --variant NAME       the materials of a variant of the file (KHR_materials_variants)
 MOMENT
 LIGHTING
   --quality low|high|ultra  how surfaces are shaded: `low` as Filament does on phones, `high` as on desktops, `ultra` with
@@ -133,6 +134,8 @@ pub struct Args {
     pub settings: Option<PathBuf>,
     /// Which effects stay and go, and what else is done with the frame.
     pub decide: Decide,
+    /// Name of the material variant.
+    pub variant: Option<String>,
     /// At which moment of an animation the scene is.
     pub moment: Moment,
     /// Soften edges.
@@ -163,7 +166,12 @@ impl Args {
     /// What loading may do. Everything that is loaded shares one budget: make them once.
     pub fn load_options(&self) -> LoadOptions {
         let memory = self.memory_bytes.map_or_else(Memory::default, Memory::new);
-        LoadOptions { memory: memory.into(), allow_outside: self.allow_outside, keep_order: false }
+        LoadOptions {
+            memory: memory.into(),
+            allow_outside: self.allow_outside,
+            variant: self.variant.clone(),
+            ..LoadOptions::default()
+        }
     }
 }
 
@@ -209,6 +217,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         base,
         settings,
         decide: Decide::default(),
+        variant: None,
         moment: Moment::default(),
         fxaa: true,
         frames: 8,
@@ -262,6 +271,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
                 found.linear_out = Some(with_ending(path(&mut parser, "--linear-out")?, "--linear-out", &["exr"])?);
             }
             Long("memory") => found.memory_bytes = Some(memory(&text(&mut parser, "--memory")?)?),
+            Long("variant") => found.variant = Some(text(&mut parser, "--variant")?),
             Long("allow-outside") => found.allow_outside = true,
             Long("plan") => plan = Some(path(&mut parser, "--plan")?),
             Value(value) if found.scene.is_empty() => {

@@ -10,6 +10,7 @@ use framegraph_passes::ibl::ImageLight;
 use framegraph_passes::measure::Measurement;
 use framegraph_passes::view::ViewSettings;
 use framegraph_passes::{Effect, EffectSet, FactInput, FactMemory, Facts, FrameSettings, Preset, Settings};
+use framegraph_scene::Scene;
 use lexopt::Parser;
 use program::input;
 use std::ffi::{OsStr, OsString};
@@ -208,6 +209,11 @@ impl Deciding {
         }
         let memory = FactMemory::default();
         Self { survey: Survey::new(&loaded.scene), memory, forced, off: asked.forced }
+    }
+
+    /// Reads the surfaces of the scene again, after an animation has changed materials.
+    pub fn resurvey(&mut self, scene: &Scene) {
+        self.survey = Survey::new(scene);
     }
 
     /// What the facts say of a view; nothing where effects are forced.

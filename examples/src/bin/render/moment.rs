@@ -5,8 +5,8 @@ use lexopt::Parser;
 
 /// What `render --help` prints of them.
 pub const HELP: &str = "
-  --time S             the scene S seconds after its animation began, which begins anew when it ends: nodes, skins and morph
-                       targets; cameras and lights stay
+  --time S             the scene S seconds into its animation, which repeats: nodes, skins, morph targets, lights and
+                       cameras on nodes, and what KHR_animation_pointer changes
   --animation WHICH    the animation by name or number (0)
 ";
 

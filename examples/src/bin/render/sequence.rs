@@ -3,6 +3,7 @@
 use crate::args::Args;
 use crate::decide::Sequence;
 use crate::keep::{Own, declare};
+use crate::load;
 use crate::run::{Failure, Prepared, device, executed, input};
 use framegraph::{Plan, Scratch};
 use framegraph_passes::measure::Measuring;
@@ -43,6 +44,16 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
     let (mut plans, mut planned, mut measuring) = (0_u32, None, Measuring::new());
     let (mut percents, mut times_ms) = (Vec::new(), Vec::new());
     for (path, index) in files(sequence).zip(0..) {
+        let plays = args.moment.plays() && !sequence.turns && index > 0;
+        if plays {
+            args.moment.apply(&mut prepared.loaded.scene, f64::from(index) / sequence.per_second).map_err(input)?;
+            prepared.world.scene.repose(&prepared.gpu, &prepared.loaded.scene).map_err(device)?;
+            if !prepared.loaded.scene.motion.rest.materials.is_empty() {
+                prepared.deciding.resurvey(&prepared.loaded.scene);
+            }
+            // The camera may hang on a node.
+            prepared.seen.camera = load::view(args, &prepared.loaded).map_err(input)?.camera;
+        }
         let turned = if sequence.turns { f64::from(index) / f64::from(sequence.frames) * TAU } else { 0.0 };
         let mut seen = around(&prepared.seen, center, turned);
         if let Some(dynamic) = &args.effects.dynamic {
@@ -52,11 +63,6 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
             prepared.asked.upscale = (smaller.percent < 100).then_some(smaller);
             seen.size_px = smaller.extent().texels(args.size_px);
             percents.push(next);
-        }
-        let plays = args.moment.plays() && !sequence.turns && index > 0;
-        if plays {
-            args.moment.apply(&mut prepared.loaded.scene, f64::from(index) / sequence.per_second).map_err(input)?;
-            prepared.world.scene.repose(&prepared.gpu, &prepared.loaded.scene).map_err(device)?;
         }
         let light = &prepared.world.lighting.image;
         let measured = measuring.known(&prepared.gpu).map_err(device)?;

@@ -151,16 +151,27 @@ impl Running {
         (self.stand, self.index) = (None, 0);
     }
 
-    /// Moves the scene to a moment of an animation.
+    /// Poses the scene at a time of an animation.
     fn pose(&mut self, animation: Option<usize>, time_s: f64) -> Result<(), String> {
         let moment = animation.map(|number| (number, time_s));
         if moment == self.posed {
             return Ok(());
         }
-        let Loaded { scene, prepared, world, .. } = &mut self.loaded;
+        let Loaded { scene, lights, survey, prepared, world, .. } = &mut self.loaded;
+        // All lights are posed, also those that the chosen sun leaves out.
+        scene.lights.clone_from(lights);
         let posed = scene.pose(animation, time_s).map_err(|e| e.to_string());
+        lights.clone_from(&scene.lights);
         world.scene.repose(&self.screen.gpu, scene).map_err(|e| e.to_string())?;
         prepared.update(scene, &(0..scene.instances.len()).collect::<Vec<_>>());
+        if !scene.motion.rest.materials.is_empty() {
+            for (material, _) in &scene.motion.rest.materials {
+                self.materials[material.index()] = scene.materials[material.index()].clone();
+                // It is painted again over its posed factors.
+                self.painted.remove(&material.index());
+            }
+            *survey = Arc::new(Survey::new(scene));
+        }
         self.posed = moment;
         posed
     }

@@ -81,9 +81,12 @@ pub struct Loaded {
     pub metered_ev100: f32,
     /// Its meshes have levels of detail.
     pub levels: bool,
+    /// The material variant that is shown.
+    pub variant: Option<String>,
 }
 
-/// Loads a scene and its light, with levels of detail where settings ask for any. The second value is what was repaired, a line each.
+/// Loads a scene with a material variant, its light, and levels of detail where settings ask for them. The second value has
+/// the warnings, a line each.
 ///
 /// # Errors
 /// One line that names the file and the reason; also when the work was cancelled.
@@ -92,10 +95,10 @@ pub fn load(
     name: &str,
     around: &Around,
     settings: &LightSettings,
-    levels: bool,
+    (levels, variant): (bool, Option<String>),
     handle: &Handle,
 ) -> Result<(Loaded, Vec<String>), String> {
-    let options = LoadOptions::default();
+    let options = LoadOptions { variant, ..LoadOptions::default() };
     let mut scene = Scene::open_with(name, &options, &mut |p| told(handle, p)).map_err(|e| e.to_string())?;
     scene.check().map_err(|error| format!("{name}: {error}"))?;
     if scene.instances.is_empty() {
@@ -138,6 +141,7 @@ pub fn load(
         background,
         metered_ev100,
         levels,
+        variant: options.variant,
     };
     Ok((loaded, warnings))
 }

@@ -138,6 +138,11 @@ impl Fixture {
         Ok(scene)
     }
 
+    /// The warnings with which loading succeeds, a line each.
+    pub fn warnings(&self) -> String {
+        self.load().expect("the file loads").warnings.join("\n")
+    }
+
     /// The message with which loading fails.
     pub fn error(&self) -> String {
         let text = self.load().expect_err("the file is broken").to_string();

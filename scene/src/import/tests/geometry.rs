@@ -114,7 +114,7 @@ fn points_and_lines_are_warned_of_and_not_drawn() {
         let scene = fixture.load().expect("valid, if nothing to draw");
         assert!(scene.instances.is_empty());
         assert!(scene.warnings.iter().any(|w| w.contains(word)), "{:?}", scene.warnings);
-        assert!(scene.warnings.iter().any(|w| w.contains("draws no triangles")));
+        assert!(scene.warnings.iter().any(|w| w.contains("draws nothing")));
     }
 }
 

@@ -49,9 +49,18 @@ fn ranges_that_exceed_their_bytes() {
     broken("/bufferViews/0/byteStride", json!(1_000_000), &["exceed buffer view 0"]);
     broken("/bufferViews/0/byteStride", json!(usize::MAX), &["exceed buffer view 0"]);
     broken("/buffers", json!([{"byteLength": 1_000_000}]), &["buffer 0: truncated"]);
-    let mut fixture = Fixture::triangle();
-    fixture.set("/bufferViews/0/buffer", json!(1)).set("/buffers", json!([{"byteLength": 8}, {"byteLength": 8}]));
-    assert!(fixture.error().contains("accessor 0: it reads buffer 1, which has neither a URI nor a binary chunk"));
+    // A buffer without bytes reads as zeros, within the length that it states and within the memory.
+    let absent = |bytes: u64| {
+        let mut fixture = Fixture::triangle();
+        fixture.set("/bufferViews/1/buffer", json!(1));
+        fixture.set("/bufferViews/1/byteOffset", json!(0));
+        fixture.set("/buffers", json!([{"byteLength": 78}, {"byteLength": bytes}]));
+        fixture
+    };
+    let scene = absent(36).load().expect("normals of zero are repaired");
+    assert!(scene.warnings.iter().any(|w| w.contains("buffer 1: the buffer has neither")), "{:?}", scene.warnings);
+    assert!(absent(35).error().contains("buffer view 1 covers 36 bytes"));
+    assert!(absent(1 << 60).error().contains("buffer 1: "));
 }
 
 /// Counts without bytes behind them must not be believed.

@@ -209,7 +209,7 @@ fn broken_lobes_are_errors() {
         (coat("clearcoatTexture", json!({"index": 7})), "names texture 7, but there are 1"),
         (coat("clearcoatTexture", json!({"index": 0, "texCoord": 0.5})), "no valid texCoord"),
         (coat("clearcoatNormalTexture", json!({"index": 0, "scale": null})), "scale is no number"),
-        (json!({"KHR_materials_sheen": {"sheenColorFactor": [1, 1]}}), "sheenColorFactor is not three numbers"),
+        (json!({"KHR_materials_sheen": {"sheenColorFactor": [1, 1]}}), "sheenColorFactor is not 3 numbers"),
         (json!({"KHR_materials_sheen": {"sheenColorFactor": [1, 1, "x"]}}), "sheenColorFactor is no number"),
         (json!({"KHR_materials_anisotropy": {"anisotropyRotation": 1e39}}), "its anisotropyRotation is inf"),
         (volume("thicknessFactor", json!(-1.0)), "KHR_materials_volume: its thicknessFactor is -1"),

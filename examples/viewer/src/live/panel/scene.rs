@@ -27,6 +27,7 @@ pub fn scene(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crat
         scene.materials.len(),
         loaded.lights.len()
     ));
+    variant(ui, live);
     animation(ui, live);
     cameras(ui, live);
     super::material::material(ui, live);
@@ -95,6 +96,29 @@ pub(super) fn completions(path: &str) -> Vec<String> {
     names.sort_unstable();
     names.truncate(OFFERED);
     names
+}
+
+/// Chooses a material variant of the file; the scene is loaded again with its materials.
+fn variant(ui: &mut Ui, live: &mut Live) {
+    let Some(loaded) = live.running.as_ref().map(|running| &running.loaded) else { return };
+    if loaded.scene.variants.is_empty() {
+        return;
+    }
+    let mut chosen = loaded.variant.clone();
+    ComboBox::from_id_salt("variant")
+        .selected_text(chosen.as_deref().unwrap_or("default materials"))
+        .show_ui(ui, |ui| {
+            ui.selectable_value(&mut chosen, None, "default materials");
+            for name in &loaded.scene.variants {
+                ui.selectable_value(&mut chosen, Some(name.clone()), name);
+            }
+        })
+        .response
+        .on_hover_text("material variant of the file");
+    if chosen != loaded.variant {
+        let name = loaded.name.clone();
+        live.load_variant(&name, chosen);
+    }
 }
 
 fn animation(ui: &mut Ui, live: &mut Live) {

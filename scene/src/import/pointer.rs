@@ -1,0 +1,134 @@
+//! KHR_animation_pointer: the properties that JSON pointers of animation channels name.
+
+use serde_json::Value;
+
+use super::source::Source;
+use crate::material::MaterialId;
+use crate::motion::property::EMISSIVE;
+use crate::motion::{CameraProperty, LightProperty, MaterialProperty, NodeProperty, Target};
+
+/// The parts of a scene that a pointer may name.
+pub(super) struct Parts<'a> {
+    /// Place of each node of the file in the list of nodes.
+    pub places: &'a [Option<usize>],
+    /// Index in the file of each light of the scene.
+    pub lights: &'a [usize],
+    /// Index in the file of each camera of the scene.
+    pub cameras: &'a [usize],
+    /// Materials of the scene by their index in the file.
+    pub material: &'a dyn Fn(usize) -> Option<MaterialId>,
+    /// Number of morph targets of a node, by its place.
+    pub targets: &'a dyn Fn(usize) -> usize,
+}
+
+/// What a pointer names.
+pub(super) struct Pointed {
+    /// The targets: several where nodes share a light or a camera; none where the scene does not use the object.
+    pub targets: Vec<Target>,
+    /// Numbers of a value.
+    pub width: usize,
+    /// Rows of factors that turn a value of the file into values of the target; `None` for equal values.
+    pub scale: Scale,
+}
+
+/// How values of a file become values of a property.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Scale {
+    /// They are equal.
+    None,
+    /// Each number is multiplied.
+    By(f32),
+    /// One number becomes three, by these factors.
+    Spread([f32; 3]),
+}
+
+/// Returns the pointer of a channel, if it has one.
+pub(super) fn of_channel<'a>(source: &Source<'a>, animation: usize, channel: usize) -> Option<&'a str> {
+    let channel = source.json.get("animations")?.get(animation)?.get("channels")?.get(channel)?;
+    channel.get("target")?.get("extensions")?.get("KHR_animation_pointer")?.get("pointer")?.as_str()
+}
+
+/// Resolves a pointer; `None` for a property that cannot be animated here.
+pub(super) fn resolve(source: &Source<'_>, pointer: &str, parts: &Parts<'_>) -> Option<Pointed> {
+    let mut words = pointer.strip_prefix('/')?.splitn(3, '/');
+    let (kind, index, rest) = (words.next()?, words.next()?, words.next()?);
+    let plain = |targets: Vec<Target>, width| Some(Pointed { targets, width, scale: Scale::None });
+    match kind {
+        "nodes" => {
+            let place = *parts.places.get(index.parse::<usize>().ok()?)?;
+            let (property, width) = match rest {
+                "translation" => (NodeProperty::Translation, 3),
+                "rotation" => (NodeProperty::Rotation, 4),
+                "scale" => (NodeProperty::Scale, 3),
+                "weights" => (NodeProperty::Weights, place.map_or(0, parts.targets)),
+                _ => return None,
+            };
+            plain(place.map(|place| Target::Node(place, property)).into_iter().collect(), width)
+        }
+        "materials" => {
+            let index: usize = index.parse().ok()?;
+            let target =
+                |property| (parts.material)(index).map(|id| Target::Material(id, property)).into_iter().collect();
+            let factors = || source.json.get("materials").and_then(|all| all.get(index));
+            // Emission is one color here: factor times strength.
+            if rest == STRENGTH {
+                let factor = factors().and_then(|material| material.get(EMISSIVE)).and_then(Value::as_array);
+                let channel = |i: usize| factor.and_then(|f| f.get(i)).and_then(Value::as_f64).unwrap_or(0.0) as f32;
+                let scale = Scale::Spread([0, 1, 2].map(channel));
+                return Some(Pointed { targets: target(MaterialProperty::at(EMISSIVE)?), width: 1, scale });
+            }
+            let property = MaterialProperty::at(rest)?;
+            let strength = || factors().and_then(|material| material.pointer(&format!("/{STRENGTH}"))?.as_f64());
+            let scale = if rest == EMISSIVE { Scale::By(strength().unwrap_or(1.0) as f32) } else { Scale::None };
+            Some(Pointed { targets: target(property), width: property.width(), scale })
+        }
+        "cameras" => {
+            let index: usize = index.parse().ok()?;
+            let property = match rest {
+                "perspective/yfov" => CameraProperty::FovY,
+                "perspective/znear" | "orthographic/znear" => CameraProperty::Near,
+                "perspective/zfar" | "orthographic/zfar" => CameraProperty::Far,
+                "orthographic/xmag" => CameraProperty::HalfWidth,
+                "orthographic/ymag" => CameraProperty::HalfHeight,
+                _ => return None,
+            };
+            plain(places_of(parts.cameras, index).map(|camera| Target::Camera(camera, property)).collect(), 1)
+        }
+        "extensions" if index == "KHR_lights_punctual" => {
+            let (index, rest) = rest.strip_prefix("lights/")?.split_once('/')?;
+            let index: usize = index.parse().ok()?;
+            let property = match rest {
+                "color" => LightProperty::Color,
+                "intensity" => LightProperty::Intensity,
+                "range" => LightProperty::Range,
+                "spot/innerConeAngle" => LightProperty::InnerCone,
+                "spot/outerConeAngle" => LightProperty::OuterCone,
+                _ => return None,
+            };
+            let targets = places_of(parts.lights, index).map(|light| Target::Light(light, property)).collect();
+            plain(targets, property.width())
+        }
+        _ => None,
+    }
+}
+
+/// JSON pointer of the strength of emission below a material.
+const STRENGTH: &str = "extensions/KHR_materials_emissive_strength/emissiveStrength";
+
+/// Places of `index` in a list.
+fn places_of(all: &[usize], index: usize) -> impl Iterator<Item = usize> {
+    all.iter().enumerate().filter(move |(_, own)| **own == index).map(|(place, _)| place)
+}
+
+impl Scale {
+    /// Scales values one after another, each of `width` numbers.
+    pub fn apply(self, values: Vec<f64>) -> Vec<f64> {
+        match self {
+            Self::None => values,
+            Self::By(factor) => values.into_iter().map(|value| value * f64::from(factor)).collect(),
+            Self::Spread(factors) => {
+                values.into_iter().flat_map(|value| factors.map(|factor| value * f64::from(factor))).collect()
+            }
+        }
+    }
+}
