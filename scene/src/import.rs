@@ -198,7 +198,7 @@ fn import_meshes(
             let at = format!("mesh {mesh_index} primitive {i}");
             let material = materials.import(variants.material(source, &at, primitive)?, &at, warnings)?;
             let surface = materials.get(material);
-            let key = GeometryKey::new(primitive, surface, node.index, node.skin.is_some());
+            let key = GeometryKey::new(primitive, i, surface, node.index, node.skin.is_some());
             let mesh_id = match built.get(&key) {
                 Some(id) => *id,
                 None => {

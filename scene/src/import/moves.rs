@@ -17,14 +17,16 @@ const ROUNDING: f32 = 0.02;
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct MovesKey {
     node: usize,
+    /// Number of the primitive, of one with a skin: each has a body of its own.
+    primitive: Option<usize>,
     /// Joints and weights of each set.
     influences: Vec<[usize; 2]>,
     targets: Vec<[Option<usize>; 3]>,
 }
 
 impl MovesKey {
-    /// Returns the accessors of a primitive, or `None` for one that nothing deforms.
-    pub fn new(primitive: &Primitive, node: usize, skinned: bool) -> Option<Self> {
+    /// Returns the accessors of primitive `number` of a mesh, or `None` for one that nothing deforms.
+    pub fn new(primitive: &Primitive, number: usize, node: usize, skinned: bool) -> Option<Self> {
         let accessor = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
         let set = |number| accessor(Semantic::Joints(number)).zip(accessor(Semantic::Weights(number)));
         let sets = (0..).map_while(|number| set(number).filter(|_| skinned));
@@ -32,7 +34,8 @@ impl MovesKey {
         let value = |index: Option<gltf_json::Index<_>>| index.map(|index| index.value());
         let targets = primitive.targets.iter().flatten();
         let targets: Vec<_> = targets.map(|t| [value(t.positions), value(t.normals), value(t.tangents)]).collect();
-        (!influences.is_empty() || !targets.is_empty()).then_some(Self { node, influences, targets })
+        let is_moved = !influences.is_empty() || !targets.is_empty();
+        is_moved.then_some(Self { node, primitive: skinned.then_some(number), influences, targets })
     }
 }
 

@@ -36,8 +36,8 @@ pub(super) struct GeometryKey {
 
 impl GeometryKey {
     /// The material says which texture coordinates tangents follow, if it asks for them, and whether the order of triangles shows.
-    /// A mesh that `node` moves, which has a skin or not, is the node's own.
-    pub fn new(primitive: &Primitive, surface: &Material, node: usize, skinned: bool) -> Self {
+    /// A mesh that `node` moves, which has a skin or not, is the node's own. `number` is the primitive's in its mesh.
+    pub fn new(primitive: &Primitive, number: usize, surface: &Material, node: usize, skinned: bool) -> Self {
         let accessor =
             |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
         Self {
@@ -53,7 +53,7 @@ impl GeometryKey {
             },
             tangent_uv: surface.tangent_uv_set(),
             blends: surface.alpha == AlphaMode::Blend,
-            moves: MovesKey::new(primitive, node, skinned),
+            moves: MovesKey::new(primitive, number, node, skinned),
         }
     }
 }

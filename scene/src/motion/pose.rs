@@ -101,11 +101,15 @@ impl Scene {
             if let Some(skin) = body.skin.map(|skin| &self.motion.skins[skin]) {
                 // Joints alone say where a body is (section 3.7.3.3). Its vertices are kept near the first, so that in f32
                 // they are fine far from the origin, too.
-                let home = world[skin.joints[0]].w_axis.truncate();
-                let near = DMat4::from_translation(-home);
+                let first = world[skin.joints[0]];
+                let home = first.w_axis.truncate();
+                // Joints that mirror the mesh mirror the instance, which turns the winding of its triangles (section 3.7.4).
+                let is_mirrored = (first * skin.joint_from_mesh[0]).determinant() < 0.0;
+                let side = DMat4::from_scale(DVec3::new(if is_mirrored { -1.0 } else { 1.0 }, 1.0, 1.0));
+                let near = side * DMat4::from_translation(-home);
                 let pairs = skin.joints.iter().zip(&skin.joint_from_mesh);
                 joints = pairs.map(|(joint, joint_from_mesh)| near * world[*joint] * *joint_from_mesh).collect();
-                placed[body.instance] = DMat4::from_translation(home);
+                placed[body.instance] = DMat4::from_translation(home) * side;
             }
             body.deform(&weights[body.node], &joints, mesh);
             if let Some(vertex) = mesh.positions.iter().position(|position| !position.is_finite()) {
