@@ -1,5 +1,6 @@
 //! The importer on files made in code: what is right comes out right, what is wrong is one line.
 
+mod character;
 mod document;
 mod fixture;
 mod fuzz;
