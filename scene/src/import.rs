@@ -21,6 +21,7 @@ mod encoding;
 mod extension;
 mod images;
 mod instancing;
+mod letter_case;
 mod light;
 mod limits;
 mod lobes;

@@ -53,7 +53,11 @@ pub const EXTENSIONS: &[Extension] = &[
     none("EXT_texture_astc", "ASTC images are not decoded"),
     none("EXT_texture_webp", "WebP images are not decoded; the fallback image is used"),
     none("KHR_accessor_float64", "accessors of 64-bit floats are refused"),
-    none("KHR_animation_pointer", "the channels that use it are ignored"),
+    full(
+        "KHR_animation_pointer",
+        "animates node transforms and weights, factors and texture transforms of materials, lights and cameras; other \
+         properties keep their value, with a warning",
+    ),
     none("KHR_audio_emitter", "there is no sound"),
     none("KHR_draco_mesh_compression", "compressed primitives are not decoded"),
     none("KHR_gaussian_splatting", "splats are not drawn"),

@@ -1,6 +1,7 @@
 //! The lobes of a material: the KHR_materials extensions that add to the metal-rough base.
 //!
-//! A lobe that its factor switches off is left out, with its textures: nothing of it could be seen.
+//! A lobe that its factor switches off is left out, with its textures: nothing of it could be seen. A lobe that an
+//! animation changes is kept.
 
 use glam::Vec3;
 use gltf_json as json;
@@ -62,7 +63,7 @@ impl Reading<'_, '_> {
         let factor = json.unit("clearcoatFactor", 0.0, self.warnings)?;
         let roughness = json.unit("clearcoatRoughnessFactor", 0.0, self.warnings)?;
         let normal_scale = json.normal_scale("clearcoatNormalTexture")?;
-        if factor == 0.0 {
+        if factor == 0.0 && !json.is_animated() {
             return Ok(None);
         }
         Ok(Some(ClearCoat {
@@ -78,7 +79,7 @@ impl Reading<'_, '_> {
     fn sheen(&mut self, json: &Object<'_>) -> Result<Option<Sheen>, SceneError> {
         let color = json.color("sheenColorFactor", Vec3::ZERO, 1.0, self.warnings)?;
         let roughness = json.unit("sheenRoughnessFactor", 0.0, self.warnings)?;
-        if color == Vec3::ZERO {
+        if color == Vec3::ZERO && !json.is_animated() {
             return Ok(None);
         }
         Ok(Some(Sheen {
@@ -92,7 +93,7 @@ impl Reading<'_, '_> {
     fn anisotropy(&mut self, json: &Object<'_>) -> Result<Option<Anisotropy>, SceneError> {
         let strength = json.unit("anisotropyStrength", 0.0, self.warnings)?;
         let rotation_rad = json.number("anisotropyRotation", 0.0)?;
-        if strength == 0.0 {
+        if strength == 0.0 && !json.is_animated() {
             return Ok(None);
         }
         let texture = self.slot(json, "anisotropyTexture", TextureRole::Linear)?;
@@ -106,7 +107,7 @@ impl Reading<'_, '_> {
     ) -> Result<Option<Transmission>, SceneError> {
         let factor = json.unit("transmissionFactor", 0.0, self.warnings)?;
         let volume = volume.map_or(Ok(None), |json| self.volume(json))?;
-        if factor == 0.0 {
+        if factor == 0.0 && !json.is_animated() {
             return Ok(None);
         }
         Ok(Some(Transmission { factor, texture: self.slot(json, "transmissionTexture", TextureRole::Linear)?, volume }))
@@ -122,7 +123,7 @@ impl Reading<'_, '_> {
         if attenuation_distance_m <= 0.0 {
             return Err(json.malformed(format!("its attenuationDistance is {attenuation_distance_m}")));
         }
-        if thickness == 0.0 {
+        if thickness == 0.0 && !json.is_animated() {
             return Ok(None);
         }
         let thickness_texture = self.slot(json, "thicknessTexture", TextureRole::Linear)?;
@@ -136,6 +137,6 @@ impl Reading<'_, '_> {
             texture: self.slot(json, "specularTexture", TextureRole::Linear)?,
             color_texture: self.slot(json, "specularColorTexture", TextureRole::Color)?,
         };
-        Ok(Some(specular).filter(|specular| *specular != Specular::default()))
+        Ok(Some(specular).filter(|specular| *specular != Specular::default() || json.is_animated()))
     }
 }

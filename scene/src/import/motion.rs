@@ -207,6 +207,10 @@ fn read_animation(
             Err(reason) => warnings.push(format!("{at}: {reason}; the channel is left out")),
         }
     }
+    channels.sort_by_key(|channel| match channel.target {
+        Target::Material(_, property) => property.is_relative(),
+        Target::Node(..) | Target::Light(..) | Target::Camera(..) => false,
+    });
     Ok(Animation { name, channels })
 }
 
@@ -220,7 +224,7 @@ fn aim(
     warnings: &mut Warnings,
 ) -> Result<Option<Pointed>, SceneError> {
     if let Some(pointer) = pointer::of_channel(source, animation, channel) {
-        let pointed = pointer::resolve(source, pointer, parts);
+        let pointed = pointer::resolve(source, animation, pointer, parts);
         if pointed.is_none() {
             warnings.push(format!("{at}: the property {pointer:?} cannot be animated; the channel is left out"));
         }

@@ -41,6 +41,11 @@ impl<'a> Object<'a> {
         &self.at
     }
 
+    /// Returns whether an animation changes a property of this extension, so that it may show later.
+    pub fn is_animated(&self) -> bool {
+        self.source.is_animated(&self.at)
+    }
+
     /// An error about this extension.
     pub fn malformed(&self, reason: impl Into<String>) -> SceneError {
         self.source.malformed(&self.at, reason)

@@ -1,10 +1,12 @@
 //! KHR_animation_pointer: the properties that JSON pointers of animation channels name.
 
+use std::collections::BTreeSet;
+
 use serde_json::Value;
 
 use super::source::Source;
 use crate::material::MaterialId;
-use crate::motion::property::EMISSIVE;
+use crate::motion::property::{EMISSIVE, STRENGTH};
 use crate::motion::{CameraProperty, LightProperty, MaterialProperty, NodeProperty, Target};
 
 /// The parts of a scene that a pointer may name.
@@ -44,12 +46,33 @@ pub(super) enum Scale {
 
 /// Returns the pointer of a channel, if it has one.
 pub(super) fn of_channel<'a>(source: &Source<'a>, animation: usize, channel: usize) -> Option<&'a str> {
-    let channel = source.json.get("animations")?.get(animation)?.get("channels")?.get(channel)?;
+    pointer_of(source.json.get("animations")?.get(animation)?.get("channels")?.get(channel)?)
+}
+
+/// Returns the places of the material extensions that pointers of animations name: `material 3: KHR_materials_sheen`.
+pub(super) fn animated_extensions(json: &Value) -> BTreeSet<String> {
+    let animations = json.get("animations").and_then(Value::as_array).into_iter().flatten();
+    let place = |pointer: &str| {
+        let (material, rest) = pointer.strip_prefix("/materials/")?.split_once("/extensions/")?;
+        let index: usize = material.parse().ok()?;
+        Some(format!("material {index}: {}", rest.split_once('/')?.0))
+    };
+    animations.flat_map(pointers).filter_map(place).collect()
+}
+
+/// Returns the pointers of an animation's channels.
+fn pointers(animation: &Value) -> impl Iterator<Item = &str> {
+    let channels = animation.get("channels").and_then(Value::as_array).into_iter().flatten();
+    channels.filter_map(pointer_of)
+}
+
+/// Returns the pointer of a channel, if it has one.
+fn pointer_of(channel: &Value) -> Option<&str> {
     channel.get("target")?.get("extensions")?.get("KHR_animation_pointer")?.get("pointer")?.as_str()
 }
 
-/// Resolves a pointer; `None` for a property that cannot be animated here.
-pub(super) fn resolve(source: &Source<'_>, pointer: &str, parts: &Parts<'_>) -> Option<Pointed> {
+/// Resolves a pointer of an animation; `None` for a property that cannot be animated here.
+pub(super) fn resolve(source: &Source<'_>, animation: usize, pointer: &str, parts: &Parts<'_>) -> Option<Pointed> {
     let mut words = pointer.strip_prefix('/')?.splitn(3, '/');
     let (kind, index, rest) = (words.next()?, words.next()?, words.next()?);
     let plain = |targets: Vec<Target>, width| Some(Pointed { targets, width, scale: Scale::None });
@@ -70,8 +93,12 @@ pub(super) fn resolve(source: &Source<'_>, pointer: &str, parts: &Parts<'_>) -> 
             let target =
                 |property| (parts.material)(index).map(|id| Target::Material(id, property)).into_iter().collect();
             let factors = || source.json.get("materials").and_then(|all| all.get(index));
-            // Emission is one color here: factor times strength.
-            if rest == STRENGTH {
+            // Emission is one color here: factor times strength. Where both are animated, the strength multiplies the factor.
+            let has = |property: &str| {
+                let animation = source.json.get("animations").and_then(|all| all.get(animation));
+                animation.into_iter().flat_map(pointers).any(|own| own == format!("/materials/{index}/{property}"))
+            };
+            if rest == STRENGTH && !has(EMISSIVE) {
                 let factor = factors().and_then(|material| material.get(EMISSIVE)).and_then(Value::as_array);
                 let channel = |i: usize| factor.and_then(|f| f.get(i)).and_then(Value::as_f64).unwrap_or(0.0) as f32;
                 let scale = Scale::Spread([0, 1, 2].map(channel));
@@ -79,7 +106,10 @@ pub(super) fn resolve(source: &Source<'_>, pointer: &str, parts: &Parts<'_>) -> 
             }
             let property = MaterialProperty::at(rest)?;
             let strength = || factors().and_then(|material| material.pointer(&format!("/{STRENGTH}"))?.as_f64());
-            let scale = if rest == EMISSIVE { Scale::By(strength().unwrap_or(1.0) as f32) } else { Scale::None };
+            let scale = match rest {
+                EMISSIVE if !has(STRENGTH) => Scale::By(strength().unwrap_or(1.0) as f32),
+                _ => Scale::None,
+            };
             Some(Pointed { targets: target(property), width: property.width(), scale })
         }
         "cameras" => {
@@ -111,9 +141,6 @@ pub(super) fn resolve(source: &Source<'_>, pointer: &str, parts: &Parts<'_>) -> 
         _ => None,
     }
 }
-
-/// JSON pointer of the strength of emission below a material.
-const STRENGTH: &str = "extensions/KHR_materials_emissive_strength/emissiveStrength";
 
 /// Places of `index` in a list.
 fn places_of(all: &[usize], index: usize) -> impl Iterator<Item = usize> {

@@ -3,11 +3,14 @@
 use std::borrow::Cow;
 use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
+use std::io::{Error, ErrorKind};
 use std::path::{Component, Path, PathBuf};
 
 use gltf_json::{Root, Value};
 
 use super::document::Document;
+use super::letter_case;
+use super::pointer::animated_extensions;
 use super::uri::{Resource, resolve};
 use crate::error::{Quantity, SceneError, one_line};
 use crate::memory::{Memory, OverBudget};
@@ -28,6 +31,8 @@ pub(super) struct Source<'a> {
     allow_outside: bool,
     /// Triangles stay in the order of the file.
     pub keep_order: bool,
+    /// Places of the material extensions that animations change, as messages name them: `material 3: KHR_materials_sheen`.
+    animated: BTreeSet<String>,
     /// For each image of the file the first that is the same.
     images: Vec<usize>,
     /// What was taken for the scene, which stays.
@@ -64,6 +69,7 @@ impl<'a> Source<'a> {
             memory: &options.memory,
             allow_outside: options.allow_outside,
             keep_order: options.keep_order,
+            animated: animated_extensions(json),
             images: first_of_each(&root.images),
             kept_bytes: Cell::new(0),
             file_bytes: Cell::new(0),
@@ -76,8 +82,24 @@ impl<'a> Source<'a> {
         SceneError::malformed(self.file, at, reason)
     }
 
-    /// An error of a file that a place in this one names.
+    /// An error of a file that a place in this one names. Of a file that does not exist, the error names one whose letters
+    /// differ in case.
     pub fn named(&self, at: &str, error: SceneError) -> SceneError {
+        let error = match error {
+            SceneError::Read { file, source } if source.kind() == ErrorKind::NotFound => {
+                let folder = self.file.parent().unwrap_or_else(|| Path::new(""));
+                let source = match letter_case::candidate(folder, &file) {
+                    None => source,
+                    Some(path) => {
+                        let path = one_line(&path.display().to_string());
+                        let reason = format!("{source}; the folder has {path:?}, whose letters differ in case");
+                        Error::new(ErrorKind::NotFound, reason)
+                    }
+                };
+                SceneError::Read { file, source }
+            }
+            error => error,
+        };
         SceneError::Named { file: self.file.into(), at: at.into(), error: Box::new(error) }
     }
 
@@ -89,6 +111,11 @@ impl<'a> Source<'a> {
     /// The first image of the file that has the bytes of this one: each is decoded once.
     pub fn same_image(&self, image: usize) -> usize {
         self.images[image]
+    }
+
+    /// Returns whether an animation changes a property of the material extension at a place.
+    pub fn is_animated(&self, at: &str) -> bool {
+        self.animated.contains(at)
     }
 
     /// What the URI of a place stands for.

@@ -1,5 +1,7 @@
 //! The importer on files made in code: what is right comes out right, what is wrong is one line.
 
+mod attached;
+mod cases;
 mod character;
 mod document;
 mod fixture;
@@ -8,5 +10,6 @@ mod geometry;
 mod hostile;
 mod lobes;
 mod motion;
+mod placing;
 mod real_files;
 mod shading;

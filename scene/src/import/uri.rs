@@ -52,7 +52,7 @@ pub(super) fn resolve(file: &Path, at: &str, uri: &str, allow_outside: bool) -> 
 }
 
 /// Whether a path in `folder` stays there, behind all links. One that does not exist is judged by its words.
-fn is_inside(folder: &Path, path: &Path) -> bool {
+pub(super) fn is_inside(folder: &Path, path: &Path) -> bool {
     let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     if let (Ok(here), Ok(path)) = (here.canonicalize(), path.canonicalize()) {
         return path.starts_with(here);

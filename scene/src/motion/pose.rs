@@ -149,11 +149,17 @@ impl Scene {
             materials[material.index()] = rest.clone();
         }
         let found = animation.and_then(|number| motion.animations.get(number));
-        for channel in found.map_or(&[][..], |found| &found.channels) {
+        let channels = found.map_or(&[][..], |found| &found.channels);
+        for channel in channels {
+            if let Target::Material(material, property) = channel.target {
+                property.write(&mut materials[material.index()], &channel.curve.at(time_s));
+            }
+        }
+        // Twice: cone angles and planes are held in the range that another property leaves them, which may come later.
+        for channel in channels.iter().chain(channels) {
             let value = || channel.curve.at(time_s);
             match channel.target {
-                Target::Node(..) => {}
-                Target::Material(material, property) => property.write(&mut materials[material.index()], &value()),
+                Target::Node(..) | Target::Material(..) => {}
                 Target::Light(light, property) => {
                     attached.get_mut(&light).into_iter().for_each(|light| property.write(light, &value()));
                 }

@@ -120,6 +120,8 @@ const FACTORS: &[Factor] = &[
         }
     }),
     factor(EMISSIVE, 3, |m, v| m.emissive = Vec3::from_slice(v).max(Vec3::ZERO)),
+    // Multiplies the animated factor.
+    factor(STRENGTH, 1, |m, v| m.emissive *= v[0].max(0.0)),
     factor("normalTexture/scale", 1, |m, v| m.normal_scale = v[0]),
     factor("occlusionTexture/strength", 1, |m, v| m.occlusion_strength = unit(v)),
     factor("extensions/KHR_materials_ior/ior", 1, |m, v| {
@@ -168,6 +170,9 @@ const FACTORS: &[Factor] = &[
 
 /// Pointer of the emissive factor, which the importer multiplies by KHR_materials_emissive_strength.
 pub(crate) const EMISSIVE: &str = "emissiveFactor";
+
+/// Pointer of the strength of emission (KHR_materials_emissive_strength).
+pub(crate) const STRENGTH: &str = "extensions/KHR_materials_emissive_strength/emissiveStrength";
 
 /// The volume of a transmissive material.
 fn volume(material: &mut Material) -> impl Iterator<Item = &mut crate::material::Volume> {
@@ -227,6 +232,11 @@ impl MaterialProperty {
             _ => return None,
         };
         Some(Self::Transform(place, part))
+    }
+
+    /// Returns whether the property changes what another property of the material wrote, and comes behind it.
+    pub(crate) fn is_relative(self) -> bool {
+        matches!(self, Self::Factor(place) if FACTORS[place].pointer == STRENGTH)
     }
 
     /// Returns the numbers of a value.
