@@ -104,9 +104,11 @@ impl<'a> Materials<'a> {
         let mut slot = |reference: Option<Reference<'_>>, role, warnings: &mut Warnings| {
             reference.map_or(Ok(None), |reference| self.textures.slot(source, &at, &reference, role, warnings))
         };
-        let base_color_texture = slot(of_info(pbr.base_color_texture.as_ref()), TextureRole::Color, warnings)?;
+        // Textures that specular-glossiness replaces are not decoded.
+        let of_pbr = |info| of_info(info).filter(|_| !spec_gloss::replaces(json));
+        let base_color_texture = slot(of_pbr(pbr.base_color_texture.as_ref()), TextureRole::Color, warnings)?;
         let metallic_roughness_texture =
-            slot(of_info(pbr.metallic_roughness_texture.as_ref()), TextureRole::Linear, warnings)?;
+            slot(of_pbr(pbr.metallic_roughness_texture.as_ref()), TextureRole::Linear, warnings)?;
         let emissive_texture = slot(of_info(json.emissive_texture.as_ref()), TextureRole::Color, warnings)?;
         let normal_texture: Option<TextureSlot> =
             slot(of_normal(json.normal_texture.as_ref()), TextureRole::Normal, warnings)?;

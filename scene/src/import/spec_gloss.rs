@@ -15,6 +15,14 @@ use crate::error::SceneError;
 use crate::material::{Material, Specular};
 use crate::texture::TextureRole;
 
+/// The extension's name.
+const NAME: &str = "KHR_materials_pbrSpecularGlossiness";
+
+/// Returns whether the extension replaces the metal-rough parameters of a glTF material.
+pub(super) fn replaces(json: &json::Material) -> bool {
+    json.extensions.as_ref().is_some_and(|extensions| extensions.others.contains_key(NAME))
+}
+
 /// Replaces the metal-rough parameters of `material` where the glTF material `json`, named `at`, has the extension.
 pub(super) fn read(
     source: &Source<'_>,
@@ -24,7 +32,7 @@ pub(super) fn read(
     warnings: &mut Warnings,
     material: &mut Material,
 ) -> Result<(), SceneError> {
-    let Some(json) = Object::of_material(source, at, json, "KHR_materials_pbrSpecularGlossiness")? else {
+    let Some(json) = Object::of_material(source, at, json, NAME)? else {
         return Ok(());
     };
     let diffuse = json.vector("diffuseFactor", Vec4::ONE.to_array())?;
