@@ -90,6 +90,7 @@ pub(super) fn resolve(source: &Source<'_>, animation: usize, pointer: &str, part
         }
         "materials" => {
             let index: usize = index.parse().ok()?;
+            source.root.materials.get(index)?;
             let target =
                 |property| (parts.material)(index).map(|id| Target::Material(id, property)).into_iter().collect();
             let factors = || source.json.get("materials").and_then(|all| all.get(index));
@@ -114,6 +115,7 @@ pub(super) fn resolve(source: &Source<'_>, animation: usize, pointer: &str, part
         }
         "cameras" => {
             let index: usize = index.parse().ok()?;
+            source.root.cameras.get(index)?;
             let property = match rest {
                 "perspective/yfov" => CameraProperty::FovY,
                 "perspective/znear" | "orthographic/znear" => CameraProperty::Near,
@@ -127,6 +129,7 @@ pub(super) fn resolve(source: &Source<'_>, animation: usize, pointer: &str, part
         "extensions" if index == "KHR_lights_punctual" => {
             let (index, rest) = rest.strip_prefix("lights/")?.split_once('/')?;
             let index: usize = index.parse().ok()?;
+            source.root.extensions.as_ref()?.khr_lights_punctual.as_ref()?.lights.get(index)?;
             let property = match rest {
                 "color" => LightProperty::Color,
                 "intensity" => LightProperty::Intensity,

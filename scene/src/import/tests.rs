@@ -13,6 +13,7 @@ mod lobes;
 mod loose_json;
 mod motion;
 mod placing;
+mod pointer;
 mod real_files;
 mod repairs;
 mod shading;
