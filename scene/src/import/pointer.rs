@@ -94,7 +94,7 @@ pub(super) fn resolve(source: &Source<'_>, animation: usize, pointer: &str, part
             let target =
                 |property| (parts.material)(index).map(|id| Target::Material(id, property)).into_iter().collect();
             let factors = || source.json.get("materials").and_then(|all| all.get(index));
-            // Emission is one color here: factor times strength. Where both are animated, the strength multiplies the factor.
+            // Emission is one color here: factor times strength. A strength that is animated with the factor multiplies it.
             let has = |property: &str| {
                 let animation = source.json.get("animations").and_then(|all| all.get(animation));
                 animation.into_iter().flat_map(pointers).any(|own| own == format!("/materials/{index}/{property}"))

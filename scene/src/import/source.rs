@@ -82,8 +82,8 @@ impl<'a> Source<'a> {
         SceneError::malformed(self.file, at, reason)
     }
 
-    /// An error of a file that a place in this one names. Of a file that does not exist, the error names one whose letters
-    /// differ in case.
+    /// An error of a file that a place in this one names. For a missing file, the error names a file whose letters differ in
+    /// case.
     pub fn named(&self, at: &str, error: SceneError) -> SceneError {
         let error = match error {
             SceneError::Read { file, source } if source.kind() == ErrorKind::NotFound => {

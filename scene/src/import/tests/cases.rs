@@ -55,7 +55,7 @@ fn still(position: DVec3, _: DVec3) -> DVec3 {
     position
 }
 
-/// Whether two scenes have equal cameras, lights, materials and textures, and the texels of their images.
+/// Checks that two scenes have equal cameras, lights, materials, textures and texels.
 fn assert_same_look(case: &Scene, base: &Scene) {
     let name = &case.name;
     assert_eq!(case.materials, base.materials, "{name}");

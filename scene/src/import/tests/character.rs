@@ -27,9 +27,9 @@ fn loaded(character: &Character) -> Scene {
 
 /// The largest difference of positions, as a share of the shape's size, and of normals, at rest and at all times.
 ///
-/// Every number is computed in f64 and stored in f32 relative to the first joint: a position is off by 2⁻²⁴ of its
-/// distance from there on each axis, and weights by 2⁻²⁴ each. Forty times that is allowed of positions, 2.4e-6, and of
-/// normals, which stretching may magnify, 1e-5.
+/// The crate computes in f64 and stores f32 relative to the first joint. A position is off by 2⁻²⁴ of its distance from
+/// there on each axis, and by as much for each weight. The tests allow forty times that, 2.4e-6, of positions, and 1e-5
+/// of normals, which stretching may magnify.
 fn differences(character: &Character) -> [f64; 2] {
     let mut scene = loaded(character);
     let mut largest = [0.0_f64; 2];
@@ -125,8 +125,8 @@ fn the_comparison_notices_a_millimeter() {
     assert!(length(&minus(place.to_array(), posed(&truth)[0].positions[0])) > 1e-4);
 }
 
-/// As Blender exports FBX files: everything below a node of scale 0.01 turned by −90° about x, joints in centimeters, and
-/// the mesh's node a child of that node, or its sibling, with a transform of its own.
+/// Blender's FBX export: a node of scale 0.01, turned by −90° about x, with joints in centimeters below it. The mesh's node
+/// is its child or its sibling, and has a transform of its own.
 #[test]
 fn a_biped_below_an_armature_in_centimeters() {
     for is_child in [true, false] {

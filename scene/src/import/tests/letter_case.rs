@@ -23,7 +23,7 @@ impl Folder {
         fs::write(self.0.join("scene").join(path), bytes).expect("the folder is ours");
     }
 
-    /// The message with which a scene fails that names an image, or a buffer.
+    /// Returns the error of a scene that names an image, or a buffer.
     fn error(&self, image: Option<&str>, buffer: Option<&str>) -> String {
         let mut fixture = Fixture::triangle();
         let uv = fixture.floats(2, &[0.0; 6]);
@@ -46,7 +46,7 @@ impl Drop for Folder {
     }
 }
 
-/// Whether the file system of a folder tells letter case apart.
+/// Returns whether the file system of a folder tells letter case apart.
 fn tells_case_apart(folder: &Path) -> bool {
     fs::write(folder.join("case"), "").expect("the folder is ours");
     !folder.join("CASE").exists()
@@ -73,7 +73,7 @@ fn a_missing_file_names_the_one_with_other_letters() {
     }
     let error = folder.error(None, Some("DATA.bin"));
     assert!(error.contains(": buffer 0: ") && error.ends_with(&suffix("data.bin")), "{error}");
-    // Of several the first by their letters.
+    // The first of several names counts.
     folder.write("WOOD.png", &[]);
     assert!(folder.error(Some("Wood.PNG"), None).ends_with(&suffix("WOOD.png")));
 }

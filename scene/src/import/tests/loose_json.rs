@@ -184,7 +184,7 @@ fn chunks_without_padding_are_read_with_a_warning() {
         for length in 0..bytes.len() {
             let mut short = bytes[..length].to_vec();
             assert!(load(&short).is_err(), "{length} of {}", bytes.len());
-            // The same with the length in the header put right.
+            // Also with a header that states the shorter length.
             if length >= 12 {
                 short[8..12].copy_from_slice(&(length as u32).to_le_bytes());
                 // Padding alone behind the JSON: the buffer is absent, and zeros are read from it, with a warning.

@@ -123,7 +123,7 @@ fn what_cannot_be_animated_is_warned_of_and_left_out() {
     assert_eq!(scene.motion.animations[0].channels.len(), 1);
 }
 
-/// Of a material that nothing shows, a light or a camera that no node has, nothing can be animated, and nobody misses it.
+/// Materials that nothing shows, and lights and cameras that no node has, are not in the scene.
 #[test]
 fn objects_that_the_scene_does_not_use_are_quietly_left_out() {
     let mut fixture = with_material(json!({}));

@@ -23,7 +23,7 @@ fn with(extension: Value) -> Fixture {
         fixture.push("textures", json!({"source": image}));
     }
     fixture.push("materials", json!({"extensions": {"KHR_materials_pbrSpecularGlossiness": extension}}));
-    // What the extension replaces.
+    // The extension replaces these.
     let other = json!({"metallicFactor": 0.7, "roughnessFactor": 0.1, "baseColorTexture": {"index": 1}});
     fixture.set("/materials/0/pbrMetallicRoughness", other);
     fixture.json["extensionsUsed"] = json!(["KHR_materials_pbrSpecularGlossiness"]);
@@ -36,8 +36,8 @@ fn loaded(fixture: &Fixture) -> Scene {
     scene
 }
 
-/// What Filament shades: f0 and diffuse albedo (before its factor 1 − max f0) of a metal-rough material with a specular
-/// color, by the formulas of KHR_materials_specular.
+/// Returns f0 and diffuse albedo, before its factor 1 − max f0, of a metal-rough material with a specular color. The
+/// formulas are those of KHR_materials_specular, which Filament shades.
 fn f0_and_diffuse(material: &Material) -> (Vec3, Vec4) {
     assert_eq!(material.metallic, 0.0, "a metal has no diffuse part");
     let specular = material.specular.expect("it has a specular color");

@@ -17,7 +17,7 @@ pub struct Node {
     pub local: Local,
 }
 
-/// How numbers are stored.
+/// The encoding of numbers.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Code {
     F32,
@@ -95,9 +95,9 @@ pub struct Shape {
     pub positions: Vec<Vector>,
     pub normals: Vec<Vector>,
     pub influences: Vec<Influences>,
-    /// How weights are stored.
+    /// The encoding of weights.
     pub weights: Code,
-    /// Whether joints are stored in 16 bits.
+    /// Joints are stored in 16 bits, not 8.
     pub wide_joints: bool,
     pub morphs: Vec<Morph>,
     pub morph_weights: Vec<f64>,
@@ -139,7 +139,7 @@ pub struct Channel {
     pub path: Path,
     pub way: Way,
     pub times: Vec<f64>,
-    /// As stored: for each key a value, or tangent, value and tangent.
+    /// Stored numbers: for each key a value, or tangent, value and tangent.
     pub values: Vec<f64>,
     pub code: Code,
 }

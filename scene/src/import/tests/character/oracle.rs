@@ -1,4 +1,4 @@
-//! Where the vertices of a character are at a time, computed from the formulas of the specification alone (glTF 2.0,
+//! Places of a character's vertices at a time, computed from the formulas of the specification alone (glTF 2.0,
 //! sections 3.7.3 and 3.11, appendix C).
 
 use super::math::{IDENTITY, Matrix, Quaternion, Vector, determinant, normal, of_parts, point, product, slerp, unit};
@@ -8,7 +8,7 @@ use super::model::{Channel, Character, Drawn, Local, Path, Way};
 pub struct Posed {
     pub positions: Vec<Vector>,
     pub normals: Vec<Vector>,
-    /// Whether the shape is turned inside out: by its node, or as a whole by the first joint of its skin.
+    /// The shape is turned inside out: by its node, or as a whole by the first joint of its skin.
     pub is_mirrored: bool,
 }
 

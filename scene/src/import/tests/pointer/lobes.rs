@@ -10,10 +10,13 @@ fn off(name: &str, extension: Value) -> Value {
     json!({"extensions": {name: extension}})
 }
 
+/// An extension that is off, a property of it with two keys, its lobe, and the property's value, −1 without the lobe.
+type Row = (&'static str, Value, &'static str, [&'static [f32]; 2], Lobe, fn(&Material) -> f32);
+
 #[test]
 fn a_lobe_that_a_pointer_turns_on_is_kept() {
     let texture = json!({"index": 0});
-    let rows: [(&str, Value, &str, [&[f32]; 2], Lobe, fn(&Material) -> f32); 5] = [
+    let rows: [Row; 5] = [
         (
             "KHR_materials_clearcoat",
             json!({"clearcoatTexture": texture, "clearcoatRoughnessFactor": 0.5}),

@@ -84,7 +84,7 @@ const FACTORS: &[Row] = &[
         m.sheen.as_mut().expect("a lobe").roughness = 0.25;
     }),
     ("extensions/KHR_materials_specular/specularFactor", NUMBER, |m| {
-        m.specular.as_mut().expect("a lobe").factor = 0.25
+        m.specular.as_mut().expect("a lobe").factor = 0.25;
     }),
     ("extensions/KHR_materials_specular/specularColorFactor", [&[4.0, 0.5, 1.0], &[0.0, 0.0, 0.5]], |m| {
         m.specular.as_mut().expect("a lobe").color = Vec3::new(2.0, 0.25, 0.75);
@@ -103,8 +103,8 @@ const FACTORS: &[Row] = &[
     }),
 ];
 
-/// At 1 s, between the keys at 0 s and 2 s, the material is the one at rest but for the one property, whatever else the
-/// material has; at rest it is what was loaded.
+/// Keys are at 0 s and 2 s. At 1 s the material differs from the one at rest in one property alone. Posing at rest
+/// restores it.
 #[test]
 fn every_factor_changes_and_comes_back() {
     for (pointer, keys, set) in FACTORS {
@@ -122,7 +122,7 @@ fn every_factor_changes_and_comes_back() {
     }
 }
 
-/// What a texture slot is after which pointer.
+/// A pointer below a material, and the texture slot that it names.
 type Slot = (&'static str, fn(&mut Material) -> &mut Option<TextureSlot>);
 
 const SLOTS: &[Slot] = &[
