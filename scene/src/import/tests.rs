@@ -8,6 +8,7 @@ mod fixture;
 mod fuzz;
 mod geometry;
 mod hostile;
+mod hostile_motion;
 mod letter_case;
 mod lobes;
 mod loose_json;

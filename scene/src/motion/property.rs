@@ -97,6 +97,11 @@ const fn factor(pointer: &'static str, width: usize, write: fn(&mut Material, &[
     Factor { pointer, width, write }
 }
 
+/// A number as f32, held in the range of finite ones: cubics may overshoot it.
+fn finite(number: f64) -> f32 {
+    number.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
+}
+
 /// A value held in 0…1, as shading expects it.
 fn unit(value: &[f32]) -> f32 {
     value[0].clamp(0.0, 1.0)
@@ -121,7 +126,7 @@ const FACTORS: &[Factor] = &[
     }),
     factor(EMISSIVE, 3, |m, v| m.emissive = Vec3::from_slice(v).max(Vec3::ZERO)),
     // Multiplies the animated factor.
-    factor(STRENGTH, 1, |m, v| m.emissive *= v[0].max(0.0)),
+    factor(STRENGTH, 1, |m, v| m.emissive = (m.emissive * v[0].max(0.0)).min(Vec3::MAX)),
     factor("normalTexture/scale", 1, |m, v| m.normal_scale = v[0]),
     factor("occlusionTexture/strength", 1, |m, v| m.occlusion_strength = unit(v)),
     factor("extensions/KHR_materials_ior/ior", 1, |m, v| {
@@ -252,7 +257,7 @@ impl MaterialProperty {
     /// Writes a value of [`width`](Self::width) numbers, held in the property's range. A material without the lobe or
     /// texture stays as it is.
     pub(super) fn write(self, material: &mut Material, value: &[f64]) {
-        let value: Vec<f32> = value.iter().map(|number| *number as f32).collect();
+        let value: Vec<f32> = value.iter().map(|number| finite(*number)).collect();
         match self {
             Self::Factor(place) => (FACTORS[place].write)(material, &value),
             Self::Transform(place, part) => {
@@ -276,9 +281,9 @@ impl LightProperty {
 
     /// Writes a value, held in the property's range. A light of a kind without the property stays as it is.
     pub(super) fn write(self, light: &mut Light, value: &[f64]) {
-        let first = value[0] as f32;
+        let first = finite(value[0]);
         match (self, &mut light.kind) {
-            (Self::Color, _) => light.color = Vec3::from_array([0, 1, 2].map(|i| value[i].max(0.0) as f32)),
+            (Self::Color, _) => light.color = Vec3::from_array([0, 1, 2].map(|i| finite(value[i]).max(0.0))),
             (Self::Intensity, LightKind::Directional { illuminance_lux: strength, .. })
             | (
                 Self::Intensity,

@@ -263,12 +263,13 @@ fn a_chain_of_three_hundred_joints() {
     compare(&character);
 }
 
-/// Joints in a hierarchy that the default scene lacks, with and without `skeleton`, animated there.
+/// Joints below a node with a matrix, in a hierarchy that the default scene lacks, with `skeleton`, animated there.
 #[test]
 fn joints_outside_of_the_scene_and_a_skeleton_root() {
     let mut noise = Noise(7);
     let mut character = Character::default();
-    let above = Local::Parts(noise.vector(2.0), noise.rotation(2.0), [1.5; 3]);
+    let above = of_parts(noise.vector(2.0), noise.rotation(2.0), [1.5; 3]);
+    let above = Local::Matrix(above.map(|column| column.map(rounded)));
     character.nodes.push(Node { parent: None, local: above });
     let joints = biped(&mut noise, 1.0);
     let nodes = joints.add(&mut character, Some(0));
@@ -300,6 +301,22 @@ fn compare_with_warning(character: &Character) {
         assert_eq!(scene.meshes, same.meshes);
         assert_eq!(scene.instances, same.instances);
     }
+}
+
+/// A node's own weights count, not those of its mesh.
+#[test]
+fn weights_of_a_node_replace_those_of_its_mesh() {
+    let mut noise = Noise(10);
+    let mut character = Character::default();
+    let joints = biped(&mut noise, 1.0);
+    let mut shape = shape(&mut noise, &joints, &IDENTITY, 1.0, 0, Code::F32);
+    morph(&mut noise, &mut shape, 0.2);
+    draw(&mut character, shape, None, None, at_origin());
+    let mut of_node = character.file();
+    of_node.set("/nodes/0/weights", serde_json::json!([0.5, 0.75]));
+    character.shapes[0].morph_weights = vec![0.5, 0.75];
+    assert_eq!(of_node.load().expect("it is sound").meshes, character.file().load().expect("it is sound").meshes);
+    compare(&character);
 }
 
 /// Without inverse bind matrices joints move vertices from where they are; far from the origin nothing gets coarse.

@@ -30,6 +30,23 @@ fn emission(factor: [f32; 3], strength: f32, pointers: &[&str]) -> Vec3 {
     emission
 }
 
+/// Cubics overshoot, and products overflow: emission stays finite.
+#[test]
+fn emission_is_finite() {
+    let mut fixture = with_material(glowing([1.0; 3], 1.0));
+    let large: [&[f32]; 2] = [&[f32::MAX], &[f32::MAX]];
+    animate(&mut fixture, STRENGTH, large);
+    animate(&mut fixture, FACTOR, [&[2.0; 3], &[2.0; 3]]);
+    assert_eq!(posed(&fixture, 1.0).materials[0].emissive, Vec3::MAX);
+    let mut fixture = with_material(glowing([1.0; 3], 1.0));
+    animate(&mut fixture, STRENGTH, large);
+    // Tangents that carry the cubic to f32's end and beyond.
+    let output = fixture.floats(1, &[0.0, f32::MAX, f32::MAX, -f32::MAX, f32::MAX, 0.0]);
+    fixture.set("/animations/0/samplers/0/output", json!(output));
+    fixture.set("/animations/0/samplers/0/interpolation", json!("CUBICSPLINE"));
+    assert_eq!(posed(&fixture, 1.0).materials[0].emissive, Vec3::MAX);
+}
+
 #[test]
 fn factor_and_strength_multiply() {
     let rest = [0.25, 0.5, 1.0];

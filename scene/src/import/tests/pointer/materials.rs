@@ -190,6 +190,8 @@ fn values_are_held_in_range() {
     assert_eq!(at("emissiveFactor", [&[0.0; 3], &[-1.0, 2.0, 0.5]]).emissive, Vec3::new(0.0, 2.0, 0.5));
     let color = at("pbrMetallicRoughness/baseColorFactor", [&[0.0; 4], &[-1.0, 2.0, 0.5, 9.0]]).base_color;
     assert_eq!(color, Vec4::new(0.0, 1.0, 0.5, 1.0));
+    let largest = at("normalTexture/scale", [&[0.0], &[f32::MAX]]).normal_scale;
+    assert_eq!(largest, f32::MAX);
     let volume = at("extensions/KHR_materials_volume/attenuationDistance", near).transmission.and_then(|t| t.volume);
     assert!(volume.expect("a volume").attenuation_distance_m > 0.0);
 }
