@@ -1,6 +1,7 @@
 //! Loading the buffers of a document.
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 
 use super::source::Source;
 use super::uri::Resource;
@@ -8,7 +9,8 @@ use crate::error::SceneError;
 use crate::progress::{Progress, ProgressFn, Stage, report};
 use crate::read::{file_bytes, read_file};
 
-/// The bytes of every buffer; a buffer without a URI is the binary chunk `blob`.
+/// The bytes of every buffer; a buffer without a URI is the binary chunk `blob`. Fallbacks of compressed buffer views are not
+/// read and stay empty.
 pub(super) fn load<'a>(
     source: &Source<'_>,
     blob: Option<&'a [u8]>,
@@ -16,8 +18,13 @@ pub(super) fn load<'a>(
 ) -> Result<Vec<Cow<'a, [u8]>>, SceneError> {
     let all = &source.root.buffers;
     let mut buffers = Vec::new();
+    let fallbacks = fallbacks(source, blob.is_some());
     for (i, buffer) in all.iter().enumerate() {
         let at = format!("buffer {i}");
+        if fallbacks.contains(&i) {
+            buffers.push(Cow::Borrowed(&[][..]));
+            continue;
+        }
         let bytes: Cow<'a, [u8]> = match (&buffer.uri, blob) {
             (Some(uri), _) => match source.resolve(&at, uri)? {
                 Resource::Bytes(bytes) => {
@@ -42,4 +49,16 @@ pub(super) fn load<'a>(
         report(progress, source.file, Progress { stage: Stage::Files, done: i + 1, total: all.len(), item: &at })?;
     }
     Ok(buffers)
+}
+
+/// Buffers that hold uncompressed copies of compressed buffer views, which this build decodes, or promise to.
+#[cfg(feature = "meshopt")]
+fn fallbacks(source: &Source<'_>, has_blob: bool) -> BTreeSet<usize> {
+    super::views::fallbacks(source.root, has_blob)
+}
+
+/// A build that decodes no views needs every buffer.
+#[cfg(not(feature = "meshopt"))]
+fn fallbacks(_: &Source<'_>, _: bool) -> BTreeSet<usize> {
+    BTreeSet::new()
 }

@@ -2,8 +2,8 @@
 
 use glam::{Vec3, Vec4};
 use gltf_json::mesh::{Primitive, Semantic};
-use gltf_json::validation::Checked;
 
+use super::packed::{self, Values};
 use super::source::Source;
 use super::stream::{finite, stream};
 use crate::error::SceneError;
@@ -16,15 +16,15 @@ const LOOSE_SUM: f32 = 0.02;
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct MovesKey {
     node: usize,
-    joints: Option<[usize; 2]>,
+    joints: Option<[Values; 2]>,
     targets: Vec<[Option<usize>; 3]>,
 }
 
 impl MovesKey {
     /// None where nothing moves the vertices.
     pub fn new(primitive: &Primitive, node: usize, skinned: bool) -> Option<Self> {
-        let accessor = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
-        let joints = accessor(Semantic::Joints(0)).zip(accessor(Semantic::Weights(0))).filter(|_| skinned);
+        let values = |semantic| packed::values(primitive, &semantic);
+        let joints = values(Semantic::Joints(0)).zip(values(Semantic::Weights(0))).filter(|_| skinned);
         let value = |index: Option<gltf_json::Index<_>>| index.map(|index| index.value());
         let targets = primitive.targets.iter().flatten();
         let targets: Vec<_> = targets.map(|t| [value(t.positions), value(t.normals), value(t.tangents)]).collect();
