@@ -18,7 +18,7 @@ struct Elements<'a> {
     stride: usize,
     count: usize,
     component: ComponentType,
-    /// Components an element: 1 to 4.
+    /// Components an element: 1 to 4, or 16 of a matrix.
     width: usize,
     normalized: bool,
     /// Positions to replace, and the bytes that replace them.
@@ -93,7 +93,8 @@ fn resolve<'a>(source: &'a Source<'_>, values: Values, user: &str) -> Result<Ele
         return Err(source.malformed(&at, "unknown component type or element type"));
     };
     let component = component.0;
-    if matches!(kind, Type::Mat2 | Type::Mat3 | Type::Mat4) {
+    // Columns of smaller matrices may be padded (section 3.6.2.4), and nothing that is read has them.
+    if matches!(kind, Type::Mat2 | Type::Mat3) {
         return Err(source.malformed(&at, "holds matrices, not vectors"));
     }
     let count = accessor.count.0;

@@ -108,7 +108,7 @@ function torus(around, across) {
       const normal = [Math.cos(a) * Math.cos(b), Math.sin(b), Math.sin(a) * Math.cos(b)];
       positions.push(Math.cos(a) + 0.4 * normal[0], 0.4 * normal[1], Math.sin(a) + 0.4 * normal[2]);
       normals.push(...normal);
-      uvs.push(u, v);
+      uvs.push(0.97 * u, 0.97 * v);
       const vertex = i * (across + 1) + j;
       colors.push(vertex & 255, vertex >> 8, 128 + Math.round(100 * Math.sin(a)), 255);
       if (i < around && j < across) {

@@ -80,7 +80,8 @@ fn allocation_bombs() {
 fn wrong_types() {
     let attributes = "/meshes/0/primitives/0/attributes";
     broken("/accessors/0/type", json!("VEC2"), &["accessor 0 has 2 components, not 3"]);
-    broken("/accessors/0/type", json!("MAT4"), &["accessor 0", "matrices"]);
+    broken("/accessors/0/type", json!("MAT3"), &["accessor 0", "matrices"]);
+    broken("/accessors/0/type", json!("MAT4"), &["accessor 0", "3 elements of 64 bytes"]);
     broken("/accessors/0/type", json!("VEC5"), &["accessor 0", "unknown component type"]);
     broken("/accessors/0/componentType", json!(5124), &["accessor 0", "unknown component type"]);
     broken("/accessors/2/componentType", json!(5122), &["accessor 2", "unsigned scalars"]);
