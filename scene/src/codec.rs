@@ -21,6 +21,7 @@ mod picture;
 #[cfg(feature = "png")]
 pub(crate) mod png;
 
+pub(crate) use catch::catch_panic;
 pub use error::{CodecError, HdrError};
 pub use kind::FileKind;
 pub use ktx::error::KtxError;
@@ -30,7 +31,7 @@ pub(crate) use picture::{Header, Picture8, PictureF32};
 /// Reads the header of what [`decode_8`] decodes.
 #[cfg_attr(not(any(feature = "png", feature = "jpeg")), allow(unused_variables, reason = "then every kind is refused"))]
 pub(crate) fn header_8(bytes: &[u8], max_side_texels: u32) -> Result<Header, CodecError> {
-    catch::catch_panic(|| match FileKind::of(bytes) {
+    catch_panic(|| match FileKind::of(bytes) {
         #[cfg(feature = "png")]
         Some(FileKind::Png) => png::header(bytes, max_side_texels),
         #[cfg(feature = "jpeg")]
@@ -51,7 +52,7 @@ fn unread(kind: Option<FileKind>, bytes: &[u8]) -> CodecError {
 /// Decodes PNG or JPEG, as far as this build reads them; the content decides which.
 #[cfg_attr(not(any(feature = "png", feature = "jpeg")), allow(unused_variables, reason = "then every kind is refused"))]
 pub(crate) fn decode_8(bytes: &[u8], max_side_texels: u32) -> Result<Picture8, CodecError> {
-    catch::catch_panic(|| match FileKind::of(bytes) {
+    catch_panic(|| match FileKind::of(bytes) {
         #[cfg(feature = "png")]
         Some(FileKind::Png) => png::decode(bytes, max_side_texels),
         #[cfg(feature = "jpeg")]
@@ -62,7 +63,7 @@ pub(crate) fn decode_8(bytes: &[u8], max_side_texels: u32) -> Result<Picture8, C
 
 /// Width and height of what [`decode_f32`] decodes.
 pub(crate) fn header_f32(bytes: &[u8], max_texels: [u32; 2]) -> Result<[u32; 2], CodecError> {
-    catch::catch_panic(|| match FileKind::of(bytes) {
+    catch_panic(|| match FileKind::of(bytes) {
         Some(FileKind::Hdr) => hdr::header(bytes, max_texels),
         #[cfg(feature = "exr")]
         Some(FileKind::Exr) => exr::header(bytes, max_texels),
@@ -72,7 +73,7 @@ pub(crate) fn header_f32(bytes: &[u8], max_texels: [u32; 2]) -> Result<[u32; 2],
 
 /// Decodes Radiance `.hdr` or, as far as this build reads it, OpenEXR; the content decides which.
 pub(crate) fn decode_f32(bytes: &[u8], max_texels: [u32; 2]) -> Result<PictureF32, CodecError> {
-    catch::catch_panic(|| match FileKind::of(bytes) {
+    catch_panic(|| match FileKind::of(bytes) {
         Some(FileKind::Hdr) => hdr::decode(bytes, max_texels),
         #[cfg(feature = "exr")]
         Some(FileKind::Exr) => exr::decode(bytes, max_texels),

@@ -7,7 +7,9 @@
 //!
 //! ```text
 //! bytes ─ container ─> JSON + BIN ─ uri, buffer ─> Source
+//!   Source ─ views ─> compressed buffer views, decoded on all cores
 //!   Source ─ node ─> nodes in world axes: meshes, lights, cameras
+//!   meshes ─ draco ─> compressed primitives, decoded on all cores
 //!   meshes ─ primitive (accessor, topology) ─> Mesh     material, lobes ─> Material, Texture
 //!   images ─> decoded on all cores
 //! ```
@@ -17,6 +19,8 @@ mod buffer;
 mod camera;
 mod container;
 mod document;
+#[cfg(feature = "draco")]
+mod draco;
 mod encoding;
 mod extension;
 mod images;
@@ -29,6 +33,7 @@ mod motion;
 mod moves;
 mod node;
 mod object;
+mod packed;
 mod pointer;
 mod primitive;
 mod source;
@@ -38,6 +43,8 @@ mod texture;
 mod topology;
 mod uri;
 mod variants;
+#[cfg(feature = "meshopt")]
+mod views;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -121,9 +128,16 @@ pub fn load_bytes_with(
     let mut source = Source::new(path, &document, options);
     source.note_file(path);
     source.buffers = buffer::load(&source, parts.blob, progress)?;
-    let source = source;
-
+    #[cfg(feature = "meshopt")]
+    {
+        source.views = views::decode(&source, progress)?;
+    }
     let nodes = node::flatten(&source, &mut warnings)?;
+    #[cfg(feature = "draco")]
+    {
+        source.meshes = draco::decode(&source, &nodes, progress)?;
+    }
+    let source = source;
     let mut scene = Scene {
         name: path.file_stem().map_or_else(String::new, |stem| one_line(&stem.to_string_lossy())),
         ..Scene::default()

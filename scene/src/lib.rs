@@ -36,6 +36,8 @@ pub mod light;
 pub mod material;
 pub mod memory;
 pub mod mesh;
+#[cfg(feature = "meshopt")]
+mod meshopt;
 pub mod mips;
 pub mod motion;
 mod moves;

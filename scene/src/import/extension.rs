@@ -33,6 +33,10 @@ const fn full(name: &'static str, note: &'static str) -> Extension {
     Extension { name, support: Support::Full, note }
 }
 
+const fn feature(name: &'static str, feature: &'static str, note: &'static str) -> Extension {
+    Extension { name, support: Support::Feature(feature), note }
+}
+
 const fn none(name: &'static str, note: &'static str) -> Extension {
     Extension { name, support: Support::None, note }
 }
@@ -48,14 +52,14 @@ pub const EXTENSIONS: &[Extension] = &[
     none("EXT_mesh_manifold", "the mesh is drawn; its manifold indices are not read"),
     none("EXT_mesh_primitive_edge_visibility", "edges are not drawn"),
     none("EXT_mesh_primitive_restart", "an index that restarts a strip is refused as out of range"),
-    none("EXT_meshopt_compression", "compressed buffer views are not decoded"),
+    feature("EXT_meshopt_compression", "meshopt", "all modes and filters"),
     none("EXT_structural_metadata", "metadata is not read"),
     none("EXT_texture_astc", "ASTC images are not decoded"),
     none("EXT_texture_webp", "WebP images are not decoded; the fallback image is used"),
     none("KHR_accessor_float64", "accessors of 64-bit floats are refused"),
     none("KHR_animation_pointer", "the channels that use it are ignored"),
     none("KHR_audio_emitter", "there is no sound"),
-    none("KHR_draco_mesh_compression", "compressed primitives are not decoded"),
+    feature("KHR_draco_mesh_compression", "draco", "bitstreams up to 2.2, every encoding of meshes"),
     none("KHR_gaussian_splatting", "splats are not drawn"),
     none("KHR_implicit_shapes", "shapes are not drawn; they serve physics"),
     none("KHR_interactivity", "behavior graphs are not run"),
@@ -79,7 +83,7 @@ pub const EXTENSIONS: &[Extension] = &[
     full("KHR_materials_volume", ""),
     none("KHR_materials_volume_scatter", "the volume absorbs and does not scatter"),
     full("KHR_mesh_quantization", ""),
-    none("KHR_meshopt_compression", "compressed buffer views are not decoded"),
+    feature("KHR_meshopt_compression", "meshopt", "all modes and filters, versions 0 and 1 of attributes"),
     none("KHR_node_hoverability", "it concerns input, which a scene has none of"),
     none("KHR_node_selectability", "it concerns input, which a scene has none of"),
     full("KHR_node_visibility", "meshes and lights of hidden nodes are left out; the value cannot be animated"),
@@ -104,11 +108,13 @@ pub(super) fn is_supported(name: &str) -> bool {
 
 /// Returns whether this crate was compiled with the feature.
 fn is_enabled(feature: &str) -> bool {
-    match feature {
-        "png" => cfg!(feature = "png"),
-        "jpeg" => cfg!(feature = "jpeg"),
-        _ => false,
-    }
+    let enabled = [
+        ("draco", cfg!(feature = "draco")),
+        ("meshopt", cfg!(feature = "meshopt")),
+        ("png", cfg!(feature = "png")),
+        ("jpeg", cfg!(feature = "jpeg")),
+    ];
+    enabled.contains(&(feature, true))
 }
 
 /// Checks the version and the extensions of a document.

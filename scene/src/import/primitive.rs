@@ -6,7 +6,8 @@ use gltf_json::validation::Checked;
 
 use super::accessor::{integers, width};
 use super::moves::{self, MovesKey};
-use super::source::{Repair, Source, Warnings};
+use super::packed::{self, PackedMesh, Values};
+use super::source::{Repair, Source, Warnings, beyond};
 use super::stream::{finite, stream};
 use super::topology::{Triangles, triangles};
 use crate::bounds::Aabb;
@@ -18,11 +19,13 @@ use crate::mesh::Mesh;
 /// What a mesh is made of: primitives with equal keys share one.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct GeometryKey {
-    position: Option<usize>,
-    normal: Option<usize>,
-    tangent: Option<usize>,
-    uv: [Option<usize>; 2],
-    color: Option<usize>,
+    position: Option<Values>,
+    normal: Option<Values>,
+    tangent: Option<Values>,
+    uv: [Option<Values>; 2],
+    color: Option<Values>,
+    /// Buffer view of the compressed mesh that has the indices, if there is one.
+    packed: Option<usize>,
     indices: Option<usize>,
     /// The mode's number in OpenGL; `None` for an invalid one.
     mode: Option<u32>,
@@ -38,14 +41,14 @@ impl GeometryKey {
     /// The material says which texture coordinates tangents follow, if it asks for them, and whether the order of triangles shows.
     /// A mesh that `node` moves, which has a skin or not, is the node's own.
     pub fn new(primitive: &Primitive, surface: &Material, node: usize, skinned: bool) -> Self {
-        let accessor =
-            |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
+        let values = |semantic: Semantic| packed::values(primitive, &semantic);
         Self {
-            position: accessor(Semantic::Positions),
-            normal: accessor(Semantic::Normals),
-            tangent: accessor(Semantic::Tangents),
-            uv: [accessor(Semantic::TexCoords(0)), accessor(Semantic::TexCoords(1))],
-            color: accessor(Semantic::Colors(0)),
+            position: values(Semantic::Positions),
+            normal: values(Semantic::Normals),
+            tangent: values(Semantic::Tangents),
+            uv: [values(Semantic::TexCoords(0)), values(Semantic::TexCoords(1))],
+            color: values(Semantic::Colors(0)),
+            packed: packed::of(primitive).and_then(|extension| extension.view()),
             indices: primitive.indices.map(|index| index.value()),
             mode: match primitive.mode {
                 Checked::Valid(mode) => Some(mode.as_gl_enum()),
@@ -144,11 +147,14 @@ fn corners(
     .into_iter()
     .find(|mode| Some(mode.as_gl_enum()) == key.mode)
     .ok_or_else(|| source.malformed(at, "unknown primitive mode"))?;
-    let corners = match key.indices {
-        Some(index) => integers(source, index, &format!("{at} indices"))?,
-        None => {
+    let packed = key.packed.and_then(|view| source.meshes.get(&view));
+    let (mode, corners) = match (packed, key.indices) {
+        // A compressed mesh has triangles, even if the mode is a strip.
+        (Some(mesh), index) => (Mode::Triangles, packed_corners(source, mesh, index, mode, at)?),
+        (None, Some(index)) => (mode, integers(source, index, &format!("{at} indices"))?),
+        (None, None) => {
             source.charge(vertices as u64 * 4)?;
-            (0..vertices as u32).collect()
+            (mode, (0..vertices as u32).collect())
         }
     };
     if let Some(place) = corners.iter().position(|&c| c as usize >= vertices) {
@@ -174,20 +180,42 @@ fn corners(
     }
 }
 
+/// The corners of a compressed mesh, as many as the accessor of indices states, unless it counts those of a strip.
+fn packed_corners(
+    source: &Source<'_>,
+    mesh: &PackedMesh,
+    index: Option<usize>,
+    mode: Mode,
+    at: &str,
+) -> Result<Vec<u32>, SceneError> {
+    if let Some(index) = index {
+        let accessors = &source.root.accessors;
+        let accessor =
+            accessors.get(index).ok_or_else(|| source.malformed(at, beyond("accessor", index, accessors)))?;
+        let (stated, found) = (accessor.count.0, mesh.indices.len());
+        if mode == Mode::Triangles && stated != found as u64 {
+            let reason = format!("accessor {index} states {stated} indices, but the compressed mesh has {found}");
+            return Err(source.malformed(at, reason));
+        }
+    }
+    source.charge(mesh.indices.len() as u64 * 4)?;
+    Ok(mesh.indices.clone())
+}
+
 /// Reads RGB or RGBA vertex colors. Channels that are not finite become 0.
 fn colors(
     source: &Source<'_>,
     at: &str,
-    index: usize,
+    values: Values,
     vertices: usize,
     warnings: &mut Warnings,
 ) -> Result<Vec<Vec4>, SceneError> {
     let count = Some(vertices);
-    let mut colors = if width(source, index) == Some(3) {
+    let mut colors = if width(source, values.accessor) == Some(3) {
         let opaque = |rgb| Vec3::from_array(rgb).extend(1.0);
-        stream(source, at, "COLOR_0", index, count, opaque)?
+        stream(source, at, "COLOR_0", values, count, opaque)?
     } else {
-        stream(source, at, "COLOR_0", index, count, Vec4::from_array)?
+        stream(source, at, "COLOR_0", values, count, Vec4::from_array)?
     };
     let bad = colors.iter_mut().filter(|color| !color.is_finite());
     let repaired = bad.map(|color| *color = Vec4::select(color.is_finite_mask(), *color, Vec4::ZERO)).count();

@@ -8,6 +8,7 @@ use std::path::{Component, Path, PathBuf};
 use gltf_json::{Root, Value};
 
 use super::document::Document;
+use super::packed::PackedMesh;
 use super::uri::{Resource, resolve};
 use crate::error::{Quantity, SceneError, one_line};
 use crate::memory::{Memory, OverBudget};
@@ -23,6 +24,10 @@ pub(super) struct Source<'a> {
     pub json: &'a Value,
     /// The bytes of each buffer, at least as long as the JSON says.
     pub buffers: Vec<Buffer<'a>>,
+    /// The bytes of each compressed buffer view, by its index, which replace those in its buffer.
+    pub views: BTreeMap<usize, Vec<u8>>,
+    /// The compressed meshes that the scene draws, by their buffer views.
+    pub meshes: BTreeMap<usize, PackedMesh>,
     /// The budget of everything that is decoded.
     pub memory: &'a Memory,
     allow_outside: bool,
@@ -61,6 +66,8 @@ impl<'a> Source<'a> {
             root,
             json,
             buffers: Vec::new(),
+            views: BTreeMap::new(),
+            meshes: BTreeMap::new(),
             memory: &options.memory,
             allow_outside: options.allow_outside,
             keep_order: options.keep_order,
@@ -126,7 +133,8 @@ impl<'a> Source<'a> {
         self.keep(bytes).map_err(|budget| self.over("vertices", budget))
     }
 
-    fn over(&self, at: &str, budget: OverBudget) -> SceneError {
+    /// An error about something that does not fit into the budget.
+    pub fn over(&self, at: &str, budget: OverBudget) -> SceneError {
         SceneError::Memory { file: self.file.into(), at: at.into(), budget }
     }
 
@@ -139,7 +147,24 @@ impl<'a> Source<'a> {
     pub fn view(&self, index: usize, at: &str) -> Result<(&[u8], Option<usize>), SceneError> {
         let views = &self.root.buffer_views;
         let view = views.get(index).ok_or_else(|| self.malformed(at, beyond("buffer view", index, views)))?;
-        let buffer = view.buffer.value();
+        let stride = view.byte_stride.map(|s| s.0).filter(|s| *s > 0);
+        if let Some(bytes) = self.views.get(&index) {
+            return Ok((bytes, stride));
+        }
+        let start = view.byte_offset.map_or(0, |offset| offset.0);
+        let name = format_args!("buffer view {index}");
+        Ok((self.range(view.buffer.value(), start, view.byte_length.0, at, name)?, stride))
+    }
+
+    /// A range of a buffer. `name` names the object that states the range.
+    pub fn range(
+        &self,
+        buffer: usize,
+        start: u64,
+        length: u64,
+        at: &str,
+        name: std::fmt::Arguments<'_>,
+    ) -> Result<&[u8], SceneError> {
         let data =
             self.buffers.get(buffer).ok_or_else(|| self.malformed(at, beyond("buffer", buffer, &self.buffers)))?;
         let data = match data {
@@ -152,19 +177,18 @@ impl<'a> Source<'a> {
                 zeros.get_or_init(|| vec![0; length as usize]).as_slice()
             }
         };
-        let start = view.byte_offset.map_or(0, |offset| offset.0);
-        let length = view.byte_length.0;
-        let bytes = slice(data, start, length).ok_or_else(|| {
+        slice(data, start, length).ok_or_else(|| {
+            // Every other buffer has the bytes that it promises.
+            let is_placeholder = (data.len() as u64) < self.root.buffers[buffer].byte_length.0;
             self.malformed(
                 at,
-                format!(
-                    "buffer view {index} covers {length} bytes from {start}, but buffer {buffer} \
-                     has {}",
-                    data.len()
-                ),
+                if is_placeholder {
+                    format!("{name} refers to buffer {buffer}, a fallback without data; only compressed views may")
+                } else {
+                    format!("{name} covers {length} bytes from {start}, but buffer {buffer} has {}", data.len())
+                },
             )
-        })?;
-        Ok((bytes, view.byte_stride.map(|s| s.0).filter(|s| *s > 0)))
+        })
     }
 }
 

@@ -1,5 +1,7 @@
 //! The importer on files made in code: what is right comes out right, what is wrong is one line.
 
+#[cfg(all(feature = "draco", feature = "meshopt"))]
+mod compressed;
 mod document;
 mod fixture;
 mod fuzz;

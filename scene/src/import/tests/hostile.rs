@@ -92,6 +92,7 @@ fn allocation_bombs() {
 fn wrong_types() {
     broken("/accessors/0/type", json!("VEC2"), &["accessor 0 has 2 components, not 3"]);
     broken("/accessors/0/type", json!("MAT2"), &["accessor 0", "2×2 or 3×3 matrices"]);
+    broken("/accessors/0/type", json!("MAT4"), &["accessor 0", "3 elements of 64 bytes"]);
     broken("/accessors/0", json!({"componentType": 5126, "type": "MAT4", "count": 1}), &["16 components, not 3"]);
     broken("/accessors/0/type", json!("VEC5"), &["accessor 0", "unknown component type"]);
     broken("/accessors/0/componentType", json!(5124), &["accessor 0", "unknown component type"]);
