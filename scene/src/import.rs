@@ -31,6 +31,7 @@ mod motion;
 mod moves;
 mod node;
 mod object;
+#[cfg_attr(not(feature = "draco"), allow(dead_code, reason = "then no mesh is decoded"))]
 mod packed;
 mod primitive;
 mod source;
