@@ -33,6 +33,7 @@ mod motion;
 mod moves;
 mod node;
 mod object;
+#[cfg_attr(not(feature = "draco"), allow(dead_code, reason = "then no mesh is decoded"))]
 mod packed;
 mod pointer;
 mod primitive;

@@ -4,6 +4,7 @@ mod accuracy;
 mod bisect;
 mod bloom;
 mod cases;
+mod compressed;
 mod cubes;
 mod degenerate;
 mod documents;
