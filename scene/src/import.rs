@@ -129,7 +129,7 @@ pub fn load_bytes_with(
     scene.materials = tables.materials;
     scene.textures = tables.textures;
     scene.samplers = tables.samplers;
-    scene.images = images::decode(&source, &tables.images, progress)?;
+    scene.images = images::decode(&source, &tables.images, &scene.textures, progress)?;
     scene.files = source.files();
     scene.warnings = warnings.into_lines();
     source.finish();

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::memory::Memory;
+use crate::texture::BlockFormats;
 
 /// What loading may do. Clones share the budget of memory.
 #[derive(Clone, Debug, Default)]
@@ -14,4 +15,7 @@ pub struct LoadOptions {
     /// Triangles and vertices stay in the order of the file; otherwise meshes that do not blend get one that is drawn faster
     /// ([`order_for_drawing`](crate::geometry::order_for_drawing)).
     pub keep_order: bool,
+    /// Block-compressed formats of the device that the scene is uploaded to. Basis Universal textures are transcoded to one
+    /// of them where possible; `passes::upload::block_formats` returns those of an opened device.
+    pub block_formats: BlockFormats,
 }

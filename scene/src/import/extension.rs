@@ -33,6 +33,10 @@ const fn full(name: &'static str, note: &'static str) -> Extension {
     Extension { name, support: Support::Full, note }
 }
 
+const fn feature(name: &'static str, feature: &'static str, note: &'static str) -> Extension {
+    Extension { name, support: Support::Feature(feature), note }
+}
+
 const fn none(name: &'static str, note: &'static str) -> Extension {
     Extension { name, support: Support::None, note }
 }
@@ -51,7 +55,7 @@ pub const EXTENSIONS: &[Extension] = &[
     none("EXT_meshopt_compression", "compressed buffer views are not decoded"),
     none("EXT_structural_metadata", "metadata is not read"),
     none("EXT_texture_astc", "ASTC images are not decoded"),
-    none("EXT_texture_webp", "WebP images are not decoded; the fallback image is used"),
+    feature("EXT_texture_webp", "webp", "still pictures, lossy and lossless; they are preferred to the fallback image"),
     none("KHR_accessor_float64", "accessors of 64-bit floats are refused"),
     none("KHR_animation_pointer", "the channels that use it are ignored"),
     none("KHR_audio_emitter", "there is no sound"),
@@ -82,7 +86,11 @@ pub const EXTENSIONS: &[Extension] = &[
     none("KHR_node_visibility", "hidden nodes are drawn"),
     none("KHR_physics_rigid_bodies", "nothing is simulated"),
     none("KHR_techniques_webgl", "shaders in files are not read"),
-    none("KHR_texture_basisu", "KTX2 images are not decoded; the fallback image is used"),
+    feature(
+        "KHR_texture_basisu",
+        "basisu",
+        "ETC1S and UASTC become BC7, ETC2 or ASTC where the device samples these, RGBA8 otherwise; they are preferred to the fallback image",
+    ),
     none("KHR_texture_procedurals", "procedural textures are not evaluated"),
     full("KHR_texture_transform", ""),
     none("KHR_xmp", "metadata is not read"),
@@ -100,10 +108,13 @@ pub(super) fn is_supported(name: &str) -> bool {
 }
 
 /// Returns whether this crate was compiled with the feature.
+#[allow(clippy::match_like_matches_macro, reason = "with every feature on, all arms but the last are the same")]
 fn is_enabled(feature: &str) -> bool {
     match feature {
         "png" => cfg!(feature = "png"),
         "jpeg" => cfg!(feature = "jpeg"),
+        "webp" => cfg!(feature = "webp"),
+        "basisu" => cfg!(feature = "basisu"),
         _ => false,
     }
 }
@@ -136,7 +147,10 @@ pub(super) fn check(file: &Path, root: &Root, warnings: &mut Warnings) -> Result
             .filter(|m| m.extensions.as_ref().is_some_and(|e| e.others.contains_key(name)))
             .count();
         let known = EXTENSIONS.iter().find(|extension| extension.name == name);
-        let effect = known.map_or(String::new(), |extension| format!(": {}", extension.note));
+        let effect = known.map_or(String::new(), |extension| match extension.support {
+            Support::Feature(feature) => format!(": compile framegraph-scene with its feature `{feature}`"),
+            Support::Full | Support::None => format!(": {}", extension.note),
+        });
         if materials > 0 {
             warnings.push(format!("{name} is ignored ({materials} materials use it){effect}"));
         } else {

@@ -9,3 +9,5 @@ mod lobes;
 mod motion;
 mod real_files;
 mod shading;
+#[cfg(all(feature = "webp", feature = "basisu"))]
+mod textures;
