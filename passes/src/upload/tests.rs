@@ -147,7 +147,7 @@ fn an_empty_scene_uploads() {
 
 fn with_image(width: u32, height: u32, texel: [u8; 4]) -> Scene {
     let mut scene = builtin("spheres").expect("built in");
-    let image = Image { name: "dir/wide.png".into(), width, height, rgba8: texel.repeat((width * height) as usize) };
+    let image = Image::from_rgba8("dir/wide.png", width, height, texel.repeat((width * height) as usize));
     let texture = scene.add_texture(image, TextureRole::Linear, Sampler::default());
     scene.materials[0].occlusion_texture = Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() });
     scene
@@ -175,7 +175,7 @@ fn texels_go_as_they_are_uploaded_and_the_budget_knows() {
     let texture = *scene.textures.last().expect("it was added");
     scene.textures.push(Texture { role: TextureRole::Color, ..texture });
     // The built-in scene has a picture of its own, of the same size.
-    let image_bytes = scene.images.iter().map(|image| image.rgba8.len() as u64).sum();
+    let image_bytes = scene.images.iter().map(|image| image.size_bytes()).sum();
     assert_eq!((scene.images.len(), image_bytes), (2, 2 * 64 * 64 * 4));
     let upload = |memory: &Memory, scene: &mut Scene| GpuScene::upload_freeing(&noop(), scene, memory, &mut silent);
     let memory = Memory::new(1 << 20);
@@ -184,7 +184,7 @@ fn texels_go_as_they_are_uploaded_and_the_budget_knows() {
     let mut freed = scene.clone();
     let uploaded = upload(&memory, &mut freed).expect("there is enough");
     assert_eq!(uploaded.size_bytes, whole.size_bytes);
-    assert!(freed.images.iter().all(|image| image.rgba8.is_empty() && image.width == 64));
+    assert!(freed.images.iter().all(|image| image.levels.is_empty() && image.width == 64));
     assert_eq!(freed.images[1].name, "dir/wide.png");
     // Three textures with all their levels are what is taken now.
     let textures = 3 * (1..=7).map(|level| (128_u64 >> level).pow(2) * 4).sum::<u64>();
