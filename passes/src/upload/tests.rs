@@ -202,6 +202,21 @@ fn texels_go_as_they_are_uploaded_and_the_budget_knows() {
     assert!(error.contains(": mip levels and upload, 64×64"), "{error}");
 }
 
+/// The noop device has no feature for blocks.
+#[test]
+fn blocks_that_the_device_does_not_sample_are_refused() {
+    let gpu = noop();
+    assert_eq!(block_formats(&gpu), framegraph_scene::BlockFormats::default());
+    let mut scene = with_image(4, 4, [1; 4]);
+    let image = scene.images.last_mut().expect("it was added");
+    (image.format, image.levels) = (framegraph_scene::ImageFormat::Bc7, vec![vec![0; 16]; 3]);
+    assert_eq!(scene.check(), Ok(()));
+    let error = GpuScene::upload(&gpu, &scene, &mut silent).expect_err("there is no such format").to_string();
+    let expected =
+        "dir/wide.png: this device does not sample BC7; load the scene with the `block_formats` of the device";
+    assert_eq!(error, expected);
+}
+
 #[test]
 fn an_upload_can_be_stopped() {
     let scene = with_image(4, 4, [1; 4]);
