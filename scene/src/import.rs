@@ -155,10 +155,10 @@ pub fn load_bytes_with(
     scene.samplers = tables.samplers;
     let attached = motion::Attachments { placed, lights, cameras, materials: tables.known };
     motion::import(&source, &nodes, attached, &mut scene, &mut warnings)?;
-    scene.images = images::decode(&source, &tables.images, progress)?;
+    scene.images = images::decode(&source, &tables.images, (&scene.textures, &tables.computed), progress)?;
     for roughness in &tables.computed {
         let image = &scene.images[roughness.image.index()];
-        let (bytes, at) = (image.rgba8.len() as u64, image.name.clone());
+        let (bytes, at) = (image.size_bytes(), image.name.clone());
         source.keep(bytes).map_err(|budget| SceneError::Memory { file: path.into(), at, budget })?;
         scene.images.push(roughness.compute(&scene.images));
     }

@@ -61,7 +61,7 @@ pub fn encode_exr(
     codec::exr::encode(to, texels, rgba)
 }
 
-/// Reads a PNG or JPEG picture (as far as the features `png` and `jpeg` are on) as display codes, four bytes a texel,
+/// Reads a PNG, JPEG or WebP picture (as far as the features `png`, `jpeg` and `webp` are on) as display codes, four bytes a texel,
 /// rows from the top; returns its size beside them.
 ///
 /// # Errors

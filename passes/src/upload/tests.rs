@@ -147,7 +147,7 @@ fn an_empty_scene_uploads() {
 
 fn with_image(width: u32, height: u32, texel: [u8; 4]) -> Scene {
     let mut scene = builtin("spheres").expect("built in");
-    let image = Image { name: "dir/wide.png".into(), width, height, rgba8: texel.repeat((width * height) as usize) };
+    let image = Image::from_rgba8("dir/wide.png", width, height, texel.repeat((width * height) as usize));
     let texture = scene.add_texture(image, TextureRole::Linear, Sampler::default());
     scene.materials[0].occlusion_texture = Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() });
     scene
@@ -175,7 +175,7 @@ fn texels_go_as_they_are_uploaded_and_the_budget_knows() {
     let texture = *scene.textures.last().expect("it was added");
     scene.textures.push(Texture { role: TextureRole::Color, ..texture });
     // The built-in scene has a picture of its own, of the same size.
-    let image_bytes = scene.images.iter().map(|image| image.rgba8.len() as u64).sum();
+    let image_bytes = scene.images.iter().map(|image| image.size_bytes()).sum();
     assert_eq!((scene.images.len(), image_bytes), (2, 2 * 64 * 64 * 4));
     let upload = |memory: &Memory, scene: &mut Scene| GpuScene::upload_freeing(&noop(), scene, memory, &mut silent);
     let memory = Memory::new(1 << 20);
@@ -184,7 +184,7 @@ fn texels_go_as_they_are_uploaded_and_the_budget_knows() {
     let mut freed = scene.clone();
     let uploaded = upload(&memory, &mut freed).expect("there is enough");
     assert_eq!(uploaded.size_bytes, whole.size_bytes);
-    assert!(freed.images.iter().all(|image| image.rgba8.is_empty() && image.width == 64));
+    assert!(freed.images.iter().all(|image| image.levels.is_empty() && image.width == 64));
     assert_eq!(freed.images[1].name, "dir/wide.png");
     // Three textures with all their levels are what is taken now.
     let textures = 3 * (1..=7).map(|level| (128_u64 >> level).pow(2) * 4).sum::<u64>();
@@ -200,6 +200,21 @@ fn texels_go_as_they_are_uploaded_and_the_budget_knows() {
     upload(&Memory::new(least - 1), &mut one).expect_err("a byte is missing");
     let error = upload(&Memory::new(30_000), &mut scene).expect_err("no room for levels").to_string();
     assert!(error.contains(": mip levels and upload, 64×64"), "{error}");
+}
+
+/// The noop device has no feature for blocks.
+#[test]
+fn blocks_that_the_device_does_not_sample_are_refused() {
+    let gpu = noop();
+    assert_eq!(block_formats(&gpu), framegraph_scene::BlockFormats::default());
+    let mut scene = with_image(4, 4, [1; 4]);
+    let image = scene.images.last_mut().expect("it was added");
+    (image.format, image.levels) = (framegraph_scene::ImageFormat::Bc7, vec![vec![0; 16]; 3]);
+    assert_eq!(scene.check(), Ok(()));
+    let error = GpuScene::upload(&gpu, &scene, &mut silent).expect_err("there is no such format").to_string();
+    let expected =
+        "dir/wide.png: this device does not sample BC7; load the scene with the `block_formats` of the device";
+    assert_eq!(error, expected);
 }
 
 #[test]

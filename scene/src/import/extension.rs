@@ -55,7 +55,7 @@ pub const EXTENSIONS: &[Extension] = &[
     feature("EXT_meshopt_compression", "meshopt", "all modes and filters"),
     none("EXT_structural_metadata", "metadata is not read"),
     none("EXT_texture_astc", "ASTC images are not decoded"),
-    none("EXT_texture_webp", "WebP images are not decoded; the fallback image is used"),
+    feature("EXT_texture_webp", "webp", "still pictures, lossy and lossless; they are preferred to the fallback image"),
     none("KHR_accessor_float64", "accessors of 64-bit floats are refused"),
     none("KHR_animation_pointer", "the channels that use it are ignored"),
     none("KHR_audio_emitter", "there is no sound"),
@@ -89,7 +89,11 @@ pub const EXTENSIONS: &[Extension] = &[
     full("KHR_node_visibility", "meshes and lights of hidden nodes are left out; the value cannot be animated"),
     none("KHR_physics_rigid_bodies", "nothing is simulated"),
     none("KHR_techniques_webgl", "shaders in files are not read"),
-    none("KHR_texture_basisu", "KTX2 images are not decoded; the fallback image is used"),
+    feature(
+        "KHR_texture_basisu",
+        "basisu",
+        "ETC1S and UASTC become BC7, ETC2 or ASTC where the device samples these, RGBA8 otherwise; they are preferred to the fallback image",
+    ),
     none("KHR_texture_procedurals", "procedural textures are not evaluated"),
     full("KHR_texture_transform", ""),
     none("KHR_xmp", "metadata is not read"),
@@ -111,8 +115,8 @@ fn is_enabled(feature: &str) -> bool {
     let enabled = [
         ("draco", cfg!(feature = "draco")),
         ("meshopt", cfg!(feature = "meshopt")),
-        ("png", cfg!(feature = "png")),
-        ("jpeg", cfg!(feature = "jpeg")),
+        ("webp", cfg!(feature = "webp")),
+        ("basisu", cfg!(feature = "basisu")),
     ];
     enabled.contains(&(feature, true))
 }
@@ -145,7 +149,10 @@ pub(super) fn check(file: &Path, root: &Root, warnings: &mut Warnings) -> Result
             .filter(|m| m.extensions.as_ref().is_some_and(|e| e.others.contains_key(name)))
             .count();
         let known = EXTENSIONS.iter().find(|extension| extension.name == name);
-        let effect = known.map_or(String::new(), |extension| format!(": {}", extension.note));
+        let effect = known.map_or(String::new(), |extension| match extension.support {
+            Support::Feature(feature) => format!(": compile framegraph-scene with its feature `{feature}`"),
+            Support::Full | Support::None => format!(": {}", extension.note),
+        });
         if materials > 0 {
             warnings.push(format!("{name} is ignored ({materials} materials use it){effect}"));
         } else {

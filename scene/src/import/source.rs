@@ -13,6 +13,7 @@ use super::uri::{Resource, resolve};
 use crate::error::{Quantity, SceneError, one_line};
 use crate::memory::{Memory, OverBudget};
 use crate::options::LoadOptions;
+use crate::texture::BlockFormats;
 
 /// The document, its buffers, and how much memory was taken for what was made of them so far.
 pub(super) struct Source<'a> {
@@ -33,6 +34,8 @@ pub(super) struct Source<'a> {
     allow_outside: bool,
     /// Triangles stay in the order of the file.
     pub keep_order: bool,
+    /// Formats of blocks that the device samples.
+    pub block_formats: BlockFormats,
     /// For each image of the file the first that is the same.
     images: Vec<usize>,
     /// What was taken for the scene, which stays.
@@ -71,6 +74,7 @@ impl<'a> Source<'a> {
             memory: &options.memory,
             allow_outside: options.allow_outside,
             keep_order: options.keep_order,
+            block_formats: options.block_formats,
             images: first_of_each(&root.images),
             kept_bytes: Cell::new(0),
             file_bytes: Cell::new(0),

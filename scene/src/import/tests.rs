@@ -11,3 +11,5 @@ mod lobes;
 mod motion;
 mod real_files;
 mod shading;
+#[cfg(all(feature = "webp", feature = "basisu"))]
+mod textures;

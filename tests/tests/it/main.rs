@@ -58,6 +58,7 @@ mod soak;
 mod stage;
 mod supply;
 mod taa;
+mod textures;
 mod tone_resolve;
 mod transmission;
 mod upscale;

@@ -109,7 +109,7 @@ fn a_full_material_comes_through() {
         let image = &scene.images[texture.image.index()];
         assert_eq!((image.width, image.height), (2, 1));
         let texel = [[255, 0, 0, 255], [0, 255, 0, 128]][green];
-        assert_eq!(image.rgba8[..4], texel);
+        assert_eq!(image.rgba8().expect("it is a PNG")[..4], texel);
         let sampler = scene.samplers[texture.sampler.index()];
         let given = Sampler {
             wrap_u: Wrap::ClampToEdge,
