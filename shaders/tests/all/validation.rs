@@ -88,7 +88,11 @@ fn resolving_is_deterministic() {
 fn every_feature_makes_a_difference_and_only_to_what_shades() {
     for pass in library::passes() {
         let expected: Vec<Feature> = match pass.name() {
-            "color" => Feature::all().filter(|feature| *feature != Feature::VELOCITY).collect(),
+            // Dispersion is part of transmission, and makes no difference alone.
+            "color" => {
+                let not = [Feature::VELOCITY, Feature::DISPERSION];
+                Feature::all().filter(|feature| !not.contains(feature)).collect()
+            }
             "taa" => vec![Feature::VELOCITY],
             "sky" => vec![Feature::FOG],
             // Made of functions that shade, too, and made in f32.
@@ -102,6 +106,7 @@ fn every_feature_makes_a_difference_and_only_to_what_shades() {
                 Feature::INSTANCE_STREAM,
                 Feature::ANISOTROPY,
                 Feature::TRANSMISSION,
+                Feature::DIFFUSE_TRANSMISSION,
             ],
             // They read materials too, but are never asked to take them from an array.
             "prepass" | "shadow" | "velocity" => vec![Feature::MATERIAL_TABLE, Feature::INSTANCE_STREAM],
