@@ -116,6 +116,24 @@ fn every_feature_makes_a_difference_and_only_to_what_shades() {
     }
 }
 
+/// A surface without a lobe has nothing of it in its shader, and one with it has.
+#[test]
+fn lobes_are_in_the_shaders_that_call_for_them() {
+    let text = |features: Features| resolve(&variants::pass("color"), &features, &[]).unwrap().wgsl;
+    let plain = text(Features::NONE);
+    for (words, features) in [
+        (["fn thin_film_reflectance", "iridescence_texture"], Features::NONE.with(Feature::IRIDESCENCE)),
+        (["fn dispersed_ior", "refracted_path"], Features::NONE.with(Feature::TRANSMISSION).with(Feature::DISPERSION)),
+        (["fn fd_transmitted", "diffuse_transmission_texture"], Features::NONE.with(Feature::DIFFUSE_TRANSMISSION)),
+    ] {
+        let lobe = text(features);
+        for word in words {
+            assert!(lobe.contains(word) && !plain.contains(word), "{word}");
+        }
+    }
+    assert!(!text(Features::NONE.with(Feature::TRANSMISSION)).contains("dispersed_ior"));
+}
+
 #[test]
 fn effects_make_a_difference_where_there_is_a_socket_and_are_refused_elsewhere() {
     for pass in library::passes() {
