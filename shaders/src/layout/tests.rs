@@ -122,6 +122,9 @@ fn defaults_of_the_overrides_are_the_defaults_of_the_settings() {
     let tone = Effect { name: "tone", wgsl: library::text("effect/tone.wgsl").unwrap() };
     let post = library::pass("pass/post.wgsl").unwrap();
     let post = resolve(&post, &crate::Features::NONE, &[tone]).unwrap();
+    let color = resolve(&library::pass("pass/color.wgsl").unwrap(), &crate::Features::NONE, &[]).unwrap();
+    let traits = color.reflection.overrides.iter().find(|o| o.name == "MATERIAL_TRAITS").unwrap();
+    assert_eq!(traits.default, Some(f64::from((1_u32 << layout::TRAIT_UNLIT) - 1)), "every texture, and that it emits");
     let tone_map = post.reflection.overrides.iter().find(|o| o.name == "TONE_MAP").unwrap();
     assert_eq!(tone_map.default, ToneMap::default().number().map(f64::from));
 }

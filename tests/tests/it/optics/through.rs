@@ -81,8 +81,8 @@ fn light_from_all_around_is_scattered_through() -> TestResult {
     let seen = board.render(&gpu, &gradient(light)?, &Shading::default())?;
     for ((name, _, placed, sheet), seen) in cases.iter().zip(&seen) {
         let scale = if *placed == unit { "" } else { " (a mean scale of 2)" };
-        // Half floats, and a map of 128 texels.
-        near(&format!("{name}{scale}"), seen, sheet.seen(64, light), 6e-3, 1e-3);
+        // Half floats, and a map of 128 texels; a black metal has an edge.
+        near(&format!("{name}{scale}"), seen, sheet.seen(64, light), 6e-3, 3e-3);
     }
     // The control: from the front there is less light of some channels than from behind.
     let (front, back) = (sheet(0.0).seen(64, light), sheet(1.0).seen(64, light));
