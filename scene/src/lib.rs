@@ -77,8 +77,8 @@ pub use instance::Instance;
 pub use levels::InstanceLevels;
 pub use light::{Light, LightKind};
 pub use material::{
-    AlphaMode, Anisotropy, ClearCoat, EmissiveUnit, Lobe, Lobes, Material, MaterialId, Sheen, Specular, Transmission,
-    Volume,
+    AlphaMode, Anisotropy, ClearCoat, DiffuseTransmission, EmissiveUnit, Iridescence, Lobe, Lobes, Material,
+    MaterialId, Sheen, Specular, Transmission, Volume,
 };
 pub use memory::Memory;
 pub use mesh::{Mesh, MeshError, MeshId, MeshLevel};

@@ -56,12 +56,12 @@ impl<'a> Seen<'a> {
         self.lists.iter().map(list).max().unwrap_or(0)
     }
 
-    /// Whether some of what is lit may turn a normal toward `light`, a unit vector.
+    /// Whether some of what is lit may turn a normal toward `light`, a unit vector, or let its light through.
     pub fn may_face(&self, light: DVec3) -> bool {
         self.instances.iter().map(|i| &self.scene.instances[*i]).any(|instance| {
             let surface = self.survey.surface(instance);
-            let bent = surface.mapped_normals || surface.double_sided;
-            !surface.unlit && (bent || self.faces(instance, light))
+            let any = surface.mapped_normals || surface.double_sided || surface.is_translucent();
+            !surface.unlit && (any || self.faces(instance, light))
         })
     }
 

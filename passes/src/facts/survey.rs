@@ -93,7 +93,8 @@ impl Surface {
         Self {
             unlit: material.unlit,
             lobes: material.lobes(),
-            most_f0: if material.metallic > 0.0 { 1.0 } else { dielectric },
+            // A film may reflect all of a color.
+            most_f0: if material.metallic > 0.0 || material.iridescence.is_some() { 1.0 } else { dielectric },
             least_roughness: if textured || !material.roughness.is_finite() { 0.0 } else { material.roughness },
             mapped_normals: material.normal_texture.is_some()
                 || material.clear_coat.is_some_and(|coat| coat.normal_texture.is_some()),
@@ -101,6 +102,11 @@ impl Surface {
             occlusion_map: material.occlusion_texture.is_some(),
             dark_emission: material.emissive_texture.is_some() && material.emissive == Vec3::ZERO,
         }
+    }
+
+    /// Whether light from behind is scattered through it.
+    pub fn is_translucent(&self) -> bool {
+        self.lobes.contains(Lobe::DiffuseTransmission)
     }
 
     /// Whether it leaves depth for what looks around in the picture.
@@ -187,6 +193,8 @@ mod tests {
         assert_eq!((surface.least_roughness, surface.most_f0), (0.7, plain.dielectric_f0()));
         let textured = Surface::of(&Material { metallic_roughness_texture: Some(slot), ..plain.clone() });
         assert_eq!(textured.least_roughness, 0.0);
+        let film = Some(framegraph_scene::Iridescence::default());
+        assert_eq!(Surface::of(&Material { iridescence: film, ..plain.clone() }).most_f0, 1.0);
         assert_eq!(Surface::of(&Material { metallic: 0.01, ..plain }).most_f0, 1.0);
     }
 

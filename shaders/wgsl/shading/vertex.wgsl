@@ -6,7 +6,7 @@
 import package::interface::object::{
     Instance, world_position, clip_position, world_normal, world_tangent, handedness,
 };
-@if(TRANSMISSION)
+@if(TRANSMISSION || DIFFUSE_TRANSMISSION)
 import package::interface::object::mesh_scale_m;
 @if(MATERIAL_TABLE)
 import package::interface::object::material_number;
@@ -30,7 +30,7 @@ struct SurfaceVertex {
     @if(VERTEX_COLORS)
     @location(4) color: vec4<f32>,
     /// Meters a unit of the mesh, the mean over its axes.
-    @if(TRANSMISSION)
+    @if(TRANSMISSION || DIFFUSE_TRANSMISSION)
     @location(5) @interpolate(flat) scale_m: f32,
     /// Number of the material.
     @if(MATERIAL_TABLE)
@@ -56,7 +56,8 @@ fn surface_vertex(
         vec4<f32>(world_tangent(tangent.xyz, instance), tangent.w * handedness(instance));
     @if(TEXTURED) vertex.uv = uv;
     @if(VERTEX_COLORS) vertex.color = color;
-    @if(TRANSMISSION) vertex.scale_m = mesh_scale_m(instance);
+    @if(TRANSMISSION || DIFFUSE_TRANSMISSION)
+    vertex.scale_m = mesh_scale_m(instance);
     @if(MATERIAL_TABLE) vertex.material = material_number(instance);
     return vertex;
 }

@@ -38,6 +38,7 @@ mod loops;
 mod mirrors;
 mod normals;
 mod occlusion;
+mod optics;
 mod parts;
 mod picture;
 mod placed;

@@ -132,12 +132,12 @@ fn ignored_features_are_warned_of() {
             "baseColorTexture": {"index": 0, "texCoord": 2},
             "roughnessFactor": 1.5,
         },
-        "extensions": {"KHR_materials_iridescence": {"iridescenceFactor": 1.0}},
+        "extensions": {"KHR_materials_volume_scatter": {"scatterAnisotropy": 0.5}},
     }));
-    fixture.json["extensionsUsed"] = json!(["KHR_materials_iridescence", "EXT_unheard_of"]);
+    fixture.json["extensionsUsed"] = json!(["KHR_materials_volume_scatter", "EXT_unheard_of"]);
     let scene = fixture.load().expect("a good file");
     for word in [
-        "KHR_materials_iridescence is ignored (1 materials",
+        "KHR_materials_volume_scatter is ignored (1 materials",
         "EXT_unheard_of is ignored",
         "TEXCOORD_2",
         "roughnessFactor of 1.5 was clamped to 1",

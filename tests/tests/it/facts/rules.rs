@@ -9,7 +9,9 @@ use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, Settings};
 use framegraph_scene::environment::ShBands;
 use framegraph_scene::geometry::{cuboid, sphere};
-use framegraph_scene::{AlphaMode, Light, LightKind, Material, TextureId, TextureSlot, Transmission, UvTransform};
+use framegraph_scene::{
+    AlphaMode, DiffuseTransmission, Light, LightKind, Material, TextureId, TextureSlot, Transmission, UvTransform,
+};
 use framegraph_shaders::layout::{EdgeFade, ToneMap};
 use glam::{DMat4, DVec3, Vec3, Vec4};
 use tests::measure::facts::{Case, SIZE_PX, cases, every_effect};
@@ -120,6 +122,14 @@ fn suns_that_light_nothing_need_no_maps() {
     assert!(below.decision == Decision::Dropped && below.reason.contains("1.1° below the horizon"), "{below:?}");
     assert_eq!(below.proof, Proof::Exact);
     assert!(!toward(Vec3::new(-1.0, -0.02, 0.0)).reason.contains("horizon"), "it grazes the floor from above");
+    // Through a sheet the sun shines from below.
+    let from_below = |scattered: Option<DiffuseTransmission>| {
+        let mut floor = Stage::of("floor");
+        floor.material(|m| m.diffuse_transmission = scattered).case.scene.instances.truncate(1);
+        floor.case.scene.lights = vec![Light::directional("sun", Vec3::new(-0.3, 1.0, 0.0), 1e4)];
+        floor.facts().of(Effect::SunShadows).expect("asked for").reason.contains("turns toward")
+    };
+    assert!(from_below(None) && !from_below(Some(DiffuseTransmission::default())));
     let mut off = Stage::of("floor");
     off.case.scene.lights[0].kind = LightKind::Directional { illuminance_lux: 0.0, angular_radius_rad: 0.0 };
     assert!(off.drops(Effect::SunShadows));
