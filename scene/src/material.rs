@@ -105,9 +105,7 @@ pub struct Material {
 /// How many textures a material can have.
 pub const SLOT_COUNT: usize = 19;
 
-/// The role of each texture slot: base color, metallic-roughness, normal, occlusion, emissive; clear coat, its roughness,
-/// its normal; sheen color, its roughness; anisotropy; transmission, thickness; specular, its color; iridescence, thickness of
-/// its film; diffuse transmission, its color.
+/// The role of each texture slot, in the order of [`Material::slots`].
 pub const SLOT_ROLES: [TextureRole; SLOT_COUNT] = {
     use TextureRole::{Color, Linear, Normal};
     [
@@ -168,7 +166,7 @@ impl Material {
         Self { metallic: 1.0, ..Self::dielectric(name, f0, roughness) }
     }
 
-    /// Every texture slot, in the order of [`SLOT_ROLES`].
+    /// Every texture slot: those of the base, then those of each lobe.
     #[must_use]
     pub fn slots(&self) -> [Option<TextureSlot>; SLOT_COUNT] {
         let Self { clear_coat, sheen, anisotropy, transmission, specular, iridescence, diffuse_transmission, .. } =

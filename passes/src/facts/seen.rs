@@ -56,7 +56,7 @@ impl<'a> Seen<'a> {
         self.lists.iter().map(list).max().unwrap_or(0)
     }
 
-    /// Whether some of what is lit may turn a normal toward `light`, a unit vector, or let its light through.
+    /// Returns true if a lit surface may turn a normal toward `light`, a unit vector, or let its light through.
     pub fn may_face(&self, light: DVec3) -> bool {
         self.instances.iter().map(|i| &self.scene.instances[*i]).any(|instance| {
             let surface = self.survey.surface(instance);

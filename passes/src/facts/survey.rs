@@ -104,7 +104,7 @@ impl Surface {
         }
     }
 
-    /// Whether light from behind is scattered through it.
+    /// Returns true if light from behind is scattered through the surface.
     pub fn is_translucent(&self) -> bool {
         self.lobes.contains(Lobe::DiffuseTransmission)
     }

@@ -13,8 +13,10 @@ use glam::{Vec2, Vec3};
 // The bits of traits follow those of the slots.
 const _: () = assert!(SLOT_COUNT == MATERIAL_SLOTS as usize);
 
-/// The variables of `wgsl/interface/material.wgsl` and of the files of lobes beside it, in the order in which [`GpuScene::material_binding`](super::GpuScene::material_binding) counts them: the
-/// factors, then for each of [`Material::slots`] its texture and its sampler, and the array of all factors.
+/// Names of the variables of `wgsl/interface/material.wgsl` and of the files of lobes beside it.
+///
+/// [`GpuScene::material_binding`](super::GpuScene::material_binding) counts them in this order: the factors, a texture and a
+/// sampler for each of [`Material::slots`], and the array of all factors.
 pub const MATERIAL_BINDINGS: [&str; 2 + 2 * SLOT_COUNT] = [
     "material",
     "base_color_texture",
@@ -179,8 +181,8 @@ pub fn material_uniforms(material: &Material) -> MaterialUniforms {
     }
 }
 
-/// Of a body or, without a volume, of a wall that bends nothing and absorbs nothing. Light that is scattered through shares
-/// the body.
+/// Returns the uniforms of a body or, without a volume, of a wall that neither bends nor absorbs light. Diffuse transmission
+/// shares the body.
 fn transmission_uniforms(material: &Material, map: impl Fn(Option<TextureSlot>) -> TextureMap) -> TransmissionUniforms {
     let wall = material.transmission.map_or_else(Default::default, |transmission| TransmissionUniforms {
         factor: transmission.factor,

@@ -61,7 +61,7 @@ fn film_on_metal(column: u32) -> Material {
     Material { iridescence: Some(iridescence), ..Material::metal(&format!("film of index {ior:.1}"), titanium.f0, 0.2) }
 }
 
-/// Dispersion up to that of a material of which there is none: diamond has 0.36.
+/// Glass of dispersion 0 to 5, to make it visible: diamond has 0.36.
 fn glass(column: u32) -> Material {
     let dispersion = 5.0 * share(column);
     let volume = Some(Volume { thickness: 2.0 * RADIUS_M, ..Volume::default() });

@@ -3,7 +3,7 @@
 use super::math::{PI, pow5, saturate};
 use glam::{DMat3, DVec3};
 
-/// Linear Rec.709 of a wave in the spectrum of this path, in nm, and phase, in turns.
+/// Linear Rec.709 of a wave in the spectrum: its path in nm, its phase in full turns.
 pub fn film_sensitivity(path_nm: f64, turns: DVec3) -> DVec3 {
     let phase = 2.0 * PI * path_nm.min(1e5) * 1e-9;
     let shift = turns * (2.0 * PI);
@@ -55,7 +55,7 @@ pub fn thin_film_reflectance(cosine: f64, ior: f64, thickness_nm: f64, base_f0: 
 
 /// Schlick's approximation solved for the reflectance at normal incidence.
 pub fn f0_from_reflectance(reflectance: DVec3, f90: f64, cosine: f64) -> DVec3 {
-    let grazing = pow5(1.0 - saturate(cosine)).min(f64::from(0.9999_f32));
+    let grazing = pow5(1.0 - cosine).min(f64::from(0.9999_f32));
     ((reflectance - DVec3::splat(f90 * grazing)) / (1.0 - grazing)).clamp(DVec3::ZERO, DVec3::ONE)
 }
 

@@ -1,13 +1,13 @@
-// What a material's factors look like in memory: the base's and those of its lobes.
+// Memory layout of a material's factors: the base's and those of its lobes.
 
-/// Where a texture lies on the mesh (KHR_texture_transform).
+/// Placement of a texture on the mesh (KHR_texture_transform).
 /// Mirrored by `layout::TextureMap`.
 struct TextureMap {
     /// Columns of the 2×2 matrix rotation · scale.
     x_axis: vec2<f32>,
     y_axis: vec2<f32>,
     offset: vec2<f32>,
-    /// Which texture coordinate set of the mesh: 0 or 1.
+    /// Texture coordinate set of the mesh: 0 or 1.
     uv_set: u32,
 }
 
@@ -102,8 +102,8 @@ struct MaterialUniforms {
     base_color: vec4<f32>,
     /// Emitted radiance, linear Rec.709, emissive strength included.
     emissive: vec3<f32>,
-    /// How far `emissive` is nits and meets the exposure (1) or a display value that does
-    /// not (0, what most assets mean).
+    /// 1 if `emissive` is in nits and meets the exposure, 0 if it is a display value, as in most
+    /// assets.
     emissive_exposure_weight: f32,
     /// 0 dielectric … 1 metal.
     metallic: f32,

@@ -1,9 +1,12 @@
-// Reflectance of a thin film between air and a base: light reflected at its two sides interferes
-// (Belcour and Barla, "A Practical Extension to Microfacet Theory for the Modeling of Varying
-// Iridescence", 2017), as KHR_materials_iridescence spells it out.
+// Reflectance of a thin film between air and a base, as KHR_materials_iridescence defines it.
 //
-// What is reflected twice may be nothing: sample code holds it at 1e-5, which shows as waves of
-// 0.015. In f32 in every build: phases are differences of many waves.
+// Light reflected at the two sides of the film interferes. The model is that of Belcour and Barla,
+// "A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence", 2017.
+//
+// The sample code holds the product of the two reflectances at 1e-5, which shows as waves of 0.015
+// where nothing is reflected. Here it is not held.
+//
+// Every build computes it in f32: phases are differences of many waves.
 
 import package::lib::math::PI;
 
@@ -40,7 +43,7 @@ fn thin_film_reflectance(
 ) -> vec3<f32> {
     let outside = saturate(cosine);
     let index = max(ior, 1.0);
-    // Of Snell's law, written so that nothing is subtracted from a smaller number.
+    // Snell's law, written so that nothing is subtracted from a smaller number.
     let inside = sqrt((index * index - 1.0) + outside * outside) / index;
 
     let top_root = (index - 1.0) / (index + 1.0);
@@ -72,7 +75,7 @@ fn thin_film_reflectance(
 /// Reflectance at normal incidence for which Schlick's approximation, with `f90` at grazing, gives
 /// `reflectance` at the angle whose cosine is `cosine`. At grazing everything does, so it is held.
 fn f0_from_reflectance(reflectance: vec3<f32>, f90: f32, cosine: f32) -> vec3<f32> {
-    let up = 1.0 - saturate(cosine);
+    let up = 1.0 - cosine;
     let grazing = min(up * up * up * up * up, 0.9999);
     return saturate((reflectance - f90 * grazing) / (1.0 - grazing));
 }

@@ -1,4 +1,4 @@
-// What a surface with all its lobes reflects of one light, and lets through: BSDF times cosine.
+// Light of one source reflected by a surface with all its lobes, or let through: BSDF times cosine.
 
 @if(CLEAR_COAT || ANISOTROPY || IRIDESCENCE)
 import package::lib::fresnel::{f_schlick, f_schlick_scalar};

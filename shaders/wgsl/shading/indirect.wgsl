@@ -143,7 +143,7 @@ fn reflect_environment(
     @else
     let below = 1.0 - albedo;
     let diffuse = vec3<f32>(s.base.diffuse * below) * ambient_irradiance(normal);
-    // What occludes the front is taken to occlude the back as much.
+    // Occlusion of the front is applied to light from behind as well.
     @if(DIFFUSE_TRANSMISSION)
     specular += vec3<f32>(s.translucency.color * below) * ambient_irradiance(-normal)
         * visibility.diffuse;

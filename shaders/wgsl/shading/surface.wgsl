@@ -121,7 +121,7 @@ fn largest_channel(color: vec3<f32>) -> f32 {
 }
 
 /// Share of the light that gets under the specular layer of the base, whose directional albedo is
-/// `albedo`: a film has hues, and their complements are not what is seen under it.
+/// `albedo`. Under a film all channels get what the largest leaves: no complementary hues appear.
 @if(IRIDESCENCE)
 fn share_below(s: Surface, albedo: real3) -> real3 {
     let most = real(largest_channel(vec3<f32>(albedo)));

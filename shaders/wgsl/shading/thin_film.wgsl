@@ -8,8 +8,8 @@ import package::lib::real::real3;
 @if(IRIDESCENCE)
 import package::shading::surface::{ThinFilm, film_reflectance, largest_channel};
 
-/// The thin film of a fragment over a base whose f0 is `bare_f0`, of a metal of this color and a
-/// dielectric with this reflectance at normal and, in w, at grazing incidence.
+/// The thin film of a fragment over a base whose f0 is `bare_f0`. `dielectric` is the reflectance
+/// of its dielectric part at normal and, in w, at grazing incidence; `color` that of its metal.
 @if(IRIDESCENCE)
 fn film_of(
     uv: vec4<f32>,

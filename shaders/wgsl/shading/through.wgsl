@@ -62,15 +62,15 @@ fn translucency_of(albedo: vec3<f32>, lambert: f32, thickness_m: f32) -> Translu
     return Translucency(real3(saturate(albedo) * (lambert * left)), thickness_m);
 }
 
-/// Whether a light in that direction is behind the surface.
+/// True if a light in that direction is behind the surface.
 @if(DIFFUSE_TRANSMISSION)
 fn is_behind(s: Surface, to_light: vec3<f32>) -> bool {
     return dot(vec3<f32>(s.base.normal), to_light) < 0.0;
 }
 
-/// Where the shadows of lights from behind fall: they enter a body on its far side, the depth of
-/// the body below the surface. There the normal is turned, since an offset away from the light
-/// would let the surface shadow itself.
+/// Receiver of the shadows of lights from behind: the far side of the body, its depth below the
+/// surface. The normal is turned, since an offset away from the light would let the surface shadow
+/// itself.
 @if(DIFFUSE_TRANSMISSION)
 fn far_side(s: Surface, receiver: Receiver) -> Receiver {
     var far = receiver;

@@ -307,7 +307,7 @@ fn a_body_shows_what_is_where_its_rays_leave_it() -> TestResult {
 #[test]
 fn a_body_with_dispersion_parts_the_channels() -> TestResult {
     let Some(gpu) = gpu("a_body_with_dispersion_parts_the_channels") else { return Ok(()) };
-    // Of an Abbe number of a half: no glass is so, but each channel is bent by texels more than the next. Red goes straight on.
+    // No glass has an Abbe number of a half, but it bends each channel by texels more than the next. Red goes straight on.
     let (ior, abbe, thickness, edge) = (1.8, 0.5, 1.0, 1.0);
     let volume = Volume { thickness: thickness as f32, ..Volume::default() };
     let glass = Material { ior: ior as f32, dispersion: (20.0 / abbe) as f32, ..pane(Vec3::ONE, Some(volume)) };

@@ -80,7 +80,7 @@ pub fn at_wavelength(wavelength_nm: f64, cosine: f64, ior: f64, thickness_nm: f6
     let base = (1.0 + base_f0.sqrt()) / (1.0 - base_f0.sqrt());
     let bent = |index: f64| (1.0 - (1.0 - cosine * cosine) / (index * index)).sqrt();
     let (inside, below) = (bent(ior), bent(base));
-    // What is left behind by a trip to the bottom and back.
+    // Phase of a trip to the bottom and back.
     let (sin, cos) = (4.0 * PI * ior * thickness_nm * inside / wavelength_nm).sin_cos();
     let border = |a: f64, b: f64| (a - b) / (a + b);
     let polarizations = [
@@ -95,7 +95,7 @@ pub fn at_wavelength(wavelength_nm: f64, cosine: f64, ior: f64, thickness_nm: f6
     0.5 * (share(polarizations[0]) + share(polarizations[1]))
 }
 
-/// The same as a color, an even spectrum being white.
+/// Reflectance of such a film as linear Rec.709, an even spectrum being white.
 pub fn reflectance(cosine: f64, ior: f64, thickness_nm: f64, base_f0: f64) -> DVec3 {
     rec709(|wavelength_nm| at_wavelength(wavelength_nm, cosine, ior, thickness_nm, base_f0)) / rec709(|_| 1.0)
 }

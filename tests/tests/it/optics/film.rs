@@ -36,8 +36,8 @@ fn model_error(f0s: &[f64], cosines: &[f64], thicker: f64) -> f64 {
     (sum / f64::from(count)).sqrt()
 }
 
-/// The model has Schlick's curve instead of Fresnel's, two trips of the light, and Gaussians for the eye. What it misses on
-/// dielectrics and metals, within 26°, within 60°, and beyond 72°, where Schlick's curve leaves the film's two sides far behind.
+/// The model has Schlick's curve instead of Fresnel's, two trips of the light, and Gaussians for the eye. Its error is bounded
+/// within 26°, within 60° and beyond 72°, where Schlick's curve is far from both sides of the film.
 #[test]
 fn the_model_is_near_airys_sum() {
     let (dielectrics, metals) = ([0.02, 0.04, 0.17], [0.5, 0.9]);
@@ -141,8 +141,8 @@ fn films_in_one_light_are_their_formula() -> TestResult {
     Ok(())
 }
 
-/// Even light: a smooth film reflects what it reflects toward the viewer, and a rough one the mean over its facets, which is taken
-/// for that of Schlick's curve through the same point.
+/// In even light a smooth film reflects its reflectance at n·v, and a rough one the mean over its facets. The shader takes the mean
+/// of Schlick's curve through the reflectance at n·v.
 #[test]
 fn films_in_even_light_reflect_the_mean_of_their_facets() -> TestResult {
     let Some(gpu) = gpu("films_in_even_light_reflect_the_mean_of_their_facets") else { return Ok(()) };

@@ -87,7 +87,7 @@ fn light_from_all_around_is_scattered_through() -> TestResult {
     // The control: from the front there is less light of some channels than from behind.
     let (front, back) = (sheet(0.0).seen(64, light), sheet(1.0).seen(64, light));
     assert!((front / FRONT.as_dvec3() - back / BACK.as_dvec3()).abs().max_element() > 0.3);
-    // What is transmitted is taken from what is scattered, to both sides.
+    // Transmission takes its share from the light scattered to both sides.
     let mut board = Board::default();
     board.hang(Material { transmission: glass, ..leaf(scattered(0.5, None)) }, leaning(), unit);
     let shown = board.render(&gpu, &Environment::uniform(DVec3::ONE)?, &Shading::default())?;
