@@ -56,6 +56,12 @@ impl<'a> Seen<'a> {
         self.lists.iter().map(list).max().unwrap_or(0)
     }
 
+    /// Number of the instances of `list` whose material transmits light.
+    pub fn transmissive(&self, list: &[u32]) -> usize {
+        let transmits = |i: &&u32| self.survey.surface(&self.scene.instances[**i as usize]).transmits();
+        list.iter().filter(transmits).count()
+    }
+
     /// Whether some of what is lit may turn a normal toward `light`, a unit vector.
     pub fn may_face(&self, light: DVec3) -> bool {
         self.instances.iter().map(|i| &self.scene.instances[*i]).any(|instance| {
