@@ -21,6 +21,7 @@ mod extension;
 mod images;
 mod light;
 mod limits;
+mod line_material;
 mod lobes;
 mod material;
 mod motion;
@@ -162,6 +163,7 @@ fn import_meshes(
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let at = format!("mesh {mesh_index} primitive {i}");
             let material = materials.import(primitive.material, &at, warnings)?;
+            let material = materials.for_primitive(material, primitive);
             let surface = materials.get(material);
             let key = GeometryKey::new(primitive, surface, node.index, node.skin.is_some());
             let mesh_id = match built.get(&key) {
@@ -187,7 +189,7 @@ fn import_meshes(
         }
     }
     if scene.instances.is_empty() {
-        warnings.push("the scene draws no triangles");
+        warnings.push("the scene draws nothing: it has no triangles, lines or points");
     }
     Ok(instance_nodes)
 }

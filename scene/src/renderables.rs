@@ -8,6 +8,7 @@ use super::boxes::BoxArrays;
 use super::instance::Instance;
 use super::levels::InstanceLevels;
 use super::material::{AlphaMode, Lobe, Lobes};
+use super::mesh::Topology;
 use super::scene::Scene;
 
 /// How a surface is drawn.
@@ -24,7 +25,7 @@ pub enum DrawKind {
 }
 
 impl DrawKind {
-    /// Whether it leaves depth, in a shadow map too.
+    /// Whether it leaves depth; triangles do so in shadow maps too.
     #[must_use]
     pub const fn leaves_depth(self) -> bool {
         matches!(self, Self::Opaque | Self::Mask)
@@ -48,6 +49,7 @@ pub struct Renderables {
     origins: Vec<DVec3>,
     stamps: Vec<u64>,
     kinds: Vec<DrawKind>,
+    casts: Vec<bool>,
     mirrored: Vec<bool>,
     flat: Vec<(u32, usize)>,
     solid_casters: Aabb,
@@ -58,7 +60,7 @@ pub struct Renderables {
 
 /// What instances that are drawn together share, in the order in which changing it is dear: shaders, culling, textures,
 /// geometry.
-type SurfaceKey = (Lobes, bool, bool, Option<usize>, usize);
+type SurfaceKey = (Topology, Lobes, bool, bool, Option<usize>, usize);
 
 impl Renderables {
     /// Those of `scene`.
@@ -68,8 +70,8 @@ impl Renderables {
         let keys: Vec<SurfaceKey> = instances.iter().map(|instance| surface_key(scene, instance)).collect();
         let kinds: Vec<DrawKind> = instances.iter().map(|instance| kind_of(scene, instance)).collect();
         // Depth of opaque surfaces asks for no material.
-        let depth_key = |((_, double_sided, mirrored, material, mesh), kind): (&SurfaceKey, &DrawKind)| {
-            (*double_sided, *mirrored, material.filter(|_| *kind != DrawKind::Opaque), *mesh)
+        let depth_key = |((topology, _, double_sided, mirrored, material, mesh), kind): (&SurfaceKey, &DrawKind)| {
+            (*topology, *double_sided, *mirrored, material.filter(|_| *kind != DrawKind::Opaque), *mesh)
         };
         let depth_keys: Vec<_> = keys.iter().zip(&kinds).map(depth_key).collect();
         let bounds: Vec<Aabb> = instances.iter().map(|instance| instance.bounds).collect();
@@ -77,7 +79,8 @@ impl Renderables {
             boxes: BoxArrays::new(&bounds),
             origins: instances.iter().map(|instance| instance.world_from_model.w_axis.truncate()).collect(),
             stamps: instances.iter().map(|instance| stamp(&instance.world_from_model)).collect(),
-            mirrored: keys.iter().map(|key| key.2).collect(),
+            casts: keys.iter().zip(&kinds).map(|(key, kind)| key.0 == Topology::Triangles && kind.leaves_depth()).collect(),
+            mirrored: keys.iter().map(|key| key.3).collect(),
             surfaces: Groups::new(&keys),
             depths: Groups::new(&depth_keys),
             levels: InstanceLevels::new(scene),
@@ -118,10 +121,7 @@ impl Renderables {
         self.whole = around(&self.blocks);
         self.flat.clear();
         self.solid_casters = Aabb::EMPTY;
-        for (number, (bounds, kind)) in (0..).zip(self.bounds.iter().zip(&self.kinds)) {
-            if !kind.leaves_depth() {
-                continue;
-            }
+        for (number, bounds) in (0..).zip(&self.bounds).filter(|(number, _)| self.casts[*number as usize]) {
             let half = bounds.half_extent();
             match (0..3).find(|axis| half[*axis] <= 1e-6 * half.max_element()) {
                 Some(axis) => self.flat.push((number, axis)),
@@ -184,19 +184,25 @@ impl Renderables {
         &self.kinds
     }
 
+    /// Whether each is drawn into shadow maps: opaque and masked triangles are; lines and points, which have no area, are not.
+    #[must_use]
+    pub fn casts(&self) -> &[bool] {
+        &self.casts
+    }
+
     /// A number for the placement of each: equal ones have equal numbers, and of different ones one pair in 2⁶⁴ has.
     #[must_use]
     pub fn stamps(&self) -> &[u64] {
         &self.stamps
     }
 
-    /// Those that leave depth and have no thickness, each with the axis along which it has none.
+    /// Those that cast and have no thickness, each with the axis along which it has none.
     #[must_use]
     pub fn flat(&self) -> &[(u32, usize)] {
         &self.flat
     }
 
-    /// The box around all others that leave depth.
+    /// The box around all others that cast.
     #[must_use]
     pub fn solid_casters(&self) -> Aabb {
         self.solid_casters
@@ -228,7 +234,8 @@ fn around(boxes: &[Aabb]) -> Aabb {
 fn surface_key(scene: &Scene, instance: &Instance) -> SurfaceKey {
     let material = &scene.materials[instance.material.index()];
     let (mesh, mirrored) = (instance.mesh.index(), instance.is_mirrored());
-    (material.lobes(), material.double_sided, mirrored, Some(instance.material.index()), mesh)
+    let topology = scene.meshes.get(mesh).map_or_else(Topology::default, |mesh| mesh.topology);
+    (topology, material.lobes(), material.double_sided, mirrored, Some(instance.material.index()), mesh)
 }
 
 fn kind_of(scene: &Scene, instance: &Instance) -> DrawKind {

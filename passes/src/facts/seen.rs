@@ -38,7 +38,7 @@ impl<'a> Seen<'a> {
         let mut all = Surfaces::default();
         for instance in self.instances.iter().map(|i| &self.scene.instances[*i]) {
             let (surface, shape) = (self.survey.surface(instance), self.survey.shape(instance));
-            all.colored |= shape.colored;
+            all.may_exceed_one |= shape.colored || surface.emits;
             if surface.unlit {
                 continue;
             }
@@ -138,8 +138,8 @@ pub(super) struct Surfaces {
     /// Instances with a texture of ambient occlusion.
     pub occlusion_maps: usize,
     pub lobes: Lobes,
-    /// Some vertices have colors.
-    pub colored: bool,
+    /// Some vertices have colors, or some surface emits light: the light of what is unlit may be above 1.
+    pub may_exceed_one: bool,
 }
 
 impl Default for Surfaces {
@@ -150,7 +150,7 @@ impl Default for Surfaces {
             least_roughness: f32::INFINITY,
             occlusion_maps: 0,
             lobes: Lobes::NONE,
-            colored: false,
+            may_exceed_one: false,
         }
     }
 }
