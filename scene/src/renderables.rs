@@ -79,7 +79,11 @@ impl Renderables {
             boxes: BoxArrays::new(&bounds),
             origins: instances.iter().map(|instance| instance.world_from_model.w_axis.truncate()).collect(),
             stamps: instances.iter().map(|instance| stamp(&instance.world_from_model)).collect(),
-            casts: keys.iter().zip(&kinds).map(|(key, kind)| key.0 == Topology::Triangles && kind.leaves_depth()).collect(),
+            casts: keys
+                .iter()
+                .zip(&kinds)
+                .map(|(key, kind)| key.0 == Topology::Triangles && kind.leaves_depth())
+                .collect(),
             mirrored: keys.iter().map(|key| key.3).collect(),
             surfaces: Groups::new(&keys),
             depths: Groups::new(&depth_keys),
