@@ -32,6 +32,7 @@ mod levels;
 mod light;
 mod light_document;
 mod lights;
+mod lines;
 mod lobes;
 mod loops;
 mod mirrors;
