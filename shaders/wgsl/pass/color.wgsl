@@ -26,8 +26,8 @@ import package::interface::epilogue::epilogue;
 import package::interface::fog::in_fog;
 import package::interface::frame::frame;
 import package::interface::material::{
-    material, TRAIT_EMITS, TRAIT_NO_AREA, TRAIT_UNLIT, material_has, base_color, metallic_roughness, emission,
-    specular_factors,
+    material, TRAIT_EMITS, TRAIT_NO_AREA, TRAIT_UNLIT, material_has, base_color,
+    metallic_roughness, emission, specular_factors,
 };
 @if(MATERIAL_TABLE)
 import package::interface::material::materials;
