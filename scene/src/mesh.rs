@@ -104,10 +104,16 @@ impl Mesh {
         self.topology == Topology::Triangles
     }
 
+    /// The number of primitives, whatever their topology is.
+    #[must_use]
+    pub fn primitive_count(&self) -> usize {
+        self.indices.len() / self.topology.corners()
+    }
+
     /// The number of triangles; 0 for lines and points.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
-        if self.has_area() { self.indices.len() / 3 } else { 0 }
+        if self.has_area() { self.primitive_count() } else { 0 }
     }
 
     /// The triangles as triples of vertex numbers; none of lines and points.
@@ -337,6 +343,7 @@ mod tests {
         for topology in [Topology::Lines, Topology::Points] {
             let mesh = Mesh { topology, normals: Vec::new(), indices: vec![0, 1, 2, 0, 1, 2], ..triangle() };
             assert_eq!((mesh.check(), mesh.triangle_count(), mesh.triangles().count()), (Ok(()), 0, 0));
+            assert_eq!(mesh.primitive_count(), 6 / topology.corners());
         }
     }
 

@@ -297,6 +297,22 @@ mod tests {
         assert_eq!((own.flat(), own.solid_casters().max.x), (&[(5, 1)][..], 10.0));
     }
 
+    /// Lines and points leave depth and cast nothing, and are drawn apart from triangles.
+    #[test]
+    fn lines_and_points_do_not_cast() {
+        let topologies = [Topology::Triangles, Topology::Lines, Topology::Points];
+        let mesh = |topology| crate::Mesh { topology, ..crate::Mesh::default() };
+        let mut scene = Scene { materials: vec![Material::default()], ..Scene::default() };
+        scene.meshes.extend(topologies.map(mesh));
+        let at = |mesh: usize| placed(mesh, 0, DMat4::from_translation(DVec3::X * (10.0 * mesh as f64)));
+        scene.instances.extend([2, 1, 0].map(at));
+        let own = Renderables::new(&scene);
+        assert_eq!((own.casts(), own.kinds()), (&[false, false, true][..], &[DrawKind::Opaque; 3][..]));
+        assert_eq!((own.solid_casters().max.x, own.whole().max.x), (1.0, 21.0));
+        // Groups are in the order of topologies, so that each is drawn in a row.
+        assert_eq!((own.surfaces().of.as_slice(), own.depths().of.as_slice()), (&[2, 1, 0][..], &[2, 1, 0][..]));
+    }
+
     /// Whether rows are taken whole, in part or not at all.
     #[test]
     fn the_box_around_some_is_that_of_each() {

@@ -1,14 +1,18 @@
 //! Frames of every kind draw lines and points: presets, effects over time and around, long lists, shadows.
 
 use super::{SIZE, TestResult, mesh, plain, put, radiance, scene, unlit};
-use crate::stage::gpu;
+use crate::stage::{Shot, gpu, lighting, view_of};
+use framegraph::{Options, Plan, Scratch, Target, compile};
 use framegraph_passes::facts::{EffectSet, FactMemory};
 use framegraph_passes::indirect::LEAST_BATCHES;
+use framegraph_passes::stages::{Handles, Slot};
 use framegraph_passes::view::Background;
-use framegraph_passes::{OcclusionSettings, Preset, ReflectionSettings, Settings, TaaSettings};
+use framegraph_passes::{OcclusionSettings, Preset, ReflectionSettings, Settings, TaaSettings, World, stages};
 use framegraph_scene::geometry::cuboid;
-use framegraph_scene::{AlphaMode, Light, Material, Mesh, Scene, Topology};
-use glam::{DVec2, DVec3, Vec3};
+use framegraph_scene::{AlphaMode, Environment, Light, Material, Mesh, Scene, Topology, progress};
+use framegraph_wgpu::{Frame, Imports, read_texture};
+use glam::{DMat4, DVec2, DVec3, Vec3};
+use tests::executors;
 use tests::measure::facts::{Case, Drawn, Easel, SIZE_PX};
 
 const BOTH: [Topology; 2] = [Topology::Lines, Topology::Points];
@@ -155,11 +159,54 @@ fn long_lists_of_all_topologies_are_drawn_indirectly() -> TestResult {
         };
         places.push((x as usize, y as usize));
         let own = scene.add_mesh(own);
-        scene.add_instance("it", own, material, glam::DMat4::IDENTITY);
+        scene.add_instance("it", own, material, DMat4::IDENTITY);
     }
     let light = radiance(&gpu, &scene, plain(1, true, false))?;
     for (number, (x, y)) in places.into_iter().enumerate() {
         assert!(light[y * SIZE + x].x > 0.99, "instance {number} at {x}, {y}");
+    }
+    Ok(())
+}
+
+/// Velocity of lines and points that move is their way, where they are.
+#[test]
+fn lines_and_points_that_move_have_velocity() -> TestResult {
+    let Some(gpu) = gpu("lines_and_points_that_move_have_velocity") else { return Ok(()) };
+    let mut scene = scene();
+    put(
+        &mut scene,
+        mesh(Topology::Lines, &[DVec2::new(4.0, 10.5), DVec2::new(30.0, 10.5)]),
+        unlit(Vec3::ONE),
+        DVec3::ZERO,
+    );
+    put(&mut scene, mesh(Topology::Points, &[DVec2::new(9.5, 20.5)]), unlit(Vec3::ONE), DVec3::ZERO);
+    let size_px = [SIZE as u32; 2];
+    let settings = Settings { taa: Some(TaaSettings::DEFAULT), moving: true, ..plain(1, true, false) };
+    let settings = settings.for_scene(&scene, size_px);
+    let shot = Shot { size_px, ev100: 0.0, settings, options: Options::for_frame(size_px[0], size_px[1]) };
+    let light = lighting(&gpu, &Environment::uniform(DVec3::splat(0.1))?, &settings.shading)?;
+    let before = view_of(&scene, &light.image, &Background::None, &shot);
+    for instance in &mut scene.instances {
+        instance.world_from_model = DMat4::from_translation(DVec3::new(6.0, 0.0, 0.0));
+        instance.bounds = instance.bounds.transformed(&instance.world_from_model);
+    }
+    let view = view_of(&scene, &light.image, &Background::None, &shot).after(&before);
+    let world = World::new(&gpu, &scene, light, [view], &mut progress::silent)?;
+    let mut frame = Frame::<World>::new();
+    let handles = stages(&settings).declare(&mut frame, Handles::default(), Target::New)?;
+    let velocity = handles.find(Slot::VELOCITY).ok_or("something moves")?;
+    frame.graph_mut().readback(velocity)?;
+    let mut plan = Plan::new();
+    compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
+    let mut executor = executors::lend(&gpu);
+    executor.execute(&plan, &frame, &world, &Imports::new())?;
+    let found = read_texture(&gpu, executor.texture(&plan, velocity).ok_or("there is no velocity")?)?.rgba();
+    for (x, y, moves) in [(20, 10, true), (15, 20, true), (9, 20, false), (20, 11, false), (6, 10, false)] {
+        let [right, down, _, samples] = found[y * SIZE + x];
+        // From here to where it was: six pixels to the left; half floats.
+        let way = if moves { -6.0 / SIZE as f32 } else { 0.0 };
+        assert!((right - way).abs() < 1e-4 && down.abs() < 1e-4, "pixel {x}, {y}: {right} {down}");
+        assert_eq!(samples > 0.0, moves, "pixel {x}, {y}");
     }
     Ok(())
 }
