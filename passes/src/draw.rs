@@ -22,7 +22,7 @@ use wgpu::{Buffer, Face, FrontFace, PrimitiveState, PrimitiveTopology};
 pub struct SurfaceVariant {
     /// The lobes of its material.
     pub lobes: Lobes,
-    /// What its material has ([`material_traits`](crate::upload::material_traits)), and whether its mesh has no area.
+    /// Bits of its material ([`material_traits`](crate::upload::material_traits)), and the one of meshes without area.
     pub traits: u32,
     /// Its mesh has colors.
     pub colored: bool,

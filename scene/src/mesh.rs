@@ -98,7 +98,7 @@ impl Mesh {
         self.positions.len()
     }
 
-    /// Whether the mesh is one of triangles, which have an area.
+    /// True for triangles; lines and points have no area.
     #[must_use]
     pub fn has_area(&self) -> bool {
         self.topology == Topology::Triangles

@@ -25,7 +25,7 @@ pub enum DrawKind {
 }
 
 impl DrawKind {
-    /// Whether it leaves depth; triangles do so in shadow maps too.
+    /// True for surfaces that leave depth; triangles do so in shadow maps too.
     #[must_use]
     pub const fn leaves_depth(self) -> bool {
         matches!(self, Self::Opaque | Self::Mask)
@@ -188,7 +188,7 @@ impl Renderables {
         &self.kinds
     }
 
-    /// Whether each is drawn into shadow maps: opaque and masked triangles are; lines and points, which have no area, are not.
+    /// By instance, true if it is drawn into shadow maps: opaque and masked triangles are, lines and points are not.
     #[must_use]
     pub fn casts(&self) -> &[bool] {
         &self.casts
@@ -200,13 +200,13 @@ impl Renderables {
         &self.stamps
     }
 
-    /// Those that cast and have no thickness, each with the axis along which it has none.
+    /// Shadow casters without thickness, each with the axis along which it has none.
     #[must_use]
     pub fn flat(&self) -> &[(u32, usize)] {
         &self.flat
     }
 
-    /// The box around all others that cast.
+    /// The box around all shadow casters that have a thickness.
     #[must_use]
     pub fn solid_casters(&self) -> Aabb {
         self.solid_casters

@@ -146,7 +146,7 @@ fn turn_per_m(mesh: &Mesh) -> f64 {
     most
 }
 
-/// Whether no vertex lies before any triangle's plane. Lines and points have no planes, and count as not convex.
+/// True if no vertex lies before any triangle's plane. Lines and points have no planes, and count as not convex.
 fn is_convex(mesh: &Mesh) -> bool {
     if !mesh.has_area() || mesh.vertex_count() * mesh.triangle_count() > MOST_TESTS || mesh.positions.is_empty() {
         return false;

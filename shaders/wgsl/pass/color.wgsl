@@ -200,7 +200,7 @@ fn anisotropy_of(
     );
 }
 
-/// What the material emits, pre-exposed.
+/// Emission of the material, pre-exposed.
 fn emitted(uv: vec4<f32>) -> vec3<f32> {
     let exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
     return emission(uv) * exposure;

@@ -85,8 +85,8 @@ fn distance(point: DVec2, [from, to]: [DVec2; 2]) -> f64 {
     point.distance(from + along * share)
 }
 
-/// Checks the light of a picture against segments of a pixel's width that do not meet: it is within a pixel of one, and each column
-/// of a flat segment, or row of a steep one, has that of a pixel.
+/// Checks the light of a picture against segments of a pixel's width that do not meet. All light is within a pixel of one; each
+/// column of a flat segment, or row of a steep one, has the light of a pixel.
 fn is_drawn_as(light: &[f32], segments: &[[DVec2; 2]], samples: u8) {
     for (at, light) in light.iter().enumerate().filter(|(_, light)| **light > 0.0) {
         let center = DVec2::new((at % SIZE) as f64 + 0.5, (at / SIZE) as f64 + 0.5);
@@ -109,8 +109,8 @@ fn is_drawn_as(light: &[f32], segments: &[[DVec2; 2]], samples: u8) {
                 if own { light[at.y as usize * SIZE + at.x as usize] } else { 0.0 }
             });
             let sum = column.sum::<f32>();
-            // A device draws a pixel a step, or a rectangle of a pixel's width, which is up to √2 as high at a slant: of one
-            // sample a pixel or two, of four samples three to seven.
+            // A device draws a pixel a step, or a rectangle of a pixel's width, which is up to √2 as high at a slant. With one
+            // sample that is a pixel or two, with four samples a pixel three to seven samples.
             let range = if samples == 1 { 0.99..=2.01 } else { 0.74..=1.76 };
             assert!(range.contains(&sum), "step {step} of {segment:?} along axis {axis}: {sum}");
         }
@@ -185,7 +185,7 @@ fn depth_and_alpha_are_those_of_triangles() -> TestResult {
     }
     for settings in frames(&gpu) {
         let light = radiance(&gpu, &scene, settings)?;
-        // Beside the wall, which is 20 pixels wide, and before it.
+        // The wall is 20 pixels wide.
         let [beside, before] = [10, 24].map(|x| [5, 10, 15, 20, 25, 30].map(|y: usize| light[y * SIZE + x]));
         let (red, green) = (Vec3::X, Vec3::Y * 0.5);
         let expected_beside = [red, red, red * 0.25, red, Vec3::ZERO, red * 0.25];

@@ -110,8 +110,8 @@ fn shadows_follow_casters_in_the_swept_view() {
     assert!(with(Some(DVec3::new(-4.0, 0.3, -4.0))), "beside, its shadow falls away");
 }
 
-/// Lines and points are no triangles that a depth prepass draws once more, and hide nothing behind their boxes; since they are not
-/// known to be convex, what looks around in the picture stays.
+/// A depth prepass draws no triangle more for lines and points, and saves no shading behind their boxes. They count as not convex,
+/// so ambient occlusion stays.
 #[test]
 fn lines_and_points_have_no_area() {
     let rows = |topology| {

@@ -29,7 +29,7 @@ fn case(scene: Scene, asked: Settings) -> Case {
     Case { name: "glass", scene, nits: DVec3::splat(2000.0), background: Background::Environment, asked }
 }
 
-/// What facts leave of the settings of a case.
+/// Decisions about the effects of a case.
 fn facts(case: &Case) -> Facts {
     let sh = [Vec4::ONE; 18];
     let around = Around { irradiance: &sh, bands: ShBands::Three, luminance_nits: 2000.0, sun: None };
@@ -47,7 +47,7 @@ fn facts(case: &Case) -> Facts {
     decide(&input, &mut FactMemory::default())
 }
 
-/// A transmissive surface in view keeps the picture of what is behind it, whatever its alpha mode is; and out of view none does.
+/// A transmissive surface in view keeps the picture of what is behind it, whatever its alpha mode is. Out of view it does not.
 #[test]
 fn the_picture_behind_is_kept_for_every_alpha_mode() {
     for alpha in ALPHAS {
@@ -75,8 +75,8 @@ fn the_picture_behind_is_kept_for_every_alpha_mode() {
     }
 }
 
-/// Straight on, a pane of alpha a shows a times what it transmits, and the rest of the floor as it is: with other glass beside it
-/// or none, in one layer of glass or two, with one sample or four.
+/// Seen straight on, a pane of alpha a mixes its transmitted light into the floor's by a. Other glass beside it, layers of glass
+/// and samples change nothing about that.
 #[test]
 fn alpha_covers_with_what_is_transmitted() -> TestResult {
     let Some(gpu) = gpu("alpha_covers_with_what_is_transmitted") else { return Ok(()) };
@@ -104,7 +104,7 @@ fn alpha_covers_with_what_is_transmitted() -> TestResult {
         // Half floats, four times.
         let off = ((found - expected) / expected).abs().max_element();
         assert!(off < 5e-3, "{samples} samples, {glass_layers} layers: {found} against {expected}");
-        // The control: of another coverage it is told apart.
+        // The control: another coverage is another color.
         let other = floor.lerp(floor * tint, 1.0 - alpha);
         assert!(((found - other) / other).abs().max_element() > 0.1);
     }
