@@ -27,6 +27,7 @@ mod images;
 mod instancing;
 mod light;
 mod limits;
+mod line_material;
 mod lobes;
 mod material;
 mod motion;
@@ -212,6 +213,7 @@ fn import_meshes(
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let at = format!("mesh {mesh_index} primitive {i}");
             let material = materials.import(variants.material(source, &at, primitive)?, &at, warnings)?;
+            let material = materials.for_primitive(material, primitive);
             let surface = materials.get(material);
             let key = GeometryKey::new(primitive, surface, node.index, node.skin.is_some());
             let mesh_id = match built.get(&key) {
@@ -240,7 +242,7 @@ fn import_meshes(
         }
     }
     if scene.instances.is_empty() {
-        warnings.push("the scene draws nothing: no visible node of it has a mesh with triangles");
+        warnings.push("the scene draws nothing: no visible node of it has triangles, lines or points");
     }
     Ok(placed)
 }

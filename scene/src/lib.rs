@@ -81,7 +81,7 @@ pub use material::{
     MaterialId, Sheen, Specular, Transmission, Volume,
 };
 pub use memory::Memory;
-pub use mesh::{Mesh, MeshError, MeshId, MeshLevel};
+pub use mesh::{Mesh, MeshError, MeshId, MeshLevel, Topology};
 pub use options::LoadOptions;
 pub use overlap::{SHADED_POINTS, shaded_at_points};
 pub use progress::{Progress, ProgressFn, Stage};

@@ -74,7 +74,7 @@ pub struct Material {
     pub alpha: AlphaMode,
     /// Draw back faces too, with their normals turned towards the viewer.
     pub double_sided: bool,
-    /// The base color is shown without shading (KHR_materials_unlit).
+    /// The base color is shown without shading (KHR_materials_unlit). Lines and points add the emission (glTF 2.0, section 3.9.7).
     pub unlit: bool,
     /// Texture of base color (RGB) and alpha (A); role `Color`.
     pub base_color_texture: Option<TextureSlot>,

@@ -9,12 +9,12 @@ use super::moves::{self, MovesKey};
 use super::packed::{self, PackedMesh, Values};
 use super::source::{Repair, Source, Warnings, beyond};
 use super::stream::{finite, stream};
-use super::topology::{Triangles, triangles};
+use super::topology::{MODES, list, topology};
 use crate::bounds::Aabb;
 use crate::error::{SceneError, one_line};
 use crate::geometry::{generate_tangents, make_flat, order_for_drawing, repair_normals, repair_tangents};
 use crate::material::{AlphaMode, Material};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Topology};
 
 /// What a mesh is made of: primitives with equal keys share one.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -61,7 +61,7 @@ impl GeometryKey {
     }
 }
 
-/// Builds the mesh; `None` when the primitive draws no triangles, which is warned of.
+/// Builds the mesh; `None` when the primitive draws nothing, which is warned of.
 pub(super) fn build(
     source: &Source<'_>,
     key: &GeometryKey,
@@ -76,12 +76,12 @@ pub(super) fn build(
     let positions = stream(source, at, "POSITION", position, None, Vec3::from_array)?;
     finite(source, at, "POSITION", &positions, |p| p.is_finite())?;
     let vertices = positions.len();
-    let Some(indices) = corners(source, key, at, vertices, warnings)? else {
+    let Some((topology, indices)) = corners(source, key, at, vertices, warnings)? else {
         return Ok(None);
     };
 
-    let mut mesh =
-        Mesh { name: one_line(name), bounds: Aabb::from_points(&positions), positions, indices, ..Mesh::default() };
+    let (name, bounds) = (one_line(name), Aabb::from_points(&positions));
+    let mut mesh = Mesh { name, bounds, positions, topology, indices, ..Mesh::default() };
     let count = Some(vertices);
     if let Some(key) = &key.moves {
         mesh.moves = Some(Box::new(moves::read(source, key, at, vertices, warnings)?));
@@ -110,6 +110,8 @@ pub(super) fn build(
                 warnings.count(Repair::Tangents, at, repaired);
             }
         }
+        // Lines and points without normals are not lit (section 3.9.7).
+        None if !mesh.has_area() => {}
         None => {
             let dropped = make_flat(&mut mesh);
             warnings.count(Repair::Triangles, at, dropped);
@@ -117,6 +119,7 @@ pub(super) fn build(
     }
     if let Some(uv_set) = key.tangent_uv
         && mesh.tangents.is_empty()
+        && !mesh.normals.is_empty()
     {
         generate_tangents(&mut mesh, uv_set);
     }
@@ -124,29 +127,22 @@ pub(super) fn build(
     if !key.blends && !source.keep_order {
         order_for_drawing(&mut mesh);
     }
-    Ok((mesh.triangle_count() > 0).then_some(mesh))
+    Ok((!mesh.indices.is_empty()).then_some(mesh))
 }
 
-/// The triangle list, every corner below `vertices`; `None` with a warning when there is none.
+/// The list of primitives, every corner below `vertices`; `None` with a warning when there is none.
 fn corners(
     source: &Source<'_>,
     key: &GeometryKey,
     at: &str,
     vertices: usize,
     warnings: &mut Warnings,
-) -> Result<Option<Vec<u32>>, SceneError> {
-    let mode = [
-        Mode::Points,
-        Mode::Lines,
-        Mode::LineLoop,
-        Mode::LineStrip,
-        Mode::Triangles,
-        Mode::TriangleStrip,
-        Mode::TriangleFan,
-    ]
-    .into_iter()
-    .find(|mode| Some(mode.as_gl_enum()) == key.mode)
-    .ok_or_else(|| source.malformed(at, "unknown primitive mode"))?;
+) -> Result<Option<(Topology, Vec<u32>)>, SceneError> {
+    let mode = MODES
+        .into_iter()
+        .find(|mode| Some(mode.as_gl_enum()) == key.mode)
+        .ok_or_else(|| source.malformed(at, "unknown primitive mode"))?;
+    let topology = topology(mode);
     let packed = key.packed.and_then(|view| source.meshes.get(&view));
     let (mode, corners) = match (packed, key.indices) {
         // A compressed mesh has triangles, even if the mode is a strip.
@@ -163,21 +159,19 @@ fn corners(
     }
     // A strip or fan has up to three corners a vertex.
     source.charge(corners.len() as u64 * 12)?;
-    match triangles(mode, &corners) {
-        Triangles::List(list) if list.is_empty() => {
-            warnings.push(format!("{at}: it has no triangle with three different corners"));
-            Ok(None)
-        }
-        Triangles::List(list) => Ok(Some(list)),
-        Triangles::Other(what) => {
-            warnings.push(format!("{at}: {what} are not drawn, only triangles"));
-            Ok(None)
-        }
-        Triangles::Incomplete => {
-            let reason = format!("{} indices do not make triangles", corners.len());
-            Err(source.malformed(at, reason))
-        }
+    let Some(list) = list(mode, &corners) else {
+        let reason = format!("{} indices do not make {}", corners.len(), topology.name());
+        return Err(source.malformed(at, reason));
+    };
+    if list.is_empty() {
+        warnings.push(match topology {
+            Topology::Triangles => format!("{at}: it has no triangle with three different corners"),
+            Topology::Lines => format!("{at}: it has no line between two different vertices"),
+            Topology::Points => format!("{at}: it has no points"),
+        });
+        return Ok(None);
     }
+    Ok(Some((topology, list)))
 }
 
 /// The corners of a compressed mesh, as many as the accessor of indices states, unless it counts those of a strip.

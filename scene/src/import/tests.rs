@@ -7,6 +7,7 @@ mod fixture;
 mod fuzz;
 mod geometry;
 mod hostile;
+mod lines;
 mod lobes;
 mod motion;
 mod real_files;

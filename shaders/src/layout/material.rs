@@ -16,6 +16,8 @@ pub const TRAIT_UNLIT: u32 = MATERIAL_SLOTS + 2;
 pub const TRAIT_PLAIN_UV: u32 = MATERIAL_SLOTS + 3;
 /// Number of the bit of one whose occlusion is in red of its metallic-roughness texture, looked up alike.
 pub const TRAIT_PACKED_OCCLUSION: u32 = MATERIAL_SLOTS + 4;
+/// Number of the bit of lines and points, which have no plane to take a normal from. It is of meshes, not of materials.
+pub const TRAIT_NO_AREA: u32 = MATERIAL_SLOTS + 5;
 
 /// How texture coordinates of the mesh lead to a texture (KHR_texture_transform); that of no texture is not read.
 #[repr(C)]

@@ -119,6 +119,8 @@ const TRAIT_UNLIT: u32 = SLOT_COUNT + 2u;
 const TRAIT_PLAIN_UV: u32 = SLOT_COUNT + 3u;
 /// Occlusion is in red of the metallic-roughness texture, which is read once for both.
 const TRAIT_PACKED_OCCLUSION: u32 = SLOT_COUNT + 4u;
+/// The mesh is of lines or points.
+const TRAIT_NO_AREA: u32 = SLOT_COUNT + 5u;
 
 /// Whether the material has the texture of a slot, or a trait.
 fn material_has(what: u32) -> bool {

@@ -26,8 +26,8 @@ import package::interface::epilogue::epilogue;
 import package::interface::fog::in_fog;
 import package::interface::frame::frame;
 import package::interface::material::{
-    material, TRAIT_EMITS, TRAIT_UNLIT, material_has, base_color, metallic_roughness, emission,
-    specular_factors,
+    material, TRAIT_EMITS, TRAIT_NO_AREA, TRAIT_UNLIT, material_has, base_color,
+    metallic_roughness, emission, specular_factors,
 };
 @if(MATERIAL_TABLE)
 import package::interface::material::materials;
@@ -191,6 +191,12 @@ fn anisotropy_of(
     );
 }
 
+/// Emission of the material, pre-exposed.
+fn emitted(uv: vec4<f32>) -> vec3<f32> {
+    let exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
+    return emission(uv) * exposure;
+}
+
 /// The lit color of a fragment, pre-exposed.
 fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) -> vec3<f32> {
     let uv = texture_uv(vertex);
@@ -303,8 +309,7 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     radiance = add_punctual(radiance, surface, receiver);
     radiance *= cascade_tint(vertex.world);
     if material_has(TRAIT_EMITS) {
-        let exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
-        radiance += emission(uv) * (exposure * layer_transmittance(surface));
+        radiance += emitted(uv) * layer_transmittance(surface);
     }
     return radiance;
 }
@@ -322,6 +327,9 @@ fn fs_main(
     var color = base.rgb;
     if !material_has(TRAIT_UNLIT) {
         color = shade(vertex, geometric, side, base.rgb);
+    } else if material_has(TRAIT_NO_AREA) && material_has(TRAIT_EMITS) {
+        // Lines and points without normals (glTF 2.0, section 3.9.7).
+        color += emitted(texture_uv(vertex));
     }
     if ALPHA_MODE == 1u && base.a < material.alpha_cutoff {
         discard;

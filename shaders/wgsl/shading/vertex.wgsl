@@ -11,8 +11,8 @@ import package::interface::object::mesh_scale_m;
 @if(MATERIAL_TABLE)
 import package::interface::object::material_number;
 import package::interface::material::{
-    material, SLOT_NORMAL, TRAIT_DOUBLE_SIDED, material_has, map_uv, normal_texture,
-    normal_sampler,
+    material, SLOT_NORMAL, TRAIT_DOUBLE_SIDED, TRAIT_NO_AREA, material_has, map_uv,
+    normal_texture, normal_sampler,
 };
 import package::lib::normal_map::{unpack_normal, vertex_normal, apply_normal_map};
 import package::lib::numerics::normalize_or;
@@ -75,8 +75,12 @@ fn vertex_color(vertex: SurfaceVertex) -> vec4<f32> {
 }
 
 /// The triangle's own normal, toward the viewer: window y runs downward, hence the order of the
-/// factors. Derivatives need every lane of the quad.
+/// factors. Derivatives need every lane of the quad. Lines and points have no plane: theirs is the
+/// normal of the mesh.
 fn geometric_normal(vertex: SurfaceVertex) -> vec3<f32> {
+    if material_has(TRAIT_NO_AREA) {
+        return normalize_or(vertex.normal, vec3<f32>(0.0, 0.0, 1.0));
+    }
     return normalize_or(
         cross(dpdy(vertex.world), dpdx(vertex.world)),
         vec3<f32>(0.0, 0.0, 1.0),

@@ -33,6 +33,7 @@ mod levels;
 mod light;
 mod light_document;
 mod lights;
+mod lines;
 mod lobes;
 mod loops;
 mod mirrors;

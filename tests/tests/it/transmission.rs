@@ -1,5 +1,6 @@
 //! Surfaces that let light through: what the plan makes of their passes, and what is seen through them.
 
+mod blended;
 mod layers;
 
 use crate::stage::{Shot, declared, gpu, lighting, plan, view_of};

@@ -10,7 +10,8 @@ use framegraph_passes::{BloomSettings, DofSettings, FogSettings, OcclusionSettin
 use framegraph_scene::environment::ShBands;
 use framegraph_scene::geometry::{cuboid, sphere};
 use framegraph_scene::{
-    AlphaMode, DiffuseTransmission, Light, LightKind, Material, TextureId, TextureSlot, Transmission, UvTransform,
+    AlphaMode, DiffuseTransmission, Light, LightKind, Material, TextureId, TextureSlot, Topology, Transmission,
+    UvTransform,
 };
 use framegraph_shaders::layout::{EdgeFade, ToneMap};
 use glam::{DMat4, DVec3, Vec3, Vec4};
@@ -108,6 +109,28 @@ fn shadows_follow_casters_in_the_swept_view() {
     // The sun stands toward (0.5, 1, 0.3): what is there and high casts into the picture from outside of it.
     assert!(!with(Some(DVec3::new(2.6, 5.0, 1.6))), "above and behind the camera");
     assert!(with(Some(DVec3::new(-4.0, 0.3, -4.0))), "beside, its shadow falls away");
+}
+
+/// A depth prepass draws no triangle more for lines and points, and saves no shading behind their boxes. They count as not convex,
+/// so ambient occlusion stays.
+#[test]
+fn lines_and_points_have_no_area() {
+    let rows = |topology| {
+        let mut stage = Stage::of("nothing");
+        for z in [0.0, 0.7, 1.4] {
+            stage.put(framegraph_scene::Mesh { topology, ..block() }, matt(), DVec3::new(0.0, 0.3, z));
+        }
+        let facts = stage.facts();
+        [Effect::Prepass, Effect::Occlusion].map(|effect| facts.of(effect).expect("it is asked for").clone())
+    };
+    let [prepass, _] = rows(Topology::Triangles);
+    assert!(prepass.reason.starts_with("36 triangles"), "{prepass:?}");
+    for topology in [Topology::Lines, Topology::Points] {
+        let [prepass, occlusion] = rows(topology);
+        assert!(prepass.decision == Decision::Dropped && prepass.reason.starts_with("0 triangles"), "{prepass:?}");
+        assert!(prepass.reason.ends_with("saves 0 thousand"), "{prepass:?}");
+        assert_eq!(occlusion.decision, Decision::Kept, "{occlusion:?}");
+    }
 }
 
 #[test]
