@@ -9,7 +9,7 @@ use super::moves::{self, MovesKey};
 use super::packed::{self, PackedMesh, Values};
 use super::source::{Repair, Source, Warnings, beyond};
 use super::stream::{finite, stream};
-use super::topology::{MODES, list, topology};
+use super::topology::{MODES, left_over, list, topology};
 use crate::bounds::Aabb;
 use crate::error::{SceneError, one_line};
 use crate::geometry::{generate_tangents, make_flat, order_for_drawing, repair_normals, repair_tangents};
@@ -159,10 +159,8 @@ fn corners(
     }
     // A strip or fan has up to three corners a vertex.
     source.charge(corners.len() as u64 * 12)?;
-    let Some(list) = list(mode, &corners) else {
-        let reason = format!("{} indices do not make {}", corners.len(), topology.name());
-        return Err(source.malformed(at, reason));
-    };
+    warnings.count(Repair::Corners, at, left_over(mode, corners.len()));
+    let list = list(mode, &corners);
     if list.is_empty() {
         warnings.push(match topology {
             Topology::Triangles => format!("{at}: it has no triangle with three different corners"),

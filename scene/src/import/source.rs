@@ -243,6 +243,8 @@ pub(super) enum Repair {
     Weights,
     /// Triangles without area in a mesh without normals.
     Triangles,
+    /// Corners at the end of a list that make no whole triangle or line.
+    Corners,
     /// Absent buffers that are read.
     Absent,
 }
@@ -257,6 +259,7 @@ impl Repair {
             Self::Colors => format!("{count} vertex colors are not finite; 0 is used for their channels"),
             Self::Weights => format!("the skin weights of {count} vertices do not add up to 1; they were normalized"),
             Self::Triangles => format!("{count} triangles without area were dropped"),
+            Self::Corners => format!("{count} indices at the end make no whole triangle or line; they are left out"),
             Self::Absent => "the buffer has neither a URI nor a binary chunk; zeros are read from it".into(),
         }
     }

@@ -24,19 +24,22 @@ pub(super) const fn topology(mode: Mode) -> Topology {
     }
 }
 
-/// Turns `corners` of a mode into a list of its [`topology`]; `None` if the number of corners of a list is no multiple of a
-/// primitive's. Strips and fans repeat corners to jump; triangles and lines that use a vertex twice cover nothing and are left
-/// out.
-pub(super) fn list(mode: Mode, corners: &[u32]) -> Option<Vec<u32>> {
-    let whole = match mode {
-        Mode::Triangles | Mode::Lines => corners.len().is_multiple_of(topology(mode).corners()),
-        _ => true,
-    };
-    whole.then(|| match topology(mode) {
+/// Turns `corners` of a mode into a list of its [`topology`]. Strips and fans repeat corners to jump; triangles and lines that
+/// use a vertex twice cover nothing and are left out, and so are the [`left_over`] corners.
+pub(super) fn list(mode: Mode, corners: &[u32]) -> Vec<u32> {
+    match topology(mode) {
         Topology::Points => corners.to_vec(),
         Topology::Lines => lines(mode, corners),
         Topology::Triangles => triangles(mode, corners),
-    })
+    }
+}
+
+/// Returns the number of corners at the end of a list that make no whole triangle or line.
+pub(super) fn left_over(mode: Mode, corners: usize) -> usize {
+    match mode {
+        Mode::Triangles | Mode::Lines => corners % topology(mode).corners(),
+        _ => 0,
+    }
 }
 
 fn lines(mode: Mode, corners: &[u32]) -> Vec<u32> {
@@ -79,7 +82,7 @@ mod tests {
 
     #[test]
     fn strips_and_fans_keep_their_winding() {
-        let of = |mode, corners: &[u32]| list(mode, corners).expect("whole primitives");
+        let of = |mode, corners: &[u32]| list(mode, corners);
         assert_eq!(of(Mode::TriangleStrip, &[0, 1, 2, 3, 4]), [0, 1, 2, 1, 3, 2, 2, 3, 4]);
         assert_eq!(of(Mode::TriangleFan, &[9, 1, 2, 3]), [1, 2, 9, 2, 3, 9]);
         // A strip that jumps by repeating corners.
@@ -94,7 +97,7 @@ mod tests {
     /// Section 3.7.2.1: a line of a strip joins neighbors, and a loop closes from its last vertex to its first.
     #[test]
     fn lines_join_neighbors_and_loops_close() {
-        let of = |mode, corners: &[u32]| list(mode, corners).expect("whole primitives");
+        let of = |mode, corners: &[u32]| list(mode, corners);
         assert_eq!(of(Mode::Points, &[3, 3, 1]), [3, 3, 1]);
         assert_eq!(of(Mode::Lines, &[0, 1, 7, 7, 2, 5]), [0, 1, 2, 5]);
         assert_eq!(of(Mode::LineStrip, &[4, 5, 5, 6]), [4, 5, 5, 6]);
@@ -108,7 +111,9 @@ mod tests {
 
     #[test]
     fn lists_of_other_lengths_are_no_primitives() {
-        assert_eq!(list(Mode::Triangles, &[0, 1, 2, 3]), None);
-        assert_eq!(list(Mode::Lines, &[0, 1, 2]), None);
+        for (mode, left) in [(Mode::Triangles, 1), (Mode::Lines, 0), (Mode::TriangleStrip, 0)] {
+            assert_eq!(left_over(mode, 4), left);
+        }
+        assert_eq!((list(Mode::Triangles, &[0, 1, 2, 3]), list(Mode::Lines, &[0, 1, 2])), (vec![0, 1, 2], vec![0, 1]));
     }
 }
