@@ -1,5 +1,6 @@
-//! Tables of colors from `.cube` files, as grading programs write them (Adobe, "Cube LUT Specification" 1.0, 2013), with the
-//! extensions of DaVinci Resolve: a curve before a table in three dimensions, input ranges, and video range.
+//! Tables of colors from `.cube` files, as grading programs write them (Adobe, "Cube LUT Specification" 1.0, 2013).
+//!
+//! The extensions of DaVinci Resolve are read too: a curve before a table in three dimensions, input ranges, video range.
 
 use crate::error::SceneError;
 use crate::read::read_file;

@@ -21,7 +21,7 @@ pub struct Limits {
     pub memory_bytes: u64,
 }
 
-/// How a process ended.
+/// End of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// By itself, or by a signal that this program did not send.
@@ -37,7 +37,7 @@ pub enum End {
 /// A process that has ended.
 #[derive(Debug)]
 pub struct Ended {
-    /// How it ended.
+    /// Its end.
     pub end: End,
     /// Wall-clock time that it took.
     pub took: Duration,

@@ -16,7 +16,7 @@ pub const VERSION: u32 = 1;
 pub struct Report {
     /// [`VERSION`].
     pub version: u32,
-    /// What the files were rendered with.
+    /// Everything but the files that the verdicts depend on.
     pub with: With,
     /// A record for each file, sorted by name.
     pub files: Vec<Record>,

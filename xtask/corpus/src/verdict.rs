@@ -72,8 +72,9 @@ pub fn judge(ended: &Ended, has_picture: bool) -> Option<Judged> {
         End::Status(status) => match (status.code(), error_line(&ended.err)) {
             (Some(0), _) if !has_picture => (Verdict::Failed, "no picture was written".to_owned()),
             (Some(0), _) => match non_finite(&ended.out) {
+                Some(0) => (Verdict::Ok, String::new()),
                 Some(count) => (Verdict::NonFinite, format!("{count} texels are not finite")),
-                None => (Verdict::Ok, String::new()),
+                None => (Verdict::Failed, "the radiance was not inspected".to_owned()),
             },
             (Some(1), Some(line)) => (Verdict::Failed, line.to_owned()),
             (Some(2), Some(line)) => (Verdict::Refused, line.to_owned()),
@@ -89,10 +90,13 @@ fn error_line(err: &str) -> Option<&str> {
     err.lines().rev().find_map(|line| line.strip_prefix("error: "))
 }
 
-/// Returns the number of texels that `render --inspect` reports as not finite.
+/// Returns the number of texels that `render --inspect hdr` reports as not finite; none if it reports nothing.
 fn non_finite(out: &str) -> Option<u64> {
-    let counts = out.lines().filter_map(|line| line.strip_suffix(" texels not finite"));
-    counts.filter_map(|line| line.rsplit(' ').next()?.parse().ok()).next_back()
+    let line = out.lines().find(|line| line.contains(": hdr@"))?;
+    match line.strip_suffix(" texels not finite") {
+        Some(line) => line.rsplit(' ').next()?.parse().ok(),
+        None => Some(0),
+    }
 }
 
 /// Describes a crash: its status, and the message of a panic.

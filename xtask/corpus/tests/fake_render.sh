@@ -4,10 +4,15 @@
 scene=$1
 until [ "$1" = --out ]; do shift; done
 echo "rendered" >> "$scene.count"
+picture() {
+    cp "$(dirname "$scene")/picture" "$1"
+    echo "wrote h.png: hdr@color, 64x64 Rgba16Float, 0 to 1$2"
+}
 case $(head -c 6 "$scene") in
-    good*) cp "$(dirname "$scene")/picture" "$2" ;;
-    warned) cp "$(dirname "$scene")/picture" "$2"; echo "warning: a.gltf: lines are not drawn" >&2 ;;
-    nan*) cp "$(dirname "$scene")/picture" "$2"; echo "wrote h.png: hdr@color, 64x64 Rgba16Float, 0 to 1, 3 texels not finite" ;;
+    good*) picture "$2" ;;
+    warned) picture "$2"; echo "warning: a.gltf: lines are not drawn" >&2 ;;
+    nan*) picture "$2" ", 3 texels not finite" ;;
+    unseen) picture "$2" >/dev/null ;;
     absent) ;;
     refuse) echo "reading files: 1" >&2; echo "error: a.gltf: JSON: it is cut off" >&2; exit 2 ;;
     device) echo "error: the device is lost" >&2; exit 1 ;;
