@@ -67,7 +67,7 @@ use super::progress::{Progress, ProgressFn, Stage, report};
 use super::read::{file_bytes, read_file};
 use super::scene::Scene;
 
-pub use extension::{EXTENSIONS, Extension, Support};
+pub use extension::{EXTENSIONS, Extension, Support, extensions_table};
 pub use limits::{MAX_COORDINATE_M, MAX_IMAGE_SIDE_TEXELS, MAX_INSTANCES};
 
 /// [`load_with`] the default options.

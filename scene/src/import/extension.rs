@@ -100,6 +100,20 @@ pub const EXTENSIONS: &[Extension] = &[
     none("KHR_xmp_json_ld", "metadata is not read"),
 ];
 
+/// Returns [`EXTENSIONS`] as a table in Markdown.
+pub fn extensions_table() -> String {
+    let row = |extension: &Extension| {
+        let support = match extension.support {
+            Support::Full => "yes".to_owned(),
+            Support::Feature(feature) => format!("with the feature `{feature}`"),
+            Support::None => "no".to_owned(),
+        };
+        format!("| `{}` | {support} | {} |\n", extension.name, extension.note)
+    };
+    let rows: String = EXTENSIONS.iter().map(row).collect();
+    format!("| extension | read | note |\n| --- | --- | --- |\n{rows}")
+}
+
 /// Returns whether this build reads the extension.
 pub(super) fn is_supported(name: &str) -> bool {
     let known = EXTENSIONS.iter().find(|extension| extension.name == name);
@@ -169,5 +183,18 @@ mod tests {
     #[test]
     fn extensions_are_sorted_and_unique() {
         assert!(EXTENSIONS.windows(2).all(|pair| pair[0].name < pair[1].name));
+    }
+
+    #[test]
+    fn the_document_has_the_table_of_extensions() {
+        let document = include_str!("../../../docs/files.md");
+        let after = document.split_once("<!-- table: extensions -->\n").map(|(_, after)| after);
+        let table = after.and_then(|after| after.split_once("<!-- end -->")).map(|(table, _)| table);
+        let expected = extensions_table();
+        assert!(
+            table == Some(&expected),
+            "docs/files.md: the table is out of date; replace it by the output of `cargo run -p framegraph-scene --example \
+             extensions`:\n{expected}"
+        );
     }
 }
