@@ -1,4 +1,4 @@
-//! What is wrong is named with its place; what belongs to other programs is not read.
+//! Errors name the place in the file. Uncompressed copies for other programs are not read.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -193,7 +193,7 @@ fn modes_other_than_triangles() {
     assert!(scene.warnings.iter().any(|line| line.contains("lines are not drawn")), "{:?}", scene.warnings);
 }
 
-/// What is decoded is charged before it is allocated, and given back when loading fails.
+/// Decoded bytes are charged before they are allocated. A load that fails gives them back.
 #[test]
 fn decompression_keeps_to_the_budget() {
     for (name, place) in [("draco_coarse", "KHR_draco_mesh_compression"), ("meshopt_v0", "EXT_meshopt_compression")] {
