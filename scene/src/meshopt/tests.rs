@@ -157,6 +157,8 @@ fn streams_that_break_a_rule_name_it() {
     assert_eq!(triangles(&[0xf0], &[], [0; 16]), Ok(vec![0, 0, 1, 0, 2, 0]));
     // The second triangle shares the edge that was pushed last, from 0 to 2, and takes the next vertex.
     assert_eq!(triangles(&[0xf0, 0x00], &[], [0; 16]).map(|bytes| bytes[6..].to_vec()), Ok(vec![0, 0, 2, 0, 3, 0]));
+    // The byte 0 begins with vertex 0 again.
+    assert_eq!(triangles(&[0xf0, 0xfe], &[0], [0; 16]).map(|bytes| bytes[6..].to_vec()), Ok(vec![0, 0, 1, 0, 2, 0]));
     assert_eq!(triangles(&[0x00], &[], [0; 16]), Err(MeshoptError::BeforeFirst { triangle: 0 }));
     assert_eq!(triangles(&[0xf0, 0x05], &[], [0; 16]), Err(MeshoptError::BeforeFirst { triangle: 1 }));
     assert_eq!(triangles(&[0xfe], &[0x21], [0; 16]), Err(MeshoptError::BeforeFirst { triangle: 0 }));
