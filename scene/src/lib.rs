@@ -12,6 +12,7 @@
 //! Features, all on by default:
 //!
 //! - `gltf`: import of scenes.
+//! - `draco` and `meshopt`: compressed geometry in scenes.
 //! - `png`, `jpeg` and `webp`: textures, and pictures in general.
 //! - `basisu`: textures in KTX2 files, with texels of Basis Universal (ETC1S, UASTC) or of eight bits a channel.
 //! - `exr`: environments from OpenEXR, and writing such files.

@@ -68,7 +68,7 @@ enum Channel {
     Bytes,
     /// Zigzag differences of 16-bit numbers.
     Halves,
-    /// 32-bit numbers to combine by exclusive or, after a rotation to the right by so many bits.
+    /// 32-bit numbers to combine by exclusive or. Each is rotated to the right by this number of bits before.
     Xor(u32),
 }
 

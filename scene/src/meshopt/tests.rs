@@ -97,7 +97,8 @@ fn a_stream_cut_anywhere_is_an_error() {
 fn flipped_bits_never_panic() {
     let (mut sound, mut broken) = (0, 0);
     for Stream { layout, bytes, .. } in &streams() {
-        for place in 0..bytes.len() {
+        // Every byte of short streams, and of long ones as many.
+        for place in (0..bytes.len()).step_by(bytes.len() / 200 + 1) {
             let mut damaged = bytes.clone();
             damaged[place] ^= 1 << (place % 8);
             match decode(layout, &damaged) {
@@ -110,7 +111,7 @@ fn flipped_bits_never_panic() {
         }
     }
     // Values change without a trace, lengths do not.
-    assert!(sound > 1000 && broken > 1000, "{sound} sound, {broken} broken");
+    assert!(sound > 300 && broken > 300, "{sound} sound, {broken} broken");
 }
 
 #[test]
@@ -157,6 +158,8 @@ fn streams_that_break_a_rule_name_it() {
     assert_eq!(triangles(&[0xf0], &[], [0; 16]), Ok(vec![0, 0, 1, 0, 2, 0]));
     // The second triangle shares the edge that was pushed last, from 0 to 2, and takes the next vertex.
     assert_eq!(triangles(&[0xf0, 0x00], &[], [0; 16]).map(|bytes| bytes[6..].to_vec()), Ok(vec![0, 0, 2, 0, 3, 0]));
+    // The byte 0 begins with vertex 0 again.
+    assert_eq!(triangles(&[0xf0, 0xfe], &[0], [0; 16]).map(|bytes| bytes[6..].to_vec()), Ok(vec![0, 0, 1, 0, 2, 0]));
     assert_eq!(triangles(&[0x00], &[], [0; 16]), Err(MeshoptError::BeforeFirst { triangle: 0 }));
     assert_eq!(triangles(&[0xf0, 0x05], &[], [0; 16]), Err(MeshoptError::BeforeFirst { triangle: 1 }));
     assert_eq!(triangles(&[0xfe], &[0x21], [0; 16]), Err(MeshoptError::BeforeFirst { triangle: 0 }));

@@ -86,8 +86,8 @@ fn generated_tangents_agree_with_the_files() {
     assert!(f64::from(same_hand) > 0.99 * f64::from(all), "{same_hand} of {all}");
 }
 
-/// Models that others compressed: the bounds that their accessors state for positions before quantization are met to half a
-/// step of 14 bits, the default of the program that wrote them.
+/// Models that others compressed. Their accessors state the bounds of positions before quantization. Bounds of what is decoded
+/// are within half a step of 14 bits, the default of the program that wrote the files.
 #[cfg(feature = "draco")]
 #[test]
 fn models_under_draco_come_in_whole() {

@@ -45,7 +45,7 @@ fn flipped_bits_never_panic() {
     for name in FILES {
         let glb = bytes(name);
         let start = glb.len() - fixture(name).bin.len();
-        let step = (glb.len() - start) / 40 + 1;
+        let step = (glb.len() - start) / 16 + 1;
         for place in (start..glb.len()).step_by(step) {
             let mut damaged = glb.clone();
             damaged[place] ^= 1 << (place % 8);
@@ -55,7 +55,7 @@ fn flipped_bits_never_panic() {
             }
         }
     }
-    assert!(sound > 50 && broken > 50, "{sound} sound, {broken} broken");
+    assert!(sound > 20 && broken > 20, "{sound} sound, {broken} broken");
 }
 
 /// The compressed data cut off at many lengths.

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{bytes, ordered};
 
-/// Positions in world axes after so many seconds.
+/// Positions in world axes at a time of the animation.
 fn posed(name: &str, time_s: f64) -> Vec<DVec3> {
     let mut scene = ordered(&bytes(name), name);
     scene.pose(Some(0), time_s).expect("it has an animation");
@@ -13,8 +13,8 @@ fn posed(name: &str, time_s: f64) -> Vec<DVec3> {
     positions.iter().map(|p| instance.world_from_model.transform_point3(p.as_dvec3())).collect()
 }
 
-/// The files differ by the quantization of positions and rotations: of Draco 16 bits over 2 m; of meshopt a mantissa of 15
-/// bits below 4 m, the same for what the target adds, and rotations of 14 bits, which act over 1 m of the strip.
+/// The files differ by quantization. Draco has 16 bits for positions over 2 m. The filters of meshopt have mantissas of 15 bits
+/// for positions below 4 m and for the target. Rotations have 14 bits and act over 1 m of the strip.
 #[test]
 fn skins_and_morph_targets_of_compressed_meshes_move_alike() {
     for (name, allowed) in [("strip_draco", 2.0 / 65535.0), ("strip_meshopt", 1e-3)] {

@@ -58,7 +58,7 @@ struct Errors {
     color: f64,
 }
 
-/// Half a step of so many bits over a range.
+/// Half a step of a quantization with this number of bits over a range.
 fn half_step(range: f64, bits: i32) -> f64 {
     range / (2f64.powi(bits) - 1.0) / 2.0
 }
@@ -157,7 +157,7 @@ fn exponential(exponent: i32, bits: i32) -> f64 {
     2f64.powi(exponent - (bits - 1)) / 2.0
 }
 
-/// Half a step of a signed number of so many bits that stands for −1 to 1.
+/// Half a step of a signed number with this number of bits that stands for −1 to 1.
 fn half_signed(bits: i32) -> f64 {
     0.5 / (2f64.powi(bits - 1) - 1.0)
 }
