@@ -25,8 +25,8 @@ pub struct Image {
     pub height: u32,
     /// Format of the texels of every level.
     pub format: ImageFormat,
-    /// Bytes of the first mip level, or of every level down to 1 × 1, largest first. [`Image::missing_levels`] says whether
-    /// the others are to be made. Empty once the image was uploaded and freed.
+    /// Bytes of the first mip level, or of every level down to 1 × 1, largest first. [`Image::missing_levels`] tells the two
+    /// apart. Empty after the image was uploaded and freed.
     pub levels: Vec<Vec<u8>>,
 }
 
@@ -50,7 +50,8 @@ impl Image {
         self.levels.iter().map(|level| level.len() as u64).sum()
     }
 
-    /// Returns whether mip levels below the first are to be made from it. Images of blocks always hold every level.
+    /// Returns whether the image holds the first mip level alone and has more than one texel, so that the others are to be
+    /// made. Images of blocks always hold every level.
     #[must_use]
     pub fn missing_levels(&self) -> bool {
         self.levels.len() == 1 && self.width.max(self.height) > 1
@@ -68,7 +69,7 @@ pub(crate) fn level_size(size_texels: [u32; 2], level: u32) -> [u32; 2] {
     size_texels.map(|side| side.checked_shr(level).unwrap_or(0).max(1))
 }
 
-/// How the texels of an image are stored.
+/// Storage format of the texels of an image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ImageFormat {
     /// Four bytes a texel: red, green, blue, alpha.

@@ -8,6 +8,7 @@ use framegraph_shaders::layout::MaterialUniforms;
 use framegraph_shaders::layout::{TRAIT_DOUBLE_SIDED, TRAIT_EMITS, TRAIT_PLAIN_UV, VertexAttributes, VertexPosition};
 use glam::{DVec3, Vec3};
 
+use super::textures::check_format;
 use super::*;
 use crate::adapter::working;
 use crate::indirect::LEAST_BATCHES;
@@ -203,19 +204,24 @@ fn texels_go_as_they_are_uploaded_and_the_budget_knows() {
     assert!(error.contains(": mip levels and upload, 64×64"), "{error}");
 }
 
-/// The noop device has no feature for blocks.
 #[test]
 fn blocks_that_the_device_does_not_sample_are_refused() {
-    let gpu = noop();
-    assert_eq!(block_formats(&gpu), framegraph_scene::BlockFormats::default());
-    let mut scene = with_image(4, 4, [1; 4]);
-    let image = scene.images.last_mut().expect("it was added");
-    (image.format, image.levels) = (framegraph_scene::ImageFormat::Bc7, vec![vec![0; 16]; 3]);
-    assert_eq!(scene.check(), Ok(()));
-    let error = GpuScene::upload(&gpu, &scene, &mut silent).expect_err("there is no such format").to_string();
-    let expected =
-        "dir/wide.png: this device does not sample BC7; load the scene with the `block_formats` of the device";
-    assert_eq!(error, expected);
+    use framegraph_scene::{BlockFormats, ImageFormat};
+    use wgpu::Features;
+    let image = |format| Image { name: "a.ktx2".into(), format, ..Image::default() };
+    for (format, feature, name) in [
+        (ImageFormat::Bc7, Features::TEXTURE_COMPRESSION_BC, "BC7"),
+        (ImageFormat::Etc2Rgba8, Features::TEXTURE_COMPRESSION_ETC2, "ETC2 RGBA8"),
+        (ImageFormat::Astc4x4, Features::TEXTURE_COMPRESSION_ASTC, "ASTC 4×4"),
+    ] {
+        assert!(check_format(feature, &image(format)).is_ok());
+        let error = check_format(Features::all() - feature, &image(format)).expect_err("it is missing").to_string();
+        let hint = "load the scene with the `block_formats` of the device";
+        assert_eq!(error, format!("a.ktx2: this device does not sample {name}; {hint}"));
+    }
+    assert!(check_format(Features::empty(), &image(ImageFormat::Rgba8)).is_ok());
+    // The noop device has every feature.
+    assert_eq!(block_formats(&noop()), BlockFormats { bc7: true, etc2: true, astc: true });
 }
 
 #[test]

@@ -71,6 +71,13 @@ fn texture_format(format: ImageFormat, role: TextureRole) -> TextureFormat {
     if is_srgb { linear.add_srgb_suffix() } else { linear }
 }
 
+/// Checks that a device with these features samples the format of an image.
+pub(super) fn check_format(features: Features, image: &Image) -> Result<(), UploadError> {
+    let format = texture_format(image.format, TextureRole::Linear);
+    let is_sampled = features.contains(format.required_features());
+    is_sampled.then_some(()).ok_or_else(|| UploadError::Format { image: image.name.clone(), format: image.format })
+}
+
 /// What is copied to the device before it is waited for: copies take memory until they are carried out.
 const QUEUED_BYTES: u64 = 64 << 20;
 
@@ -87,10 +94,7 @@ impl MaterialTextures {
         for image in &images {
             let side = u64::from(image.width.max(image.height));
             limit(&image.name, Quantity::Side, side, largest.into())?;
-            let format = texture_format(image.format, TextureRole::Linear);
-            if !gpu.device.features().contains(format.required_features()) {
-                return Err(UploadError::Format { image: image.name.clone(), format: image.format });
-            }
+            check_format(gpu.device.features(), image)?;
         }
         let shared = matches!(gpu.info().device_type, DeviceType::Cpu | DeviceType::IntegratedGpu);
         let jobs = jobs(scene, images, shared);

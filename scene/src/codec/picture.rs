@@ -35,7 +35,7 @@ impl Header {
 pub(crate) struct TextureLevels {
     /// Width and height of the first level.
     pub size_texels: [u32; 2],
-    /// How texels are stored.
+    /// Format of the texels.
     pub format: ImageFormat,
     /// The first level, or every level down to 1 × 1.
     pub levels: Vec<Vec<u8>>,
@@ -47,14 +47,14 @@ impl From<Picture8> for TextureLevels {
     }
 }
 
-/// What the header of a texture says of its size.
+/// Size of a texture according to its header.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct TextureHeader {
     /// Width and height of the first level.
     pub size_texels: [u32; 2],
     /// Bytes of all levels once they are decoded.
     pub image_bytes: u64,
-    /// What decoding takes beside the levels, in bytes.
+    /// Bytes that decoding allocates beside the levels.
     pub working_bytes: u64,
 }
 

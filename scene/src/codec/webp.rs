@@ -7,8 +7,8 @@ use image_webp::WebPDecoder;
 use super::error::CodecError;
 use super::picture::{Header, Picture8, check_size, opaque};
 
-/// Bytes a texel that decoding takes at most beside the picture: samples of three bytes and planes of luma, chroma and alpha,
-/// or four bytes and the pictures of transforms (RFC 9649).
+/// Maximum number of bytes per texel that decoding allocates beside the picture (RFC 9649). A lossy picture has samples of
+/// three bytes and planes of luma, chroma and alpha; a lossless one has samples of four bytes and images of transforms.
 const WORKING_BYTES: u64 = 8;
 
 /// Reads the header and refuses animations, and sizes over the limit.
@@ -46,7 +46,7 @@ fn lossy_size(bytes: &[u8]) -> Option<[u32; 2]> {
     }
 }
 
-/// Returns the size, and what decoding takes at most.
+/// Returns the size, and the maximum number of bytes that decoding allocates.
 pub(super) fn header(bytes: &[u8], max_side_texels: u32) -> Result<Header, CodecError> {
     let (width, height) = open(bytes, max_side_texels)?.dimensions();
     let header = Header { size_texels: [width, height], working_bytes: 0 };

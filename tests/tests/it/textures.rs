@@ -64,8 +64,8 @@ fn square(picture: &[u8], place: usize) -> Vec<u8> {
     (0..SIDE).flat_map(row).copied().collect()
 }
 
-/// The same picture as PNG, ETC1S, UASTC, WebP and KTX2 without compression, drawn side by side in every format of the device:
-/// 64 × 64 pixels each, at least 40 dB from the PNG. Equal texels differ by dither, and by antialiasing at the edges of squares:
+/// Draws one picture from PNG, ETC1S, UASTC, WebP and plain KTX2 files side by side, 64 × 64 pixels each, in every format of
+/// the device. Each is at least 40 dB from the PNG. Equal texels differ by dither, and by antialiasing at the edges of squares:
 /// 52 dB. Another picture is far from it, and so is the same one a pixel off.
 #[test]
 fn compressed_textures_draw_their_source_picture() -> Result<(), Box<dyn Error>> {
@@ -93,8 +93,8 @@ fn compressed_textures_draw_their_source_picture() -> Result<(), Box<dyn Error>>
     Ok(())
 }
 
-/// Every level of every format holds what RGBA holds of the same file: 40 dB for transcoded blocks, whose error is that of
-/// another encoder, and a 255th for ETC1S in ETC2 and UASTC in ASTC, which are the same texels.
+/// Compares every level in every format of blocks with the RGBA of the same file. Transcoded blocks have the error of another
+/// encoder: 40 dB. ETC1S in ETC2 and UASTC in ASTC are the same texels: one 255th.
 #[test]
 fn every_level_is_sampled_as_rgba() -> Result<(), Box<dyn Error>> {
     let test = "every_level_is_sampled_as_rgba";

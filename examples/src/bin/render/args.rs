@@ -163,7 +163,8 @@ pub struct Args {
 }
 
 impl Args {
-    /// What loading may do, for a device that samples these formats. Everything that is loaded shares one budget: make them once.
+    /// Returns the options of loading for a device that samples these formats. Everything that is loaded shares one budget:
+    /// make them once.
     pub fn load_options(&self, block_formats: BlockFormats) -> LoadOptions {
         let memory = self.memory_bytes.map_or_else(Memory::default, Memory::new);
         LoadOptions {

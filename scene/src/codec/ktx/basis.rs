@@ -30,8 +30,8 @@ impl Source {
     }
 }
 
-/// Returns what transcoding ETC1S takes beside its output, in bytes: numbers of 8 bytes a block, and code books of at most
-/// 65,535 endpoints and selectors with their Huffman tables.
+/// Returns the maximum number of bytes that transcoding ETC1S allocates beside its output. A block has indices of 8 bytes;
+/// code books have at most 65,535 endpoints and selectors, with their Huffman tables.
 pub(super) fn etc1s_working_bytes(size_texels: [u32; 2]) -> u64 {
     let blocks = ImageFormat::Etc2Rgba8.level_bytes(size_texels) / 16;
     8 * blocks + (2 << 20)

@@ -2,7 +2,7 @@
 
 use super::texel::TexelFormat;
 
-/// What a Khronos texture gets wrong as a cube of light, or as a texture of a material.
+/// Errors of a Khronos texture as a cube of light, or as a texture of a material.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KtxError {

@@ -4,7 +4,7 @@ use std::io::Read;
 
 use ruzstd::decoding::StreamingDecoder;
 
-/// How the levels of a texture are compressed, each by itself.
+/// Compression of the levels of a texture, each by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scheme {
     Plain,

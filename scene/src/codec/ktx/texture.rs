@@ -17,7 +17,7 @@ const MODEL_UASTC: u8 = 166;
 /// Offset of the color model in the data format descriptor, behind the total size and the first two words of the block.
 const MODEL_AT: u64 = 12;
 
-/// How texels lie in the file.
+/// Layout of texels in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Texels {
     /// Three bytes each.
@@ -52,7 +52,7 @@ impl Texels {
     }
 }
 
-/// What a file says before its levels, checked.
+/// Checked header of a file.
 pub(in crate::codec) struct Header {
     size_texels: [u32; 2],
     texels: Texels,
