@@ -7,22 +7,22 @@ use crate::error::PassError;
 use crate::indirect::{ARGUMENTS_BYTES, DrawList, LEAST_RUN, draws_indirectly};
 use crate::program::{Interface, Program, ProgramDesc, Programs};
 use crate::streams::{Instances, stream_attributes, vertex_buffers};
-use crate::upload::{GpuScene, InstanceDraw, MATERIAL_BINDINGS, TEXTURE_TRAITS, features_of};
-use framegraph_scene::{Batch, Lobes, MaterialId};
+use crate::upload::{GpuScene, InstanceDraw, MATERIAL_BINDINGS, MeshRange, TEXTURE_TRAITS, features_of};
+use framegraph_scene::{Batch, Lobes, MaterialId, Topology};
 use framegraph_shaders::layout::{
-    STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION, TRAIT_DOUBLE_SIDED,
+    STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION, TRAIT_DOUBLE_SIDED, TRAIT_NO_AREA,
 };
 use framegraph_shaders::{Feature, Features, Module};
 use framegraph_wgpu::{Binding, Constants, Cx, Depth, Output, Raster, RasterPipeline, RecordError};
 use std::sync::Arc;
-use wgpu::{Buffer, Face, FrontFace, PrimitiveState};
+use wgpu::{Buffer, Face, FrontFace, PrimitiveState, PrimitiveTopology};
 
 /// Which variant of a shader draws a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SurfaceVariant {
     /// The lobes of its material.
     pub lobes: Lobes,
-    /// What its material has ([`material_traits`](crate::upload::material_traits)).
+    /// Bits of its material ([`material_traits`](crate::upload::material_traits)), and the one of meshes without area.
     pub traits: u32,
     /// Its mesh has colors.
     pub colored: bool,
@@ -110,6 +110,7 @@ impl DepthDraw<'_> {
 struct PipelineKey {
     surface: SurfaceVariant,
     mirrored: bool,
+    topology: Topology,
 }
 
 impl PipelineKey {
@@ -117,14 +118,16 @@ impl PipelineKey {
     fn of(instance: &InstanceDraw, indirect: bool, from: InstanceSource<'_>) -> Self {
         let InstanceDraw { mesh, material, mirrored } = *instance;
         let scene = from.scene;
+        let MeshRange { colored, topology, .. } = scene.mesh(mesh, 0);
+        let no_area = u32::from(topology != Topology::Triangles) << TRAIT_NO_AREA;
         let surface = SurfaceVariant {
             lobes: scene.lobes(material),
-            traits: scene.traits(material),
-            colored: scene.mesh(mesh, 0).colored,
+            traits: scene.traits(material) | no_area,
+            colored,
             material_table: indirect && scene.is_in_table(material),
             instance_stream: matches!(from.instances, Instances::Stream(_)),
         };
-        Self { surface, mirrored }
+        Self { surface, mirrored, topology }
     }
 }
 
@@ -309,6 +312,11 @@ impl SurfaceDraw<'_> {
             primitive: PrimitiveState {
                 cull_mode: if key.surface.traits & 1 << TRAIT_DOUBLE_SIDED != 0 { None } else { Some(Face::Back) },
                 front_face: if key.mirrored { FrontFace::Cw } else { FrontFace::Ccw },
+                topology: match key.topology {
+                    Topology::Triangles => PrimitiveTopology::TriangleList,
+                    Topology::Lines => PrimitiveTopology::LineList,
+                    Topology::Points => PrimitiveTopology::PointList,
+                },
                 ..PrimitiveState::default()
             },
             depth: depth.clone(),

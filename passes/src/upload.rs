@@ -2,7 +2,7 @@
 //!
 //! One buffer holds the positions of all meshes, one their other attributes, one their indices, one
 //! the factors of all materials; draws say where in them. Images are uploaded once for each role
-//! they play, with mip levels made here, on all cores. Bind groups are the passes' business:
+//! they play, with their own mip levels or levels made here, on all cores. Bind groups are the passes' business:
 //! [`GpuScene::material_binding`] says what goes into the material's.
 
 mod bodies;
@@ -22,6 +22,7 @@ pub use instances::InstanceDraw;
 pub use material::{MATERIAL_BINDINGS, TEXTURE_TRAITS, features_of, material_traits};
 pub use mesh_range::MeshRange;
 pub use scene::GpuScene;
+pub use textures::block_formats;
 
 #[cfg(test)]
 mod tests;

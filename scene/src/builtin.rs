@@ -9,6 +9,7 @@ mod lamps;
 mod lobes;
 mod materials;
 mod metal;
+mod optics;
 mod pattern;
 mod spheres;
 
@@ -18,12 +19,18 @@ use super::error::SceneError;
 use super::scene::Scene;
 
 /// The names [`builtin`] knows, sorted.
-pub const NAMES: [&str; 7] = ["balls", "columns", "glass", "lamps", "lobes", "materials", "spheres"];
+pub const NAMES: [&str; 8] = ["balls", "columns", "glass", "lamps", "lobes", "materials", "optics", "spheres"];
 
-/// A scene made in code: `balls` (what an environment does to five surfaces), `columns` (a colonnade, for shadows and
-/// occlusion), `glass` (transmissive materials), `lamps` (a thousand lamps of limited range; `lamps:N` has N of them, at
-/// most 65,536), `lobes` (the lobes beside the metal-rough base: a row of balls each), `materials` (one object for each
-/// material feature), `spheres` (metallic × roughness on a ground plane).
+/// Returns a scene made in code.
+///
+/// - `balls`: an environment on five surfaces.
+/// - `columns`: a colonnade, for shadows and occlusion.
+/// - `glass`: transmissive materials.
+/// - `lamps`: a thousand lamps of limited range; `lamps:N` has N of them, at most 65,536.
+/// - `lobes`: the lobes beside the metal-rough base, a row of balls each.
+/// - `materials`: one object for each material feature.
+/// - `optics`: thin films, dispersion and diffuse transmission, a row each.
+/// - `spheres`: metallic × roughness on a ground plane.
 ///
 /// The scenes have a camera each and, but for `lamps`, no lights or environment of their own: they are meant to stand
 /// under any sky. The same name gives the same scene to the bit on every machine whose `sin` and
@@ -40,6 +47,7 @@ pub fn builtin(name: &str) -> Result<Scene, SceneError> {
         "lamps" => Ok(lamps::scene(lamps::COUNT)),
         "lobes" => Ok(lobes::scene()),
         "materials" => Ok(materials::scene()),
+        "optics" => Ok(optics::scene()),
         "spheres" => Ok(spheres::scene()),
         _ => match name.strip_prefix("lamps:") {
             Some(count) => {

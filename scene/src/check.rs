@@ -1,8 +1,9 @@
 //! What loaders promise of a scene, checked.
 
 use crate::mesh::MeshError;
+use crate::mips::level_count;
 use crate::scene::Scene;
-use crate::texture::TextureSlot;
+use crate::texture::{Image, TextureSlot};
 
 /// What is wrong with a scene. Numbers are positions in its arrays.
 #[derive(Clone, PartialEq, thiserror::Error)]
@@ -30,15 +31,17 @@ pub enum InvalidScene {
         /// Number of the texture.
         texture: usize,
     },
-    /// An image has no texels, or not four bytes for each.
-    #[error("image {image} has {bytes} bytes for its {texels} texels")]
+    /// An image has no texels, levels of other sizes than its format asks for, or neither one level nor all.
+    #[error("image {image} has {bytes} bytes in {levels} levels for its {texels} texels")]
     Image {
         /// Number of the image.
         image: usize,
-        /// How many texels it has.
+        /// Number of texels of its first level.
         texels: u64,
-        /// How many bytes it has.
-        bytes: usize,
+        /// Number of levels that it holds.
+        levels: usize,
+        /// Bytes of these levels.
+        bytes: u64,
     },
     /// An instance names a mesh or a material that there is not, or its transform is not finite.
     #[error("instance {instance} names a mesh or material that is not in the scene, or its transform is not finite")]
@@ -88,9 +91,10 @@ impl Scene {
             }
         }
         for (i, image) in self.images.iter().enumerate() {
-            let (texels, bytes) = (u64::from(image.width) * u64::from(image.height), image.rgba8.len());
-            if texels == 0 || bytes as u64 != texels * 4 {
-                return Err(InvalidScene::Image { image: i, texels, bytes });
+            if !holds_its_levels(image) {
+                let texels = u64::from(image.width) * u64::from(image.height);
+                let (levels, bytes) = (image.levels.len(), image.size_bytes());
+                return Err(InvalidScene::Image { image: i, texels, levels, bytes });
             }
         }
         for (i, instance) in self.instances.iter().enumerate() {
@@ -110,5 +114,41 @@ impl Scene {
             Some(camera) => Err(InvalidScene::Camera { camera }),
             None => Ok(()),
         }
+    }
+}
+
+/// Returns whether every level has the bytes of its size, and no level is missing that is not to be made.
+fn holds_its_levels(image: &Image) -> bool {
+    let side = image.format.block_side_texels();
+    let has_whole_blocks = [image.width, image.height].iter().all(|texels| *texels > 0 && texels.is_multiple_of(side));
+    let all = level_count(image.width, image.height) as usize;
+    let count = image.levels.len();
+    let fits =
+        |(level, bytes): (u32, &Vec<u8>)| bytes.len() as u64 == image.format.level_bytes(image.level_size(level));
+    has_whole_blocks && (count == all || count == 1 && side == 1) && (0..).zip(&image.levels).all(fits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::texture::ImageFormat;
+
+    #[test]
+    fn images_hold_one_level_or_all() {
+        let of = |format, width, height, levels: &[usize]| {
+            let levels = levels.iter().map(|bytes| vec![0; *bytes]).collect();
+            let image = Image { name: String::new(), width, height, format, levels };
+            Scene { images: vec![image], ..Scene::default() }.check().is_ok()
+        };
+        use ImageFormat::{Bc7, Rgba8};
+        assert!(of(Rgba8, 4, 2, &[32]) && of(Rgba8, 4, 2, &[32, 8, 4]) && of(Rgba8, 1, 1, &[4]));
+        assert!(of(Bc7, 8, 4, &[32, 16, 16, 16]));
+        assert!(
+            !of(Rgba8, 4, 2, &[]) && !of(Rgba8, 4, 2, &[32, 8]) && !of(Rgba8, 4, 2, &[31]) && !of(Rgba8, 0, 4, &[0])
+        );
+        assert!(!of(Bc7, 8, 4, &[32]) && !of(Bc7, 8, 4, &[32, 16, 16, 4]) && !of(Bc7, 6, 4, &[32, 16, 16]));
+        let refused = Scene { images: vec![Image::from_rgba8("a", 2, 2, vec![0; 15])], ..Scene::default() }.check();
+        let message = refused.expect_err("a byte is missing").to_string();
+        assert_eq!(message, "image 0 has 15 bytes in 1 levels for its 4 texels");
     }
 }

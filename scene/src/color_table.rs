@@ -1,4 +1,6 @@
-//! Tables of colors from `.cube` files (Adobe, "Cube LUT Specification" 1.0, 2013), as grading programs write them.
+//! Tables of colors from `.cube` files, as grading programs write them (Adobe, "Cube LUT Specification" 1.0, 2013).
+//!
+//! The extensions of DaVinci Resolve are read too: a curve before a table in three dimensions, input ranges, video range.
 
 use crate::error::SceneError;
 use crate::read::read_file;
@@ -50,12 +52,6 @@ pub enum ColorTableFault {
     /// The bytes are no text.
     #[error("it is not UTF-8")]
     Text,
-    /// A keyword that the specification does not have.
-    #[error(
-        "`{0}` is no keyword of .cube files; they have TITLE, DOMAIN_MIN, DOMAIN_MAX, LUT_1D_SIZE, LUT_3D_SIZE, \
-         LUT_1D_INPUT_RANGE and LUT_3D_INPUT_RANGE"
-    )]
-    Keyword(String),
     /// A keyword comes after the numbers have begun, or twice.
     #[error("{0} comes a second time, or after the table has begun")]
     Late(&'static str),
@@ -84,7 +80,9 @@ pub enum ColorTableFault {
     #[error("the table begins before LUT_1D_SIZE or LUT_3D_SIZE says how large it is")]
     NoSize,
     /// The domain is empty.
-    #[error("DOMAIN_MIN must lie below DOMAIN_MAX in each channel")]
+    #[error(
+        "a domain must begin below its end: DOMAIN_MIN below DOMAIN_MAX, and the first number of an input range below the second"
+    )]
     Domain,
     /// There are more rows than the size asks for.
     #[error("there are more than the {0} rows that its size asks for")]
@@ -105,17 +103,19 @@ impl std::fmt::Debug for ColorTableFault {
     }
 }
 
-/// A table of colors by color, of each channel alone or of all three together.
+/// Colors by colors, as a `.cube` file states them: a curve for each channel, a table in three dimensions, or both in turn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorTable {
-    /// Entries along each axis, at least 2.
-    entries: usize,
-    /// In three dimensions; otherwise a curve for each channel.
-    cube: bool,
-    /// The color at the first entry of each axis, and that at the last.
-    domain: [DVec3; 2],
-    /// Red fastest.
-    rows: Vec<[f32; 3]>,
+    /// Applied first.
+    curve: Option<Table>,
+    /// Applied after the curve.
+    cube: Option<Table>,
+    /// The input is converted to video range before the tables (`LUT_IN_VIDEO_RANGE`).
+    is_video_in: bool,
+    /// The tables return video range, which is converted back (`LUT_OUT_VIDEO_RANGE`).
+    is_video_out: bool,
+    /// Lines that were ignored, with the reason; each names the file.
+    pub warnings: Vec<String>,
 }
 
 impl ColorTable {
@@ -134,22 +134,50 @@ impl ColorTable {
     pub fn load_bytes(file: &Path, bytes: &[u8]) -> Result<Self, ColorTableError> {
         let text = str::from_utf8(bytes)
             .map_err(|_| ColorTableError::Whole { file: file.into(), fault: ColorTableFault::Text })?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut read = Reading::default();
         for (index, line) in text.lines().enumerate() {
             let words = line.split('#').next().unwrap_or_default().trim();
             if !words.is_empty() {
-                read.line(words).map_err(|fault| ColorTableError::Line {
+                read.line(index + 1, words).map_err(|fault| ColorTableError::Line {
                     file: file.into(),
                     line: index + 1,
                     fault,
                 })?;
             }
         }
-        read.done().map_err(|fault| ColorTableError::Whole { file: file.into(), fault })
+        read.done(file).map_err(|fault| ColorTableError::Whole { file: file.into(), fault })
     }
 
-    /// The color that the table has for `color`, between its entries linearly; beyond the domain that of its end.
+    /// Returns the color that the tables have for `color`, interpolated linearly between entries. A color beyond the domain
+    /// of a table is clamped to it.
     pub fn sample(&self, color: DVec3) -> DVec3 {
+        let [black, white] = VIDEO_RANGE;
+        let input = if self.is_video_in { color * (white - black) + black } else { color };
+        let tables = self.curve.iter().chain(&self.cube);
+        let output = tables.fold(input, |color, table| table.sample(color));
+        if self.is_video_out { (output - black) / (white - black) } else { output }
+    }
+}
+
+/// Black and white in video range: codes 64 and 940 of 10 bits (Recommendation ITU-R BT.709-6, table 4.6).
+const VIDEO_RANGE: [f64; 2] = [64.0 / 1023.0, 940.0 / 1023.0];
+
+/// A table of one or three dimensions.
+#[derive(Clone, Debug, PartialEq)]
+struct Table {
+    /// Entries along each axis, at least 2.
+    entries: usize,
+    /// In three dimensions; otherwise a curve for each channel.
+    cube: bool,
+    /// The color at the first entry of each axis, and that at the last.
+    domain: [DVec3; 2],
+    /// Red fastest.
+    rows: Vec<[f32; 3]>,
+}
+
+impl Table {
+    fn sample(&self, color: DVec3) -> DVec3 {
         let [low, high] = self.domain;
         let last = (self.entries - 1) as f64;
         let at = ((color - low) / (high - low)).clamp(DVec3::ZERO, DVec3::ONE) * last;
@@ -170,17 +198,28 @@ impl ColorTable {
     }
 }
 
+/// Ignored lines that are listed; further ones are counted.
+const MAX_WARNINGS: usize = 8;
+
 /// A file as far as it has been read.
 #[derive(Debug, Default)]
 struct Reading {
-    size: Option<(usize, bool)>,
-    low: Option<DVec3>,
-    high: Option<DVec3>,
+    /// Sizes of the curve and of the table in three dimensions.
+    sizes: [Option<usize>; 2],
+    /// `DOMAIN_MIN` and `DOMAIN_MAX`.
+    domain: [Option<DVec3>; 2],
+    /// `LUT_1D_INPUT_RANGE` and `LUT_3D_INPUT_RANGE`.
+    ranges: [Option<[f64; 2]>; 2],
+    is_video_in: bool,
+    is_video_out: bool,
     rows: Vec<[f32; 3]>,
+    /// Line and first word of the first unknown keywords.
+    unknown: Vec<(usize, String)>,
+    unknown_count: usize,
 }
 
 impl Reading {
-    fn line(&mut self, line: &str) -> Result<(), ColorTableFault> {
+    fn line(&mut self, number: usize, line: &str) -> Result<(), ColorTableFault> {
         let (first, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
         if !first.starts_with(|c: char| c.is_ascii_alphabetic()) || first.parse::<f32>().is_ok() {
             return self.row(line);
@@ -193,46 +232,55 @@ impl Reading {
             "DOMAIN_MAX" => "DOMAIN_MAX",
             "LUT_1D_INPUT_RANGE" => "LUT_1D_INPUT_RANGE",
             "LUT_3D_INPUT_RANGE" => "LUT_3D_INPUT_RANGE",
-            _ => return Err(ColorTableFault::Keyword(first.chars().take(40).collect())),
+            "LUT_IN_VIDEO_RANGE" => "LUT_IN_VIDEO_RANGE",
+            "LUT_OUT_VIDEO_RANGE" => "LUT_OUT_VIDEO_RANGE",
+            _ => {
+                if self.unknown.len() < MAX_WARNINGS {
+                    self.unknown.push((number, first.chars().take(40).collect()));
+                }
+                self.unknown_count += 1;
+                return Ok(());
+            }
         };
         let late = ColorTableFault::Late(keyword);
         if !self.rows.is_empty() {
             return Err(late);
         }
-        let set =
-            |place: &mut Option<DVec3>, value| if place.replace(value).is_some() { Err(late.clone()) } else { Ok(()) };
-        let three = || {
-            let wrong = ColorTableFault::Values { keyword, takes: "three finite numbers" };
-            numbers::<3>(rest).map(DVec3::from_array).ok_or(wrong)
-        };
-        match keyword {
-            "DOMAIN_MIN" => set(&mut self.low, three()?),
-            "DOMAIN_MAX" => set(&mut self.high, three()?),
+        let kind = usize::from(keyword.starts_with("LUT_3D"));
+        let is_new = match keyword {
+            "LUT_IN_VIDEO_RANGE" => !std::mem::replace(&mut self.is_video_in, true),
+            "LUT_OUT_VIDEO_RANGE" => !std::mem::replace(&mut self.is_video_out, true),
+            "DOMAIN_MIN" | "DOMAIN_MAX" => {
+                let wrong = ColorTableFault::Values { keyword, takes: "three finite numbers" };
+                let value = numbers::<3>(rest).map(DVec3::from_array).ok_or(wrong)?;
+                self.domain[usize::from(keyword == "DOMAIN_MAX")].replace(value).is_none()
+            }
             "LUT_1D_INPUT_RANGE" | "LUT_3D_INPUT_RANGE" => {
                 let wrong = ColorTableFault::Values { keyword, takes: "two finite numbers" };
-                let [low, high] = numbers::<2>(rest).ok_or(wrong)?;
-                set(&mut self.low, DVec3::splat(low))?;
-                set(&mut self.high, DVec3::splat(high))
+                self.ranges[kind].replace(numbers::<2>(rest).ok_or(wrong)?).is_none()
             }
             _ => {
-                let cube = keyword == "LUT_3D_SIZE";
-                let most = if cube { MOST_CUBE_ENTRIES } else { MOST_CURVE_ENTRIES };
+                let most = [MOST_CURVE_ENTRIES, MOST_CUBE_ENTRIES][kind];
                 let value = rest.trim();
                 let size = value.parse().ok().filter(|size| (2..=most).contains(size));
                 let wrong = || ColorTableFault::Size { keyword, value: value.chars().take(40).collect(), most };
-                let size = size.ok_or_else(wrong)?;
-                if self.size.replace((size, cube)).is_some() { Err(late) } else { Ok(()) }
+                self.sizes[kind].replace(size.ok_or_else(wrong)?).is_none()
             }
-        }
+        };
+        if is_new { Ok(()) } else { Err(late) }
     }
 
-    fn needed(&self) -> Result<usize, ColorTableFault> {
-        let (entries, cube) = self.size.ok_or(ColorTableFault::NoSize)?;
-        Ok(if cube { entries.pow(3) } else { entries })
+    /// Returns the numbers of rows of the curve and of the table in three dimensions.
+    fn needed(&self) -> Result<[usize; 2], ColorTableFault> {
+        let [curve, cube] = self.sizes;
+        if curve.is_none() && cube.is_none() {
+            return Err(ColorTableFault::NoSize);
+        }
+        Ok([curve.unwrap_or(0), cube.unwrap_or(0).pow(3)])
     }
 
     fn row(&mut self, line: &str) -> Result<(), ColorTableFault> {
-        let needed = self.needed()?;
+        let needed = self.needed()?.into_iter().sum();
         let row = numbers::<3>(line).filter(|row| row.iter().all(|x| x.abs() <= f64::from(f32::MAX)));
         let row = row.ok_or_else(|| ColorTableFault::Row(line.chars().take(40).collect()))?;
         if self.rows.len() >= needed {
@@ -242,19 +290,62 @@ impl Reading {
         Ok(())
     }
 
-    fn done(self) -> Result<ColorTable, ColorTableFault> {
-        let (needed, rows) = (self.needed()?, self.rows.len());
+    fn done(mut self, file: &Path) -> Result<ColorTable, ColorTableFault> {
+        let [of_curve, of_cube] = self.needed()?;
+        let (needed, rows) = (of_curve + of_cube, self.rows.len());
         if rows < needed {
             return Err(ColorTableFault::TooFewRows { rows, needed });
         }
-        let domain = [self.low.unwrap_or(DVec3::ZERO), self.high.unwrap_or(DVec3::ONE)];
+        let warnings = self.warnings(file);
+        let cube_rows = self.rows.split_off(of_curve);
+        let [curve, cube] = self.sizes;
+        // A domain is that of the file's input: of the table that is applied first.
+        let curve_domain = self.domain_of(0, self.domain)?;
+        let cube_domain = self.domain_of(1, if curve.is_some() { [None; 2] } else { self.domain })?;
+        let table = |entries, cube, domain, rows| Table { entries, cube, domain, rows };
+        Ok(ColorTable {
+            curve: curve.map(|entries| table(entries, false, curve_domain, self.rows)),
+            cube: cube.map(|entries| table(entries, true, cube_domain, cube_rows)),
+            is_video_in: self.is_video_in,
+            is_video_out: self.is_video_out,
+            warnings,
+        })
+    }
+
+    /// Returns the domain of a kind of table: its range, else `[low, high]`, else 0 to 1.
+    fn domain_of(&self, kind: usize, [low, high]: [Option<DVec3>; 2]) -> Result<[DVec3; 2], ColorTableFault> {
+        if self.sizes[kind].is_none() {
+            return Ok([DVec3::ZERO, DVec3::ONE]);
+        }
+        let domain = match self.ranges[kind] {
+            Some(range) => range.map(DVec3::splat),
+            None => [low.unwrap_or(DVec3::ZERO), high.unwrap_or(DVec3::ONE)],
+        };
         // A width that is no number would make coordinates that are none.
         let width = domain[1] - domain[0];
-        if !(width.cmpgt(DVec3::ZERO).all() && width.is_finite()) {
-            return Err(ColorTableFault::Domain);
+        if width.cmpgt(DVec3::ZERO).all() && width.is_finite() { Ok(domain) } else { Err(ColorTableFault::Domain) }
+    }
+
+    fn warnings(&self, file: &Path) -> Vec<String> {
+        let file = file.display();
+        let unknown =
+            self.unknown.iter().map(|(line, word)| format!("{file}: line {line}: `{word}` is not known; ignored"));
+        let mut warnings: Vec<String> = unknown.collect();
+        if self.unknown_count > self.unknown.len() {
+            warnings.push(format!("{file}: {} further lines are ignored", self.unknown_count - self.unknown.len()));
         }
-        let (entries, cube) = self.size.ok_or(ColorTableFault::NoSize)?;
-        Ok(ColorTable { entries, cube, domain, rows: self.rows })
+        for (kind, name) in ["LUT_1D", "LUT_3D"].into_iter().enumerate() {
+            if self.ranges[kind].is_some() && self.sizes[kind].is_none() {
+                warnings.push(format!("{file}: {name}_INPUT_RANGE is ignored: there is no {name}_SIZE"));
+            }
+        }
+        if self.domain.iter().any(Option::is_some) {
+            let first = usize::from(self.sizes[0].is_none());
+            if self.ranges[first].is_some() {
+                warnings.push(format!("{file}: DOMAIN_MIN and DOMAIN_MAX are ignored: there is an input range"));
+            }
+        }
+        warnings
     }
 }
 
@@ -294,6 +385,73 @@ mod tests {
         Ok(())
     }
 
+    /// A curve of three entries over −0.5 to 1.5, then a table of two entries a side over 0 to 2.
+    const SHAPED: &str = "TITLE \"shaper\"\nLUT_1D_SIZE 3\nLUT_1D_INPUT_RANGE -0.5 1.5\nLUT_3D_SIZE 2\n\
+        LUT_3D_INPUT_RANGE 0.0 2.0\n0.0 0.1 0.2\n0.9 0.4 1.0\n2.0 1.6 1.2\n0.05 0.10 0.20\n0.80 0.15 0.10\n\
+        0.10 0.90 0.25\n0.70 0.95 0.05\n0.00 0.20 1.00\n0.60 0.05 0.85\n0.15 0.65 0.75\n1.00 0.90 0.95\n";
+
+    /// The expected colors are those of `colour.read_LUT(file).apply(color)` of colour-science 0.4.7 (PyPI).
+    #[test]
+    fn a_curve_before_a_table_is_applied_first() -> Result<(), ColorTableError> {
+        let shaped = read(SHAPED)?;
+        assert_eq!(shaped.warnings, [""; 0]);
+        for (color, expected) in [
+            ([0.0, 0.0, 0.0], [0.20278125, 0.218, 0.41010938]),
+            ([1.0, 1.0, 1.0], [0.5843125, 0.495, 0.54353125]),
+            ([0.25, 0.5, 0.9], [0.2740425, 0.271205, 0.57639]),
+            ([1.4, -0.3, 0.6], [0.6731199, 0.1670024, 0.4909527]),
+            ([0.1, 1.2, 0.4], [0.2760816, 0.5616416, 0.4981418]),
+        ] {
+            let (found, expected) = (shaped.sample(DVec3::from_array(color)), DVec3::from_array(expected));
+            // Entries are f32, and the expected colors have seven digits.
+            assert!((found - expected).abs().max_element() < 2e-7, "{color:?}: {found}, not {expected}");
+        }
+        // Without ranges, DOMAIN_MIN and DOMAIN_MAX are those of the input, which the curve has.
+        let domain = "DOMAIN_MIN -0.5 -0.5 -0.5\nDOMAIN_MAX 1.5 1.5 1.5";
+        let other = read(&SHAPED.replace("LUT_1D_INPUT_RANGE -0.5 1.5", domain))?;
+        assert_eq!(other, shaped);
+        let short = SHAPED.trim_end().rsplit_once('\n').map_or("", |(lines, _)| lines);
+        assert!(read(short).is_err_and(|e| e.to_string().ends_with("there are 10 rows, and its size asks for 11")));
+        assert!(read(&format!("{SHAPED}0 0 0")).is_err_and(|e| e.to_string().contains("more than the 11 rows")));
+        Ok(())
+    }
+
+    #[test]
+    fn video_range_is_converted_on_either_side() -> Result<(), ColorTableError> {
+        let (input, output) = ("LUT_IN_VIDEO_RANGE\n", "LUT_OUT_VIDEO_RANGE\n");
+        let identity = "LUT_1D_SIZE 2\n0 0 0\n1 1 1\n";
+        let color = DVec3::new(0.0, 0.5, 1.0);
+        // Codes 64, 502 and 940 of 1023.
+        let video = DVec3::new(0.06256109, 0.49071359, 0.91886608);
+        let found = read(&format!("{input}{identity}"))?.sample(color);
+        assert!((found - video).abs().max_element() < 1e-8, "{found}");
+        let found = read(&format!("{output}{identity}"))?.sample(video);
+        assert!((found - color).abs().max_element() < 1e-7, "{found}");
+        let found = read(&format!("{input}{output}{identity}"))?.sample(color);
+        assert!((found - color).abs().max_element() < 1e-12, "{found}");
+        assert!(
+            read(&format!("{input}{input}{identity}")).is_err_and(|e| e.to_string().contains("line 2: LUT_IN_VIDEO"))
+        );
+        Ok(())
+    }
+
+    #[test]
+    fn unknown_words_and_unused_ranges_are_warned_of() -> Result<(), ColorTableError> {
+        let marked = format!("\u{feff}{}", SWAPPED.replace("0 1 1", "GAMMA 2.4\n0 1 1"));
+        let swapped = read(&marked)?;
+        assert_eq!(swapped.warnings, ["looks/a.cube: line 7: `GAMMA` is not known; ignored"]);
+        assert_eq!(swapped.sample(DVec3::X), DVec3::Z);
+        let many = read(&format!("{}{SWAPPED}", "WORD\n".repeat(20)))?;
+        assert_eq!((many.warnings.len(), many.warnings[8].as_str()), (9, "looks/a.cube: 12 further lines are ignored"));
+        let other = read(&format!("LUT_1D_INPUT_RANGE 5 6\n{SWAPPED}"))?;
+        assert_eq!(other.warnings, ["looks/a.cube: LUT_1D_INPUT_RANGE is ignored: there is no LUT_1D_SIZE"]);
+        assert_eq!(other.sample(DVec3::X), DVec3::Z);
+        let both = read(&format!("DOMAIN_MAX 5 5 5\nLUT_3D_INPUT_RANGE 0 2\n{SWAPPED}"))?;
+        assert!(both.warnings[0].contains("DOMAIN_MIN and DOMAIN_MAX are ignored"), "{:?}", both.warnings);
+        assert!((both.sample(DVec3::ONE) - 0.5).length() < 1e-12);
+        Ok(())
+    }
+
     #[test]
     fn what_is_wrong_is_named_with_its_line() {
         for (from, to, told) in [
@@ -307,9 +465,12 @@ mod tests {
             ("0 1 1", "0 1", "line 7: a row"),
             ("0 1 1", "0 1 1 1", "line 7: a row"),
             ("0 1 1", "inf 1 1", "line 7: a row"),
-            ("0 1 1", "GAMMA 2", "line 7: `GAMMA` is no keyword"),
             ("0 1 1", "DOMAIN_MIN 0 0 0", "line 7: DOMAIN_MIN comes a second time, or after"),
-            ("# a comment", "DOMAIN_MIN 1 0 0", "looks/a.cube: DOMAIN_MIN must lie below DOMAIN_MAX"),
+            (
+                "# a comment",
+                "DOMAIN_MIN 1 0 0",
+                "looks/a.cube: a domain must begin below its end: DOMAIN_MIN below DOMAIN_MAX",
+            ),
             ("# a comment", "DOMAIN_MAX 1 1", "line 2: DOMAIN_MAX takes three finite numbers"),
         ] {
             assert!(SWAPPED.contains(from), "{from}");

@@ -7,7 +7,9 @@
 //!
 //! ```text
 //! bytes ─ container ─> JSON + BIN ─ uri, buffer ─> Source
+//!   Source ─ views ─> compressed buffer views, decoded on all cores
 //!   Source ─ node ─> nodes in world axes: meshes, lights, cameras
+//!   meshes ─ draco ─> compressed primitives, decoded on all cores
 //!   meshes ─ primitive (accessor, topology) ─> Mesh     material, lobes ─> Material, Texture
 //!   images ─> decoded on all cores
 //! ```
@@ -17,6 +19,8 @@ mod buffer;
 mod camera;
 mod container;
 mod document;
+#[cfg(feature = "draco")]
+mod draco;
 mod encoding;
 mod extension;
 mod images;
@@ -24,12 +28,15 @@ mod instancing;
 mod letter_case;
 mod light;
 mod limits;
+mod line_material;
 mod lobes;
 mod material;
 mod motion;
 mod moves;
 mod node;
 mod object;
+#[cfg_attr(not(feature = "draco"), allow(dead_code, reason = "then no mesh is decoded"))]
+mod packed;
 mod pointer;
 mod primitive;
 mod source;
@@ -39,6 +46,8 @@ mod texture;
 mod topology;
 mod uri;
 mod variants;
+#[cfg(feature = "meshopt")]
+mod views;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -59,7 +68,7 @@ use super::progress::{Progress, ProgressFn, Stage, report};
 use super::read::{file_bytes, read_file};
 use super::scene::Scene;
 
-pub use extension::{EXTENSIONS, Extension, Support};
+pub use extension::{EXTENSIONS, Extension, Support, extensions_table};
 pub use limits::{MAX_COORDINATE_M, MAX_IMAGE_SIDE_TEXELS, MAX_INSTANCES};
 
 /// [`load_with`] the default options.
@@ -122,9 +131,16 @@ pub fn load_bytes_with(
     let mut source = Source::new(path, &document, options);
     source.note_file(path);
     source.buffers = buffer::load(&source, parts.blob, progress)?;
-    let source = source;
-
+    #[cfg(feature = "meshopt")]
+    {
+        source.views = views::decode(&source, progress)?;
+    }
     let nodes = node::flatten(&source, &mut warnings)?;
+    #[cfg(feature = "draco")]
+    {
+        source.meshes = draco::decode(&source, &nodes, progress)?;
+    }
+    let source = source;
     let mut scene = Scene {
         name: path.file_stem().map_or_else(String::new, |stem| one_line(&stem.to_string_lossy())),
         ..Scene::default()
@@ -141,10 +157,10 @@ pub fn load_bytes_with(
     scene.samplers = tables.samplers;
     let attached = motion::Attachments { placed, lights, cameras, materials: tables.known };
     motion::import(&source, &nodes, attached, &mut scene, &mut warnings)?;
-    scene.images = images::decode(&source, &tables.images, progress)?;
+    scene.images = images::decode(&source, &tables.images, (&scene.textures, &tables.computed), progress)?;
     for roughness in &tables.computed {
         let image = &scene.images[roughness.image.index()];
-        let (bytes, at) = (image.rgba8.len() as u64, image.name.clone());
+        let (bytes, at) = (image.size_bytes(), image.name.clone());
         source.keep(bytes).map_err(|budget| SceneError::Memory { file: path.into(), at, budget })?;
         scene.images.push(roughness.compute(&scene.images));
     }
@@ -198,6 +214,7 @@ fn import_meshes(
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let at = format!("mesh {mesh_index} primitive {i}");
             let material = materials.import(variants.material(source, &at, primitive)?, &at, warnings)?;
+            let material = materials.for_primitive(material, primitive);
             let surface = materials.get(material);
             let key = GeometryKey::new(primitive, i, surface, node.index, node.skin.is_some());
             let mesh_id = match built.get(&key) {
@@ -226,7 +243,7 @@ fn import_meshes(
         }
     }
     if scene.instances.is_empty() {
-        warnings.push("the scene draws nothing: no visible node of it has a mesh with triangles");
+        warnings.push("the scene draws nothing: no visible node of it has triangles, lines or points");
     }
     Ok(placed)
 }

@@ -9,9 +9,15 @@
 //! Nothing here knows a GPU. Meters, right-handed, y up, linear Rec.709, lux, candela and nits throughout. What a file
 //! says is checked once, at import; a `Scene` that was returned holds finite numbers and valid ids only.
 //!
-//! Features, all on by default: `gltf` (import of scenes), `png` and `jpeg` (textures, and pictures in general), `exr`
-//! (environments from OpenEXR, and writing such files). Without any of them the plain data, the built-in scenes, cameras,
-//! the sky and Radiance `.hdr` environments remain.
+//! Features, all on by default:
+//!
+//! - `gltf`: import of scenes.
+//! - `draco` and `meshopt`: compressed geometry in scenes.
+//! - `png`, `jpeg` and `webp`: textures, and pictures in general.
+//! - `basisu`: textures in KTX2 files, with texels of Basis Universal (ETC1S, UASTC) or of eight bits a channel.
+//! - `exr`: environments from OpenEXR, and writing such files.
+//!
+//! Without any of them the plain data, the built-in scenes, cameras, the sky and Radiance `.hdr` environments remain.
 
 pub mod batch;
 pub mod bounds;
@@ -36,6 +42,8 @@ pub mod light;
 pub mod material;
 pub mod memory;
 pub mod mesh;
+#[cfg(feature = "meshopt")]
+mod meshopt;
 pub mod mips;
 pub mod motion;
 mod moves;
@@ -70,17 +78,20 @@ pub use instance::Instance;
 pub use levels::InstanceLevels;
 pub use light::{Light, LightKind};
 pub use material::{
-    AlphaMode, Anisotropy, ClearCoat, EmissiveUnit, Lobe, Lobes, Material, MaterialId, Sheen, Specular, Transmission,
-    Volume,
+    AlphaMode, Anisotropy, ClearCoat, DiffuseTransmission, EmissiveUnit, Iridescence, Lobe, Lobes, Material,
+    MaterialId, Sheen, Specular, Transmission, Volume,
 };
 pub use memory::Memory;
-pub use mesh::{Mesh, MeshError, MeshId, MeshLevel};
+pub use mesh::{Mesh, MeshError, MeshId, MeshLevel, Topology};
 pub use options::LoadOptions;
 pub use overlap::{SHADED_POINTS, shaded_at_points};
 pub use progress::{Progress, ProgressFn, Stage};
 pub use renderables::{DrawKind, Renderables};
 pub use scene::Scene;
-pub use texture::{Image, ImageId, Sampler, SamplerId, Texture, TextureId, TextureRole, TextureSlot, UvTransform};
+pub use texture::{
+    BlockFormats, Image, ImageFormat, ImageId, Sampler, SamplerId, Texture, TextureId, TextureRole, TextureSlot,
+    UvTransform,
+};
 
 /// The example of the README, compiled and run.
 #[cfg(doctest)]

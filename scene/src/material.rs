@@ -7,7 +7,9 @@ use glam::{Vec3, Vec4};
 use super::id::Id;
 use super::texture::{TextureRole, TextureSlot};
 
-pub use lobes::{Anisotropy, ClearCoat, Lobe, Lobes, Sheen, Specular, Transmission, Volume};
+pub use lobes::{
+    Anisotropy, ClearCoat, DiffuseTransmission, Iridescence, Lobe, Lobes, Sheen, Specular, Transmission, Volume,
+};
 
 /// A material of a scene.
 pub type MaterialId = Id<Material>;
@@ -61,6 +63,9 @@ pub struct Material {
     /// Index of refraction of the dielectric part (KHR_materials_ior): 1 or more; 0 stands for
     /// infinity, a reflectance of 1.
     pub ior: f32,
+    /// Dispersion of the volume (KHR_materials_dispersion): 20 over the Abbe number, 0 or more. Without a volume that
+    /// transmits it has no effect.
+    pub dispersion: f32,
     /// Scales x and y of the tangent-space normal.
     pub normal_scale: f32,
     /// Strength of the occlusion texture, 0 (no effect)…1.
@@ -69,7 +74,7 @@ pub struct Material {
     pub alpha: AlphaMode,
     /// Draw back faces too, with their normals turned towards the viewer.
     pub double_sided: bool,
-    /// The base color is shown without shading (KHR_materials_unlit).
+    /// The base color is shown without shading (KHR_materials_unlit). Lines and points add the emission (glTF 2.0, section 3.9.7).
     pub unlit: bool,
     /// Texture of base color (RGB) and alpha (A); role `Color`.
     pub base_color_texture: Option<TextureSlot>,
@@ -91,16 +96,28 @@ pub struct Material {
     pub transmission: Option<Transmission>,
     /// Strength and tint of the dielectric part's specular reflection.
     pub specular: Option<Specular>,
+    /// A thin film over the base, in which light interferes.
+    pub iridescence: Option<Iridescence>,
+    /// Light that is scattered through the surface, as through a leaf.
+    pub diffuse_transmission: Option<DiffuseTransmission>,
 }
 
 /// How many textures a material can have.
-pub const SLOT_COUNT: usize = 15;
+pub const SLOT_COUNT: usize = 19;
 
-/// The role of each texture slot: base color, metallic-roughness, normal, occlusion, emissive; clear coat, its roughness,
-/// its normal; sheen color, its roughness; anisotropy; transmission, thickness; specular, its color.
+/// The role of each texture slot, in the order of [`Material::slots`].
 pub const SLOT_ROLES: [TextureRole; SLOT_COUNT] = {
     use TextureRole::{Color, Linear, Normal};
-    [Color, Linear, Normal, Linear, Color, Linear, Linear, Normal, Color, Linear, Linear, Linear, Linear, Linear, Color]
+    [
+        Color, Linear, Normal, Linear, Color, // base
+        Linear, Linear, Normal, // clear coat
+        Color, Linear, // sheen
+        Linear, // anisotropy
+        Linear, Linear, // transmission, volume
+        Linear, Color, // specular
+        Linear, Linear, // iridescence
+        Linear, Color, // diffuse transmission
+    ]
 };
 
 impl Default for Material {
@@ -114,6 +131,7 @@ impl Default for Material {
             emissive: Vec3::ZERO,
             emissive_unit: EmissiveUnit::Display,
             ior: 1.5,
+            dispersion: 0.0,
             normal_scale: 1.0,
             occlusion_strength: 1.0,
             alpha: AlphaMode::Opaque,
@@ -129,6 +147,8 @@ impl Default for Material {
             anisotropy: None,
             transmission: None,
             specular: None,
+            iridescence: None,
+            diffuse_transmission: None,
         }
     }
 }
@@ -146,11 +166,11 @@ impl Material {
         Self { metallic: 1.0, ..Self::dielectric(name, f0, roughness) }
     }
 
-    /// Every texture slot, in the order of [`SLOT_ROLES`].
+    /// Every texture slot: those of the base, then those of each lobe.
     #[must_use]
     pub fn slots(&self) -> [Option<TextureSlot>; SLOT_COUNT] {
-        let Self { clear_coat, sheen, anisotropy, transmission, specular, .. } = self;
-        let volume = transmission.and_then(|t| t.volume);
+        let Self { clear_coat, sheen, anisotropy, transmission, specular, iridescence, diffuse_transmission, .. } =
+            self;
         [
             self.base_color_texture,
             self.metallic_roughness_texture,
@@ -164,10 +184,21 @@ impl Material {
             sheen.and_then(|s| s.roughness_texture),
             anisotropy.and_then(|a| a.texture),
             transmission.and_then(|t| t.texture),
-            volume.and_then(|v| v.thickness_texture),
+            self.volume().and_then(|v| v.thickness_texture),
             specular.and_then(|s| s.texture),
             specular.and_then(|s| s.color_texture),
+            iridescence.and_then(|i| i.texture),
+            iridescence.and_then(|i| i.thickness_texture),
+            diffuse_transmission.and_then(|d| d.texture),
+            diffuse_transmission.and_then(|d| d.color_texture),
         ]
+    }
+
+    /// The body behind the surface, if light passes into it.
+    #[must_use]
+    pub fn volume(&self) -> Option<Volume> {
+        let scattered = self.diffuse_transmission.and_then(|d| d.volume);
+        self.transmission.and_then(|t| t.volume).or(scattered)
     }
 
     /// The lobes that shading has to evaluate; none where the base color is shown as it is.
@@ -179,6 +210,9 @@ impl Material {
             Lobe::Anisotropy => self.anisotropy.is_some(),
             Lobe::Transmission => self.transmission.is_some(),
             Lobe::Specular => self.specular.is_some(),
+            Lobe::Iridescence => self.iridescence.is_some(),
+            Lobe::Dispersion => self.dispersion > 0.0 && self.transmission.is_some_and(|t| t.volume.is_some()),
+            Lobe::DiffuseTransmission => self.diffuse_transmission.is_some(),
         };
         Lobe::ALL.into_iter().filter(|lobe| !self.unlit && has(lobe)).collect()
     }

@@ -1,4 +1,4 @@
-//! Triangle meshes as separate vertex streams.
+//! Meshes of triangles, lines or points, as separate vertex streams.
 
 use glam::{Vec2, Vec3, Vec4};
 
@@ -10,7 +10,43 @@ use crate::moves::gather;
 /// A mesh of a scene.
 pub type MeshId = Id<Mesh>;
 
-/// An indexed triangle mesh. Front faces wind counter-clockwise.
+/// Primitives that the indices of a mesh name; strips, fans and loops become lists when they are imported.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Topology {
+    /// Triangles, three indices each; front faces wind counter-clockwise.
+    #[default]
+    Triangles,
+    /// Lines of a pixel's width, two indices each.
+    Lines,
+    /// Points of a pixel's size, an index each.
+    Points,
+}
+
+impl Topology {
+    /// Number of indices of a primitive.
+    #[must_use]
+    pub const fn corners(self) -> usize {
+        match self {
+            Self::Triangles => 3,
+            Self::Lines => 2,
+            Self::Points => 1,
+        }
+    }
+
+    /// Name of the primitives, in the plural.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Triangles => "triangles",
+            Self::Lines => "lines",
+            Self::Points => "points",
+        }
+    }
+}
+
+/// An indexed mesh.
+///
+/// Lines and points have no area: they cast no shadow, hide nothing from feature culling, and have no levels of detail.
 ///
 /// Streams are arrays of equal length, one element a vertex; optional streams are empty when the
 /// mesh has none. Separate streams keep depth-only passes from fetching what they do not need, and
@@ -21,7 +57,7 @@ pub struct Mesh {
     pub name: String,
     /// Position of each vertex, in meters; finite.
     pub positions: Vec<Vec3>,
-    /// Normal of each vertex; unit length.
+    /// Normal of each vertex; unit length. May be empty for lines and points, whose material is then to be unlit.
     pub normals: Vec<Vec3>,
     /// Tangent of each vertex: xyz of unit length and perpendicular to the normal, w = ±1; the bitangent is
     /// w · normal × tangent. May be empty.
@@ -32,7 +68,9 @@ pub struct Mesh {
     pub uv1: Vec<Vec2>,
     /// Color of each vertex, linear Rec.709 and alpha, by which the base color is multiplied; may exceed 1. May be empty.
     pub colors: Vec<Vec4>,
-    /// Three vertex numbers a triangle, each below the number of vertices.
+    /// Primitives that the indices make up.
+    pub topology: Topology,
+    /// Vertex numbers of each primitive, each below the number of vertices.
     pub indices: Vec<u32>,
     /// The same surface in fewer and fewer triangles ([`Scene::make_levels`](crate::Scene::make_levels)); none of a mesh that is always
     /// drawn whole. Who changes anything else of the mesh clears them.
@@ -60,15 +98,28 @@ impl Mesh {
         self.positions.len()
     }
 
-    /// The number of triangles.
+    /// True for triangles; lines and points have no area.
     #[must_use]
-    pub fn triangle_count(&self) -> usize {
-        self.indices.len() / 3
+    pub fn has_area(&self) -> bool {
+        self.topology == Topology::Triangles
     }
 
-    /// The triangles as triples of vertex numbers.
+    /// The number of primitives, whatever their topology is.
+    #[must_use]
+    pub fn primitive_count(&self) -> usize {
+        self.indices.len() / self.topology.corners()
+    }
+
+    /// The number of triangles; 0 for lines and points.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        if self.has_area() { self.primitive_count() } else { 0 }
+    }
+
+    /// The triangles as triples of vertex numbers; none of lines and points.
     pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
-        self.indices.chunks_exact(3).map(|t| [t[0] as usize, t[1] as usize, t[2] as usize])
+        let indices = if self.has_area() { self.indices.as_slice() } else { &[] };
+        indices.chunks_exact(3).map(|t| [t[0] as usize, t[1] as usize, t[2] as usize])
     }
 
     /// The indices of the mesh, then those of its levels.
@@ -120,7 +171,7 @@ impl Mesh {
     pub fn check(&self) -> Result<(), MeshError> {
         let vertices = self.positions.len();
         for (stream, length, optional) in [
-            ("normals", self.normals.len(), false),
+            ("normals", self.normals.len(), !self.has_area()),
             ("tangents", self.tangents.len(), true),
             ("uv0", self.uv0.len(), true),
             ("uv1", self.uv1.len(), true),
@@ -131,12 +182,15 @@ impl Mesh {
             }
         }
         for indices in self.all_indices() {
-            if !indices.len().is_multiple_of(3) {
-                return Err(MeshError::Triangles { indices: indices.len() });
+            if !indices.len().is_multiple_of(self.topology.corners()) {
+                return Err(MeshError::Primitives { indices: indices.len(), topology: self.topology });
             }
             if let Some(&index) = indices.iter().find(|&&i| i as usize >= vertices) {
                 return Err(MeshError::Index { index, vertices });
             }
+        }
+        if !self.has_area() && !self.levels.is_empty() {
+            return Err(MeshError::Levels { topology: self.topology });
         }
         let mut least = 0.0;
         for (level, error_m) in self.levels.iter().map(|level| level.error_m).enumerate() {
@@ -180,11 +234,19 @@ pub enum MeshError {
         /// How many vertices there are, and so how many elements it should have.
         vertices: usize,
     },
-    /// The number of indices is no multiple of three.
-    #[error("{indices} indices are not triangles")]
-    Triangles {
-        /// How many indices there are.
+    /// The number of indices is no multiple of a primitive's.
+    #[error("{indices} indices are not {}", topology.name())]
+    Primitives {
+        /// Number of indices.
         indices: usize,
+        /// Primitives that they should make up.
+        topology: Topology,
+    },
+    /// A mesh without area has levels of detail.
+    #[error("{} have no levels of detail", topology.name())]
+    Levels {
+        /// Primitives of the mesh.
+        topology: Topology,
     },
     /// An index names a vertex that there is not.
     #[error("index {index} of {vertices} vertices")]
@@ -239,7 +301,7 @@ mod tests {
     fn every_broken_promise_is_found() {
         assert_eq!(triangle().check(), Ok(()));
         type Damage = fn(&mut Mesh);
-        let broken: [(&str, Damage); 10] = [
+        let broken: [(&str, Damage); 14] = [
             ("index 7 of 3 vertices", |m| m.levels = vec![MeshLevel { indices: vec![0, 7, 2], error_m: 0.0 }]),
             ("level 1 is NaN m", |m| m.levels = vec![MeshLevel { error_m: f32::NAN, ..MeshLevel::default() }]),
             ("level 2 is 0.5 m", |m| {
@@ -248,6 +310,16 @@ mod tests {
             ("2 normals for 3 vertices", |m| m.normals.truncate(2)),
             ("1 uv1 for 3 vertices", |m| m.uv1.push(Vec2::ZERO)),
             ("2 indices are not triangles", |m| m.indices.truncate(2)),
+            ("3 indices are not lines", |m| m.topology = Topology::Lines),
+            ("0 normals for 3 vertices", |m| m.normals.clear()),
+            ("1 normals for 3 vertices", |m| {
+                m.topology = Topology::Points;
+                m.normals.truncate(1);
+            }),
+            ("points have no levels of detail", |m| {
+                m.topology = Topology::Points;
+                m.levels = vec![MeshLevel::default()];
+            }),
             ("index 3 of 3 vertices", |m| m.indices = vec![0, 3, 2]),
             ("position of vertex 0 is [NaN", |m| {
                 m.positions[0] = Vec3::NAN;
@@ -262,6 +334,16 @@ mod tests {
             damage(&mut mesh);
             let said = mesh.check().expect_err(message).to_string();
             assert!(said.starts_with(message), "{said} / {message}");
+        }
+    }
+
+    /// Lines and points may lack normals, and have no triangles whatever their number of indices is.
+    #[test]
+    fn lines_and_points_have_no_triangles() {
+        for topology in [Topology::Lines, Topology::Points] {
+            let mesh = Mesh { topology, normals: Vec::new(), indices: vec![0, 1, 2, 0, 1, 2], ..triangle() };
+            assert_eq!((mesh.check(), mesh.triangle_count(), mesh.triangles().count()), (Ok(()), 0, 0));
+            assert_eq!(mesh.primitive_count(), 6 / topology.corners());
         }
     }
 

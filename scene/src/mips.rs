@@ -26,7 +26,8 @@ pub fn level_count(width: u32, height: u32) -> u32 {
     width.max(height).max(1).ilog2() + 1
 }
 
-/// The levels of `image` below the first, largest first, none for a 1 × 1 picture.
+/// The levels of `image` below the first, largest first; none for an image that [holds them](Image::missing_levels), or of
+/// one texel.
 ///
 /// - `Color`: averaged in linear light; colors weigh by their alpha, so that what is cut out does
 ///   not bleed into what stays.
@@ -35,11 +36,9 @@ pub fn level_count(width: u32, height: u32) -> u32 {
 #[must_use]
 pub fn mip_levels(image: &Image, role: TextureRole) -> Vec<Level> {
     let codec = Codec::new(role);
-    if image.width <= 1 && image.height <= 1 {
-        return Vec::new();
-    }
+    let Some(rgba8) = image.rgba8().filter(|_| image.missing_levels()) else { return Vec::new() };
     // The picture itself is never there as floats, which would take four times its bytes.
-    let code = |texel: usize| from_fn(|channel| image.rgba8[4 * texel + channel]);
+    let code = |texel: usize| from_fn(|channel| rgba8[4 * texel + channel]);
     let mut working = halved(image.width as usize, image.height as usize, |texel| codec.decode(code(texel)));
     let mut levels = Vec::new();
     loop {
@@ -190,7 +189,7 @@ mod tests {
 
     fn image(width: u32, height: u32, texel: impl Fn(u32, u32) -> [u8; 4]) -> Image {
         let rgba8 = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).flat_map(|(x, y)| texel(x, y)).collect();
-        Image { name: String::new(), width, height, rgba8 }
+        Image::from_rgba8("", width, height, rgba8)
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::memory::Memory;
+use crate::texture::BlockFormats;
 
 /// What loading may do. Clones share the budget of memory.
 #[derive(Clone, Debug, Default)]
@@ -16,4 +17,7 @@ pub struct LoadOptions {
     pub keep_order: bool,
     /// Name of the material variant to load (KHR_materials_variants); `None` for the default materials.
     pub variant: Option<String>,
+    /// Block-compressed formats of the device that the scene is uploaded to. Basis Universal textures are transcoded to one
+    /// of them where possible; `passes::upload::block_formats` returns those of an opened device.
+    pub block_formats: BlockFormats,
 }

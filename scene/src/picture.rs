@@ -61,8 +61,8 @@ pub fn encode_exr(
     codec::exr::encode(to, texels, rgba)
 }
 
-/// Reads a PNG or JPEG picture (as far as the features `png` and `jpeg` are on) as display codes, four bytes a texel,
-/// rows from the top; returns its size beside them.
+/// Reads a PNG, JPEG or WebP picture; returns its size and its display codes, four bytes a texel, rows from the top. The
+/// features `png`, `jpeg` and `webp` read one format each.
 ///
 /// # Errors
 /// When the file is missing or cannot be decoded.

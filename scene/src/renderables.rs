@@ -8,6 +8,7 @@ use super::boxes::BoxArrays;
 use super::instance::Instance;
 use super::levels::InstanceLevels;
 use super::material::{AlphaMode, Lobe, Lobes};
+use super::mesh::Topology;
 use super::scene::Scene;
 
 /// How a surface is drawn.
@@ -24,7 +25,7 @@ pub enum DrawKind {
 }
 
 impl DrawKind {
-    /// Whether it leaves depth, in a shadow map too.
+    /// True for surfaces that leave depth; triangles do so in shadow maps too.
     #[must_use]
     pub const fn leaves_depth(self) -> bool {
         matches!(self, Self::Opaque | Self::Mask)
@@ -48,6 +49,7 @@ pub struct Renderables {
     origins: Vec<DVec3>,
     stamps: Vec<u64>,
     kinds: Vec<DrawKind>,
+    casts: Vec<bool>,
     mirrored: Vec<bool>,
     flat: Vec<(u32, usize)>,
     solid_casters: Aabb,
@@ -58,7 +60,7 @@ pub struct Renderables {
 
 /// What instances that are drawn together share, in the order in which changing it is dear: shaders, culling, textures,
 /// geometry.
-type SurfaceKey = (Lobes, bool, bool, Option<usize>, usize);
+type SurfaceKey = (Topology, Lobes, bool, bool, Option<usize>, usize);
 
 impl Renderables {
     /// Those of `scene`.
@@ -68,8 +70,8 @@ impl Renderables {
         let keys: Vec<SurfaceKey> = instances.iter().map(|instance| surface_key(scene, instance)).collect();
         let kinds: Vec<DrawKind> = instances.iter().map(|instance| kind_of(scene, instance)).collect();
         // Depth of opaque surfaces asks for no material.
-        let depth_key = |((_, double_sided, mirrored, material, mesh), kind): (&SurfaceKey, &DrawKind)| {
-            (*double_sided, *mirrored, material.filter(|_| *kind != DrawKind::Opaque), *mesh)
+        let depth_key = |((topology, _, double_sided, mirrored, material, mesh), kind): (&SurfaceKey, &DrawKind)| {
+            (*topology, *double_sided, *mirrored, material.filter(|_| *kind != DrawKind::Opaque), *mesh)
         };
         let depth_keys: Vec<_> = keys.iter().zip(&kinds).map(depth_key).collect();
         let bounds: Vec<Aabb> = instances.iter().map(|instance| instance.bounds).collect();
@@ -77,7 +79,12 @@ impl Renderables {
             boxes: BoxArrays::new(&bounds),
             origins: instances.iter().map(|instance| instance.world_from_model.w_axis.truncate()).collect(),
             stamps: instances.iter().map(|instance| stamp(&instance.world_from_model)).collect(),
-            mirrored: keys.iter().map(|key| key.2).collect(),
+            casts: keys
+                .iter()
+                .zip(&kinds)
+                .map(|(key, kind)| key.0 == Topology::Triangles && kind.leaves_depth())
+                .collect(),
+            mirrored: keys.iter().map(|key| key.3).collect(),
             surfaces: Groups::new(&keys),
             depths: Groups::new(&depth_keys),
             levels: InstanceLevels::new(scene),
@@ -118,10 +125,7 @@ impl Renderables {
         self.whole = around(&self.blocks);
         self.flat.clear();
         self.solid_casters = Aabb::EMPTY;
-        for (number, (bounds, kind)) in (0..).zip(self.bounds.iter().zip(&self.kinds)) {
-            if !kind.leaves_depth() {
-                continue;
-            }
+        for (number, bounds) in (0..).zip(&self.bounds).filter(|(number, _)| self.casts[*number as usize]) {
             let half = bounds.half_extent();
             match (0..3).find(|axis| half[*axis] <= 1e-6 * half.max_element()) {
                 Some(axis) => self.flat.push((number, axis)),
@@ -184,19 +188,25 @@ impl Renderables {
         &self.kinds
     }
 
+    /// By instance, true if it is drawn into shadow maps: opaque and masked triangles are, lines and points are not.
+    #[must_use]
+    pub fn casts(&self) -> &[bool] {
+        &self.casts
+    }
+
     /// A number for the placement of each: equal ones have equal numbers, and of different ones one pair in 2⁶⁴ has.
     #[must_use]
     pub fn stamps(&self) -> &[u64] {
         &self.stamps
     }
 
-    /// Those that leave depth and have no thickness, each with the axis along which it has none.
+    /// Shadow casters without thickness, each with the axis along which it has none.
     #[must_use]
     pub fn flat(&self) -> &[(u32, usize)] {
         &self.flat
     }
 
-    /// The box around all others that leave depth.
+    /// The box around all shadow casters that have a thickness.
     #[must_use]
     pub fn solid_casters(&self) -> Aabb {
         self.solid_casters
@@ -228,7 +238,8 @@ fn around(boxes: &[Aabb]) -> Aabb {
 fn surface_key(scene: &Scene, instance: &Instance) -> SurfaceKey {
     let material = &scene.materials[instance.material.index()];
     let (mesh, mirrored) = (instance.mesh.index(), instance.is_mirrored());
-    (material.lobes(), material.double_sided, mirrored, Some(instance.material.index()), mesh)
+    let topology = scene.meshes.get(mesh).map_or_else(Topology::default, |mesh| mesh.topology);
+    (topology, material.lobes(), material.double_sided, mirrored, Some(instance.material.index()), mesh)
 }
 
 fn kind_of(scene: &Scene, instance: &Instance) -> DrawKind {
@@ -284,6 +295,22 @@ mod tests {
         }
         assert_eq!(own.kinds()[4..], [DrawKind::Opaque, DrawKind::Mask]);
         assert_eq!((own.flat(), own.solid_casters().max.x), (&[(5, 1)][..], 10.0));
+    }
+
+    /// Lines and points leave depth and cast nothing, and are drawn apart from triangles.
+    #[test]
+    fn lines_and_points_do_not_cast() {
+        let topologies = [Topology::Triangles, Topology::Lines, Topology::Points];
+        let mesh = |topology| crate::Mesh { topology, ..crate::Mesh::default() };
+        let mut scene = Scene { materials: vec![Material::default()], ..Scene::default() };
+        scene.meshes.extend(topologies.map(mesh));
+        let at = |mesh: usize| placed(mesh, 0, DMat4::from_translation(DVec3::X * (10.0 * mesh as f64)));
+        scene.instances.extend([2, 1, 0].map(at));
+        let own = Renderables::new(&scene);
+        assert_eq!((own.casts(), own.kinds()), (&[false, false, true][..], &[DrawKind::Opaque; 3][..]));
+        assert_eq!((own.solid_casters().max.x, own.whole().max.x), (1.0, 21.0));
+        // Groups are in the order of topologies, so that each is drawn in a row.
+        assert_eq!((own.surfaces().of.as_slice(), own.depths().of.as_slice()), (&[2, 1, 0][..], &[2, 1, 0][..]));
     }
 
     /// Whether rows are taken whole, in part or not at all.

@@ -33,7 +33,7 @@ use crate::texture::{Image, ImageId, Sampler, SamplerId, Texture, TextureId, Tex
 pub struct Scene {
     /// The file's stem or the built-in name.
     pub name: String,
-    /// Triangle meshes, shared by instances.
+    /// Meshes, shared by instances.
     pub meshes: Vec<Mesh>,
     /// Materials, shared by instances.
     pub materials: Vec<Material>,

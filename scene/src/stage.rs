@@ -7,6 +7,8 @@ use std::fmt;
 pub enum Stage {
     /// Reading files named by the scene.
     Files,
+    /// Decompressing geometry: buffer views and Draco meshes.
+    Decompression,
     /// Reading the headers of images.
     Headers,
     /// Decoding images.
@@ -29,6 +31,7 @@ impl fmt::Display for Stage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Files => "reading files",
+            Self::Decompression => "decompressing geometry",
             Self::Headers => "reading headers of images",
             Self::Images => "decoding images",
             Self::Geometry => "building geometry",

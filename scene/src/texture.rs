@@ -11,11 +11,11 @@ pub type TextureId = Id<Texture>;
 /// A sampler of a scene.
 pub type SamplerId = Id<Sampler>;
 
-/// A decoded picture: 8-bit RGBA, row 0 at the top, alpha not premultiplied.
+/// A decoded picture: row 0 at the top, alpha not premultiplied.
 ///
 /// The texels carry no color space of their own; [`TextureRole`] says how to read them. 16-bit
 /// sources are rounded to 8 bits.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Image {
     /// For messages: the image's file, or the file it is embedded in with its number and name.
     pub name: String,
@@ -23,8 +23,102 @@ pub struct Image {
     pub width: u32,
     /// Height in texels, at least 1.
     pub height: u32,
-    /// `width * height * 4` bytes.
-    pub rgba8: Vec<u8>,
+    /// Format of the texels of every level.
+    pub format: ImageFormat,
+    /// Bytes of the first mip level, or of every level down to 1 × 1, largest first. [`Image::missing_levels`] tells the two
+    /// apart. Empty after the image was uploaded and freed.
+    pub levels: Vec<Vec<u8>>,
+}
+
+impl Image {
+    /// Returns an image of 8-bit RGBA texels with one level. `texels` holds `width * height * 4` bytes, which
+    /// [`Scene::check`](crate::Scene::check) verifies.
+    #[must_use]
+    pub fn from_rgba8(name: impl Into<String>, width: u32, height: u32, texels: Vec<u8>) -> Self {
+        Self { name: name.into(), width, height, format: ImageFormat::Rgba8, levels: vec![texels] }
+    }
+
+    /// Returns the texels of the first level, four bytes each; `None` for an image of blocks or one without levels.
+    #[must_use]
+    pub fn rgba8(&self) -> Option<&[u8]> {
+        self.levels.first().filter(|_| self.format == ImageFormat::Rgba8).map(Vec::as_slice)
+    }
+
+    /// Returns the bytes of all levels that the image holds.
+    #[must_use]
+    pub fn size_bytes(&self) -> u64 {
+        self.levels.iter().map(|level| level.len() as u64).sum()
+    }
+
+    /// Returns whether the image holds the first mip level alone and has more than one texel, so that the others are to be
+    /// made. Images of blocks always hold every level.
+    #[must_use]
+    pub fn missing_levels(&self) -> bool {
+        self.levels.len() == 1 && self.width.max(self.height) > 1
+    }
+
+    /// Returns the width and height of a level, at least 1 each.
+    #[must_use]
+    pub fn level_size(&self, level: u32) -> [u32; 2] {
+        level_size([self.width, self.height], level)
+    }
+}
+
+/// Width and height of a level of a picture of this size, at least 1 each.
+pub(crate) fn level_size(size_texels: [u32; 2], level: u32) -> [u32; 2] {
+    size_texels.map(|side| side.checked_shr(level).unwrap_or(0).max(1))
+}
+
+/// Storage format of the texels of an image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ImageFormat {
+    /// Four bytes a texel: red, green, blue, alpha.
+    #[default]
+    Rgba8,
+    /// BC7: blocks of 4 × 4 texels, 16 bytes each.
+    Bc7,
+    /// ETC2 with EAC alpha: blocks of 4 × 4 texels, 16 bytes each.
+    Etc2Rgba8,
+    /// ASTC of low dynamic range: blocks of 4 × 4 texels, 16 bytes each.
+    Astc4x4,
+}
+
+impl ImageFormat {
+    /// Returns the texels along a side of a block: 1 for formats without blocks.
+    #[must_use]
+    pub fn block_side_texels(self) -> u32 {
+        match self {
+            Self::Rgba8 => 1,
+            Self::Bc7 | Self::Etc2Rgba8 | Self::Astc4x4 => 4,
+        }
+    }
+
+    /// Returns the bytes of a block, or of a texel for formats without blocks.
+    #[must_use]
+    pub fn block_bytes(self) -> u32 {
+        match self {
+            Self::Rgba8 => 4,
+            Self::Bc7 | Self::Etc2Rgba8 | Self::Astc4x4 => 16,
+        }
+    }
+
+    /// Returns the bytes of a level of this size. Blocks at its right and lower edge count whole.
+    #[must_use]
+    pub fn level_bytes(self, [width, height]: [u32; 2]) -> u64 {
+        let blocks = |side: u32| u64::from(side.div_ceil(self.block_side_texels()));
+        blocks(width) * blocks(height) * u64::from(self.block_bytes())
+    }
+}
+
+/// Block-compressed formats that a device can sample; none by default, which keeps every image in [`ImageFormat::Rgba8`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BlockFormats {
+    /// [`ImageFormat::Bc7`]: most desktop GPUs.
+    pub bc7: bool,
+    /// [`ImageFormat::Etc2Rgba8`]: mobile GPUs.
+    pub etc2: bool,
+    /// [`ImageFormat::Astc4x4`]: most mobile GPUs.
+    pub astc: bool,
 }
 
 /// What the texels of a texture mean, which decides the GPU format and how mip levels are made.

@@ -42,6 +42,12 @@ impl Feature {
     pub const TRANSMISSION: Self = Self("TRANSMISSION");
     /// Strength and tint of the dielectric specular reflection (KHR_materials_specular).
     pub const SPECULAR: Self = Self("SPECULAR");
+    /// Thin film over the base (KHR_materials_iridescence).
+    pub const IRIDESCENCE: Self = Self("IRIDESCENCE");
+    /// Refraction that differs by color (KHR_materials_dispersion); read with `TRANSMISSION`.
+    pub const DISPERSION: Self = Self("DISPERSION");
+    /// Diffuse transmission (KHR_materials_diffuse_transmission and KHR_materials_volume).
+    pub const DIFFUSE_TRANSMISSION: Self = Self("DIFFUSE_TRANSMISSION");
     /// The material has a texture: its coordinates come with the vertices.
     pub const TEXTURED: Self = Self("TEXTURED");
     /// The mesh has colors at its vertices.
@@ -53,8 +59,17 @@ impl Feature {
     /// Shading computes in f16 where that is safe; the device must have `SHADER_F16`.
     pub const HALF: Self = Self("HALF");
 
-    /// The features that materials call for: each binds textures of its own.
-    pub const LOBES: &[Self] = &[Self::CLEAR_COAT, Self::SHEEN, Self::ANISOTROPY, Self::TRANSMISSION, Self::SPECULAR];
+    /// The features that materials call for. Each binds textures of its own, but for `DISPERSION`.
+    pub const LOBES: &[Self] = &[
+        Self::CLEAR_COAT,
+        Self::SHEEN,
+        Self::ANISOTROPY,
+        Self::TRANSMISSION,
+        Self::SPECULAR,
+        Self::IRIDESCENCE,
+        Self::DISPERSION,
+        Self::DIFFUSE_TRANSMISSION,
+    ];
     /// The features that the embedded files test and materials do not call for.
     pub const OTHERS: &[Self] = &[
         Self::SHADOWS,

@@ -69,6 +69,7 @@ pub mod srgb;
 pub mod standard_surface;
 pub mod taa;
 pub mod table;
+pub mod thin_film;
 pub mod tone_map;
 pub mod unproject;
 pub mod upscale;

@@ -2,6 +2,7 @@
 
 mod bench;
 mod circles;
+mod corpus;
 mod demo;
 mod documents;
 mod frames;
@@ -38,4 +39,5 @@ pub const ALL: &[Command] = &[
     gallery::COMMAND,
     circles::COMMAND,
     rooms::COMMAND,
+    corpus::COMMAND,
 ];

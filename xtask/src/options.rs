@@ -12,6 +12,8 @@ pub struct Options {
     pub no_install: bool,
     /// The rooms that `mutants` is about; all of them if none is named.
     pub rooms: Vec<String>,
+    /// Words after `corpus`, for its program.
+    pub words_of_corpus: Vec<OsString>,
     /// Options of one command, with their values, as they stand.
     own: Vec<(&'static str, Option<OsString>)>,
 }
@@ -79,6 +81,12 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, commands: &[Command]
     let mut help = false;
     let mut arguments = arguments.into_iter();
     while let Some(word) = arguments.next() {
+        if let Some(Command { name: "corpus", .. }) = command
+            && !matches!(word.to_str(), Some("--help" | "-h"))
+        {
+            options.words_of_corpus.push(word);
+            continue;
+        }
         let argument = word.to_string_lossy();
         match &*argument {
             "--help" | "-h" | "help" => help = true,
@@ -149,6 +157,9 @@ Options:
   --with ARGS, --rounds N
                 of `bench`: see `cargo xtask bench --help`
   --build       of `rooms`: see `cargo xtask rooms --help`
+  DIR, --out FOLDER, --jobs N, --seconds N, --memory SIZE, --size WxH,
+  --render PROGRAM
+                of `corpus`: see `cargo xtask corpus --help`
   -h, --help    print help
 ";
 
@@ -161,6 +172,7 @@ mod tests {
         Command { name: "two", summary: "second", details: "", run: |_| Ok(()) },
         Command { name: "prove", summary: "third", details: "", run: |_| Ok(()) },
         Command { name: "mutants", summary: "fourth", details: "", run: |_| Ok(()) },
+        Command { name: "corpus", summary: "fifth", details: "", run: |_| Ok(()) },
     ];
 
     fn read(line: &str) -> Result<Request<'static>, Failure> {
@@ -209,6 +221,13 @@ mod tests {
         assert_eq!(options.rooms, ["wgsl", "passes"]);
         assert!(options.has("--all") && options.value("--count").is_some_and(|n| n == "5"));
         assert_eq!(refusal("prove wgsl"), "unexpected argument `wgsl`");
+    }
+
+    #[test]
+    fn words_after_corpus_are_for_its_program() {
+        let Ok(Request::Run(_, options)) = read("corpus some/folder --size 64x64 -- --msaa 1") else { panic!("sound") };
+        assert_eq!(options.words_of_corpus, ["some/folder", "--size", "64x64", "--", "--msaa", "1"]);
+        assert!(matches!(read("corpus --help"), Ok(Request::Help(Some(Command { name: "corpus", .. })))));
     }
 
     #[test]

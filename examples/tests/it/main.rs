@@ -1,6 +1,8 @@
 //! The programs as their users run them.
 
 mod bad_input;
+#[cfg(unix)]
+mod corpus_run;
 mod lens;
 mod lighting;
 mod looking;

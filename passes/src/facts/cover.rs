@@ -183,6 +183,9 @@ mod tests {
         assert!(!covered(&wall(false), &view(below, DVec3::ZERO)), "its back is not drawn");
         assert!(covered(&wall(true), &view(below, DVec3::ZERO)));
         assert!(!covered(&wall(false), &view(above, DVec3::new(3.0, 3.0, 0.0))), "the horizon is seen");
+        let mut lines = wall(true);
+        lines.meshes[0].topology = framegraph_scene::Topology::Lines;
+        assert!(!covered(&lines, &view(above, DVec3::ZERO)), "lines have no area");
         let mut glass = wall(true);
         glass.materials[0].alpha = AlphaMode::Blend;
         assert!(!covered(&glass, &view(above, DVec3::ZERO)));

@@ -45,10 +45,13 @@ pub(super) fn rules(case: &Case<'_>, facts: &mut Facts) {
         // Shadow maps may ask for more.
         let in_level = |number: &u32| {
             let mesh = &scene.meshes[scene.instances[*number as usize].mesh.index()];
-            mesh.indices_in(level_of(&levels, *number)).len() / 3
+            if mesh.has_area() { mesh.indices_in(level_of(&levels, *number)).len() / 3 } else { 0 }
         };
         triangles += numbers.iter().map(in_level).sum::<usize>();
-        let bounds = numbers.iter().map(|number| &scene.instances[*number as usize].bounds);
+        // Lines and points fill next to nothing of their boxes.
+        let has_area = |i: &&framegraph_scene::Instance| scene.meshes[i.mesh.index()].has_area();
+        let instances = numbers.iter().map(|number| &scene.instances[*number as usize]);
+        let bounds = instances.filter(has_area).map(|instance| &instance.bounds);
         let [seen, shaded] = shaded_at_points(bounds, &view.camera, fit_camera(view).width_over_height);
         let point_px = view.size_px.map(f64::from).iter().product::<f64>() / f64::from(SHADED_POINTS * SHADED_POINTS);
         seen_px += f64::from(seen) * point_px;

@@ -81,7 +81,7 @@ pub(super) fn most_light(case: &Case<'_>) -> f32 {
         _ => f32::INFINITY,
     };
     let known =
-        case.surfaces.lit == 0 && !case.surfaces.colored && settings.fog.is_none() && settings.scene_levels == 0;
+        case.surfaces.lit == 0 && !case.surfaces.may_exceed_one && settings.fog.is_none() && settings.scene_levels == 0;
     if known { behind.max(1.0) } else { f32::INFINITY }
 }
 

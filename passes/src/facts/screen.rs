@@ -76,7 +76,8 @@ fn reflected(case: &Case<'_>, reflections: &crate::ReflectionSettings) -> Fact {
 
 fn see_through(case: &Case<'_>, facts: &mut Facts) {
     let settings = case.settings;
-    let glass = case.seen.most(|lists| lists.transmit.len());
+    // A blended surface transmits too: it is drawn with the blended ones, over the same picture of what is behind.
+    let glass = case.seen.most(|lists| lists.transmit.len() + case.seen.transmissive(&lists.blend));
     let blended = case.seen.most(|lists| lists.blend.len());
     if settings.scene_levels > 0 {
         let kept = format!("{glass} transmissive instances are in view");

@@ -38,7 +38,7 @@ impl<'a> Seen<'a> {
         let mut all = Surfaces::default();
         for instance in self.instances.iter().map(|i| &self.scene.instances[*i]) {
             let (surface, shape) = (self.survey.surface(instance), self.survey.shape(instance));
-            all.colored |= shape.colored;
+            all.may_exceed_one |= shape.colored || surface.emits;
             if surface.unlit {
                 continue;
             }
@@ -56,12 +56,18 @@ impl<'a> Seen<'a> {
         self.lists.iter().map(list).max().unwrap_or(0)
     }
 
-    /// Whether some of what is lit may turn a normal toward `light`, a unit vector.
+    /// Number of the instances of `list` whose material transmits light.
+    pub fn transmissive(&self, list: &[u32]) -> usize {
+        let transmits = |i: &&u32| self.survey.surface(&self.scene.instances[**i as usize]).transmits();
+        list.iter().filter(transmits).count()
+    }
+
+    /// Returns true if a lit surface may turn a normal toward `light`, a unit vector, or let its light through.
     pub fn may_face(&self, light: DVec3) -> bool {
         self.instances.iter().map(|i| &self.scene.instances[*i]).any(|instance| {
             let surface = self.survey.surface(instance);
-            let bent = surface.mapped_normals || surface.double_sided;
-            !surface.unlit && (bent || self.faces(instance, light))
+            let any = surface.mapped_normals || surface.double_sided || surface.is_translucent();
+            !surface.unlit && (any || self.faces(instance, light))
         })
     }
 
@@ -132,8 +138,8 @@ pub(super) struct Surfaces {
     /// Instances with a texture of ambient occlusion.
     pub occlusion_maps: usize,
     pub lobes: Lobes,
-    /// Some vertices have colors.
-    pub colored: bool,
+    /// Some vertices have colors, or some surface emits light: the light of what is unlit may be above 1.
+    pub may_exceed_one: bool,
 }
 
 impl Default for Surfaces {
@@ -144,7 +150,7 @@ impl Default for Surfaces {
             least_roughness: f32::INFINITY,
             occlusion_maps: 0,
             lobes: Lobes::NONE,
-            colored: false,
+            may_exceed_one: false,
         }
     }
 }

@@ -44,7 +44,7 @@ impl Survey {
 pub(super) struct Shape {
     /// All normals are within an angle of this cosine about an axis; none where they are within no half space.
     pub facing: Option<(DVec3, f64)>,
-    /// By how much normals turn along edges, at most, in 1/m of the mesh: 0 where every triangle has one normal.
+    /// By how much normals turn along edges and lines, at most, in 1/m of the mesh: 0 where every triangle has one normal.
     pub turn_per_m: f64,
     /// No part of it is before another.
     pub convex: bool,
@@ -83,6 +83,8 @@ pub(super) struct Surface {
     pub occlusion_map: bool,
     /// It has a texture of emission that nothing can shine through.
     pub dark_emission: bool,
+    /// It emits light.
+    pub emits: bool,
 }
 
 impl Surface {
@@ -93,14 +95,21 @@ impl Surface {
         Self {
             unlit: material.unlit,
             lobes: material.lobes(),
-            most_f0: if material.metallic > 0.0 { 1.0 } else { dielectric },
+            // A film may reflect all of a color.
+            most_f0: if material.metallic > 0.0 || material.iridescence.is_some() { 1.0 } else { dielectric },
             least_roughness: if textured || !material.roughness.is_finite() { 0.0 } else { material.roughness },
             mapped_normals: material.normal_texture.is_some()
                 || material.clear_coat.is_some_and(|coat| coat.normal_texture.is_some()),
             double_sided: material.double_sided,
             occlusion_map: material.occlusion_texture.is_some(),
             dark_emission: material.emissive_texture.is_some() && material.emissive == Vec3::ZERO,
+            emits: material.emissive != Vec3::ZERO,
         }
+    }
+
+    /// Returns true if light from behind is scattered through the surface.
+    pub fn is_translucent(&self) -> bool {
+        self.lobes.contains(Lobe::DiffuseTransmission)
     }
 
     /// Whether it leaves depth for what looks around in the picture.
@@ -127,8 +136,11 @@ fn facing(normals: &[Vec3]) -> Option<(DVec3, f64)> {
 
 fn turn_per_m(mesh: &Mesh) -> f64 {
     let mut most = 0.0_f64;
-    for [a, b, c] in mesh.triangles() {
-        for (from, to) in [(a, b), (b, c), (c, a)] {
+    // Points, and lines without normals, have no normals that turn.
+    let (corners, lit) = (mesh.topology.corners(), !mesh.normals.is_empty());
+    for primitive in mesh.indices.chunks_exact(corners).filter(|_| corners > 1 && lit) {
+        for edge in 0..corners {
+            let [from, to] = [edge, (edge + 1) % corners].map(|corner| primitive[corner] as usize);
             let turn = f64::from((mesh.normals[to] - mesh.normals[from]).length());
             let length = f64::from((mesh.positions[to] - mesh.positions[from]).length());
             // Without length there is no triangle to see.
@@ -140,9 +152,9 @@ fn turn_per_m(mesh: &Mesh) -> f64 {
     most
 }
 
-/// Whether no vertex lies before any triangle's plane.
+/// True if no vertex lies before any triangle's plane. Lines and points have no planes, and count as not convex.
 fn is_convex(mesh: &Mesh) -> bool {
-    if mesh.vertex_count() * mesh.triangle_count() > MOST_TESTS || mesh.positions.is_empty() {
+    if !mesh.has_area() || mesh.vertex_count() * mesh.triangle_count() > MOST_TESTS || mesh.positions.is_empty() {
         return false;
     }
     let at = |i: usize| mesh.positions[i].as_dvec3();
@@ -157,7 +169,7 @@ fn is_convex(mesh: &Mesh) -> bool {
 mod tests {
     use super::*;
     use framegraph_scene::geometry;
-    use framegraph_scene::{MaterialId, MeshId};
+    use framegraph_scene::{MaterialId, MeshId, Topology};
     use glam::DMat4;
 
     #[test]
@@ -170,6 +182,11 @@ mod tests {
         assert!(block.convex && block.turn_per_m == 0.0 && block.facing.is_none());
         let ground = Shape::of(&geometry::plane(glam::Vec2::ONE, 1, glam::Vec2::ONE));
         assert!(ground.facing.is_some_and(|(axis, cosine)| axis == DVec3::Y && cosine > 1.0 - 1e-9));
+        let lines = Mesh { topology: Topology::Lines, ..geometry::sphere(0.5, 32, 16) };
+        let bare = Mesh { topology: Topology::Points, normals: Vec::new(), ..lines.clone() };
+        let [lines, bare] = [Shape::of(&lines), Shape::of(&bare)];
+        assert!(!lines.convex && (lines.turn_per_m - 2.0).abs() < 0.05 && lines.facing.is_none(), "{lines:?}");
+        assert!(!bare.convex && bare.turn_per_m == 0.0 && bare.facing.is_none(), "{bare:?}");
         let mut two = geometry::cuboid(Vec3::ONE);
         two.positions[0] *= 0.1;
         assert!(!Shape::of(&two).convex, "a corner is pushed in");
@@ -187,6 +204,8 @@ mod tests {
         assert_eq!((surface.least_roughness, surface.most_f0), (0.7, plain.dielectric_f0()));
         let textured = Surface::of(&Material { metallic_roughness_texture: Some(slot), ..plain.clone() });
         assert_eq!(textured.least_roughness, 0.0);
+        let film = Some(framegraph_scene::Iridescence::default());
+        assert_eq!(Surface::of(&Material { iridescence: film, ..plain.clone() }).most_f0, 1.0);
         assert_eq!(Surface::of(&Material { metallic: 0.01, ..plain }).most_f0, 1.0);
     }
 

@@ -172,6 +172,23 @@ mod tests {
         Ok(())
     }
 
+    /// The curve halves codes, and the table behind it swaps red and blue.
+    #[test]
+    fn a_file_with_a_curve_and_a_table_is_baked_with_both() -> Result<(), Box<dyn std::error::Error>> {
+        let file = "LUT_1D_SIZE 2\nLUT_3D_SIZE 2\n0 0 0\n0.5 0.5 0.5\n\
+            0 0 0\n0 0 1\n0 1 0\n0 1 1\n1 0 0\n1 0 1\n1 1 0\n1 1 1\n";
+        let colors = framegraph_scene::ColorTable::load_bytes("a.cube".as_ref(), file.as_bytes())?;
+        let extras = Extras { colors: Some(std::sync::Arc::new(colors)), ..Extras::default() };
+        let look = Look { tone_map: ToneMap::Linear, ..Look::default() };
+        let shown = look.function(&extras)?(DVec3::new(1.0, 0.0, 0.0));
+        assert!((shown - DVec3::new(0.0, 0.0, 0.5)).length() < 1e-9, "{shown}");
+        let baked = Baked::new(&look, &extras, DESC)?;
+        // The last entry is white and brighter: code 1 of each channel.
+        assert!(baked.cube && (baked.entry([15, 15, 15]) - 0.5).length() < 1e-9);
+        assert!((baked.entry([15, 0, 0]) - DVec3::new(0.0, 0.0, 0.5)).length() < 1e-9);
+        Ok(())
+    }
+
     #[test]
     fn a_curve_of_ones_own_is_baked_and_asked_for() -> Result<(), GradingError> {
         let look = Look { tone_map: ToneMap::Own, ..Look::default() };

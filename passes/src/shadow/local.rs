@@ -154,7 +154,7 @@ impl LocalView {
         let planes: Vec<DVec4> = sides.into_iter().flatten().chain([w]).collect();
         let mut casters = Vec::new();
         scene.boxes().reaching(DVec3::ZERO, &planes, None, &mut casters);
-        let draws = |number: usize| scene.kinds()[number].leaves_depth() && inside(&scene.bounds()[number]);
+        let draws = |number: usize| scene.casts()[number] && inside(&scene.bounds()[number]);
         casters.retain(|number| draws(*number as usize));
         let texel_m = 2.0 * tan_half / count;
         Fitted {

@@ -103,7 +103,7 @@ impl<'a> SunScene<'a> {
 
     /// Whether an instance can shadow another or itself.
     fn casts(&self, number: u32) -> bool {
-        self.scene.kinds()[number as usize].leaves_depth()
+        self.scene.casts()[number as usize]
             && (self.left_out.is_empty() || self.left_out.binary_search(&number).is_err())
     }
 

@@ -1,6 +1,6 @@
 //! Why a scene did not reach the GPU.
 
-use framegraph_scene::SceneError;
+use framegraph_scene::{ImageFormat, SceneError};
 use framegraph_wgpu::DeviceError;
 
 /// Why a scene did not reach the GPU.
@@ -13,6 +13,14 @@ pub enum UploadError {
     /// The device refused, ran out of memory, or was lost.
     #[error(transparent)]
     Device(#[from] DeviceError),
+    /// An image is of blocks that the device does not sample.
+    #[error("{image}: this device does not sample {}; load the scene with the `block_formats` of the device", name_of(*format))]
+    Format {
+        /// Name of the image.
+        image: String,
+        /// Its format.
+        format: ImageFormat,
+    },
     /// What is written over a material is drawn by another shader than it.
     #[error(
         "material {number} `{name}` has other lobes than the one that was uploaded, or there was none; upload the scene anew"
@@ -23,6 +31,16 @@ pub enum UploadError {
         /// Its number.
         number: usize,
     },
+}
+
+/// Returns the name that the specification of a format gives it.
+fn name_of(format: ImageFormat) -> &'static str {
+    match format {
+        ImageFormat::Rgba8 => "RGBA8",
+        ImageFormat::Bc7 => "BC7",
+        ImageFormat::Etc2Rgba8 => "ETC2 RGBA8",
+        ImageFormat::Astc4x4 => "ASTC 4×4",
+    }
 }
 
 impl std::fmt::Debug for UploadError {

@@ -3,14 +3,20 @@
 use framegraph_scene::material::{AlphaMode, EmissiveUnit, Lobe, Lobes, Material, SLOT_COUNT};
 use framegraph_scene::texture::{TextureSlot, UvTransform};
 use framegraph_shaders::layout::{
-    AnisotropyUniforms, ClearCoatUniforms, MaterialUniforms, SheenUniforms, SpecularUniforms, TRAIT_DOUBLE_SIDED,
-    TRAIT_EMITS, TRAIT_PACKED_OCCLUSION, TRAIT_PLAIN_UV, TRAIT_UNLIT, TextureMap, TransmissionUniforms,
+    AnisotropyUniforms, ClearCoatUniforms, DiffuseTransmissionUniforms, IridescenceUniforms, MATERIAL_SLOTS,
+    MaterialUniforms, SheenUniforms, SpecularUniforms, TRAIT_DOUBLE_SIDED, TRAIT_EMITS, TRAIT_PACKED_OCCLUSION,
+    TRAIT_PLAIN_UV, TRAIT_UNLIT, TextureMap, TransmissionUniforms,
 };
 use framegraph_shaders::{Feature, Features};
 use glam::{Vec2, Vec3};
 
-/// The variables of `wgsl/interface/material.wgsl`, in the order in which [`GpuScene::material_binding`](super::GpuScene::material_binding) counts them: the
-/// factors, then for each of [`Material::slots`] its texture and its sampler, and the array of all factors.
+// The bits of traits follow those of the slots.
+const _: () = assert!(SLOT_COUNT == MATERIAL_SLOTS as usize);
+
+/// Names of the variables of `wgsl/interface/material.wgsl` and of the files of lobes beside it.
+///
+/// [`GpuScene::material_binding`](super::GpuScene::material_binding) counts them in this order: the factors, a texture and a
+/// sampler for each of [`Material::slots`], and the array of all factors.
 pub const MATERIAL_BINDINGS: [&str; 2 + 2 * SLOT_COUNT] = [
     "material",
     "base_color_texture",
@@ -43,6 +49,14 @@ pub const MATERIAL_BINDINGS: [&str; 2 + 2 * SLOT_COUNT] = [
     "specular_sampler",
     "specular_color_texture",
     "specular_color_sampler",
+    "iridescence_texture",
+    "iridescence_sampler",
+    "iridescence_thickness_texture",
+    "iridescence_thickness_sampler",
+    "diffuse_transmission_texture",
+    "diffuse_transmission_sampler",
+    "diffuse_transmission_color_texture",
+    "diffuse_transmission_color_sampler",
     "materials",
 ];
 
@@ -54,6 +68,9 @@ pub fn features_of(lobes: Lobes) -> Features {
         Lobe::Anisotropy => Feature::ANISOTROPY,
         Lobe::Transmission => Feature::TRANSMISSION,
         Lobe::Specular => Feature::SPECULAR,
+        Lobe::Iridescence => Feature::IRIDESCENCE,
+        Lobe::Dispersion => Feature::DISPERSION,
+        Lobe::DiffuseTransmission => Feature::DIFFUSE_TRANSMISSION,
     };
     lobes.iter().map(feature).collect()
 }
@@ -144,22 +161,37 @@ pub fn material_uniforms(material: &Material) -> MaterialUniforms {
             map: map(specular.texture),
             color_map: map(specular.color_texture),
         }),
+        iridescence: material.iridescence.map_or_else(Default::default, |film| IridescenceUniforms {
+            factor: film.factor,
+            ior: film.ior,
+            min_thickness_nm: film.min_thickness_nm,
+            max_thickness_nm: film.max_thickness_nm,
+            map: map(film.texture),
+            thickness_map: map(film.thickness_texture),
+        }),
+        diffuse_transmission: material.diffuse_transmission.map_or_else(Default::default, |scattered| {
+            DiffuseTransmissionUniforms {
+                color: scattered.color,
+                factor: scattered.factor,
+                map: map(scattered.texture),
+                color_map: map(scattered.color_texture),
+            }
+        }),
         ..MaterialUniforms::default()
     }
 }
 
-/// Of a body or, without a volume, of a wall that bends nothing and absorbs nothing.
+/// Returns the uniforms of a body or, without a volume, of a wall that neither bends nor absorbs light. Diffuse transmission
+/// shares the body.
 fn transmission_uniforms(material: &Material, map: impl Fn(Option<TextureSlot>) -> TextureMap) -> TransmissionUniforms {
-    let Some(transmission) = material.transmission else {
-        return TransmissionUniforms::default();
-    };
-    let wall = TransmissionUniforms {
+    let wall = material.transmission.map_or_else(Default::default, |transmission| TransmissionUniforms {
         factor: transmission.factor,
         ior: material.ior.max(1.0),
+        dispersion: material.dispersion,
         map: map(transmission.texture),
         ..TransmissionUniforms::default()
-    };
-    transmission.volume.map_or(wall, |volume| TransmissionUniforms {
+    });
+    material.volume().map_or(wall, |volume| TransmissionUniforms {
         thickness: volume.thickness,
         absorption: volume.absorption_per_m(),
         thickness_map: map(volume.thickness_texture),
@@ -171,7 +203,9 @@ fn transmission_uniforms(material: &Material, map: impl Fn(Option<TextureSlot>) 
 mod tests {
     use super::*;
     use framegraph_scene::TextureId;
-    use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular, Transmission, Volume};
+    use framegraph_scene::material::{
+        Anisotropy, ClearCoat, DiffuseTransmission, Iridescence, Sheen, Specular, Transmission, Volume,
+    };
     use glam::Mat3;
 
     /// Both sides spell KHR_texture_transform out; they must agree.
@@ -272,10 +306,34 @@ mod tests {
                 texture: slot(9.0),
                 color_texture: slot(10.0),
             }),
+            dispersion: 0.5,
+            iridescence: Some(Iridescence {
+                factor: 0.75,
+                texture: slot(11.0),
+                ior: 1.25,
+                min_thickness_nm: 150.0,
+                max_thickness_nm: 250.0,
+                thickness_texture: slot(12.0),
+            }),
+            diffuse_transmission: Some(DiffuseTransmission {
+                factor: 0.25,
+                texture: slot(13.0),
+                color: Vec3::new(0.5, 0.25, 0.125),
+                color_texture: slot(14.0),
+                volume: None,
+            }),
             ..Material::default()
         };
-        let MaterialUniforms { clear_coat, sheen, anisotropy, transmission, specular, .. } =
-            material_uniforms(&material);
+        let MaterialUniforms {
+            clear_coat,
+            sheen,
+            anisotropy,
+            transmission,
+            specular,
+            iridescence: film,
+            diffuse_transmission: scattered,
+            ..
+        } = material_uniforms(&material);
         assert_eq!((clear_coat.factor, clear_coat.roughness, clear_coat.normal_scale), (0.75, 0.25, 0.5));
         assert_eq!((sheen.color, sheen.roughness), (Vec3::new(0.5, 0.25, 0.125), 0.75));
         assert_eq!((anisotropy.rotation, anisotropy.strength), (Vec2::from_angle(2.0), 0.5));
@@ -284,6 +342,10 @@ mod tests {
         let absorption = Vec3::new(2.0, 4.0, 0.0) * std::f32::consts::LN_2;
         assert!((transmission.absorption - absorption).length() < 1e-5);
         assert_eq!((specular.factor, specular.color), (0.5, Vec3::new(2.0, 1.0, 0.5)));
+        assert_eq!(transmission.dispersion, 0.5);
+        let thickness = (film.min_thickness_nm, film.max_thickness_nm);
+        assert_eq!((film.factor, film.ior, thickness), (0.75, 1.25, (150.0, 250.0)));
+        assert_eq!((scattered.factor, scattered.color), (0.25, Vec3::new(0.5, 0.25, 0.125)));
         let maps = [
             clear_coat.map,
             clear_coat.roughness_map,
@@ -295,8 +357,19 @@ mod tests {
             transmission.thickness_map,
             specular.map,
             specular.color_map,
+            film.map,
+            film.thickness_map,
+            scattered.map,
+            scattered.color_map,
         ];
-        assert_eq!(maps.map(|map| map.offset.x), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0]);
+        let expected: [f32; 14] = std::array::from_fn(|i| (i + 1) as f32);
+        assert_eq!(maps.map(|map| map.offset.x), expected);
+        // Without refraction the body is that of the scattered light.
+        let body = material.transmission.and_then(|t| t.volume);
+        let wax = DiffuseTransmission { volume: body, ..DiffuseTransmission::default() };
+        let wax = Material { transmission: None, diffuse_transmission: Some(wax), ..material.clone() };
+        let wax = material_uniforms(&wax).transmission;
+        assert_eq!((wax.factor, wax.thickness, wax.absorption), (0.0, transmission.thickness, transmission.absorption));
         let thin = Transmission { volume: None, ..material.transmission.unwrap_or_default() };
         let thin = material_uniforms(&Material { transmission: Some(thin), ..material }).transmission;
         assert_eq!((thin.thickness, thin.absorption), (0.0, Vec3::ZERO));

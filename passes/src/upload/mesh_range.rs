@@ -1,6 +1,6 @@
 //! Meshes and their levels of detail as ranges of shared buffers.
 
-use framegraph_scene::{Mesh, MeshId};
+use framegraph_scene::{Mesh, MeshId, Topology};
 
 /// The part of the shared buffers that holds a mesh in one level of detail.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -9,9 +9,11 @@ pub struct MeshRange {
     pub short: bool,
     /// Whether its vertices have colors.
     pub colored: bool,
+    /// Primitives that its indices make up.
+    pub topology: Topology,
     /// First index of the mesh among those of its kind in [`GpuScene::indices`](super::GpuScene::indices).
     pub first_index: u32,
-    /// Number of indices: three a triangle.
+    /// Number of indices.
     pub index_count: u32,
     /// Number of the mesh's first vertex, added to every index.
     pub base_vertex: i32,
@@ -36,7 +38,7 @@ impl MeshRanges {
         let whole = |mesh: &Mesh| {
             // Half the bytes where 16 bits are enough.
             let (short, colored) = (mesh.vertex_count() <= 1 << 16, !mesh.colors.is_empty());
-            let own = MeshRange { short, colored, base_vertex, ..MeshRange::default() };
+            let own = MeshRange { short, colored, topology: mesh.topology, base_vertex, ..MeshRange::default() };
             base_vertex += mesh.vertex_count() as i32;
             vec![own; 1 + mesh.levels.len()]
         };

@@ -20,7 +20,7 @@ pub fn vertex_positions(mesh: &Mesh) -> impl Iterator<Item = VertexPosition> + '
 pub fn vertex_attributes(mesh: &Mesh) -> impl Iterator<Item = VertexAttributes> + '_ {
     let absent = VertexAttributes::default();
     let of = move |i: usize| VertexAttributes {
-        normal: mesh.normals[i].to_array(),
+        normal: mesh.normals.get(i).map_or(absent.normal, Vec3::to_array),
         tangent: mesh.tangents.get(i).map_or(absent.tangent, Vec4::to_array),
         uv0: mesh.uv0.get(i).map_or(absent.uv0, Vec2::to_array),
         uv1: mesh.uv1.get(i).map_or(absent.uv1, Vec2::to_array),

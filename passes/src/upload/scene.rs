@@ -84,7 +84,7 @@ impl GpuScene {
         memory: &Memory,
         progress: &mut ProgressFn<'_>,
     ) -> Result<Self, UploadError> {
-        let bare = |image: &Image| Image { rgba8: Vec::new(), name: image.name.clone(), ..*image };
+        let bare = |image: &Image| Image { levels: Vec::new(), name: image.name.clone(), ..*image };
         let bare = scene.images.iter().map(bare).collect();
         let images = std::mem::replace(&mut scene.images, bare).into_iter().map(Cow::Owned).collect();
         Self::with_images(gpu, scene, images, memory, progress)

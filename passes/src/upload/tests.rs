@@ -8,6 +8,7 @@ use framegraph_shaders::layout::MaterialUniforms;
 use framegraph_shaders::layout::{TRAIT_DOUBLE_SIDED, TRAIT_EMITS, TRAIT_PLAIN_UV, VertexAttributes, VertexPosition};
 use glam::{DVec3, Vec3};
 
+use super::textures::check_format;
 use super::*;
 use crate::adapter::working;
 use crate::indirect::LEAST_BATCHES;
@@ -74,9 +75,10 @@ fn built_in_scenes_upload_without_complaint() {
 #[test]
 fn slots_of_textures_are_numbered_as_they_are_bound() {
     let text = framegraph_shaders::library::text("interface/material.wgsl").expect("an embedded file");
+    let count = framegraph_scene::material::SLOT_COUNT;
     let textures = MATERIAL_BINDINGS.iter().filter_map(|name| name.strip_suffix("_texture"));
     let slots: Vec<_> = textures.enumerate().collect();
-    assert_eq!(slots.len(), 15);
+    assert_eq!(slots.len(), count);
     for (slot, name) in slots {
         let constant = format!("const SLOT_{}: u32 = {slot}u;", name.to_uppercase());
         assert!(text.contains(&constant), "`{constant}` is not in it");
@@ -147,7 +149,7 @@ fn an_empty_scene_uploads() {
 
 fn with_image(width: u32, height: u32, texel: [u8; 4]) -> Scene {
     let mut scene = builtin("spheres").expect("built in");
-    let image = Image { name: "dir/wide.png".into(), width, height, rgba8: texel.repeat((width * height) as usize) };
+    let image = Image::from_rgba8("dir/wide.png", width, height, texel.repeat((width * height) as usize));
     let texture = scene.add_texture(image, TextureRole::Linear, Sampler::default());
     scene.materials[0].occlusion_texture = Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() });
     scene
@@ -175,7 +177,7 @@ fn texels_go_as_they_are_uploaded_and_the_budget_knows() {
     let texture = *scene.textures.last().expect("it was added");
     scene.textures.push(Texture { role: TextureRole::Color, ..texture });
     // The built-in scene has a picture of its own, of the same size.
-    let image_bytes = scene.images.iter().map(|image| image.rgba8.len() as u64).sum();
+    let image_bytes = scene.images.iter().map(|image| image.size_bytes()).sum();
     assert_eq!((scene.images.len(), image_bytes), (2, 2 * 64 * 64 * 4));
     let upload = |memory: &Memory, scene: &mut Scene| GpuScene::upload_freeing(&noop(), scene, memory, &mut silent);
     let memory = Memory::new(1 << 20);
@@ -184,7 +186,7 @@ fn texels_go_as_they_are_uploaded_and_the_budget_knows() {
     let mut freed = scene.clone();
     let uploaded = upload(&memory, &mut freed).expect("there is enough");
     assert_eq!(uploaded.size_bytes, whole.size_bytes);
-    assert!(freed.images.iter().all(|image| image.rgba8.is_empty() && image.width == 64));
+    assert!(freed.images.iter().all(|image| image.levels.is_empty() && image.width == 64));
     assert_eq!(freed.images[1].name, "dir/wide.png");
     // Three textures with all their levels are what is taken now.
     let textures = 3 * (1..=7).map(|level| (128_u64 >> level).pow(2) * 4).sum::<u64>();
@@ -200,6 +202,26 @@ fn texels_go_as_they_are_uploaded_and_the_budget_knows() {
     upload(&Memory::new(least - 1), &mut one).expect_err("a byte is missing");
     let error = upload(&Memory::new(30_000), &mut scene).expect_err("no room for levels").to_string();
     assert!(error.contains(": mip levels and upload, 64×64"), "{error}");
+}
+
+#[test]
+fn blocks_that_the_device_does_not_sample_are_refused() {
+    use framegraph_scene::{BlockFormats, ImageFormat};
+    use wgpu::Features;
+    let image = |format| Image { name: "a.ktx2".into(), format, ..Image::default() };
+    for (format, feature, name) in [
+        (ImageFormat::Bc7, Features::TEXTURE_COMPRESSION_BC, "BC7"),
+        (ImageFormat::Etc2Rgba8, Features::TEXTURE_COMPRESSION_ETC2, "ETC2 RGBA8"),
+        (ImageFormat::Astc4x4, Features::TEXTURE_COMPRESSION_ASTC, "ASTC 4×4"),
+    ] {
+        assert!(check_format(feature, &image(format)).is_ok());
+        let error = check_format(Features::all() - feature, &image(format)).expect_err("it is missing").to_string();
+        let hint = "load the scene with the `block_formats` of the device";
+        assert_eq!(error, format!("a.ktx2: this device does not sample {name}; {hint}"));
+    }
+    assert!(check_format(Features::empty(), &image(ImageFormat::Rgba8)).is_ok());
+    // The noop device has every feature.
+    assert_eq!(block_formats(&noop()), BlockFormats { bc7: true, etc2: true, astc: true });
 }
 
 #[test]

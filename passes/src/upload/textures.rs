@@ -8,9 +8,9 @@ use std::path::Path;
 use std::sync::{Arc, Mutex};
 
 use wgpu::{
-    AddressMode, DeviceType, Extent3d, FilterMode, MipmapFilterMode, SamplerDescriptor, TexelCopyBufferLayout,
-    TextureAspect, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
-    TextureViewDescriptor,
+    AddressMode, AstcBlock, AstcChannel, DeviceType, Extent3d, Features, FilterMode, MipmapFilterMode,
+    SamplerDescriptor, TexelCopyBufferLayout, TextureAspect, TextureDescriptor, TextureDimension, TextureFormat,
+    TextureUsages, TextureView, TextureViewDescriptor,
 };
 
 use super::buffers::limit;
@@ -24,7 +24,7 @@ use framegraph_scene::memory::{Loan, Memory, OverBudget};
 use framegraph_scene::mips::{Level, level_count, mip_levels, working_bytes};
 use framegraph_scene::parallel::in_parallel;
 use framegraph_scene::progress::{Progress, ProgressFn, Stage, report};
-use framegraph_scene::texture::{Filter, Image, Sampler, TextureRole, Wrap};
+use framegraph_scene::texture::{BlockFormats, Filter, Image, ImageFormat, Sampler, TextureRole, Wrap};
 use framegraph_wgpu::Gpu;
 
 /// The view and sampler of each slot of each material.
@@ -45,6 +45,39 @@ struct Job<'a> {
     working_bytes: u64,
 }
 
+/// Returns the block-compressed formats that the device samples: what to load a scene with that is uploaded to it.
+#[must_use]
+pub fn block_formats(gpu: &Gpu) -> BlockFormats {
+    let features = gpu.device.features();
+    BlockFormats {
+        bc7: features.contains(Features::TEXTURE_COMPRESSION_BC),
+        etc2: features.contains(Features::TEXTURE_COMPRESSION_ETC2),
+        astc: features.contains(Features::TEXTURE_COMPRESSION_ASTC),
+    }
+}
+
+/// Returns the format of the device for texels in a role.
+fn texture_format(format: ImageFormat, role: TextureRole) -> TextureFormat {
+    let is_srgb = match role {
+        TextureRole::Color => true,
+        TextureRole::Linear | TextureRole::Normal => false,
+    };
+    let linear = match format {
+        ImageFormat::Rgba8 => TextureFormat::Rgba8Unorm,
+        ImageFormat::Bc7 => TextureFormat::Bc7RgbaUnorm,
+        ImageFormat::Etc2Rgba8 => TextureFormat::Etc2Rgba8Unorm,
+        ImageFormat::Astc4x4 => TextureFormat::Astc { block: AstcBlock::B4x4, channel: AstcChannel::Unorm },
+    };
+    if is_srgb { linear.add_srgb_suffix() } else { linear }
+}
+
+/// Checks that a device with these features samples the format of an image.
+pub(super) fn check_format(features: Features, image: &Image) -> Result<(), UploadError> {
+    let format = texture_format(image.format, TextureRole::Linear);
+    let is_sampled = features.contains(format.required_features());
+    is_sampled.then_some(()).ok_or_else(|| UploadError::Format { image: image.name.clone(), format: image.format })
+}
+
 /// What is copied to the device before it is waited for: copies take memory until they are carried out.
 const QUEUED_BYTES: u64 = 64 << 20;
 
@@ -61,6 +94,7 @@ impl MaterialTextures {
         for image in &images {
             let side = u64::from(image.width.max(image.height));
             limit(&image.name, Quantity::Side, side, largest.into())?;
+            check_format(gpu.device.features(), image)?;
         }
         let shared = matches!(gpu.info().device_type, DeviceType::Cpu | DeviceType::IntegratedGpu);
         let jobs = jobs(scene, images, shared);
@@ -86,7 +120,7 @@ impl MaterialTextures {
                         queued_bytes = 0;
                     }
                     if let Some(Cow::Owned(image)) = Arc::into_inner(pixels) {
-                        memory.free(image.rgba8.len() as u64);
+                        memory.free(image.size_bytes());
                     }
                     // What the device keeps is the machine's own memory where they share it.
                     loan.keep(if shared { bytes } else { 0 });
@@ -146,9 +180,14 @@ fn jobs<'a>(scene: &Scene, images: Images<'a>, shared: bool) -> Vec<Job<'a>> {
         if !jobs.iter().any(|job| (job.image, job.role) == (image, role)) {
             let pixels = Arc::clone(&images[image]);
             // The levels with what making them takes, or with the copy of all of them that waits for the device.
-            let bytes = pixels.rgba8.len() as u64;
-            let working_bytes = working_bytes(pixels.width, pixels.height).max(bytes / 3 + bytes * 4 / 3);
-            let working_bytes = working_bytes + if shared { bytes * 4 / 3 } else { 0 };
+            let bytes = pixels.size_bytes();
+            let (copied_bytes, working_bytes) = if pixels.missing_levels() {
+                let copied_bytes = bytes * 4 / 3;
+                (copied_bytes, working_bytes(pixels.width, pixels.height).max(bytes / 3 + copied_bytes))
+            } else {
+                (bytes, bytes)
+            };
+            let working_bytes = working_bytes + if shared { copied_bytes } else { 0 };
             jobs.push(Job { image, role, pixels: Mutex::new(Some(pixels)), working_bytes });
         }
     }
@@ -180,37 +219,38 @@ fn neutral_image(role: TextureRole) -> Image {
         TextureRole::Color | TextureRole::Linear => [255; 4],
         TextureRole::Normal => [128, 128, 255, 255],
     };
-    Image { name: format!("neutral {role:?}"), width: 1, height: 1, rgba8: texel.to_vec() }
+    Image::from_rgba8(format!("neutral {role:?}"), 1, 1, texel.to_vec())
 }
 
-/// Makes the texture of an image and queues the copy of its levels; returns its bytes, too.
+/// Makes the texture of an image and queues the copy of its levels and of those made for it; returns its bytes, too.
 fn write(
     gpu: &Gpu,
     image: &Image,
     role: TextureRole,
     levels: &[Level],
 ) -> Result<(TextureView, u64), framegraph_wgpu::DeviceError> {
-    let format = match role {
-        TextureRole::Color => TextureFormat::Rgba8UnormSrgb,
-        TextureRole::Linear | TextureRole::Normal => TextureFormat::Rgba8Unorm,
-    };
-    let first = (image.width, image.height, image.rgba8.as_slice());
+    let format = texture_format(image.format, role);
+    let own = (0..).zip(&image.levels).map(|(level, bytes)| {
+        let [width, height] = image.level_size(level);
+        (width, height, bytes.as_slice())
+    });
     let rest = levels.iter().map(|l| (l.width, l.height, l.rgba8.as_slice()));
-    let all: Vec<_> = std::iter::once(first).chain(rest).collect();
+    let all: Vec<_> = own.chain(rest).collect();
     debug_assert_eq!(all.len() as u32, level_count(image.width, image.height));
     let view = gpu.guard("a texture of the scene", || {
         let levels = all.iter().map(|(w, h, bytes)| (*w, *h, *bytes));
-        write_levels(gpu, &image.name, format, 4, levels)
+        write_levels(gpu, &image.name, format, image.format.block_bytes(), levels)
     })?;
     Ok((view, all.iter().map(|(.., bytes)| bytes.len() as u64).sum()))
 }
 
-/// A two-dimensional texture of these levels (width, height, bytes), the first one first.
+/// A two-dimensional texture of these levels (width, height, bytes), the first one first. `block_bytes` are those of a block,
+/// or of a texel.
 pub(super) fn write_levels<'a>(
     gpu: &Gpu,
     label: &str,
     format: TextureFormat,
-    texel_bytes: u32,
+    block_bytes: u32,
     levels: impl ExactSizeIterator<Item = (u32, u32, &'a [u8])>,
 ) -> TextureView {
     let mut levels = levels.peekable();
@@ -227,7 +267,10 @@ pub(super) fn write_levels<'a>(
         usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST | TextureUsages::COPY_SRC,
         view_formats: &[],
     });
+    let (block_width, block_height) = format.block_dimensions();
     for (level, (width, height, bytes)) in levels.enumerate() {
+        // Copies are of whole blocks, which reach beyond small levels.
+        let blocks = (width.div_ceil(block_width), height.div_ceil(block_height));
         gpu.queue.write_texture(
             wgpu::TexelCopyTextureInfo {
                 texture: &texture,
@@ -236,8 +279,8 @@ pub(super) fn write_levels<'a>(
                 aspect: TextureAspect::All,
             },
             bytes,
-            TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * texel_bytes), rows_per_image: None },
-            size(width, height),
+            TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(blocks.0 * block_bytes), rows_per_image: None },
+            size(blocks.0 * block_width, blocks.1 * block_height),
         );
     }
     texture.create_view(&TextureViewDescriptor { label: Some(label), ..Default::default() })

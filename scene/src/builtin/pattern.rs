@@ -18,7 +18,7 @@ fn image(name: &str, side: u32, texel: impl Fn(Vec2) -> Vec4) -> Image {
             rgba8.extend(code.to_array().map(|c| c as u8));
         }
     }
-    Image { name: name.into(), width: side, height: side, rgba8 }
+    Image::from_rgba8(name, side, side, rgba8)
 }
 
 /// Linear color and alpha as sRGB codes in 0…1.

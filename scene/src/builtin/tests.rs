@@ -96,7 +96,9 @@ fn lobes_and_glass_call_for_what_they_show() {
     let glass = Lobes::NONE.with(Lobe::Transmission);
     assert_eq!(called_for("glass"), glass);
     let all = Lobe::ALL.into_iter().fold(Lobes::NONE, Lobes::with);
-    assert_eq!(called_for("lobes").union(glass), all);
+    let optics = [Lobe::Iridescence, Lobe::Dispersion, Lobe::DiffuseTransmission, Lobe::Transmission];
+    assert_eq!(called_for("optics"), optics.into_iter().collect());
+    assert_eq!(called_for("lobes").union(called_for("optics")), all);
     assert!(!called_for("lobes").contains(Lobe::Transmission));
     for plain in ["columns", "materials", "spheres"] {
         assert!(called_for(plain).is_empty(), "{plain}");
@@ -106,6 +108,6 @@ fn lobes_and_glass_call_for_what_they_show() {
 #[test]
 fn an_unknown_name_lists_the_known_ones() {
     let error = builtin("sphere\n").expect_err("no such scene").to_string();
-    assert!(error.contains("balls, columns, glass, lamps, lobes, materials, spheres"), "{error}");
+    assert!(error.contains("balls, columns, glass, lamps, lobes, materials, optics, spheres"), "{error}");
     assert!(!error.contains('\n'));
 }

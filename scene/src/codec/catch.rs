@@ -6,7 +6,7 @@ use super::error::CodecError;
 
 /// Runs `decode`; a panic inside becomes an error with its message. Only for calls into decoders of other crates, which
 /// promise not to panic but are given whatever a file holds. Nothing that they could leave half-changed outlives the call.
-pub(super) fn catch_panic<T>(decode: impl FnOnce() -> Result<T, CodecError>) -> Result<T, CodecError> {
+pub(crate) fn catch_panic<T>(decode: impl FnOnce() -> Result<T, CodecError>) -> Result<T, CodecError> {
     catch_unwind(AssertUnwindSafe(decode)).unwrap_or_else(|panic| {
         let message =
             panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());

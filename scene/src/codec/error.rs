@@ -49,7 +49,7 @@ pub enum CodecError {
     /// A Radiance file breaks its format's rules.
     #[error(transparent)]
     Hdr(#[from] HdrError),
-    /// A Khronos texture breaks its format's rules, or is no cube of light.
+    /// A Khronos texture breaks its format's rules, or has another shape or other texels than its use asks for.
     #[error(transparent)]
     Ktx(#[from] KtxError),
     /// An error of the decoder or encoder of another crate, or of the operating system.
@@ -68,7 +68,7 @@ impl std::fmt::Debug for CodecError {
 
 impl CodecError {
     /// An error of another crate.
-    #[cfg(any(feature = "png", feature = "jpeg", feature = "exr"))]
+    #[cfg(any(feature = "png", feature = "jpeg", feature = "webp", feature = "exr"))]
     pub(super) fn other(error: impl std::error::Error + Send + Sync + 'static) -> Self {
         Self::Other(Box::new(error))
     }

@@ -14,7 +14,7 @@ pub enum FileKind {
     Hdr,
     /// OpenEXR.
     Exr,
-    /// WebP, which is never read.
+    /// WebP.
     WebP,
     /// GIF, which is never read.
     Gif,
@@ -26,7 +26,7 @@ pub enum FileKind {
     Dds,
     /// Khronos texture, version 1: environments alone.
     Ktx1,
-    /// Khronos texture, version 2: environments alone.
+    /// Khronos texture, version 2: environments and textures.
     Ktx2,
 }
 
@@ -54,6 +54,8 @@ impl FileKind {
         match self {
             Self::Png => (!cfg!(feature = "png")).then_some("png"),
             Self::Jpeg => (!cfg!(feature = "jpeg")).then_some("jpeg"),
+            Self::WebP => (!cfg!(feature = "webp")).then_some("webp"),
+            Self::Ktx2 => (!cfg!(feature = "basisu")).then_some("basisu"),
             Self::Exr => (!cfg!(feature = "exr")).then_some("exr"),
             _ => None,
         }

@@ -1,14 +1,20 @@
-//! Khronos textures that hold a cube of light, in either version of the format: six square faces, +x −x +y −y +z −z, each
-//! with its rows from the top as seen by who looks a cube up by direction.
+//! Khronos textures: cubes of light in either version of the format, and flat textures in version 2 (`texture.rs`).
 //!
-//! Floating-point texels alone are read. Filament's `cmgen` writes two such files of an environment: `_skybox.ktx`, its
+//! A cube has six square faces, +x −x +y −y +z −z, each with its rows from the top as seen by who looks a cube up by
+//! direction. Its texels are floating-point. Filament's `cmgen` writes two such files of an environment: `_skybox.ktx`, its
 //! radiance, and `_ibl.ktx`, radiance filtered for a roughness a level, with irradiance under the key `sh`.
 
+#[cfg(feature = "basisu")]
+mod basis;
 mod cube;
 mod entries;
 pub(super) mod error;
+#[cfg(feature = "basisu")]
+mod inflate;
 mod reader;
 mod texel;
+#[cfg(feature = "basisu")]
+pub(super) mod texture;
 mod version_1;
 mod version_2;
 

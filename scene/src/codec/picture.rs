@@ -1,6 +1,7 @@
 //! Decoded pictures.
 
 use super::error::CodecError;
+use crate::texture::ImageFormat;
 
 /// A picture of eight bits a channel.
 pub(crate) struct Picture8 {
@@ -30,6 +31,40 @@ impl Header {
     }
 }
 
+/// A decoded texture: a picture, or blocks for a device, with the mip levels that the file holds.
+pub(crate) struct TextureLevels {
+    /// Width and height of the first level.
+    pub size_texels: [u32; 2],
+    /// Format of the texels.
+    pub format: ImageFormat,
+    /// The first level, or every level down to 1 × 1.
+    pub levels: Vec<Vec<u8>>,
+}
+
+impl From<Picture8> for TextureLevels {
+    fn from(picture: Picture8) -> Self {
+        Self { size_texels: picture.size_texels, format: ImageFormat::Rgba8, levels: vec![picture.rgba8] }
+    }
+}
+
+/// Size of a texture according to its header.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct TextureHeader {
+    /// Width and height of the first level.
+    pub size_texels: [u32; 2],
+    /// Bytes of all levels once they are decoded.
+    pub image_bytes: u64,
+    /// Bytes that decoding allocates beside the levels.
+    pub working_bytes: u64,
+}
+
+impl From<Header> for TextureHeader {
+    fn from(header: Header) -> Self {
+        let Header { size_texels, working_bytes } = header;
+        Self { size_texels, image_bytes: header.rgba8_bytes(), working_bytes }
+    }
+}
+
 /// A picture of floats.
 pub(crate) struct PictureF32 {
     /// Width and height.
@@ -52,7 +87,7 @@ pub(super) fn check_size(size_texels: [u32; 2], limits: [u32; 2]) -> Result<(), 
 }
 
 /// Three bytes a texel with alpha 255.
-#[cfg(any(feature = "png", feature = "jpeg"))]
+#[cfg(any(feature = "png", feature = "jpeg", feature = "webp", feature = "basisu"))]
 pub(super) fn opaque(rgb: &[u8]) -> Vec<u8> {
     widened(rgb, |[r, g, b]| [r, g, b, 255])
 }
@@ -64,7 +99,7 @@ pub(super) fn gray(luma: &[u8]) -> Vec<u8> {
 }
 
 /// Four bytes of each texel of `N`, in as much memory as they take.
-#[cfg(any(feature = "png", feature = "jpeg"))]
+#[cfg(any(feature = "png", feature = "jpeg", feature = "webp", feature = "basisu"))]
 pub(super) fn widened<const N: usize>(samples: &[u8], rgba: impl Fn([u8; N]) -> [u8; 4]) -> Vec<u8> {
     let (texels, _) = samples.as_chunks::<N>();
     let mut wide = Vec::with_capacity(texels.len() * 4);

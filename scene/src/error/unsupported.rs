@@ -20,7 +20,7 @@ pub enum Unsupported {
         /// Its scheme: `https`.
         scheme: String,
     },
-    /// A texture that is neither PNG nor JPEG, or of a format that this build does not read.
+    /// A texture that is neither PNG, JPEG, WebP nor KTX2, or of a format that this build does not read.
     Image {
         /// Which one: `image 3`.
         at: String,
@@ -54,10 +54,10 @@ impl fmt::Display for Unsupported {
                 )
             }
             Self::Image { at, kind } => {
-                let hint = of_kind(kind).unwrap_or_else(|| "; use PNG or JPEG".into());
+                let hint = of_kind(kind).unwrap_or_else(|| "; use PNG, JPEG, WebP or KTX2".into());
                 write!(f, "{at} in {kind} format is not supported{hint}")
             }
-            Self::Environment { kind } => match kind.as_ref().and_then(of_kind) {
+            Self::Environment { kind } => match kind.as_ref().filter(|kind| **kind == FileKind::Exr).and_then(of_kind) {
                 Some(hint) => write!(f, "an environment in OpenEXR format is not supported{hint}"),
                 None => f.write_str("an environment that is neither Radiance .hdr nor OpenEXR .exr nor a cube in .ktx or .ktx2 is not supported"),
             },

@@ -22,8 +22,11 @@ pub fn shaded_vertices(mesh: &Mesh) -> usize {
 }
 
 /// Orders the triangles of `mesh`, and its vertices by their first use, if fewer vertices are shaded for it; vertices that no triangle uses
-/// go then. The surface is the same; where triangles blend over or lie in one another, another may be the last.
+/// go then. Lines and points keep their order. The surface is the same; where triangles blend over or lie in one another, another may be the last.
 pub fn order_for_drawing(mesh: &mut Mesh) {
+    if !mesh.has_area() {
+        return;
+    }
     let order = drawn_order(mesh, &mesh.indices);
     if order != mesh.indices {
         let (indices, source) = first_uses(&order, mesh.vertex_count());

@@ -1,17 +1,20 @@
 //! Typed arrays out of buffer views (glTF 2.0, sections 3.6.2 and 5.1): strided, normalized, sparse,
 //! or zero where no view is given.
 
+use std::borrow::Cow;
+
 use gltf_json::accessor::{ComponentType, Type, sparse};
 use gltf_json::validation::Checked;
 
 use super::limits::MAX_ELEMENTS;
+use super::packed::Values;
 use super::source::{Source, beyond, slice};
 use crate::error::{Quantity, SceneError};
 
 /// An accessor whose every byte is known to be there.
 struct Elements<'a> {
     /// From the first element on; `None` for zeros.
-    data: Option<&'a [u8]>,
+    data: Option<Cow<'a, [u8]>>,
     stride: usize,
     count: usize,
     component: ComponentType,
@@ -26,12 +29,13 @@ struct Elements<'a> {
 /// where the accessor says so, and as plain numbers otherwise (KHR_mesh_quantization).
 pub(super) fn floats<const N: usize>(
     source: &Source<'_>,
-    index: usize,
+    values: impl Into<Values>,
     user: &str,
 ) -> Result<Vec<[f32; N]>, SceneError> {
-    let elements = resolve(source, index, user)?;
+    let values = values.into();
+    let elements = resolve(source, values, user)?;
     if elements.width != N {
-        let reason = format!("accessor {index} has {} components, not {N}", elements.width);
+        let reason = format!("accessor {} has {} components, not {N}", values.accessor, elements.width);
         return Err(source.malformed(user, reason));
     }
     source.charge(elements.count as u64 * 4 * N as u64)?;
@@ -46,7 +50,7 @@ pub(super) fn floats<const N: usize>(
 
 /// Reads an accessor of unsigned integers.
 pub(super) fn integers(source: &Source<'_>, index: usize, user: &str) -> Result<Vec<u32>, SceneError> {
-    let elements = resolve(source, index, user)?;
+    let elements = resolve(source, index.into(), user)?;
     let whole = matches!(elements.component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32);
     if elements.width != 1 || !whole {
         let reason = format!("accessor {index} does not hold unsigned scalars");
@@ -67,7 +71,7 @@ pub(super) fn width(source: &Source<'_>, index: usize) -> Option<usize> {
 
 /// Decodes each element, sparse replacements included. Ranges were checked by [`resolve`].
 fn collect<T: Copy>(elements: &Elements<'_>, zero: T, read: impl Fn(&[u8]) -> T) -> Vec<T> {
-    let mut values = match elements.data {
+    let mut values = match &elements.data {
         Some(data) => (0..elements.count).map(|i| read(&data[i * elements.stride..])).collect(),
         None => vec![zero; elements.count],
     };
@@ -80,7 +84,8 @@ fn collect<T: Copy>(elements: &Elements<'_>, zero: T, read: impl Fn(&[u8]) -> T)
 }
 
 /// Looks an accessor up and checks every range it will be read from. `user` names who asks.
-fn resolve<'a>(source: &'a Source<'_>, index: usize, user: &str) -> Result<Elements<'a>, SceneError> {
+fn resolve<'a>(source: &'a Source<'_>, values: Values, user: &str) -> Result<Elements<'a>, SceneError> {
+    let index = values.accessor;
     let accessors = &source.root.accessors;
     let accessor = accessors.get(index).ok_or_else(|| source.malformed(user, beyond("accessor", index, accessors)))?;
     let at = format!("{user}: accessor {index}");
@@ -101,11 +106,21 @@ fn resolve<'a>(source: &'a Source<'_>, index: usize, user: &str) -> Result<Eleme
     }
     let width = kind.multiplicity();
     let size = component.size() * width;
+    if let Some((view, id)) = values.packed {
+        // The accessor's own view and sparse values are for programs that do not decode the mesh.
+        let data = packed(source, &at, view, id, component, width)?;
+        if data.len() as u64 != count * size as u64 {
+            let reason = format!("states {count} elements, but the compressed mesh has {}", data.len() / size);
+            return Err(source.malformed(&at, reason));
+        }
+        let (data, normalized) = (Some(data), accessor.normalized);
+        return Ok(Elements { data, stride: size, count: count as usize, component, width, normalized, sparse: None });
+    }
     let (data, stride) = match accessor.buffer_view {
         Some(view) => {
             let offset = accessor.byte_offset.map_or(0, |o| o.0);
             let (data, stride) = array(source, &at, view.value(), offset, count, size)?;
-            (Some(data), stride)
+            (Some(Cow::Borrowed(data)), stride)
         }
         None => (None, size),
     };
@@ -114,6 +129,31 @@ fn resolve<'a>(source: &'a Source<'_>, index: usize, user: &str) -> Result<Eleme
         None => None,
     };
     Ok(Elements { data, stride, count: count as usize, component, width, normalized: accessor.normalized, sparse })
+}
+
+/// The values of an attribute of a compressed mesh, in the component type of an accessor.
+fn packed<'a>(
+    source: &'a Source<'_>,
+    at: &str,
+    view: usize,
+    id: u32,
+    component: ComponentType,
+    width: usize,
+) -> Result<Cow<'a, [u8]>, SceneError> {
+    let attribute = source.meshes.get(&view).and_then(|mesh| mesh.attributes.get(&id));
+    let attribute = attribute.ok_or_else(|| {
+        source.malformed(at, format!("the compressed mesh of buffer view {view} lacks attribute {id}"))
+    })?;
+    if attribute.width != width {
+        let reason =
+            format!("has {width} components, but attribute {id} of the compressed mesh has {}", attribute.width);
+        return Err(source.malformed(at, reason));
+    }
+    let values = attribute.values(component).map_err(|reason| source.malformed(at, reason))?;
+    if let Cow::Owned(values) = &values {
+        source.charge(values.len() as u64)?;
+    }
+    Ok(values)
 }
 
 /// The bytes of `count` elements of `size` bytes, from `offset` in a view, and their stride.

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::cell::OnceCell;
+use std::collections::BTreeSet;
 
 use super::source::{Buffer, Source};
 use super::uri::Resource;
@@ -10,7 +11,7 @@ use crate::progress::{Progress, ProgressFn, Stage, report};
 use crate::read::{file_bytes, read_file};
 
 /// Returns the bytes of every buffer. Buffer 0 without a URI is the binary chunk `blob`; another one without a URI is
-/// absent.
+/// absent. Fallbacks of compressed buffer views are not read and stay empty.
 pub(super) fn load<'a>(
     source: &Source<'_>,
     blob: Option<&'a [u8]>,
@@ -18,8 +19,13 @@ pub(super) fn load<'a>(
 ) -> Result<Vec<Buffer<'a>>, SceneError> {
     let all = &source.root.buffers;
     let mut buffers = Vec::new();
+    let fallbacks = fallbacks(source, blob.is_some());
     for (i, buffer) in all.iter().enumerate() {
         let at = format!("buffer {i}");
+        if fallbacks.contains(&i) {
+            buffers.push(Buffer::Bytes(Cow::Borrowed(&[][..])));
+            continue;
+        }
         let bytes: Cow<'a, [u8]> = match (&buffer.uri, blob) {
             (Some(uri), _) => match source.resolve(&at, uri)? {
                 Resource::Bytes(bytes) => {
@@ -47,4 +53,16 @@ pub(super) fn load<'a>(
         report(progress, source.file, Progress { stage: Stage::Files, done: i + 1, total: all.len(), item: &at })?;
     }
     Ok(buffers)
+}
+
+/// Buffers that hold uncompressed copies of compressed buffer views, which this build decodes, or promise to.
+#[cfg(feature = "meshopt")]
+fn fallbacks(source: &Source<'_>, has_blob: bool) -> BTreeSet<usize> {
+    super::views::fallbacks(source.root, has_blob)
+}
+
+/// A build that decodes no views needs every buffer.
+#[cfg(not(feature = "meshopt"))]
+fn fallbacks(_: &Source<'_>, _: bool) -> BTreeSet<usize> {
+    BTreeSet::new()
 }

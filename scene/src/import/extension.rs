@@ -33,6 +33,10 @@ const fn full(name: &'static str, note: &'static str) -> Extension {
     Extension { name, support: Support::Full, note }
 }
 
+const fn feature(name: &'static str, feature: &'static str, note: &'static str) -> Extension {
+    Extension { name, support: Support::Feature(feature), note }
+}
+
 const fn none(name: &'static str, note: &'static str) -> Extension {
     Extension { name, support: Support::None, note }
 }
@@ -48,10 +52,10 @@ pub const EXTENSIONS: &[Extension] = &[
     none("EXT_mesh_manifold", "the mesh is drawn; its manifold indices are not read"),
     none("EXT_mesh_primitive_edge_visibility", "edges are not drawn"),
     none("EXT_mesh_primitive_restart", "an index that restarts a strip is refused as out of range"),
-    none("EXT_meshopt_compression", "compressed buffer views are not decoded"),
+    feature("EXT_meshopt_compression", "meshopt", "all modes and filters"),
     none("EXT_structural_metadata", "metadata is not read"),
     none("EXT_texture_astc", "ASTC images are not decoded"),
-    none("EXT_texture_webp", "WebP images are not decoded; the fallback image is used"),
+    feature("EXT_texture_webp", "webp", "still pictures, lossy and lossless; they are preferred to the fallback image"),
     none("KHR_accessor_float64", "accessors of 64-bit floats are refused"),
     full(
         "KHR_animation_pointer",
@@ -59,18 +63,18 @@ pub const EXTENSIONS: &[Extension] = &[
          properties keep their value, with a warning",
     ),
     none("KHR_audio_emitter", "there is no sound"),
-    none("KHR_draco_mesh_compression", "compressed primitives are not decoded"),
+    feature("KHR_draco_mesh_compression", "draco", "bitstreams up to 2.2, every encoding of meshes"),
     none("KHR_gaussian_splatting", "splats are not drawn"),
     none("KHR_implicit_shapes", "shapes are not drawn; they serve physics"),
     none("KHR_interactivity", "behavior graphs are not run"),
     full("KHR_lights_punctual", "directional, point and spot lights"),
     full("KHR_materials_anisotropy", ""),
     full("KHR_materials_clearcoat", ""),
-    none("KHR_materials_diffuse_transmission", "the surface is opaque"),
-    none("KHR_materials_dispersion", "all wavelengths refract alike"),
+    full("KHR_materials_diffuse_transmission", ""),
+    full("KHR_materials_dispersion", ""),
     full("KHR_materials_emissive_strength", "emission is in nits"),
     full("KHR_materials_ior", ""),
-    none("KHR_materials_iridescence", "the surface has no thin film"),
+    full("KHR_materials_iridescence", ""),
     full("KHR_materials_pbrSpecularGlossiness", "converted to a metal-rough material, as Filament shades it"),
     full("KHR_materials_sheen", ""),
     full("KHR_materials_specular", ""),
@@ -83,18 +87,36 @@ pub const EXTENSIONS: &[Extension] = &[
     full("KHR_materials_volume", ""),
     none("KHR_materials_volume_scatter", "the volume absorbs and does not scatter"),
     full("KHR_mesh_quantization", ""),
-    none("KHR_meshopt_compression", "compressed buffer views are not decoded"),
+    feature("KHR_meshopt_compression", "meshopt", "all modes and filters, versions 0 and 1 of attributes"),
     none("KHR_node_hoverability", "it concerns input, which a scene has none of"),
     none("KHR_node_selectability", "it concerns input, which a scene has none of"),
     full("KHR_node_visibility", "meshes and lights of hidden nodes are left out; the value cannot be animated"),
     none("KHR_physics_rigid_bodies", "nothing is simulated"),
     none("KHR_techniques_webgl", "shaders in files are not read"),
-    none("KHR_texture_basisu", "KTX2 images are not decoded; the fallback image is used"),
+    feature(
+        "KHR_texture_basisu",
+        "basisu",
+        "ETC1S and UASTC become BC7, ETC2 or ASTC where the device samples these, RGBA8 otherwise; they are preferred to the fallback image",
+    ),
     none("KHR_texture_procedurals", "procedural textures are not evaluated"),
     full("KHR_texture_transform", ""),
     none("KHR_xmp", "metadata is not read"),
     none("KHR_xmp_json_ld", "metadata is not read"),
 ];
+
+/// Returns [`EXTENSIONS`] as a table in Markdown.
+pub fn extensions_table() -> String {
+    let row = |extension: &Extension| {
+        let support = match extension.support {
+            Support::Full => "yes".to_owned(),
+            Support::Feature(feature) => format!("with the feature `{feature}`"),
+            Support::None => "no".to_owned(),
+        };
+        format!("| `{}` | {support} | {} |\n", extension.name, extension.note)
+    };
+    let rows: String = EXTENSIONS.iter().map(row).collect();
+    format!("| extension | read | note |\n| --- | --- | --- |\n{rows}")
+}
 
 /// Returns whether this build reads the extension.
 pub(super) fn is_supported(name: &str) -> bool {
@@ -108,11 +130,13 @@ pub(super) fn is_supported(name: &str) -> bool {
 
 /// Returns whether this crate was compiled with the feature.
 fn is_enabled(feature: &str) -> bool {
-    match feature {
-        "png" => cfg!(feature = "png"),
-        "jpeg" => cfg!(feature = "jpeg"),
-        _ => false,
-    }
+    let enabled = [
+        ("draco", cfg!(feature = "draco")),
+        ("meshopt", cfg!(feature = "meshopt")),
+        ("webp", cfg!(feature = "webp")),
+        ("basisu", cfg!(feature = "basisu")),
+    ];
+    enabled.contains(&(feature, true))
 }
 
 /// Checks the version and the extensions of a document.
@@ -143,7 +167,10 @@ pub(super) fn check(file: &Path, root: &Root, warnings: &mut Warnings) -> Result
             .filter(|m| m.extensions.as_ref().is_some_and(|e| e.others.contains_key(name)))
             .count();
         let known = EXTENSIONS.iter().find(|extension| extension.name == name);
-        let effect = known.map_or(String::new(), |extension| format!(": {}", extension.note));
+        let effect = known.map_or(String::new(), |extension| match extension.support {
+            Support::Feature(feature) => format!(": compile framegraph-scene with its feature `{feature}`"),
+            Support::Full | Support::None => format!(": {}", extension.note),
+        });
         if materials > 0 {
             warnings.push(format!("{name} is ignored ({materials} materials use it){effect}"));
         } else {
@@ -160,5 +187,18 @@ mod tests {
     #[test]
     fn extensions_are_sorted_and_unique() {
         assert!(EXTENSIONS.windows(2).all(|pair| pair[0].name < pair[1].name));
+    }
+
+    #[test]
+    fn the_document_has_the_table_of_extensions() {
+        let document = include_str!("../../../docs/files.md");
+        let after = document.split_once("<!-- table: extensions -->\n").map(|(_, after)| after);
+        let table = after.and_then(|after| after.split_once("<!-- end -->")).map(|(table, _)| table);
+        let expected = extensions_table();
+        assert!(
+            table == Some(&expected),
+            "docs/files.md: the table is out of date; replace it by the output of `cargo run -p framegraph-scene --example \
+             extensions`:\n{expected}"
+        );
     }
 }

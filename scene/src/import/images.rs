@@ -1,4 +1,4 @@
-//! Decoding PNG and JPEG images: headers first, then pixels on as many threads as there are cores and as there is memory for.
+//! Decoding images of textures: headers first, then pixels on as many threads as there are cores and as there is memory for.
 
 use std::borrow::Cow;
 use std::ops::ControlFlow;
@@ -8,14 +8,15 @@ use gltf_json as json;
 
 use super::limits::MAX_IMAGE_SIDE_TEXELS;
 use super::source::Source;
+use super::texture::Roughness;
 use super::uri::Resource;
-use crate::codec::{CodecError, Header, decode_8, header_8};
+use crate::codec::{CodecError, TextureHeader, TextureLevels, decode_texture, texture_header};
 use crate::error::{SceneError, Unsupported, one_line};
 use crate::memory::{Loan, OverBudget};
 use crate::parallel::in_parallel;
 use crate::progress::{Progress, ProgressFn, Stage, report};
 use crate::read::{file_bytes, read_file, read_start};
-use crate::texture::Image;
+use crate::texture::{BlockFormats, Image, Texture, TextureRole};
 
 /// An image that is found but not decoded.
 struct Encoded<'a> {
@@ -25,7 +26,9 @@ struct Encoded<'a> {
     at: String,
     /// None for a file, which is read when it is decoded.
     bytes: Option<Cow<'a, [u8]>>,
-    header: Header,
+    header: TextureHeader,
+    /// Formats of blocks to which it may be transcoded.
+    formats: BlockFormats,
     /// What decoding takes beside the picture itself, the file's bytes included.
     working_bytes: u64,
 }
@@ -33,25 +36,30 @@ struct Encoded<'a> {
 /// Bytes of a file in which a header is looked for first; some have large metadata before it.
 const START_BYTES: u64 = 1 << 16;
 
-/// Decodes the images with these indices in the file, in this order, none of them twice.
+/// Decodes the images with these indices in the file, in this order, none of them twice. `textures` say in which roles the
+/// images are read; those that `computed` ones are made from stay RGBA8.
 ///
 /// All headers are read before any pixel, so that whether there is memory for all does not depend on the order in which
 /// threads finish. The first error in the order of the list is reported, so messages do not depend on it either.
 pub(super) fn decode(
     source: &Source<'_>,
     indices: &[usize],
+    (textures, computed): (&[Texture], &[Roughness]),
     progress: &mut ProgressFn<'_>,
 ) -> Result<Vec<Image>, SceneError> {
     let mut encoded = Vec::with_capacity(indices.len());
     for (done, &index) in indices.iter().enumerate() {
-        let image = find(source, &source.root.images[index], index)?;
+        let is_read = computed.iter().any(|roughness| roughness.image.index() == done);
+        let sampled = if is_read { BlockFormats::default() } else { source.block_formats };
+        let formats = formats(sampled, textures, done);
+        let image = find(source, &source.root.images[index], index, formats)?;
         let step = Progress { stage: Stage::Headers, done: done + 1, total: indices.len(), item: &image.at };
         report(progress, source.file, step)?;
         encoded.push(image);
     }
     let over = |image: &Encoded<'_>, budget| over(image, budget);
     for image in &encoded {
-        source.keep(image.header.rgba8_bytes()).map_err(|budget| over(image, budget))?;
+        source.keep(image.header.image_bytes).map_err(|budget| over(image, budget))?;
     }
     for image in &encoded {
         source.memory.lend(image.working_bytes).map(drop).map_err(|budget| over(image, budget))?;
@@ -75,13 +83,25 @@ pub(super) fn decode(
     images.into_iter().flatten().collect()
 }
 
+/// Formats for the image at this place of the list. A normal map is not made ETC2, whose blocks vary along one line of
+/// colors at a time and thus bend normals.
+fn formats(of_device: BlockFormats, textures: &[Texture], place: usize) -> BlockFormats {
+    let is_normal = |texture: &Texture| texture.image.index() == place && texture.role == TextureRole::Normal;
+    BlockFormats { etc2: of_device.etc2 && !textures.iter().any(is_normal), ..of_device }
+}
+
 fn over(image: &Encoded<'_>, budget: OverBudget) -> SceneError {
     let [width, height] = image.header.size_texels;
     SceneError::Memory { file: image.file.clone(), at: format!("{}, {width}×{height}", image.at), budget }
 }
 
 /// Where an image's bytes are, and what its header says.
-fn find<'a>(source: &'a Source<'_>, json: &json::Image, index: usize) -> Result<Encoded<'a>, SceneError> {
+fn find<'a>(
+    source: &'a Source<'_>,
+    json: &json::Image,
+    index: usize,
+    formats: BlockFormats,
+) -> Result<Encoded<'a>, SceneError> {
     let name = json.name.as_deref().filter(|name| !name.is_empty());
     let at = name.map_or_else(|| format!("image {index}"), |name| format!("image {index} {:?}", one_line(name)));
     let (file, bytes) = match (json.buffer_view, &json.uri) {
@@ -95,17 +115,17 @@ fn find<'a>(source: &'a Source<'_>, json: &json::Image, index: usize) -> Result<
         },
         (None, None) => return Err(source.malformed(&at, "it has neither a URI nor a buffer view")),
     };
-    let mut image = Encoded { file, at, bytes, header: Header::default(), working_bytes: 0 };
+    let mut image = Encoded { file, at, bytes, header: TextureHeader::default(), formats, working_bytes: 0 };
     let named = |error| source.named(&image.at, error);
     let header = match &image.bytes {
-        Some(bytes) => header_8(bytes, MAX_IMAGE_SIDE_TEXELS),
+        Some(bytes) => texture_header(bytes, MAX_IMAGE_SIDE_TEXELS, formats),
         None => {
             image.working_bytes = file_bytes(&image.file).map_err(named)?;
             let start = read_start(&image.file, START_BYTES).map_err(named)?;
-            match header_8(&start, MAX_IMAGE_SIDE_TEXELS) {
+            match texture_header(&start, MAX_IMAGE_SIDE_TEXELS, formats) {
                 Err(CodecError::Other(_)) if start.len() as u64 == START_BYTES => {
                     let whole = read_file(&image.file).map_err(named)?;
-                    header_8(&whole, MAX_IMAGE_SIDE_TEXELS)
+                    texture_header(&whole, MAX_IMAGE_SIDE_TEXELS, formats)
                 }
                 header => header,
             }
@@ -123,8 +143,11 @@ fn decode_one(encoded: &Encoded<'_>, loan: Result<Loan<'_>, OverBudget>) -> Resu
         Some(bytes) => Cow::Borrowed(bytes),
         None => Cow::Owned(read_file(&encoded.file)?),
     };
-    let picture = decode_8(&bytes, MAX_IMAGE_SIDE_TEXELS).map_err(|error| refused(encoded, error))?;
-    if picture.size_texels != encoded.header.size_texels {
+    let decoded = decode_texture(&bytes, MAX_IMAGE_SIDE_TEXELS, encoded.formats);
+    let TextureLevels { size_texels, format, levels } = decoded.map_err(|error| refused(encoded, error))?;
+    let [width, height] = size_texels;
+    let image = Image { name: String::new(), width, height, format, levels };
+    if size_texels != encoded.header.size_texels || image.size_bytes() != encoded.header.image_bytes {
         return Err(SceneError::malformed(&encoded.file, &encoded.at, "its size changed while it was read"));
     }
     let file = one_line(&encoded.file.display().to_string());
@@ -132,8 +155,7 @@ fn decode_one(encoded: &Encoded<'_>, loan: Result<Loan<'_>, OverBudget>) -> Resu
         Some(_) => format!("{file}: {}", encoded.at),
         None => file,
     };
-    let [width, height] = picture.size_texels;
-    Ok(Image { name, width, height, rgba8: picture.rgba8 })
+    Ok(Image { name, ..image })
 }
 
 fn refused(image: &Encoded<'_>, error: CodecError) -> SceneError {

@@ -10,7 +10,9 @@ use super::object::Object;
 use super::source::{Source, Warnings};
 use super::texture::{Reference, Textures};
 use crate::error::SceneError;
-use crate::material::{Anisotropy, ClearCoat, Material, Sheen, Specular, Transmission, Volume};
+use crate::material::{
+    Anisotropy, ClearCoat, DiffuseTransmission, Iridescence, Material, Sheen, Specular, Transmission, Volume,
+};
 use crate::texture::{TextureRole, TextureSlot};
 
 /// What reading a material needs beside its JSON.
@@ -40,12 +42,27 @@ pub(super) fn read(
     if let Some(json) = of("KHR_materials_anisotropy")? {
         material.anisotropy = reading.anisotropy(&json)?;
     }
-    let volume = of("KHR_materials_volume")?;
     if let Some(json) = of("KHR_materials_transmission")? {
-        material.transmission = reading.transmission(&json, volume.as_ref())?;
+        material.transmission = reading.transmission(&json)?;
+    }
+    if let Some(json) = of("KHR_materials_diffuse_transmission")? {
+        material.diffuse_transmission = reading.diffuse_transmission(&json)?;
+    }
+    let passes = material.transmission.is_some() || material.diffuse_transmission.is_some();
+    if let Some(json) = of("KHR_materials_volume")?.filter(|_| passes) {
+        let volume = reading.volume(&json)?;
+        material.transmission = material.transmission.map(|lobe| Transmission { volume, ..lobe });
+        material.diffuse_transmission =
+            material.diffuse_transmission.map(|lobe| DiffuseTransmission { volume, ..lobe });
+    }
+    if let Some(json) = of("KHR_materials_dispersion")? {
+        material.dispersion = json.at_least("dispersion", 0.0, 0.0, reading.warnings)?;
     }
     if let Some(json) = of("KHR_materials_specular")? {
         material.specular = reading.specular(&json)?;
+    }
+    if let Some(json) = of("KHR_materials_iridescence")? {
+        material.iridescence = reading.iridescence(&json)?;
     }
     Ok(())
 }
@@ -100,17 +117,41 @@ impl Reading<'_, '_> {
         Ok(Some(Anisotropy { strength, rotation_rad, texture }))
     }
 
-    fn transmission(
-        &mut self,
-        json: &Object<'_>,
-        volume: Option<&Object<'_>>,
-    ) -> Result<Option<Transmission>, SceneError> {
+    fn transmission(&mut self, json: &Object<'_>) -> Result<Option<Transmission>, SceneError> {
         let factor = json.unit("transmissionFactor", 0.0, self.warnings)?;
-        let volume = volume.map_or(Ok(None), |json| self.volume(json))?;
         if factor == 0.0 && !json.is_animated() {
             return Ok(None);
         }
-        Ok(Some(Transmission { factor, texture: self.slot(json, "transmissionTexture", TextureRole::Linear)?, volume }))
+        let texture = self.slot(json, "transmissionTexture", TextureRole::Linear)?;
+        Ok(Some(Transmission { factor, texture, volume: None }))
+    }
+
+    fn diffuse_transmission(&mut self, json: &Object<'_>) -> Result<Option<DiffuseTransmission>, SceneError> {
+        let factor = json.unit("diffuseTransmissionFactor", 0.0, self.warnings)?;
+        let color = json.color("diffuseTransmissionColorFactor", Vec3::ONE, 1.0, self.warnings)?;
+        if factor == 0.0 && !json.is_animated() {
+            return Ok(None);
+        }
+        let texture = self.slot(json, "diffuseTransmissionTexture", TextureRole::Linear)?;
+        let color_texture = self.slot(json, "diffuseTransmissionColorTexture", TextureRole::Color)?;
+        Ok(Some(DiffuseTransmission { factor, texture, color, color_texture, volume: None }))
+    }
+
+    fn iridescence(&mut self, json: &Object<'_>) -> Result<Option<Iridescence>, SceneError> {
+        let factor = json.unit("iridescenceFactor", 0.0, self.warnings)?;
+        let ior = json.at_least("iridescenceIor", 1.3, 1.0, self.warnings)?;
+        let min_thickness_nm = json.at_least("iridescenceThicknessMinimum", 100.0, 0.0, self.warnings)?;
+        let max_thickness_nm = json.at_least("iridescenceThicknessMaximum", 400.0, 0.0, self.warnings)?;
+        if factor == 0.0 && !json.is_animated() {
+            return Ok(None);
+        }
+        let texture = self.slot(json, "iridescenceTexture", TextureRole::Linear)?;
+        let thickness_texture = self.slot(json, "iridescenceThicknessTexture", TextureRole::Linear)?;
+        // Without a texture the film has one thickness, and without thickness there is no film.
+        if thickness_texture.is_none() && max_thickness_nm == 0.0 && !json.is_animated() {
+            return Ok(None);
+        }
+        Ok(Some(Iridescence { factor, texture, ior, min_thickness_nm, max_thickness_nm, thickness_texture }))
     }
 
     fn volume(&mut self, json: &Object<'_>) -> Result<Option<Volume>, SceneError> {

@@ -7,6 +7,7 @@ use gltf_json as json;
 use gltf_json::validation::Checked;
 use gltf_json::{Index, material};
 
+use super::line_material::{LineStreams, for_lines};
 use super::lobes;
 use super::object::Object;
 use super::source::{Source, Warnings, beyond};
@@ -22,6 +23,8 @@ pub(super) struct Materials<'a> {
     source: &'a Source<'a>,
     /// From the index in the file; `None` is glTF's default material.
     known: BTreeMap<Option<usize>, MaterialId>,
+    /// Forms of them for lines and points, by the number of the material and what vertices have.
+    without_area: BTreeMap<(usize, LineStreams), MaterialId>,
     materials: Vec<Material>,
     textures: Textures,
 }
@@ -41,7 +44,8 @@ pub(super) struct Tables {
 
 impl<'a> Materials<'a> {
     pub fn new(source: &'a Source<'a>) -> Self {
-        Self { source, known: BTreeMap::new(), materials: Vec::new(), textures: Textures::default() }
+        let (known, without_area) = (BTreeMap::new(), BTreeMap::new());
+        Self { source, known, without_area, materials: Vec::new(), textures: Textures::default() }
     }
 
     /// The material of a primitive, named `at`.
@@ -66,6 +70,24 @@ impl<'a> Materials<'a> {
         let id = MaterialId::new(self.materials.len() - 1);
         self.known.insert(index, id);
         Ok(id)
+    }
+
+    /// The form of a material for a primitive: the material itself for triangles, and what [`for_lines`] makes of it for lines
+    /// and points.
+    pub fn for_primitive(&mut self, id: MaterialId, primitive: &json::mesh::Primitive) -> MaterialId {
+        let Some(streams) = LineStreams::of(primitive) else { return id };
+        if let Some(known) = self.without_area.get(&(id.index(), streams)) {
+            return *known;
+        }
+        let (material, form) = (self.get(id), for_lines(self.get(id), streams));
+        let own = if form == *material {
+            id
+        } else {
+            self.materials.push(form);
+            MaterialId::new(self.materials.len() - 1)
+        };
+        self.without_area.insert((id.index(), streams), own);
+        own
     }
 
     pub fn get(&self, id: MaterialId) -> &Material {

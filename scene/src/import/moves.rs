@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 use gltf_json::mesh::{Primitive, Semantic};
-use gltf_json::validation::Checked;
 
+use super::packed::{self, Values};
 use super::source::{Repair, Source, Warnings};
 use super::stream::{finite, stream};
 use crate::error::SceneError;
@@ -20,15 +20,15 @@ pub(super) struct MovesKey {
     /// Number of the primitive, of one with a skin: each has a body of its own.
     primitive: Option<usize>,
     /// Joints and weights of each set.
-    influences: Vec<[usize; 2]>,
+    influences: Vec<[Values; 2]>,
     targets: Vec<[Option<usize>; 3]>,
 }
 
 impl MovesKey {
     /// Returns the accessors of primitive `number` of a mesh, or `None` for one that nothing deforms.
     pub fn new(primitive: &Primitive, number: usize, node: usize, skinned: bool) -> Option<Self> {
-        let accessor = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
-        let set = |number| accessor(Semantic::Joints(number)).zip(accessor(Semantic::Weights(number)));
+        let values = |semantic| packed::values(primitive, &semantic);
+        let set = |number| values(Semantic::Joints(number)).zip(values(Semantic::Weights(number)));
         let sets = (0..).map_while(|number| set(number).filter(|_| skinned));
         let influences: Vec<_> = sets.map(|(joints, weights)| [joints, weights]).collect();
         let value = |index: Option<gltf_json::Index<_>>| index.map(|index| index.value());

@@ -62,6 +62,15 @@ impl<'a> Object<'a> {
         Ok(self.clamped(key, Vec3::splat(value), 1.0, warnings).x)
     }
 
+    /// A number of `min` or more; a smaller one is raised with a warning.
+    pub fn at_least(&self, key: &str, default: f32, min: f32, warnings: &mut Warnings) -> Result<f32, SceneError> {
+        let value = self.number(key, default)?;
+        if value < min {
+            warnings.push(format!("{}: its {key} was raised from {value} to {min}", self.at));
+        }
+        Ok(value.max(min))
+    }
+
     /// A color with channels in 0…`most`; others are clamped with a warning.
     pub fn color(&self, key: &str, default: Vec3, most: f32, warnings: &mut Warnings) -> Result<Vec3, SceneError> {
         Ok(self.clamped(key, Vec3::from_array(self.vector(key, default.to_array())?), most, warnings))

@@ -6,23 +6,26 @@ use gltf_json::validation::Checked;
 
 use super::accessor::{integers, width};
 use super::moves::{self, MovesKey};
-use super::source::{Repair, Source, Warnings};
+use super::packed::{self, PackedMesh, Values};
+use super::source::{Repair, Source, Warnings, beyond};
 use super::stream::{finite, stream};
-use super::topology::{Triangles, triangles};
+use super::topology::{MODES, left_over, list, topology};
 use crate::bounds::Aabb;
 use crate::error::{SceneError, one_line};
 use crate::geometry::{generate_tangents, make_flat, order_for_drawing, repair_normals, repair_tangents};
 use crate::material::{AlphaMode, Material};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Topology};
 
 /// What a mesh is made of: primitives with equal keys share one.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct GeometryKey {
-    position: Option<usize>,
-    normal: Option<usize>,
-    tangent: Option<usize>,
-    uv: [Option<usize>; 2],
-    color: Option<usize>,
+    position: Option<Values>,
+    normal: Option<Values>,
+    tangent: Option<Values>,
+    uv: [Option<Values>; 2],
+    color: Option<Values>,
+    /// Buffer view of the compressed mesh that has the indices, if there is one.
+    packed: Option<usize>,
     indices: Option<usize>,
     /// The mode's number in OpenGL; `None` for an invalid one.
     mode: Option<u32>,
@@ -38,14 +41,14 @@ impl GeometryKey {
     /// The material says which texture coordinates tangents follow, if it asks for them, and whether the order of triangles shows.
     /// A mesh that `node` moves, which has a skin or not, is the node's own. `number` is the primitive's in its mesh.
     pub fn new(primitive: &Primitive, number: usize, surface: &Material, node: usize, skinned: bool) -> Self {
-        let accessor =
-            |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
+        let values = |semantic: Semantic| packed::values(primitive, &semantic);
         Self {
-            position: accessor(Semantic::Positions),
-            normal: accessor(Semantic::Normals),
-            tangent: accessor(Semantic::Tangents),
-            uv: [accessor(Semantic::TexCoords(0)), accessor(Semantic::TexCoords(1))],
-            color: accessor(Semantic::Colors(0)),
+            position: values(Semantic::Positions),
+            normal: values(Semantic::Normals),
+            tangent: values(Semantic::Tangents),
+            uv: [values(Semantic::TexCoords(0)), values(Semantic::TexCoords(1))],
+            color: values(Semantic::Colors(0)),
+            packed: packed::of(primitive).and_then(|extension| extension.view()),
             indices: primitive.indices.map(|index| index.value()),
             mode: match primitive.mode {
                 Checked::Valid(mode) => Some(mode.as_gl_enum()),
@@ -58,7 +61,7 @@ impl GeometryKey {
     }
 }
 
-/// Builds the mesh; `None` when the primitive draws no triangles, which is warned of.
+/// Builds the mesh; `None` when the primitive draws nothing, which is warned of.
 pub(super) fn build(
     source: &Source<'_>,
     key: &GeometryKey,
@@ -73,12 +76,12 @@ pub(super) fn build(
     let positions = stream(source, at, "POSITION", position, None, Vec3::from_array)?;
     finite(source, at, "POSITION", &positions, |p| p.is_finite())?;
     let vertices = positions.len();
-    let Some(indices) = corners(source, key, at, vertices, warnings)? else {
+    let Some((topology, indices)) = corners(source, key, at, vertices, warnings)? else {
         return Ok(None);
     };
 
-    let mut mesh =
-        Mesh { name: one_line(name), bounds: Aabb::from_points(&positions), positions, indices, ..Mesh::default() };
+    let (name, bounds) = (one_line(name), Aabb::from_points(&positions));
+    let mut mesh = Mesh { name, bounds, positions, topology, indices, ..Mesh::default() };
     let count = Some(vertices);
     if let Some(key) = &key.moves {
         mesh.moves = Some(Box::new(moves::read(source, key, at, vertices, warnings)?));
@@ -107,6 +110,8 @@ pub(super) fn build(
                 warnings.count(Repair::Tangents, at, repaired);
             }
         }
+        // Lines and points without normals are not lit (section 3.9.7).
+        None if !mesh.has_area() => {}
         None => {
             let dropped = make_flat(&mut mesh);
             warnings.count(Repair::Triangles, at, dropped);
@@ -114,6 +119,7 @@ pub(super) fn build(
     }
     if let Some(uv_set) = key.tangent_uv
         && mesh.tangents.is_empty()
+        && !mesh.normals.is_empty()
     {
         generate_tangents(&mut mesh, uv_set);
     }
@@ -121,34 +127,30 @@ pub(super) fn build(
     if !key.blends && !source.keep_order {
         order_for_drawing(&mut mesh);
     }
-    Ok((mesh.triangle_count() > 0).then_some(mesh))
+    Ok((!mesh.indices.is_empty()).then_some(mesh))
 }
 
-/// The triangle list, every corner below `vertices`; `None` with a warning when there is none.
+/// The list of primitives, every corner below `vertices`; `None` with a warning when there is none.
 fn corners(
     source: &Source<'_>,
     key: &GeometryKey,
     at: &str,
     vertices: usize,
     warnings: &mut Warnings,
-) -> Result<Option<Vec<u32>>, SceneError> {
-    let mode = [
-        Mode::Points,
-        Mode::Lines,
-        Mode::LineLoop,
-        Mode::LineStrip,
-        Mode::Triangles,
-        Mode::TriangleStrip,
-        Mode::TriangleFan,
-    ]
-    .into_iter()
-    .find(|mode| Some(mode.as_gl_enum()) == key.mode)
-    .ok_or_else(|| source.malformed(at, "unknown primitive mode"))?;
-    let corners = match key.indices {
-        Some(index) => integers(source, index, &format!("{at} indices"))?,
-        None => {
+) -> Result<Option<(Topology, Vec<u32>)>, SceneError> {
+    let mode = MODES
+        .into_iter()
+        .find(|mode| Some(mode.as_gl_enum()) == key.mode)
+        .ok_or_else(|| source.malformed(at, "unknown primitive mode"))?;
+    let topology = topology(mode);
+    let packed = key.packed.and_then(|view| source.meshes.get(&view));
+    let (mode, corners) = match (packed, key.indices) {
+        // A compressed mesh has triangles, even if the mode is a strip.
+        (Some(mesh), index) => (Mode::Triangles, packed_corners(source, mesh, index, mode, at)?),
+        (None, Some(index)) => (mode, integers(source, index, &format!("{at} indices"))?),
+        (None, None) => {
             source.charge(vertices as u64 * 4)?;
-            (0..vertices as u32).collect()
+            (mode, (0..vertices as u32).collect())
         }
     };
     if let Some(place) = corners.iter().position(|&c| c as usize >= vertices) {
@@ -157,37 +159,55 @@ fn corners(
     }
     // A strip or fan has up to three corners a vertex.
     source.charge(corners.len() as u64 * 12)?;
-    match triangles(mode, &corners) {
-        Triangles::List(list) if list.is_empty() => {
-            warnings.push(format!("{at}: it has no triangle with three different corners"));
-            Ok(None)
-        }
-        Triangles::List(list) => Ok(Some(list)),
-        Triangles::Other(what) => {
-            warnings.push(format!("{at}: {what} are not drawn, only triangles"));
-            Ok(None)
-        }
-        Triangles::Incomplete => {
-            let reason = format!("{} indices do not make triangles", corners.len());
-            Err(source.malformed(at, reason))
+    warnings.count(Repair::Corners, at, left_over(mode, corners.len()));
+    let list = list(mode, &corners);
+    if list.is_empty() {
+        warnings.push(match topology {
+            Topology::Triangles => format!("{at}: it has no triangle with three different corners"),
+            Topology::Lines => format!("{at}: it has no line between two different vertices"),
+            Topology::Points => format!("{at}: it has no points"),
+        });
+        return Ok(None);
+    }
+    Ok(Some((topology, list)))
+}
+
+/// The corners of a compressed mesh, as many as the accessor of indices states, unless it counts those of a strip.
+fn packed_corners(
+    source: &Source<'_>,
+    mesh: &PackedMesh,
+    index: Option<usize>,
+    mode: Mode,
+    at: &str,
+) -> Result<Vec<u32>, SceneError> {
+    if let Some(index) = index {
+        let accessors = &source.root.accessors;
+        let accessor =
+            accessors.get(index).ok_or_else(|| source.malformed(at, beyond("accessor", index, accessors)))?;
+        let (stated, found) = (accessor.count.0, mesh.indices.len());
+        if mode == Mode::Triangles && stated != found as u64 {
+            let reason = format!("accessor {index} states {stated} indices, but the compressed mesh has {found}");
+            return Err(source.malformed(at, reason));
         }
     }
+    source.charge(mesh.indices.len() as u64 * 4)?;
+    Ok(mesh.indices.clone())
 }
 
 /// Reads RGB or RGBA vertex colors. Channels that are not finite become 0.
 fn colors(
     source: &Source<'_>,
     at: &str,
-    index: usize,
+    values: Values,
     vertices: usize,
     warnings: &mut Warnings,
 ) -> Result<Vec<Vec4>, SceneError> {
     let count = Some(vertices);
-    let mut colors = if width(source, index) == Some(3) {
+    let mut colors = if width(source, values.accessor) == Some(3) {
         let opaque = |rgb| Vec3::from_array(rgb).extend(1.0);
-        stream(source, at, "COLOR_0", index, count, opaque)?
+        stream(source, at, "COLOR_0", values, count, opaque)?
     } else {
-        stream(source, at, "COLOR_0", index, count, Vec4::from_array)?
+        stream(source, at, "COLOR_0", values, count, Vec4::from_array)?
     };
     let bad = colors.iter_mut().filter(|color| !color.is_finite());
     let repaired = bad.map(|color| *color = Vec4::select(color.is_finite_mask(), *color, Vec4::ZERO)).count();

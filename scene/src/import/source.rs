@@ -10,11 +10,13 @@ use gltf_json::{Root, Value};
 
 use super::document::Document;
 use super::letter_case;
+use super::packed::PackedMesh;
 use super::pointer::animated_extensions;
 use super::uri::{Resource, resolve};
 use crate::error::{Quantity, SceneError, one_line};
 use crate::memory::{Memory, OverBudget};
 use crate::options::LoadOptions;
+use crate::texture::BlockFormats;
 
 /// The document, its buffers, and how much memory was taken for what was made of them so far.
 pub(super) struct Source<'a> {
@@ -26,6 +28,10 @@ pub(super) struct Source<'a> {
     pub json: &'a Value,
     /// The bytes of each buffer, at least as long as the JSON says.
     pub buffers: Vec<Buffer<'a>>,
+    /// The bytes of each compressed buffer view, by its index, which replace those in its buffer.
+    pub views: BTreeMap<usize, Vec<u8>>,
+    /// The compressed meshes that the scene draws, by their buffer views.
+    pub meshes: BTreeMap<usize, PackedMesh>,
     /// The budget of everything that is decoded.
     pub memory: &'a Memory,
     allow_outside: bool,
@@ -33,6 +39,8 @@ pub(super) struct Source<'a> {
     pub keep_order: bool,
     /// Places of the material extensions that animations change, as messages name them: `material 3: KHR_materials_sheen`.
     animated: BTreeSet<String>,
+    /// Formats of blocks that the device samples.
+    pub block_formats: BlockFormats,
     /// For each image of the file the first that is the same.
     images: Vec<usize>,
     /// What was taken for the scene, which stays.
@@ -66,10 +74,13 @@ impl<'a> Source<'a> {
             root,
             json,
             buffers: Vec::new(),
+            views: BTreeMap::new(),
+            meshes: BTreeMap::new(),
             memory: &options.memory,
             allow_outside: options.allow_outside,
             keep_order: options.keep_order,
             animated: animated_extensions(json),
+            block_formats: options.block_formats,
             images: first_of_each(&root.images),
             kept_bytes: Cell::new(0),
             file_bytes: Cell::new(0),
@@ -153,7 +164,8 @@ impl<'a> Source<'a> {
         self.keep(bytes).map_err(|budget| self.over("vertices", budget))
     }
 
-    fn over(&self, at: &str, budget: OverBudget) -> SceneError {
+    /// An error about something that does not fit into the budget.
+    pub fn over(&self, at: &str, budget: OverBudget) -> SceneError {
         SceneError::Memory { file: self.file.into(), at: at.into(), budget }
     }
 
@@ -166,7 +178,24 @@ impl<'a> Source<'a> {
     pub fn view(&self, index: usize, at: &str) -> Result<(&[u8], Option<usize>), SceneError> {
         let views = &self.root.buffer_views;
         let view = views.get(index).ok_or_else(|| self.malformed(at, beyond("buffer view", index, views)))?;
-        let buffer = view.buffer.value();
+        let stride = view.byte_stride.map(|s| s.0).filter(|s| *s > 0);
+        if let Some(bytes) = self.views.get(&index) {
+            return Ok((bytes, stride));
+        }
+        let start = view.byte_offset.map_or(0, |offset| offset.0);
+        let name = format_args!("buffer view {index}");
+        Ok((self.range(view.buffer.value(), start, view.byte_length.0, at, name)?, stride))
+    }
+
+    /// A range of a buffer. `name` names the object that states the range.
+    pub fn range(
+        &self,
+        buffer: usize,
+        start: u64,
+        length: u64,
+        at: &str,
+        name: std::fmt::Arguments<'_>,
+    ) -> Result<&[u8], SceneError> {
         let data =
             self.buffers.get(buffer).ok_or_else(|| self.malformed(at, beyond("buffer", buffer, &self.buffers)))?;
         let data = match data {
@@ -179,19 +208,18 @@ impl<'a> Source<'a> {
                 zeros.get_or_init(|| vec![0; length as usize]).as_slice()
             }
         };
-        let start = view.byte_offset.map_or(0, |offset| offset.0);
-        let length = view.byte_length.0;
-        let bytes = slice(data, start, length).ok_or_else(|| {
+        slice(data, start, length).ok_or_else(|| {
+            // Every other buffer has the bytes that it promises.
+            let is_placeholder = (data.len() as u64) < self.root.buffers[buffer].byte_length.0;
             self.malformed(
                 at,
-                format!(
-                    "buffer view {index} covers {length} bytes from {start}, but buffer {buffer} \
-                     has {}",
-                    data.len()
-                ),
+                if is_placeholder {
+                    format!("{name} refers to buffer {buffer}, a fallback without data; only compressed views may")
+                } else {
+                    format!("{name} covers {length} bytes from {start}, but buffer {buffer} has {}", data.len())
+                },
             )
-        })?;
-        Ok((bytes, view.byte_stride.map(|s| s.0).filter(|s| *s > 0)))
+        })
     }
 }
 
@@ -242,6 +270,8 @@ pub(super) enum Repair {
     Weights,
     /// Triangles without area in a mesh without normals.
     Triangles,
+    /// Corners at the end of a list that make no whole triangle or line.
+    Corners,
     /// Absent buffers that are read.
     Absent,
 }
@@ -256,6 +286,7 @@ impl Repair {
             Self::Colors => format!("{count} vertex colors are not finite; 0 is used for their channels"),
             Self::Weights => format!("the skin weights of {count} vertices do not add up to 1; they were normalized"),
             Self::Triangles => format!("{count} triangles without area were dropped"),
+            Self::Corners => format!("{count} indices at the end make no whole triangle or line; they are left out"),
             Self::Absent => "the buffer has neither a URI nor a binary chunk; zeros are read from it".into(),
         }
     }

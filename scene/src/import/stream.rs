@@ -1,6 +1,7 @@
 //! Streams of vertices out of accessors.
 
 use super::accessor::floats;
+use super::packed::Values;
 use super::source::Source;
 use crate::error::SceneError;
 
@@ -9,11 +10,11 @@ pub(super) fn stream<const N: usize, T>(
     source: &Source<'_>,
     at: &str,
     what: &str,
-    index: usize,
+    values: impl Into<Values>,
     count: Option<usize>,
     convert: impl Fn([f32; N]) -> T,
 ) -> Result<Vec<T>, SceneError> {
-    let values = floats::<N>(source, index, &format!("{at} {what}"))?;
+    let values = floats::<N>(source, values, &format!("{at} {what}"))?;
     if let Some(count) = count
         && values.len() != count
     {

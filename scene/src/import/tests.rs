@@ -3,6 +3,8 @@
 mod attached;
 mod cases;
 mod character;
+#[cfg(all(feature = "draco", feature = "meshopt"))]
+mod compressed;
 mod document;
 mod fixture;
 mod fuzz;
@@ -10,6 +12,7 @@ mod geometry;
 mod hostile;
 mod hostile_motion;
 mod letter_case;
+mod lines;
 mod lobes;
 mod loose_json;
 mod motion;
@@ -19,4 +22,6 @@ mod real_files;
 mod repairs;
 mod shading;
 mod spec_gloss;
+#[cfg(all(feature = "webp", feature = "basisu"))]
+mod textures;
 mod variants;

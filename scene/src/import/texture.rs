@@ -7,6 +7,7 @@ use gltf_json::extensions::texture::TextureTransform;
 use gltf_json::texture::{MagFilter, MinFilter, WrappingMode};
 use gltf_json::validation::Checked;
 
+use super::extension::is_supported;
 use super::source::{Source, Warnings, beyond};
 use crate::error::SceneError;
 use crate::texture::{Filter, Image, Sampler, Texture, TextureRole, TextureSlot, UvTransform, Wrap};
@@ -57,9 +58,10 @@ impl Roughness {
             let glossiness = self.glossiness * f32::from(rgba[3]) / 255.0;
             [0, ((1.0 - glossiness) * 255.0).round() as u8, 0, 255]
         };
+        let computed = |level: &Vec<u8>| level.chunks_exact(4).flat_map(texel).collect();
         Image {
             name: format!("{}: roughness", source.name),
-            rgba8: source.rgba8.chunks_exact(4).flat_map(texel).collect(),
+            levels: source.levels.iter().map(computed).collect(),
             ..*source
         }
     }
@@ -108,15 +110,10 @@ impl Textures {
             warnings.push(format!("{at}: a texture uses TEXCOORD_{uv_set} and is ignored"));
             return Ok(None);
         }
-        let image = json.source.value();
-        if image >= source.root.images.len() {
-            let reason = if image == u32::MAX as usize {
-                format!("texture {index} has no PNG or JPEG image")
-            } else {
-                format!("texture {index} {}", beyond("image", image, &source.root.images))
-            };
-            return Err(source.malformed(at, reason));
-        }
+        let Some(image) = image_of(source, at, index, json)? else {
+            warnings.push(format!("texture {index} has no image that this build reads; it is left out"));
+            return Ok(None);
+        };
         let sampler = match json.sampler {
             Some(sampler) => read_sampler(source, at, sampler.value())?,
             None => Sampler::default(),
@@ -136,6 +133,32 @@ impl Textures {
         });
         Ok(Some(TextureSlot { texture: TextureId::new(place), uv_set, transform }))
     }
+}
+
+/// Extensions that give a texture another image than its `source`, the preferred one first.
+const IMAGE_EXTENSIONS: [&str; 2] = ["KHR_texture_basisu", "EXT_texture_webp"];
+
+/// Returns the image of a texture: that of an extension which this build reads, or else its `source`; `None` for a texture
+/// without either.
+fn image_of(
+    source: &Source<'_>,
+    at: &str,
+    index: usize,
+    json: &gltf_json::Texture,
+) -> Result<Option<usize>, SceneError> {
+    let extension = |name: &&str| json.extensions.as_ref()?.others.get(*name);
+    let supported = IMAGE_EXTENSIONS.iter().filter(|name| is_supported(name));
+    let image = match supported.filter_map(extension).find_map(|value| value.get("source")) {
+        Some(image) => image.as_u64().map_or(usize::MAX, |image| image.try_into().unwrap_or(usize::MAX)),
+        // The schema writes this for a texture without a source.
+        None if json.source.value() == u32::MAX as usize => return Ok(None),
+        None => json.source.value(),
+    };
+    if image >= source.root.images.len() {
+        let reason = format!("texture {index} {}", beyond("image", image, &source.root.images));
+        return Err(source.malformed(at, reason));
+    }
+    Ok(Some(image))
 }
 
 /// Where `value` is in `all`, appended if it is new.

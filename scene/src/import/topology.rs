@@ -1,32 +1,65 @@
-//! Primitive modes into triangle lists (glTF 2.0, section 3.7.2.1).
+//! Primitive modes into lists of triangles, lines or points (glTF 2.0, section 3.7.2.1).
 
 use gltf_json::mesh::Mode;
 
-/// The corners of a triangle list, or why there is none.
-#[derive(Debug, PartialEq, Eq)]
-pub(super) enum Triangles {
-    /// Three a triangle, counter-clockwise.
-    List(Vec<u32>),
-    /// Points or lines: the name of the mode.
-    Other(&'static str),
-    /// A triangle list whose length is no multiple of three.
-    Incomplete,
+use crate::mesh::Topology;
+
+/// Every mode, in the order of its number.
+pub(super) const MODES: [Mode; 7] = [
+    Mode::Points,
+    Mode::Lines,
+    Mode::LineLoop,
+    Mode::LineStrip,
+    Mode::Triangles,
+    Mode::TriangleStrip,
+    Mode::TriangleFan,
+];
+
+/// Primitives that a mode draws once it is a list.
+pub(super) const fn topology(mode: Mode) -> Topology {
+    match mode {
+        Mode::Points => Topology::Points,
+        Mode::Lines | Mode::LineLoop | Mode::LineStrip => Topology::Lines,
+        Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan => Topology::Triangles,
+    }
 }
 
-/// Turns `corners` of a mode into a triangle list. Strips and fans repeat corners to jump; triangles
-/// that use one vertex twice cover nothing and are left out.
-pub(super) fn triangles(mode: Mode, corners: &[u32]) -> Triangles {
-    let list: Vec<[u32; 3]> = match mode {
-        Mode::Points => return Triangles::Other("points"),
-        Mode::Lines => return Triangles::Other("lines"),
-        Mode::LineLoop => return Triangles::Other("a line loop"),
-        Mode::LineStrip => return Triangles::Other("a line strip"),
-        Mode::Triangles => {
-            if !corners.len().is_multiple_of(3) {
-                return Triangles::Incomplete;
-            }
-            corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect()
+/// Turns `corners` of a mode into a list of its [`topology`]. Strips and fans repeat corners to jump; triangles and lines that
+/// use a vertex twice cover nothing and are left out, and so are the [`left_over`] corners.
+pub(super) fn list(mode: Mode, corners: &[u32]) -> Vec<u32> {
+    match topology(mode) {
+        Topology::Points => corners.to_vec(),
+        Topology::Lines => lines(mode, corners),
+        Topology::Triangles => triangles(mode, corners),
+    }
+}
+
+/// Returns the number of corners at the end of a list that make no whole triangle or line.
+pub(super) fn left_over(mode: Mode, corners: usize) -> usize {
+    match mode {
+        Mode::Triangles | Mode::Lines => corners % topology(mode).corners(),
+        _ => 0,
+    }
+}
+
+fn lines(mode: Mode, corners: &[u32]) -> Vec<u32> {
+    let list: Vec<[u32; 2]> = match mode {
+        Mode::Lines => corners.chunks_exact(2).map(|line| [line[0], line[1]]).collect(),
+        _ => {
+            let strip = corners.windows(2).map(|line| [line[0], line[1]]);
+            // The last line of a loop leads back to its first corner.
+            let back = match corners {
+                [first, .., last] if mode == Mode::LineLoop => Some([*last, *first]),
+                _ => None,
+            };
+            strip.chain(back).collect()
         }
+    };
+    list.into_iter().filter(|line| line[0] != line[1]).flatten().collect()
+}
+
+fn triangles(mode: Mode, corners: &[u32]) -> Vec<u32> {
+    let list: Vec<[u32; 3]> = match mode {
         Mode::TriangleStrip => corners
             .windows(3)
             .enumerate()
@@ -37,9 +70,10 @@ pub(super) fn triangles(mode: Mode, corners: &[u32]) -> Triangles {
             Some((&hub, rim)) => rim.windows(2).map(|t| [t[0], t[1], hub]).collect(),
             None => Vec::new(),
         },
+        _ => corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
     };
     let proper = |t: &[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
-    Triangles::List(list.into_iter().filter(proper).flatten().collect())
+    list.into_iter().filter(proper).flatten().collect()
 }
 
 #[cfg(test)]
@@ -48,17 +82,38 @@ mod tests {
 
     #[test]
     fn strips_and_fans_keep_their_winding() {
-        let of = |mode, corners: &[u32]| triangles(mode, corners);
-        assert_eq!(of(Mode::TriangleStrip, &[0, 1, 2, 3, 4]), Triangles::List(vec![0, 1, 2, 1, 3, 2, 2, 3, 4]));
-        assert_eq!(of(Mode::TriangleFan, &[9, 1, 2, 3]), Triangles::List(vec![1, 2, 9, 2, 3, 9]));
+        let of = |mode, corners: &[u32]| list(mode, corners);
+        assert_eq!(of(Mode::TriangleStrip, &[0, 1, 2, 3, 4]), [0, 1, 2, 1, 3, 2, 2, 3, 4]);
+        assert_eq!(of(Mode::TriangleFan, &[9, 1, 2, 3]), [1, 2, 9, 2, 3, 9]);
         // A strip that jumps by repeating corners.
-        assert_eq!(of(Mode::TriangleStrip, &[0, 1, 2, 2, 5, 5, 6, 7]), Triangles::List(vec![0, 1, 2, 5, 7, 6]));
-        assert_eq!(of(Mode::Triangles, &[0, 1, 2, 3]), Triangles::Incomplete);
-        assert_eq!(of(Mode::Triangles, &[4, 4, 5]), Triangles::List(vec![]));
+        assert_eq!(of(Mode::TriangleStrip, &[0, 1, 2, 2, 5, 5, 6, 7]), [0, 1, 2, 5, 7, 6]);
+        assert!(of(Mode::Triangles, &[4, 4, 5]).is_empty());
         for few in [&[][..], &[1], &[1, 2]] {
-            assert_eq!(of(Mode::TriangleStrip, few), Triangles::List(vec![]));
-            assert_eq!(of(Mode::TriangleFan, few), Triangles::List(vec![]));
+            assert!(of(Mode::TriangleStrip, few).is_empty());
+            assert!(of(Mode::TriangleFan, few).is_empty());
         }
-        assert_eq!(of(Mode::LineLoop, &[0, 1]), Triangles::Other("a line loop"));
+    }
+
+    /// Section 3.7.2.1: a line of a strip joins neighbors, and a loop closes from its last vertex to its first.
+    #[test]
+    fn lines_join_neighbors_and_loops_close() {
+        let of = |mode, corners: &[u32]| list(mode, corners);
+        assert_eq!(of(Mode::Points, &[3, 3, 1]), [3, 3, 1]);
+        assert_eq!(of(Mode::Lines, &[0, 1, 7, 7, 2, 5]), [0, 1, 2, 5]);
+        assert_eq!(of(Mode::LineStrip, &[4, 5, 5, 6]), [4, 5, 5, 6]);
+        assert_eq!(of(Mode::LineLoop, &[4, 5, 6]), [4, 5, 5, 6, 6, 4]);
+        assert_eq!(of(Mode::LineLoop, &[4, 5]), [4, 5, 5, 4]);
+        for few in [&[][..], &[1], &[1, 1]] {
+            assert!(of(Mode::LineStrip, few).is_empty());
+            assert!(of(Mode::LineLoop, few).is_empty());
+        }
+    }
+
+    #[test]
+    fn lists_of_other_lengths_are_no_primitives() {
+        for (mode, left) in [(Mode::Triangles, 1), (Mode::Lines, 0), (Mode::TriangleStrip, 0)] {
+            assert_eq!(left_over(mode, 4), left);
+        }
+        assert_eq!((list(Mode::Triangles, &[0, 1, 2, 3]), list(Mode::Lines, &[0, 1, 2])), (vec![0, 1, 2], vec![0, 1]));
     }
 }

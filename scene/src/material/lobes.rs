@@ -74,6 +74,39 @@ pub struct Volume {
     pub attenuation_distance_m: f32,
 }
 
+/// A thin film over the base (KHR_materials_iridescence), as on soap bubbles or oil: light reflected at its two sides
+/// interferes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iridescence {
+    /// Share of the surface under the film, 0…1.
+    pub factor: f32,
+    /// Texture of the factor (R); role `Linear`.
+    pub texture: Option<TextureSlot>,
+    /// Index of refraction of the film, 1 or more.
+    pub ior: f32,
+    /// Thickness of the film in nanometers where its texture is 0.
+    pub min_thickness_nm: f32,
+    /// Thickness of the film in nanometers where its texture is 1, and without a texture.
+    pub max_thickness_nm: f32,
+    /// Texture of the thickness (G); role `Linear`.
+    pub thickness_texture: Option<TextureSlot>,
+}
+
+/// Light that is scattered through the surface (KHR_materials_diffuse_transmission), as through leaves, paper or wax.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiffuseTransmission {
+    /// Share of the scattered light that leaves on the other side, 0…1.
+    pub factor: f32,
+    /// Texture of the factor (A); role `Linear`.
+    pub texture: Option<TextureSlot>,
+    /// Albedo of the light that leaves on the other side, linear Rec.709, 0…1.
+    pub color: Vec3,
+    /// Texture of the color (RGB); role `Color`.
+    pub color_texture: Option<TextureSlot>,
+    /// Body behind the surface, which absorbs light on its way; `None` is a thin sheet.
+    pub volume: Option<Volume>,
+}
+
 /// Strength and tint of a dielectric's reflection (KHR_materials_specular); metals have their base color.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Specular {
@@ -85,6 +118,27 @@ pub struct Specular {
     pub texture: Option<TextureSlot>,
     /// Texture of the color (RGB); role `Color`.
     pub color_texture: Option<TextureSlot>,
+}
+
+impl Default for Iridescence {
+    /// The defaults of the extension, with the film everywhere: index 1.3, 100 to 400 nm.
+    fn default() -> Self {
+        Self {
+            factor: 1.0,
+            texture: None,
+            ior: 1.3,
+            min_thickness_nm: 100.0,
+            max_thickness_nm: 400.0,
+            thickness_texture: None,
+        }
+    }
+}
+
+impl Default for DiffuseTransmission {
+    /// A thin white sheet that scatters all light through.
+    fn default() -> Self {
+        Self { factor: 1.0, texture: None, color: Vec3::ONE, color_texture: None, volume: None }
+    }
 }
 
 impl Default for Volume {
@@ -131,11 +185,26 @@ pub enum Lobe {
     Transmission,
     /// Strength and tint of the dielectric reflection: [`Specular`].
     Specular,
+    /// A thin film over the base: [`Iridescence`].
+    Iridescence,
+    /// Refraction that differs by color ([`Material::dispersion`](super::Material::dispersion)).
+    Dispersion,
+    /// Light that is scattered through: [`DiffuseTransmission`].
+    DiffuseTransmission,
 }
 
 impl Lobe {
     /// All lobes, in declaration order.
-    pub const ALL: [Self; 5] = [Self::ClearCoat, Self::Sheen, Self::Anisotropy, Self::Transmission, Self::Specular];
+    pub const ALL: [Self; 8] = [
+        Self::ClearCoat,
+        Self::Sheen,
+        Self::Anisotropy,
+        Self::Transmission,
+        Self::Specular,
+        Self::Iridescence,
+        Self::Dispersion,
+        Self::DiffuseTransmission,
+    ];
 }
 
 /// A set of lobes.

@@ -56,7 +56,9 @@ impl Body {
                 rest + moved.sum::<DVec3>()
             };
             let mut position = sum(self.rest.positions[vertex].as_dvec3(), |target| &target.positions);
-            let mut normal = sum(self.rest.normals[vertex].as_dvec3(), |target| &target.normals);
+            // Lines and points may have no normals.
+            let rest_normal = self.rest.normals.get(vertex).copied();
+            let mut normal = sum(rest_normal.unwrap_or_default().as_dvec3(), |target| &target.normals);
             let side = self.rest.tangents.get(vertex).map(|tangent| tangent.w);
             let rest = self.rest.tangents.get(vertex).map_or(DVec3::ZERO, |tangent| tangent.truncate().as_dvec3());
             let mut tangent = sum(rest, |target| &target.tangents);
@@ -72,7 +74,9 @@ impl Body {
             }
             mesh.positions[vertex] = position.as_vec3();
             // What collapses keeps the direction that it had.
-            mesh.normals[vertex] = normal.try_normalize().map_or(self.rest.normals[vertex], DVec3::as_vec3);
+            if let Some(rest) = rest_normal {
+                mesh.normals[vertex] = normal.try_normalize().map_or(rest, DVec3::as_vec3);
+            }
             if let Some(side) = side {
                 let along = tangent.try_normalize().map_or(self.rest.tangents[vertex].truncate(), DVec3::as_vec3);
                 mesh.tangents[vertex] = along.extend(side);

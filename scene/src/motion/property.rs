@@ -138,6 +138,25 @@ const FACTORS: &[Factor] = &[
     factor("extensions/KHR_materials_anisotropy/anisotropyRotation", 1, |m, v| {
         m.anisotropy.iter_mut().for_each(|lobe| lobe.rotation_rad = v[0]);
     }),
+    factor("extensions/KHR_materials_dispersion/dispersion", 1, |m, v| m.dispersion = v[0].max(0.0)),
+    factor("extensions/KHR_materials_iridescence/iridescenceFactor", 1, |m, v| {
+        m.iridescence.iter_mut().for_each(|lobe| lobe.factor = unit(v));
+    }),
+    factor("extensions/KHR_materials_iridescence/iridescenceIor", 1, |m, v| {
+        m.iridescence.iter_mut().for_each(|lobe| lobe.ior = v[0].max(1.0));
+    }),
+    factor("extensions/KHR_materials_iridescence/iridescenceThicknessMinimum", 1, |m, v| {
+        m.iridescence.iter_mut().for_each(|lobe| lobe.min_thickness_nm = v[0].max(0.0));
+    }),
+    factor("extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", 1, |m, v| {
+        m.iridescence.iter_mut().for_each(|lobe| lobe.max_thickness_nm = v[0].max(0.0));
+    }),
+    factor("extensions/KHR_materials_diffuse_transmission/diffuseTransmissionFactor", 1, |m, v| {
+        m.diffuse_transmission.iter_mut().for_each(|lobe| lobe.factor = unit(v));
+    }),
+    factor("extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorFactor", 3, |m, v| {
+        m.diffuse_transmission.iter_mut().for_each(|lobe| lobe.color = unit_color(v));
+    }),
     factor("extensions/KHR_materials_clearcoat/clearcoatFactor", 1, |m, v| {
         m.clear_coat.iter_mut().for_each(|lobe| lobe.factor = unit(v));
     }),
@@ -179,9 +198,10 @@ pub(crate) const EMISSIVE: &str = "emissiveFactor";
 /// Pointer of the strength of emission (KHR_materials_emissive_strength).
 pub(crate) const STRENGTH: &str = "extensions/KHR_materials_emissive_strength/emissiveStrength";
 
-/// The volume of a transmissive material.
+/// The volume of a material, which both kinds of transmission have.
 fn volume(material: &mut Material) -> impl Iterator<Item = &mut crate::material::Volume> {
-    material.transmission.iter_mut().filter_map(|lobe| lobe.volume.as_mut())
+    let diffuse = material.diffuse_transmission.iter_mut().filter_map(|lobe| lobe.volume.as_mut());
+    material.transmission.iter_mut().filter_map(|lobe| lobe.volume.as_mut()).chain(diffuse)
 }
 
 /// A texture of a material.
@@ -218,6 +238,19 @@ const TEXTURES: &[TextureAt] = &[
     texture("extensions/KHR_materials_transmission/transmissionTexture", |m| m.transmission.as_mut()?.texture.as_mut()),
     texture("extensions/KHR_materials_volume/thicknessTexture", |m| {
         m.transmission.as_mut()?.volume.as_mut()?.thickness_texture.as_mut()
+    }),
+    texture("extensions/KHR_materials_volume/thicknessTexture", |m| {
+        m.diffuse_transmission.as_mut()?.volume.as_mut()?.thickness_texture.as_mut()
+    }),
+    texture("extensions/KHR_materials_iridescence/iridescenceTexture", |m| m.iridescence.as_mut()?.texture.as_mut()),
+    texture("extensions/KHR_materials_iridescence/iridescenceThicknessTexture", |m| {
+        m.iridescence.as_mut()?.thickness_texture.as_mut()
+    }),
+    texture("extensions/KHR_materials_diffuse_transmission/diffuseTransmissionTexture", |m| {
+        m.diffuse_transmission.as_mut()?.texture.as_mut()
+    }),
+    texture("extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture", |m| {
+        m.diffuse_transmission.as_mut()?.color_texture.as_mut()
     }),
 ];
 
@@ -261,13 +294,21 @@ impl MaterialProperty {
         match self {
             Self::Factor(place) => (FACTORS[place].write)(material, &value),
             Self::Transform(place, part) => {
-                let Some(slot) = (TEXTURES[place].slot)(material) else { return };
-                match part {
-                    TransformPart::Offset => slot.transform.offset = Vec2::from_slice(&value),
-                    TransformPart::Rotation => slot.transform.rotation_rad = value[0],
-                    TransformPart::Scale => slot.transform.scale = Vec2::from_slice(&value),
+                // Both kinds of transmission have the volume's texture.
+                for texture in TEXTURES.iter().filter(|texture| texture.pointer == TEXTURES[place].pointer) {
+                    (texture.slot)(material).into_iter().for_each(|slot| part.write(slot, &value));
                 }
             }
+        }
+    }
+}
+
+impl TransformPart {
+    fn write(self, slot: &mut TextureSlot, value: &[f32]) {
+        match self {
+            Self::Offset => slot.transform.offset = Vec2::from_slice(value),
+            Self::Rotation => slot.transform.rotation_rad = value[0],
+            Self::Scale => slot.transform.scale = Vec2::from_slice(value),
         }
     }
 }

@@ -1,19 +1,23 @@
-//! Mirror of `wgsl/interface/material.wgsl`. The uniforms of lobes that a material lacks hold their defaults and are not
+//! Mirror of `wgsl/interface/material_uniforms.wgsl` and of the traits in `wgsl/interface/material.wgsl`. The uniforms of lobes that a material lacks hold their defaults and are not
 //! read.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec4};
 
+/// Number of textures that a material can have: slot `i` is bit `i` of the constant `MATERIAL_TRAITS`.
+pub const MATERIAL_SLOTS: u32 = 19;
 /// Number of the bit of the constant `MATERIAL_TRAITS` of a material that emits light. Below are those of textures.
-pub const TRAIT_EMITS: u32 = 15;
+pub const TRAIT_EMITS: u32 = MATERIAL_SLOTS;
 /// Number of the bit of one whose back faces are drawn and shaded with reversed normals.
-pub const TRAIT_DOUBLE_SIDED: u32 = 16;
+pub const TRAIT_DOUBLE_SIDED: u32 = MATERIAL_SLOTS + 1;
 /// Number of the bit of one whose base color is shown as it is (KHR_materials_unlit).
-pub const TRAIT_UNLIT: u32 = 17;
+pub const TRAIT_UNLIT: u32 = MATERIAL_SLOTS + 2;
 /// Number of the bit of one all textures of which are looked up by set 0 of texture coordinates as it is.
-pub const TRAIT_PLAIN_UV: u32 = 18;
+pub const TRAIT_PLAIN_UV: u32 = MATERIAL_SLOTS + 3;
 /// Number of the bit of one whose occlusion is in red of its metallic-roughness texture, looked up alike.
-pub const TRAIT_PACKED_OCCLUSION: u32 = 19;
+pub const TRAIT_PACKED_OCCLUSION: u32 = MATERIAL_SLOTS + 4;
+/// Number of the bit of lines and points, which have no plane to take a normal from. It is of meshes, not of materials.
+pub const TRAIT_NO_AREA: u32 = MATERIAL_SLOTS + 5;
 
 /// How texture coordinates of the mesh lead to a texture (KHR_texture_transform); that of no texture is not read.
 #[repr(C)]
@@ -89,10 +93,14 @@ pub struct MaterialUniforms {
     pub sheen: SheenUniforms,
     /// Anisotropy; read with the feature `ANISOTROPY`.
     pub anisotropy: AnisotropyUniforms,
-    /// Transmission and volume; read with the feature `TRANSMISSION`.
+    /// Transmission and volume; read with the feature `TRANSMISSION`, the volume with `DIFFUSE_TRANSMISSION` too.
     pub transmission: TransmissionUniforms,
     /// Dielectric specular reflection; read with the feature `SPECULAR`.
     pub specular: SpecularUniforms,
+    /// Thin film; read with the feature `IRIDESCENCE`.
+    pub iridescence: IridescenceUniforms,
+    /// Diffuse transmission; read with the feature `DIFFUSE_TRANSMISSION`.
+    pub diffuse_transmission: DiffuseTransmissionUniforms,
 }
 
 /// Clear coat, a dielectric layer over the other lobes (KHR_materials_clearcoat).
@@ -143,7 +151,8 @@ pub struct AnisotropyUniforms {
     pub map: TextureMap,
 }
 
-/// Transmission through the surface and the volume under it (KHR_materials_transmission, KHR_materials_volume).
+/// Transmission through the surface, the volume under it and its dispersion (KHR_materials_transmission,
+/// KHR_materials_volume, KHR_materials_dispersion).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct TransmissionUniforms {
@@ -153,12 +162,12 @@ pub struct TransmissionUniforms {
     pub ior: f32,
     /// Thickness of the volume in units of the mesh; 0 is a thin wall.
     pub thickness: f32,
-    /// Padding to 16 bytes; zero.
-    pub _pad0: u32,
+    /// Dispersion: 20 over the Abbe number, 0 or more.
+    pub dispersion: f32,
     /// Absorption coefficient in 1/m, by channel of linear Rec.709.
     pub absorption: Vec3,
     /// Padding to 16 bytes; zero.
-    pub _pad1: u32,
+    pub _pad: u32,
     /// Texture of the factor.
     pub map: TextureMap,
     /// Texture of the thickness.
@@ -172,6 +181,38 @@ pub struct SpecularUniforms {
     /// Factor on the dielectric reflectance at normal incidence, linear Rec.709.
     pub color: Vec3,
     /// Factor on the dielectric reflectance at all angles, 0…1.
+    pub factor: f32,
+    /// Texture of the factor.
+    pub map: TextureMap,
+    /// Texture of the color.
+    pub color_map: TextureMap,
+}
+
+/// Thin film over the base (KHR_materials_iridescence).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct IridescenceUniforms {
+    /// Share of the surface under the film, 0…1.
+    pub factor: f32,
+    /// Index of refraction of the film, 1 or more.
+    pub ior: f32,
+    /// Thickness in nm where its texture is 0.
+    pub min_thickness_nm: f32,
+    /// Thickness in nm where its texture is 1, and without one.
+    pub max_thickness_nm: f32,
+    /// Texture of the factor.
+    pub map: TextureMap,
+    /// Texture of the thickness.
+    pub thickness_map: TextureMap,
+}
+
+/// Diffuse transmission (KHR_materials_diffuse_transmission).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct DiffuseTransmissionUniforms {
+    /// Albedo of the light that leaves on the other side, linear Rec.709.
+    pub color: Vec3,
+    /// Share of the scattered light that leaves on the other side, 0…1.
     pub factor: f32,
     /// Texture of the factor.
     pub map: TextureMap,
@@ -204,6 +245,8 @@ impl Default for MaterialUniforms {
             anisotropy: AnisotropyUniforms::default(),
             transmission: TransmissionUniforms::default(),
             specular: SpecularUniforms::default(),
+            iridescence: IridescenceUniforms::default(),
+            diffuse_transmission: DiffuseTransmissionUniforms::default(),
         }
     }
 }
@@ -233,12 +276,16 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             anisotropy,
             transmission,
             specular,
+            iridescence,
+            diffuse_transmission,
         }),
         layout_of!(ClearCoatUniforms { factor, roughness, normal_scale, _pad, map, roughness_map, normal_map }),
         layout_of!(SheenUniforms { color, roughness, color_map, roughness_map }),
         layout_of!(AnisotropyUniforms { rotation, strength, _pad, map }),
-        layout_of!(TransmissionUniforms { factor, ior, thickness, _pad0, absorption, _pad1, map, thickness_map }),
+        layout_of!(TransmissionUniforms { factor, ior, thickness, dispersion, absorption, _pad, map, thickness_map }),
         layout_of!(SpecularUniforms { color, factor, map, color_map }),
+        layout_of!(IridescenceUniforms { factor, ior, min_thickness_nm, max_thickness_nm, map, thickness_map }),
+        layout_of!(DiffuseTransmissionUniforms { color, factor, map, color_map }),
     ]
 }
 

@@ -92,12 +92,21 @@ fn constants_have_the_same_values_on_both_sides() {
         assert_eq!(Some(value), curve.number());
         assert_eq!(ToneMap::from_name(curve.name()), Some(curve));
     }
-    let material = |name| constant("interface/material.wgsl", name);
+    let slots = constant("interface/material.wgsl", "SLOT_COUNT");
+    assert_eq!(slots, layout::MATERIAL_SLOTS);
+    // The bits of traits are written as sums with the number of slots.
+    let material = |name: &str| {
+        let text = library::text("interface/material.wgsl").unwrap();
+        let from = format!("const {name}: u32 = SLOT_COUNT + ");
+        let rest = &text[text.find(&from).unwrap_or_else(|| panic!("{name} is not there")) + from.len()..];
+        slots + rest[..rest.find('u').unwrap()].parse::<u32>().unwrap()
+    };
     assert_eq!(material("TRAIT_EMITS"), layout::TRAIT_EMITS);
     assert_eq!(material("TRAIT_DOUBLE_SIDED"), layout::TRAIT_DOUBLE_SIDED);
     assert_eq!(material("TRAIT_UNLIT"), layout::TRAIT_UNLIT);
     assert_eq!(material("TRAIT_PLAIN_UV"), layout::TRAIT_PLAIN_UV);
     assert_eq!(material("TRAIT_PACKED_OCCLUSION"), layout::TRAIT_PACKED_OCCLUSION);
+    assert_eq!(material("TRAIT_NO_AREA"), layout::TRAIT_NO_AREA);
 
     use glam::Vec3;
     let kind = |shape| LightUniforms::punctual(shape, Vec3::ONE, 1.0, 1.0).unwrap().kind;
@@ -114,6 +123,9 @@ fn defaults_of_the_overrides_are_the_defaults_of_the_settings() {
     let tone = Effect { name: "tone", wgsl: library::text("effect/tone.wgsl").unwrap() };
     let post = library::pass("pass/post.wgsl").unwrap();
     let post = resolve(&post, &crate::Features::NONE, &[tone]).unwrap();
+    let color = resolve(&library::pass("pass/color.wgsl").unwrap(), &crate::Features::NONE, &[]).unwrap();
+    let traits = color.reflection.overrides.iter().find(|o| o.name == "MATERIAL_TRAITS").unwrap();
+    assert_eq!(traits.default, Some(f64::from((1_u32 << layout::TRAIT_UNLIT) - 1)), "every texture, and that it emits");
     let tone_map = post.reflection.overrides.iter().find(|o| o.name == "TONE_MAP").unwrap();
     assert_eq!(tone_map.default, ToneMap::default().number().map(f64::from));
 }

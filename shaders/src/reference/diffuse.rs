@@ -7,6 +7,11 @@ pub fn fd_lambert() -> f64 {
     1.0 / PI
 }
 
+/// Lambert's transmission times cosine for albedo one, in 1/sr.
+pub fn fd_transmitted(nol: f64) -> f64 {
+    (-nol).clamp(0.0, 1.0) / PI
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

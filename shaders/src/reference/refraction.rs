@@ -11,6 +11,12 @@ pub fn refracted_path(view: DVec3, normal: DVec3, ior: f64, thickness: f64) -> D
     ray * (thickness * inside)
 }
 
+/// Index of refraction of red, green and blue: by half of what an Abbe number of 20 / `dispersion` spreads to each side.
+pub fn dispersed_ior(ior: f64, dispersion: f64) -> DVec3 {
+    let spread = (ior - 1.0) * dispersion / 20.0;
+    DVec3::new(ior - 0.5 * spread, ior, ior + 0.5 * spread).clamp(DVec3::ONE, DVec3::splat(1e4))
+}
+
 /// Share of each channel that is left.
 pub fn transmittance(absorption_per_m: DVec3, distance_m: f64) -> DVec3 {
     (-absorption_per_m * distance_m).exp()
@@ -48,6 +54,15 @@ mod tests {
         }
         assert_eq!(refracted_path(DVec3::X, normal, 1.5, 0.0), DVec3::ZERO);
         assert!(refracted_path(DVec3::NEG_Z, normal, 1.0, 1.0).is_finite(), "a normal that faces away");
+    }
+
+    /// An Abbe number of 20 is (n − 1) over the spread from red to blue.
+    #[test]
+    fn the_spread_of_indices_is_that_of_the_abbe_number() {
+        let [red, green, blue] = dispersed_ior(1.5, 1.0).to_array();
+        assert_eq!(green, 1.5);
+        assert!((0.5 / (blue - red) - 20.0).abs() < 1e-9 && red < blue);
+        assert_eq!(dispersed_ior(1.7, 0.0), DVec3::splat(1.7));
     }
 
     /// Half of GGX's slopes, of density 1/(π α² (1 + m²/α²)²), are below α; half of a Gaussian's below σ·√(2 ln 2).

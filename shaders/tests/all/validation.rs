@@ -88,7 +88,11 @@ fn resolving_is_deterministic() {
 fn every_feature_makes_a_difference_and_only_to_what_shades() {
     for pass in library::passes() {
         let expected: Vec<Feature> = match pass.name() {
-            "color" => Feature::all().filter(|feature| *feature != Feature::VELOCITY).collect(),
+            // Dispersion is part of transmission, and makes no difference alone.
+            "color" => {
+                let not = [Feature::VELOCITY, Feature::DISPERSION];
+                Feature::all().filter(|feature| !not.contains(feature)).collect()
+            }
             "taa" => vec![Feature::VELOCITY],
             "sky" => vec![Feature::FOG],
             // Made of functions that shade, too, and made in f32.
@@ -102,6 +106,7 @@ fn every_feature_makes_a_difference_and_only_to_what_shades() {
                 Feature::INSTANCE_STREAM,
                 Feature::ANISOTROPY,
                 Feature::TRANSMISSION,
+                Feature::DIFFUSE_TRANSMISSION,
             ],
             // They read materials too, but are never asked to take them from an array.
             "prepass" | "shadow" | "velocity" => vec![Feature::MATERIAL_TABLE, Feature::INSTANCE_STREAM],
@@ -109,6 +114,24 @@ fn every_feature_makes_a_difference_and_only_to_what_shades() {
         };
         assert_eq!(variants::features_of(&pass), expected, "{}", pass.path);
     }
+}
+
+/// A surface without a lobe has nothing of it in its shader, and one with it has.
+#[test]
+fn lobes_are_in_the_shaders_that_call_for_them() {
+    let text = |features: Features| resolve(&variants::pass("color"), &features, &[]).unwrap().wgsl;
+    let plain = text(Features::NONE);
+    for (words, features) in [
+        (["fn thin_film_reflectance", "iridescence_texture"], Features::NONE.with(Feature::IRIDESCENCE)),
+        (["fn dispersed_ior", "refracted_path"], Features::NONE.with(Feature::TRANSMISSION).with(Feature::DISPERSION)),
+        (["fn fd_transmitted", "diffuse_transmission_texture"], Features::NONE.with(Feature::DIFFUSE_TRANSMISSION)),
+    ] {
+        let lobe = text(features);
+        for word in words {
+            assert!(lobe.contains(word) && !plain.contains(word), "{word}");
+        }
+    }
+    assert!(!text(Features::NONE.with(Feature::TRANSMISSION)).contains("dispersed_ior"));
 }
 
 #[test]

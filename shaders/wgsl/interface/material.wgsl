@@ -1,115 +1,15 @@
 // Group 1: a glTF metallic-roughness material, its lobes, and their textures.
 //
 // Slot i of `Material::slots` binds its texture at 1 + 2i and its sampler at 2 + 2i. The textures
-// of a lobe are there only under its feature.
+// of a lobe are there only under its feature; those of the film and of diffuse transmission are in
+// files of their own.
 //
 // Under MATERIAL_TABLE the factors are copied from an array, before anything reads them: who draws
 // many materials binds no group for each.
 
+import package::interface::material_uniforms::{MaterialUniforms, TextureMap};
 import package::lib::normal_map::unpack_normal;
 import package::lib::uv_transform::transform_uv;
-
-/// Where a texture lies on the mesh (KHR_texture_transform).
-/// Mirrored by `layout::TextureMap`.
-struct TextureMap {
-    /// Columns of the 2×2 matrix rotation · scale.
-    x_axis: vec2<f32>,
-    y_axis: vec2<f32>,
-    offset: vec2<f32>,
-    /// Which texture coordinate set of the mesh: 0 or 1.
-    uv_set: u32,
-}
-
-/// Clear coat (KHR_materials_clearcoat). Mirrored by `layout::ClearCoatUniforms`.
-struct ClearCoatUniforms {
-    /// Coverage of the surface by the coat, 0…1.
-    factor: f32,
-    /// Perceptual roughness of the coat, 0…1.
-    roughness: f32,
-    /// Factor on x and y of the coat's normal map.
-    normal_scale: f32,
-    map: TextureMap,
-    roughness_map: TextureMap,
-    normal_map: TextureMap,
-}
-
-/// Sheen (KHR_materials_sheen). Mirrored by `layout::SheenUniforms`.
-struct SheenUniforms {
-    /// Reflectance of the sheen lobe, linear Rec.709.
-    color: vec3<f32>,
-    /// Perceptual roughness, 0…1.
-    roughness: f32,
-    color_map: TextureMap,
-    roughness_map: TextureMap,
-}
-
-/// Anisotropy (KHR_materials_anisotropy). Mirrored by `layout::AnisotropyUniforms`.
-struct AnisotropyUniforms {
-    /// Cosine and sine of the rotation from the tangent.
-    rotation: vec2<f32>,
-    /// Strength of the anisotropy, 0…1.
-    strength: f32,
-    map: TextureMap,
-}
-
-/// Transmission and volume (KHR_materials_transmission, KHR_materials_volume). Mirrored by
-/// `layout::TransmissionUniforms`.
-struct TransmissionUniforms {
-    /// Transmission: the share of the light entering the surface that passes through it, 0…1.
-    factor: f32,
-    /// Index of refraction, 1 or more.
-    ior: f32,
-    /// Thickness of the volume under the surface in units of the mesh; 0 is a thin wall.
-    thickness: f32,
-    /// Absorption coefficient in 1/m, by channel.
-    absorption: vec3<f32>,
-    map: TextureMap,
-    thickness_map: TextureMap,
-}
-
-/// Strength and tint of the dielectric specular reflection (KHR_materials_specular). Mirrored by
-/// `layout::SpecularUniforms`.
-struct SpecularUniforms {
-    /// Factor on the reflectance at normal incidence, linear Rec.709.
-    color: vec3<f32>,
-    /// Factor on the reflectance at all angles, 0…1.
-    factor: f32,
-    map: TextureMap,
-    color_map: TextureMap,
-}
-
-/// Factors of a material. Mirrored by `layout::MaterialUniforms`.
-struct MaterialUniforms {
-    /// Linear Rec.709 and alpha (straight, not premultiplied).
-    base_color: vec4<f32>,
-    /// Emitted radiance, linear Rec.709, emissive strength included.
-    emissive: vec3<f32>,
-    /// How far `emissive` is nits and meets the exposure (1) or a display value that does
-    /// not (0, what most assets mean).
-    emissive_exposure_weight: f32,
-    /// 0 dielectric … 1 metal.
-    metallic: f32,
-    /// Perceptual roughness, 0…1.
-    roughness: f32,
-    /// Factor on x and y of the normal map.
-    normal_scale: f32,
-    /// Strength of the occlusion texture, 0…1.
-    occlusion_strength: f32,
-    /// Alpha mode MASK: fragments with less alpha are discarded.
-    alpha_cutoff: f32,
-    /// Reflectance of the dielectric part at normal incidence; 0.04 for an index of 1.5.
-    @size(12) dielectric_f0: f32,
-    base_color_map: TextureMap,
-    metallic_roughness_map: TextureMap,
-    normal_map: TextureMap,
-    occlusion_map: TextureMap,
-    emissive_map: TextureMap,
-    clear_coat: ClearCoatUniforms,
-    sheen: SheenUniforms,
-    anisotropy: AnisotropyUniforms,
-    transmission: TransmissionUniforms,
-    specular: SpecularUniforms,
-}
 
 @if(MATERIAL_TABLE)
 @group(1) @binding(0) var<storage, read> materials: array<MaterialUniforms>;
@@ -168,9 +68,9 @@ var<private> material: MaterialUniforms;
 @if(TRANSMISSION)
 @group(1) @binding(24) var transmission_sampler: sampler;
 /// Thickness in green; linear.
-@if(TRANSMISSION)
+@if(TRANSMISSION || DIFFUSE_TRANSMISSION)
 @group(1) @binding(25) var thickness_texture: texture_2d<f32>;
-@if(TRANSMISSION)
+@if(TRANSMISSION || DIFFUSE_TRANSMISSION)
 @group(1) @binding(26) var thickness_sampler: sampler;
 /// Factor on the reflection in alpha; linear.
 @if(SPECULAR)
@@ -186,7 +86,7 @@ var<private> material: MaterialUniforms;
 /// What the material has, a bit for each SLOT_* (textures, as in `Material::slots`) and TRAIT_*.
 /// What it lacks is no part of the shader: where branches are not skipped, as in some software, it
 /// would be computed.
-override MATERIAL_TRAITS: u32 = 0x1ffffu;
+override MATERIAL_TRAITS: u32 = (1u << TRAIT_UNLIT) - 1u;
 
 const SLOT_BASE_COLOR: u32 = 0u;
 const SLOT_METALLIC_ROUGHNESS: u32 = 1u;
@@ -203,16 +103,24 @@ const SLOT_TRANSMISSION: u32 = 11u;
 const SLOT_THICKNESS: u32 = 12u;
 const SLOT_SPECULAR: u32 = 13u;
 const SLOT_SPECULAR_COLOR: u32 = 14u;
+const SLOT_IRIDESCENCE: u32 = 15u;
+const SLOT_IRIDESCENCE_THICKNESS: u32 = 16u;
+const SLOT_DIFFUSE_TRANSMISSION: u32 = 17u;
+const SLOT_DIFFUSE_TRANSMISSION_COLOR: u32 = 18u;
+/// Number of slots; the bits of traits follow theirs.
+const SLOT_COUNT: u32 = 19u;
 /// It emits light.
-const TRAIT_EMITS: u32 = 15u;
+const TRAIT_EMITS: u32 = SLOT_COUNT + 0u;
 /// Back faces are drawn and shaded with reversed normals.
-const TRAIT_DOUBLE_SIDED: u32 = 16u;
+const TRAIT_DOUBLE_SIDED: u32 = SLOT_COUNT + 1u;
 /// The base color is shown as it is (KHR_materials_unlit).
-const TRAIT_UNLIT: u32 = 17u;
+const TRAIT_UNLIT: u32 = SLOT_COUNT + 2u;
 /// Every texture is looked up by set 0 as it is.
-const TRAIT_PLAIN_UV: u32 = 18u;
+const TRAIT_PLAIN_UV: u32 = SLOT_COUNT + 3u;
 /// Occlusion is in red of the metallic-roughness texture, which is read once for both.
-const TRAIT_PACKED_OCCLUSION: u32 = 19u;
+const TRAIT_PACKED_OCCLUSION: u32 = SLOT_COUNT + 4u;
+/// The mesh is of lines or points.
+const TRAIT_NO_AREA: u32 = SLOT_COUNT + 5u;
 
 /// Whether the material has the texture of a slot, or a trait.
 fn material_has(what: u32) -> bool {
@@ -345,21 +253,26 @@ fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
     return vec3<f32>(turned, strength);
 }
 
-/// Transmission in x, 0…1, and the thickness of the volume in y, in units of the mesh: 0 is a thin
-/// wall.
+/// Transmission, 0…1.
 @if(TRANSMISSION)
-fn transmission(uv: vec4<f32>) -> vec2<f32> {
-    let given = material.transmission;
-    var values = vec2<f32>(given.factor, given.thickness);
+fn transmission(uv: vec4<f32>) -> f32 {
+    var factor = material.transmission.factor;
     if material_has(SLOT_TRANSMISSION) {
-        let at = map_uv(given.map, uv);
-        values.x *= textureSample(transmission_texture, transmission_sampler, at).r;
+        let at = map_uv(material.transmission.map, uv);
+        factor *= textureSample(transmission_texture, transmission_sampler, at).r;
     }
+    return factor;
+}
+
+/// Thickness of the volume under the surface in units of the mesh: 0 is a thin wall.
+@if(TRANSMISSION || DIFFUSE_TRANSMISSION)
+fn volume_thickness(uv: vec4<f32>) -> f32 {
+    var thickness = material.transmission.thickness;
     if material_has(SLOT_THICKNESS) {
-        let at = map_uv(given.thickness_map, uv);
-        values.y *= textureSample(thickness_texture, thickness_sampler, at).g;
+        let at = map_uv(material.transmission.thickness_map, uv);
+        thickness *= textureSample(thickness_texture, thickness_sampler, at).g;
     }
-    return values;
+    return thickness;
 }
 
 /// Reflectance of the dielectric part at normal incidence in rgb, at grazing incidence in w

@@ -8,3 +8,9 @@ import package::lib::real::real;
 fn fd_lambert() -> real {
     return real(1.0 / PI);
 }
+
+/// Lambert's transmission times cosine for albedo one, in 1/sr: of light from behind, whose `nol`
+/// is below 0. Light from the front is reflected and not transmitted.
+fn fd_transmitted(nol: real) -> real {
+    return saturate(-nol) * fd_lambert();
+}

@@ -19,6 +19,15 @@ fn refracted_path(
     return ray * (thickness * inside);
 }
 
+/// Index of refraction of red, green and blue in a medium of index `ior` and `dispersion` 20 over
+/// its Abbe number (KHR_materials_dispersion): blue is refracted most. Held at the index of air
+/// from below, and beyond any medium from above.
+fn dispersed_ior(ior: f32, dispersion: f32) -> vec3<f32> {
+    let half_spread = (ior - 1.0) * 0.025 * dispersion;
+    let iors = ior + vec3<f32>(-half_spread, 0.0, half_spread);
+    return clamp(iors, vec3<f32>(1.0), vec3<f32>(1e4));
+}
+
 /// Share of each channel that is left after `distance_m` (Beer and Lambert).
 fn transmittance(absorption_per_m: vec3<f32>, distance_m: f32) -> vec3<f32> {
     return exp(-absorption_per_m * distance_m);

@@ -16,26 +16,22 @@
 // MATERIAL_TABLE (materials lie in an array), INSTANCE_STREAM (interface/object.wgsl),
 // ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands of
 // spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
-// TRANSMISSION, SPECULAR. They change what is bound or comes from the vertices, so they are
-// compiled in or out; what only changes arithmetic is an `override`. HALF shades in half floats:
-// what a surface is made of and what it reflects of one light (lib/real.wgsl). Light itself, and
-// everything that has a place, stays in f32.
+// TRANSMISSION with DISPERSION, SPECULAR, IRIDESCENCE, DIFFUSE_TRANSMISSION. They change what is
+// bound or comes from the vertices, so they are compiled in or out; what only changes arithmetic is
+// an `override`. HALF shades in half floats: what a surface is made of and what it reflects of one
+// light (lib/real.wgsl). Light itself, and everything that has a place, stays in f32.
 
 import package::interface::epilogue::epilogue;
 @if(FOG)
 import package::interface::fog::in_fog;
 import package::interface::frame::frame;
 import package::interface::material::{
-    material, TRAIT_EMITS, TRAIT_UNLIT, material_has, base_color, metallic_roughness, emission,
-    specular_factors,
+    material, TRAIT_EMITS, TRAIT_NO_AREA, TRAIT_UNLIT, material_has, base_color,
+    metallic_roughness, emission, specular_factors,
 };
 @if(MATERIAL_TABLE)
 import package::interface::material::materials;
 import package::interface::object::Instance;
-@if(TRANSMISSION)
-import package::interface::scene::radiance_behind;
-@if(TRANSMISSION)
-import package::lib::refraction::{refracted_path, transmittance, transmission_spread};
 @if(CLEAR_COAT)
 import package::interface::material::clear_coat;
 @if(CLEAR_COAT && TEXTURED)
@@ -46,6 +42,10 @@ import package::interface::material::sheen;
 import package::interface::material::anisotropy;
 @if(TRANSMISSION)
 import package::interface::material::transmission;
+@if(TRANSMISSION || DIFFUSE_TRANSMISSION)
+import package::interface::material::volume_thickness;
+@if(DIFFUSE_TRANSMISSION)
+import package::interface::diffuse_transmission::diffuse_transmission;
 @if(ANISOTROPY)
 import package::lib::anisotropy::gltf_anisotropic_alpha;
 @if(SHEEN)
@@ -60,12 +60,14 @@ import package::lib::numerics::{normalize_or, saturate_half3};
 import package::lib::real::{real, real2, real3, to_real3};
 import package::lib::specular_aa::normal_filtering;
 import package::lib::standard_surface::{StandardSurface, clamp_nov};
+@if(IRIDESCENCE)
+import package::lib::thin_film::f0_from_reflectance;
 import package::shading::ambient::directional_albedo;
 import package::shading::contact_shadow::contact_visibility;
 import package::shading::direct::reflect_surface;
-import package::shading::indirect::{
-    ambient_visibility, reflect_environment, add_layers, layer_transmittance,
-};
+import package::shading::indirect::{ambient_visibility, reflect_environment, add_layers};
+@if(DIFFUSE_TRANSMISSION)
+import package::shading::through::{translucency_of, is_behind, far_side};
 import package::shading::micro_shadow::micro_visibility;
 import package::shading::quality::{
     ROUGHNESS_FLOOR, F90_FADES, PUNCTUAL_COMPENSATION,
@@ -74,13 +76,19 @@ import package::shading::quality::{
 import package::shading::punctual::add_punctual;
 import package::shading::shadow::{sun_visibility, cascade_tint};
 import package::shading::shadow_map::Receiver;
-import package::shading::surface::Surface;
+import package::shading::surface::{Surface, layer_transmittance};
 @if(CLEAR_COAT)
 import package::shading::surface::{ClearCoat, coated_f0, coated_roughness};
 @if(SHEEN)
 import package::shading::surface::Sheen;
 @if(ANISOTROPY)
 import package::shading::surface::{Anisotropy, anisotropy_direction};
+@if(IRIDESCENCE)
+import package::shading::surface::{film_reflectance, share_below};
+@if(IRIDESCENCE)
+import package::shading::thin_film::film_of;
+@if(TRANSMISSION)
+import package::shading::through::refract_scene;
 import package::shading::vertex::{
     SurfaceVertex, surface_vertex, face_sign, geometric_normal, smooth_normal, shading_normal,
     texture_uv, vertex_color,
@@ -126,23 +134,6 @@ fn shaded_roughness(roughness: f32, smooth_side: vec3<f32>) -> f32 {
         r = normal_filtering(r, dx, dy, SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD);
     }
     return r;
-}
-
-/// Pre-exposed radiance that arrives through the body from what is behind it; `thickness` in units
-/// of the mesh, 0 for a thin wall.
-@if(TRANSMISSION)
-fn refract_scene(
-    vertex: SurfaceVertex,
-    view: vec3<f32>,
-    normal: vec3<f32>,
-    alpha: f32,
-    thickness: f32,
-) -> vec3<f32> {
-    let glass = material.transmission;
-    let path = refracted_path(view, normal, glass.ior, thickness * vertex.scale_m);
-    let spread = transmission_spread(alpha, glass.ior);
-    return radiance_behind(vertex.world, path, spread)
-        * transmittance(glass.absorption, length(path));
 }
 
 /// The clear coat of a fragment.
@@ -200,6 +191,12 @@ fn anisotropy_of(
     );
 }
 
+/// Emission of the material, pre-exposed.
+fn emitted(uv: vec4<f32>) -> vec3<f32> {
+    let exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
+    return emission(uv) * exposure;
+}
+
 /// The lit color of a fragment, pre-exposed.
 fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) -> vec3<f32> {
     let uv = texture_uv(vertex);
@@ -222,13 +219,20 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
         roughness = coated_roughness(roughness, surface.coat.roughness, f32(strength));
     }
     let dfg = real2(directional_albedo(f32(nov), roughness).xy);
-    var compensation = real3(1.0);
-    if PUNCTUAL_COMPENSATION {
-        compensation = energy_compensation(f0, dfg.y);
-    }
     var f90 = mix(real(dielectric.w), 1.0, metallic);
     if F90_FADES && !F90_IS_GIVEN {
         f90 = f90_from_f0(f0);
+    }
+    @if(IRIDESCENCE) {
+        surface.film = film_of(uv, f32(nov), f0, base, f32(metallic), dielectric);
+        // Light from all around meets the film as it does toward the viewer.
+        let seen = film_reflectance(surface.film, f32(nov));
+        let under = f0_from_reflectance(seen, f32(f90), f32(nov));
+        f0 = mix(f0, real3(under), real(surface.film.factor));
+    }
+    var compensation = real3(1.0);
+    if PUNCTUAL_COMPENSATION {
+        compensation = energy_compensation(f0, dfg.y);
     }
     var diffuse = diffuse_from_base_color(color, metallic);
     // An index of refraction of 0 is the specular-glossiness model. Filament takes its reflectance from the diffuse color.
@@ -237,10 +241,20 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
             diffuse *= 1.0 - real(max(dielectric.r, max(dielectric.g, dielectric.b)));
         }
     }
+    @if(TRANSMISSION || DIFFUSE_TRANSMISSION)
+    let thickness_m = volume_thickness(uv) * vertex.scale_m;
     // What is transmitted is tinted as what is scattered would be, and taken from it.
-    @if(TRANSMISSION) let glass = transmission(uv);
-    @if(TRANSMISSION) let through = diffuse * real(saturate(glass.x));
+    @if(TRANSMISSION) let transmitted = real(saturate(transmission(uv)));
+    @if(TRANSMISSION) let through = diffuse * transmitted;
     @if(TRANSMISSION) diffuse -= through;
+    @if(DIFFUSE_TRANSMISSION) {
+        let given = diffuse_transmission(uv);
+        let share = saturate(given.w);
+        var lambert = share * f32(1.0 - metallic);
+        @if(TRANSMISSION) lambert *= f32(1.0 - transmitted);
+        surface.translucency = translucency_of(given.rgb, lambert, thickness_m);
+        diffuse *= real(1.0 - share);
+    }
     surface.base = StandardSurface(
         real3(normal),
         alpha_from_roughness(real(roughness), real(ROUGHNESS_FLOOR)),
@@ -263,22 +277,39 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     var below = reflect_environment(
         surface, normal, view, roughness, dfg, visibility, vertex.position, vertex.world, on_screen,
     );
-    @if(TRANSMISSION) below += vec3<f32>(through * (1.0 - specular_albedo(f0, f90, dfg)))
-        * refract_scene(vertex, view, normal, f32(surface.base.alpha), glass.y);
+    @if(TRANSMISSION && IRIDESCENCE)
+    let under = share_below(surface, specular_albedo(f0, f90, dfg));
+    @if(TRANSMISSION && !IRIDESCENCE)
+    let under = 1.0 - specular_albedo(f0, f90, dfg);
+    @if(TRANSMISSION) below += vec3<f32>(through * under)
+        * refract_scene(vertex.world, view, normal, f32(surface.base.alpha), thickness_m);
     var radiance = add_layers(surface, normal, view, below, visibility);
     let receiver = Receiver(vertex.world, geometric, vertex.position.xy, slope);
     if SUN {
+        @if(DIFFUSE_TRANSMISSION)
+        let comes_through = is_behind(surface, frame.sun_direction);
+        @if(DIFFUSE_TRANSMISSION) {
+            if comes_through {
+                let lit = far_side(surface, receiver);
+                let sun = frame.sun_illuminance
+                    * reflect_surface(surface, real3(frame.sun_direction));
+                radiance += sun * sun_visibility(lit);
+            }
+        }
         let sun = frame.sun_illuminance * reflect_surface(surface, real3(frame.sun_direction))
             * micro_visibility(uv, dot(normal, frame.sun_direction));
-        if any(sun > vec3<f32>(0.0)) {
+        @if(DIFFUSE_TRANSMISSION)
+        let is_lit = !comes_through && any(sun > vec3<f32>(0.0));
+        @else
+        let is_lit = any(sun > vec3<f32>(0.0));
+        if is_lit {
             radiance += sun * sun_visibility(receiver) * contact_visibility(receiver);
         }
     }
     radiance = add_punctual(radiance, surface, receiver);
     radiance *= cascade_tint(vertex.world);
     if material_has(TRAIT_EMITS) {
-        let exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
-        radiance += emission(uv) * (exposure * layer_transmittance(surface));
+        radiance += emitted(uv) * layer_transmittance(surface);
     }
     return radiance;
 }
@@ -296,6 +327,9 @@ fn fs_main(
     var color = base.rgb;
     if !material_has(TRAIT_UNLIT) {
         color = shade(vertex, geometric, side, base.rgb);
+    } else if material_has(TRAIT_NO_AREA) && material_has(TRAIT_EMITS) {
+        // Lines and points without normals (glTF 2.0, section 3.9.7).
+        color += emitted(texture_uv(vertex));
     }
     if ALPHA_MODE == 1u && base.a < material.alpha_cutoff {
         discard;

@@ -1,6 +1,6 @@
-// What a surface with all its lobes reflects of one light: BRDF times cosine.
+// Light of one source reflected by a surface with all its lobes, or let through: BSDF times cosine.
 
-@if(CLEAR_COAT || ANISOTROPY)
+@if(CLEAR_COAT || ANISOTROPY || IRIDESCENCE)
 import package::lib::fresnel::{f_schlick, f_schlick_scalar};
 @if(ANISOTROPY)
 import package::lib::anisotropy::{d_ggx_anisotropic, v_smith_ggx_correlated_anisotropic};
@@ -8,30 +8,50 @@ import package::lib::anisotropy::{d_ggx_anisotropic, v_smith_ggx_correlated_anis
 import package::lib::clear_coat::v_kelemen;
 @if(SHEEN)
 import package::lib::cloth::{d_charlie, v_neubelt};
-@if(ANISOTROPY)
+@if(ANISOTROPY || IRIDESCENCE)
 import package::lib::diffuse::fd_lambert;
-@if(CLEAR_COAT)
-import package::lib::ggx::{d_ggx, d_ggx_cross};
+@if(DIFFUSE_TRANSMISSION)
+import package::lib::diffuse::fd_transmitted;
+@if(CLEAR_COAT || IRIDESCENCE)
+import package::lib::ggx::{
+    d_ggx, d_ggx_cross, v_smith_ggx_correlated, v_smith_ggx_correlated_fast,
+};
 import package::lib::real::{real, real3};
 import package::lib::standard_surface::{half_vector, reflect_light};
 import package::shading::quality::FAST_VISIBILITY;
 import package::shading::surface::Surface;
+@if(IRIDESCENCE)
+import package::shading::surface::{film_reflectance, largest_channel};
+@if(DIFFUSE_TRANSMISSION)
+import package::shading::surface::layer_transmittance;
 
 /// The isotropic base.
-@if(!ANISOTROPY)
+@if(!ANISOTROPY && !IRIDESCENCE)
 fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
     return reflect_light(s.base, to_light, FAST_VISIBILITY);
 }
 
-/// The anisotropic base: the exact anisotropic terms whatever the quality, as Filament does; there
-/// is no fast form of them.
-@if(ANISOTROPY)
-fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
-    let nol = min(dot(s.base.normal, to_light), 1.0);
-    if !(nol > 0.0) {
-        return vec3<f32>(0.0);
+/// D · V of the isotropic base.
+@if(!ANISOTROPY && IRIDESCENCE)
+fn base_lobe(s: Surface, to_light: real3, h: real3, nol: real) -> f32 {
+    let noh = dot(s.base.normal, h);
+    @if(HALF)
+    let d = d_ggx_cross(s.base.normal, h, noh, s.base.alpha);
+    @else
+    let d = d_ggx(noh, s.base.alpha);
+    var v = real(0.0);
+    if FAST_VISIBILITY {
+        v = v_smith_ggx_correlated_fast(s.base.nov, nol, s.base.alpha);
+    } else {
+        v = v_smith_ggx_correlated(s.base.nov, nol, s.base.alpha);
     }
-    let h = half_vector(to_light, s.base.view);
+    return f32(d) * f32(v);
+}
+
+/// D · V of the anisotropic base: the exact terms whatever the quality, as Filament does; there is
+/// no fast form of them.
+@if(ANISOTROPY)
+fn base_lobe(s: Surface, to_light: real3, h: real3, nol: real) -> f32 {
     let t = real3(s.anisotropy.tangent);
     let b = real3(s.anisotropy.bitangent);
     let alpha = s.anisotropy.alpha;
@@ -41,10 +61,42 @@ fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
         real3(dot(t, s.base.view), dot(b, s.base.view), s.base.nov),
         real3(dot(t, to_light), dot(b, to_light), nol),
     );
-    let f = f_schlick(s.base.f0, s.base.f90, dot(to_light, h));
-    let specular = (d * f32(v)) * vec3<f32>(f);
-    let diffuse = vec3<f32>(s.base.diffuse * fd_lambert());
+    return d * f32(v);
+}
+
+/// The base with grooves or under a film. Unlike the interface of a dielectric alone, a film may
+/// reflect most of the light: what is scattered below it gets the rest.
+@if(ANISOTROPY || IRIDESCENCE)
+fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
+    let nol = min(dot(s.base.normal, to_light), 1.0);
+    if !(nol > 0.0) {
+        return vec3<f32>(0.0);
+    }
+    let h = half_vector(to_light, s.base.view);
+    let loh = dot(to_light, h);
+    var diffuse = vec3<f32>(s.base.diffuse * fd_lambert());
+    @if(IRIDESCENCE)
+    let bare = vec3<f32>(f_schlick(s.film.bare_f0, s.base.f90, loh));
+    @if(IRIDESCENCE)
+    let film = film_reflectance(s.film, f32(loh));
+    @if(IRIDESCENCE)
+    let f = mix(bare, film, s.film.factor);
+    @else
+    let f = vec3<f32>(f_schlick(s.base.f0, s.base.f90, loh));
+    @if(IRIDESCENCE)
+    diffuse *= 1.0 - s.film.factor * largest_channel(film);
+    let specular = base_lobe(s, to_light, h, nol) * f;
     return (diffuse + specular * vec3<f32>(s.base.compensation)) * f32(nol);
+}
+
+/// Light from behind that is scattered through the base and leaves through its layers.
+@if(DIFFUSE_TRANSMISSION)
+fn transmit_light(s: Surface, to_light: real3) -> vec3<f32> {
+    let scattered = f32(fd_transmitted(dot(s.base.normal, to_light)));
+    var share = layer_transmittance(s);
+    @if(IRIDESCENCE)
+    share *= 1.0 - s.film.toward_view;
+    return vec3<f32>(s.translucency.color) * (scattered * share);
 }
 
 /// The sheen lobe alone.
@@ -79,7 +131,7 @@ fn reflect_coat(s: Surface, to_light: real3) -> vec2<f32> {
     return vec2<f32>(f32(d) * f32(v_kelemen(loh)) * fresnel * f32(nol), fresnel);
 }
 
-/// BRDF times cosine of the whole surface toward the unit vector `to_light`.
+/// BSDF times cosine of the whole surface toward the unit vector `to_light`.
 fn reflect_surface(s: Surface, to_light: real3) -> vec3<f32> {
     var reflected = reflect_base(s, to_light);
     @if(SHEEN)
@@ -88,5 +140,6 @@ fn reflect_surface(s: Surface, to_light: real3) -> vec3<f32> {
         let coat = reflect_coat(s, to_light);
         reflected = reflected * (1.0 - coat.y) + vec3<f32>(coat.x);
     }
+    @if(DIFFUSE_TRANSMISSION) reflected += transmit_light(s, to_light);
     return reflected;
 }

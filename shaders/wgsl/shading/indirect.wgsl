@@ -23,6 +23,8 @@ import package::shading::quality::{
     ENERGY_COMPENSATION, MULTI_BOUNCE_OCCLUSION, SPECULAR_OCCLUSION,
 };
 import package::shading::surface::Surface;
+@if(IRIDESCENCE)
+import package::shading::surface::share_below;
 
 /// Ambient occlusion as visibility: the share of the ambient light that arrives, 1 where nothing is
 /// occluded.
@@ -136,7 +138,15 @@ fn reflect_environment(
             specular = specular * (1.0 - found.a) + vec3<f32>(albedo) * found.rgb * compensation;
         }
     }
-    let diffuse = vec3<f32>(s.base.diffuse * (1.0 - albedo)) * ambient_irradiance(normal);
+    @if(IRIDESCENCE)
+    let below = share_below(s, albedo);
+    @else
+    let below = 1.0 - albedo;
+    let diffuse = vec3<f32>(s.base.diffuse * below) * ambient_irradiance(normal);
+    // Occlusion of the front is applied to light from behind as well.
+    @if(DIFFUSE_TRANSMISSION)
+    specular += vec3<f32>(s.translucency.color * below) * ambient_irradiance(-normal)
+        * visibility.diffuse;
     return diffuse * visibility.diffuse + specular;
 }
 
@@ -164,14 +174,4 @@ fn add_layers(
         radiance = radiance * (1.0 - fresnel) + reflected * (fresnel * visible);
     }
     return radiance;
-}
-
-/// Transmittance of the layers over the base, 0…1: the share of what it emits that leaves the
-/// surface.
-fn layer_transmittance(s: Surface) -> f32 {
-    var share = 1.0;
-    @if(SHEEN) share *= f32(s.sheen.attenuation);
-    @if(CLEAR_COAT)
-    share *= 1.0 - f32(f_schlick_scalar(0.04, 1.0, s.coat.nov) * s.coat.strength);
-    return share;
 }

@@ -14,11 +14,13 @@ import package::shading::direct::reflect_surface;
 import package::shading::shadow::light_visibility;
 import package::shading::shadow_map::Receiver;
 import package::shading::surface::Surface;
+@if(DIFFUSE_TRANSMISSION)
+import package::shading::through::{is_behind, far_side};
 
 /// Whether there are punctual lights: without them, what they reflect is no part of the shader.
 override LAMPS: bool = true;
 
-/// Radiance reflected from one punctual light.
+/// Radiance reflected from one punctual light, and let through.
 fn reflect_punctual(s: Surface, light: LightUniforms, receiver: Receiver) -> vec3<f32> {
     if light.kind == LIGHT_DIRECTIONAL {
         return reflect_surface(s, real3(-light.direction)) * light.intensity;
@@ -41,6 +43,13 @@ fn reflect_punctual(s: Surface, light: LightUniforms, receiver: Receiver) -> vec
         return reflected;
     }
     let is_point = light.kind == LIGHT_POINT;
+    @if(DIFFUSE_TRANSMISSION) {
+        if is_behind(s, l) {
+            let lit = far_side(s, receiver);
+            let from_light = lit.world - light.position;
+            return reflected * light_visibility(light.shadow_map, is_point, from_light, lit);
+        }
+    }
     return reflected * light_visibility(light.shadow_map, is_point, -to_light, receiver);
 }
 

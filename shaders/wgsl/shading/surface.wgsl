@@ -1,18 +1,23 @@
 // A surface with its lobes: what shading needs of the material at one point.
 //
 // A lobe is there only under its feature, so a surface without it carries and computes nothing
-// of it. Layers from the top: clear coat, sheen, then GGX over Lambert.
+// of it. Layers from the top: clear coat, sheen, then GGX over Lambert, whose reflectance a thin
+// film changes. Light from behind is scattered through the Lambert layer.
 
 @if(CLEAR_COAT)
 import package::lib::clear_coat::{
     f0_under_clear_coat, f0_under_clear_coat_fast, roughness_under_clear_coat,
 };
+@if(CLEAR_COAT)
+import package::lib::fresnel::f_schlick_scalar;
 @if(ANISOTROPY)
 import package::lib::normal_map::duff_tangent;
 @if(ANISOTROPY)
 import package::lib::numerics::{normalize_or, DEGENERATE_LENGTH2};
 import package::lib::real::{real, real2, real3};
 import package::lib::standard_surface::StandardSurface;
+@if(IRIDESCENCE)
+import package::lib::thin_film::thin_film_reflectance;
 @if(CLEAR_COAT)
 import package::shading::quality::FAST_COAT;
 
@@ -59,6 +64,34 @@ struct Anisotropy {
     strength: f32,
 }
 
+/// A thin film over the base.
+@if(IRIDESCENCE)
+struct ThinFilm {
+    /// Share of the base under the film, 0…1.
+    factor: f32,
+    /// Index of refraction of the film, 1 or more.
+    ior: f32,
+    /// Thickness of the film in nm.
+    thickness_nm: f32,
+    /// Reflectance at normal incidence, without the film, of what is under it.
+    base_f0: vec3<f32>,
+    /// Factor on what the film reflects: that of KHR_materials_specular on dielectrics.
+    weight: f32,
+    /// f0 of the base where there is no film.
+    bare_f0: real3,
+    /// Largest channel of what film and base reflect toward the viewer, by the share under it.
+    toward_view: f32,
+}
+
+/// Light that is scattered through the surface from behind.
+@if(DIFFUSE_TRANSMISSION)
+struct Translucency {
+    /// Albedo of the light that comes through, what the volume absorbs taken off.
+    color: real3,
+    /// Depth in m under the surface at which the light enters: 0 for a thin sheet.
+    depth_m: f32,
+}
+
 /// A surface with all its lobes.
 struct Surface {
     base: StandardSurface,
@@ -68,6 +101,41 @@ struct Surface {
     sheen: Sheen,
     @if(ANISOTROPY)
     anisotropy: Anisotropy,
+    @if(IRIDESCENCE)
+    film: ThinFilm,
+    @if(DIFFUSE_TRANSMISSION)
+    translucency: Translucency,
+}
+
+/// Reflectance of film and base at the angle whose cosine is `cosine`.
+@if(IRIDESCENCE)
+fn film_reflectance(film: ThinFilm, cosine: f32) -> vec3<f32> {
+    return thin_film_reflectance(cosine, film.ior, film.thickness_nm, film.base_f0) * film.weight;
+}
+
+/// Largest channel of a color: what takes so much of one takes it of all, so that what is left has
+/// the hue of what it was.
+@if(IRIDESCENCE)
+fn largest_channel(color: vec3<f32>) -> f32 {
+    return max(color.x, max(color.y, color.z));
+}
+
+/// Share of the light that gets under the specular layer of the base, whose directional albedo is
+/// `albedo`. Under a film all channels get what the largest leaves: no complementary hues appear.
+@if(IRIDESCENCE)
+fn share_below(s: Surface, albedo: real3) -> real3 {
+    let most = real(largest_channel(vec3<f32>(albedo)));
+    return 1.0 - mix(albedo, real3(most), real(s.film.factor));
+}
+
+/// Transmittance of the layers over the base, 0…1: the share of what it emits that leaves the
+/// surface.
+fn layer_transmittance(s: Surface) -> f32 {
+    var share = 1.0;
+    @if(SHEEN) share *= f32(s.sheen.attenuation);
+    @if(CLEAR_COAT)
+    share *= 1.0 - f32(f_schlick_scalar(0.04, 1.0, s.coat.nov) * s.coat.strength);
+    return share;
 }
 
 /// f0 of the base under a coat of this strength: no more than in air, since an f0 near zero says

@@ -6,13 +6,13 @@
 import package::interface::object::{
     Instance, world_position, clip_position, world_normal, world_tangent, handedness,
 };
-@if(TRANSMISSION)
+@if(TRANSMISSION || DIFFUSE_TRANSMISSION)
 import package::interface::object::mesh_scale_m;
 @if(MATERIAL_TABLE)
 import package::interface::object::material_number;
 import package::interface::material::{
-    material, SLOT_NORMAL, TRAIT_DOUBLE_SIDED, material_has, map_uv, normal_texture,
-    normal_sampler,
+    material, SLOT_NORMAL, TRAIT_DOUBLE_SIDED, TRAIT_NO_AREA, material_has, map_uv,
+    normal_texture, normal_sampler,
 };
 import package::lib::normal_map::{unpack_normal, vertex_normal, apply_normal_map};
 import package::lib::numerics::normalize_or;
@@ -30,7 +30,7 @@ struct SurfaceVertex {
     @if(VERTEX_COLORS)
     @location(4) color: vec4<f32>,
     /// Meters a unit of the mesh, the mean over its axes.
-    @if(TRANSMISSION)
+    @if(TRANSMISSION || DIFFUSE_TRANSMISSION)
     @location(5) @interpolate(flat) scale_m: f32,
     /// Number of the material.
     @if(MATERIAL_TABLE)
@@ -56,7 +56,8 @@ fn surface_vertex(
         vec4<f32>(world_tangent(tangent.xyz, instance), tangent.w * handedness(instance));
     @if(TEXTURED) vertex.uv = uv;
     @if(VERTEX_COLORS) vertex.color = color;
-    @if(TRANSMISSION) vertex.scale_m = mesh_scale_m(instance);
+    @if(TRANSMISSION || DIFFUSE_TRANSMISSION)
+    vertex.scale_m = mesh_scale_m(instance);
     @if(MATERIAL_TABLE) vertex.material = material_number(instance);
     return vertex;
 }
@@ -74,8 +75,12 @@ fn vertex_color(vertex: SurfaceVertex) -> vec4<f32> {
 }
 
 /// The triangle's own normal, toward the viewer: window y runs downward, hence the order of the
-/// factors. Derivatives need every lane of the quad.
+/// factors. Derivatives need every lane of the quad. Lines and points have no plane: theirs is the
+/// normal of the mesh.
 fn geometric_normal(vertex: SurfaceVertex) -> vec3<f32> {
+    if material_has(TRAIT_NO_AREA) {
+        return normalize_or(vertex.normal, vec3<f32>(0.0, 0.0, 1.0));
+    }
     return normalize_or(
         cross(dpdy(vertex.world), dpdx(vertex.world)),
         vec3<f32>(0.0, 0.0, 1.0),

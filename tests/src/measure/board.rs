@@ -77,7 +77,7 @@ impl Board {
     /// Adds a picture of `width` texels a row that materials may show in one role.
     pub fn texture(&mut self, width: u32, texels: &[[u8; 4]], role: TextureRole, sampler: Sampler) -> TextureSlot {
         let height = texels.len() as u32 / width;
-        let image = Image { name: "card".into(), width, height, rgba8: texels.concat() };
+        let image = Image::from_rgba8("card", width, height, texels.concat());
         let texture = self.scene.add_texture(image, role, sampler);
         TextureSlot { texture, uv_set: 0, transform: UvTransform::default() }
     }

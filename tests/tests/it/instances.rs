@@ -96,7 +96,7 @@ fn short_and_long_indices_draw_the_same_picture() -> TestResult {
 fn objects_in_a_stream_and_in_buffers_are_the_same_picture() -> TestResult {
     let Some(gpu) = gpu("objects_in_a_stream_and_in_buffers_are_the_same_picture") else { return Ok(()) };
     let mut crowd = crowd();
-    let tilted = Image { name: "tilted.png".into(), width: 1, height: 1, rgba8: vec![200, 90, 220, 255] };
+    let tilted = Image::from_rgba8("tilted.png", 1, 1, vec![200, 90, 220, 255]);
     let texture = crowd.add_texture(tilted, TextureRole::Normal, Sampler::default());
     let slot = TextureSlot { texture, uv_set: 0, transform: UvTransform::default() };
     crowd.materials[1].normal_texture = Some(slot);
@@ -197,7 +197,7 @@ fn wall(count: usize) -> Scene {
     let mut scene = Scene::default();
     let meshes = [cuboid(Vec3::splat(0.3)), sphere(0.35, 8, 6)].map(|mesh| scene.add_mesh(mesh));
     let mut texture = |texel: [u8; 4]| {
-        let image = Image { name: "two.png".into(), width: 2, height: 1, rgba8: [texel, [255; 4]].concat() };
+        let image = Image::from_rgba8("two.png", 2, 1, [texel, [255; 4]].concat());
         let texture = scene.add_texture(image, TextureRole::Color, Sampler::default());
         Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() })
     };

@@ -170,7 +170,7 @@ fn lobes_in_one_light_are_their_formulas() -> TestResult {
 fn occlusion_is_as_the_quality_has_it() -> TestResult {
     let Some(gpu) = gpu("occlusion_is_as_the_quality_has_it") else { return Ok(()) };
     let mut scene = framegraph_scene::Scene::default();
-    let half = Image { name: "half".into(), width: 1, height: 1, rgba8: vec![128, 128, 128, 255] };
+    let half = Image::from_rgba8("half", 1, 1, vec![128, 128, 128, 255]);
     let texture = scene.add_texture(half, TextureRole::Linear, Sampler::default());
     let slot =
         Some(TextureSlot { texture, uv_set: 0, transform: UvTransform { scale: Vec2::ONE, ..Default::default() } });
@@ -201,7 +201,7 @@ fn occlusion_is_as_the_quality_has_it() -> TestResult {
 fn every_choice_of_shading_shows() -> TestResult {
     let Some(gpu) = gpu("every_choice_of_shading_shows") else { return Ok(()) };
     let mut scene = framegraph_scene::Scene::default();
-    let half = Image { name: "half".into(), width: 1, height: 1, rgba8: vec![128, 128, 128, 255] };
+    let half = Image::from_rgba8("half", 1, 1, vec![128, 128, 128, 255]);
     let texture = scene.add_texture(half, TextureRole::Linear, Sampler::default());
     let slot = Some(TextureSlot { texture, uv_set: 0, transform: UvTransform::default() });
     let materials = [

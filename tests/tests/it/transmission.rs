@@ -1,5 +1,6 @@
 //! Surfaces that let light through: what the plan makes of their passes, and what is seen through them.
 
+mod blended;
 mod layers;
 
 use crate::stage::{Shot, declared, gpu, lighting, plan, view_of};
@@ -299,6 +300,52 @@ fn a_body_shows_what_is_where_its_rays_leave_it() -> TestResult {
         }
     }
     assert!(told_apart > 0, "a straight ray would show the same");
+    Ok(())
+}
+
+/// With dispersion each channel shows the edge where its own ray leaves the body: red is bent least, by half of what the Abbe
+/// number says, and blue most.
+#[test]
+fn a_body_with_dispersion_parts_the_channels() -> TestResult {
+    let Some(gpu) = gpu("a_body_with_dispersion_parts_the_channels") else { return Ok(()) };
+    // No glass has an Abbe number of a half, but it bends each channel by texels more than the next. Red goes straight on.
+    let (ior, abbe, thickness, edge) = (1.8, 0.5, 1.0, 1.0);
+    let volume = Volume { thickness: thickness as f32, ..Volume::default() };
+    let glass = Material { ior: ior as f32, dispersion: (20.0 / abbe) as f32, ..pane(Vec3::ONE, Some(volume)) };
+    let mut scene = stage(Some(glass));
+    scene.materials[0].base_color = Vec3::splat(0.05).extend(1.0);
+    let bright = scene.add_material(Material::dielectric("bright", Vec3::splat(0.8), 0.9));
+    let floor = scene.instances[0].mesh;
+    let above = DMat4::from_translation(DVec3::new(20.0 + edge, 1e-3, 0.0));
+    scene.add_instance("bright", floor, bright, above);
+    let shot = Shot::small(Settings::default());
+    let row = middle_row(&gpu, &scene, Settings::default().for_scene(&scene, shot.size_px))?;
+    let [width, height] = shot.size_px.map(f64::from);
+    // (n_d - 1) / (n_F - n_C) is the Abbe number.
+    let spread = (ior - 1.0) / abbe;
+    let mut parted = 0;
+    for (index, seen) in row.iter().enumerate() {
+        let tangent = ((2.0 * index as f64 + 1.0) / width - 1.0) * width / height * (FOV_Y_RAD / 2.0).tan();
+        let entered = (EYE_M - 1.0) * tangent;
+        if entered.abs() > 0.95 {
+            continue;
+        }
+        let lit = [ior - 0.5 * spread, ior, ior + 0.5 * spread].map(|ior| {
+            let sine = tangent / (1.0 + tangent * tangent).sqrt() / ior;
+            let cosine = (1.0 - sine * sine).sqrt();
+            let way = thickness * cosine;
+            let left = (entered + way * sine) * EYE_M / (EYE_M - (1.0 - way * cosine));
+            // Texels are four centimeters wide, and the picture is read with a linear filter.
+            ((left - edge).abs() > 0.05).then_some(left > edge)
+        });
+        let dark = row[row.len() / 2];
+        for (channel, lit) in lit.into_iter().enumerate() {
+            let bright = seen[channel] > 4.0 * dark[channel];
+            assert!(lit.is_none_or(|lit| lit == bright), "pixel {index}, channel {channel}: {seen} beside {dark}");
+        }
+        parted += usize::from(lit[0].is_some() && lit[2].is_some() && lit[0] != lit[2]);
+    }
+    assert!(parted > 0, "all channels show the same");
     Ok(())
 }
 

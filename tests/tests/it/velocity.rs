@@ -96,7 +96,7 @@ impl<'g> Film<'g> {
     fn masked(mut self, uv_set: u32) -> Self {
         let sampler = Sampler { mag: Filter::Nearest, min: Filter::Nearest, mip: None, ..Sampler::default() };
         let texels = vec![255, 255, 255, 255, 255, 255, 255, 0];
-        let image = Image { name: "hole".into(), width: 2, height: 1, rgba8: texels };
+        let image = Image::from_rgba8("hole", 2, 1, texels);
         let texture = self.scene.add_texture(image, TextureRole::Color, sampler);
         let slot = TextureSlot { texture, uv_set, transform: UvTransform::default() };
         let red = &mut self.scene.materials[0];

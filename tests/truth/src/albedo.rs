@@ -55,6 +55,16 @@ pub fn ggx(nov: f64, roughness: f64, masking: Masking) -> [f64; 2] {
     })
 }
 
+/// ∫ D·V·F·cos of GGX with height-correlated Smith masking, for a Fresnel term of v·h.
+pub fn ggx_of(nov: f64, roughness: f64, fresnel: impl Fn(f64) -> f64) -> f64 {
+    let a = roughness * roughness;
+    let tail = |c: f64| (a * a * (1.0 - c * c) + c * c).sqrt();
+    over_half_vectors(nov, |voh, nol, h| {
+        let d = a * a / (PI * (1.0 - h.z * h.z * (1.0 - a * a)).powi(2));
+        [d * nol * fresnel(voh) * 0.5 / (nol * tail(nov) + nov * tail(nol)), 0.0]
+    })[0]
+}
+
 /// ∫ D·V·cos of Charlie with Ashikhmin's visibility.
 pub fn cloth(nov: f64, roughness: f64) -> f64 {
     let inverse = 1.0 / (roughness * roughness);
@@ -77,5 +87,7 @@ mod tests {
         let smooth = ggx(0.5, 0.1, Masking::Smith);
         assert!((smooth[1] - 1.0).abs() < 1e-3, "{smooth:?}");
         assert!((smooth[0] - 0.5_f64.powi(5)).abs() < 1e-3, "{smooth:?}");
+        let all = ggx_of(0.4, 0.6, |_| 1.0);
+        assert!((all - ggx(0.4, 0.6, Masking::Smith)[1]).abs() < 1e-12, "{all}");
     }
 }

@@ -5,6 +5,7 @@
 //! directions come from grids and not from importance sampling, and multiple scattering from a random walk.
 
 pub mod albedo;
+pub mod film;
 pub mod flip;
 pub mod lobe;
 pub mod microsurface;
@@ -13,3 +14,4 @@ pub mod rays;
 pub mod reflection;
 pub mod sphere;
 pub mod surface;
+pub mod translucent;

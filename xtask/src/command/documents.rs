@@ -173,7 +173,8 @@ mod tests {
     }
 
     /// Marked tables that tests compare by themselves, each with a file that does.
-    const TESTED: [(&str, &str); 12] = [
+    const TESTED: [(&str, &str); 13] = [
+        ("extensions", "scene/src/import/extension.rs"),
         ("facts", "tests/tests/it/facts/table.rs"),
         ("features of the color pass", "shaders/tests/all/operations.rs"),
         ("grading", "tests/tests/it/grading.rs"),

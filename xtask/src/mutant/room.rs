@@ -61,6 +61,7 @@ const IT: Judge = Judge {
         "mirrors::",
         "normals::",
         "occlusion::",
+        "optics::",
         "parts::",
         "picture::",
         "prepass::",

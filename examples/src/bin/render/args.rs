@@ -15,7 +15,7 @@ use crate::values::{alias, camera, frames, memory, samples, size, threads};
 use framegraph::Alias;
 use framegraph_passes::PostSettings;
 use framegraph_passes::{Precision, Quality, Settings, Shading};
-use framegraph_scene::{CameraChoice, LoadOptions, Memory};
+use framegraph_scene::{BlockFormats, CameraChoice, LoadOptions, Memory};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -38,7 +38,7 @@ Renders a scene through the compiled render graph, without a window.
 usage: render [SCENE] [options]
 
 SCENE is a glTF or GLB file, or a built-in scene: spheres (default), balls, columns, glass, lamps (lamps:N has N of them,
-lamps 1000), lobes, materials.
+lamps 1000), lobes, materials, optics.
 
   --size WxH           size of the picture in pixels (1280x720)
   --msaa 1|4           samples per pixel (4)
@@ -163,13 +163,15 @@ pub struct Args {
 }
 
 impl Args {
-    /// What loading may do. Everything that is loaded shares one budget: make them once.
-    pub fn load_options(&self) -> LoadOptions {
+    /// Returns the options of loading for a device that samples these formats. Everything that is loaded shares one budget:
+    /// make them once.
+    pub fn load_options(&self, block_formats: BlockFormats) -> LoadOptions {
         let memory = self.memory_bytes.map_or_else(Memory::default, Memory::new);
         LoadOptions {
             memory: memory.into(),
             allow_outside: self.allow_outside,
             variant: self.variant.clone(),
+            block_formats,
             ..LoadOptions::default()
         }
     }

@@ -7,7 +7,9 @@ use crate::run::{Failure, Frames, WARM_UP, device, executed, input, open, settin
 use crate::table::{aligned, mebibytes, milliseconds};
 use framegraph::{AccessKind, Join, Options, Plan, Scratch, compile};
 use framegraph_passes::grading::Look;
+use framegraph_passes::upload::block_formats;
 use framegraph_passes::{CameraView, Facts, FrameIndex, PostSettings, Settings, World};
+use framegraph_scene::BlockFormats;
 use framegraph_shaders::layout::Grading;
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Executor, Imports};
@@ -33,12 +35,13 @@ struct Way {
 /// # Errors
 /// One line, by whose fault it is.
 pub fn compare_post(args: &Args) -> Result<(), Failure> {
-    let options = args.load_options();
+    let gpu = open();
+    let options = args.load_options(gpu.as_ref().map_or(BlockFormats::default(), block_formats));
     let mut loaded = load::load(args, &options).map_err(input)?;
     args.moment.apply(&mut loaded.scene, 0.0).map_err(input)?;
     let colors = load::colors(args).map_err(input)?;
     let seen = load::view(args, &loaded).map_err(input)?;
-    let gpu = open()?;
+    let gpu = gpu?;
     program::line(format_args!("adapter: {}", gpu.describe()));
     args.shading.precision.check(&gpu).map_err(|told| input(format!("--{told}")))?;
     let lighting = load::light(&gpu, args, &loaded).map_err(input)?;

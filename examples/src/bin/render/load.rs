@@ -37,7 +37,9 @@ pub struct Loaded {
 /// One line that names the file, the line and the reason.
 pub fn colors(args: &Args) -> Result<Option<ColorTable>, String> {
     let load = |file: &PathBuf| ColorTable::load(file).map_err(|error| format!("--look: {error}"));
-    args.grade.colors.as_ref().map(load).transpose()
+    let colors = args.grade.colors.as_ref().map(load).transpose()?;
+    colors.iter().flat_map(|colors| &colors.warnings).for_each(|warning| warn(warning));
+    Ok(colors)
 }
 
 /// Loads what the command line names.

@@ -18,8 +18,10 @@ use framegraph::{Options, Plan, Scratch, Texture, dump};
 use framegraph_passes::facts::savings;
 use framegraph_passes::measure::Measurement;
 use framegraph_passes::punctual::LightLists;
+use framegraph_passes::upload::block_formats;
 use framegraph_passes::view::ViewSettings;
 use framegraph_passes::{CameraView, Facts, FrameIndex, FrameIo, Settings, ViewId, World};
+use framegraph_scene::BlockFormats;
 use framegraph_scene::picture::{encode_exr, encode_png};
 use framegraph_wgpu::{
     AdapterRequest, ExecuteError, Executor, ExecutorOptions, Frame, Gpu, Imports, OpenError, Pixels, RecordError,
@@ -99,12 +101,14 @@ impl Prepared {
     }
 }
 
-/// Loads what the command line names, opens the device, declares the frame, and uploads.
+/// Opens the device, loads what the command line names, declares the frame, and uploads.
 ///
 /// # Errors
 /// One line, by whose fault it is; also when an output would be written over a file that the scene was read from.
 pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> {
-    let options = args.load_options();
+    // Images are decoded to what the device samples. Without a device, what is wrong with the input is still said first.
+    let gpu = open();
+    let options = args.load_options(gpu.as_ref().map_or(BlockFormats::default(), block_formats));
     let mut loaded = load::load(args, &options).map_err(input)?;
     args.moment.apply(&mut loaded.scene, 0.0).map_err(input)?;
     for file in &loaded.scene.files {
@@ -115,7 +119,7 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     }
     let colors = load::colors(args).map_err(input)?;
     let seen = load::view(args, &loaded).map_err(input)?;
-    let gpu = open()?;
+    let gpu = gpu?;
     if !args.trial {
         program::line(format_args!("adapter: {}", gpu.describe()));
     }

@@ -5,7 +5,7 @@ use crate::job::Handle;
 use framegraph_passes::facts::Survey;
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::shading::LightSettings;
-use framegraph_passes::upload::GpuScene;
+use framegraph_passes::upload::{GpuScene, block_formats};
 use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, LightSearch, Lighting, PreparedScene, World};
 use framegraph_scene::environment::{Sky, SunExtraction};
@@ -98,7 +98,7 @@ pub fn load(
     (levels, variant): (bool, Option<String>),
     handle: &Handle,
 ) -> Result<(Loaded, Vec<String>), String> {
-    let options = LoadOptions { variant, ..LoadOptions::default() };
+    let options = LoadOptions { variant, block_formats: block_formats(gpu), ..LoadOptions::default() };
     let mut scene = Scene::open_with(name, &options, &mut |p| told(handle, p)).map_err(|e| e.to_string())?;
     scene.check().map_err(|error| format!("{name}: {error}"))?;
     if scene.instances.is_empty() {

@@ -2,7 +2,7 @@
 
 use super::texel::TexelFormat;
 
-/// What a Khronos texture gets wrong as a cube of light.
+/// Errors of a Khronos texture as a cube of light, or as a texture of a material.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KtxError {
@@ -37,11 +37,11 @@ pub enum KtxError {
         size_texels: [u32; 2],
     },
     /// There are more levels than the size has.
-    #[error("it has {levels} levels, more than faces of {size_texels} texels have")]
+    #[error("it has {levels} levels, more than a side of {size_texels} texels has")]
     Levels {
         /// Levels that it has.
         levels: u32,
-        /// Width of its faces.
+        /// Its longer side.
         size_texels: u32,
     },
     /// Texels are of a format that is not read.
@@ -69,6 +69,46 @@ pub enum KtxError {
         found: u64,
         /// Bytes that there should be.
         expected: u64,
+    },
+    /// A texture of a material is a cube, deep, or an array.
+    #[error("it has {faces} faces, depth {depth} and {layers} layers; write it as one flat picture")]
+    NotFlat {
+        /// Faces that it has.
+        faces: u32,
+        /// Its depth in texels.
+        depth: u32,
+        /// Elements of an array.
+        layers: u32,
+    },
+    /// Texels of a texture are of a format that is not read.
+    #[error(
+        "its texels are of Vulkan format {format} and color model {model}; write Basis Universal (ETC1S or UASTC), or RGB or RGBA of 8 bits"
+    )]
+    Texels {
+        /// Number of Vulkan's format, 0 for Basis Universal.
+        format: u32,
+        /// Color model of the data format descriptor.
+        model: u8,
+    },
+    /// Levels of a texture are compressed in a way that is not read, or that does not go with its texels.
+    #[error("its supercompression scheme is {scheme}; write BasisLZ for ETC1S, and none, Zstandard or zlib for others")]
+    Scheme {
+        /// The number of the scheme.
+        scheme: u32,
+    },
+    /// A level does not decompress.
+    #[error("level {level} does not decompress to {expected} bytes")]
+    Inflate {
+        /// The level, 0 the finest.
+        level: u32,
+        /// Bytes that there should be.
+        expected: u64,
+    },
+    /// The texels of a level do not transcode.
+    #[error("level {level} holds no valid texels of Basis Universal")]
+    Transcode {
+        /// The level, 0 the finest.
+        level: u32,
     },
     /// A metadatum reaches beyond the metadata, or has no key.
     #[error("an entry of its metadata is broken")]

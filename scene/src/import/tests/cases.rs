@@ -61,7 +61,7 @@ fn assert_same_look(case: &Scene, base: &Scene) {
     assert_eq!(case.materials, base.materials, "{name}");
     assert_eq!((&case.textures, &case.samplers), (&base.textures, &base.samplers), "{name}");
     assert_eq!((&case.cameras, &case.lights), (&base.cameras, &base.lights), "{name}");
-    let texels = |scene: &Scene| scene.images.iter().map(|image| image.rgba8.clone()).collect::<Vec<_>>();
+    let texels = |scene: &Scene| scene.images.iter().map(|image| image.rgba8().map(<[u8]>::to_vec)).collect::<Vec<_>>();
     assert_eq!(texels(case), texels(base), "{name}");
     assert_eq!(case.instances.len(), base.instances.len(), "{name}");
 }

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use crate::Scene;
 use crate::error::SceneError;
+use crate::import::container::split;
 use crate::import::load_bytes;
 use crate::progress::silent;
 
@@ -34,6 +35,13 @@ impl Fixture {
             }),
             bin: Vec::new(),
         }
+    }
+
+    /// A binary file, to be changed.
+    pub fn of_glb(bytes: &[u8]) -> Self {
+        let parts = split(Path::new("fixture.glb"), bytes).expect("a GLB");
+        let json = serde_json::from_slice(parts.json).expect("JSON");
+        Self { json, bin: parts.blob.unwrap_or_default().into() }
     }
 
     /// One triangle in the plane z = 0, with normals, and material 0 unset.

@@ -46,6 +46,9 @@ fn rich() -> Fixture {
                 "KHR_materials_sheen": {"sheenColorFactor": [0.5, 0.5, 0.5], "sheenRoughnessTexture": {"index": 0}},
                 "KHR_materials_transmission": {"transmissionFactor": 0.5},
                 "KHR_materials_volume": {"thicknessFactor": 1.0, "attenuationDistance": 2.0},
+                "KHR_materials_iridescence": {"iridescenceFactor": 0.5, "iridescenceThicknessTexture": {"index": 0}},
+                "KHR_materials_dispersion": {"dispersion": 0.1},
+                "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.5},
             },
         }),
     );

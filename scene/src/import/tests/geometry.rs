@@ -106,18 +106,6 @@ fn strips_and_fans_face_the_same_way_as_lists() {
     }
 }
 
-#[test]
-fn points_and_lines_are_warned_of_and_not_drawn() {
-    for (mode, word) in [(0, "points"), (1, "lines"), (2, "loop"), (3, "strip")] {
-        let mut fixture = Fixture::triangle();
-        fixture.set("/meshes/0/primitives/0/mode", json!(mode));
-        let scene = fixture.load().expect("valid, if nothing to draw");
-        assert!(scene.instances.is_empty());
-        assert!(scene.warnings.iter().any(|w| w.contains(word)), "{:?}", scene.warnings);
-        assert!(scene.warnings.iter().any(|w| w.contains("draws nothing")));
-    }
-}
-
 /// A sparse accessor over a base and over nothing, and a plain one over nothing: zeros.
 #[test]
 fn sparse_accessors_replace_elements() {

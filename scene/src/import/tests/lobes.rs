@@ -1,11 +1,14 @@
-//! Lobes of materials: clear coat, sheen, anisotropy, transmission with its volume, specular.
+//! Lobes of materials: clear coat, sheen, anisotropy, transmission with its volume, dispersion, specular, iridescence, diffuse
+//! transmission.
 
 use crate::material::{Lobe, Lobes};
 use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
 use super::fixture::{Fixture, png};
-use crate::material::{Anisotropy, ClearCoat, Material, Sheen, Specular, Transmission, Volume};
+use crate::material::{
+    Anisotropy, ClearCoat, DiffuseTransmission, Iridescence, Material, Sheen, Specular, Transmission, Volume,
+};
 use crate::texture::{TextureRole, TextureSlot, UvTransform};
 use crate::{Scene, TextureId};
 
@@ -149,6 +152,87 @@ fn specular() {
     assert_eq!(material.lobes(), one(Lobe::Specular));
 }
 
+#[test]
+fn iridescence() {
+    let (scene, material) = load(json!({"KHR_materials_iridescence": {
+        "iridescenceFactor": 0.75, "iridescenceIor": 1.8,
+        "iridescenceThicknessMinimum": 250.0, "iridescenceThicknessMaximum": 150.0,
+        "iridescenceTexture": texture(1.0), "iridescenceThicknessTexture": texture(2.0),
+    }}));
+    // The bounds may be in either order.
+    let expected = Iridescence {
+        factor: 0.75,
+        texture: slot(&scene, 1.0, TextureRole::Linear),
+        ior: 1.8,
+        min_thickness_nm: 250.0,
+        max_thickness_nm: 150.0,
+        thickness_texture: slot(&scene, 2.0, TextureRole::Linear),
+    };
+    assert_eq!(material.iridescence, Some(expected));
+    assert_eq!(material.lobes(), one(Lobe::Iridescence));
+    let (_, plain) = load(json!({"KHR_materials_iridescence": {"iridescenceFactor": 1.0}}));
+    assert_eq!(plain.iridescence, Some(Iridescence::default()));
+    let of = |thickness: Value| {
+        let film = json!({"iridescenceFactor": 1.0, "iridescenceThicknessMaximum": 0.0, "iridescenceThicknessTexture": thickness});
+        load(json!({"KHR_materials_iridescence": film})).1.iridescence.is_some()
+    };
+    assert!(of(texture(1.0)), "where the texture is 0 the film is thickest");
+    let (_, none) =
+        load(json!({"KHR_materials_iridescence": {"iridescenceFactor": 1.0, "iridescenceThicknessMaximum": 0}}));
+    assert_eq!(none.iridescence, None, "a film without thickness");
+}
+
+#[test]
+fn dispersion_shows_in_a_volume_that_transmits() {
+    let dispersion = json!({"dispersion": 0.33});
+    let glass = json!({"transmissionFactor": 1.0});
+    let body = json!({"thicknessFactor": 1.0});
+    let (_, material) = load(json!({
+        "KHR_materials_dispersion": dispersion, "KHR_materials_transmission": glass, "KHR_materials_volume": body,
+    }));
+    assert_eq!((material.dispersion, material.lobes()), (0.33, one(Lobe::Transmission).with(Lobe::Dispersion)));
+    let (_, wall) = load(json!({"KHR_materials_dispersion": dispersion, "KHR_materials_transmission": glass}));
+    assert_eq!(wall.lobes(), one(Lobe::Transmission));
+    let (_, none) = load(json!({
+        "KHR_materials_dispersion": {}, "KHR_materials_transmission": glass, "KHR_materials_volume": body,
+    }));
+    assert_eq!(none.lobes(), one(Lobe::Transmission));
+    assert!(load(json!({"KHR_materials_dispersion": dispersion})).1.lobes().is_empty());
+}
+
+#[test]
+fn diffuse_transmission() {
+    let (scene, material) = load(json!({
+        "KHR_materials_diffuse_transmission": {
+            "diffuseTransmissionFactor": 0.75, "diffuseTransmissionColorFactor": [0.5, 0.25, 1.0],
+            "diffuseTransmissionTexture": texture(1.0), "diffuseTransmissionColorTexture": texture(2.0),
+        },
+        "KHR_materials_volume": {"thicknessFactor": 2.0, "thicknessTexture": texture(3.0)},
+    }));
+    let thickness_texture = slot(&scene, 3.0, TextureRole::Linear);
+    let volume = Some(Volume { thickness: 2.0, thickness_texture, ..Volume::default() });
+    let expected = DiffuseTransmission {
+        factor: 0.75,
+        texture: slot(&scene, 1.0, TextureRole::Linear),
+        color: Vec3::new(0.5, 0.25, 1.0),
+        color_texture: slot(&scene, 2.0, TextureRole::Color),
+        volume,
+    };
+    assert_eq!(material.diffuse_transmission, Some(expected));
+    assert_eq!((material.lobes(), material.volume()), (one(Lobe::DiffuseTransmission), volume));
+    let (_, plain) = load(json!({"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 1.0}}));
+    assert_eq!(plain.diffuse_transmission, Some(DiffuseTransmission::default()));
+    // Both ways through share the body.
+    let (_, both) = load(json!({
+        "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 1.0},
+        "KHR_materials_transmission": {"transmissionFactor": 0.5},
+        "KHR_materials_volume": {"thicknessFactor": 2.0},
+    }));
+    let body = Some(Volume { thickness: 2.0, ..Volume::default() });
+    assert_eq!(both.transmission.map(|t| t.volume), Some(body));
+    assert_eq!(both.diffuse_transmission.map(|t| t.volume), Some(body));
+}
+
 /// A factor of zero switches a lobe off, and with it its textures; unlit surfaces have none.
 #[test]
 fn lobes_that_do_not_show_are_left_out() {
@@ -159,6 +243,9 @@ fn lobes_that_do_not_show_are_left_out() {
         "KHR_materials_transmission": {"transmissionTexture": texture(1.0)},
         "KHR_materials_volume": {"attenuationColor": [0.5, 0.5, 0.5]},
         "KHR_materials_specular": {},
+        "KHR_materials_iridescence": {"iridescenceIor": 2.0, "iridescenceTexture": texture(1.0)},
+        "KHR_materials_dispersion": {},
+        "KHR_materials_diffuse_transmission": {"diffuseTransmissionTexture": texture(1.0)},
     }));
     assert_eq!(material, Material::default());
     assert!(material.lobes().is_empty() && scene.textures.is_empty() && scene.images.is_empty());
@@ -172,13 +259,26 @@ fn what_is_out_of_range_is_clamped_and_said() {
         "KHR_materials_clearcoat": {"clearcoatFactor": 2.0},
         "KHR_materials_sheen": {"sheenColorFactor": [0.5, -1.0, 9.0]},
         "KHR_materials_specular": {"specularColorFactor": [7.0, -1.0, 0.0]},
+        "KHR_materials_iridescence": {
+            "iridescenceFactor": 1.5, "iridescenceIor": 0.5, "iridescenceThicknessMinimum": -1.0,
+        },
+        "KHR_materials_dispersion": {"dispersion": -0.5},
+        "KHR_materials_diffuse_transmission": {
+            "diffuseTransmissionFactor": 2.0, "diffuseTransmissionColorFactor": [0.5, 2.0, 0.5],
+        },
     }));
     let scene = scene.load().expect("a file to repair");
     let material = &scene.materials[0];
     assert_eq!(material.clear_coat.map(|c| c.factor), Some(1.0));
     assert_eq!(material.sheen.map(|s| s.color), Some(Vec3::new(0.5, 0.0, 1.0)));
     assert_eq!(material.specular.map(|s| s.color), Some(Vec3::new(7.0, 0.0, 0.0)));
+    let film = Iridescence { ior: 1.0, min_thickness_nm: 0.0, ..Iridescence::default() };
+    assert_eq!((material.iridescence, material.dispersion), (Some(film), 0.0));
+    let through = DiffuseTransmission { color: Vec3::new(0.5, 1.0, 0.5), ..DiffuseTransmission::default() };
+    assert_eq!(material.diffuse_transmission, Some(through));
     for words in [
+        "dir/fixture.glb: material 0: KHR_materials_iridescence: its iridescenceIor was raised from 0.5 to 1",
+        "dir/fixture.glb: material 0: KHR_materials_dispersion: its dispersion was raised from -0.5 to 0",
         "dir/fixture.glb: material 0: KHR_materials_clearcoat: its clearcoatFactor was clamped to 0…1",
         "dir/fixture.glb: material 0: KHR_materials_sheen: its sheenColorFactor was clamped to 0…1",
         "dir/fixture.glb: material 0: KHR_materials_specular: its specularColorFactor was clamped to 0 or more",
@@ -212,6 +312,10 @@ fn broken_lobes_are_errors() {
         (json!({"KHR_materials_sheen": {"sheenColorFactor": [1, 1]}}), "sheenColorFactor is not 3 numbers"),
         (json!({"KHR_materials_sheen": {"sheenColorFactor": [1, 1, "x"]}}), "sheenColorFactor is no number"),
         (json!({"KHR_materials_anisotropy": {"anisotropyRotation": 1e39}}), "its anisotropyRotation is inf"),
+        (json!({"KHR_materials_iridescence": []}), "KHR_materials_iridescence: it is no object"),
+        (json!({"KHR_materials_iridescence": {"iridescenceIor": "x"}}), "its iridescenceIor is no number"),
+        (json!({"KHR_materials_dispersion": {"dispersion": 1e300}}), "its dispersion is inf"),
+        (json!({"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": []}}), "Factor is no number"),
         (volume("thicknessFactor", json!(-1.0)), "KHR_materials_volume: its thicknessFactor is -1"),
         (volume("attenuationDistance", json!(0.0)), "its attenuationDistance is 0"),
         (

@@ -109,7 +109,7 @@ fn a_full_material_comes_through() {
         let image = &scene.images[texture.image.index()];
         assert_eq!((image.width, image.height), (2, 1));
         let texel = [[255, 0, 0, 255], [0, 255, 0, 128]][green];
-        assert_eq!(image.rgba8[..4], texel);
+        assert_eq!(image.rgba8().expect("it is a PNG")[..4], texel);
         let sampler = scene.samplers[texture.sampler.index()];
         let given = Sampler {
             wrap_u: Wrap::ClampToEdge,
@@ -132,12 +132,12 @@ fn ignored_features_are_warned_of() {
             "baseColorTexture": {"index": 0, "texCoord": 2},
             "roughnessFactor": 1.5,
         },
-        "extensions": {"KHR_materials_iridescence": {"iridescenceFactor": 1.0}},
+        "extensions": {"KHR_materials_volume_scatter": {"scatterAnisotropy": 0.5}},
     }));
-    fixture.json["extensionsUsed"] = json!(["KHR_materials_iridescence", "EXT_unheard_of"]);
+    fixture.json["extensionsUsed"] = json!(["KHR_materials_volume_scatter", "EXT_unheard_of"]);
     let scene = fixture.load().expect("a good file");
     for word in [
-        "KHR_materials_iridescence is ignored (1 materials",
+        "KHR_materials_volume_scatter is ignored (1 materials",
         "EXT_unheard_of is ignored",
         "TEXCOORD_2",
         "roughnessFactor of 1.5 was clamped to 1",

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::super::{anisotropy, clear_coat, cloth, fresnel, ggx, specular_aa};
+use super::super::{anisotropy, clear_coat, cloth, diffuse, fresnel, ggx, specular_aa, thin_film};
 use super::case::{Case, Domain};
 use super::table::*;
 use Domain::{Direction, Directions, Linear, Log, Values, Vector};
@@ -167,6 +167,42 @@ pub(super) const CASES: &[Case] = &[
         ARITHMETIC,
     )
     .half(HALF_ARITHMETIC),
+    case(
+        ["diffuse", "fd_transmitted"],
+        &[Linear(-1.1, 1.1)],
+        "fd_transmitted(real(x[0]))",
+        SCALAR,
+        |x| vec![diffuse::fd_transmitted(x[0])],
+        ARITHMETIC,
+    )
+    .half(HALF_ARITHMETIC),
+    case(
+        ["thin_film", "film_sensitivity"],
+        &[Linear(0.0, 5000.0), Vector(3, 0.0, 1.0)],
+        "film_sensitivity(x[0], v3(1u))",
+        VEC3,
+        |x| out3(thin_film::film_sensitivity(x[0], v3(x, 1))),
+        // Eleven turns round by 1e-6, and WGSL promises 2^-11 of a cosine.
+        bound(3e-3, 0.0),
+    ),
+    case(
+        ["thin_film", "thin_film_reflectance"],
+        &[COSINE, Linear(1.0, 3.0), Linear(0.0, 1200.0), COLOR],
+        "thin_film_reflectance(x[0], x[1], x[2], v3(3u))",
+        VEC3,
+        |x| out3(thin_film::thin_film_reflectance(x[0], x[1], x[2], v3(x, 3))),
+        // Two waves of such cosines.
+        bound(6e-3, 0.0),
+    ),
+    case(
+        ["thin_film", "f0_from_reflectance"],
+        &[COLOR, COSINE, Linear(0.02, 1.0)],
+        "f0_from_reflectance(v3(0u), x[3], x[4])",
+        VEC3,
+        |x| out3(thin_film::f0_from_reflectance(v3(x, 0), x[3], x[4])),
+        // At a cosine of 0.02 a tenth is left, by which rounding is divided.
+        bound(1e-5, 0.0),
+    ),
     case(
         ["specular_aa", "normal_filtering"],
         &[Linear(0.045, 1.0), Vector(3, -0.3, 0.3), Vector(3, -0.3, 0.3), Linear(0.0, 0.5), Linear(0.0, 0.3)],

@@ -16,6 +16,14 @@ pub(super) const CASES: &[Case] = &[
         bound(3e-3, 0.0),
     ),
     case(
+        ["refraction", "dispersed_ior"],
+        &[Linear(1.0, 2.5), Linear(0.0, 10.0)],
+        "dispersed_ior(x[0], x[1])",
+        VEC3,
+        |x| out3(refraction::dispersed_ior(x[0], x[1])),
+        ARITHMETIC,
+    ),
+    case(
         ["refraction", "transmittance"],
         &[Vector(3, 0.0, 20.0), Linear(0.0, 2.0)],
         "transmittance(v3(0u), x[3])",

@@ -10,6 +10,10 @@ use Domain::Vector;
 const ANISOTROPY: Domain = Values(&[-1.5, -1.0, 0.0, 1.0, 1.5]);
 const FLOOR: Domain = Values(&[0.007_921]);
 const HELD: Domain = Values(&[0.007_921, 0.1, 1.0]);
+/// Reflectances of the base under a film, up to and beyond all.
+const BASE_F0: Domain = Values(&[-0.1, 0.0, 0.04, 1.0, 1.5]);
+/// Thicknesses and ways within a film in nm: none, one wave, more than any wave lasts, more than a number holds.
+const THICKNESS_NM: Domain = Values(&[0.0, 1e-3, 380.0, 1e5, 3e38]);
 
 pub(super) const PROBES: &[Probe] = &[
     bounded(5, "v_kelemen", &[COSINE], in_half),
@@ -61,6 +65,22 @@ pub(super) const PROBES: &[Probe] = &[
     both(15, "refracted_path", &[NONE, NONE, COSINE, NONE, NONE, ONE, Values(&[0.0, 0.5, 1.0, 1.5]), ONE], is_any),
     both(15, "transmission_spread", &[SHARE, Values(&[0.0, 0.5, 1.0, 2.5])], is_positive),
     both(15, "pyramid_lod", &[Values(&[-1.0, 0.0, 1e-30, 1e-3, 1.0, 1e30])], is_positive),
+    // Films of no thickness and of more than there is room for, on everything, at every angle.
+    both(
+        15,
+        "thin_film_reflectance",
+        &[COSINE, Values(&[0.5, 1.0, 1.8]), THICKNESS_NM, BASE_F0, NONE, Values(&[0.5, 1.0])],
+        is_share,
+    ),
+    both(15, "film_sensitivity", &[Values(&[0.0, 1e5, 3e38, f64::INFINITY]), NONE, Values(&[0.5]), ONE], is_any),
+    both(15, "f0_from_reflectance", &[SHARE, Values(&[-0.1, 1.0, 1.5]), NONE, SHARE, COSINE], is_share),
+    both(15, "dispersed_ior", &[Values(&[0.5, 1.0, 1.5, 1e30]), Values(&[0.0, 1.0, 1e3, 1e38])], |_, y| {
+        y.iter().all(|ior| (1.0..=1e4).contains(ior))
+    }),
+    // Light from the front does not come through.
+    both(2, "fd_transmitted", &[Values(&[0.0, -0.0, 0.1, 1.0, 1.002, -1.002])], |x, y| {
+        y.iter().all(|through| (0.0..0.3185).contains(through) && (x[0] < 0.0 || *through == 0.0))
+    }),
     both(
         56,
         "normal_filtering",

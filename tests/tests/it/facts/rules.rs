@@ -9,7 +9,10 @@ use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, Settings};
 use framegraph_scene::environment::ShBands;
 use framegraph_scene::geometry::{cuboid, sphere};
-use framegraph_scene::{AlphaMode, Light, LightKind, Material, TextureId, TextureSlot, Transmission, UvTransform};
+use framegraph_scene::{
+    AlphaMode, DiffuseTransmission, Light, LightKind, Material, TextureId, TextureSlot, Topology, Transmission,
+    UvTransform,
+};
 use framegraph_shaders::layout::{EdgeFade, ToneMap};
 use glam::{DMat4, DVec3, Vec3, Vec4};
 use tests::measure::facts::{Case, SIZE_PX, cases, every_effect};
@@ -108,6 +111,28 @@ fn shadows_follow_casters_in_the_swept_view() {
     assert!(with(Some(DVec3::new(-4.0, 0.3, -4.0))), "beside, its shadow falls away");
 }
 
+/// A depth prepass draws no triangle more for lines and points, and saves no shading behind their boxes. They count as not convex,
+/// so ambient occlusion stays.
+#[test]
+fn lines_and_points_have_no_area() {
+    let rows = |topology| {
+        let mut stage = Stage::of("nothing");
+        for z in [0.0, 0.7, 1.4] {
+            stage.put(framegraph_scene::Mesh { topology, ..block() }, matt(), DVec3::new(0.0, 0.3, z));
+        }
+        let facts = stage.facts();
+        [Effect::Prepass, Effect::Occlusion].map(|effect| facts.of(effect).expect("it is asked for").clone())
+    };
+    let [prepass, _] = rows(Topology::Triangles);
+    assert!(prepass.reason.starts_with("36 triangles"), "{prepass:?}");
+    for topology in [Topology::Lines, Topology::Points] {
+        let [prepass, occlusion] = rows(topology);
+        assert!(prepass.decision == Decision::Dropped && prepass.reason.starts_with("0 triangles"), "{prepass:?}");
+        assert!(prepass.reason.ends_with("saves 0 thousand"), "{prepass:?}");
+        assert_eq!(occlusion.decision, Decision::Kept, "{occlusion:?}");
+    }
+}
+
 #[test]
 fn suns_that_light_nothing_need_no_maps() {
     let toward = |direction: Vec3| {
@@ -120,6 +145,14 @@ fn suns_that_light_nothing_need_no_maps() {
     assert!(below.decision == Decision::Dropped && below.reason.contains("1.1° below the horizon"), "{below:?}");
     assert_eq!(below.proof, Proof::Exact);
     assert!(!toward(Vec3::new(-1.0, -0.02, 0.0)).reason.contains("horizon"), "it grazes the floor from above");
+    // Through a sheet the sun shines from below.
+    let from_below = |scattered: Option<DiffuseTransmission>| {
+        let mut floor = Stage::of("floor");
+        floor.material(|m| m.diffuse_transmission = scattered).case.scene.instances.truncate(1);
+        floor.case.scene.lights = vec![Light::directional("sun", Vec3::new(-0.3, 1.0, 0.0), 1e4)];
+        floor.facts().of(Effect::SunShadows).expect("asked for").reason.contains("turns toward")
+    };
+    assert!(from_below(None) && !from_below(Some(DiffuseTransmission::default())));
     let mut off = Stage::of("floor");
     off.case.scene.lights[0].kind = LightKind::Directional { illuminance_lux: 0.0, angular_radius_rad: 0.0 };
     assert!(off.drops(Effect::SunShadows));

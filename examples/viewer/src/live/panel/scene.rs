@@ -194,15 +194,17 @@ fn hierarchy(ui: &mut Ui, scene: &Scene, chosen: &mut Option<usize>) {
             let name = if instance.name.is_empty() { format!("instance {number}") } else { instance.name.clone() };
             let depth = depth(scene, number);
             let material = &scene.materials[instance.material.index()];
+            let mesh = &scene.meshes[instance.mesh.index()];
             ui.horizontal(|ui| {
                 ui.add_space(10.0 * depth as f32);
                 let place = instance.world_from_model.w_axis;
                 ui.label(name).on_hover_text(format!(
-                    "at {:.3} {:.3} {:.3} m, {} triangles",
+                    "at {:.3} {:.3} {:.3} m, {} {}",
                     place.x,
                     place.y,
                     place.z,
-                    scene.meshes[instance.mesh.index()].triangle_count()
+                    mesh.primitive_count(),
+                    mesh.topology.name()
                 ));
                 let named = if material.name.is_empty() { "(no name)" } else { &material.name };
                 let number = instance.material.index();

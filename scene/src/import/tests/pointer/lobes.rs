@@ -16,7 +16,7 @@ type Row = (&'static str, Value, &'static str, [&'static [f32]; 2], Lobe, fn(&Ma
 #[test]
 fn a_lobe_that_a_pointer_turns_on_is_kept() {
     let texture = json!({"index": 0});
-    let rows: [Row; 5] = [
+    let rows: [Row; 7] = [
         (
             "KHR_materials_clearcoat",
             json!({"clearcoatTexture": texture, "clearcoatRoughnessFactor": 0.5}),
@@ -48,6 +48,22 @@ fn a_lobe_that_a_pointer_turns_on_is_kept() {
             [&[0.0], &[1.0]],
             Lobe::Transmission,
             |m| m.transmission.map_or(-1.0, |lobe| lobe.factor),
+        ),
+        (
+            "KHR_materials_diffuse_transmission",
+            json!({"diffuseTransmissionTexture": texture}),
+            "diffuseTransmissionFactor",
+            [&[0.0], &[1.0]],
+            Lobe::DiffuseTransmission,
+            |m| m.diffuse_transmission.map_or(-1.0, |lobe| lobe.factor),
+        ),
+        (
+            "KHR_materials_iridescence",
+            json!({"iridescenceTexture": texture}),
+            "iridescenceFactor",
+            [&[0.0], &[1.0]],
+            Lobe::Iridescence,
+            |m| m.iridescence.map_or(-1.0, |lobe| lobe.factor),
         ),
         ("KHR_materials_specular", json!({}), "specularFactor", [&[1.0], &[0.0]], Lobe::Specular, |m| {
             m.specular.map_or(-1.0, |lobe| lobe.factor)

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
 
 use super::{animate, loaded, posed, with_material};
-use crate::material::{AlphaMode, Material};
+use crate::material::{AlphaMode, Material, Volume};
 use crate::texture::TextureSlot;
 
 /// A material with all lobes and all textures. No value is one that the tables below come to.
@@ -26,6 +26,14 @@ fn full() -> Value {
         "thicknessFactor": 0.9, "thicknessTexture": texture, "attenuationDistance": 9.0,
         "attenuationColor": [0.9, 0.8, 0.7],
     });
+    let iridescence = json!({
+        "iridescenceFactor": 0.9, "iridescenceIor": 1.9, "iridescenceThicknessMinimum": 90.0,
+        "iridescenceThicknessMaximum": 900.0, "iridescenceTexture": texture, "iridescenceThicknessTexture": texture,
+    });
+    let diffuse = json!({
+        "diffuseTransmissionFactor": 0.9, "diffuseTransmissionTexture": texture,
+        "diffuseTransmissionColorFactor": [0.9, 0.8, 0.7], "diffuseTransmissionColorTexture": texture,
+    });
     json!({
         "alphaMode": "MASK", "alphaCutoff": 0.9, "emissiveFactor": [0.9, 0.8, 0.7],
         "pbrMetallicRoughness": {
@@ -38,12 +46,25 @@ fn full() -> Value {
             "KHR_materials_anisotropy":
                 {"anisotropyStrength": 0.9, "anisotropyRotation": 0.9, "anisotropyTexture": texture},
             "KHR_materials_clearcoat": coat,
+            "KHR_materials_diffuse_transmission": diffuse,
+            "KHR_materials_dispersion": {"dispersion": 0.9},
+            "KHR_materials_iridescence": iridescence,
             "KHR_materials_sheen": sheen,
             "KHR_materials_specular": specular,
             "KHR_materials_transmission": {"transmissionFactor": 0.9, "transmissionTexture": texture},
             "KHR_materials_volume": volume,
         },
     })
+}
+
+/// The volumes of a material, one for each kind of transmission.
+fn volumes(material: &mut Material) -> impl Iterator<Item = &mut Volume> {
+    let Material { transmission, diffuse_transmission, .. } = material;
+    let both = [
+        &mut transmission.as_mut().expect("a lobe").volume,
+        &mut diffuse_transmission.as_mut().expect("a lobe").volume,
+    ];
+    both.into_iter().map(|volume| volume.as_mut().expect("a volume"))
 }
 
 /// A pointer below a material, two keys, and what the value between them does to the material at rest.
@@ -70,6 +91,25 @@ const FACTORS: &[Row] = &[
     ("extensions/KHR_materials_anisotropy/anisotropyRotation", [&[-2.0], &[1.0]], |m| {
         m.anisotropy.as_mut().expect("a lobe").rotation_rad = -0.5;
     }),
+    ("extensions/KHR_materials_dispersion/dispersion", [&[1.0], &[4.0]], |m| m.dispersion = 2.5),
+    ("extensions/KHR_materials_iridescence/iridescenceFactor", NUMBER, |m| {
+        m.iridescence.as_mut().expect("a lobe").factor = 0.25;
+    }),
+    ("extensions/KHR_materials_iridescence/iridescenceIor", [&[1.0], &[1.5]], |m| {
+        m.iridescence.as_mut().expect("a lobe").ior = 1.25;
+    }),
+    ("extensions/KHR_materials_iridescence/iridescenceThicknessMinimum", [&[0.0], &[50.0]], |m| {
+        m.iridescence.as_mut().expect("a lobe").min_thickness_nm = 25.0;
+    }),
+    ("extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", [&[200.0], &[500.0]], |m| {
+        m.iridescence.as_mut().expect("a lobe").max_thickness_nm = 350.0;
+    }),
+    ("extensions/KHR_materials_diffuse_transmission/diffuseTransmissionFactor", NUMBER, |m| {
+        m.diffuse_transmission.as_mut().expect("a lobe").factor = 0.25;
+    }),
+    ("extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorFactor", COLOR, |m| {
+        m.diffuse_transmission.as_mut().expect("a lobe").color = MIDDLE;
+    }),
     ("extensions/KHR_materials_clearcoat/clearcoatFactor", NUMBER, |m| {
         m.clear_coat.as_mut().expect("a lobe").factor = 0.25;
     }),
@@ -93,13 +133,13 @@ const FACTORS: &[Row] = &[
         m.transmission.as_mut().expect("a lobe").factor = 0.25;
     }),
     ("extensions/KHR_materials_volume/thicknessFactor", [&[0.0], &[5.0]], |m| {
-        m.transmission.as_mut().expect("a lobe").volume.as_mut().expect("a volume").thickness = 2.5;
+        volumes(m).for_each(|volume| volume.thickness = 2.5);
     }),
     ("extensions/KHR_materials_volume/attenuationDistance", [&[1.0], &[5.0]], |m| {
-        m.transmission.as_mut().expect("a lobe").volume.as_mut().expect("a volume").attenuation_distance_m = 3.0;
+        volumes(m).for_each(|volume| volume.attenuation_distance_m = 3.0);
     }),
     ("extensions/KHR_materials_volume/attenuationColor", COLOR, |m| {
-        m.transmission.as_mut().expect("a lobe").volume.as_mut().expect("a volume").attenuation_color = MIDDLE;
+        volumes(m).for_each(|volume| volume.attenuation_color = MIDDLE);
     }),
 ];
 
@@ -150,28 +190,49 @@ const SLOTS: &[Slot] = &[
     ("extensions/KHR_materials_transmission/transmissionTexture", |m| {
         &mut m.transmission.as_mut().expect("a lobe").texture
     }),
-    ("extensions/KHR_materials_volume/thicknessTexture", |m| {
-        &mut m.transmission.as_mut().expect("a lobe").volume.as_mut().expect("a volume").thickness_texture
+    ("extensions/KHR_materials_iridescence/iridescenceTexture", |m| {
+        &mut m.iridescence.as_mut().expect("a lobe").texture
+    }),
+    ("extensions/KHR_materials_iridescence/iridescenceThicknessTexture", |m| {
+        &mut m.iridescence.as_mut().expect("a lobe").thickness_texture
+    }),
+    ("extensions/KHR_materials_diffuse_transmission/diffuseTransmissionTexture", |m| {
+        &mut m.diffuse_transmission.as_mut().expect("a lobe").texture
+    }),
+    ("extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture", |m| {
+        &mut m.diffuse_transmission.as_mut().expect("a lobe").color_texture
     }),
 ];
+
+/// Changes a texture slot.
+type Change<'a> = &'a dyn Fn(&mut Option<TextureSlot>);
+
+fn check_transform(pointer: &str, change: &dyn Fn(&mut Material, Change<'_>)) {
+    let mut fixture = with_material(full());
+    let start = format!("/materials/0/{pointer}/extensions/KHR_texture_transform");
+    animate(&mut fixture, &format!("{start}/offset"), [&[0.0, 1.0], &[1.0, -1.0]]);
+    animate(&mut fixture, &format!("{start}/rotation"), [&[1.0], &[2.0]]);
+    animate(&mut fixture, &format!("{start}/scale"), [&[1.0, 1.0], &[4.0, -3.0]]);
+    let rest = loaded(&fixture);
+    let mut truth = rest.materials[0].clone();
+    change(&mut truth, &|slot| {
+        let transform = &mut slot.as_mut().expect("it is textured").transform;
+        (transform.offset, transform.rotation_rad, transform.scale) = (Vec2::new(0.5, 0.0), 1.5, Vec2::new(2.5, -1.0));
+    });
+    let mut scene = posed(&fixture, 1.0);
+    assert_eq!(scene.materials[0], truth, "{pointer}");
+    scene.pose(None, 0.0).expect("it can be posed");
+    assert_eq!(scene.materials, rest.materials, "{pointer}");
+}
 
 #[test]
 fn every_texture_can_be_moved_turned_and_scaled() {
     for (pointer, slot) in SLOTS {
-        let mut fixture = with_material(full());
-        let start = format!("/materials/0/{pointer}/extensions/KHR_texture_transform");
-        animate(&mut fixture, &format!("{start}/offset"), [&[0.0, 1.0], &[1.0, -1.0]]);
-        animate(&mut fixture, &format!("{start}/rotation"), [&[1.0], &[2.0]]);
-        animate(&mut fixture, &format!("{start}/scale"), [&[1.0, 1.0], &[4.0, -3.0]]);
-        let rest = loaded(&fixture);
-        let mut truth = rest.materials[0].clone();
-        let transform = &mut slot(&mut truth).as_mut().expect("it is textured").transform;
-        (transform.offset, transform.rotation_rad, transform.scale) = (Vec2::new(0.5, 0.0), 1.5, Vec2::new(2.5, -1.0));
-        let mut scene = posed(&fixture, 1.0);
-        assert_eq!(scene.materials[0], truth, "{pointer}");
-        scene.pose(None, 0.0).expect("it can be posed");
-        assert_eq!(scene.materials, rest.materials, "{pointer}");
+        check_transform(pointer, &|material, change| change(slot(material)));
     }
+    check_transform("extensions/KHR_materials_volume/thicknessTexture", &|material, change| {
+        volumes(material).for_each(|volume| change(&mut volume.thickness_texture));
+    });
 }
 
 /// Cubics overshoot; shading expects numbers in range.

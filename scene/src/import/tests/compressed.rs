@@ -1,0 +1,36 @@
+//! One torus and one strip under every compression of geometry (`tests/assets/compressed`): what is decoded is compared with the
+//! uncompressed files, within the error of the encoder's settings. Damaged files give errors.
+
+mod damage;
+mod errors;
+mod strip;
+mod torus;
+
+use std::path::Path;
+
+use super::fixture::Fixture;
+use crate::import::load_bytes_with;
+use crate::progress::silent;
+use crate::test_files::file;
+use crate::{LoadOptions, Scene};
+
+/// The bytes of a file of `tests/assets/compressed`.
+fn bytes(name: &str) -> Vec<u8> {
+    let path = file(&format!("assets/compressed/{name}.glb")).expect("it is committed");
+    std::fs::read(path).expect("it can be read")
+}
+
+/// A file of `tests/assets/compressed`, to be changed.
+fn fixture(name: &str) -> Fixture {
+    Fixture::of_glb(&bytes(name))
+}
+
+/// Loads a file without reordering vertices or triangles.
+fn ordered(glb: &[u8], name: &str) -> Scene {
+    let options = LoadOptions { keep_order: true, ..LoadOptions::default() };
+    let loaded = load_bytes_with(Path::new("torus.glb"), glb, &options, &mut silent);
+    let scene = loaded.unwrap_or_else(|error| panic!("{name}: {error}"));
+    assert_eq!(scene.check(), Ok(()), "{name}");
+    assert!(scene.warnings.is_empty(), "{name}: {:?}", scene.warnings);
+    scene
+}

@@ -1,0 +1,80 @@
+// Light that comes through a surface: refracted by its body, or scattered.
+
+@if(TRANSMISSION || DIFFUSE_TRANSMISSION)
+import package::interface::material::material;
+@if(TRANSMISSION)
+import package::interface::scene::radiance_behind;
+import package::lib::real::real3;
+@if(TRANSMISSION && DISPERSION)
+import package::lib::refraction::dispersed_ior;
+@if(TRANSMISSION)
+import package::lib::refraction::{refracted_path, transmission_spread};
+@if(TRANSMISSION || DIFFUSE_TRANSMISSION)
+import package::lib::refraction::transmittance;
+@if(DIFFUSE_TRANSMISSION)
+import package::shading::shadow_map::Receiver;
+@if(DIFFUSE_TRANSMISSION)
+import package::shading::surface::{Surface, Translucency};
+
+/// Pre-exposed radiance that arrives through a body of one index of refraction from what is behind
+/// it; `thickness_m` is 0 for a thin wall.
+@if(TRANSMISSION)
+fn refract_by(
+    world: vec3<f32>,
+    view: vec3<f32>,
+    normal: vec3<f32>,
+    alpha: f32,
+    thickness_m: f32,
+    ior: f32,
+) -> vec3<f32> {
+    let path = refracted_path(view, normal, ior, thickness_m);
+    return radiance_behind(world, path, transmission_spread(alpha, ior))
+        * transmittance(material.transmission.absorption, length(path));
+}
+
+/// The same through the material's body: with dispersion each channel by its own index.
+@if(TRANSMISSION)
+fn refract_scene(
+    world: vec3<f32>,
+    view: vec3<f32>,
+    normal: vec3<f32>,
+    alpha: f32,
+    thickness_m: f32,
+) -> vec3<f32> {
+    let ior = material.transmission.ior;
+    @if(DISPERSION) {
+        let iors = dispersed_ior(ior, material.transmission.dispersion);
+        return vec3<f32>(
+            refract_by(world, view, normal, alpha, thickness_m, iors.r).r,
+            refract_by(world, view, normal, alpha, thickness_m, iors.g).g,
+            refract_by(world, view, normal, alpha, thickness_m, iors.b).b,
+        );
+    }
+    @else {
+        return refract_by(world, view, normal, alpha, thickness_m, ior);
+    }
+}
+
+/// Light through a fragment from behind: `lambert` is what the Lambert layer gets of it.
+@if(DIFFUSE_TRANSMISSION)
+fn translucency_of(albedo: vec3<f32>, lambert: f32, thickness_m: f32) -> Translucency {
+    let left = transmittance(material.transmission.absorption, thickness_m);
+    return Translucency(real3(saturate(albedo) * (lambert * left)), thickness_m);
+}
+
+/// True if a light in that direction is behind the surface.
+@if(DIFFUSE_TRANSMISSION)
+fn is_behind(s: Surface, to_light: vec3<f32>) -> bool {
+    return dot(vec3<f32>(s.base.normal), to_light) < 0.0;
+}
+
+/// Receiver of the shadows of lights from behind: the far side of the body, its depth below the
+/// surface. The normal is turned, since an offset away from the light would let the surface shadow
+/// itself.
+@if(DIFFUSE_TRANSMISSION)
+fn far_side(s: Surface, receiver: Receiver) -> Receiver {
+    var far = receiver;
+    far.normal = -receiver.normal;
+    far.world = receiver.world + far.normal * s.translucency.depth_m;
+    return far;
+}
