@@ -9,9 +9,14 @@
 //! Nothing here knows a GPU. Meters, right-handed, y up, linear Rec.709, lux, candela and nits throughout. What a file
 //! says is checked once, at import; a `Scene` that was returned holds finite numbers and valid ids only.
 //!
-//! Features, all on by default: `gltf` (import of scenes), `draco` and `meshopt` (compressed geometry in scenes), `png` and
-//! `jpeg` (textures, and pictures in general), `exr` (environments from OpenEXR, and writing such files). Without any of them the plain data, the built-in scenes, cameras,
-//! the sky and Radiance `.hdr` environments remain.
+//! Features, all on by default:
+//!
+//! - `gltf`: import of scenes;
+//! - `draco` and `meshopt`: compressed geometry in scenes;
+//! - `png` and `jpeg`: textures, and pictures in general;
+//! - `exr`: environments from OpenEXR, and writing such files.
+//!
+//! Without any of them the plain data, the built-in scenes, cameras, the sky and Radiance `.hdr` environments remain.
 
 pub mod batch;
 pub mod bounds;
