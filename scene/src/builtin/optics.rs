@@ -1,7 +1,7 @@
 //! `optics`: what light does in thin films, prisms and leaves, a row each.
 //!
-//! From back to front: a thin film on a black dielectric by thickness, then on titanium by index of refraction; glass by
-//! dispersion; a sheet by diffuse transmission. Left to right the named quantity grows.
+//! From back to front: a sheet by diffuse transmission; a thin film on a black dielectric by thickness, then on titanium by
+//! index of refraction; glass by dispersion. Left to right the named quantity grows.
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
@@ -26,7 +26,7 @@ pub(super) fn scene() -> Scene {
     // Upright, the back toward the sky behind.
     let upright = DMat4::from_rotation_x(1.2);
     let rows: [(MeshId, DMat4, fn(u32) -> Material); 4] =
-        [(ball, level, film), (ball, level, film_on_metal), (ball, level, glass), (sheet, upright, leaf)];
+        [(sheet, upright, leaf), (ball, level, film), (ball, level, film_on_metal), (ball, level, glass)];
     for (row, (mesh, turned, material)) in rows.into_iter().enumerate() {
         for column in 0..COLUMNS {
             let material = material(column);

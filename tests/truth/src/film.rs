@@ -131,6 +131,7 @@ mod tests {
     #[test]
     fn an_even_spectrum_has_the_white_of_equal_energy() {
         let white = rec709(|_| 1.0);
-        assert!((white - DVec3::new(1.2048, 0.9483, 0.9088)).abs().max_element() < 1e-3, "{white}");
+        // Four digits of the table, summed up.
+        assert!((white - DVec3::new(1.2048, 0.9483, 0.9088)).abs().max_element() < 2e-3, "{white}");
     }
 }

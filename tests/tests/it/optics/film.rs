@@ -152,17 +152,19 @@ fn films_in_even_light_reflect_the_mean_of_their_facets() -> TestResult {
     let wall = Wall { cards: cards(&[on(0.1), on(0.5), on(0.8), white]), ..Wall::default() };
     let shading = Shading { compensate_image: false, ..Shading::default() };
     let seen = wall.render(&gpu, &Environment::uniform(DVec3::ONE)?, &shading)?;
-    let tolerances = [0.02, 0.06, 0.09];
+    let mut worst = [0.0_f64; 3];
     for (index, nov) in NOV.into_iter().enumerate() {
         for (row, roughness) in [0.1, 0.5, 0.8].into_iter().enumerate() {
             let mean = |c: usize| ggx_of(nov, roughness, |voh| model(voh, ior, thickness_nm, f0)[c]);
             let truth = DVec3::new(mean(0), mean(1), mean(2));
-            near(&format!("roughness {roughness} at {nov}"), &seen[row * 4 + index], truth, 0.0, tolerances[row]);
+            worst[row] = worst[row].max((seen[row * 4 + index].nits - truth).abs().max_element());
         }
         // A furnace: white under a film gives back no more than it gets, and no less than its darkest channel leaves.
         let back = seen[12 + index].nits;
         assert!(back.max_element() < 1.01 && back.min_element() > 0.6, "white at {nov}: {back}");
     }
+    // Half floats and the table; then what Schlick's curve misses of the film's over wider and wider lobes.
+    assert!(worst[0] < 2e-3 && worst[1] < 0.045 && worst[2] < 0.065, "{worst:?}");
     Ok(())
 }
 
