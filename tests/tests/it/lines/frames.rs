@@ -210,3 +210,38 @@ fn lines_and_points_that_move_have_velocity() -> TestResult {
     }
     Ok(())
 }
+
+/// Lit lines and points that lie on a wall, with its normal, are lit as it is: they step out of its shadow map along that normal.
+#[test]
+fn lines_and_points_on_a_wall_are_lit_as_the_wall_is() -> TestResult {
+    let Some(gpu) = gpu("lines_and_points_on_a_wall_are_lit_as_the_wall_is") else { return Ok(()) };
+    let turned = DMat4::from_rotation_y(0.9) * DMat4::from_rotation_x(0.4);
+    let picture = |topology: Option<Topology>| {
+        let mut scene = scene();
+        let clay = Material::dielectric("clay", Vec3::splat(0.5), 1.0);
+        put(&mut scene, cuboid(Vec3::new(16.0, 16.0, 0.5)), clay, DVec3::ZERO);
+        if let Some(topology) = topology {
+            let own = with_normals(zigzag(topology));
+            put(&mut scene, own, Material::dielectric("chalk", Vec3::splat(0.8), 1.0), DVec3::ZERO);
+            scene.instances[1].world_from_model = DMat4::from_scale(DVec3::new(0.6, 0.6, 1.0));
+            scene.instances[1].world_from_model.w_axis.z = 0.52;
+        }
+        for instance in &mut scene.instances {
+            instance.world_from_model = turned * instance.world_from_model;
+            instance.bounds = scene.meshes[instance.mesh.index()].bounds.transformed(&instance.world_from_model);
+        }
+        let along = turned.transform_vector3(DVec3::new(0.9, 0.3, -0.35)).normalize();
+        scene.lights.push(Light::directional("sun", along.as_vec3(), 4.0));
+        radiance(&gpu, &scene, plain(1, true, true))
+    };
+    let wall = picture(None)?;
+    for topology in BOTH {
+        let found = picture(Some(topology))?;
+        let lit = |at: &usize| wall[*at].x > 0.1;
+        let darker = (0..wall.len()).filter(lit).filter(|at| found[*at].x < 0.9 * wall[*at].x).count();
+        // The control: their own albedo is seen.
+        let brighter = (0..wall.len()).filter(lit).filter(|at| found[*at].x > 1.4 * wall[*at].x).count();
+        assert!(darker == 0 && brighter > 15, "{}: {darker} darker, {brighter} brighter", topology.name());
+    }
+    Ok(())
+}
