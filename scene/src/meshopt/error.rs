@@ -1,7 +1,7 @@
 //! Errors of the decoder.
 
 /// Reason why a compressed buffer view does not decode. The messages name no file and no view.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum MeshoptError {
     /// The stride is not allowed in this mode or with this filter.
     #[error("a stride of {stride} bytes is invalid for {user}, which needs {allowed}")]
@@ -80,4 +80,10 @@ pub(crate) enum MeshoptError {
         /// Element that the number belongs to.
         element: usize,
     },
+}
+
+impl std::fmt::Debug for MeshoptError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
