@@ -3,6 +3,9 @@
 
 use glam::{DMat4, DVec3, Vec3};
 
+/// Largest distance from the origin that a scene may reach, in meters: squares of it stay finite in f32.
+pub const MAX_COORDINATE_M: f64 = 1e18;
+
 /// An axis-aligned box in meters. Empty when any `min` exceeds its `max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {

@@ -17,6 +17,7 @@
 mod accessor;
 mod buffer;
 mod camera;
+mod channel_pointer;
 mod container;
 mod document;
 #[cfg(feature = "draco")]
@@ -55,6 +56,7 @@ use std::path::Path;
 use glam::DMat4;
 
 use self::material::Materials;
+use self::motion::Placed;
 use self::node::FlatNode;
 use self::primitive::GeometryKey;
 use self::source::{Repair, Source, Warnings};
@@ -170,15 +172,6 @@ pub fn load_bytes_with(
     scene.warnings = warnings.into_lines();
     source.finish();
     Ok(scene)
-}
-
-/// Nodes and places of the instances of a scene, in their order.
-#[derive(Default)]
-struct Placed {
-    /// Place of each instance's node in the list of nodes.
-    nodes: Vec<usize>,
-    /// Transform of each instance to its node's axes.
-    node_from_model: Vec<DMat4>,
 }
 
 /// Turns each (node, primitive) into an instance, or into as many as EXT_mesh_gpu_instancing lists. Equal geometry is

@@ -63,9 +63,9 @@ pub struct Material {
     /// Index of refraction of the dielectric part (KHR_materials_ior): 1 or more; 0 stands for
     /// infinity, a reflectance of 1.
     pub ior: f32,
-    /// Dispersion of the volume (KHR_materials_dispersion): 20 over the Abbe number, 0 or more. Without a volume that
-    /// transmits it has no effect.
-    pub dispersion: f32,
+    /// Dispersion of the volume (KHR_materials_dispersion): 20 over the Abbe number, 0 or more; `None` where all colors
+    /// refract alike. Without a volume that transmits it has no effect.
+    pub dispersion: Option<f32>,
     /// Scales x and y of the tangent-space normal.
     pub normal_scale: f32,
     /// Strength of the occlusion texture, 0 (no effect)…1.
@@ -131,7 +131,7 @@ impl Default for Material {
             emissive: Vec3::ZERO,
             emissive_unit: EmissiveUnit::Display,
             ior: 1.5,
-            dispersion: 0.0,
+            dispersion: None,
             normal_scale: 1.0,
             occlusion_strength: 1.0,
             alpha: AlphaMode::Opaque,
@@ -211,7 +211,7 @@ impl Material {
             Lobe::Transmission => self.transmission.is_some(),
             Lobe::Specular => self.specular.is_some(),
             Lobe::Iridescence => self.iridescence.is_some(),
-            Lobe::Dispersion => self.dispersion > 0.0 && self.transmission.is_some_and(|t| t.volume.is_some()),
+            Lobe::Dispersion => self.dispersion.is_some() && self.transmission.is_some_and(|t| t.volume.is_some()),
             Lobe::DiffuseTransmission => self.diffuse_transmission.is_some(),
         };
         Lobe::ALL.into_iter().filter(|lobe| !self.unlit && has(lobe)).collect()

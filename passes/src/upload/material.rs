@@ -187,7 +187,7 @@ fn transmission_uniforms(material: &Material, map: impl Fn(Option<TextureSlot>) 
     let wall = material.transmission.map_or_else(Default::default, |transmission| TransmissionUniforms {
         factor: transmission.factor,
         ior: material.ior.max(1.0),
-        dispersion: material.dispersion,
+        dispersion: material.dispersion.unwrap_or(0.0),
         map: map(transmission.texture),
         ..TransmissionUniforms::default()
     });
@@ -306,7 +306,7 @@ mod tests {
                 texture: slot(9.0),
                 color_texture: slot(10.0),
             }),
-            dispersion: 0.5,
+            dispersion: Some(0.5),
             iridescence: Some(Iridescence {
                 factor: 0.75,
                 texture: slot(11.0),

@@ -67,7 +67,7 @@ fn glass(column: u32) -> Material {
     let volume = Some(Volume { thickness: 2.0 * RADIUS_M, ..Volume::default() });
     Material {
         ior: 1.6,
-        dispersion,
+        dispersion: (dispersion > 0.0).then_some(dispersion),
         transmission: Some(Transmission { factor: 1.0, texture: None, volume }),
         ..Material::dielectric(&format!("dispersion {dispersion:.0}"), Vec3::ONE, 0.0)
     }

@@ -7,8 +7,7 @@ pub const MAX_IMAGE_SIDE_TEXELS: u32 = 16384;
 /// How often meshes are placed.
 pub const MAX_INSTANCES: usize = 1 << 22;
 
-/// How far from the origin anything may reach, in meters: squares of it stay finite in f32.
-pub const MAX_COORDINATE_M: f64 = 1e18;
+pub use crate::bounds::MAX_COORDINATE_M;
 
 /// Elements of one accessor: vertex numbers and corner numbers stay well inside 32 bits.
 pub(super) const MAX_ELEMENTS: u64 = 1 << 28;

@@ -56,7 +56,8 @@ pub(super) fn read(
             material.diffuse_transmission.map(|lobe| DiffuseTransmission { volume, ..lobe });
     }
     if let Some(json) = of("KHR_materials_dispersion")? {
-        material.dispersion = json.at_least("dispersion", 0.0, 0.0, reading.warnings)?;
+        let dispersion = json.at_least("dispersion", 0.0, 0.0, reading.warnings)?;
+        material.dispersion = (dispersion > 0.0 || json.is_animated()).then_some(dispersion);
     }
     if let Some(json) = of("KHR_materials_specular")? {
         material.specular = reading.specular(&json)?;

@@ -6,8 +6,8 @@ use glam::{DMat4, DVec4};
 use gltf_json::animation::{Interpolation as Way, Property as Path};
 use gltf_json::validation::Checked;
 
-use super::Placed;
 use super::accessor::{floats, width as components};
+use super::channel_pointer;
 use super::document::NO_NODE;
 use super::node::{Attached, FlatNode};
 use super::pointer::{self, Pointed, Scale};
@@ -18,6 +18,15 @@ use crate::motion::{
     Animation, Body, Channel, Curve, Interpolation, Motion, Moves, Node, NodeProperty, Rest, Shape, Skin, Target,
 };
 use crate::scene::Scene;
+
+/// Nodes and places of the instances of a scene, in their order.
+#[derive(Default)]
+pub(super) struct Placed {
+    /// Place of each instance's node in the list of nodes.
+    pub nodes: Vec<usize>,
+    /// Transform of each instance to its node's axes.
+    pub node_from_model: Vec<DMat4>,
+}
 
 /// What hangs on the nodes of a scene.
 pub(super) struct Attachments {
@@ -223,7 +232,7 @@ fn aim(
     parts: &pointer::Parts<'_>,
     warnings: &mut Warnings,
 ) -> Result<Option<Pointed>, SceneError> {
-    if let Some(pointer) = pointer::of_channel(source, animation, channel) {
+    if let Some(pointer) = channel_pointer::of_channel(source.json, animation, channel) {
         let pointed = pointer::resolve(source, animation, pointer, parts);
         if pointed.is_none() {
             warnings.push(format!("{at}: the property {pointer:?} cannot be animated; the channel is left out"));

@@ -1,9 +1,8 @@
 //! KHR_animation_pointer: the properties that JSON pointers of animation channels name.
 
-use std::collections::BTreeSet;
-
 use serde_json::Value;
 
+use super::channel_pointer::pointers;
 use super::source::Source;
 use crate::material::MaterialId;
 use crate::motion::property::{EMISSIVE, STRENGTH};
@@ -42,33 +41,6 @@ pub(super) enum Scale {
     By(f32),
     /// One number becomes three, by these factors.
     Spread([f32; 3]),
-}
-
-/// Returns the pointer of a channel, if it has one.
-pub(super) fn of_channel<'a>(source: &Source<'a>, animation: usize, channel: usize) -> Option<&'a str> {
-    pointer_of(source.json.get("animations")?.get(animation)?.get("channels")?.get(channel)?)
-}
-
-/// Returns the places of the material extensions that pointers of animations name: `material 3: KHR_materials_sheen`.
-pub(super) fn animated_extensions(json: &Value) -> BTreeSet<String> {
-    let animations = json.get("animations").and_then(Value::as_array).into_iter().flatten();
-    let place = |pointer: &str| {
-        let (material, rest) = pointer.strip_prefix("/materials/")?.split_once("/extensions/")?;
-        let index: usize = material.parse().ok()?;
-        Some(format!("material {index}: {}", rest.split_once('/')?.0))
-    };
-    animations.flat_map(pointers).filter_map(place).collect()
-}
-
-/// Returns the pointers of an animation's channels.
-fn pointers(animation: &Value) -> impl Iterator<Item = &str> {
-    let channels = animation.get("channels").and_then(Value::as_array).into_iter().flatten();
-    channels.filter_map(pointer_of)
-}
-
-/// Returns the pointer of a channel, if it has one.
-fn pointer_of(channel: &Value) -> Option<&str> {
-    channel.get("target")?.get("extensions")?.get("KHR_animation_pointer")?.get("pointer")?.as_str()
 }
 
 /// Resolves a pointer of an animation; `None` for a property that cannot be animated here.

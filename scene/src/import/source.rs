@@ -8,10 +8,10 @@ use std::path::{Component, Path, PathBuf};
 
 use gltf_json::{Root, Value};
 
+use super::channel_pointer::animated_extensions;
 use super::document::Document;
 use super::letter_case;
 use super::packed::PackedMesh;
-use super::pointer::animated_extensions;
 use super::uri::{Resource, resolve};
 use crate::error::{Quantity, SceneError, one_line};
 use crate::memory::{Memory, OverBudget};

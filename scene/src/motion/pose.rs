@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Motion, NodeProperty, Target, Transform};
-use crate::bounds::Aabb;
+use crate::bounds::{Aabb, MAX_COORDINATE_M};
 use crate::camera::Camera;
 use crate::error::one_line;
 use crate::light::{Light, LightKind};
@@ -31,6 +31,18 @@ pub enum PoseError {
         time_s: f64,
         /// What grows so.
         what: String,
+    },
+    /// An instance is moved beyond [`MAX_COORDINATE_M`].
+    #[error(
+        "{animation}: at {time_s} s instance {instance:?} is more than {MAX_COORDINATE_M:e} m from the origin; choose another time, or mend the file"
+    )]
+    TooFar {
+        /// The animation.
+        animation: String,
+        /// The time in seconds.
+        time_s: f64,
+        /// Name of the instance.
+        instance: String,
     },
 }
 
@@ -85,11 +97,8 @@ impl Scene {
         }
         let (world, weights) = self.motion.nodes_at(animation, time_s);
         let named = animation.map(|number| (number, one_line(&self.motion.animations[number].name)));
-        let not_finite = |what: String| PoseError::NotFinite {
-            animation: named.as_ref().map_or("at rest".into(), |(number, name)| format!("animation {number} {name:?}")),
-            time_s,
-            what,
-        };
+        let named = || named.as_ref().map_or("at rest".into(), |(number, name)| format!("animation {number} {name:?}"));
+        let not_finite = |what: String| PoseError::NotFinite { animation: named(), time_s, what };
         if let Some(node) = world.iter().position(|matrix| !matrix.is_finite()) {
             return Err(not_finite(format!("the transform of the scene's node {node}")));
         }
@@ -122,7 +131,11 @@ impl Scene {
             instance.world_from_model = world_from_model;
             instance.bounds = self.meshes[instance.mesh.index()].bounds.transformed(&world_from_model);
         }
-        Ok(())
+        let reach = |bounds: &Aabb| bounds.min.abs().max(bounds.max.abs()).max_element();
+        match self.instances.iter().find(|instance| reach(&instance.bounds) > MAX_COORDINATE_M) {
+            Some(instance) => Err(PoseError::TooFar { animation: named(), time_s, instance: one_line(&instance.name) }),
+            None => Ok(()),
+        }
     }
 
     /// Poses lights, cameras and materials, with nodes at `world`.

@@ -138,7 +138,9 @@ const FACTORS: &[Factor] = &[
     factor("extensions/KHR_materials_anisotropy/anisotropyRotation", 1, |m, v| {
         m.anisotropy.iter_mut().for_each(|lobe| lobe.rotation_rad = v[0]);
     }),
-    factor("extensions/KHR_materials_dispersion/dispersion", 1, |m, v| m.dispersion = v[0].max(0.0)),
+    factor("extensions/KHR_materials_dispersion/dispersion", 1, |m, v| {
+        m.dispersion.iter_mut().for_each(|dispersion| *dispersion = v[0].max(0.0));
+    }),
     factor("extensions/KHR_materials_iridescence/iridescenceFactor", 1, |m, v| {
         m.iridescence.iter_mut().for_each(|lobe| lobe.factor = unit(v));
     }),

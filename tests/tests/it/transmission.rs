@@ -311,7 +311,7 @@ fn a_body_with_dispersion_parts_the_channels() -> TestResult {
     // No glass has an Abbe number of a half, but it bends each channel by texels more than the next. Red goes straight on.
     let (ior, abbe, thickness, edge) = (1.8, 0.5, 1.0, 1.0);
     let volume = Volume { thickness: thickness as f32, ..Volume::default() };
-    let glass = Material { ior: ior as f32, dispersion: (20.0 / abbe) as f32, ..pane(Vec3::ONE, Some(volume)) };
+    let glass = Material { ior: ior as f32, dispersion: Some((20.0 / abbe) as f32), ..pane(Vec3::ONE, Some(volume)) };
     let mut scene = stage(Some(glass));
     scene.materials[0].base_color = Vec3::splat(0.05).extend(1.0);
     let bright = scene.add_material(Material::dielectric("bright", Vec3::splat(0.8), 0.9));

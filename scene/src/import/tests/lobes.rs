@@ -190,7 +190,7 @@ fn dispersion_shows_in_a_volume_that_transmits() {
     let (_, material) = load(json!({
         "KHR_materials_dispersion": dispersion, "KHR_materials_transmission": glass, "KHR_materials_volume": body,
     }));
-    assert_eq!((material.dispersion, material.lobes()), (0.33, one(Lobe::Transmission).with(Lobe::Dispersion)));
+    assert_eq!((material.dispersion, material.lobes()), (Some(0.33), one(Lobe::Transmission).with(Lobe::Dispersion)));
     let (_, wall) = load(json!({"KHR_materials_dispersion": dispersion, "KHR_materials_transmission": glass}));
     assert_eq!(wall.lobes(), one(Lobe::Transmission));
     let (_, none) = load(json!({
@@ -273,7 +273,7 @@ fn what_is_out_of_range_is_clamped_and_said() {
     assert_eq!(material.sheen.map(|s| s.color), Some(Vec3::new(0.5, 0.0, 1.0)));
     assert_eq!(material.specular.map(|s| s.color), Some(Vec3::new(7.0, 0.0, 0.0)));
     let film = Iridescence { ior: 1.0, min_thickness_nm: 0.0, ..Iridescence::default() };
-    assert_eq!((material.iridescence, material.dispersion), (Some(film), 0.0));
+    assert_eq!((material.iridescence, material.dispersion), (Some(film), None));
     let through = DiffuseTransmission { color: Vec3::new(0.5, 1.0, 0.5), ..DiffuseTransmission::default() };
     assert_eq!(material.diffuse_transmission, Some(through));
     for words in [

@@ -151,3 +151,18 @@ fn what_is_wrong_is_named_with_animation_and_channel() {
     let mut scene = loaded(&hierarchy());
     assert!(scene.pose(Some(3), 0.0).is_err_and(|told| told.to_string().contains("animation 3: there are 1")));
 }
+
+/// An animation, or a joint at rest, may not move the scene farther than f32 can square.
+#[test]
+fn poses_stay_within_the_largest_coordinate() {
+    let mut fixture = hierarchy();
+    let ways = fixture.floats(3, &[0.0, 5.0, 0.0, 4e18, 5.0, 0.0]);
+    fixture.set("/animations/0/samplers/0/output", json!(ways));
+    let mut scene = loaded(&fixture);
+    assert!(scene.pose(Some(0), 1.1).is_ok());
+    let told = scene.pose(Some(0), 3.0).expect_err("it is too far").to_string();
+    assert!(told.contains("animation 0 \"go\": at 3 s instance \"only\" is more than 1e18 m"), "{told}");
+    let mut far = skinned(SHARES, OWNERS);
+    far.set("/nodes/2/translation", json!([0, 0, 4e18]));
+    assert!(far.error().contains("at rest: at 0 s instance \"only\" is more than 1e18 m"), "{}", far.error());
+}

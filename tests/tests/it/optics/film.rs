@@ -221,7 +221,12 @@ fn impossible_films_are_finite() -> TestResult {
     let glass = Some(Transmission { factor: 1.0, texture: None, volume });
     materials.push(Material { clear_coat: coat, iridescence: film(1.8, 300.0), ..black(0.2) });
     materials.push(Material { specular: none, iridescence: film(1.8, 300.0), ..black(0.2) });
-    materials.push(Material { transmission: glass, dispersion: f32::MAX, iridescence: film(1.8, 300.0), ..black(0.2) });
+    materials.push(Material {
+        transmission: glass,
+        dispersion: Some(f32::MAX),
+        iridescence: film(1.8, 300.0),
+        ..black(0.2)
+    });
     let nov = [1e-4, 0.5, 1.0];
     let cards = materials.iter().flat_map(|material| nov.map(|nov| Card { material: material.clone(), nov })).collect();
     let light = Light::directional("lamp", -TOWARD.as_vec3(), PI as f32);

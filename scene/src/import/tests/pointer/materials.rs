@@ -91,7 +91,7 @@ const FACTORS: &[Row] = &[
     ("extensions/KHR_materials_anisotropy/anisotropyRotation", [&[-2.0], &[1.0]], |m| {
         m.anisotropy.as_mut().expect("a lobe").rotation_rad = -0.5;
     }),
-    ("extensions/KHR_materials_dispersion/dispersion", [&[1.0], &[4.0]], |m| m.dispersion = 2.5),
+    ("extensions/KHR_materials_dispersion/dispersion", [&[1.0], &[4.0]], |m| m.dispersion = Some(2.5)),
     ("extensions/KHR_materials_iridescence/iridescenceFactor", NUMBER, |m| {
         m.iridescence.as_mut().expect("a lobe").factor = 0.25;
     }),
