@@ -1,5 +1,7 @@
-//! Motion of a scene: nodes in a hierarchy, animations that change nodes, materials, lights and cameras, and bodies whose
-//! vertices follow joints and morph targets (glTF 2.0, sections 3.5, 3.7.3 and 3.11; KHR_animation_pointer).
+//! Motion of a scene: a hierarchy of nodes, animations, and bodies (glTF 2.0, sections 3.5, 3.7.3 and 3.11).
+//!
+//! Animations change nodes, and by KHR_animation_pointer materials, lights and cameras. The vertices of bodies follow joints
+//! and morph targets.
 //!
 //! ```text
 //! Animation ─ sample ─> nodes' transforms and weights ─ pose ─> Instance::world_from_model

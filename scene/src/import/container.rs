@@ -13,7 +13,7 @@ pub(super) struct Parts<'a> {
     pub json: &'a [u8],
     /// The binary chunk of a GLB file.
     pub blob: Option<&'a [u8]>,
-    /// Whether a chunk follows another one without the padding to four bytes that section 4.4.1 demands.
+    /// True if a chunk follows another one without the padding to four bytes that section 4.4.1 demands.
     pub is_unpadded: bool,
 }
 

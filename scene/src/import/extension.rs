@@ -7,7 +7,7 @@ use gltf_json::Root;
 use super::source::Warnings;
 use crate::error::{SceneError, Unsupported};
 
-/// How the importer treats an extension.
+/// Treatment of an extension by the importer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Support {
     /// Everything the extension specifies is read.
@@ -23,7 +23,7 @@ pub enum Support {
 pub struct Extension {
     /// Name in `extensionsUsed`.
     pub name: &'static str,
-    /// Whether the importer reads it.
+    /// Treatment by the importer.
     pub support: Support,
     /// One line on what is read, what is converted, or what a file loses without it.
     pub note: &'static str,

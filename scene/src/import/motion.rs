@@ -28,7 +28,7 @@ pub(super) struct Placed {
     pub node_from_model: Vec<DMat4>,
 }
 
-/// What hangs on the nodes of a scene.
+/// Instances, lights and cameras that hang on nodes, and materials.
 pub(super) struct Attachments {
     /// Nodes and places of instances.
     pub placed: Placed,

@@ -24,7 +24,7 @@ pub(super) struct FlatNode {
     pub rest: Transform,
     /// Transform to world axes, in meters.
     pub world_from_node: DMat4,
-    /// Whether the node and all its ancestors are visible (KHR_node_visibility).
+    /// True if the node and all its ancestors are visible (KHR_node_visibility).
     pub is_visible: bool,
     /// Index of its skin in the file, unchecked.
     pub skin: Option<usize>,

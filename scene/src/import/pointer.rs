@@ -22,7 +22,7 @@ pub(super) struct Parts<'a> {
     pub targets: &'a dyn Fn(usize) -> usize,
 }
 
-/// What a pointer names.
+/// Properties that a pointer names.
 pub(super) struct Pointed {
     /// The targets: several where nodes share a light or a camera; none where the scene does not use the object.
     pub targets: Vec<Target>,
@@ -32,7 +32,7 @@ pub(super) struct Pointed {
     pub scale: Scale,
 }
 
-/// How values of a file become values of a property.
+/// Conversion of values of a file to values of a property.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Scale {
     /// They are equal.

@@ -7,7 +7,7 @@ use crate::light::{Light, LightKind};
 use crate::material::{AlphaMode, Material, MaterialId};
 use crate::texture::TextureSlot;
 
-/// What a channel changes.
+/// Property that a channel changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
     /// A property of a node, by the node's place in [`Motion::nodes`](super::Motion::nodes).
@@ -349,8 +349,8 @@ impl LightProperty {
 }
 
 impl CameraProperty {
-    /// Writes a value. A camera of another projection stays as it is, and so does one that the value would make
-    /// impossible: a field of view outside 0 to π, or a near plane that is not before the far plane.
+    /// Writes a value. A camera of another projection stays as it is. So does one whose field of view would leave 0 to π, or
+    /// whose near plane would not be before its far plane.
     pub(super) fn write(self, camera: &mut Camera, value: &[f64]) {
         let value = value[0];
         match (self, &mut camera.projection) {

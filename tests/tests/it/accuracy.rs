@@ -37,6 +37,17 @@ fn the_document_is_that_of_its_record() {
     assert_ne!(DOCUMENT, document(&record), "another error is another document");
 }
 
+/// The record of a GPU has its document beside it, of as many techniques.
+#[test]
+fn the_document_of_a_gpu_is_that_of_its_record() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/nvidia-h200");
+    let own = Record::read(&folder.join("accuracy.json")).expect("the record of the document");
+    let text = std::fs::read_to_string(folder.join("accuracy.md")).expect("the document");
+    let renew = "renew it: cargo run -p tests --bin accuracy -- --out docs/nvidia-h200 --document";
+    assert_eq!(text, document(&own), "{renew}");
+    assert!(own.adapter.contains("NVIDIA H200") && own.techniques.len() == record().techniques.len());
+}
+
 /// What presets have is what the committed record chooses, and another record chooses otherwise.
 #[test]
 fn presets_are_those_of_the_record() {

@@ -51,9 +51,11 @@ fn documented(command: &str, outcomes: &[Outcome]) {
     }
 }
 
-/// Compares each number of a row, within the rounding of other drivers at edges and in filters: a decibel; a tenth of FLIP
-/// and of the errors; a tenth of the shares of pixels and one in 2000. Above 55 dB only single 8-bit steps differ, so PSNR
-/// counts as 55 dB there, and FLIP may differ by 0.001: one driver rounds a ramp to 0.0022, another to 0.0026.
+/// Compares each number of a row, within the rounding of other drivers at edges and in filters. The bounds are a decibel, a
+/// tenth of FLIP and of the errors, and a tenth of the shares of pixels or one in 2000.
+///
+/// Above 55 dB only single 8-bit steps differ. PSNR counts as 55 dB there, and FLIP may differ by 0.001: one driver renders
+/// a ramp with 0.0022, another with 0.0026.
 fn printed(cells: &[&str], found: &Metrics) {
     let number = |cell: &str| cell.trim_end_matches(" %").parse().unwrap_or_else(|error| panic!("{cell}: {error}"));
     let printed: Vec<f64> = cells[2..].iter().map(|cell| number(cell)).collect();

@@ -146,7 +146,7 @@ impl Fixture {
         Ok(scene)
     }
 
-    /// The warnings with which loading succeeds, a line each.
+    /// The warnings of a successful load, a line each.
     pub fn warnings(&self) -> String {
         self.load().expect("the file loads").warnings.join("\n")
     }
