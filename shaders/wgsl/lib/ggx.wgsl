@@ -47,7 +47,8 @@ fn d_ggx(noh: f32, alpha: f32) -> f32 {
 /// The same distribution from the unit vectors themselves: 1 - noh² = |n × h|² by Lagrange's
 /// identity. In f16, where a rounded noh has lost the angle altogether, this form is good to
 /// 1 % at roughness 0.089; in f32 it gains little over the one above. The result is at most
-/// 65464, which a half float holds: reached below roughness 0.047 only. At the horizon and
+/// 65464, which a half float holds: reached below roughness 0.047 only. The last product is f32,
+/// since a GPU may compute k · k first, which a half float does not hold. At the horizon and
 /// below it is what it is there, as in the form above; so also where opposite vectors leave no
 /// h, whose cross product with anything is none, as that of n itself is at the peak.
 fn d_ggx_cross(n: real3, h: real3, noh: real, alpha: real) -> real {
@@ -56,7 +57,7 @@ fn d_ggx_cross(n: real3, h: real3, noh: real, alpha: real) -> real {
     let sine2 = select(dot(sine, sine), scale2, noh <= 0.0);
     let a = saturate(noh) * (SQUARE_SCALE * alpha);
     let k = min(scale2 * alpha / max(sine2 + a * a, scale2 * D_FLOOR), 453.5);
-    return k * (k * real(1.0 / PI));
+    return real(f32(k) * f32(k) * (1.0 / PI));
 }
 
 /// Height-correlated Smith visibility, G2 / (4·nov·nol). At nov = nol = 0 the quotient is

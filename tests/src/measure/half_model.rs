@@ -59,7 +59,7 @@ impl HalfModel {
         let a = self.product(noh.clamp(0.0, 1.0), self.product(self.scale, alpha));
         let q = self.sum(sine2, self.product(a, a)).max(self.round(scale2 * 6.27e-5));
         let k = self.round(self.product(scale2, alpha) / q).min(453.5);
-        self.product(k, self.product(k, self.round(1.0 / std::f64::consts::PI)))
+        self.round(k * k / std::f64::consts::PI)
     }
 
     /// `pow5` of half floats.

@@ -124,3 +124,11 @@ fn transmission_that_blends_loads() {
     assert_eq!(triangles(&scene, still), triangles(&loaded(BASE), still));
     assert_eq!(scene.materials[0].transmission.map(|lobe| lobe.factor), Some(0.8));
 }
+
+#[test]
+fn a_texture_without_a_source_is_left_out() {
+    let (case, base) = (loaded(case!("06_texture_without_source")), loaded(BASE));
+    assert_eq!(triangles(&case, still), triangles(&base, still));
+    assert_eq!((case.materials[0].base_color_texture, case.images.len()), (None, 0));
+    assert!(case.warnings.iter().any(|warning| warning.contains("texture 0")), "{:?}", case.warnings);
+}
