@@ -47,6 +47,25 @@ pub struct Shading {
     pub micro_shadows: bool,
     /// Reflectance under a clear coat by Filament's cubic, which errs by up to 0.022 and knows no square root.
     pub fast_coat: bool,
+    /// The base under a clear coat meets the coat instead of air, which lowers its reflectance at normal incidence.
+    /// Filament's material property `clearCoatIorChange`, which gltfio turns off.
+    pub coat_ior_change: bool,
+    /// How punctual lights end at their range.
+    pub light_window: LightWindow,
+    /// Distance from the eye in m, above 0, beyond which no punctual light shines; they fade over the last 11 % of it, to
+    /// half at 0.949 of it. `None`: they never fade. Filament has 100 m, the far end of `setDynamicLightingOptions`.
+    pub light_fade_m: Option<f32>,
+}
+
+/// Factor on a punctual light that ends it at its range, where d is the distance over the range.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+pub enum LightWindow {
+    /// 1 − d⁴, as KHR_lights_punctual specifies.
+    #[default]
+    Gltf,
+    /// (1 − d⁴)², as Filament has it: darker near the range.
+    Filament,
 }
 
 /// Specular antialiasing after Tokuyoshi and Kaplanyan (2019).
@@ -124,6 +143,9 @@ impl Quality {
             specular_occlusion: true,
             micro_shadows: true,
             fast_coat: !high,
+            coat_ior_change: true,
+            light_window: LightWindow::Gltf,
+            light_fade_m: None,
         }
     }
 
@@ -163,7 +185,7 @@ impl Shading {
     }
 
     /// Names of the `override` constants of the color shader. Those of lobes are in shaders that have the lobe.
-    pub const CONSTANTS: [&'static str; 13] = [
+    pub const CONSTANTS: [&'static str; 16] = [
         "ALPHA_MODE",
         "FAST_VISIBILITY",
         "ROUGHNESS_FLOOR",
@@ -177,6 +199,9 @@ impl Shading {
         "SPECULAR_OCCLUSION",
         "MICRO_SHADOWS",
         "FAST_COAT",
+        "COAT_IOR_CHANGE",
+        "SQUARED_LIGHT_WINDOW",
+        "LIGHT_FADE_INV_FAR2",
     ];
 
     /// The values of [`Shading::CONSTANTS`] where the light has these `bands`.
@@ -196,6 +221,9 @@ impl Shading {
             f64::from(self.specular_occlusion),
             f64::from(self.micro_shadows),
             f64::from(self.fast_coat),
+            f64::from(self.coat_ior_change),
+            f64::from(self.light_window == LightWindow::Filament),
+            self.light_fade_m.map_or(0.0, |far| f64::from(far.clamp(0.01, 1e9)).powi(-2)),
         ]
     }
 
@@ -262,13 +290,27 @@ impl Shading {
             "specular-occlusion" => self.specular_occlusion = switch()?,
             "micro-shadows" => self.micro_shadows = switch()?,
             "fast-coat" => self.fast_coat = switch()?,
+            "coat-ior-change" => self.coat_ior_change = switch()?,
+            "light-window" => {
+                self.light_window = match value {
+                    "gltf" => LightWindow::Gltf,
+                    "filament" => LightWindow::Filament,
+                    _ => return Err(wrong("`gltf` or `filament`")),
+                }
+            }
+            "light-fade" => {
+                self.light_fade_m = match value {
+                    "off" => None,
+                    _ => Some(choice.number(0.01, 1e9)?),
+                }
+            }
             _ => return Err(choice.unknown(&Self::KEYS)),
         }
         Ok(())
     }
 
     /// The names that [`Shading::set`] takes.
-    pub const KEYS: [&str; 12] = [
+    pub const KEYS: [&str; 15] = [
         "visibility",
         "table",
         "floor",
@@ -281,6 +323,9 @@ impl Shading {
         "specular-occlusion",
         "micro-shadows",
         "fast-coat",
+        "coat-ior-change",
+        "light-window",
+        "light-fade",
     ];
 }
 
@@ -344,6 +389,9 @@ mod tests {
             ("multi-bounce", "off"),
             ("specular-occlusion", "on"),
             ("fast-coat", "on"),
+            ("coat-ior-change", "on"),
+            ("light-window", "gltf"),
+            ("light-fade", "off"),
         ] {
             assert!(Shading::KEYS.contains(&key));
             low.set(key, value)?;
@@ -351,6 +399,15 @@ mod tests {
         assert_eq!(low, Quality::Low.shading());
         low.set("table", "exact")?;
         assert_eq!((low.visibility, low.table), (Visibility::Fast, Visibility::Exact));
+        for (key, value) in [("coat-ior-change", "off"), ("light-window", "filament"), ("light-fade", "100")] {
+            low.set(key, value)?;
+        }
+        assert_eq!((low.coat_ior_change, low.light_window), (false, LightWindow::Filament));
+        for (name, expected) in
+            [("COAT_IOR_CHANGE", 0.0), ("SQUARED_LIGHT_WINDOW", 1.0), ("LIGHT_FADE_INV_FAR2", 1e-4)]
+        {
+            assert_eq!(self::value(&low, ShBands::Three, name), Some(expected), "{name}");
+        }
         low.set("window", "laplacian:0.01")?;
         assert_eq!(low.light(Quality::Low).image.window, ShWindow::Laplacian { lambda: f64::from(0.01_f32) });
         low.set("aa", "0.25:0.18")?;
@@ -363,6 +420,8 @@ mod tests {
             ("window", "laplacian"),
             ("aa", "1"),
             ("aa", "x:y"),
+            ("light-window", "square"),
+            ("light-fade", "0"),
         ] {
             let told = low.set(key, value).expect_err("that is no choice").to_string();
             assert!(told.contains(key) && !told.contains('\n'), "{told}");
