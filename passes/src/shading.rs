@@ -50,11 +50,25 @@ pub struct Shading {
     /// The base under a clear coat meets the coat instead of air, which lowers its reflectance at normal incidence.
     /// Filament's material property `clearCoatIorChange`, which gltfio turns off.
     pub coat_ior_change: bool,
+    /// How much what is behind rough bodies is blurred.
+    pub transmission_blur: TransmissionBlur,
     /// How punctual lights end at their range.
     pub light_window: LightWindow,
     /// Distance from the eye in m, above 0, beyond which no punctual light shines; they fade over the last 11 % of it, to
     /// half at 0.949 of it. `None`: they never fade. Filament has 100 m, the far end of `setDynamicLightingOptions`.
     pub light_fade_m: Option<f32>,
+}
+
+/// Blur of what is seen through rough bodies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+pub enum TransmissionBlur {
+    /// By the light's spread at the rough face, over the distance from the body to what is behind it.
+    #[default]
+    Distance,
+    /// By an angle from the eye that the roughness alone decides, as Filament has it. Things that touch the body are blurred
+    /// as much as those far behind.
+    Angle,
 }
 
 /// Factor on a punctual light that ends it at its range, where d is the distance over the range.
@@ -144,6 +158,7 @@ impl Quality {
             micro_shadows: true,
             fast_coat: !high,
             coat_ior_change: true,
+            transmission_blur: TransmissionBlur::Distance,
             light_window: LightWindow::Gltf,
             light_fade_m: None,
         }
@@ -185,7 +200,7 @@ impl Shading {
     }
 
     /// Names of the `override` constants of the color shader. Those of lobes are in shaders that have the lobe.
-    pub const CONSTANTS: [&'static str; 16] = [
+    pub const CONSTANTS: [&'static str; 17] = [
         "ALPHA_MODE",
         "FAST_VISIBILITY",
         "ROUGHNESS_FLOOR",
@@ -200,6 +215,7 @@ impl Shading {
         "MICRO_SHADOWS",
         "FAST_COAT",
         "COAT_IOR_CHANGE",
+        "TRANSMISSION_BY_ANGLE",
         "SQUARED_LIGHT_WINDOW",
         "LIGHT_FADE_INV_FAR2",
     ];
@@ -222,6 +238,7 @@ impl Shading {
             f64::from(self.micro_shadows),
             f64::from(self.fast_coat),
             f64::from(self.coat_ior_change),
+            f64::from(self.transmission_blur == TransmissionBlur::Angle),
             f64::from(self.light_window == LightWindow::Filament),
             self.light_fade_m.map_or(0.0, |far| f64::from(far.clamp(0.01, 1e9)).powi(-2)),
         ]
@@ -291,6 +308,13 @@ impl Shading {
             "micro-shadows" => self.micro_shadows = switch()?,
             "fast-coat" => self.fast_coat = switch()?,
             "coat-ior-change" => self.coat_ior_change = switch()?,
+            "transmission-blur" => {
+                self.transmission_blur = match value {
+                    "distance" => TransmissionBlur::Distance,
+                    "angle" => TransmissionBlur::Angle,
+                    _ => return Err(wrong("`distance` or `angle`")),
+                }
+            }
             "light-window" => {
                 self.light_window = match value {
                     "gltf" => LightWindow::Gltf,
@@ -310,7 +334,7 @@ impl Shading {
     }
 
     /// The names that [`Shading::set`] takes.
-    pub const KEYS: [&str; 15] = [
+    pub const KEYS: [&str; 16] = [
         "visibility",
         "table",
         "floor",
@@ -324,6 +348,7 @@ impl Shading {
         "micro-shadows",
         "fast-coat",
         "coat-ior-change",
+        "transmission-blur",
         "light-window",
         "light-fade",
     ];
@@ -342,8 +367,8 @@ mod tests {
     /// The shader has all of these constants, and its defaults are the default quality.
     #[test]
     fn the_constants_are_those_of_the_shader() -> Result<(), Box<dyn std::error::Error>> {
-        let shader =
-            resolve(&library::pass("pass/color.wgsl").ok_or("color")?, &Features::NONE.with(Feature::CLEAR_COAT), &[])?;
+        let features = Features::NONE.with(Feature::CLEAR_COAT).with(Feature::TRANSMISSION);
+        let shader = resolve(&library::pass("pass/color.wgsl").ok_or("color")?, &features, &[])?;
         let values = Shading::default().constants(AlphaUse::None, ShBands::Five);
         for (name, value) in Shading::CONSTANTS.into_iter().zip(values) {
             let found = shader.reflection.overrides.iter().find(|o| o.name == name).ok_or(name)?;
@@ -390,6 +415,7 @@ mod tests {
             ("specular-occlusion", "on"),
             ("fast-coat", "on"),
             ("coat-ior-change", "on"),
+            ("transmission-blur", "distance"),
             ("light-window", "gltf"),
             ("light-fade", "off"),
         ] {
@@ -399,13 +425,21 @@ mod tests {
         assert_eq!(low, Quality::Low.shading());
         low.set("table", "exact")?;
         assert_eq!((low.visibility, low.table), (Visibility::Fast, Visibility::Exact));
-        for (key, value) in [("coat-ior-change", "off"), ("light-window", "filament"), ("light-fade", "100")] {
+        for (key, value) in [
+            ("coat-ior-change", "off"),
+            ("transmission-blur", "angle"),
+            ("light-window", "filament"),
+            ("light-fade", "100"),
+        ] {
             low.set(key, value)?;
         }
         assert_eq!((low.coat_ior_change, low.light_window), (false, LightWindow::Filament));
-        for (name, expected) in
-            [("COAT_IOR_CHANGE", 0.0), ("SQUARED_LIGHT_WINDOW", 1.0), ("LIGHT_FADE_INV_FAR2", 1e-4)]
-        {
+        for (name, expected) in [
+            ("COAT_IOR_CHANGE", 0.0),
+            ("TRANSMISSION_BY_ANGLE", 1.0),
+            ("SQUARED_LIGHT_WINDOW", 1.0),
+            ("LIGHT_FADE_INV_FAR2", 1e-4),
+        ] {
             assert_eq!(self::value(&low, ShBands::Three, name), Some(expected), "{name}");
         }
         low.set("window", "laplacian:0.01")?;
@@ -421,6 +455,7 @@ mod tests {
             ("aa", "1"),
             ("aa", "x:y"),
             ("light-window", "square"),
+            ("transmission-blur", "on"),
             ("light-fade", "0"),
         ] {
             let told = low.set(key, value).expect_err("that is no choice").to_string();

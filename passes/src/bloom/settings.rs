@@ -108,10 +108,7 @@ impl FlareSpan {
     pub fn new(flare: &FlareSettings, size_px: [u32; 2], glow_multiple_px: u32) -> Self {
         let (glow, glow_begin) = BloomSettings::span(size_px, glow_multiple_px);
         let (span, begin) = BloomSettings::span(size_px, flare.multiple_px);
-        Self {
-            scale: [0, 1].map(|i| glow[i] / span[i]),
-            offset: [0, 1].map(|i| (begin[i] - glow_begin[i]) / span[i]),
-        }
+        Self { scale: [0, 1].map(|i| glow[i] / span[i]), offset: [0, 1].map(|i| (begin[i] - glow_begin[i]) / span[i]) }
     }
 }
 

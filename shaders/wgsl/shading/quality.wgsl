@@ -32,6 +32,9 @@ override FAST_COAT: bool = false;
 /// The base under a clear coat meets the coat instead of air, which lowers its f0; else its f0
 /// stays, as in Filament's materials whose `clearCoatIorChange` is off.
 override COAT_IOR_CHANGE: bool = true;
+/// What is behind rough bodies is blurred by an angle from the eye, as in Filament, and not by the
+/// distance between the two.
+override TRANSMISSION_BY_ANGLE: bool = false;
 /// Filament's range window of punctual lights: the square of glTF's.
 override SQUARED_LIGHT_WINDOW: bool = false;
 /// 1 / (distance in m from the eye beyond which no punctual light shines)²; 0: they never fade.

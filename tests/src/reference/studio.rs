@@ -17,7 +17,7 @@ use framegraph_passes::fxaa::Fxaa;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::occlusion::OcclusionSettings;
 use framegraph_passes::reflection::ReflectionSettings;
-use framegraph_passes::shading::{LightSettings, LightWindow, SpecularAa};
+use framegraph_passes::shading::{LightSettings, LightWindow, SpecularAa, TransmissionBlur};
 use framegraph_passes::shadow::{ContactShadows, Fit, MOST_CASCADES, ShadowBias, ShadowFilter, ShadowSettings, Splits};
 use framegraph_passes::stages::{Handles, Slot, StageError};
 use framegraph_passes::view::{Background, ViewSettings};
@@ -46,7 +46,8 @@ const FRAMES_WITH_HISTORY: u32 = 4;
 pub enum Shade {
     /// As the maker of the references did: Filament's low quality with gltfio's materials. It is ours but for the table of
     /// the exact term, reflections, which ambient occlusion does not darken there, the base under a clear coat, which keeps
-    /// its reflectance, and punctual lights, which have Filament's range window and fade to 100 m.
+    /// its reflectance, what is behind rough glass, which is blurred by an angle, and punctual lights, which have Filament's
+    /// range window and fade to 100 m.
     #[default]
     Maker,
     /// By one of our presets.
@@ -65,6 +66,7 @@ impl Shade {
                 table: Visibility::Exact,
                 specular_occlusion: false,
                 coat_ior_change: false,
+                transmission_blur: TransmissionBlur::Angle,
                 light_window: LightWindow::Filament,
                 light_fade_m: Some(100.0),
                 ..Quality::Low.shading()
