@@ -50,9 +50,9 @@ pub struct Shading {
     /// The base under a clear coat meets the coat instead of air, which lowers its reflectance at normal incidence.
     /// Filament's material property `clearCoatIorChange`, which gltfio turns off.
     pub coat_ior_change: bool,
-    /// How much what is behind rough bodies is blurred.
+    /// Blur of things behind rough bodies.
     pub transmission_blur: TransmissionBlur,
-    /// How punctual lights end at their range.
+    /// Window that ends punctual lights at their range.
     pub light_window: LightWindow,
     /// Distance from the eye in m, above 0, beyond which no punctual light shines; they fade over the last 11 % of it, to
     /// half at 0.949 of it. `None`: they never fade. Filament has 100 m, the far end of `setDynamicLightingOptions`.
@@ -63,7 +63,7 @@ pub struct Shading {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum TransmissionBlur {
-    /// By the light's spread at the rough face, over the distance from the body to what is behind it.
+    /// By the light's spread at the rough face, over the distance from the body to the thing behind it.
     #[default]
     Distance,
     /// By an angle from the eye that the roughness alone decides, as Filament has it. Things that touch the body are blurred

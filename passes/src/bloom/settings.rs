@@ -89,8 +89,8 @@ pub struct FlareSettings {
     pub halo_thickness: f32,
     /// Glow from which on there is a halo, 0 or more.
     pub halo_threshold: f32,
-    /// Ghosts, halo and rays lie about the middle of a picture whose sides are rounded up to a multiple of this, with the
-    /// own one at its bottom left; 1 for the middle of the picture. Filament renders into multiples of 16.
+    /// Sides of the picture that ghosts, halo and rays are centered in are rounded up to a multiple of this, in pixels. The
+    /// own picture is at its bottom left. 1 centers them in the own picture; Filament renders into multiples of 16.
     pub multiple_px: u32,
 }
 

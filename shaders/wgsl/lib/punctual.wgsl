@@ -22,9 +22,9 @@ fn distance_attenuation_squared(distance2: f32, inv_range2: f32) -> f32 {
     return window * window / max(distance2, PUNCTUAL_MIN_DISTANCE2);
 }
 
-/// Share in [0, 1] that punctual lights keep on a surface far from the eye, as in Filament: 1 up
-/// to 0.894 of the far distance, 0.5 at 0.949, 0 beyond. `eye_distance2` in m²; inv_far2 = 1/far²
-/// in 1/m².
+/// Share in [0, 1] that punctual lights keep on a surface far from the eye, as in Filament. It is
+/// 1 up to 0.894 of the far distance, 0.5 at 0.949 and 0 beyond. `eye_distance2` in m²;
+/// inv_far2 = 1/far² in 1/m².
 fn light_far_fade(eye_distance2: f32, inv_far2: f32) -> f32 {
     return saturate(5.0 - 5.0 * (eye_distance2 * inv_far2));
 }

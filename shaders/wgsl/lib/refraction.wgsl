@@ -42,9 +42,9 @@ fn transmission_spread(alpha: f32, ior: f32) -> f32 {
     return 0.849322 * alpha * max(ior - 1.0, 0.0);
 }
 
-/// Standard deviation along one axis, in radians from the eye, of the blur that Filament gives to
-/// what is behind a rough body: it depends on the perceptual roughness alone, and not on the
-/// distance behind the body. Level n > 0 of its picture has a deviation of 11/3 √5^(n-1) pixels.
+/// Standard deviation along one axis, in radians from the eye, of Filament's blur of things behind
+/// a rough body. It depends on the perceptual roughness alone, not on their distance. Level n > 0
+/// of Filament's picture has a deviation of 11/3 √5^(n-1) pixels.
 /// Below an index of 1.5 the blur is less; 0 at 1.
 fn seen_transmission_spread(roughness: f32, ior: f32) -> f32 {
     let r = roughness * (1.0 - saturate(3.0 / max(ior, 1.0) - 2.0));

@@ -61,7 +61,7 @@ fn to_span(uv: vec2<f32>) -> vec2<f32> {
     return uv * flare.span_scale + flare.span_offset;
 }
 
-/// What glows at coordinates in the span.
+/// Glow at coordinates in the span.
 fn glow_at(uv: vec2<f32>) -> vec3<f32> {
     let at = (uv - flare.span_offset) / flare.span_scale;
     return textureSampleLevel(glow, glow_sampler, at, 0.0).rgb;

@@ -32,8 +32,8 @@ override FAST_COAT: bool = false;
 /// The base under a clear coat meets the coat instead of air, which lowers its f0; else its f0
 /// stays, as in Filament's materials whose `clearCoatIorChange` is off.
 override COAT_IOR_CHANGE: bool = true;
-/// What is behind rough bodies is blurred by an angle from the eye, as in Filament, and not by the
-/// distance between the two.
+/// Blurs things behind rough bodies by an angle from the eye, as in Filament, instead of by their
+/// distance from the body.
 override TRANSMISSION_BY_ANGLE: bool = false;
 /// Filament's range window of punctual lights: the square of glTF's.
 override SQUARED_LIGHT_WINDOW: bool = false;

@@ -138,8 +138,8 @@ fn layer_transmittance(s: Surface) -> f32 {
     return share;
 }
 
-/// f0 of the base under a coat of this strength, where that changes: no more than in air, since an f0 near zero says
-/// that nothing is reflected, and not that the base has the index of air.
+/// f0 of the base under a coat of this strength. It is no more than in air, since an f0 near zero
+/// says that nothing is reflected, and not that the base has the index of air.
 @if(CLEAR_COAT)
 fn coated_f0(f0: real3, strength: real) -> real3 {
     if !COAT_IOR_CHANGE {

@@ -44,10 +44,9 @@ const FRAMES_WITH_HISTORY: u32 = 4;
 /// How surfaces are shaded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shade {
-    /// As the maker of the references did: Filament's low quality with gltfio's materials. It is ours but for the table of
-    /// the exact term, reflections, which ambient occlusion does not darken there, the base under a clear coat, which keeps
-    /// its reflectance, what is behind rough glass, which is blurred by an angle, and punctual lights, which have Filament's
-    /// range window and fade to 100 m.
+    /// Filament's low quality with gltfio's materials, as the references were made. It differs from our low quality in the
+    /// table, which is that of the exact term. Ambient occlusion does not darken reflections, and a base under a clear coat
+    /// keeps its reflectance. Rough glass blurs by an angle. Punctual lights have Filament's range window and fade to 100 m.
     #[default]
     Maker,
     /// By one of our presets.

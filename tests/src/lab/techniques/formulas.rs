@@ -149,7 +149,7 @@ fn transmission_blur() -> Technique {
         move || {
             let roughness = (2..=7).map(|i| 0.1 * f64::from(i));
             let grid = roughness.flat_map(|r| [1.2, 1.33, 1.5, 1.8].map(|ior| (r, ior)));
-            // Of the way from the eye to what is seen, so much lies behind the glass.
+            // Share of the distance from the eye to the thing seen that lies behind the glass.
             let grid = grid.flat_map(|(r, ior)| [0.02, 0.1, 0.3, 0.6, 0.9].map(|behind| (r, ior, behind)));
             let apart = grid.map(|(r, ior, behind)| {
                 let truth = (bent((r * r).atan(), ior) * behind).atan();
@@ -167,8 +167,8 @@ fn transmission_blur() -> Technique {
             .found_in(|f| f.settings.shading.transmission_blur == TransmissionBlur::Angle),
         rms("none", over(|_, _, _| 0.0)),
     ];
-    let what = "Blur of what is behind a rough pane, seen straight on: the angle from the eye that holds half of the light, over \
-                roughness 0.2 … 0.7, index 1.2 … 1.8 and things from close behind the pane to far.";
+    let what = "Blur of things behind a rough pane, seen straight on: the angle from the eye that holds half of the light. Over \
+                roughness 0.2 … 0.7, index 1.2 … 1.8, and from close behind the pane to far.";
     let truth = "Snell's law at the facet that half of GGX's facets tilt less than, and at the flat far face.";
     formula("transmission-blur", what, truth, "degrees, RMS", choices)
 }
