@@ -440,7 +440,7 @@ mod tests {
             ("SQUARED_LIGHT_WINDOW", 1.0),
             ("LIGHT_FADE_INV_FAR2", 1e-4),
         ] {
-            assert_eq!(self::value(&low, ShBands::Three, name), Some(expected), "{name}");
+            assert_eq!(value(&low, ShBands::Three, name), Some(expected), "{name}");
         }
         low.set("window", "laplacian:0.01")?;
         assert_eq!(low.light(Quality::Low).image.window, ShWindow::Laplacian { lambda: f64::from(0.01_f32) });
