@@ -19,7 +19,7 @@ mod settings;
 pub use chain::BloomChain;
 pub use flare::{Flare, FlareBlur, FlareBlurIo, FlareIo};
 pub use pass::{BloomDown, BloomFirst, BloomIo, BloomMix, BloomUp, BloomUpIo};
-pub use settings::{Blend, BloomQuality, BloomSettings, FlareSettings, Threshold};
+pub use settings::{Blend, BloomQuality, BloomSettings, FlareSettings, FlareSpan, Threshold};
 
 use crate::occlusion::Axis;
 use crate::program::Programs;
@@ -57,10 +57,11 @@ where
             glow = frame.add("down", BloomDown { glow, level, odd })?.glow;
         }
         if let Some(flare) = settings.flare.filter(FlareSettings::is_seen) {
-            let made = frame.add("flare", Flare { glow, size: chain.size, settings: flare })?.flare;
-            let across = FlareBlur { view, flare: made, axis: Axis::Across, rays: false };
+            let span = FlareSpan::new(&flare, size_texels, settings.multiple_px);
+            let made = frame.add("flare", Flare { glow, size: chain.size, settings: flare, span })?.flare;
+            let across = FlareBlur { view, flare: made, axis: Axis::Across, rays: false, span };
             let across = frame.add("flare_blur", across)?.blurred;
-            let down = FlareBlur { view, flare: across, axis: Axis::Down, rays: flare.starburst };
+            let down = FlareBlur { view, flare: across, axis: Axis::Down, rays: flare.starburst, span };
             handles.set(Slot::FLARE, frame.add("flare_blur", down)?.blurred);
         }
         let mut sum = None;

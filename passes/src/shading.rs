@@ -47,6 +47,39 @@ pub struct Shading {
     pub micro_shadows: bool,
     /// Reflectance under a clear coat by Filament's cubic, which errs by up to 0.022 and knows no square root.
     pub fast_coat: bool,
+    /// The base under a clear coat meets the coat instead of air, which lowers its reflectance at normal incidence.
+    /// Filament's material property `clearCoatIorChange`, which gltfio turns off.
+    pub coat_ior_change: bool,
+    /// Blur of things behind rough bodies.
+    pub transmission_blur: TransmissionBlur,
+    /// Window that ends punctual lights at their range.
+    pub light_window: LightWindow,
+    /// Distance from the eye in m, above 0, beyond which no punctual light shines; they fade over the last 11 % of it, to
+    /// half at 0.949 of it. `None`: they never fade. Filament has 100 m, the far end of `setDynamicLightingOptions`.
+    pub light_fade_m: Option<f32>,
+}
+
+/// Blur of what is seen through rough bodies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+pub enum TransmissionBlur {
+    /// By the light's spread at the rough face, over the distance from the body to the thing behind it.
+    #[default]
+    Distance,
+    /// By an angle from the eye that the roughness alone decides, as Filament has it. Things that touch the body are blurred
+    /// as much as those far behind.
+    Angle,
+}
+
+/// Factor on a punctual light that ends it at its range, where d is the distance over the range.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+pub enum LightWindow {
+    /// 1 − d⁴, as KHR_lights_punctual specifies.
+    #[default]
+    Gltf,
+    /// (1 − d⁴)², as Filament has it: darker near the range.
+    Filament,
 }
 
 /// Specular antialiasing after Tokuyoshi and Kaplanyan (2019).
@@ -124,6 +157,10 @@ impl Quality {
             specular_occlusion: true,
             micro_shadows: true,
             fast_coat: !high,
+            coat_ior_change: true,
+            transmission_blur: TransmissionBlur::Distance,
+            light_window: LightWindow::Gltf,
+            light_fade_m: None,
         }
     }
 
@@ -163,7 +200,7 @@ impl Shading {
     }
 
     /// Names of the `override` constants of the color shader. Those of lobes are in shaders that have the lobe.
-    pub const CONSTANTS: [&'static str; 13] = [
+    pub const CONSTANTS: [&'static str; 17] = [
         "ALPHA_MODE",
         "FAST_VISIBILITY",
         "ROUGHNESS_FLOOR",
@@ -177,6 +214,10 @@ impl Shading {
         "SPECULAR_OCCLUSION",
         "MICRO_SHADOWS",
         "FAST_COAT",
+        "COAT_IOR_CHANGE",
+        "TRANSMISSION_BY_ANGLE",
+        "SQUARED_LIGHT_WINDOW",
+        "LIGHT_FADE_INV_FAR2",
     ];
 
     /// The values of [`Shading::CONSTANTS`] where the light has these `bands`.
@@ -196,6 +237,10 @@ impl Shading {
             f64::from(self.specular_occlusion),
             f64::from(self.micro_shadows),
             f64::from(self.fast_coat),
+            f64::from(self.coat_ior_change),
+            f64::from(self.transmission_blur == TransmissionBlur::Angle),
+            f64::from(self.light_window == LightWindow::Filament),
+            self.light_fade_m.map_or(0.0, |far| f64::from(far.clamp(0.01, 1e9)).powi(-2)),
         ]
     }
 
@@ -262,13 +307,34 @@ impl Shading {
             "specular-occlusion" => self.specular_occlusion = switch()?,
             "micro-shadows" => self.micro_shadows = switch()?,
             "fast-coat" => self.fast_coat = switch()?,
+            "coat-ior-change" => self.coat_ior_change = switch()?,
+            "transmission-blur" => {
+                self.transmission_blur = match value {
+                    "distance" => TransmissionBlur::Distance,
+                    "angle" => TransmissionBlur::Angle,
+                    _ => return Err(wrong("`distance` or `angle`")),
+                }
+            }
+            "light-window" => {
+                self.light_window = match value {
+                    "gltf" => LightWindow::Gltf,
+                    "filament" => LightWindow::Filament,
+                    _ => return Err(wrong("`gltf` or `filament`")),
+                }
+            }
+            "light-fade" => {
+                self.light_fade_m = match value {
+                    "off" => None,
+                    _ => Some(choice.number(0.01, 1e9)?),
+                }
+            }
             _ => return Err(choice.unknown(&Self::KEYS)),
         }
         Ok(())
     }
 
     /// The names that [`Shading::set`] takes.
-    pub const KEYS: [&str; 12] = [
+    pub const KEYS: [&str; 16] = [
         "visibility",
         "table",
         "floor",
@@ -281,6 +347,10 @@ impl Shading {
         "specular-occlusion",
         "micro-shadows",
         "fast-coat",
+        "coat-ior-change",
+        "transmission-blur",
+        "light-window",
+        "light-fade",
     ];
 }
 
@@ -297,8 +367,8 @@ mod tests {
     /// The shader has all of these constants, and its defaults are the default quality.
     #[test]
     fn the_constants_are_those_of_the_shader() -> Result<(), Box<dyn std::error::Error>> {
-        let shader =
-            resolve(&library::pass("pass/color.wgsl").ok_or("color")?, &Features::NONE.with(Feature::CLEAR_COAT), &[])?;
+        let features = Features::NONE.with(Feature::CLEAR_COAT).with(Feature::TRANSMISSION);
+        let shader = resolve(&library::pass("pass/color.wgsl").ok_or("color")?, &features, &[])?;
         let values = Shading::default().constants(AlphaUse::None, ShBands::Five);
         for (name, value) in Shading::CONSTANTS.into_iter().zip(values) {
             let found = shader.reflection.overrides.iter().find(|o| o.name == name).ok_or(name)?;
@@ -344,6 +414,10 @@ mod tests {
             ("multi-bounce", "off"),
             ("specular-occlusion", "on"),
             ("fast-coat", "on"),
+            ("coat-ior-change", "on"),
+            ("transmission-blur", "distance"),
+            ("light-window", "gltf"),
+            ("light-fade", "off"),
         ] {
             assert!(Shading::KEYS.contains(&key));
             low.set(key, value)?;
@@ -351,6 +425,23 @@ mod tests {
         assert_eq!(low, Quality::Low.shading());
         low.set("table", "exact")?;
         assert_eq!((low.visibility, low.table), (Visibility::Fast, Visibility::Exact));
+        for (key, value) in [
+            ("coat-ior-change", "off"),
+            ("transmission-blur", "angle"),
+            ("light-window", "filament"),
+            ("light-fade", "100"),
+        ] {
+            low.set(key, value)?;
+        }
+        assert_eq!((low.coat_ior_change, low.light_window), (false, LightWindow::Filament));
+        for (name, expected) in [
+            ("COAT_IOR_CHANGE", 0.0),
+            ("TRANSMISSION_BY_ANGLE", 1.0),
+            ("SQUARED_LIGHT_WINDOW", 1.0),
+            ("LIGHT_FADE_INV_FAR2", 1e-4),
+        ] {
+            assert_eq!(value(&low, ShBands::Three, name), Some(expected), "{name}");
+        }
         low.set("window", "laplacian:0.01")?;
         assert_eq!(low.light(Quality::Low).image.window, ShWindow::Laplacian { lambda: f64::from(0.01_f32) });
         low.set("aa", "0.25:0.18")?;
@@ -363,6 +454,9 @@ mod tests {
             ("window", "laplacian"),
             ("aa", "1"),
             ("aa", "x:y"),
+            ("light-window", "square"),
+            ("transmission-blur", "on"),
+            ("light-fade", "0"),
         ] {
             let told = low.set(key, value).expect_err("that is no choice").to_string();
             assert!(told.contains(key) && !told.contains('\n'), "{told}");

@@ -1,6 +1,6 @@
 //! The passes that make lens flare.
 
-use super::settings::FlareSettings;
+use super::settings::{FlareSettings, FlareSpan};
 use crate::full_screen::FullScreen;
 use crate::occlusion::Axis;
 use crate::program::{Interface, ProgramDesc, Programs};
@@ -25,6 +25,8 @@ pub struct Flare {
     pub size: [u32; 2],
     /// How.
     pub settings: FlareSettings,
+    /// Coordinates that the flare is centered in.
+    pub span: FlareSpan,
 }
 
 /// What the pass reads and wrote.
@@ -51,7 +53,7 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for Flare {
         let own = self.settings;
         let [width, height] = self.size.map(|side| side as f32);
         let uniforms = FlareUniforms {
-            aspect: width / height,
+            aspect: width / height * self.span.scale[1] / self.span.scale[0],
             aberration: own.aberration,
             ghosts: own.ghosts.into(),
             ghost_spacing: own.ghost_spacing,
@@ -59,6 +61,8 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for Flare {
             halo_radius: own.halo_radius,
             halo_thickness: own.halo_thickness,
             halo_threshold: own.halo_threshold,
+            span_scale: self.span.scale,
+            span_offset: self.span.offset,
             ..FlareUniforms::default()
         };
         draw("fs_flare", uniforms, io.glow, world.as_ref(), cx)
@@ -76,6 +80,8 @@ pub struct FlareBlur {
     pub axis: Axis,
     /// Only rays about the middle are left of it.
     pub rays: bool,
+    /// Coordinates that the flare is centered in.
+    pub span: FlareSpan,
 }
 
 /// What the pass reads and wrote.
@@ -110,6 +116,8 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for FlareBlur {
             },
             turn,
             rays: f32::from(u8::from(self.rays)),
+            span_scale: self.span.scale,
+            span_offset: self.span.offset,
             ..FlareUniforms::default()
         };
         draw("fs_blur", uniforms, io.flare, world.as_ref(), cx)

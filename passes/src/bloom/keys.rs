@@ -5,7 +5,7 @@ use crate::choice::{Choice, ChoiceError, switched};
 
 impl BloomSettings {
     /// The names that [`BloomSettings::set`] takes.
-    pub const KEYS: [&str; 20] = [
+    pub const KEYS: [&str; 21] = [
         "strength",
         "height",
         "levels",
@@ -26,6 +26,7 @@ impl BloomSettings {
         "halo",
         "halo-radius",
         "halo-at",
+        "flare-multiple",
     ];
 
     /// What is asked for as `off`, or as `on` with changes: `on:strength=0.3,flare=on`. None is `off`.
@@ -98,7 +99,8 @@ impl FlareSettings {
             "ghost-at" => self.ghost_threshold = choice.number(0.0, 1e4)?,
             "halo" => self.halo_thickness = choice.number(0.0, 1.0)?,
             "halo-radius" => self.halo_radius = choice.number(0.0, 0.5)?,
-            _ => self.halo_threshold = choice.number(0.0, 1e4)?,
+            "halo-at" => self.halo_threshold = choice.number(0.0, 1e4)?,
+            _ => self.multiple_px = choice.whole(1, 1 << 16)?,
         }
         Ok(())
     }
@@ -114,7 +116,7 @@ mod tests {
         assert_eq!(BloomSettings::from_text("on")?, Some(BloomSettings::DEFAULT));
         let own = "on:strength=0.5,height=256,levels=4,quality=high,blend=interpolate,threshold=hard,at=2,highlight=inf,\
                    fireflies=off,kernel=narrow,dirt=3,flare=on,starburst=off,aberration=0.1,ghosts=2,ghost-spacing=0.25,ghost-at=1,\
-                   halo=0.2,halo-radius=0.3,halo-at=4";
+                   halo=0.2,halo-radius=0.3,halo-at=4,flare-multiple=8";
         let expected = BloomSettings {
             strength: 0.5,
             height_texels: 256,
@@ -136,6 +138,7 @@ mod tests {
                 halo_radius: 0.3,
                 halo_thickness: 0.2,
                 halo_threshold: 4.0,
+                multiple_px: 8,
             }),
             multiple_px: 1,
         };

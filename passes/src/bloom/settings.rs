@@ -89,6 +89,27 @@ pub struct FlareSettings {
     pub halo_thickness: f32,
     /// Glow from which on there is a halo, 0 or more.
     pub halo_threshold: f32,
+    /// Sides of the picture that ghosts, halo and rays are centered in are rounded up to a multiple of this, in pixels. The
+    /// own picture is at its bottom left. 1 centers them in the own picture; Filament renders into multiples of 16.
+    pub multiple_px: u32,
+}
+
+/// From coordinates of what glows to coordinates of the span that a flare is centered in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlareSpan {
+    /// Factor.
+    pub scale: [f32; 2],
+    /// Summand after the factor.
+    pub offset: [f32; 2],
+}
+
+impl FlareSpan {
+    /// The span of `flare` in a picture of `size_px`, whose glow spans multiples of `glow_multiple_px`.
+    pub fn new(flare: &FlareSettings, size_px: [u32; 2], glow_multiple_px: u32) -> Self {
+        let (glow, glow_begin) = BloomSettings::span(size_px, glow_multiple_px);
+        let (span, begin) = BloomSettings::span(size_px, flare.multiple_px);
+        Self { scale: [0, 1].map(|i| glow[i] / span[i]), offset: [0, 1].map(|i| (begin[i] - glow_begin[i]) / span[i]) }
+    }
 }
 
 impl Default for BloomSettings {
@@ -150,6 +171,7 @@ impl FlareSettings {
         halo_radius: 0.4,
         halo_thickness: 0.1,
         halo_threshold: 10.0,
+        multiple_px: 16,
     };
 
     /// Whether anything of it is seen.

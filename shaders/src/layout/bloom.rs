@@ -50,6 +50,10 @@ pub struct FlareUniforms {
     pub turn: f32,
     /// 1: there are rays. 0: all is left.
     pub rays: f32,
+    /// Factor from coordinates of what glows to those of the span that the flare is centered in.
+    pub span_scale: [f32; 2],
+    /// Summand after the factor.
+    pub span_offset: [f32; 2],
 }
 
 /// Settings of the effect `bloom`.
@@ -86,6 +90,8 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             axis,
             turn,
             rays,
+            span_scale,
+            span_offset,
         }),
         layout_of!(BloomMixUniforms { glow, picture, flare, dirt, begin_px, per_px }),
     ]

@@ -22,9 +22,9 @@ pub fn direction_from_equirect_uv(uv: DVec2) -> DVec3 {
     DVec3::new(polar.sin() * azimuth.sin(), polar.cos(), -polar.sin() * azimuth.cos())
 }
 
-/// Direction of the strongest reflection, not normalized.
+/// Direction of the strongest reflection, not normalized: leans from r toward n by alpha².
 pub fn specular_dominant_direction(n: DVec3, r: DVec3, alpha: f64) -> DVec3 {
-    r + (n - r) * alpha
+    r + (n - r) * (alpha * alpha)
 }
 
 /// A texel of a panorama. CPU only.
@@ -93,7 +93,9 @@ mod tests {
     }
 
     #[test]
-    fn the_roughest_lobe_is_about_the_normal() {
+    fn rough_lobes_lean_toward_the_normal_by_alpha_squared() {
         assert_eq!(specular_dominant_direction(DVec3::Y, DVec3::X, 1.0), DVec3::Y);
+        assert_eq!(specular_dominant_direction(DVec3::Y, DVec3::X, 0.0), DVec3::X);
+        assert_eq!(specular_dominant_direction(DVec3::Y, DVec3::X, 0.5), DVec3::new(0.75, 0.25, 0.0));
     }
 }

@@ -27,6 +27,12 @@ pub fn transmission_spread(alpha: f64, ior: f64) -> f64 {
     alpha * (ior - 1.0).max(0.0) / (2.0 * 2.0_f64.ln()).sqrt()
 }
 
+/// Standard deviation of Filament's blur of what is behind a rough body, in radians from the eye.
+pub fn seen_transmission_spread(roughness: f64, ior: f64) -> f64 {
+    let less = (3.0 / ior.max(1.0) - 2.0).clamp(0.0, 1.0);
+    (roughness * (1.0 - less)).powi(2) / 10.0_f64.sqrt()
+}
+
 /// Level of a pyramid for a blur of level 0.
 pub fn pyramid_lod(sigma_texels: f64) -> f64 {
     (sigma_texels.max(1e-3) / (5.0_f64 / 12.0).sqrt()).log2().max(0.0)
@@ -74,6 +80,21 @@ mod tests {
         let sigma = transmission_spread(alpha, 2.0);
         assert!((1.0 - (-alpha * alpha / (2.0 * sigma * sigma)).exp() - 0.5).abs() < 1e-12);
         assert_eq!(transmission_spread(0.5, 1.0), 0.0);
+    }
+
+    /// Filament's level is 0.8614 (2 log₂ r − log₂(√2 σ₀ s)) for pixels of s radians. Level 0 is not blurred, level 1 by a kernel
+    /// of σ₀ = 11/3 pixels, and each further one by √5 of it: r² / (√10 s) pixels.
+    #[test]
+    fn filaments_blur_is_that_of_its_levels() {
+        let (pixel_rad, sigma_0) = (1e-3, 22.0 / 6.0);
+        for roughness in [0.2_f64, 0.4, 0.8] {
+            let level = 0.8614 * (2.0 * roughness.log2() - (2.0_f64.sqrt() * sigma_0 * pixel_rad).log2());
+            let sigma_px = sigma_0 * 5.0_f64.sqrt().powf(level - 1.0);
+            let found = seen_transmission_spread(roughness, 1.5) / pixel_rad;
+            assert!((found / sigma_px - 1.0).abs() < 1e-3, "{roughness}: {found} for {sigma_px}");
+        }
+        assert_eq!(seen_transmission_spread(1.0, 1.0), 0.0);
+        assert!(seen_transmission_spread(0.5, 1.2) < seen_transmission_spread(0.5, 1.5));
     }
 
     /// The variance of each level, worked out kernel by kernel.

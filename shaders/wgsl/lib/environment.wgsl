@@ -34,9 +34,8 @@ fn direction_from_equirect_uv(uv: vec2<f32>) -> vec3<f32> {
     return vec3<f32>(s * sin(azimuth), cos(polar), -s * cos(azimuth));
 }
 
-/// Direction of the strongest reflection: rough lobes lean from the mirror direction r toward
-/// the normal n. mix(r, n, alpha) cuts the error of the split sum at roughness 0.8 from
-/// +32…+86 % to -6…+17 %. Not normalized.
+/// Direction of the strongest reflection, not normalized: rough lobes lean from the mirror
+/// direction r toward the normal n, by alpha² as in Filament (`getReflectedVector`).
 fn specular_dominant_direction(n: vec3<f32>, r: vec3<f32>, alpha: f32) -> vec3<f32> {
-    return mix(r, n, alpha);
+    return mix(r, n, alpha * alpha);
 }

@@ -42,6 +42,15 @@ fn transmission_spread(alpha: f32, ior: f32) -> f32 {
     return 0.849322 * alpha * max(ior - 1.0, 0.0);
 }
 
+/// Standard deviation along one axis, in radians from the eye, of Filament's blur of things behind
+/// a rough body. It depends on the perceptual roughness alone, not on their distance. Level n > 0
+/// of Filament's picture has a deviation of 11/3 √5^(n-1) pixels.
+/// Below an index of 1.5 the blur is less; 0 at 1.
+fn seen_transmission_spread(roughness: f32, ior: f32) -> f32 {
+    let r = roughness * (1.0 - saturate(3.0 / max(ior, 1.0) - 2.0));
+    return 0.31622777 * r * r;
+}
+
 /// Level of a pyramid that shows a picture blurred by a Gaussian of `sigma_texels` of level 0.
 /// Each level is made of the one above by the kernel (1 3 3 1)/8, of variance 3/4, and read with
 /// bilinear filtering, of variance 1/6: level n has a variance of about (5/12)·4ⁿ.

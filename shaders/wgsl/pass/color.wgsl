@@ -282,8 +282,11 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     let under = share_below(surface, specular_albedo(f0, f90, dfg));
     @if(TRANSMISSION && !IRIDESCENCE)
     let under = 1.0 - specular_albedo(f0, f90, dfg);
-    @if(TRANSMISSION) below += vec3<f32>(through * under)
-        * refract_scene(vertex.world, view, normal, f32(surface.base.alpha), thickness_m);
+    @if(TRANSMISSION) {
+        let alpha = f32(surface.base.alpha);
+        below += vec3<f32>(through * under)
+            * refract_scene(vertex.world, view, normal, alpha, metal_rough.y, thickness_m);
+    }
     var radiance = add_layers(surface, normal, view, below, visibility);
     let receiver = Receiver(vertex.world, geometric, vertex.position.xy, slope);
     if SUN {

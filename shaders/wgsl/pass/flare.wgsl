@@ -28,6 +28,10 @@ struct FlareUniforms {
     turn: f32,
     /// 1: there are rays. 0: all is left.
     rays: f32,
+    /// From coordinates of what glows to coordinates of the span that the flare is centered in:
+    /// factor and summand.
+    span_scale: vec2<f32>,
+    span_offset: vec2<f32>,
 }
 
 /// Taps of the blur on either side.
@@ -52,20 +56,27 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> FlareVertex {
     return FlareVertex(position, uv_from_clip(position.xy));
 }
 
+/// Coordinates in the span of coordinates of what glows.
+fn to_span(uv: vec2<f32>) -> vec2<f32> {
+    return uv * flare.span_scale + flare.span_offset;
+}
+
+/// Glow at coordinates in the span.
+fn glow_at(uv: vec2<f32>) -> vec3<f32> {
+    let at = (uv - flare.span_offset) / flare.span_scale;
+    return textureSampleLevel(glow, glow_sampler, at, 0.0).rgb;
+}
+
 /// What glows there above the threshold, at most 1, its colors apart.
 fn parted(uv: vec2<f32>, threshold: f32) -> vec3<f32> {
     let d = flare_direction(uv, 1.0) * flare.aberration;
-    let color = vec3<f32>(
-        textureSampleLevel(glow, glow_sampler, uv + d, 0.0).r,
-        textureSampleLevel(glow, glow_sampler, uv, 0.0).g,
-        textureSampleLevel(glow, glow_sampler, uv - d, 0.0).b,
-    );
+    let color = vec3<f32>(glow_at(uv + d).r, glow_at(uv).g, glow_at(uv - d).b);
     return saturate(color - threshold);
 }
 
 @fragment
 fn fs_flare(vertex: FlareVertex) -> @location(0) vec4<f32> {
-    let uv = vertex.uv;
+    let uv = to_span(vertex.uv);
     var color = vec3<f32>(0.0);
     for (var i = 0.0; i < flare.ghosts; i += 1.0) {
         color += parted(ghost_place(uv, flare.ghost_spacing, i), flare.ghost_threshold);
@@ -88,6 +99,6 @@ fn fs_blur(vertex: FlareVertex) -> @location(0) vec4<f32> {
         sum += weight * textureSampleLevel(glow, glow_sampler, vertex.uv + f32(i) * one, 0.0).rgb;
         whole += weight;
     }
-    let left = mix(1.0, starburst(vertex.uv, flare.turn), flare.rays);
+    let left = mix(1.0, starburst(to_span(vertex.uv), flare.turn), flare.rays);
     return vec4<f32>(sum / whole * left, 1.0);
 }

@@ -80,7 +80,8 @@ fn ambient_visibility(
         let normal = vec3<f32>(s.normal);
         let open = normalize_or(around.yzw, normal);
         let r = reflect(-vec3<f32>(s.view), normal);
-        specular = specular_occlusion_cones(open, r, ambient, f32(s.alpha));
+        // The lesser of both, as in Filament: cones say nothing about mirrors.
+        specular = min(specular, specular_occlusion_cones(open, r, ambient, f32(s.alpha)));
     }
     var visible = AmbientVisibility(vec3<f32>(ambient), vec3<f32>(specular), ambient);
     if MULTI_BOUNCE_OCCLUSION {

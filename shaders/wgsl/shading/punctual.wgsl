@@ -8,9 +8,12 @@ import package::interface::frame::{
 @if(FROXELS)
 import package::interface::light_lists::{froxels, light_lists, light_list_at};
 import package::lib::numerics::normalize_or;
-import package::lib::punctual::{distance_attenuation, spot_attenuation};
+import package::lib::punctual::{
+    distance_attenuation, distance_attenuation_squared, light_far_fade, spot_attenuation,
+};
 import package::lib::real::real3;
 import package::shading::direct::reflect_surface;
+import package::shading::quality::{LIGHT_FADE_INV_FAR2, SQUARED_LIGHT_WINDOW};
 import package::shading::shadow::light_visibility;
 import package::shading::shadow_map::Receiver;
 import package::shading::surface::Surface;
@@ -27,7 +30,16 @@ fn reflect_punctual(s: Surface, light: LightUniforms, receiver: Receiver) -> vec
     }
     let to_light = light.position - receiver.world;
     let l = normalize_or(to_light, vec3<f32>(s.base.normal));
-    var attenuation = distance_attenuation(dot(to_light, to_light), light.inv_range2);
+    var attenuation = 0.0;
+    if SQUARED_LIGHT_WINDOW {
+        attenuation = distance_attenuation_squared(dot(to_light, to_light), light.inv_range2);
+    } else {
+        attenuation = distance_attenuation(dot(to_light, to_light), light.inv_range2);
+    }
+    if LIGHT_FADE_INV_FAR2 > 0.0 {
+        let from_eye = receiver.world - frame.world_from_view[3].xyz;
+        attenuation *= light_far_fade(dot(from_eye, from_eye), LIGHT_FADE_INV_FAR2);
+    }
     if light.kind == LIGHT_SPOT {
         attenuation *= spot_attenuation(
             dot(light.direction, -l),

@@ -29,3 +29,13 @@ override SPECULAR_OCCLUSION: bool = true;
 override MICRO_SHADOWS: bool = true;
 /// f0 under a clear coat by a cubic instead of a square root.
 override FAST_COAT: bool = false;
+/// The base under a clear coat meets the coat instead of air, which lowers its f0; else its f0
+/// stays, as in Filament's materials whose `clearCoatIorChange` is off.
+override COAT_IOR_CHANGE: bool = true;
+/// Blurs things behind rough bodies by an angle from the eye, as in Filament, instead of by their
+/// distance from the body.
+override TRANSMISSION_BY_ANGLE: bool = false;
+/// Filament's range window of punctual lights: the square of glTF's.
+override SQUARED_LIGHT_WINDOW: bool = false;
+/// 1 / (distance in m from the eye beyond which no punctual light shines)²; 0: they never fade.
+override LIGHT_FADE_INV_FAR2: f32 = 0.0;

@@ -37,8 +37,6 @@ fn tent_visibility(map: ShadowMapUniforms, at: vec3<f32>) -> f32 {
 /// Taps of the search for blockers, by filter; and over the penumbra.
 const DPCF_TAPS: u32 = 12u;
 const PCSS_TAPS: u32 = 16u;
-/// The widest search and penumbra, in texels.
-const MOST_RADIUS_TEXELS: f32 = 64.0;
 
 /// DPCF (Myers, "Shadow of Cold War", 2021) and PCSS (Fernando, "Percentage-Closer Soft Shadows",
 /// 2005): the mean depth of blockers says how wide the penumbra is.
@@ -103,8 +101,9 @@ fn soft_visibility(
     return lit / f32(PCSS_TAPS);
 }
 
-/// A radius in texels along both axes. The disc's is at least a texel, which hides the map's grid.
+/// A radius in texels along both axes, at most the side of a layer: farther taps find the edge. The
+/// disc's is at least a texel, which hides the map's grid.
 fn penumbra_texels(radius_m: f32, texels_per_m: vec2<f32>, is_disc: bool) -> vec2<f32> {
     let least = select(0.0, 1.0, is_disc);
-    return clamp(radius_m * texels_per_m, vec2<f32>(least), vec2<f32>(MOST_RADIUS_TEXELS));
+    return clamp(radius_m * texels_per_m, vec2<f32>(least), vec2<f32>(shadow.texels));
 }

@@ -19,7 +19,7 @@ import package::lib::standard_surface::StandardSurface;
 @if(IRIDESCENCE)
 import package::lib::thin_film::thin_film_reflectance;
 @if(CLEAR_COAT)
-import package::shading::quality::FAST_COAT;
+import package::shading::quality::{FAST_COAT, COAT_IOR_CHANGE};
 
 /// Clear coat: a dielectric layer of index 1.5 over the other lobes.
 @if(CLEAR_COAT)
@@ -138,10 +138,13 @@ fn layer_transmittance(s: Surface) -> f32 {
     return share;
 }
 
-/// f0 of the base under a coat of this strength: no more than in air, since an f0 near zero says
-/// that nothing is reflected, and not that the base has the index of air.
+/// f0 of the base under a coat of this strength. It is no more than in air, since an f0 near zero
+/// says that nothing is reflected, and not that the base has the index of air.
 @if(CLEAR_COAT)
 fn coated_f0(f0: real3, strength: real) -> real3 {
+    if !COAT_IOR_CHANGE {
+        return f0;
+    }
     var under = real3(0.0);
     if FAST_COAT {
         under = f0_under_clear_coat_fast(f0);

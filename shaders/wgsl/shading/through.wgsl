@@ -8,27 +8,36 @@ import package::lib::real::real3;
 @if(TRANSMISSION && DISPERSION)
 import package::lib::refraction::dispersed_ior;
 @if(TRANSMISSION)
-import package::lib::refraction::{refracted_path, transmission_spread};
+import package::lib::refraction::{
+    refracted_path, seen_transmission_spread, transmission_spread,
+};
 @if(TRANSMISSION || DIFFUSE_TRANSMISSION)
 import package::lib::refraction::transmittance;
+@if(TRANSMISSION)
+import package::shading::quality::TRANSMISSION_BY_ANGLE;
 @if(DIFFUSE_TRANSMISSION)
 import package::shading::shadow_map::Receiver;
 @if(DIFFUSE_TRANSMISSION)
 import package::shading::surface::{Surface, Translucency};
 
 /// Pre-exposed radiance that arrives through a body of one index of refraction from what is behind
-/// it; `thickness_m` is 0 for a thin wall.
+/// it; `thickness_m` is 0 for a thin wall, `roughness` is the material's, which nothing widened.
 @if(TRANSMISSION)
 fn refract_by(
     world: vec3<f32>,
     view: vec3<f32>,
     normal: vec3<f32>,
     alpha: f32,
+    roughness: f32,
     thickness_m: f32,
     ior: f32,
 ) -> vec3<f32> {
     let path = refracted_path(view, normal, ior, thickness_m);
-    return radiance_behind(world, path, transmission_spread(alpha, ior))
+    var spread_rad = vec2<f32>(transmission_spread(alpha, ior), 0.0);
+    if TRANSMISSION_BY_ANGLE {
+        spread_rad = vec2<f32>(0.0, seen_transmission_spread(roughness, ior));
+    }
+    return radiance_behind(world, path, spread_rad)
         * transmittance(material.transmission.absorption, length(path));
 }
 
@@ -39,19 +48,20 @@ fn refract_scene(
     view: vec3<f32>,
     normal: vec3<f32>,
     alpha: f32,
+    roughness: f32,
     thickness_m: f32,
 ) -> vec3<f32> {
     let ior = material.transmission.ior;
     @if(DISPERSION) {
         let iors = dispersed_ior(ior, material.transmission.dispersion);
         return vec3<f32>(
-            refract_by(world, view, normal, alpha, thickness_m, iors.r).r,
-            refract_by(world, view, normal, alpha, thickness_m, iors.g).g,
-            refract_by(world, view, normal, alpha, thickness_m, iors.b).b,
+            refract_by(world, view, normal, alpha, roughness, thickness_m, iors.r).r,
+            refract_by(world, view, normal, alpha, roughness, thickness_m, iors.g).g,
+            refract_by(world, view, normal, alpha, roughness, thickness_m, iors.b).b,
         );
     }
     @else {
-        return refract_by(world, view, normal, alpha, thickness_m, ior);
+        return refract_by(world, view, normal, alpha, roughness, thickness_m, ior);
     }
 }
 

@@ -55,6 +55,7 @@ pub const UNNOTICED: &[(&str, &str, &str)] = &[
     ("occlusion::specular_occlusion", "max(nov + visibility, 0.0)", LOGARITHM),
     ("occlusion::specular_occlusion_cones", "saturate(overlap / max(1.0 - cos_lobe, 1e-6))", ROUNDING),
     ("refraction::refracted_path", "max(1.0 - eta * eta * (1.0 - cosine * cosine), 0.0)", ROUNDING),
+    ("refraction::seen_transmission_spread", "max(ior, 1.0)", SWALLOWED),
     ("sampling::sample_visible_normal", "max(1.0 - p1 * p1, 0.0)", ROUNDING),
     ("sampling::sample_visible_normal", "max(1.0 - p1 * p1 - p2 * p2, 0.0)", ROUNDING),
     ("sampling::sample_visible_normal", "max(h.z, 0.0)", ROUNDING),

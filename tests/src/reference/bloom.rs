@@ -35,6 +35,7 @@ pub fn settings(stated: &Bloom, as_made: bool) -> Option<BloomSettings> {
             halo_radius: number(stated.halo_radius, flare.halo_radius),
             halo_thickness: number(stated.halo_thickness, flare.halo_thickness),
             halo_threshold: number(stated.halo_threshold, flare.halo_threshold),
+            multiple_px: flare.multiple_px,
         }),
         multiple_px: 16,
         ..usual

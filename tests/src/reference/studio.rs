@@ -17,7 +17,7 @@ use framegraph_passes::fxaa::Fxaa;
 use framegraph_passes::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::occlusion::OcclusionSettings;
 use framegraph_passes::reflection::ReflectionSettings;
-use framegraph_passes::shading::{LightSettings, SpecularAa};
+use framegraph_passes::shading::{LightSettings, LightWindow, SpecularAa, TransmissionBlur};
 use framegraph_passes::shadow::{ContactShadows, Fit, MOST_CASCADES, ShadowBias, ShadowFilter, ShadowSettings, Splits};
 use framegraph_passes::stages::{Handles, Slot, StageError};
 use framegraph_passes::view::{Background, ViewSettings};
@@ -44,8 +44,9 @@ const FRAMES_WITH_HISTORY: u32 = 4;
 /// How surfaces are shaded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shade {
-    /// As the maker of the references did: Filament's low quality, which is ours but for the table of the exact term, and for
-    /// reflections, which ambient occlusion does not darken there.
+    /// Filament's low quality with gltfio's materials, as the references were made. It differs from our low quality in the
+    /// table, which is that of the exact term. Ambient occlusion does not darken reflections, and a base under a clear coat
+    /// keeps its reflectance. Rough glass blurs by an angle. Punctual lights have Filament's range window and fade to 100 m.
     #[default]
     Maker,
     /// By one of our presets.
@@ -60,7 +61,15 @@ impl Shade {
 
     const fn shading(self) -> Shading {
         match self {
-            Self::Maker => Shading { table: Visibility::Exact, specular_occlusion: false, ..Quality::Low.shading() },
+            Self::Maker => Shading {
+                table: Visibility::Exact,
+                specular_occlusion: false,
+                coat_ior_change: false,
+                transmission_blur: TransmissionBlur::Angle,
+                light_window: LightWindow::Filament,
+                light_fade_m: Some(100.0),
+                ..Quality::Low.shading()
+            },
             Self::Preset(quality) => quality.shading(),
         }
     }

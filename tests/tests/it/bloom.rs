@@ -76,6 +76,7 @@ const FLARE: FlareSettings = FlareSettings {
     halo_radius: 0.15,
     halo_thickness: 0.3,
     aberration: 0.02,
+    multiple_px: 1,
     ..FlareSettings::DEFAULT
 };
 
@@ -119,8 +120,9 @@ fn flare_is_ghosts_and_a_halo_of_what_glows() -> TestResult {
     };
     let levels = truth::levels(&image, &USUAL);
     let mut worst = 0.0_f64;
-    for own in [FLARE, FlareSettings { ghosts: 0, ..FLARE }, FlareSettings { halo_thickness: 0.0, ..FLARE }] {
-        let (ours, truth) = (flare(own)?, truth::flare(&levels[0], &own));
+    let centered = FlareSettings { multiple_px: 16, ..FLARE };
+    for own in [FLARE, FlareSettings { ghosts: 0, ..FLARE }, FlareSettings { halo_thickness: 0.0, ..FLARE }, centered] {
+        let (ours, truth) = (flare(own)?, truth::flare(&levels[0], SIZE, &own));
         assert!(truth.mean().max_element() > 1e-6, "{own:?}: nothing is seen");
         // What glows is off by BOUND of 80, and thresholds cut it at 1 and 2: edges of ghosts move.
         let off = ours.off(&truth);
@@ -228,7 +230,7 @@ fn glow_is_laid_over_the_picture() -> TestResult {
         let (ours, _) = made(&gpu, &parts, [&image, &dust], declare)?;
         let (levels, sum) = (truth::levels(&image, &settings), truth::glow(&image, &settings));
         let share = 0.8 / levels.len() as f64;
-        let flare = flare.map(|own| truth::flare(&levels[0], &own));
+        let flare = flare.map(|own| truth::flare(&levels[0], SIZE, &own));
         let texel = |(at, color): (usize, &DVec3)| {
             let mut added = wide(&sum, at) * share;
             added += flare.as_ref().map_or(DVec3::ZERO, |flare| wide(flare, at) * 0.8);

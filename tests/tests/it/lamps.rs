@@ -2,6 +2,7 @@
 
 use crate::stage::{gpu, lighting};
 use framegraph_passes::Shading;
+use framegraph_passes::shading::LightWindow;
 use framegraph_scene::light::LightKind;
 use framegraph_scene::{Environment, Light, Material, Specular};
 use glam::{DMat4, DVec3, Vec3};
@@ -114,6 +115,38 @@ fn cones_and_ranges_are_those_of_the_specification() -> TestResult {
 fn a_hundred_kilometers_from_the_origin_nothing_changes() -> TestResult {
     let origin = DVec3::new(1e5 + 0.123, -7e4 - 0.371, 9e4 + 0.777);
     check("a_hundred_kilometers_from_the_origin_nothing_changes", Eye::Perspective, origin)
+}
+
+/// Filament's choices: the range window squared, and lights that fade with the distance from the eye.
+#[test]
+fn filaments_window_and_far_fade_are_options() -> TestResult {
+    let Some(gpu) = gpu("filaments_window_and_far_fade_are_options") else { return Ok(()) };
+    // Cards are five to eleven meters from the eye: the fade is over within the row.
+    let (range_m, far_m) = (9.0_f64, 9.6_f64);
+    let plain = Shading { compensate_punctual: false, ..Shading::default() };
+    let shading = Shading { light_window: LightWindow::Filament, light_fade_m: Some(far_m as f32), ..plain };
+    let dark = Environment::uniform(DVec3::ZERO)?;
+    let lamp = Lamp { at: DVec3::new(6.0, 0.5, 2.0), candela: 60.0, range_m: Some(range_m), axis: None };
+    let (mut board, surfaces) = row(Eye::Perspective, DVec3::ZERO);
+    board.scene.lights = vec![lamp.light(DVec3::ZERO)];
+    let seen = board.render_lit(&gpu, lighting(&gpu, &dark, &shading)?, &shading)?;
+    let (mut full, mut partly, mut none) = (0, 0, 0);
+    for (index, surface) in surfaces.iter().enumerate() {
+        let middle = board.middle(index);
+        let to_lamp = lamp.at - middle;
+        let window = (1.0 - (to_lamp.length() / range_m).powi(4)).clamp(0.0, 1.0);
+        let fade = (5.0 - 5.0 * ((middle - board.camera_m()).length() / far_m).powi(2)).clamp(0.0, 1.0);
+        let share = over_pi(lamp.candela, lamp.range_m, None, to_lamp) * window * fade;
+        let expected = COLOR * surface.per_lamp(board.toward_viewer(index), to_lamp.normalize()) * share;
+        // Half floats, and the middle of a card stands for all of it where the fade is steep.
+        let apart = (seen[index].nits - expected).abs() - 3e-3 * expected;
+        assert!(apart.max_element() < 2e-3, "card {index}: {} for {expected}, fade {fade}", seen[index].nits);
+        full += usize::from(fade == 1.0 && window > 0.0 && expected.x > 0.01);
+        partly += usize::from((0.1..0.9).contains(&fade) && expected.x > 0.01);
+        none += usize::from(fade == 0.0);
+    }
+    assert!(full > 2 && partly > 0 && none > 0, "{full} are lit, {partly} fade, {none} are beyond");
+    Ok(())
 }
 
 /// Lamps add up; a directional lamp beside the sun is one of them, and color is theirs.

@@ -96,6 +96,31 @@ fn lobes_in_even_light_reflect_what_they_must() -> TestResult {
     Ok(())
 }
 
+/// Without the change of index, a base under a coat reflects as it does in air, less the coat's share; with it a dielectric of
+/// the coat's index reflects nothing.
+#[test]
+fn a_base_under_a_coat_keeps_its_reflectance_on_demand() -> TestResult {
+    let Some(gpu) = gpu("a_base_under_a_coat_keeps_its_reflectance_on_demand") else { return Ok(()) };
+    let gold = Material::metal("gold", Vec3::new(0.3, 0.6, 0.9), 0.4);
+    let coated = |base: &Material| Material { clear_coat: coat(1.0, 0.1), ..base.clone() };
+    let materials = [gold.clone(), coated(&gold), black(0.5), coated(&black(0.5))];
+    let kept = Shading { coat_ior_change: false, ..Shading::default() };
+    let [kept, changed] = [kept, Shading::default()].map(|shading| in_even_light(&gpu, &wall(&materials), &shading));
+    let (kept, changed) = (kept?, changed?);
+    for (bare, under) in [(0, 1), (2, 3)] {
+        for (index, nov) in NOV.into_iter().enumerate() {
+            let fresnel = schlick(0.04, nov);
+            let expected = fresnel + (1.0 - fresnel) * kept[bare][index];
+            let found = kept[under][index];
+            // Half floats of 0.05 %, tables of 64².
+            assert!((found - expected).abs() < 2e-3 * expected + 1e-4, "{under} at {nov}: {found} for {expected}");
+            assert!(changed[under][index] < found - 1e-3, "{under} at {nov}: the coat lowers what the base reflects");
+        }
+    }
+    assert_eq!(kept[0], changed[0], "without a coat nothing changes");
+    Ok(())
+}
+
 /// One light: the lobes' formulas written out again, in doubles.
 #[test]
 fn lobes_in_one_light_are_their_formulas() -> TestResult {
@@ -238,6 +263,7 @@ fn every_choice_of_shading_shows() -> TestResult {
         ("specular-occlusion", "off"),
         ("micro-shadows", "off"),
         ("fast-coat", "on"),
+        ("coat-ior-change", "off"),
     ]) {
         let mut shading = base;
         shading.set(key, value)?;

@@ -168,7 +168,7 @@ impl Surface {
             let bend = grooves.strength * (5.0 * roughness).min(1.0);
             self.normal.lerp(toward, bend).normalize()
         });
-        let dominant = mirrored(axis).lerp(self.normal, roughness * roughness).normalize();
+        let dominant = mirrored(axis).lerp(self.normal, roughness.powi(4)).normalize();
         let kept = DVec3::ONE + f0 * (1.0 / all - 1.0);
         let mut radiance = albedo * kept * gathered(dominant, roughness)
             + self.diffuse * (DVec3::ONE - albedo) * irradiance(self.normal);

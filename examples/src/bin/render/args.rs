@@ -55,7 +55,9 @@ LIGHTING
                        compensation=on|off|image|punctual (of light scattered more than once), bands=2|3|5 (of
                        irradiance), window=none|hann|sinc|laplacian:LAMBDA (of its bands, against ringing), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
                        occlusion), specular-occlusion=on|off, micro-shadows=on|off (of the sun, by the material's
-                       occlusion), fast-coat=on|off (reflection under varnish)
+                       occlusion), fast-coat=on|off (reflection under varnish), coat-ior-change=on|off (clear coat lowers
+                       the base's f0), transmission-blur=distance|angle (of what is behind rough bodies; angle as Filament), light-window=gltf|filament (how punctual lights end at their range), light-fade=off|M (meters
+                       from the eye beyond which none shines)
   --precision f32|f16  the numbers that shading computes in; f16 where the adapter has it, roughness then from 0.089 (f32)
   --compensation EV    exposure compensation (0)
   --vignette EV        how much darker the corners are than the middle (0)

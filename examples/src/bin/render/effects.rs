@@ -32,7 +32,7 @@ pub const HELP: &str = "
                        (pre-exposed, 1), highlight=X (what it nears, 1000), fireflies=on|off (count less, on), kernel=wide|narrow (wide), dirt=X (0.2),
                        flare=on|off (of the lens, off), and with it starburst=on|off (on), aberration=X (0.005),
                        ghosts=N (4), ghost-spacing=X (0.6), ghost-at=X (10), halo=X (thickness, 0.1), halo-radius=X (0.4),
-                       halo-at=X (10)
+                       halo-at=X (10), flare-multiple=PX (centered in a picture of such sides, 16 as Filament; 1: in the picture)
   --dirt FILE          a PNG or JPEG picture of dirt on the lens, laid over the frame, through which bloom is seen; goes
                        together with bloom
   --dof off|on[:KEY=X,...]  what is out of focus is blurred as by a lens (off). focus=M (5), aperture=F (f-number, 2.8),

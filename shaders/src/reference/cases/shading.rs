@@ -194,6 +194,23 @@ pub(super) const CASES: &[Case] = &[
         bound(1e-6, 5e-6),
     ),
     case(
+        ["punctual", "distance_attenuation_squared"],
+        &[Log(1e-8, 1e6), Log(1e-6, 10.0)],
+        "distance_attenuation_squared(x[0], x[1])",
+        SCALAR,
+        |x| vec![punctual::distance_attenuation_squared(x[0], x[1])],
+        bound(1e-6, 5e-6),
+    ),
+    case(
+        ["punctual", "light_far_fade"],
+        &[Log(1.0, 1e8), Log(1e-8, 1.0)],
+        "light_far_fade(x[0], x[1])",
+        SCALAR,
+        |x| vec![punctual::light_far_fade(x[0], x[1])],
+        // Five less up to five: 5e-7 of rounding.
+        bound(2e-6, 0.0),
+    ),
+    case(
         ["punctual", "spot_attenuation"],
         &[Linear(-1.0, 1.0), Linear(1.0, 100.0), Linear(-90.0, 0.0)],
         "spot_attenuation(x[0], x[1], x[2])",

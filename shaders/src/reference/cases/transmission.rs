@@ -41,6 +41,15 @@ pub(super) const CASES: &[Case] = &[
         ARITHMETIC,
     ),
     case(
+        ["refraction", "seen_transmission_spread"],
+        &[Linear(0.0, 1.0), Linear(0.9, 2.5)],
+        "seen_transmission_spread(x[0], x[1])",
+        SCALAR,
+        |x| vec![refraction::seen_transmission_spread(x[0], x[1])],
+        // 3 / ior - 2 cancels: 1e-6 of rounding.
+        bound(2e-6, 2e-6),
+    ),
+    case(
         ["refraction", "pyramid_lod"],
         &[Log(1e-4, 1e4)],
         "pyramid_lod(x[0])",

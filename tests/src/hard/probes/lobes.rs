@@ -64,6 +64,7 @@ pub(super) const PROBES: &[Probe] = &[
     // An index below that of air.
     both(15, "refracted_path", &[NONE, NONE, COSINE, NONE, NONE, ONE, Values(&[0.0, 0.5, 1.0, 1.5]), ONE], is_any),
     both(15, "transmission_spread", &[SHARE, Values(&[0.0, 0.5, 1.0, 2.5])], is_positive),
+    both(15, "seen_transmission_spread", &[SHARE, Values(&[0.0, 0.5, 1.0, 2.5])], |_, y| (0.0..=0.317).contains(&y[0])),
     both(15, "pyramid_lod", &[Values(&[-1.0, 0.0, 1e-30, 1e-3, 1.0, 1e30])], is_positive),
     // Films of no thickness and of more than there is room for, on everything, at every angle.
     both(

@@ -199,6 +199,8 @@ pub(super) const PROBES: &[Probe] = &[
     }),
     both(14, "dfg_cloth", &[Values(&[1e-4, 0.01, 1.0, 1.000_000_1]), Values(&[0.0, 0.045, 1.0])], is_positive),
     bounded(16, "distance_attenuation", &[DISTANCE2, INV_RANGE2], |_, y| (0.0..=10_001.0).contains(&y[0])),
+    bounded(16, "distance_attenuation_squared", &[DISTANCE2, INV_RANGE2], |_, y| (0.0..=10_001.0).contains(&y[0])),
+    bounded(16, "light_far_fade", &[DISTANCE2, INV_RANGE2], |_, y| (0.0..=1.0).contains(&y[0])),
     both(
         18,
         "spot_attenuation",

@@ -2,15 +2,25 @@
 
 use super::{Choice, Technique, formula, number};
 use crate::lab::technique::Measured;
+use framegraph_passes::shading::TransmissionBlur;
 use framegraph_shaders::reference::clear_coat::{f0_under_clear_coat, f0_under_clear_coat_fast, v_kelemen};
 use framegraph_shaders::reference::depth_normal::continues_ahead;
 use framegraph_shaders::reference::fresnel::f_schlick_scalar;
 use framegraph_shaders::reference::ggx::{v_smith_ggx_correlated, v_smith_ggx_correlated_fast};
+use framegraph_shaders::reference::refraction::{seen_transmission_spread, transmission_spread};
 use framegraph_wgpu::Gpu;
 use glam::DVec3;
 
 pub(super) fn techniques() -> Vec<Technique> {
-    vec![visibility_term(), fresnel(), coat_visibility(), coat_base(), depth_format(), depth_normals()]
+    vec![
+        visibility_term(),
+        fresnel(),
+        coat_visibility(),
+        coat_base(),
+        transmission_blur(),
+        depth_format(),
+        depth_normals(),
+    ]
 }
 
 /// Root mean square, signed mean and so on of numbers.
@@ -125,6 +135,42 @@ fn coat_base() -> Technique {
     ];
     let what = "Reflectance of a base under a clear coat of index 1.5, for f0 of 0 … 0.95.";
     formula("coat-base", what, "Fresnel at the inner face, by indices.", "reflectance, RMS", choices)
+}
+
+fn transmission_blur() -> Technique {
+    /// Tangent of the angle at which light that met a facet of this tilt leaves the flat far face, by Snell's law at both.
+    fn bent(tilt: f64, ior: f64) -> f64 {
+        let inside = tilt - (tilt.sin() / ior).asin();
+        (ior * inside.sin()).asin().tan()
+    }
+    // Half of the facets of GGX's distribution have a slope below alpha, and half of a Gaussian is within 1.1774 deviations.
+    let half = (2.0 * 2.0_f64.ln()).sqrt();
+    let over = move |sigma_rad: fn(f64, f64, f64) -> f64| {
+        move || {
+            let roughness = (2..=7).map(|i| 0.1 * f64::from(i));
+            let grid = roughness.flat_map(|r| [1.2, 1.33, 1.5, 1.8].map(|ior| (r, ior)));
+            // Share of the distance from the eye to the thing seen that lies behind the glass.
+            let grid = grid.flat_map(|(r, ior)| [0.02, 0.1, 0.3, 0.6, 0.9].map(|behind| (r, ior, behind)));
+            let apart = grid.map(|(r, ior, behind)| {
+                let truth = (bent((r * r).atan(), ior) * behind).atan();
+                half * sigma_rad(r, ior, behind) - truth
+            });
+            apart.map(f64::to_degrees).collect::<Vec<_>>()
+        }
+    };
+    let choices = vec![
+        rms("by the distance behind", over(|r, ior, behind| transmission_spread(r * r, ior) * behind))
+            .counted("transmission_spread", false)
+            .found_in(|f| f.settings.shading.transmission_blur == TransmissionBlur::Distance),
+        rms("by an angle from the eye, Filament's", over(|r, ior, _| seen_transmission_spread(r, ior)))
+            .counted("seen_transmission_spread", false)
+            .found_in(|f| f.settings.shading.transmission_blur == TransmissionBlur::Angle),
+        rms("none", over(|_, _, _| 0.0)),
+    ];
+    let what = "Blur of things behind a rough pane, seen straight on: the angle from the eye that holds half of the light. Over \
+                roughness 0.2 … 0.7, index 1.2 … 1.8, and from close behind the pane to far.";
+    let truth = "Snell's law at the facet that half of GGX's facets tilt less than, and at the flat far face.";
+    formula("transmission-blur", what, truth, "degrees, RMS", choices)
 }
 
 fn depth_format() -> Technique {

@@ -169,7 +169,8 @@ fn split_sum() -> Technique {
     };
     let choices: Vec<Choice> = vec![
         along("along the reflection", |_, r, _| r),
-        along("toward the normal by alpha, Filament's", specular_dominant_direction).found_in(|_| true),
+        along("toward the normal by alpha², Filament's", specular_dominant_direction).found_in(|_| true),
+        along("toward the normal by alpha", |n, r, alpha| r + (n - r) * alpha),
         along("along the normal", |n, _, _| n),
     ];
     let what = "Where the prefiltered environment is looked up, under light that grows to one side, over roughness 0.2 … 1 and \

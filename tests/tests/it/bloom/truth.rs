@@ -120,20 +120,28 @@ pub fn glow(source: &Image, settings: &BloomSettings) -> Image {
     sum
 }
 
-/// Ghosts and halo of what glows, blurred; without rays.
-pub fn flare(glow: &Image, settings: &FlareSettings) -> Image {
-    let aspect = f64::from(glow.size[0]) / f64::from(glow.size[1]);
+/// Ghosts and halo of what glows in a picture of `size_px`, blurred; without rays. The glow covers the picture.
+pub fn flare(glow: &Image, size_px: [u32; 2], settings: &FlareSettings) -> Image {
+    let own = DVec2::new(size_px[0].into(), size_px[1].into());
+    let multiple = f64::from(settings.multiple_px);
+    // The picture lies at the bottom left of the span.
+    let span = (own / multiple).ceil() * multiple;
+    let above = DVec2::new(0.0, span.y - own.y);
+    let aspect = f64::from(glow.size[0]) / f64::from(glow.size[1]) * (span.x / own.x) / (span.y / own.y);
     let toward_middle = |uv: DVec2, aspect: f64| {
         let v = (DVec2::splat(0.5001) - uv) * DVec2::new(aspect, 1.0);
         v.normalize() / DVec2::new(aspect, 1.0)
     };
     let parted = |uv: DVec2, threshold: f32| {
         let d = toward_middle(uv, 1.0) * f64::from(settings.aberration);
-        let [r, g, b] = [uv + d, uv, uv - d].map(|at| glow.sample(at.x, at.y));
+        let [r, g, b] = [uv + d, uv, uv - d].map(|at| {
+            let at = (at * span - above) / own;
+            glow.sample(at.x, at.y)
+        });
         (DVec3::new(r.x, g.y, b.z) - f64::from(threshold)).clamp(DVec3::ZERO, DVec3::ONE)
     };
     let sharp = picture(glow.size.map(|side| (side / 2).max(1)), |u, v| {
-        let uv = DVec2::new(u, v);
+        let uv = (DVec2::new(u, v) * own + above) / span;
         let ghost = |i: u8| {
             let mirrored = 1.0 - uv;
             let at = mirrored + (0.5 - mirrored) * f64::from(settings.ghost_spacing) * f64::from(i);
