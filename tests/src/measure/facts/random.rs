@@ -164,8 +164,8 @@ fn settings(dice: &mut Dice) -> Settings {
     asked
 }
 
-/// The scene of a number, with its settings.
-pub fn random_case(number: u64) -> Case {
+/// The scene of a number, with the settings of another: scenes that share settings share most shaders.
+pub fn random_case(number: u64, of_settings: u64) -> Case {
     let mut dice = Dice::new(number);
     let eye = DVec3::new(dice.between(-2.0, 2.0), dice.between(0.3, 4.0), dice.between(2.0, 5.0));
     let mut made = scene(eye, DVec3::new(0.0, dice.between(0.0, 1.0), 0.0));
@@ -182,7 +182,7 @@ pub fn random_case(number: u64) -> Case {
     let nits = DVec3::splat(dice.pick(&[0.0, 1000.0, 2000.0]));
     let background =
         if dice.chance(0.5) { Background::Environment } else { Background::Constant(dice.color() * 1000.0) };
-    let asked = Settings { blended: true, ..settings(&mut dice).for_scene(&made, SMALL_PX) };
+    let asked = Settings { blended: true, ..settings(&mut Dice::new(!of_settings)).for_scene(&made, SMALL_PX) };
     let ev100 = dice.between(8.0, 15.0) as f32;
     Case { name: "random", scene: made, nits, background, asked, ev100, size_px: SMALL_PX }
 }
