@@ -1,5 +1,8 @@
-//! Branches and uniform buffers: Mesa's software driver follows the condition of a branch to the uniform buffers it is
-//! computed from, and overwrites its own memory for buffers after the third of a stage (Mesa 22.3, `nir_inline_uniforms.c`).
+//! Branches and uniform buffers.
+//!
+//! Mesa's software driver follows the condition of a branch back to the uniform buffers it is computed from. It keeps room for
+//! the first three buffers of a stage: the fourth overwrites its counters, and drawing crashes (Mesa 22.3,
+//! `nir_inline_uniforms.c`).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,9 +25,9 @@ struct Walk<'a> {
     module: &'a Module,
     /// Buffers that reach each private variable.
     private: BTreeMap<usize, Buffers>,
-    /// Buffers that conditions are computed from, with the functions of the conditions. Values of the material meet texels
-    /// and inputs of the vertices before most branches, and the driver stops there: of buffers outside of the first group
-    /// only conditions that are the same for all pixels count.
+    /// Buffers that conditions are computed from, with the functions of the conditions. The driver stops at values that vary
+    /// from pixel to pixel, and values of the material meet them before most branches. Buffers outside of the first group
+    /// therefore count only where the condition is the same for all pixels.
     found: BTreeMap<usize, BTreeSet<String>>,
 }
 

@@ -353,7 +353,7 @@ pub fn compare_mask(easel: &mut Easel, drawn: &mut Drawn, mask: u32) -> Result<C
 /// Draws settings of a case with and without what its facts drop. Drops that are bounded otherwise than in codes are not made.
 ///
 /// # Errors
-/// What the device refuses.
+/// Fails if the device refuses a frame.
 pub fn compare(easel: &mut Easel, drawn: &mut Drawn, asked: &Settings) -> Result<Compared, Box<dyn Error>> {
     let asked = *asked;
     let all = drawn.facts(&asked, EffectSet::NONE, &mut FactMemory::default());

@@ -14,8 +14,8 @@ type TestResult = Result<(), Box<dyn Error>>;
 const CHILD: &str = "FRAMEGRAPH_COMBINATION";
 const NAME: &str = "combination::fog_froxels_and_one_cascade_are_drawn";
 
-/// Fog, lists of lights by froxel and one map of the sun: Mesa's software driver has followed a branch to the fourth uniform
-/// buffer of the shader and overwritten its memory (`shaders/tests/all/branches.rs`).
+/// Fog, lists of lights by froxel and one map of the sun together crashed Mesa's software driver. The reason and the check of
+/// all shaders are in `shaders/tests/all/branches.rs`.
 #[test]
 fn fog_froxels_and_one_cascade_are_drawn() -> TestResult {
     let Some(gpu) = gpu(NAME) else { return Ok(()) };

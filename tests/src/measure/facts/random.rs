@@ -53,7 +53,7 @@ impl Dice {
         self.unit() < probability
     }
 
-    /// One of them.
+    /// Picks one element.
     pub fn pick<T: Copy>(&mut self, of: &[T]) -> T {
         of[(self.next() % of.len() as u64) as usize]
     }

@@ -49,7 +49,7 @@ fn random_scenes_keep_within_the_bounds_of_what_is_dropped() -> TestResult {
     println!("{changed} pictures differ; dropped: {:?}", dropped.iter().map(Effect::name).collect::<Vec<_>>());
     assert!(failures.is_empty(), "{} scenes:\n{}", failures.len(), failures.join("\n"));
     // Most rules have had their turn.
-    assert!(dropped.iter().count() >= 12, "{dropped:?}");
+    assert!(dropped.iter().count() >= 8, "{dropped:?}");
     Ok(())
 }
 
