@@ -235,7 +235,8 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
         compensation = energy_compensation(f0, dfg.y);
     }
     var diffuse = diffuse_from_base_color(color, metallic);
-    // An index of refraction of 0 is the specular-glossiness model. Filament takes its reflectance from the diffuse color.
+    // An index of refraction of 0 is the specular-glossiness model. Filament takes its reflectance
+    // from the diffuse color.
     @if(SPECULAR) {
         let largest = real(max(dielectric.r, max(dielectric.g, dielectric.b)));
         diffuse *= select(real(1.0), 1.0 - largest, material.dielectric_f0 >= 1.0);

@@ -103,8 +103,8 @@ fn soft_visibility(
     return lit / f32(PCSS_TAPS);
 }
 
-/// Rise of the receiver's plane in depth at an offset, from its depth `z`. The plane ends at the far
-/// end of the map, 0: the map is cleared to that depth, and no caster is there.
+/// Rise of the receiver's plane in depth at an offset, from its depth `z`. The plane ends at the
+/// far end of the map, 0: the map is cleared to that depth, and no caster is there.
 fn plane_rise(slope: vec2<f32>, offset: vec2<f32>, z: f32) -> f32 {
     return max(dot(slope, offset), -z);
 }
