@@ -29,10 +29,10 @@ pub(super) struct Fitted {
 }
 
 impl Fitted {
-    /// A map that shadows nothing.
+    /// A map that shadows nothing: every point lies outside of it, before its near end.
     pub fn empty() -> Self {
         Self {
-            clip_from_world: DMat4::IDENTITY,
+            clip_from_world: DMat4::from_cols(DVec4::ZERO, DVec4::ZERO, DVec4::ZERO, DVec4::new(0.0, 0.0, 2.0, 1.0)),
             linear_depth: DVec4::ZERO,
             axes: [DVec3::X, DVec3::Y, DVec3::Z],
             texel_m: [1.0; 2],

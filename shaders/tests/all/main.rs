@@ -2,6 +2,7 @@
 
 mod backends;
 mod bindings;
+mod branches;
 mod effects;
 mod errors;
 mod mirror;

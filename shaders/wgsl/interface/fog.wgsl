@@ -36,7 +36,9 @@ struct FogUniforms {
     per_sharp_m: f32,
 }
 
-@group(0) @binding(22) var<uniform> fog: FogUniforms;
+/// Bound after the other uniform buffers of the frame: no branch depends on it. Mesa's software
+/// driver corrupts its memory for branches on a fourth uniform buffer (tests/all/branches.rs).
+@group(0) @binding(46) var<uniform> fog: FogUniforms;
 
 /// A color, multiplied by its alpha, as it is seen through `way_m` of fog along the unit vector
 /// `direction`.

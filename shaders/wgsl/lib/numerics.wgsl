@@ -16,13 +16,8 @@ const DEGENERATE_LENGTH2: f32 = 1e-12;
 fn saturate_half(x: f32) -> f32 {
     let bits = bitcast<u32>(x);
     let magnitude = bits & 0x7fffffffu;
-    if magnitude > 0x7f800000u || bits != magnitude {
-        return 0.0;
-    }
-    if magnitude >= 0x7f800000u {
-        return HALF_MAX;
-    }
-    return min(x, HALF_MAX);
+    let large = select(min(x, HALF_MAX), HALF_MAX, magnitude >= 0x7f800000u);
+    return select(large, 0.0, (magnitude > 0x7f800000u) | (bits != magnitude));
 }
 
 /// `saturate_half` of each channel of a color.
@@ -42,9 +37,6 @@ fn all_finite3(color: vec3<f32>) -> bool {
 fn normalize_or(v: vec3<f32>, fallback: vec3<f32>) -> vec3<f32> {
     let a = abs(v);
     let largest = max(a.x, max(a.y, a.z));
-    if !(largest > 1e-30) {
-        return fallback;
-    }
-    let scaled = v / largest;
-    return scaled * inverseSqrt(dot(scaled, scaled));
+    let scaled = v / max(largest, 1e-30);
+    return select(fallback, scaled * inverseSqrt(dot(scaled, scaled)), largest > 1e-30);
 }

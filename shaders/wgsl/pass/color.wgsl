@@ -238,9 +238,8 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     // An index of refraction of 0 is the specular-glossiness model, where Filament takes the
     // reflectance from the diffuse color.
     @if(SPECULAR) {
-        if material.dielectric_f0 >= 1.0 {
-            diffuse *= 1.0 - real(max(dielectric.r, max(dielectric.g, dielectric.b)));
-        }
+        let largest = real(max(dielectric.r, max(dielectric.g, dielectric.b)));
+        diffuse *= select(real(1.0), 1.0 - largest, material.dielectric_f0 >= 1.0);
     }
     @if(TRANSMISSION || DIFFUSE_TRANSMISSION)
     let thickness_m = volume_thickness(uv) * vertex.scale_m;

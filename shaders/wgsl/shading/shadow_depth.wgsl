@@ -70,7 +70,7 @@ fn soft_visibility(
         // What is loaded has no sampler that takes the edge for what is beyond it.
         let texel = clamp(layer_uv(map, at.xy + offset, 0.0) * shadow.texels, vec2<f32>(0.0), last);
         let depth = textureLoad(shadow_depth, vec2<i32>(texel), map.layer, 0).r;
-        if depth - at.z > dot(slope, offset) {
+        if depth - at.z > plane_rise(slope, offset, at.z) {
             blockers += 1.0;
             depth_sum += depth;
         }
@@ -96,9 +96,15 @@ fn soft_visibility(
     for (var i = 0u; i < PCSS_TAPS; i++) {
         let offset = vogel_tap(i, PCSS_TAPS, turn) * radius / size;
         let tap = layer_uv(map, at.xy + offset, 0.0);
-        lit += compare(map.layer, tap, at.z + dot(slope, offset));
+        lit += compare(map.layer, tap, at.z + plane_rise(slope, offset, at.z));
     }
     return lit / f32(PCSS_TAPS);
+}
+
+/// Rise of the receiver's plane in depth at an offset, from its depth `z`. The plane ends at the
+/// far end of the map, 0: the map is cleared to that depth, and no caster is there.
+fn plane_rise(slope: vec2<f32>, offset: vec2<f32>, z: f32) -> f32 {
+    return max(dot(slope, offset), -z);
 }
 
 /// A radius in texels along both axes, at most the side of a layer: farther taps find the edge. The

@@ -2,6 +2,7 @@
 //! and with those that their facts leave.
 
 pub mod late;
+pub mod random;
 pub mod table;
 
 use crate::stage::light_cache;
@@ -60,6 +61,10 @@ pub struct Case {
     pub background: Background,
     /// Every effect on, but those that the scene is about.
     pub asked: Settings,
+    /// Exposure of the camera, EV100.
+    pub ev100: f32,
+    /// Width and height of its pictures.
+    pub size_px: [u32; 2],
 }
 
 /// Every effect, small.
@@ -132,7 +137,8 @@ pub fn cases() -> [Case; 6] {
     let ahead = || scene(DVec3::new(0.2, 1.2, 3.2), origin);
     let case = |name, scene: Scene, nits: f64, background| {
         let asked = every_effect().for_scene(&scene, SIZE_PX);
-        Case { name, scene, nits: DVec3::splat(nits), background, asked: Settings { blended: true, ..asked } }
+        let (nits, asked) = (DVec3::splat(nits), Settings { blended: true, ..asked });
+        Case { name, scene, nits, background, asked, ev100: 10.5, size_px: SIZE_PX }
     };
     let nothing = case("nothing", ahead(), 1000.0, Background::Constant(Vec3::new(300.0, 500.0, 900.0)));
 
@@ -190,7 +196,7 @@ impl Case {
         ViewSettings {
             camera: self.scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
             size_px,
-            ev100: 10.5,
+            ev100: self.ev100,
             environment_intensity: 1.0,
             shadows: settings.shadows,
             lights: LightSearch::All,
@@ -238,7 +244,7 @@ impl Drawn {
         let light = LightSettings { image, dfg: DfgSettings { texels: 32, visibility: shading.table } };
         let environment = Environment::uniform(case.nits)?;
         let lighting = Lighting::new(gpu, &environment, &light, &light_cache(), &mut progress::silent)?;
-        let seen = case.view(&case.asked, SIZE_PX);
+        let seen = case.view(&case.asked, case.size_px);
         let view = CameraView::new(&case.scene, &lighting.image, &case.background, &seen);
         let world = World::new(gpu, &case.scene, lighting, [view], &mut progress::silent)?;
         Ok(Self { survey: Survey::new(&case.scene), case, world, known: BTreeMap::new() })
@@ -246,7 +252,7 @@ impl Drawn {
 
     /// What the facts say of the case with these settings.
     pub fn facts(&self, asked: &Settings, forced: EffectSet, memory: &mut FactMemory) -> Facts {
-        let views = [self.case.view(asked, SIZE_PX)];
+        let views = [self.case.view(asked, self.case.size_px)];
         let input = FactInput {
             scene: &self.case.scene,
             survey: &self.survey,
@@ -273,7 +279,7 @@ impl Drawn {
         // Reflections are of the frame before, which is to be one of these settings.
         easel.executor.reset_histories();
         let frames = if settings.reflections.is_some() { 2 } else { 1 };
-        let (picture, ..) = self.frames(easel, settings, SIZE_PX, frames)?;
+        let (picture, ..) = self.frames(easel, settings, self.case.size_px, frames)?;
         self.known.insert(key, picture.clone());
         Ok(picture)
     }
@@ -341,11 +347,26 @@ impl Compared {
 /// What the device refuses.
 pub fn compare_mask(easel: &mut Easel, drawn: &mut Drawn, mask: u32) -> Result<Compared, Box<dyn Error>> {
     let asked = drawn.case.masked(mask);
+    compare(easel, drawn, &asked)
+}
+
+/// Draws settings of a case with and without what its facts drop. Drops that are bounded otherwise than in codes are not made.
+///
+/// # Errors
+/// Fails if the device refuses a frame.
+pub fn compare(easel: &mut Easel, drawn: &mut Drawn, asked: &Settings) -> Result<Compared, Box<dyn Error>> {
+    let asked = *asked;
     let all = drawn.facts(&asked, EffectSet::NONE, &mut FactMemory::default());
-    let otherwise = all.rows.iter().filter(|row| matches!(row.proof, Proof::Truer | Proof::Texels(_) | Proof::Edges));
+    // With one sample there are no edges of several samples.
+    let edges = asked.samples > 1;
+    let otherwise = all.rows.iter().filter(|row| match row.proof {
+        Proof::Truer | Proof::Texels(_) => true,
+        Proof::Edges => edges,
+        _ => false,
+    });
     let facts = drawn.facts(&asked, otherwise.map(|row| row.effect).collect(), &mut FactMemory::default());
     let bound = |effect| match facts.of(effect).map(|row| row.proof) {
-        Some(Proof::Variant) => 1.0,
+        Some(Proof::Variant | Proof::Edges) => 1.0,
         Some(Proof::Codes(codes)) => codes.ceil(),
         _ => 0.0,
     };

@@ -4,6 +4,7 @@ mod late;
 mod masks;
 mod measured;
 mod pictures;
+mod random;
 mod rules;
 mod settings;
 mod table;

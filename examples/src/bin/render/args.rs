@@ -14,7 +14,7 @@ use crate::shadows::{self, Shadows};
 use crate::values::{alias, camera, frames, memory, samples, size, threads};
 use framegraph::Alias;
 use framegraph_passes::PostSettings;
-use framegraph_passes::{Precision, Quality, Settings, Shading};
+use framegraph_passes::{Effect, Precision, Quality, Settings, Shading};
 use framegraph_scene::{BlockFormats, CameraChoice, LoadOptions, Memory};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -77,7 +77,10 @@ EFFECTS
   --no-fxaa            leave edges as they are
   --frames N           measured frames after four for warming up (8)
   --out FILE.png       the picture (render.png)
-  --linear-out FILE.exr  radiance times exposure before tone mapping, linear Rec.709
+  --linear-out FILE.exr  radiance times exposure before tone mapping, linear Rec.709, of the size as drawn. It contains
+                       shading, shadows, ao, ssr, glass, blending, fog, the background, msaa, taa and dof; not bloom, flares,
+                       --compensation, vignette, edge fade, grading, the tone curve, dither, fxaa and enlarging. Values above
+                       1 are kept, so it does not go together with --disable hdr-target
   --plan FILE          the plan as text; its graph goes beside it with the ending .dot (the picture's name with .plan.txt)
   --memory BYTES       what loading may take: files, decoding, mip levels, upload; 512MiB, 2GB, … (half of the machine's)
   --allow-outside      buffers and images of the scene may lie outside of its folder
@@ -308,6 +311,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         );
     }
     given.check(&found)?;
+    found.keep_linear()?;
     found.grade.apply(&mut found.post)?;
     let chosen = if given.has("quality") { found.quality.shading() } else { found.shading };
     found.shading = shading(chosen, &shade)?;
@@ -317,6 +321,24 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     }
     (found.plan, found.dot) = plan_files(plan, &found.out);
     Ok(Command::Render(Box::new(found)))
+}
+
+impl Args {
+    /// Keeps the target of half floats where its radiance is written to a file: eight bits would cut off values above 1.
+    fn keep_linear(&mut self) -> Result<(), String> {
+        if self.linear_out.is_none() {
+            return Ok(());
+        }
+        if self.decide.disabled.contains(Effect::HdrTarget) {
+            return Err(
+                "--linear-out: without hdr-target values above 1 are cut off; leave out --disable hdr-target or \
+                        --linear-out"
+                    .into(),
+            );
+        }
+        self.decide.enabled = self.decide.enabled.with(Effect::HdrTarget);
+        Ok(())
+    }
 }
 
 fn text(parser: &mut lexopt::Parser, option: &str) -> Result<String, String> {
@@ -353,6 +375,16 @@ mod tests {
         assert_eq!(size(&["--size", "64x32", "--compare-post"]), Ok([64, 32]));
     }
 
+    /// Whatever the facts say of the scene, and whatever order the options have.
+    #[test]
+    fn a_linear_picture_keeps_its_half_floats() {
+        let kept = |words: &[&str]| args(words).map(|found| found.decide.enabled.contains(Effect::HdrTarget));
+        assert_eq!(kept(&[]), Ok(false));
+        assert_eq!(kept(&["--linear-out", "a.exr"]), Ok(true));
+        assert_eq!(kept(&["--disable", "fxaa", "--linear-out", "a.exr"]), Ok(true));
+        assert_eq!(kept(&["--disable", "hdr-target"]), Ok(false));
+    }
+
     #[test]
     fn the_plan_has_a_neighbour() {
         let found = args(&["--plan", "a/b.txt"]).expect("a sound command line");
@@ -363,7 +395,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 40] = [
+        let cases: [(&[&str], &str); 42] = [
             (&["--threads", "0"], "--threads 0"),
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
@@ -399,6 +431,8 @@ mod tests {
             (&["--camera", "orbit", "--camera-from-gltf"], "--camera-from-gltf"),
             (&["--out", "a.jpg"], "--out a.jpg"),
             (&["--linear-out", "a.png"], "--linear-out a.png"),
+            (&["--linear-out", "a.exr", "--disable", "hdr-target"], "--linear-out: without hdr-target"),
+            (&["--disable", "hdr-target", "--linear-out=a.exr"], "leave out --disable hdr-target"),
             (&["--frames", "0"], "--frames 0"),
             (&["--memory", "0MiB"], "--memory 0MiB"),
             (&["--size", "1x1", "--size=2x2"], "--size: it is given twice"),

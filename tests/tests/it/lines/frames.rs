@@ -59,7 +59,15 @@ fn every_preset_draws_lines_and_points() -> TestResult {
             let scene = every_kind(topology, triangles);
             let case = |scene: Scene| {
                 let asked = asked.for_scene(&scene, SIZE_PX);
-                Case { name: "lines", scene, nits: DVec3::splat(2000.0), background: Background::None, asked }
+                Case {
+                    name: "lines",
+                    scene,
+                    nits: DVec3::splat(2000.0),
+                    background: Background::None,
+                    asked,
+                    ev100: 10.5,
+                    size_px: SIZE_PX,
+                }
             };
             let mut bare = scene.clone();
             bare.instances.retain(|instance| bare.meshes[instance.mesh.index()].has_area());

@@ -26,7 +26,15 @@ fn glass(alpha: AlphaMode, volume: bool, double_sided: bool) -> Material {
 /// A case that looks down on a floor.
 fn case(scene: Scene, asked: Settings) -> Case {
     let asked = asked.for_scene(&scene, SIZE_PX);
-    Case { name: "glass", scene, nits: DVec3::splat(2000.0), background: Background::Environment, asked }
+    Case {
+        name: "glass",
+        scene,
+        nits: DVec3::splat(2000.0),
+        background: Background::Environment,
+        asked,
+        ev100: 10.5,
+        size_px: SIZE_PX,
+    }
 }
 
 /// Decisions about the effects of a case.
