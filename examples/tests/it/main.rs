@@ -8,6 +8,7 @@ mod lighting;
 mod looking;
 mod memory;
 mod outputs;
+mod scale;
 mod scene_files;
 mod stages;
 mod support;

@@ -37,7 +37,7 @@ fn main() -> ExitCode {
     interrupt::watch();
     let show = |case: &Rendered, total: usize| {
         let (number, word, took) = (case.number, case.judged.verdict.word(), case.took.as_secs_f64());
-        program::line(format_args!("{number} of {total}: {word}, {took:.1} s"));
+        program::line(format_args!("{number} of {total}: {word}, {took:.1} s: render {}", case.line));
     };
     match run(&options, &show) {
         Ok(outcome) => {

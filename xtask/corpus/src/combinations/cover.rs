@@ -141,7 +141,9 @@ fn candidate(space: &Space, sets: &Sets, is_open: &[bool], set: &[Level], random
             let mut gain = 0;
             sets.with(&case, (factor, level), &mut |index| gain += usize::from(is_open[index]));
             // One more than what it covers: a level that covers nothing is still better than none.
-            best = best.max((gain + 1, level));
+            if gain + 1 > best.0 {
+                best = (gain + 1, level);
+            }
         }
         covered += best.0.saturating_sub(1);
         case[factor] = Some(best.1);

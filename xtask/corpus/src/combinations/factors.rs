@@ -163,7 +163,15 @@ impl Known {
 }
 
 /// Combinations that are known to crash.
-pub const KNOWN: [Known; 0] = [];
+pub const KNOWN: [Known; 1] = [Known {
+    levels: &[
+        ("fog", &[O("--fog on"), O("--fog on:color=100:50:20,glow=4,cut-off=50,start=1")]),
+        ("punctual lights", &[P(Part::TwoLights), P(Part::EightLights)]),
+        ("light lists", &[None, O("--lights froxels")]),
+        ("cascades", &[None]),
+    ],
+    fault: "fog, lists of lights and one cascade of the sun (Mesa 22.3's software driver)",
+}];
 
 /// Returns all combinations of the factors.
 #[must_use]

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use std::io;
 use std::path::Path;
 
-/// A part of a scene, beside the ground and a box, which are always there.
+/// A part of a scene, beside the ground and two panes, one of which turns, that are always there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Part {
     /// A point light and a spot light.
@@ -67,7 +67,7 @@ pub fn write_geometry(folder: &Path) -> io::Result<()> {
 /// # Errors
 /// When the folder cannot be written.
 pub fn write(folder: &Path, parts: &[Part]) -> io::Result<String> {
-    let words: Vec<_> = std::iter::once("box").chain(parts.iter().map(|part| part.word())).collect();
+    let words: Vec<_> = std::iter::once("panes").chain(parts.iter().map(|part| part.word())).collect();
     let name = format!("{}.gltf", words.join("-"));
     let file = folder.join(&name);
     if !file.exists() {
@@ -207,10 +207,12 @@ fn color(rgba: [f32; 4], extensions: Value) -> Value {
 /// Returns the glTF document of a scene.
 fn document(parts: &[Part]) -> Value {
     let mut own = Growing::default();
-    // The ground, and two sides of a box on it.
+    // The ground, and two panes on it.
     let lie = [-std::f32::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f32::consts::FRAC_1_SQRT_2];
     own.put(pane(), color([0.5, 0.5, 0.5, 1.0], json!({})), json!({"rotation": lie, "scale": [4, 4, 1]}));
     own.put(pane(), color([0.8, 0.3, 0.2, 1.0], json!({})), json!({"translation": [-1, 1, -0.5]}));
+    // A pane turns in each scene: without an animation, a time would be refused.
+    own.animate(own.nodes.len() - 1, "rotation", Accessor::Rotations);
     let metal = json!({"pbrMetallicRoughness": {"metallicFactor": 1, "roughnessFactor": 0.1}, "doubleSided": true});
     own.put(pane(), metal, json!({"translation": [0, 0.7, -1], "scale": [0.7, 0.7, 1]}));
     for part in parts {
