@@ -1,6 +1,7 @@
 //! The programs as their users run them.
 
 mod bad_input;
+mod combinations;
 #[cfg(unix)]
 mod corpus_run;
 mod lens;

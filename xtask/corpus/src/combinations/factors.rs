@@ -162,16 +162,31 @@ impl Known {
     }
 }
 
-/// Combinations that are known to crash.
-pub const KNOWN: [Known; 1] = [Known {
-    levels: &[
-        ("fog", &[O("--fog on"), O("--fog on:color=100:50:20,glow=4,cut-off=50,start=1")]),
-        ("punctual lights", &[P(Part::TwoLights), P(Part::EightLights)]),
-        ("light lists", &[None, O("--lights froxels")]),
-        ("cascades", &[None]),
-    ],
-    fault: "fog, lists of lights and one cascade of the sun (Mesa 22.3's software driver)",
-}];
+/// Combinations that are known to crash: fog, lists of lights, and one cascade of the sun.
+pub const KNOWN: [Known; 2] = [
+    Known {
+        levels: &[FOG, SUN, SUN_SHADOWS, ONE_CASCADE, ("light lists", &[O("--lights froxels")])],
+        fault: FOG_FAULT,
+    },
+    Known {
+        levels: &[
+            FOG,
+            SUN,
+            SUN_SHADOWS,
+            ONE_CASCADE,
+            ("light lists", &[None]),
+            ("punctual lights", &[P(Part::EightLights)]),
+        ],
+        fault: FOG_FAULT,
+    },
+];
+
+const FOG_FAULT: &str = "Mesa 22.3's software driver follows a branch to a fourth uniform buffer";
+const FOG: (&str, &[Choice]) = ("fog", &[O("--fog on"), O("--fog on:color=100:50:20,glow=4,cut-off=50,start=1")]);
+const SUN: (&str, &[Choice]) = ("sun", &[None, O("--sun 1,2,1:60000:4")]);
+const SUN_SHADOWS: (&str, &[Choice]) =
+    ("shadows", &[None, O("--shadows dpcf"), O("--shadows pcss"), O("--shadows vsm"), O("--shadows evsm")]);
+const ONE_CASCADE: (&str, &[Choice]) = ("cascades", &[None]);
 
 /// Returns all combinations of the factors.
 #[must_use]

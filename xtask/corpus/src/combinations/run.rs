@@ -80,6 +80,16 @@ impl Outcome {
         self.cases.iter().filter(|case| case.judged.verdict == verdict).count()
     }
 
+    /// Returns the counts of cases and verdicts in a line.
+    #[must_use]
+    pub fn counts(&self) -> String {
+        let words = Verdict::ALL.iter().map(|verdict| format!("{} {}", self.count(*verdict), verdict.word()));
+        let known =
+            self.cases.iter().filter(|case| case.judged.verdict == Verdict::Crashed && !case.is_fault()).count();
+        let (done, counts) = (self.cases.len(), words.collect::<Vec<_>>().join(", "));
+        format!("{done} of {} cases: {counts}; {known} of the crashes are known", self.total)
+    }
+
     /// Returns the cases that are findings.
     pub fn faults(&self) -> impl Iterator<Item = &Rendered> {
         self.cases.iter().filter(|case| case.is_fault())
@@ -89,12 +99,7 @@ impl Outcome {
 impl fmt::Display for Outcome {
     /// The counts in a line, then each case that is not ok with its command line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let counts: Vec<_> =
-            Verdict::ALL.iter().map(|verdict| format!("{} {}", self.count(*verdict), verdict.word())).collect();
-        let known =
-            self.cases.iter().filter(|case| case.judged.verdict == Verdict::Crashed && !case.is_fault()).count();
-        let (done, total, counts) = (self.cases.len(), self.total, counts.join(", "));
-        writeln!(f, "combinations: {done} of {total} cases: {counts}; {known} of the crashes are known")?;
+        writeln!(f, "{}", self.counts())?;
         for case in self.cases.iter().filter(|case| case.judged.verdict != Verdict::Ok) {
             let known = case.known.map(|fault| format!(" (known: {fault})")).unwrap_or_default();
             let (number, Judged { verdict, message, .. }) = (case.number, &case.judged);
