@@ -112,7 +112,7 @@ impl Effects {
         Settings { upscale: self.upscale, ..Settings::DEFAULT }.drawn_px(shown_px)
     }
 
-    /// Returns how a frame of so many percent of the width and height is enlarged; none for a whole frame.
+    /// Returns how a frame that is drawn at `percent` of the width and height is enlarged; none for a whole frame.
     pub fn enlarging(&self, percent: f64) -> Option<Upscale> {
         let smaller = Upscale { percent: percent.round() as u16, ..self.upscale.unwrap_or_default() };
         (smaller.percent < 100).then_some(smaller)

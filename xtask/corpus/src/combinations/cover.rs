@@ -54,15 +54,28 @@ impl Sets {
         }
     }
 
-    /// Calls `visit` with each set of a partial case that contains `last`.
+    /// Calls `visit` with the number of each set of 2 or 3 levels of a partial case that contains `last`.
     fn with(&self, case: &[Option<usize>], last: Level, visit: &mut impl FnMut(usize)) {
-        let others: Vec<Level> = chosen(case).filter(|(factor, _)| *factor != last.0).collect();
-        self.each(&others, self.strength - 1, &mut Vec::new(), &mut |set| {
-            let mut set = set.to_vec();
-            set.push(last);
-            set.sort_unstable();
-            visit(self.index(&set));
-        });
+        let number = |(factor, level): Level| self.first[factor] + level;
+        let (last_factor, last) = (last.0, number(last));
+        let others: Vec<usize> = chosen(case).filter(|(factor, _)| *factor != last_factor).map(number).collect();
+        for (at, a) in others.iter().enumerate() {
+            if self.strength == 2 {
+                visit(last.min(*a) * self.count + last.max(*a));
+                continue;
+            }
+            for b in &others[at + 1..] {
+                // Numbers rise with the factors, so that a comes before b.
+                let [x, y, z] = if last < *a {
+                    [last, *a, *b]
+                } else if last < *b {
+                    [*a, last, *b]
+                } else {
+                    [*a, *b, last]
+                };
+                visit((x * self.count + y) * self.count + z);
+            }
+        }
     }
 }
 
@@ -71,7 +84,8 @@ fn chosen(case: &[Option<usize>]) -> impl Iterator<Item = Level> + '_ {
     case.iter().enumerate().filter_map(|(factor, level)| Some((factor, (*level)?)))
 }
 
-/// Returns cases, each with a level for every factor, that contain every allowed set of `strength` levels (2 or 3).
+/// Returns cases, each with a level for every factor, that contain every allowed set of `strength` levels (2 or 3) of as many
+/// factors or more.
 #[must_use]
 pub fn cover(space: &Space, strength: usize) -> Vec<Vec<usize>> {
     let mut first = Vec::new();
@@ -80,9 +94,8 @@ pub fn cover(space: &Space, strength: usize) -> Vec<Vec<usize>> {
         first.push(count);
         count += levels;
     }
-    let strength = strength.min(space.levels.len());
     let sets = Sets { first, count, strength };
-    // What is left to cover, in a fixed order, and by number.
+    // Sets that are left to cover, in a fixed order, and by number.
     let mut wanted = Vec::new();
     let mut is_open = vec![false; count.pow(strength as u32)];
     wanted_sets(space, 0, strength, &mut Vec::new(), &mut |set| {

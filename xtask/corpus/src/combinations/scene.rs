@@ -316,7 +316,7 @@ fn add(own: &mut Growing, part: Part) {
     }
 }
 
-/// Adds point lights and spot lights in turns, on a circle above the ground.
+/// Adds alternating point and spot lights on a circle above the ground.
 fn lights(own: &mut Growing, count: usize) {
     let down = [-std::f32::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f32::consts::FRAC_1_SQRT_2];
     for index in 0..count {
