@@ -31,6 +31,9 @@ they cannot be, such tests are skipped.
 Tests of many cases that draw for long run a third of them, each of which stands
 for its neighbors; docs/time.md lists them.
 
+Every pair of effects, options and parts of scenes is drawn by a `render` process
+of its own; --all draws every triple. The summary has the counts of verdicts.
+
   --all         all of their cases, in release, and rustdoc of programs too
 
 The summary counts the tests, what those that share leave out, and repeats every

@@ -290,7 +290,7 @@ fn add(own: &mut Growing, part: Part) {
             own.animate(node, "weights", Accessor::MorphWeights);
         }
         Part::Lines => {
-            for (mode, x) in [(1, -0.5), (0, 0.5)] {
+            for (mode, x) in [(3, -0.5), (0, 0.5)] {
                 let primitive = json!({"attributes": {"POSITION": Accessor::Positions as usize}, "mode": mode});
                 own.put(primitive, color([1.0, 0.2, 0.2, 1.0], json!({})), json!({"translation": [x, 1.5, 0.2]}));
             }
