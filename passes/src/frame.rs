@@ -51,7 +51,7 @@ use crate::tone_resolve::ToneResolve;
 use crate::transmission::{MOST_GLASS_LAYERS, scene_levels};
 use crate::upload::GpuScene;
 use crate::upscale::{Upscale, enlarge};
-use crate::view::{ViewId, Views};
+use crate::view::Views;
 use before::{occlusion, prepass, reflection};
 use framegraph::{Extent, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
@@ -209,6 +209,19 @@ impl Settings {
         }
     }
 
+    /// Returns the size of the view's pictures: the frame's, or the share of it that [`Settings::upscale`] names.
+    pub fn extent(&self) -> Extent {
+        self.upscale.map_or(Extent::FRAME, |upscale| upscale.extent())
+    }
+
+    /// Returns the width and height in which the view is drawn, in texels, for a picture of `shown_px`. [`ViewSettings::size_px`]
+    /// and [`Settings::for_scene`] take this size.
+    ///
+    /// [`ViewSettings::size_px`]: crate::view::ViewSettings::size_px
+    pub fn drawn_px(&self, shown_px: [u32; 2]) -> [u32; 2] {
+        self.extent().texels(shown_px)
+    }
+
     /// Whether velocity of what moves is drawn.
     pub(crate) fn draws_velocity(&self) -> bool {
         self.moving && self.taa.is_some()
@@ -253,8 +266,7 @@ pub fn standard<W: StandardWorld + ?Sized>(
     settings: &Settings,
     into: Target,
 ) -> Result<FrameIo, StageError> {
-    let extent = settings.upscale.map_or(Extent::FRAME, |upscale| upscale.extent());
-    let handles = stages(settings).declare(frame, Handles::for_view(ViewId::MAIN, extent), into)?;
+    let handles = stages(settings).declare(frame, Handles::main(settings), into)?;
     let (hdr, output) = (handles.get(Slot::HDR)?, handles.get(Slot::PICTURE)?);
     Ok(FrameIo { hdr, output, measured: MeasuredTextures::of(&handles) })
 }

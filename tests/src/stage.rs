@@ -76,7 +76,7 @@ impl Stage {
     ) -> Result<Texture, Box<dyn Error>> {
         let Self { scene, prepared, world } = self;
         let gpu = frames.executor().gpu().clone();
-        let drawn_px = settings.upscale.map_or(size_px, |upscale| upscale.extent().texels(size_px));
+        let drawn_px = settings.drawn_px(size_px);
         let settings = settings.for_scene(scene, drawn_px);
         let mut seen = view(scene, prepared, &world.lighting, &settings, drawn_px);
         if let Some(taa) = &settings.taa {

@@ -4,7 +4,7 @@
 //! libtest shows no output of a passing test, so a test that skips would stay silent. Such a test
 //! therefore prints `SKIP: <test>: <reason>` *and*, where the environment variable
 //! [`SKIP_LOG`] (`FRAMEGRAPH_SKIP_LOG`) names a file, appends the same line to it. A test that opens
-//! an adapter appends `ADAPTER: <name>` in the same way, and one that runs some of its cases `CASES: <test>: <N> of <M>`. One `write` of one whole line on a file
+//! an adapter appends `ADAPTER: <name>` in the same way, one with counts of its own `RESULT: <test>: <counts>`, and one that runs some of its cases `CASES: <test>: <N> of <M>`. One `write` of one whole line on a file
 //! opened for appending keeps lines of concurrent tests apart. `cargo xtask test` sets the variable,
 //! and prints in its summary how many skips there were, each of them, what was left out of which test, and the adapters.
 
@@ -59,6 +59,8 @@ pub struct Reported {
     pub skips: Vec<String>,
     /// Tests that left cases out: how many ran of how many.
     pub shares: BTreeMap<String, [usize; 2]>,
+    /// `<test>: <counts>` of tests that count more than themselves, in order of text.
+    pub results: Vec<String>,
     /// Distinct adapter names, in order of text.
     pub adapters: BTreeSet<String>,
 }
@@ -70,6 +72,8 @@ impl Reported {
         for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
             if let Some(adapter) = line.strip_prefix("ADAPTER:") {
                 reported.adapters.insert(adapter.trim().to_owned());
+            } else if let Some(result) = line.strip_prefix("RESULT:") {
+                reported.results.push(result.trim().to_owned());
             } else if let Some((test, [ran, all])) = line.strip_prefix("CASES:").and_then(share) {
                 let cases = reported.shares.entry(test.to_owned()).or_default();
                 *cases = [cases[0] + ran, cases[1] + all];
@@ -79,6 +83,7 @@ impl Reported {
             }
         }
         reported.skips.sort();
+        reported.results.sort();
         reported
     }
 }
@@ -218,9 +223,10 @@ mod tests {
     #[test]
     fn skips_and_adapters_are_told_apart() {
         let text = "SKIP: b: no f16\nADAPTER: llvmpipe\n\nCASES: x::c: 3 of 9\nSKIP: a: no EXR\nADAPTER: llvmpipe\nodd\n\
-                    CASES: x::c: 1 of 2\nCASES: d: x of 2\nCASES: e: 1 of 5\n";
+                    CASES: x::c: 1 of 2\nCASES: d: x of 2\nCASES: e: 1 of 5\nRESULT: f: 3 ok\n";
         let reported = Reported::from_text(text);
         assert_eq!(reported.skips, ["CASES: d: x of 2", "a: no EXR", "b: no f16", "odd"]);
+        assert_eq!(reported.results, ["f: 3 ok"]);
         assert_eq!(reported.cases(), [5, 16]);
         assert_eq!(reported.shares.into_iter().collect::<Vec<_>>(), [("e".into(), [1, 5]), ("x::c".into(), [4, 11])]);
         assert_eq!(reported.adapters.into_iter().collect::<Vec<_>>(), ["llvmpipe"]);

@@ -1,6 +1,7 @@
 //! The programs as their users run them.
 
 mod bad_input;
+mod combinations;
 #[cfg(unix)]
 mod corpus_run;
 mod lens;
@@ -8,6 +9,7 @@ mod lighting;
 mod looking;
 mod memory;
 mod outputs;
+mod scale;
 mod scene_files;
 mod stages;
 mod support;

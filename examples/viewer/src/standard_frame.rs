@@ -41,8 +41,7 @@ impl StandardFrame {
     fn settings(&self, features: &[(String, bool)], size_texels: [u32; 2]) -> Settings {
         let off = features.iter().filter(|(_, on)| !on).filter_map(|(name, _)| Effect::from_name(name));
         let asked = off.fold(self.frame.settings, Settings::without);
-        let drawn = asked.upscale.map_or(size_texels, |upscale| upscale.extent().texels(size_texels));
-        self.facts.apply(&asked.for_scene(&self.scene, drawn))
+        self.facts.apply(&asked.for_scene(&self.scene, asked.drawn_px(size_texels)))
     }
 }
 

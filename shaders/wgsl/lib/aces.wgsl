@@ -26,12 +26,11 @@ fn aces_glow(ap0: vec3<f32>, saturation: f32) -> f32 {
 fn aces_redness(ap0: vec3<f32>) -> f32 {
     let aside = 1.7320508 * (ap0.y - ap0.z);
     let along = 2.0 * ap0.x - ap0.y - ap0.z;
-    if abs(aside) + abs(along) < 1e-20 {
-        return 0.0;
-    }
-    let degrees = atan2(aside, along) * 57.29577951;
+    // No branch: where conditions read many uniforms, Mesa 22.3's software driver crashes.
+    let is_grey = abs(aside) + abs(along) < 1e-20;
+    let degrees = atan2(aside, select(along, 1.0, is_grey)) * 57.29577951;
     let weight = smoothstep(0.0, 1.0, 1.0 - abs(2.0 * degrees / 135.0));
-    return weight * weight;
+    return select(weight * weight, 0.0, is_grey);
 }
 
 /// Rec.2020 light of the scene to Rec.2020 light of a display; `brightness` is 1, or 1/0.6 for

@@ -1,26 +1,31 @@
 // A color for each stop of brightness, to see how much range a picture uses.
 
-/// Color of a whole number of stops from -5 about 18 % grey: black, blues, cyan at grey, greens
+/// Colors of whole numbers of stops from -5 about 18 % grey: black, blues, cyan at grey, greens
 /// above, yellow, red, magenta, white at ten.
+const STOPS: array<vec3<f32>, 16> = array<vec3<f32>, 16>(
+    vec3<f32>(0.0, 0.0, 0.0),
+    vec3<f32>(0.0, 0.0, 0.1647),
+    vec3<f32>(0.0, 0.0, 0.3647),
+    vec3<f32>(0.0, 0.0, 0.6647),
+    vec3<f32>(0.0, 0.0, 0.9647),
+    vec3<f32>(0.0, 0.9255, 0.9255),
+    vec3<f32>(0.0, 0.5647, 0.0),
+    vec3<f32>(0.0, 0.7843, 0.0),
+    vec3<f32>(1.0, 1.0, 0.0),
+    vec3<f32>(0.90588, 0.75294, 0.0),
+    vec3<f32>(1.0, 0.5647, 0.0),
+    vec3<f32>(1.0, 0.0, 0.0),
+    vec3<f32>(0.8392, 0.0, 0.0),
+    vec3<f32>(1.0, 0.0, 1.0),
+    vec3<f32>(0.6, 0.3333, 0.7882),
+    vec3<f32>(1.0, 1.0, 1.0),
+);
+
+/// Color of a whole number of stops from -5 about 18 % grey; the last for all above.
 fn display_range_color(index: u32) -> vec3<f32> {
-    switch index {
-        case 0u: { return vec3<f32>(0.0, 0.0, 0.0); }
-        case 1u: { return vec3<f32>(0.0, 0.0, 0.1647); }
-        case 2u: { return vec3<f32>(0.0, 0.0, 0.3647); }
-        case 3u: { return vec3<f32>(0.0, 0.0, 0.6647); }
-        case 4u: { return vec3<f32>(0.0, 0.0, 0.9647); }
-        case 5u: { return vec3<f32>(0.0, 0.9255, 0.9255); }
-        case 6u: { return vec3<f32>(0.0, 0.5647, 0.0); }
-        case 7u: { return vec3<f32>(0.0, 0.7843, 0.0); }
-        case 8u: { return vec3<f32>(1.0, 1.0, 0.0); }
-        case 9u: { return vec3<f32>(0.90588, 0.75294, 0.0); }
-        case 10u: { return vec3<f32>(1.0, 0.5647, 0.0); }
-        case 11u: { return vec3<f32>(1.0, 0.0, 0.0); }
-        case 12u: { return vec3<f32>(0.8392, 0.0, 0.0); }
-        case 13u: { return vec3<f32>(1.0, 0.0, 1.0); }
-        case 14u: { return vec3<f32>(0.6, 0.3333, 0.7882); }
-        default: { return vec3<f32>(1.0, 1.0, 1.0); }
-    }
+    // No branch: where conditions read many uniforms, Mesa 22.3's software driver crashes.
+    var stops = STOPS;
+    return stops[min(index, 15u)];
 }
 
 /// The color of the stop that the luminance of a Rec.2020 color is at, in Rec.2020.

@@ -12,9 +12,8 @@ const GAMUT_SLACK: f32 = 0.03;
 fn map_into_gamut(color: vec3<f32>) -> vec3<f32> {
     let least = min(color.x, min(color.y, color.z));
     let most = max(color.x, max(color.y, color.z));
-    if least >= -GAMUT_SLACK && most <= 1.0 + GAMUT_SLACK {
-        return color;
-    }
+    let is_inside = (least >= -GAMUT_SLACK) & (most <= 1.0 + GAMUT_SLACK);
+    // No branch: where conditions read many uniforms, Mesa 22.3's software driver crashes.
     let lab = oklab_from_rec709(color);
     let from_middle = lab.x - 0.5;
     let e = 0.5 + abs(from_middle) + 0.05 * length(lab.yz);
@@ -28,11 +27,9 @@ fn map_into_gamut(color: vec3<f32>) -> vec3<f32> {
         let c = rec709_from_oklab(mix(grey, lab, middle));
         let low = min(c.x, min(c.y, c.z));
         let high = max(c.x, max(c.y, c.z));
-        if low >= 0.0 && high <= 1.0 {
-            inside = middle;
-        } else {
-            outside = middle;
-        }
+        let is_valid = (low >= 0.0) & (high <= 1.0);
+        inside = select(inside, middle, is_valid);
+        outside = select(middle, outside, is_valid);
     }
-    return rec709_from_oklab(mix(grey, lab, inside));
+    return select(rec709_from_oklab(mix(grey, lab, inside)), color, is_inside);
 }

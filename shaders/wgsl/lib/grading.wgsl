@@ -26,10 +26,7 @@ fn tonal_shares(y: f32, ranges: vec4<f32>) -> vec3<f32> {
 
 /// x to the power p for p > 0, and x itself for x ≤ 0, where `pow` is undefined.
 fn positive_power(x: f32, p: f32) -> f32 {
-    if x <= 0.0 {
-        return x;
-    }
-    return pow(x, p);
+    return select(pow(abs(x), p), x, x <= 0.0);
 }
 
 /// (color · slope + offset)^power, channel by channel (ASC Color Decision List, 1.2).
@@ -76,13 +73,12 @@ fn toe_and_shoulder(x: f32, gamma: f32, middle: f32, scale: f32) -> f32 {
 /// 2021): as saturated as it was while that fits, and then mixed with what is left to white.
 fn scale_luminance(color: vec3<f32>, weights: vec3<f32>, luminance_out: f32) -> vec3<f32> {
     let peak = max(color.x, max(color.y, color.z));
-    if peak <= 1e-10 {
-        return vec3<f32>(luminance_out);
-    }
-    let ratio = max(color / peak, vec3<f32>(0.0));
+    // No branch: where conditions read many uniforms, Mesa 22.3's software driver crashes.
+    let ratio = max(color / max(peak, 1e-10), vec3<f32>(0.0));
     let luminance = dot(ratio, weights);
     let reserves = vec3<f32>(1.0) - ratio;
     let missing = max(luminance_out - luminance, 0.0);
     let added = missing / max(dot(reserves, weights), 1e-30);
-    return ratio * ((luminance_out - missing) / max(luminance, 1e-30)) + reserves * added;
+    let scaled = ratio * ((luminance_out - missing) / max(luminance, 1e-30)) + reserves * added;
+    return select(scaled, vec3<f32>(luminance_out), peak <= 1e-10);
 }

@@ -47,12 +47,11 @@ fn rec2020_from_ictcp(ictcp: vec3<f32>) -> vec3<f32> {
 /// The curve of one channel: a toe below 0.538, light as it is up to 1.11, a shoulder that ends
 /// at 2.96 and is cut off at 2.5 (250 nits).
 fn gt7_curve(x: f32) -> f32 {
-    if x >= 1.11 {
-        return 2.9633333 - 3.3733512 * exp(-0.53956835 * x);
-    }
+    // No branch: where conditions read many uniforms, Mesa 22.3's software driver crashes.
+    let shoulder = 2.9633333 - 3.3733512 * exp(-0.53956835 * x);
     let linear = smoothstep(0.0, 0.538, x);
     let toe = 0.538 * pow(max(x, 1e-10) / 0.538, 1.28);
-    return mix(toe, x, linear);
+    return select(mix(toe, x, linear), shoulder, x >= 1.11);
 }
 
 /// Rec.2020 light of the scene to Rec.2020 light of a display.

@@ -60,12 +60,12 @@ fn tone_map_neutral(color: vec3<f32>) -> vec3<f32> {
     let offset = select(0.04, lowest - 6.25 * lowest * lowest, lowest < 0.08);
     let shifted = c - offset;
     let peak = max(shifted.x, max(shifted.y, shifted.z));
-    if peak < 0.76 {
-        return shifted;
-    }
-    let new_peak = 1.0 - 0.24 * 0.24 / (peak + 0.24 - 0.76);
-    let white = 1.0 - 1.0 / (0.15 * (peak - new_peak) + 1.0);
-    return saturate(mix(shifted * (new_peak / peak), vec3<f32>(new_peak), white));
+    // No branch: where conditions read many uniforms, Mesa 22.3's software driver crashes.
+    let high = max(peak, 0.76);
+    let new_peak = 1.0 - 0.24 * 0.24 / (high + 0.24 - 0.76);
+    let white = 1.0 - 1.0 / (0.15 * (high - new_peak) + 1.0);
+    let compressed = saturate(mix(shifted * (new_peak / high), vec3<f32>(new_peak), white));
+    return select(compressed, shifted, peak < 0.76);
 }
 
 /// A curve of one channel by four numbers (Lottes, 2016), given as contrast, input scale and

@@ -21,13 +21,23 @@ pub fn adapter(name: &str) {
     line(&format!("ADAPTER: {name}"));
 }
 
+/// Prints the result of a test in a line; `cargo xtask test` collects it.
+pub fn result(test: &str, counts: &str) {
+    line(&format!("RESULT: {test}: {}", counts.replace('\n', " ")));
+}
+
 /// The variable that asks for all cases of all tests: `all`.
 const CASES: &str = "FRAMEGRAPH_TESTS";
+
+/// Returns whether all cases of all tests are asked for, as `cargo xtask test --all` does.
+pub fn is_all() -> bool {
+    std::env::var_os(CASES).is_some_and(|cases| cases == "all")
+}
 
 /// Of the cases of a test that draws for long, those that run: the first of each three, or all of them where
 /// `FRAMEGRAPH_TESTS=all` asks for that, as `cargo xtask test --all` does. What is left out is counted there.
 pub fn share<T>(cases: impl IntoIterator<Item = T>) -> Vec<T> {
-    let all = std::env::var_os(CASES).is_some_and(|cases| cases == "all");
+    let all = is_all();
     let cases: Vec<T> = cases.into_iter().collect();
     let count = cases.len();
     let run: Vec<T> = cases.into_iter().step_by(if all { 1 } else { 3 }).collect();

@@ -103,7 +103,7 @@ impl<'a> Studio<'a> {
         let lighting = Lighting::new(self.gpu, &environment, &setup.light, &light_cache(), &mut progress::silent)?;
         let moment = ViewSettings {
             camera: scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
-            size_px: drawn_px(&setup.settings, size_px),
+            size_px: setup.settings.drawn_px(size_px),
             ev100: setup.ev100,
             environment_intensity: if setup.sun.is_some() { 0.3 } else { 1.0 },
             shadows: setup.settings.shadows,
@@ -128,7 +128,7 @@ impl<'a> Studio<'a> {
     ) -> Outcome<(Frame<World>, Plan, framegraph::Texture)> {
         let mut frame = Frame::new();
         let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
-        let settings = settings.for_scene(scene, drawn_px(settings, size_px));
+        let settings = settings.for_scene(scene, settings.drawn_px(size_px));
         let io = standard(&mut frame, &settings, Target::from(output))?;
         frame.graph_mut().readback(io.output)?;
         let mut plan = Plan::new();
@@ -142,7 +142,7 @@ impl<'a> Studio<'a> {
     /// # Errors
     /// What the device refuses.
     pub fn change(&self, ready: &mut Ready, settings: &Settings) -> Outcome<()> {
-        (ready.moment.shadows, ready.moment.size_px) = (settings.shadows, drawn_px(settings, ready.size_px));
+        (ready.moment.shadows, ready.moment.size_px) = (settings.shadows, settings.drawn_px(ready.size_px));
         let light = &ready.world.lighting.image;
         let view = CameraView::new(&ready.scene, light, &Background::Environment, &ready.moment);
         ready.world.set_view(self.gpu, ViewId::MAIN, view)?;
@@ -337,11 +337,6 @@ impl Ready {
         };
         Ok(self.plan.step_ids().filter_map(of).collect())
     }
-}
-
-/// Width and height as drawn, where so many pixels are shown.
-fn drawn_px(settings: &Settings, shown_px: [u32; 2]) -> [u32; 2] {
-    settings.upscale.map_or(shown_px, |upscale| upscale.extent().texels(shown_px))
 }
 
 /// A picture of linear light of a display.

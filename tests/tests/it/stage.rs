@@ -144,7 +144,7 @@ pub fn view_of(scene: &Scene, light: &ImageLight, background: &Background, shot:
     let camera = scene.default_camera(f64::from(width) / f64::from(height));
     let moment = ViewSettings {
         camera,
-        size_px: settings.upscale.map_or([width, height], |upscale| upscale.extent().texels([width, height])),
+        size_px: settings.drawn_px([width, height]),
         ev100,
         environment_intensity: 1.0,
         shadows: settings.shadows,

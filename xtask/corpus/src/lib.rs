@@ -4,6 +4,7 @@
 //!
 //! # Map
 //! - [`args`]: the command line.
+//! - [`combinations`]: combinations of effects, options and parts of scenes instead of files.
 //! - [`files`]: the files below a folder.
 //! - [`child`]: one process under limits, and how it ended.
 //! - [`verdict`]: the verdict on a file, from how its process ended.
@@ -14,6 +15,7 @@
 
 pub mod args;
 pub mod child;
+pub mod combinations;
 pub mod files;
 pub mod font;
 pub mod record;

@@ -31,6 +31,9 @@ they cannot be, such tests are skipped.
 Tests of many cases that draw for long run a third of them, each of which stands
 for its neighbors; docs/time.md lists them.
 
+Every pair of effects, options and parts of scenes is drawn by a `render` process
+of its own; --all draws every triple. The summary has the counts of verdicts.
+
   --all         all of their cases, in release, and rustdoc of programs too
 
 The summary counts the tests, what those that share leave out, and repeats every
@@ -104,7 +107,7 @@ fn tests(mut command: std::process::Command, all: bool) -> Result<(Outcome, Tota
 /// What the command prints last.
 fn summary(outcomes: &[Outcome], totals: Totals, reported: &Reported, expected: &str) -> String {
     let Totals { runs, passed, failed, ignored } = totals;
-    let Reported { skips, shares, adapters } = reported;
+    let Reported { skips, shares, results, adapters } = reported;
     let mut text = String::from("== summary\n");
     for outcome in outcomes {
         text += &format!("  {outcome}\n");
@@ -120,6 +123,9 @@ fn summary(outcomes: &[Outcome], totals: Totals, reported: &Reported, expected: 
         for (test, [ran, all]) in shares {
             text += &format!("    {test}: {ran} of {all}\n");
         }
+    }
+    for result in results {
+        text += &format!("  {result}\n");
     }
     text += &format!("  skips: {}, known ones allowed: {}\n", skips.len(), tally::known_skips());
     for skip in skips {
@@ -167,13 +173,16 @@ mod tests {
     #[test]
     fn the_summary_repeats_counts_skips_and_adapter() {
         let totals = Totals { runs: 2, passed: 7, failed: 1, ignored: 0 };
-        let reported = Reported::from_text("SKIP: image: no f16\nCASES: looks: 3 of 9\nADAPTER: llvmpipe (Vulkan)\n");
+        let reported = Reported::from_text(
+            "SKIP: image: no f16\nCASES: looks: 3 of 9\nRESULT: pairs: 44 ok\nADAPTER: llvmpipe (Vulkan)\n",
+        );
         let text = summary(&outcomes(), totals, &reported, "Vulkan, software (lvp)");
         for part in [
             "clippy   FAILED     1.5 s     2.5 s of processor time  (exit status: 101)",
             "  8 s of processor time",
             "7 passed, 1 failed, 0 ignored, in 2 runs",
             "cases: 3 of 9 run in tests that share; --all runs all\n    looks: 3 of 9\n",
+            "\n  pairs: 44 ok\n",
             "skips: 1, known ones allowed: ",
             "\n    SKIP: image: no f16",
             "adapter: llvmpipe (Vulkan)\n",

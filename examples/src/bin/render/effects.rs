@@ -5,7 +5,7 @@ use crate::look::number;
 use framegraph_passes::transmission::MOST_GLASS_LAYERS;
 use framegraph_passes::upscale::{DynamicResolution, UpscaleFilter};
 use framegraph_passes::{
-    BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, TaaSettings, Upscale,
+    BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, Settings, TaaSettings, Upscale,
 };
 use lexopt::Parser;
 use std::path::PathBuf;
@@ -47,7 +47,7 @@ pub const HELP: &str = "
                        (while nothing moves, to the mean of all frames)
   --resolve linear|tone  the mean of a texel's samples: of light, or as a display shows them, which keeps edges before what
                        is bright smooth where bloom, --dof or --taa read the radiance (linear)
-  --scale X            draw X times as wide and high as shown, 0.25 to 1 (1)
+  --scale X            draw X times as wide and high as shown, 0.25 to 1 (1); --linear-out has the drawn size
   --upscale bilinear|fsr  how the picture is made larger then (fsr)
   --sharpness X        how much it is sharpened then, 0 to 1 (0.9)
   --dynamic-resolution MS[:LEAST]  in --turntable and --sequence, draw each frame as large as those before let it be, so that
@@ -107,9 +107,15 @@ impl Default for Effects {
 }
 
 impl Effects {
-    /// Width and height as drawn, in pixels, where so many are shown.
+    /// Returns the width and height in which a picture of `shown_px` is drawn, in pixels.
     pub fn drawn_px(&self, shown_px: [u32; 2]) -> [u32; 2] {
-        self.upscale.map_or(shown_px, |upscale| upscale.extent().texels(shown_px))
+        Settings { upscale: self.upscale, ..Settings::DEFAULT }.drawn_px(shown_px)
+    }
+
+    /// Returns how a frame that is drawn at `percent` of the width and height is enlarged; none for a whole frame.
+    pub fn enlarging(&self, percent: f64) -> Option<Upscale> {
+        let smaller = Upscale { percent: percent.round() as u16, ..self.upscale.unwrap_or_default() };
+        (smaller.percent < 100).then_some(smaller)
     }
 
     /// Takes an option of this file; false for others.
@@ -137,8 +143,7 @@ impl Effects {
             "fog" => self.fog = FogSettings::from_text(&value()?).map_err(|told| format!("--fog {told}"))?,
             "taa" => self.taa = TaaSettings::from_text(&value()?).map_err(|told| format!("--taa {told}"))?,
             "scale" => {
-                let percent = (100.0 * number("--scale", &value()?, 0.25..=1.0)?).round() as u16;
-                self.upscale.get_or_insert_default().percent = percent;
+                self.upscale = self.enlarging(f64::from(100.0 * number("--scale", &value()?, 0.25..=1.0)?));
             }
             "upscale" => {
                 let text = value()?;

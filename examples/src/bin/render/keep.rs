@@ -48,7 +48,7 @@ pub struct Own<'a> {
 /// # Errors
 /// What a pass refuses, or the device.
 pub fn declare(settings: &Settings, facts: &Facts, linear: bool, own: Own<'_>) -> Result<Declared, Failure> {
-    let (mut frame, mut imports, mut handles) = (Frame::new(), Imports::new(), Handles::default());
+    let (mut frame, mut imports, mut handles) = (Frame::new(), Imports::new(), Handles::main(settings));
     facts.note(frame.graph_mut());
     if let Some(dirt) = own.dirt.filter(|_| settings.bloom.is_some()) {
         handles = dirt.declare(&mut frame, handles, &mut imports);

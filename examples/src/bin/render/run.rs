@@ -276,7 +276,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     outputs.write(&args.out, |file| encode_png(file, args.size_px, &picture)).map_err(input)?;
     if let Some(path) = &args.linear_out {
         let light = fetch(io.hdr)?.rgba();
-        outputs.write(path, |file| encode_exr(file, args.effects.drawn_px(args.size_px), &light)).map_err(input)?;
+        let drawn_px = prepared.settings.drawn_px(args.size_px);
+        outputs.write(path, |file| encode_exr(file, drawn_px, &light)).map_err(input)?;
     }
     for (path, text) in [(&args.plan, dump::text as fn(&Plan) -> String), (&args.dot, dump::dot)] {
         if let Some(path) = path {

@@ -9,7 +9,7 @@ use framegraph::{Plan, Scratch};
 use framegraph_passes::measure::Measuring;
 use framegraph_passes::upscale::DynamicResolution;
 use framegraph_passes::view::ViewSettings;
-use framegraph_passes::{CameraView, FrameIndex, PreparedScene, Upscale, ViewId};
+use framegraph_passes::{CameraView, FrameIndex, PreparedScene, Settings, ViewId};
 use framegraph_scene::Scene;
 use framegraph_scene::picture::encode_png;
 use framegraph_wgpu::{Executor, read_texture};
@@ -58,10 +58,10 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         let mut seen = around(&prepared.seen, center, turned);
         if let Some(dynamic) = &args.effects.dynamic {
             let next = dynamic.next_percent(percents.last().copied().unwrap_or(dynamic.most_percent), &times_ms);
-            let asked = args.effects.upscale.unwrap_or_default();
-            let smaller = Upscale { percent: next.round() as u16, ..asked };
-            prepared.asked.upscale = (smaller.percent < 100).then_some(smaller);
-            seen.size_px = smaller.extent().texels(args.size_px);
+            let asked = Settings { upscale: args.effects.enlarging(next), ..prepared.asked };
+            seen.size_px = asked.drawn_px(args.size_px);
+            // A smaller picture has fewer levels.
+            prepared.asked = asked.for_scene(&prepared.loaded.scene, seen.size_px);
             percents.push(next);
         }
         let light = &prepared.world.lighting.image;

@@ -216,7 +216,7 @@ impl Running {
             ShadowSettings { local_layers: local_layers(scene, camera.eye, &own), ..own }
         });
         let shadows = shadows.filter(|shadows| shadows.layers() > 0);
-        let drawn_px = drawn_px(&settings, size_px);
+        let drawn_px = settings.drawn_px(size_px);
         let settings = Settings { shadows, moving: asked.playing, ..settings }.for_scene(scene, drawn_px);
         self.asked = settings;
         if asked.forced {
@@ -280,7 +280,7 @@ impl Running {
         }
         let seen = ViewSettings {
             camera,
-            size_px: drawn_px(settings, size_px),
+            size_px: settings.drawn_px(size_px),
             ev100: look.exposure.ev100(self.loaded.metered_ev100),
             environment_intensity: look.environment_intensity,
             shadows: settings.shadows,
@@ -392,11 +392,6 @@ impl Running {
         };
         (Arc::new(planner), question)
     }
-}
-
-/// The size that is drawn of a frame that may be made larger.
-fn drawn_px(settings: &Settings, size_px: [u32; 2]) -> [u32; 2] {
-    settings.upscale.map_or(size_px, |upscale| upscale.extent().texels(size_px))
 }
 
 /// A loop that writes down the times of its frames.
