@@ -2,7 +2,7 @@
 //!
 //! # Map
 //! - [`cover`]: covering arrays of any factors.
-//! - [`factors`]: the factors of frames and scenes, what excludes what, and what is known to crash.
+//! - [`factors`]: the factors of frames and scenes, and the pairs that exclude each other.
 //! - [`scene`]: small scenes of any parts.
 //! - [`run`](fn@run): all cases, on several cores.
 

@@ -141,53 +141,6 @@ const REFUSED: [[&str; 2]; 10] = [
     ["--debug immediate", "--alias none"],
 ];
 
-/// A combination that is known to end the driver, and is being mended. Its cases run, and their crashes are counted apart.
-#[derive(Debug)]
-pub struct Known {
-    /// Factors by name, with the levels that take part.
-    pub levels: &'static [(&'static str, &'static [Choice])],
-    /// Description of the fault.
-    pub fault: &'static str,
-}
-
-impl Known {
-    /// Returns whether a case has the combination.
-    #[must_use]
-    pub fn is_in(&self, case: &[usize]) -> bool {
-        let has = |name: &str, levels: &[Choice]| {
-            let at = FACTORS.iter().position(|factor| factor.name == name);
-            at.is_some_and(|at| levels.contains(&FACTORS[at].levels[case[at]]))
-        };
-        self.levels.iter().all(|(name, levels)| has(name, levels))
-    }
-}
-
-/// Combinations that are known to crash: fog, lists of lights, and one cascade of the sun.
-pub const KNOWN: [Known; 2] = [
-    Known {
-        levels: &[FOG, SUN, SUN_SHADOWS, ONE_CASCADE, ("light lists", &[O("--lights froxels")])],
-        fault: FOG_FAULT,
-    },
-    Known {
-        levels: &[
-            FOG,
-            SUN,
-            SUN_SHADOWS,
-            ONE_CASCADE,
-            ("light lists", &[None]),
-            ("punctual lights", &[P(Part::EightLights)]),
-        ],
-        fault: FOG_FAULT,
-    },
-];
-
-const FOG_FAULT: &str = "Mesa 22.3's software driver follows a branch to a fourth uniform buffer";
-const FOG: (&str, &[Choice]) = ("fog", &[O("--fog on"), O("--fog on:color=100:50:20,glow=4,cut-off=50,start=1")]);
-const SUN: (&str, &[Choice]) = ("sun", &[None, O("--sun 1,2,1:60000:4")]);
-const SUN_SHADOWS: (&str, &[Choice]) =
-    ("shadows", &[None, O("--shadows dpcf"), O("--shadows pcss"), O("--shadows vsm"), O("--shadows evsm")]);
-const ONE_CASCADE: (&str, &[Choice]) = ("cascades", &[None]);
-
 /// Returns all combinations of the factors.
 #[must_use]
 pub fn space() -> Space {
@@ -217,14 +170,10 @@ mod tests {
     use crate::combinations::cover::cover;
 
     #[test]
-    fn refused_options_and_known_factors_are_among_the_factors() {
+    fn refused_options_are_among_the_factors() {
         for option in REFUSED.iter().flatten() {
             let (_, level) = level(option).unwrap_or_else(|| panic!("{option}: no factor has it"));
             assert!(level > 0, "{option}: the first level goes with everything");
-        }
-        for (name, levels) in KNOWN.iter().flat_map(|known| known.levels) {
-            let factor = FACTORS.iter().find(|factor| factor.name == *name).expect(name);
-            assert!(levels.iter().all(|level| factor.levels.contains(level)), "{name}");
         }
     }
 

@@ -1,7 +1,7 @@
 //! All cases of a covering array, each rendered by its own process.
 
 use super::cover::cover;
-use super::factors::{KNOWN, parts_and_options, space};
+use super::factors::{parts_and_options, space};
 use super::scene;
 use crate::child::{self, Limits};
 use crate::verdict::{Judged, Verdict, judge};
@@ -45,22 +45,15 @@ pub struct Rendered {
     pub line: String,
     /// Verdict with its reason.
     pub judged: Judged,
-    /// The fault, where the case has a combination that is known to crash.
-    pub known: Option<&'static str>,
     /// Wall-clock time.
     pub took: Duration,
 }
 
 impl Rendered {
-    /// Returns whether the case is a finding: any verdict but ok, unless its crash is known. Refusals are findings too, since the
-    /// array has no case that is to be refused.
+    /// Returns true for any verdict but ok. Refusals are findings too, since the array has no case that is to be refused.
     #[must_use]
     pub fn is_fault(&self) -> bool {
-        match self.judged.verdict {
-            Verdict::Ok => false,
-            Verdict::Crashed => self.known.is_none(),
-            _ => true,
-        }
+        self.judged.verdict != Verdict::Ok
     }
 }
 
@@ -84,10 +77,8 @@ impl Outcome {
     #[must_use]
     pub fn counts(&self) -> String {
         let words = Verdict::ALL.iter().map(|verdict| format!("{} {}", self.count(*verdict), verdict.word()));
-        let known =
-            self.cases.iter().filter(|case| case.judged.verdict == Verdict::Crashed && !case.is_fault()).count();
         let (done, counts) = (self.cases.len(), words.collect::<Vec<_>>().join(", "));
-        format!("{done} of {} cases: {counts}; {known} of the crashes are known", self.total)
+        format!("{done} of {} cases: {counts}", self.total)
     }
 
     /// Returns the cases that are findings.
@@ -100,10 +91,9 @@ impl fmt::Display for Outcome {
     /// The counts in a line, then each case that is not ok with its command line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.counts())?;
-        for case in self.cases.iter().filter(|case| case.judged.verdict != Verdict::Ok) {
-            let known = case.known.map(|fault| format!(" (known: {fault})")).unwrap_or_default();
+        for case in self.faults() {
             let (number, Judged { verdict, message, .. }) = (case.number, &case.judged);
-            writeln!(f, "  case {number}, {}{known}: {message}\n    render {}", verdict.word(), case.line)?;
+            writeln!(f, "  case {number}, {}: {message}\n    render {}", verdict.word(), case.line)?;
         }
         Ok(())
     }
@@ -173,7 +163,6 @@ fn one(options: &Options, number: usize, case: &[usize], scratch: &Path) -> Resu
             words.drain(at..at + 2);
             continue;
         }
-        let known = KNOWN.iter().find(|known| known.is_in(case)).map(|known| known.fault);
-        return Ok(Some(Rendered { number, line: line.join(" "), judged, known, took: ended.took }));
+        return Ok(Some(Rendered { number, line: line.join(" "), judged, took: ended.took }));
     }
 }
