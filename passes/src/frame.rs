@@ -209,6 +209,11 @@ impl Settings {
         }
     }
 
+    /// Returns handles of the main view in the size that it is drawn in ([`extent`](Self::extent)), without textures.
+    pub fn handles(&self) -> Handles {
+        Handles::for_view(crate::view::ViewId::MAIN, self.extent())
+    }
+
     /// Returns the size of the view's pictures: the frame's, or the share of it that [`Settings::upscale`] names.
     pub fn extent(&self) -> Extent {
         self.upscale.map_or(Extent::FRAME, |upscale| upscale.extent())
@@ -266,7 +271,7 @@ pub fn standard<W: StandardWorld + ?Sized>(
     settings: &Settings,
     into: Target,
 ) -> Result<FrameIo, StageError> {
-    let handles = stages(settings).declare(frame, Handles::main(settings), into)?;
+    let handles = stages(settings).declare(frame, settings.handles(), into)?;
     let (hdr, output) = (handles.get(Slot::HDR)?, handles.get(Slot::PICTURE)?);
     Ok(FrameIo { hdr, output, measured: MeasuredTextures::of(&handles) })
 }

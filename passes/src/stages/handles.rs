@@ -2,7 +2,6 @@
 
 use super::error::StageError;
 use super::slot::Slot;
-use crate::frame::Settings;
 use crate::view::ViewId;
 use framegraph::{Extent, Graph, Target, Texture};
 
@@ -41,11 +40,6 @@ impl Handles {
     /// A view with pictures of that size, and no textures yet.
     pub fn for_view(view: ViewId, extent: Extent) -> Self {
         Self { view, extent, slots: Vec::with_capacity(8), stage: CALLER, target: Target::New }
-    }
-
-    /// Handles of the main view in the size that the settings draw it in ([`Settings::extent`]), without textures.
-    pub fn main(settings: &Settings) -> Self {
-        Self::for_view(ViewId::MAIN, settings.extent())
     }
 
     /// The same with a texture from the start; a shadow map that several views share, say.

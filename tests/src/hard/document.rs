@@ -25,6 +25,7 @@ const LOGARITHM: &str = "this driver's logarithm of zero and of less is finite; 
 const SWALLOWED: &str = "the limit around it makes a number of what is none on this driver; WGSL leaves it open";
 const ROUNDING: &str = "for what rounding may carry past the limit; no input is known that it does so to here";
 const TWICE: &str = "what follows holds the same values, by WGSL's rules; the guard says it without them";
+const UNCHOSEN: &str = "a select behind it does not choose what is computed from it";
 const WHOLE: &str = "for the middle, whose share is 1 whatever the angle";
 const BEFORE: &str = "for ways that end before fog begins, which are in none whatever its mean density";
 
@@ -32,8 +33,9 @@ const BEFORE: &str = "for ways that end before fog begins, which are in none wha
 pub const UNNOTICED: &[(&str, &str, &str)] = &[
     ("aces::aces_glow", "max(chroma2, 0.0)", ROUNDING),
     ("aces::aces_glow", "max(brightness, 1e-6)", SWALLOWED),
-    ("aces::aces_redness", "if abs(aside) + abs(along) < 1e-20", SWALLOWED),
+    ("aces::aces_redness", "select(along, 1.0, is_grey)", UNCHOSEN),
     ("agx::agx_look", "max(color * slope, vec3<f32>(1e-10))", LOGARITHM),
+    ("display_range::display_range_color", "min(index, 15u)", TWICE),
     ("dfg_integration::dfg_cloth", "saturate(dot(view, h))", ROUNDING),
     ("dfg_integration::dfg_cloth", "min(2.0 * voh * h.z - nov, 1.0)", ROUNDING),
     ("dfg_integration::dfg_ggx", "saturate(dot(view, h))", ROUNDING),
@@ -47,6 +49,7 @@ pub const UNNOTICED: &[(&str, &str, &str)] = &[
     ("froxel::froxel_slice", "select(ahead_m, 0.0, is_nowhere)", SWALLOWED),
     ("gamut::map_into_gamut", "max(e * e - 2.0 * abs(from_middle), 0.0)", ROUNDING),
     ("grading::scale_luminance", "max(luminance, 1e-30)", ROUNDING),
+    ("grading::scale_luminance", "max(peak, 1e-10)", SWALLOWED),
     ("grading::vibrance", "clamp(color.x - max(color.y, color.z), -20.0, 20.0)", SWALLOWED),
     ("gt7::nits_from_pq", "max(x - 0.8359375, vec3<f32>(0.0))", LOGARITHM),
     ("gtao::sector_bits", "clamp(floor(32.0 * low + jitter), 0.0, 32.0)", TWICE),
@@ -63,7 +66,9 @@ pub const UNNOTICED: &[(&str, &str, &str)] = &[
     ("sao::sao_term", "min(uu, 1.0)", ROUNDING),
     ("screen_ray::ray_length_m", "max(way_z, 1e-9)", TWICE),
     ("table::table_coordinates", "min(color, vec3<f32>(65504.0))", TWICE),
-    ("tone_map::tone_map_neutral", "saturate(mix(shifted * (new_peak / peak), vec3<f32>(new_peak), white))", ROUNDING),
+    ("tone_map::tone_map_neutral", "max(peak, 0.76)", UNCHOSEN),
+    ("tone_map::tone_map_neutral", "saturate(mix(shifted * (new_peak / high), vec3<f32>(new_peak), white))", ROUNDING),
+    ("tone_map::tone_map_neutral", "select(compressed, shifted, peak < 0.76)", TWICE),
     ("vignette::edge_share", "saturate(abs(from_middle) * shape.x * vec2<f32>(shape.y, 1.0))", TWICE),
     (
         "aces::tone_aces",

@@ -146,7 +146,7 @@ fn rendered(
 
     let mut frame: Frame<World> = Frame::new();
     let codes = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
-    let wanted = wanted(&stages(&settings).declare(&mut frame, Handles::main(&settings), Target::from(codes))?)?;
+    let wanted = wanted(&stages(&settings).declare(&mut frame, settings.handles(), Target::from(codes))?)?;
     frame.graph_mut().readback(wanted)?;
     let [width, height] = stated.resolution;
     let mut plan = Plan::new();

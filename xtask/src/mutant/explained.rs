@@ -28,8 +28,8 @@ pub const EXPLAINED: &[Explained] = &[
     },
     Explained {
         file: "shaders/wgsl/pass/flare.wgsl",
-        before: "textureSampleLevel(glow, glow_sampler, uv + d, 0.0).r,",
-        after: "textureSampleLevel(glow, glow_sampler, uv + d, 0.1).r,",
+        before: "return textureSampleLevel(glow, glow_sampler, at, 0.0).rgb;",
+        after: "return textureSampleLevel(glow, glow_sampler, at, 0.1).rgb;",
         why: "What is bound is one level, and there is none between it and the next.",
     },
     Explained {

@@ -6,7 +6,7 @@ use crate::run::{Failure, Frames, Prepared, device, input, render};
 use framegraph::{Extent, Format, Plan, Scratch, Target, TextureDesc};
 use framegraph_passes::measure::MeasuredTextures;
 use framegraph_passes::shadow::{KeptShadows, Redraw, ViewShadows, maps_slot};
-use framegraph_passes::{Facts, FrameIo, Handles, Settings, Slot, ViewId, World, stages};
+use framegraph_passes::{Facts, FrameIo, Settings, Slot, ViewId, World, stages};
 use framegraph_wgpu::{Frame, Gpu, Imports};
 
 /// Shadow maps that outlive a frame.
@@ -48,7 +48,7 @@ pub struct Own<'a> {
 /// # Errors
 /// What a pass refuses, or the device.
 pub fn declare(settings: &Settings, facts: &Facts, linear: bool, own: Own<'_>) -> Result<Declared, Failure> {
-    let (mut frame, mut imports, mut handles) = (Frame::new(), Imports::new(), Handles::main(settings));
+    let (mut frame, mut imports, mut handles) = (Frame::new(), Imports::new(), settings.handles());
     facts.note(frame.graph_mut());
     if let Some(dirt) = own.dirt.filter(|_| settings.bloom.is_some()) {
         handles = dirt.declare(&mut frame, handles, &mut imports);

@@ -14,8 +14,9 @@ pub type Alternatives = Vec<String>;
 const FROXELS: &str = "tiles: 144, slices: 16, near_m: 5.0, far_m: 100.0";
 
 /// Fields that are `None` or hold something.
-const OPTIONS: [&str; 18] = [
+const OPTIONS: [&str; 19] = [
     "settings.shading.specular_aa",
+    "settings.shading.light_fade_m",
     "settings.shadows",
     "settings.shadows.far_m",
     "settings.shadows.bulb_m",
@@ -36,7 +37,7 @@ const OPTIONS: [&str; 18] = [
 ];
 
 /// Fields that are one of some variants.
-const VARIANTS: [(&str, &[&str]); 27] = [
+const VARIANTS: [(&str, &[&str]); 29] = [
     ("quality", &["Low", "High", "Ultra"]),
     ("settings.samples", &["1", "4"]),
     ("settings.shadows.moments.samples", &["1", "4"]),
@@ -45,6 +46,8 @@ const VARIANTS: [(&str, &[&str]); 27] = [
     ("settings.shading.table", &["Exact", "Fast"]),
     ("settings.shading.bands", &["Two", "Three", "Five"]),
     ("settings.shading.window", &["None", "Hann", "Sinc", "Laplacian(lambda: 0.01)"]),
+    ("settings.shading.transmission_blur", &["Distance", "Angle"]),
+    ("settings.shading.light_window", &["Gltf", "Filament"]),
     ("settings.shadows.filter", &["Pcf", "Dpcf", "Pcss", "Vsm", "Evsm"]),
     ("settings.shadows.splits", &["Uniform", "Logarithmic", "Practical(0.8)", "At(0.125, 0.25, 0.5)"]),
     ("settings.shadows.fit", &["Tight(lispsm: true)", "Stable"]),
@@ -110,6 +113,7 @@ fn template() -> &'static Node {
 fn everything() -> Settings {
     let mut s = Effect::ALL.into_iter().fold(Settings::DEFAULT, Settings::with);
     s.upscale = Some(Upscale::DEFAULT);
+    s.shading.light_fade_m = Some(100.0);
     if let Some(shadows) = &mut s.shadows {
         (shadows.far_m, shadows.bulb_m) = (Some(50.0), Some(0.1));
     }
