@@ -104,7 +104,7 @@ struct Known {
 }
 
 /// Every skip that is known. `cargo xtask test` fails for any other, and where no test named an adapter.
-const KNOWN: [Known; 12] = [
+const KNOWN: [Known; 13] = [
     Known {
         tests: &[
             "a_live_frame_is_drawn_in_a_window",
@@ -115,6 +115,11 @@ const KNOWN: [Known; 12] = [
         reason: "there is no Xvfb",
     },
     Known { tests: &["several_layers_are_drawn_into_at_once"], reason: "does not draw into several layers" },
+    // Desktop GPUs sample BC7, mobile ones ETC2 and ASTC.
+    Known {
+        tests: &["compressed_textures_draw_their_source_picture", "every_level_is_sampled_as_rgba"],
+        reason: "this device does not sample",
+    },
     Known { tests: &["misuse_does_not_compile"], reason: "the words are those of Rust" },
     // A model too large to be committed.
     Known { tests: &["scene", "the_helmet_agrees_with_rays"], reason: "tests/assets/models/FlightHelmet" },
@@ -181,7 +186,7 @@ impl Known {
     }
 }
 
-/// How many skips would be known, if all were seen at once.
+/// Number of skips that are known.
 pub fn known_skips() -> usize {
     KNOWN.iter().map(|known| known.tests.len()).sum()
 }
