@@ -1,47 +1,49 @@
-//! Objects of wgpu, made once for each description and kept from frame to frame.
+//! Caches of wgpu objects by their descriptions, kept from frame to frame.
 //!
-//! Threads that record share a cache by reference. What earlier frames made is found without a lock and without an
-//! allocation; what this frame makes is put aside behind a lock, and joins the rest when the next frame begins.
-//! Who asks for the same in each frame keeps what it got ([`Last`]), and finds it again without a hash.
+//! Recording threads share a cache by reference. Objects of earlier frames are found without a lock and without an
+//! allocation. Objects created in the current frame are stored behind a lock and moved to the main table when the next
+//! frame begins.
+//!
+//! A caller with the same request in every frame keeps a [`LastEntry`], which finds the object again without hashing.
 
 use crate::hash::Keyed;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-/// Hits and misses of a cache, since it was made.
+/// Hits and misses of a cache since its creation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CacheCounts {
-    /// Requests that found what they asked for.
+    /// Number of requests answered from the cache.
     pub hits: u64,
-    /// Requests for which an object was made.
+    /// Number of objects created.
     pub created: u64,
 }
 
-/// Objects `V` by their descriptions `K`. See the [module](self).
+/// Cache of objects `V` by their descriptions `K`. See the [module documentation](self).
 #[derive(Debug)]
 pub(crate) struct Cache<K, V> {
-    /// What was there when the frame began.
+    /// Objects that existed when the frame began.
     known: Table<K, V>,
-    /// What was made since.
+    /// Objects created since the frame began.
     fresh: Mutex<Table<K, V>>,
     frame: u64,
     hits: AtomicU64,
     created: AtomicU64,
 }
 
-/// By hash, so that a description need not be owned to be looked up; equal hashes are told apart by comparing.
+/// Maps hashes to entries, so that a lookup needs no owned description. Entries with equal hashes are compared.
 type Table<K, V> = HashMap<u64, Vec<Arc<Entry<K, V>>>, Keyed>;
 
 #[derive(Debug)]
 struct Entry<K, V> {
     key: K,
     value: V,
-    /// The frame that asked for it last.
+    /// Number of the last frame that requested the object.
     used: AtomicU64,
 }
 
-/// What a request got last. It keeps nothing alive: what the cache drops is gone, and asked for anew.
+/// Weak reference to the entry that a request last returned. Expires when the cache drops the entry.
 #[derive(Debug)]
 pub(crate) struct Last<K, V>(Weak<Entry<K, V>>);
 
@@ -64,15 +66,15 @@ impl<K, V> Default for Cache<K, V> {
 }
 
 impl<K, V: Clone> Cache<K, V> {
-    /// Requests that found their object, and objects made, since the beginning.
+    /// Returns the number of hits and of created objects.
     pub(crate) fn counts(&self) -> CacheCounts {
         CacheCounts { hits: self.hits.load(Ordering::Relaxed), created: self.created.load(Ordering::Relaxed) }
     }
 
-    /// The object whose description has this `hash` and `is` the one asked for, or what `make` makes.
+    /// Returns the object with this `hash` for which `is` returns true. If there is none, creates it with `make`.
     ///
     /// # Errors
-    /// What `make` returns; nothing is kept then.
+    /// Returns the error of `make`; the cache is unchanged in that case.
     pub(crate) fn get<E>(
         &self,
         hash: u64,
@@ -82,10 +84,10 @@ impl<K, V: Clone> Cache<K, V> {
         self.entry(hash, &is, make).map(|entry| entry.value.clone())
     }
 
-    /// As [`Cache::get`], by one that asks in each frame: where `is` still holds of what it got `last`, nothing is hashed.
+    /// Returns an object like [`Cache::get`], but tries `last` first. Computes the hash only if `is` rejects `last`.
     ///
     /// # Errors
-    /// As [`Cache::get`].
+    /// Fails like [`Cache::get`].
     pub(crate) fn again<E>(
         &self,
         last: &mut Last<K, V>,
@@ -101,7 +103,7 @@ impl<K, V: Clone> Cache<K, V> {
         Ok(entry.value.clone())
     }
 
-    /// What a request got last, where `is` holds of it.
+    /// Returns the object in `last` if it still exists and `is` accepts it.
     pub(crate) fn last(&self, last: &Last<K, V>, is: impl Fn(&K) -> bool) -> Option<V> {
         let entry = last.0.upgrade().filter(|entry| is(&entry.key))?;
         self.note(&entry);
@@ -117,7 +119,7 @@ impl<K, V: Clone> Cache<K, V> {
         if let Some(entry) = self.find(&self.known, hash, is) {
             return Ok(entry);
         }
-        // Held while the object is made: two threads that ask for one description get one object.
+        // The lock is held during creation, so that two threads with equal requests get one object.
         let mut fresh = self.fresh.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(entry) = self.find(&fresh, hash, is) {
             return Ok(entry);
@@ -135,7 +137,7 @@ impl<K, V: Clone> Cache<K, V> {
         Some(Arc::clone(entry))
     }
 
-    /// Notes that a frame asked for it.
+    /// Marks the entry as used by the current frame.
     fn note(&self, entry: &Entry<K, V>) {
         // Only the first request of a frame writes to the entry.
         if entry.used.load(Ordering::Relaxed) != self.frame {
@@ -144,28 +146,28 @@ impl<K, V: Clone> Cache<K, V> {
         self.hits.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Begins a frame, and now and then drops objects that no frame asked for during `max_age` frames.
+    /// Begins a frame. Every `max_age` frames, drops objects that were not requested during the last `max_age` frames.
     pub(crate) fn begin_frame(&mut self, max_age: u64) {
         self.adopt();
         self.frame += 1;
         let frame = self.frame;
-        // Looking through all of them costs more than keeping a few for longer.
+        // Checking all entries in every frame would cost more than keeping a few for longer.
         if frame.is_multiple_of(max_age.max(1)) {
             self.retain_entries(|entry| frame - entry.used.load(Ordering::Relaxed) <= max_age);
         }
     }
 
-    /// Drops the objects whose descriptions `stays` refuses.
+    /// Drops the objects whose descriptions `stays` rejects.
     pub(crate) fn retain(&mut self, stays: impl Fn(&K) -> bool) {
         self.adopt();
         self.retain_entries(|entry| stays(&entry.key));
     }
 
-    /// What `make` makes in the place of each object whose description `is` one of those meant, in the order that
-    /// [`Cache::replace`] wants.
+    /// Creates a replacement with `make` for every object whose description `is` accepts. Pass the result to
+    /// [`Cache::replace`].
     ///
     /// # Errors
-    /// The first that `make` returns.
+    /// Returns the first error of `make`.
     pub(crate) fn remade<E>(
         &mut self,
         is: impl Fn(&K) -> bool,
@@ -178,11 +180,11 @@ impl<K, V: Clone> Cache<K, V> {
         meant.map(|(hash, (index, entry))| Ok((hash, index, make(&entry.key)?))).collect()
     }
 
-    /// Puts what [`Cache::remade`] returned in the place of what was there.
+    /// Replaces objects with the results of [`Cache::rebuild`].
     pub(crate) fn replace(&mut self, remade: Vec<(u64, usize, V)>) {
         for (hash, index, value) in remade {
             let Some(entries) = self.known.get_mut(&hash).filter(|entries| index < entries.len()) else { continue };
-            // Another entry, so that nobody finds the old value as the last that it got. No thread holds one meanwhile.
+            // A new entry invalidates each `LastEntry`. No thread holds the old one here.
             if let Some(Entry { key, used, .. }) = Arc::into_inner(entries.remove(index)) {
                 entries.insert(index, Arc::new(Entry { key, value, used }));
             }
@@ -194,7 +196,7 @@ impl<K, V: Clone> Cache<K, V> {
         self.retain(|_| false);
     }
 
-    /// Puts what was made in the frame to the rest.
+    /// Moves the objects created in the last frame to the main table.
     fn adopt(&mut self) {
         let Self { known, fresh, .. } = self;
         let fresh = fresh.get_mut().unwrap_or_else(PoisonError::into_inner);
@@ -214,7 +216,7 @@ mod tests {
     use super::*;
     use std::convert::Infallible;
 
-    /// Asks for a word; its hash is its length, so that words of one length have to be told apart.
+    /// Requests a word. Its hash is its length, so words of equal length collide.
     fn get(cache: &Cache<String, usize>, word: &str) -> usize {
         let make = || Ok::<_, Infallible>((word.to_owned(), cache.counts().created as usize));
         cache.get(word.len() as u64, |known| known == word, make).unwrap_or_else(|never| match never {})
@@ -238,7 +240,7 @@ mod tests {
         assert_eq!(get(&cache, "b"), 4);
     }
 
-    /// As `get`, with what it got last; a hash of its own tells whether it was hashed for.
+    /// Requests a word through `last`. Also returns whether the hash was computed.
     fn again(cache: &Cache<String, usize>, last: &mut Last<String, usize>, word: &str) -> (usize, bool) {
         let mut hashed = false;
         let hash = || {

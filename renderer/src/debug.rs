@@ -1,4 +1,4 @@
-//! Finding faults of passes and plans: switches to bisect with, and loud contents where nothing was written.
+//! Debugging of passes and plans: modes that turn off optimizations, and poisoning of undefined contents.
 
 mod modes;
 pub(crate) mod poison;

@@ -1,4 +1,4 @@
-//! The device: which adapter, what it offers, the errors that it reports, and reading back from it.
+//! The device: adapter selection, capabilities, error reporting and readback.
 
 pub(crate) mod adapter;
 pub(crate) mod attached_layers;

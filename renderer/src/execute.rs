@@ -1,4 +1,4 @@
-//! Executing a plan: its steps as render and compute passes, and what recorders work with.
+//! Execution of a plan: its steps as render and compute passes, and the recording context.
 
 pub(crate) mod attached;
 pub(crate) mod attachments;

@@ -1,9 +1,12 @@
-//! A frame as its author sees it: passes that declare what they touch and record what they draw.
+//! A frame: declared passes together with their recorders.
 //!
-//! [`Frame`] is a [`framegraph::Graph`] with a recorder beside each pass. Declare it, compile its graph, execute it; anew
-//! each frame ([`Frame::reset`]) or again and again while nothing changes. What recorders need of the moment (camera, draw
-//! lists, scene on the GPU) is no part of it: they are handed the caller's `W`, the *world*, when the frame is executed,
-//! so passes hold handles and settings and borrow nothing.
+//! [`Frame`] pairs every pass of a [`framegraph::Graph`] with the recorder that writes its commands. Declare a frame,
+//! compile its graph and execute it. Then either declare it again ([`Frame::reset`]), or execute it again while nothing
+//! changes.
+//!
+//! Per-frame data such as the camera, draw lists and the scene on the GPU is not stored in the frame. The caller passes
+//! it to `execute` as a value of type `W`, the *world*, and recorders receive a reference to it. Passes therefore hold
+//! only handles and settings, and borrow nothing.
 
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
@@ -12,13 +15,13 @@ use crate::record::Record;
 use crate::recorders::{ClosureRecorder, PassRecorder, Recorders};
 use framegraph::{DeclareError, Graph, PassBuilder, PassId};
 
-/// A declared frame with its recorders. See the [module](self).
+/// A declared graph with a recorder for each pass. See the [module documentation](self).
 ///
 /// ```
 /// use framegraph::{ClearValue, Extent, Format, Intent, TextureDesc};
 /// use framegraph_wgpu::Frame;
 ///
-/// /// What recorders are handed when the frame is executed.
+/// /// Data that recorders receive when the frame is executed.
 /// struct World {
 ///     stencil: u32,
 /// }
@@ -54,12 +57,13 @@ impl<W: ?Sized + 'static> Default for Frame<W> {
 }
 
 impl<W: ?Sized + 'static> Frame<W> {
-    /// An empty frame.
+    /// Creates an empty frame.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// A frame of a graph that was declared elsewhere: read from a file, say. Its passes have no recorders yet.
+    /// Creates a frame from a graph that was declared elsewhere, for example read from a file. Its passes have no
+    /// recorders yet.
     pub fn from_graph(graph: Graph) -> Self {
         Self { graph, recorders: Recorders::default(), key: FrameKey::new() }
     }
@@ -68,7 +72,7 @@ impl<W: ?Sized + 'static> Frame<W> {
         &self.key
     }
 
-    /// Gives a pass its recorder, or another one.
+    /// Sets or replaces the recorder of a pass.
     pub fn set_recorder<R>(&mut self, pass: PassId, record: R)
     where
         R: Fn(&PassId, &W, &mut Cx<'_>) -> Result<(), RecordError> + Send + Sync + 'static,
@@ -76,17 +80,18 @@ impl<W: ?Sized + 'static> Frame<W> {
         self.recorders.insert(pass, ClosureRecorder { io: pass, record });
     }
 
-    /// Forgets everything declared and keeps the memory; handles of before are refused from now on. Histories go on: they
-    /// belong to the frame and their names, and end when it is dropped.
+    /// Removes all passes and resources but keeps the allocated memory. Handles from before the reset are rejected.
+    ///
+    /// Histories survive a reset: they are identified by frame and name, and are freed when the frame is dropped.
     pub fn reset(&mut self) {
         self.graph.reset();
         self.recorders.clear();
     }
 
-    /// Declares a pass, keeps it for recording, and returns its handles.
+    /// Declares a pass, stores it for recording, and returns its handles.
     ///
     /// # Errors
-    /// What its declaration returned; nothing of the pass stays in the frame then.
+    /// Returns the error of the pass's declaration. The frame is unchanged in that case.
     #[track_caller]
     pub fn add<P>(&mut self, name: &str, pass: P) -> Result<P::Io, DeclareError>
     where
@@ -98,10 +103,10 @@ impl<W: ?Sized + 'static> Frame<W> {
         Ok(io)
     }
 
-    /// Declares and records a one-off pass with two closures; the second gets what the first returned.
+    /// Adds a one-off pass made of two closures. `record` receives the handles that `declare` returned.
     ///
     /// # Errors
-    /// What the first closure returned; nothing of the pass stays in the frame then.
+    /// Returns the error of `declare`. The frame is unchanged in that case.
     #[track_caller]
     pub fn add_fn<Io, R>(
         &mut self,
@@ -118,7 +123,8 @@ impl<W: ?Sized + 'static> Frame<W> {
         Ok(io)
     }
 
-    /// Runs `body` with `name/` in front of every name declared in it; effects of several passes nest this way.
+    /// Runs `body` with `name/` prepended to every name declared in it. Use it to group the passes of one effect;
+    /// scopes nest.
     pub fn scope<T>(&mut self, name: &str, body: impl FnOnce(&mut Self) -> T) -> T {
         let scope = self.graph.open_scope(name);
         let out = body(self);
@@ -126,13 +132,15 @@ impl<W: ?Sized + 'static> Frame<W> {
         out
     }
 
-    /// What was declared: the compiler's input.
+    /// Returns the declared graph, the input of the compiler.
     pub fn graph(&self) -> &Graph {
         &self.graph
     }
 
-    /// For resources, imports, exports and histories. A pass that is added here has no recorder, and executing it is an
-    /// error; use [`Frame::add`].
+    /// Returns the graph mutably, to declare resources, imports, exports and histories.
+    ///
+    /// Add passes with [`Frame::add`] instead: a pass added to the graph directly has no recorder, and executing it is
+    /// an error.
     pub fn graph_mut(&mut self) -> &mut Graph {
         &mut self.graph
     }
@@ -148,14 +156,14 @@ impl<W: ?Sized + 'static> Frame<W> {
         }
     }
 
-    /// Whether the pass can be executed.
+    /// Returns whether the pass has a recorder.
     pub fn has_recorder(&self, pass: PassId) -> bool {
         self.recorders.has(pass)
     }
 }
 
-/// Files are declared into a frame as into a graph; their plain passes get recorders afterwards ([`Frame::set_recorder`]),
-/// and plugins that are written for frames bring their own ([`Frame::add`]).
+/// Graph files can be declared into a frame as into a graph. Passes from a file have no recorder; add one with
+/// [`Frame::set_recorder`]. File plugins written for frames add their recorders themselves ([`Frame::add`]).
 #[cfg(feature = "files")]
 impl<W: ?Sized + 'static> framegraph::file::Host for Frame<W> {
     fn graph(&mut self) -> &mut Graph {

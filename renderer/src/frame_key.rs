@@ -1,34 +1,34 @@
-//! What tells the frames of one executor apart.
+//! Identity of frames, for executors that execute several.
 
 use std::sync::{Arc, Weak};
 
-/// Tells frames apart, however often each is declared anew.
+/// Identity of a frame. It survives [`Frame::reset`](crate::Frame::reset).
 #[derive(Debug)]
 pub(crate) struct FrameKey(Arc<()>);
 
-/// Names the frame of a key, and does not keep it. By default that of no frame.
+/// Weak reference to a [`FrameKey`]. The default refers to no frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FrameTag(Weak<()>);
 
 impl FrameKey {
-    /// Unlike every other one.
+    /// Creates a key that differs from all others.
     pub(crate) fn new() -> Self {
         Self(Arc::new(()))
     }
 
-    /// The name of its frame.
+    /// Returns a weak reference to this key.
     pub(crate) fn tag(&self) -> FrameTag {
         FrameTag(Arc::downgrade(&self.0))
     }
 }
 
 impl FrameTag {
-    /// Whether it names the frame of that key.
+    /// Returns whether the tag refers to `key`.
     pub(crate) fn is_of(&self, key: &FrameKey) -> bool {
         std::ptr::eq(self.0.as_ptr(), Arc::as_ptr(&key.0))
     }
 
-    /// Whether its frame was dropped.
+    /// Returns whether the frame was dropped.
     pub(crate) fn is_gone(&self) -> bool {
         self.0.strong_count() == 0
     }

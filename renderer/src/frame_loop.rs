@@ -1,4 +1,4 @@
-//! Everything that stays from frame to frame, in one value: declare and go.
+//! A frame, its plan and its executor in one value, for programs that declare the frame every time.
 
 use crate::device::gpu::Gpu;
 use crate::execute::commands::FrameCommands;
@@ -12,10 +12,11 @@ use framegraph::{Alias, CompileErrors, DeclareError, Options, Plan, Scratch, War
 use std::fmt;
 use wgpu::SubmissionIndex;
 
-/// A frame that is declared anew each time, with its plan, the memory to compile it, its imports and its executor.
+/// Declares, compiles and executes one frame after the other.
 ///
-/// Declaring costs microseconds and allocates nothing once warm, and a frame that is declared as before is not compiled
-/// again; so nothing has to be remembered about what changed.
+/// Owns the frame, its plan, compiler memory, imports and executor. Declare the whole frame in each call: this takes
+/// microseconds and allocates nothing after the first frames. An unchanged frame is not compiled again, so the caller
+/// need not track changes.
 ///
 /// ```
 /// use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, TextureDesc};
@@ -47,31 +48,31 @@ pub struct FrameLoop<W: ?Sized + 'static = ()> {
     flight: FramesInFlight,
 }
 
-/// A frame that was executed.
+/// Result of an executed frame.
 #[derive(Clone, Debug)]
 pub struct Ran<T> {
-    /// What declaring it returned.
+    /// Value returned by the closure that declared the frame.
     pub io: T,
-    /// The submission of its commands.
+    /// Index of the submission that contains the frame's commands.
     pub submission: SubmissionIndex,
-    /// Why textures that were asked to share one block of memory ([`Alias::Heap`]) share by shape instead; none where they lie in one,
-    /// or were not asked to.
+    /// Reason why [`Alias::Heap`] was requested but not used; textures then share memory by equal shape. `None` if heap
+    /// aliasing is active or was not requested.
     pub not_placed: Option<NotPlaced>,
 }
 
-/// A frame was not executed; the next one starts clean.
+/// Error of a frame that was not executed. The next frame starts clean.
 #[derive(Clone, PartialEq, thiserror::Error)]
 pub enum FrameError<E = DeclareError> {
-    /// It could not be declared.
+    /// The declaration failed.
     #[error(transparent)]
     Declare(E),
-    /// It was declared and cannot be compiled.
+    /// The declared graph does not compile.
     #[error(transparent)]
     Compile(#[from] CompileErrors),
-    /// It was compiled, and the plan does nothing of what was declared.
+    /// The plan executes nothing, usually because an export is missing.
     #[error("the frame does nothing: {}", .0.sentence())]
     Idle(Warning),
-    /// It was compiled and could not be executed.
+    /// The plan could not be executed.
     #[error(transparent)]
     Execute(#[from] ExecuteError),
 }
@@ -86,12 +87,12 @@ where
 }
 
 impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
-    /// With the default options of compiler and executor.
+    /// Creates a frame loop with the default compiler and executor options.
     pub fn new(gpu: &Gpu) -> Self {
         Self::with(gpu, Options::default(), ExecutorOptions::default())
     }
 
-    /// With these options; the frame's size in `options` is that of each frame.
+    /// Creates a frame loop with the given options. `options.frame` is overwritten with the size of each frame.
     pub fn with(gpu: &Gpu, options: Options, executor: ExecutorOptions) -> Self {
         Self {
             frame: Frame::new(),
@@ -104,12 +105,14 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
         }
     }
 
-    /// Declares, compiles and executes a frame of `size` texels: `declare` is given the empty frame, and binds what stands
-    /// for its imports. A size of 0 in either direction skips the frame. Before, it waits while as many frames are queued as
-    /// may be ([`FrameLoop::frames_in_flight_mut`]).
+    /// Declares, compiles and executes a frame of `size` texels.
+    ///
+    /// `declare` receives the empty frame and the imports to bind. If width or height is 0, the frame is skipped and
+    /// `None` is returned. Blocks while the maximum number of frames is queued ([`FrameLoop::frames_in_flight_mut`]).
     ///
     /// # Errors
-    /// [`FrameError`]. Nothing of the frame reached the GPU then.
+    /// Fails with [`FrameError`] if the frame cannot be declared, compiled or executed. Nothing of the frame is
+    /// submitted in that case.
     pub fn run<T, E>(
         &mut self,
         size: [u32; 2],
@@ -120,10 +123,10 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
         self.run_with(size, world, declare, |commands| commands.submit(&queue, [], []))
     }
 
-    /// As [`FrameLoop::run`], submitted by the caller ([`Executor::execute_with`]).
+    /// Runs a frame like [`FrameLoop::run`], but lets `submit` submit the commands ([`Executor::execute_with`]).
     ///
     /// # Errors
-    /// As [`FrameLoop::run`].
+    /// Fails like [`FrameLoop::run`].
     pub fn run_with<T, E>(
         &mut self,
         size: [u32; 2],
@@ -143,11 +146,13 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
         Ok(Some(Ran { io, submission, not_placed }))
     }
 
-    /// As [`FrameLoop::run`], with the commands handed out instead of submitted: [`Executor::record`] says what holds until
-    /// [`FrameLoop::submitted`] is told of their submission.
+    /// Runs a frame like [`FrameLoop::run`], but returns its commands instead of submitting them.
+    ///
+    /// The caller submits the commands and then calls [`FrameLoop::submitted`]. [`Executor::record`] lists the
+    /// restrictions that apply until then.
     ///
     /// # Errors
-    /// As [`FrameLoop::run`].
+    /// Fails like [`FrameLoop::run`].
     pub fn record<T, E>(
         &mut self,
         size: [u32; 2],
@@ -162,17 +167,17 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
         Ok(Some((io, self.executor.record(&self.plan, &self.frame, world, &self.imports)?)))
     }
 
-    /// What [`FrameLoop::record`] handed out last was submitted, with that index.
+    /// Reports that the commands last returned by [`FrameLoop::record`] were submitted with the index `submission`.
     pub fn submitted(&mut self, submission: SubmissionIndex) {
         self.executor.submitted();
         self.flight.submitted(submission);
     }
 
-    /// The first half of [`FrameLoop::run`]: declares and compiles, and executes nothing. A plan that does nothing of what was
-    /// declared, since an export was forgotten, is an error here: nobody else looks at it.
+    /// Declares and compiles a frame without executing it, the first half of [`FrameLoop::run`].
     ///
     /// # Errors
-    /// As [`FrameLoop::run`].
+    /// Fails like [`FrameLoop::run`]. A plan with warnings is an error ([`FrameError::Idle`]), for example if an export
+    /// was forgotten.
     pub fn declare<T, E>(
         &mut self,
         size: [u32; 2],
@@ -189,50 +194,50 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
         self.plan.warnings().next().map_or(Ok(Some(io)), |warning| Err(FrameError::Idle(warning)))
     }
 
-    /// Makes what the frame declared last takes, before it is wanted ([`Executor::warm_up`]).
+    /// Creates the textures and pipelines of the last declared frame ahead of its execution ([`Executor::warm_up`]).
     ///
     /// # Errors
-    /// As [`Executor::execute`].
+    /// Fails like [`Executor::execute`].
     pub fn warm_up(&mut self, world: &W, progress: &mut dyn FnMut(WarmUp<'_>)) -> Result<(), ExecuteError> {
         self.executor.warm_up(&self.plan, &self.frame, world, &self.imports, progress)
     }
 
-    /// The frame as it was declared last.
+    /// Returns the frame as it was last declared.
     pub fn frame(&self) -> &Frame<W> {
         &self.frame
     }
 
-    /// What the compiler made of it.
+    /// Returns the plan that the last declared frame was compiled to.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
 
-    /// What stood for its imports.
+    /// Returns the imports bound when the frame was last declared.
     pub fn imports(&self) -> &Imports {
         &self.imports
     }
 
-    /// How frames are compiled; a change holds from the next one on.
+    /// Returns the compiler options for changing them. Changes take effect in the next frame.
     pub fn options_mut(&mut self) -> &mut Options {
         &mut self.options
     }
 
-    /// The frames that the device is not done with, and how long frames take from their begin until it is.
+    /// Returns the queue of submitted frames, with the latency of recent frames.
     pub fn frames_in_flight(&self) -> &FramesInFlight {
         &self.flight
     }
 
-    /// As [`FrameLoop::frames_in_flight`], to set how many there may be.
+    /// Returns the queue of submitted frames mutably, to set its maximum length.
     pub fn frames_in_flight_mut(&mut self) -> &mut FramesInFlight {
         &mut self.flight
     }
 
-    /// Who executes them.
+    /// Returns the executor of the frames.
     pub fn executor(&self) -> &Executor {
         &self.executor
     }
 
-    /// As [`FrameLoop::executor`], to reset histories, trim pools, reload shaders.
+    /// Returns the executor mutably, to reset histories, trim pools or reload shaders.
     pub fn executor_mut(&mut self) -> &mut Executor {
         &mut self.executor
     }

@@ -1,5 +1,4 @@
-//! At most so many frames queued: a frame begins when the device is done with the one that many before it, so that what is shown
-//! is never further behind what was asked for.
+//! Limits the number of queued frames, and thereby the latency between input and display.
 
 use crate::device::error::DeviceError;
 use crate::device::gpu::Gpu;
@@ -10,8 +9,10 @@ use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 use wgpu::{PollType, SubmissionIndex};
 
-/// The frames that were submitted and that the device is not done with. [`FrameLoop`](crate::FrameLoop) has one; a loop of one's
-/// own calls [`FramesInFlight::begin`] before it looks at the input, and [`FramesInFlight::submitted`] behind its submission.
+/// Frames that were submitted and are not known to be finished on the device.
+///
+/// [`FrameLoop`](crate::FrameLoop) contains one. A custom loop calls [`FramesInFlight::begin`] before it reads input,
+/// and [`FramesInFlight::submitted`] after it submits.
 ///
 /// ```
 /// use framegraph_wgpu::{FramesInFlight, Gpu};
@@ -40,34 +41,35 @@ pub struct FramesInFlight {
 struct Queued {
     submission: SubmissionIndex,
     begun: Instant,
-    /// When the device was done with it; whoever polls the device learns that.
+    /// Time when the device finished the frame, set by a callback while the device is polled.
     done: Arc<OnceLock<Instant>>,
 }
 
 impl FramesInFlight {
-    /// Frames queued at most unless another number is set: the device draws one while the next is recorded.
+    /// Default maximum number of queued frames: 2, so that one frame is recorded while the device draws the other.
     pub const DEFAULT: NonZeroU32 = NonZeroU32::MIN.saturating_add(1);
 
-    /// With the default of two frames.
+    /// Creates an empty queue with the default maximum of two frames.
     pub fn new(gpu: &Gpu) -> Self {
         let (queued, latency) = (VecDeque::new(), Durations::default());
         Self { gpu: gpu.clone(), most: Self::DEFAULT, queued, begun: None, waits: 0, latency }
     }
 
-    /// How many frames may be queued, from the next one on: one for the least latency, more for an even rate.
+    /// Sets the maximum number of queued frames, from the next frame on. 1 gives the lowest latency; higher values give
+    /// a more even frame rate.
     pub fn set_most(&mut self, most: NonZeroU32) {
         self.most = most;
     }
 
-    /// How many frames may be queued.
+    /// Returns the maximum number of queued frames.
     pub fn most(&self) -> NonZeroU32 {
         self.most
     }
 
-    /// Begins a frame: waits for the oldest that is queued, as long as there are as many as may be.
+    /// Begins a frame. Blocks until fewer frames than the maximum are queued.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// Fails if the device is lost.
     pub fn begin(&mut self) -> Result<(), DeviceError> {
         self.gpu.poll()?;
         self.collect();
@@ -82,7 +84,8 @@ impl FramesInFlight {
         Ok(())
     }
 
-    /// Ends the frame that was begun last: these are its commands. Without one that was begun, it begins here.
+    /// Ends the current frame, whose commands have the index `submission`. If [`FramesInFlight::begin`] was not called,
+    /// the frame begins now.
     pub fn submitted(&mut self, submission: SubmissionIndex) {
         let begun = self.begun.take().unwrap_or_else(Instant::now);
         let done = Arc::new(OnceLock::new());
@@ -93,23 +96,26 @@ impl FramesInFlight {
         self.queued.push_back(Queued { submission, begun, done });
     }
 
-    /// Frames that were submitted and of which it is not known that the device is done with them.
+    /// Returns the number of submitted frames that are not known to be finished.
     pub fn queued(&self) -> usize {
         self.queued.len()
     }
 
-    /// How often a frame had to wait for an older one.
+    /// Returns how many times [`FramesInFlight::begin`] had to wait for an older frame.
     pub fn waits(&self) -> u64 {
         self.waits
     }
 
-    /// Milliseconds from the begin of a frame until the device was done with it, of the latest 256 frames; none before the first
-    /// is done. A frame's end is noted when the device is next polled, so this is an upper bound.
+    /// Returns the latency of the last 256 frames in milliseconds, from [`FramesInFlight::begin`] until the device
+    /// finished.
+    ///
+    /// `None` until the first frame is finished. The end of a frame is noticed when the device is polled, so values are
+    /// upper bounds.
     pub fn latency(&self) -> Option<Summary> {
         self.latency.summary()
     }
 
-    /// Takes note of frames that are done.
+    /// Removes finished frames from the queue and records their latency.
     fn collect(&mut self) {
         while let Some(done) = self.queued.pop_front_if(|oldest| oldest.done.get().is_some()) {
             self.latency.push(done.ms());
@@ -118,14 +124,14 @@ impl FramesInFlight {
 }
 
 impl Queued {
-    /// Milliseconds until it was done, or until now.
+    /// Returns the milliseconds from the begin of the frame until its end, or until now.
     fn ms(&self) -> f64 {
         let done = self.done.get().copied().unwrap_or_else(Instant::now);
         done.duration_since(self.begun).as_secs_f64() * 1e3
     }
 }
 
-/// Has `wait` wait for the oldest, until there is room for one more among `most`, and hands out those that it waited for.
+/// Calls `wait` with the oldest frame until fewer than `max` are queued. Hands each awaited frame to `done`.
 fn make_room<T, E>(
     queued: &mut VecDeque<T>,
     most: NonZeroU32,
@@ -145,7 +151,8 @@ fn make_room<T, E>(
 mod tests {
     use super::*;
 
-    /// Frames of a device that is done with none by itself: frame n waits for the one `most` before it, and for no other.
+    /// Simulates a device that finishes a frame only when waited for. Returns pairs of a frame and the one it waited
+    /// for.
     fn waited(most: u32, frames: u32) -> Vec<(u32, u32)> {
         let (mut queued, mut waited) = (VecDeque::new(), Vec::new());
         let most = NonZeroU32::new(most).unwrap_or(NonZeroU32::MIN);

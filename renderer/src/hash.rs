@@ -1,16 +1,16 @@
-//! Small hashes: one for names that is the same in every run, one for keys of caches that costs next to nothing.
+//! Hash functions: FNV-1a for stable names, and a fast hash for cache keys.
 
 use std::hash::{BuildHasherDefault, Hasher};
 
-/// FNV-1a of 64 bits over the bytes, in order (Fowler, Noll, Vo, 1991).
+/// Returns the 64-bit FNV-1a hash of the bytes (Fowler, Noll, Vo, 1991).
 pub(crate) fn fnv(bytes: impl IntoIterator<Item = u8>) -> u64 {
     bytes.into_iter().fold(FNV_START, fnv_step)
 }
 
-/// The hash of no bytes.
+/// FNV-1a hash of an empty sequence.
 pub(crate) const FNV_START: u64 = 0xcbf2_9ce4_8422_2325;
 
-/// The FNV-1a hash of what `hash` is the hash of, followed by `bytes`.
+/// Continues an FNV-1a hash with more bytes.
 pub(crate) const fn fnv_append(mut hash: u64, bytes: &[u8]) -> u64 {
     let mut index = 0;
     while index < bytes.len() {
@@ -24,10 +24,10 @@ const fn fnv_step(hash: u64, byte: u8) -> u64 {
     (hash ^ byte as u64).wrapping_mul(0x0100_0000_01b3)
 }
 
-/// Hashes the keys of caches: short, many, and never chosen by an adversary.
+/// Builds hashers for cache keys, which are short and never chosen by an attacker.
 pub(crate) type Keyed = BuildHasherDefault<KeyHasher>;
 
-/// Rotate, mix in a word, multiply: the scheme of rustc's own tables (`rustc-hash` 1).
+/// Hashes words by rotating, XOR and multiplying, like `rustc-hash` 1.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct KeyHasher(u64);
 
@@ -39,7 +39,7 @@ impl KeyHasher {
 
 impl Hasher for KeyHasher {
     fn finish(&self) -> u64 {
-        // The high bits are the mixed ones, and tables look at both ends.
+        // Hash tables use the low and the high bits; only the high bits are well mixed.
         self.0.rotate_left(26)
     }
 
@@ -97,7 +97,7 @@ mod tests {
         assert_eq!(hashes.iter().collect::<BTreeSet<_>>().len(), 1024, "no two are equal");
         let low: BTreeSet<u64> = hashes.iter().map(|h| h & 0x7f).collect();
         let high: BTreeSet<u64> = hashes.iter().map(|h| h >> 57).collect();
-        // Both ends of a table's hash take nearly all of their 128 values: 1024 throws miss 4 % of bins by chance.
+        // With 1024 keys, 128 bins stay empty with negligible probability, so both ends should take nearly all values.
         assert!(low.len() > 110 && high.len() > 110, "{} {}", low.len(), high.len());
         assert_ne!(hashed((1, 2, "a")), hashed((1, 2, "b")));
     }

@@ -1,12 +1,13 @@
-//! Inspecting a frame: any version of any texture, any level, layer, plane and sample, as numbers and as a picture.
+//! Inspection of a frame: reads any version of any texture as numbers and as an image. Level, layer, plane and sample
+//! can be chosen.
 //!
-//! The plan under study does not change, and neither does anything that its executor holds: an [`Inspector`] plans a
-//! second frame, which ends with the version that was asked for ([`framegraph::Graph::ending_with`]) and one pass that
-//! reads it, and executes that with an executor of its own. Attachments that never leave the tile and intermediates that
-//! became part of a shader are in memory in that second plan, because the added pass reads them.
+//! An [`Inspector`] compiles a second frame and executes it with its own executor. That frame ends with the requested
+//! version ([`framegraph::Graph::ending_with`]) and one added pass that reads it. Memoryless attachments and inlined
+//! intermediates exist in memory in the second plan, since the added pass reads them. The original plan and its
+//! executor are not changed.
 //!
-//! The inspected frame is the one that would be executed next: recorders get the world as it is now, and histories are as
-//! the last frame left them.
+//! The inspected frame is the one that would be executed next: recorders receive the current world, and histories are
+//! as the last frame left them.
 //!
 //! ```
 //! # use framegraph::{ClearValue, Extent, Format, Intent, Options, Plan, Scratch, TextureDesc};
@@ -55,45 +56,45 @@ use crate::named::Named;
 use crate::resources::imports::Imports;
 use framegraph::{Alias, CompileErrors, Extent, Graph, Plan, Scratch, compile};
 
-/// Executes inspected plans, beside the executor of the frame under study. See the [module](self).
+/// Compiles and executes frames that end with an inspected texture. See the [module documentation](self).
 #[derive(Debug)]
 pub struct Inspector {
     executor: Executor,
     scratch: Scratch,
 }
 
-/// What was found.
+/// Result of an inspection.
 #[derive(Clone, Debug)]
 pub struct Inspection {
-    /// What was inspected.
+    /// Part of a texture that was inspected.
     pub target: InspectTarget,
-    /// Its texels, as a shader reads them.
+    /// Texel values as a shader reads them.
     pub texels: Texels,
-    /// The second plan: that of the frame up to there, with the pass that reads the target.
+    /// Plan of the inspected frame, up to the pass that reads the target.
     pub plan: Plan,
 }
 
 impl Inspection {
-    /// What was inspected, in words: `hdr@color, level 2`.
+    /// Returns a title such as `hdr@color, level 2`.
     pub fn title(&self) -> String {
         self.target.title()
     }
 }
 
 impl Inspector {
-    /// An inspector with pools of its own; what it holds is given up with it.
+    /// Creates an inspector with its own resource pools, which are freed with it.
     pub fn new(gpu: &Gpu) -> Self {
         let options = ExecutorOptions { timing: false, ..ExecutorOptions::default() };
         Self { executor: Executor::with(gpu, options), scratch: Scratch::new() }
     }
 
-    /// Looks at what `request` names, of the frame that `executor` executes with `plan`, `frame`, `world` and `imports`.
+    /// Inspects the texture that `request` names, in the frame that `executor` would execute next.
     ///
-    /// Imports that the inspected passes write are copied first, so that the caller's stay as they are; a copy pass or a
-    /// recorder that writes what it did not declare is beyond that care.
+    /// Imports that the inspected passes write are copied first, so the caller's imports stay unchanged. This does not
+    /// cover writes of copy passes and undeclared writes of recorders.
     ///
     /// # Errors
-    /// [`InspectError`]; a name that is not there comes with those that are.
+    /// Fails with [`InspectError`]. If a name does not exist, the error lists the names that do.
     pub fn inspect<W: ?Sized + Sync + 'static>(
         &mut self,
         executor: &Executor,
@@ -106,10 +107,10 @@ impl Inspector {
         self.inspect_target(executor, plan, frame, world, imports, find(plan, request)?)
     }
 
-    /// As [`Inspector::inspect`], of one of [`all_targets`] that there is.
+    /// Inspects one of [`all_targets`] like [`Inspector::inspect`].
     ///
     /// # Errors
-    /// As [`Inspector::inspect`].
+    /// Fails like [`Inspector::inspect`].
     pub fn inspect_target<W: ?Sized + Sync + 'static>(
         &mut self,
         executor: &Executor,
@@ -158,7 +159,8 @@ impl Inspector {
         Ok(Inspection { target, texels, plan: inspected })
     }
 
-    /// Compiles as `plan` was. What is placed has other uses here, of which the driver is asked again.
+    /// Compiles with the options of `plan`. Heap placement is computed again, since usages differ in the inspected
+    /// graph.
     fn compile(&mut self, graph: &Graph, plan: &Plan, inspected: &mut Plan) -> Result<(), CompileErrors> {
         if plan.options().alias == Alias::Heap && plan.caps().placed {
             return self.executor.compile(graph, plan.options(), &mut self.scratch, inspected);

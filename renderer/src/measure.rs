@@ -1,4 +1,4 @@
-//! Times of steps and frames on the CPU and the GPU, as statistics and frame by frame.
+//! CPU and GPU times of steps and frames: statistics and traces.
 
 pub(crate) mod statistics;
 pub(crate) mod timestamp_queries;

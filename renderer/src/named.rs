@@ -1,15 +1,15 @@
-//! Passes and resources in errors.
+//! Names of passes and resources in errors.
 
 use framegraph::{PassId, Plan, ResourceId, plain};
 use std::fmt;
 
-/// A pass or resource that an error is about: its row in the graph, and its full name, which outlives the graph. Shown on one
-/// line and shortened, as [`framegraph::plain::name`] has it.
+/// A pass or resource that an error refers to, by ID and full name. The name outlives the graph. `Display` shortens it
+/// to one line with [`framegraph::plain::name`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Named<I> {
-    /// The row in the graph that was executed.
+    /// ID in the graph that was executed.
     pub id: I,
-    /// The full name.
+    /// Full name, including scopes.
     pub name: String,
 }
 
@@ -52,7 +52,7 @@ mod tests {
         ];
         for told in errors.map(|error| error.to_string()) {
             assert!(told.starts_with("pass `bl\\u{1b}[31mur\\nxxx"), "{}", &told[..99]);
-            // Two names of 120 characters, and what wgpu said: 4,000.
+            // Two names of 120 characters, and wgpu's message of at most 4,000.
             assert!(told.len() < 5000 && !told.contains(char::is_control), "{} bytes", told.len());
         }
     }

@@ -1,6 +1,6 @@
-//! In the place of [`workers`](super) where the program was built without the feature `threads`.
+//! Replacement for the worker threads when the feature `threads` is off.
 
-/// No value.
+/// Uninhabited type: without the feature `threads` no executor has workers.
 #[derive(Debug)]
 pub(crate) enum Workers {}
 

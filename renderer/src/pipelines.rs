@@ -1,4 +1,4 @@
-//! Pipelines, their shaders, and the bind groups and samplers that recorders bind.
+//! Pipelines, shaders, bind groups and samplers for recorders.
 
 pub(crate) mod bind_groups;
 pub(crate) mod binding_error;

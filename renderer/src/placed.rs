@@ -1,17 +1,21 @@
-//! Textures and buffers at offsets of one block of memory: what [`framegraph::Alias::Heap`] plans, executed on Vulkan.
+//! Placed resources: textures and buffers at offsets in one block of memory. Executes [`framegraph::Alias::Heap`] on
+//! Vulkan.
 //!
-//! wgpu gives each texture memory of its own. Here the images are made beside wgpu, bound to one block at the plan's
-//! offsets, and handed to wgpu as textures; their sizes are asked of the driver and become part of the plan
-//! ([`Executor::compile`](crate::Executor::compile)). wgpu knows nothing of the sharing, so three things are said for it:
+//! wgpu allocates separate memory for each texture. This module creates the images through Vulkan directly, binds them
+//! to one block at the plan's offsets, and imports them into wgpu. [`Executor::compile`](crate::Executor::compile)
+//! queries their sizes from the driver and passes them to the compiler.
 //!
-//! - Before a texture is first used in a frame, a barrier written past wgpu waits for everything before it, and puts the
-//!   image into the layout in which wgpu believes it to be (its *home*). Its old contents are dropped.
-//! - After its last use, wgpu puts it back into its home.
-//! - wgpu hoists the transition of a texture's first use in a command buffer to before that buffer. So a command buffer ends
-//!   wherever memory changes hands ([`activations`](activation::activations)), and the barriers stand between.
+//! wgpu does not know that the memory is shared, so this module adds the synchronization:
 //!
-//! What is placed is never zero-filled by wgpu, so such a texture is not discarded where wgpu would fill it afterwards
-//! (`execute/attachments.rs`), and one that takes wgpu's own clear is not placed (`resources/requests.rs`).
+//! - Before the first use in a frame, a Vulkan barrier waits for all earlier work. It moves the image from the
+//!   undefined layout to the layout that wgpu tracks, its *resting usage*. The old contents are discarded.
+//! - After the last use, wgpu moves the image back to its resting usage.
+//! - wgpu inserts the first transition of a texture in a command buffer before that buffer. Command buffers are
+//!   therefore split wherever memory changes its owner ([`activations`](activation::activations)), and the barriers are
+//!   submitted in between.
+//!
+//! wgpu never zero-initializes placed resources. `execute/attachments.rs` stores attachments instead of discarding them
+//! where wgpu would fill them afterwards. `resources/requests.rs` does not place textures that need wgpu's clear.
 
 pub(crate) mod activation;
 pub(crate) mod arenas;

@@ -1,6 +1,7 @@
-//! The recorders of a frame, stored by type so that declaring a frame anew allocates nothing once it is warm.
+//! Storage for the recorders of a frame, grouped by type.
 //!
-//! Each type of pass has a column of its own; resetting a frame empties the columns and keeps their memory.
+//! Each recorder type has its own vector (column). Resetting a frame empties the vectors but keeps their memory, so
+//! redeclaring a frame allocates nothing after the first frames.
 
 use crate::execute::cx::Cx;
 use crate::execute::epilogue::Epilogue;
@@ -10,11 +11,11 @@ use std::any::{Any, TypeId};
 
 use crate::record::Record;
 
-/// What records one pass: a pass with its handles, or a closure with its.
+/// Records one pass. Implemented for passes and for closures, each with the handles that the declaration returned.
 pub(crate) trait Recorder<W: ?Sized>: Send + Sync + 'static {
     fn record(&self, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError>;
 
-    /// What it does where it is inlined; nothing is said of a closure.
+    /// Returns the epilogue of an inlined pass. Closures have none.
     fn epilogue(&self, _world: &W, _cx: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError> {
         Ok(None)
     }
@@ -84,10 +85,10 @@ impl<W: ?Sized, T: Recorder<W>> Column<W> for Vec<T> {
     }
 }
 
-/// The recorders of the passes of one frame. See the [module](self).
+/// Recorders of the passes of one frame. See the [module documentation](self).
 pub(crate) struct Recorders<W: ?Sized + 'static> {
     columns: Vec<(TypeId, Box<dyn Column<W>>)>,
-    /// Column and row of each pass; none for a pass that was declared without a recorder.
+    /// Column and row of each pass; `None` for a pass that was declared without a recorder.
     places: Vec<Option<(usize, usize)>>,
 }
 
@@ -117,24 +118,24 @@ impl<W: ?Sized + 'static> Recorders<W> {
         self.places[pass.index()] = Some((column, row));
     }
 
-    /// Forgets all recorders and keeps the memory.
+    /// Removes all recorders but keeps the memory.
     pub(crate) fn clear(&mut self) {
         self.columns.iter_mut().for_each(|(_, c)| c.clear());
         self.places.clear();
     }
 
-    /// Whether `pass` has a recorder.
+    /// Returns whether `pass` has a recorder.
     pub(crate) fn has(&self, pass: PassId) -> bool {
         self.places.get(pass.index()).is_some_and(Option::is_some)
     }
 
-    /// Runs the recorder of `pass`; `None` when it has none.
+    /// Runs the recorder of `pass`. Returns `None` if it has none.
     pub(crate) fn record(&self, pass: PassId, world: &W, cx: &mut Cx<'_>) -> Option<Result<(), RecordError>> {
         let (column, row) = (*self.places.get(pass.index())?)?;
         Some(self.columns[column].1.record(row, world, cx))
     }
 
-    /// Asks the recorder of `pass` for its epilogue; `None` when it has no recorder or no answer.
+    /// Returns the epilogue of `pass`, or `None` if it has no recorder or no epilogue.
     pub(crate) fn epilogue(&self, pass: PassId, world: &W, cx: &mut Cx<'_>) -> Result<Option<Epilogue>, RecordError> {
         let place = self.places.get(pass.index()).copied().flatten();
         place.map_or(Ok(None), |(column, row)| self.columns[column].1.epilogue(row, world, cx))

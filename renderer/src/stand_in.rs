@@ -1,13 +1,14 @@
-//! Recorders for passes that have none: a graph read from a file, or declared without recorders, is executed on a
-//! device with its true attachments, bindings and copies, before a single shader of its own is written.
+//! Mock recorders for passes that have none, and mock imports.
 //!
-//! A stand-in keeps every promise that its pass declares: it reads everything that is read, writes every texel of what it
-//! overwrites, and builds upon what it modifies. What it writes is arithmetic over what it reads, between 0 and 1, so a
-//! picture made by stand-ins depends on every pass that was not culled, and a NaN that a pass reads is a NaN that it
-//! writes.
+//! A graph without recorders, for example one read from a file, can be executed with its real attachments, bindings and
+//! copies before any of its shaders is written.
 //!
-//! What a device cannot bind is looked up and left at that: more storage textures than a shader may have, formats that
-//! cannot be stored to. A stand-in whose plan inlines other passes draws into their target and leaves it at that.
+//! A mock recorder fulfills the declaration of its pass: it reads every input, writes every texel that is overwritten,
+//! and modifies what is modified. Outputs are arithmetic over the inputs, between 0 and 1. The final image therefore
+//! depends on every pass that was not culled, and NaN inputs propagate to the outputs.
+//!
+//! Resources that the device cannot bind are looked up but not bound, for example storage textures beyond the limit or
+//! formats without storage support. A mock recorder ignores the epilogues that the plan inlines into its pass.
 //!
 //! ```
 //! use framegraph::file::{GraphFile, Registry};
@@ -52,7 +53,7 @@ use framegraph::{Access, AccessKind, Aspect, Mode, PassId, PassKind};
 use shader::{compute_wgsl, raster_wgsl};
 use wgpu::{CompareFunction, StencilFaceState, StencilOperation, StencilState};
 
-/// Gives every pass that has no recorder one that keeps the pass's promises.
+/// Adds a mock recorder to every pass without a recorder. See the [module documentation](self).
 pub fn fill_in<W: ?Sized + 'static>(frame: &mut Frame<W>) {
     for pass in frame.graph().pass_ids() {
         if !frame.has_recorder(pass) {
@@ -70,9 +71,9 @@ fn record(pass: PassId, kind: PassKind, cx: &mut Cx<'_>) -> Result<(), RecordErr
     }
 }
 
-/// Draws one triangle: over everything where something is overwritten, over the lower left half where all is built upon.
+/// Draws one triangle. It covers the whole target if any attachment is overwritten, otherwise the lower left half.
 fn raster(pass: PassId, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-    // A pass that takes epilogues has to ask for them.
+    // Epilogues must be requested, even though they are not used here.
     drop(cx.inlined());
     let own = cx.plan().graph().accesses_of(pass);
     let whole = own.iter().any(|a| a.mode == Mode::Overwrite);
@@ -99,8 +100,8 @@ fn raster(pass: PassId, cx: &mut Cx<'_>) -> Result<(), RecordError> {
     Ok(())
 }
 
-/// How depth is tested: not at all where every texel has to be written, and otherwise so that the outcome depends on what
-/// is there. The planes that the access does not name are left alone.
+/// Returns the depth state. The test always passes if every texel must be written; otherwise the result depends on the
+/// old contents. Planes outside of the access are not written.
 fn tested(cx: &Cx<'_>, access: &Access, whole: bool) -> Depth {
     let writes = access.mode.writes();
     let named = |aspect| matches!(access.range.aspect, Aspect::All) || access.range.aspect == aspect;
@@ -119,7 +120,7 @@ fn tested(cx: &Cx<'_>, access: &Access, whole: bool) -> Depth {
     }
 }
 
-/// One dispatch for each level that is written.
+/// Records one dispatch for each written mip level.
 fn compute(cx: &mut Cx<'_>) -> Result<(), RecordError> {
     let levels = bind::levels_written(cx);
     for level in 0..levels {

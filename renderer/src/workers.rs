@@ -1,13 +1,14 @@
-//! Threads that record the steps of a frame beside the thread that submits it.
+//! Threads that record the steps of a frame in parallel.
 
 use std::fmt;
 use std::sync::Arc;
 
-/// A pool of threads, each pinned to a core of its own as long as there are any; one core is left to the thread that submits, which
-/// works too while it waits. Threads beyond the cores run where the system puts them, and so does the thread that submits. Clones
-/// share the threads.
+/// A pool of threads for recording. Clones share the threads.
 ///
-/// An executor records on them once it is given them ([`Executor::record_on`](crate::Executor::record_on)).
+/// Each thread is pinned to its own core while cores last. One core is left to the submitting thread, which records as
+/// well. Threads beyond the number of cores are not pinned, nor is the submitting thread.
+///
+/// Pass the workers to [`Executor::record_on`](crate::Executor::record_on).
 ///
 /// ```
 /// use framegraph_wgpu::{Executor, Gpu, Workers};
@@ -21,15 +22,15 @@ use std::sync::Arc;
 /// ```
 #[derive(Clone)]
 pub struct Workers {
-    /// None where one core is all there is.
+    /// `None` if only the calling thread works.
     pool: Option<Arc<rayon::ThreadPool>>,
 }
 
-/// The system refused to start a thread.
+/// Error: the operating system refused to start a thread.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("no threads to record on: {reason}; record on one")]
 pub struct WorkersError {
-    /// What the system said.
+    /// Message of the operating system.
     pub reason: String,
 }
 
@@ -40,24 +41,24 @@ impl fmt::Debug for WorkersError {
 }
 
 impl Workers {
-    /// As many threads as there are cores, with that of the caller.
+    /// Creates one thread for each available core, counting the calling thread.
     ///
     /// # Errors
-    /// When the system refuses a thread.
+    /// Fails if the operating system refuses to start a thread.
     pub fn new() -> Result<Self, WorkersError> {
         Self::with_threads(std::thread::available_parallelism().map_or(1, usize::from))
     }
 
-    /// `threads` threads, with that of the caller: 0 and 1 start none. More than there are cores share them.
+    /// Creates a pool of `threads` threads, counting the calling thread. 0 and 1 start none.
     ///
     /// # Errors
-    /// When the system refuses a thread.
+    /// Fails if the operating system refuses to start a thread.
     pub fn with_threads(threads: usize) -> Result<Self, WorkersError> {
         if threads < 2 {
             return Ok(Self { pool: None });
         }
         let cores = core_affinity::get_core_ids().unwrap_or_default();
-        // The last core is the submitting thread's.
+        // The last core is left to the submitting thread.
         let cores = cores.split_last().map_or(Vec::new(), |(_, others)| others.to_vec());
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads - 1)
@@ -72,17 +73,19 @@ impl Workers {
         Ok(Self { pool: Some(Arc::new(pool)) })
     }
 
-    /// How many threads work, with that of the caller.
+    /// Returns the number of threads, counting the calling thread.
     pub fn threads(&self) -> usize {
         self.pool.as_ref().map_or(1, |pool| pool.current_num_threads() + 1)
     }
 
-    /// The threads beside the caller's, for what else a frame asks of the CPU: by `in_place_scope` the caller works too.
+    /// Returns the pool of additional threads, for other CPU work of the frame. With `in_place_scope`, the calling
+    /// thread works too. `None` if there are no additional threads.
     pub fn pool(&self) -> Option<&rayon::ThreadPool> {
         self.pool.as_deref()
     }
 
-    /// Calls `work` for every item, the first on this thread and the others on the pool's, and returns when all are done.
+    /// Calls `work` for every item and returns when all are done. The first item runs on the calling thread, the others
+    /// on the pool.
     pub(crate) fn for_each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Sync) {
         let Some((pool, (first, others))) = self.pool.as_ref().zip(items.split_first_mut()) else {
             return items.iter_mut().for_each(work);
@@ -106,7 +109,7 @@ mod tests {
     use super::*;
     use std::thread::{self, ThreadId};
 
-    /// As the system tells: a thread that is pinned may run on one core. The last core is nobody's.
+    /// Checks affinities as reported by the system: a pinned thread may run on one core. The last core is not assigned.
     #[cfg(target_os = "linux")]
     #[test]
     fn threads_are_pinned_as_long_as_there_are_cores() -> Result<(), WorkersError> {
@@ -120,7 +123,7 @@ mod tests {
         Ok(())
     }
 
-    /// All items are worked on, the first by who asks.
+    /// Checks that all items are processed, the first one by the caller.
     #[test]
     fn every_item_is_worked_on_once() -> Result<(), WorkersError> {
         for threads in [0, 1, 2, 5] {

@@ -1,5 +1,5 @@
-//! Switches to find a fault with: each turns off one optimization of the compiler or executor, or makes reads of undefined
-//! contents visible. A correct frame looks the same under all of them.
+//! Debug modes. Each turns off one optimization of the compiler or executor, or makes reads of undefined contents
+//! visible. A correct frame renders the same image in every mode.
 //!
 //! ```
 //! use framegraph::Options;
@@ -18,29 +18,30 @@ use framegraph::{Alias, Options};
 use std::fmt;
 use std::str::FromStr;
 
-/// One debugging switch.
+/// A debug mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Mode {
-    /// Passes whose results no other pass and no export reads are executed too.
+    /// Keeps passes whose results are never read or exported.
     NoCull,
-    /// Every pass is a step of its own.
+    /// Executes every pass as its own step.
     NoMerge,
-    /// No pass becomes part of another one's shader.
+    /// Keeps point-wise passes separate instead of inlining them as epilogues.
     NoInline,
-    /// No two resources share a texture or buffer.
+    /// Gives each resource its own texture or buffer.
     NoAlias,
-    /// What the user wrote, as it stands: declaration order, and nothing culled, merged, inlined, memoryless or shared.
+    /// Executes the graph as declared: in declaration order, without culling, merging, inlining, memoryless attachments
+    /// or aliasing.
     Immediate,
-    /// Contents that may be anything are filled with NaN or magenta.
+    /// Fills undefined contents with NaN or magenta.
     Poison,
 }
 
 impl Mode {
-    /// All of them, in the order in which [`bisect`] tries them: the single switches, then all at once, then poison.
+    /// All modes in the order of [`bisect`]: single optimizations, then all at once, then poison.
     pub const ALL: [Self; 6] =
         [Self::NoCull, Self::NoMerge, Self::NoInline, Self::NoAlias, Self::Immediate, Self::Poison];
 
-    /// The name that command lines and environment variables use.
+    /// Returns the name for command lines and environment variables.
     pub const fn name(self) -> &'static str {
         match self {
             Self::NoCull => "no-cull",
@@ -52,7 +53,7 @@ impl Mode {
         }
     }
 
-    /// What it means when the picture changes under this switch alone.
+    /// Returns the likely cause if only this mode changes the image.
     pub const fn suspect(self) -> &'static str {
         match self {
             Self::NoCull => "a culled pass does something that it does not declare",
@@ -69,7 +70,7 @@ impl Mode {
         }
     }
 
-    /// Sets the switch in what a plan and an executor are made with.
+    /// Applies the mode to compiler and executor options.
     pub fn apply(self, plan: &mut Options, execute: &mut ExecutorOptions) {
         match self {
             Self::NoCull => plan.cull = false,
@@ -88,22 +89,22 @@ impl fmt::Display for Mode {
     }
 }
 
-/// Some switches together; as text, their names with commas between them.
+/// A set of modes, parsed from comma-separated names.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Modes(pub Vec<Mode>);
 
 impl Modes {
-    /// Sets all of them.
+    /// Applies all modes to compiler and executor options.
     pub fn apply(&self, plan: &mut Options, execute: &mut ExecutorOptions) {
         self.0.iter().for_each(|mode| mode.apply(plan, execute));
     }
 }
 
-/// A name that is none of [`Mode::ALL`].
+/// Error: a name is not in [`Mode::ALL`].
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{word}` is no debug mode; there are {}", Mode::ALL.map(Mode::name).join(", "))]
+#[error("`{word}` is not a debug mode; use one of {}", Mode::ALL.map(Mode::name).join(", "))]
 pub struct ModesError {
-    /// What was given.
+    /// The name that was given.
     pub word: String,
 }
 
@@ -124,39 +125,40 @@ impl FromStr for Modes {
     }
 }
 
-/// How a picture differs from the first one.
+/// Difference between an image and the reference image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// The switch; none for a second picture without any, which tells whether there is anything to compare.
+    /// Mode of this image. `None` for the second image without a mode, which shows whether rendering is deterministic.
     pub mode: Option<Mode>,
-    /// Pixels of which any channel differs.
+    /// Number of pixels with a difference in any channel.
     pub pixels: usize,
-    /// The largest difference of any channel, in codes of 255.
+    /// Largest difference of a channel, in 8-bit steps (0…255).
     pub worst_codes: u8,
 }
 
 impl Outcome {
-    /// Whether the picture is the same to the bit.
+    /// Returns whether the images are identical.
     pub const fn is_same(&self) -> bool {
         self.pixels == 0
     }
 
-    /// The name of the switch, or `again`.
+    /// Returns the name of the mode, or `again` for the second image without a mode.
     pub fn name(&self) -> &'static str {
         self.mode.map_or("again", Mode::name)
     }
 
-    /// What it means when this is the first picture that differs.
+    /// Returns the likely cause if this is the first image that differs.
     pub fn suspect(&self) -> &'static str {
         let again = "the picture changes from run to run: a pass reads contents that no pass wrote, or something outside of the frame";
         self.mode.map_or(again, Mode::suspect)
     }
 }
 
-/// Makes the picture without any switch, again, and under each of them, and compares with the first. `render` returns four bytes a pixel.
+/// Renders a reference image, the image again without a mode, and one image per mode, and compares each with the
+/// reference. `render` returns 8-bit RGBA, four bytes per pixel.
 ///
 /// # Errors
-/// The first that `render` returns.
+/// Returns the first error of `render`.
 pub fn bisect<E>(mut render: impl FnMut(Option<Mode>) -> Result<Vec<u8>, E>) -> Result<Vec<Outcome>, E> {
     let expected = render(None)?;
     let rows = [None].into_iter().chain(Mode::ALL.map(Some));
@@ -170,7 +172,7 @@ fn compare(mode: Option<Mode>, expected: &[u8], found: &[u8]) -> Outcome {
         outcome.pixels += usize::from(worst > 0);
         outcome.worst_codes = outcome.worst_codes.max(worst);
     }
-    // Pixels that only one picture has.
+    // Counts pixels that only one image has.
     let missing = expected.len().abs_diff(found.len()).div_ceil(4);
     let worst = if missing > 0 { u8::MAX } else { outcome.worst_codes };
     Outcome { pixels: outcome.pixels + missing, worst_codes: worst, mode }

@@ -1,14 +1,17 @@
-//! Finding reads of undefined contents: they are filled with NaN or magenta, so that a pass that reads them shows it.
+//! Poisoning: fills undefined contents with conspicuous values, so that a pass that reads them becomes visible.
 //!
-//! With [`ExecutorOptions::poison`](crate::ExecutorOptions), whatever holds nothing when the frame begins (textures and
-//! buffers of the pool with what their last tenant left, images of histories, imports without contents) is filled before
-//! its first use, an attachment that starts with don't-care contents is filled again, and one whose contents are dropped
-//! is filled after its step: with NaN where the format can hold it, magenta where it holds colors, half-way values for
-//! depth, every bit in buffers. A frame whose passes keep their promises, and whose plan is right, looks the same with and
-//! without; one that does not shows numbers that are not finite, or magenta.
+//! Enabled by [`ExecutorOptions::poison`](crate::ExecutorOptions). Three kinds of contents are filled:
 //!
-//! What lives in the tile alone is filled at its start only, and an import that the caller made without the uses that
-//! filling takes is left alone.
+//! - Contents that are undefined when the frame begins: pooled textures and buffers, history images, and imports
+//!   without contents. They are filled before their first use.
+//! - Attachments that start with don't-care contents, at the start of the step.
+//! - Attachments whose contents are discarded, after the step.
+//!
+//! Float formats are filled with NaN, other color formats with magenta, depth with 0.5, and buffers with all bits set.
+//! A correct frame renders the same image with and without poisoning. Otherwise NaN or magenta shows up in the image.
+//!
+//! Memoryless attachments are filled at their start only. Imports that lack the usage flags for filling are left
+//! unchanged.
 
 use crate::device::gpu::Gpu;
 use crate::execute::attached::Attached;
@@ -22,11 +25,11 @@ use framegraph::{Aspect, Attachment, Dimension, Format, Numeric, Plan, Range, Re
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{Buffer, BufferUsages, Color, CommandEncoder, LoadOp, Operations, Texture, TextureUsages};
 
-/// A depth that is neither the near plane nor the far one.
+/// Depth value that is neither the near nor the far plane.
 const DEPTH: f32 = 0.5;
-/// Every other bit.
+/// Stencil value with every other bit set.
 const STENCIL: u32 = 0xAA;
-/// All bits set: NaN as floats, the largest number as unsigned integers.
+/// Byte with all bits set: NaN as floats, the maximum as unsigned integers.
 const BYTE: u8 = 0xFF;
 
 fn is_float(format: Format) -> bool {
@@ -45,7 +48,7 @@ fn is_float(format: Format) -> bool {
     )
 }
 
-/// What a color format is filled with by a render pass.
+/// Returns the clear color for a format filled by a render pass.
 fn color(format: Format) -> Color {
     match format.numeric() {
         Numeric::Uint | Numeric::Sint => Color { r: 85.0, g: 85.0, b: 85.0, a: 85.0 },
@@ -54,17 +57,17 @@ fn color(format: Format) -> Color {
     }
 }
 
-/// What a format is filled with by a copy: all bits of floats, which are NaN, and every other bit of the rest.
+/// Returns the byte to fill a format with by a copy: all bits set for floats (NaN), otherwise every other bit.
 fn byte(format: Format) -> u8 {
     if is_float(format) { BYTE } else { 0x55 }
 }
 
-/// Whether nothing of use is in the resource when the frame begins, and it has memory to fill.
+/// Returns whether the resource's contents are undefined when the frame begins.
 fn is_undefined(plan: &Plan, resource: ResourceId) -> bool {
     !plan.graph().resources()[resource.index()].kind.defined_on_entry()
 }
 
-/// Fills everything that `step` is the first to touch and that holds nothing yet. Returns how many were filled.
+/// Fills every undefined resource that `step` is the first to use. Returns the number of fills.
 pub(crate) fn at_first_use(frame: &Prepared<'_>, step: StepId, encoder: &mut CommandEncoder) -> u32 {
     let Prepared { plan, gpu, realized, .. } = *frame;
     let mut fills = 0;
@@ -89,7 +92,7 @@ pub(crate) fn at_first_use(frame: &Prepared<'_>, step: StepId, encoder: &mut Com
     fills
 }
 
-/// Fills all levels and layers, if the texture allows it.
+/// Fills all levels and layers. Returns false if the texture's usages do not allow it.
 fn fill_texture(
     frame: &Prepared<'_>,
     texture: &Texture,
@@ -123,7 +126,7 @@ fn fill_texture(
     true
 }
 
-/// A buffer of one byte over and over; made anew each time, since poisoning is not for the fast path.
+/// Creates a buffer filled with one byte value. Not cached, since poisoning need not be fast.
 fn pattern(gpu: &Gpu, byte: u8, bytes: u64) -> Buffer {
     let contents = vec![byte; bytes as usize];
     gpu.device.create_buffer_init(&BufferInitDescriptor {
@@ -141,7 +144,7 @@ fn fill<V>(ops: &mut Operations<V>, value: V) -> u32 {
     u32::from(any)
 }
 
-/// Fills don't-care contents at the start of the step. Returns how many planes were filled.
+/// Turns don't-care load operations of the step into clears. Returns the number of planes.
 pub(crate) fn at_start(attached: &mut Attached, targets: &Targets) -> u32 {
     let mut fills = 0;
     for (target, format) in attached.colors.iter_mut().zip(targets.colors) {
@@ -156,7 +159,7 @@ pub(crate) fn at_start(attached: &mut Attached, targets: &Targets) -> u32 {
     fills
 }
 
-/// Fills dropped contents after the step. Returns how many attachments were filled.
+/// Fills discarded attachments after the step. Returns the number of attachments.
 pub(crate) fn at_end(frame: &Prepared<'_>, step: StepId, encoder: &mut CommandEncoder) -> u32 {
     let Prepared { plan, realized, .. } = *frame;
     let mut fills = 0;
@@ -178,7 +181,7 @@ pub(crate) fn at_end(frame: &Prepared<'_>, step: StepId, encoder: &mut CommandEn
     fills
 }
 
-/// The planes whose contents are dropped at the end of the step.
+/// Returns the planes whose contents are discarded at the end of the step.
 fn dropped(attachment: &Attachment, format: Format) -> Option<Aspect> {
     let is_dropped = |aspect| attachment.ops(format, aspect).is_some_and(|(_, store)| store == StoreOp::Discard);
     if !format.is_depth_stencil() {
@@ -192,7 +195,7 @@ fn dropped(attachment: &Attachment, format: Format) -> Option<Aspect> {
     }
 }
 
-/// Fills the planes of one level of one layer with a render pass.
+/// Fills the given planes of one level and layer with a render pass.
 fn clear(
     frame: &Prepared<'_>,
     texture: &Texture,
@@ -204,7 +207,7 @@ fn clear(
     let whole = Range { aspect: Aspect::All, ..range };
     let part = ViewDesc::new(format, shape.dimension, whole, (shape.mips, shape.size[2]), true);
     let part = part.used_as(TextureUsages::RENDER_ATTACHMENT);
-    // What cannot be seen cannot be filled; the pass that uses it will say why.
+    // A view that cannot be created is skipped; the pass that uses it reports the error.
     let Ok(view) = frame.caches.views.get(&frame.gpu.device, texture, part, "poisoned") else { return };
     let depth_slice = (shape.dimension == Dimension::D3).then_some(0);
     let values = Values { color: color(format), depth: DEPTH, stencil: STENCIL };

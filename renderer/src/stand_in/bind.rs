@@ -1,4 +1,4 @@
-//! What a stand-in binds: everything that its pass reads or stores to, as far as the device allows.
+//! Bindings of a mock recorder: everything that its pass reads or stores to, as far as the device allows.
 
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
@@ -10,24 +10,24 @@ use wgpu::{StorageTextureAccess, TextureFormatFeatureFlags};
 /// Width and height of a workgroup in invocations.
 pub(super) const WORKGROUP: u32 = 8;
 
-/// What stands behind one binding.
+/// Kind of a binding in the shader.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum BindingKind {
-    /// A texture that is fetched from.
+    /// Texture read with `textureLoad`.
     Fetched(TextureBinding),
-    /// A storage texture that is read.
+    /// Storage texture with read access.
     Loaded(TextureBinding),
-    /// A storage texture that is written.
+    /// Storage texture with write access.
     Stored(TextureBinding),
-    /// A uniform buffer of this many floats, at most four.
+    /// Uniform buffer of this many floats, at most four.
     Uniform(u64),
-    /// A storage buffer that is read.
+    /// Storage buffer with read access.
     Read,
-    /// A storage buffer that is written.
+    /// Storage buffer with write access.
     Written,
 }
 
-/// How a shader sees a texture.
+/// Shape of a texture in the shader.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TextureBinding {
     pub(super) format: Format,
@@ -37,21 +37,22 @@ pub(super) struct TextureBinding {
     pub(super) samples: u8,
 }
 
-/// The bindings of group 0.
+/// Bindings of group 0.
 #[derive(Debug, Default)]
 pub(super) struct Bindings {
-    /// Each beside its number, as bind groups take them.
+    /// Binding numbers and resources, for the bind group.
     pub(super) rows: Vec<(u32, Binding)>,
-    /// What each is, in the same order.
+    /// Kind of each binding, in the order of `rows`.
     pub(super) what: Vec<BindingKind>,
-    /// A vertex buffer and an index buffer to set, where the pass reads some.
+    /// Vertex buffer that the pass reads, if any.
     pub(super) vertices: Option<BoundBuffer>,
+    /// Index buffer that the pass reads, if any.
     pub(super) indices: Option<BoundBuffer>,
-    /// Width and height of the largest texture that is stored to; one workgroup's where there is none.
+    /// Width and height of the largest texture that is stored to, in texels; one workgroup if there is none.
     pub(super) extent: [u32; 2],
 }
 
-/// Levels of the storage texture with the most of them, at least 1.
+/// Returns the largest number of mip levels written through one storage texture, at least 1.
 pub(super) fn levels_written(cx: &Cx<'_>) -> u32 {
     let (plan, graph) = (cx.plan(), cx.plan().graph());
     let levels = cx.accesses().filter_map(|id| {
@@ -64,11 +65,11 @@ pub(super) fn levels_written(cx: &Cx<'_>) -> u32 {
 }
 
 impl Bindings {
-    /// Looks up every access of the pass that is no attachment, and binds what can be bound; storage textures that are
-    /// written in their level number `level`, of those that the access names.
+    /// Binds every access of the pass that is not an attachment, as far as the device allows. Storage textures are
+    /// written at mip `level`, counted from the first level of the access.
     ///
     /// # Errors
-    /// When something has no memory.
+    /// Fails if a resource has no memory.
     pub(super) fn of(cx: &mut Cx<'_>, level: u32) -> Result<Self, RecordError> {
         let (plan, graph) = (cx.plan(), cx.plan().graph());
         let mut bindings = Self { extent: [WORKGROUP; 2], ..Self::default() };
@@ -145,7 +146,8 @@ impl Bindings {
     }
 }
 
-/// How a texture is bound, and which limit it counts against; none where the device cannot bind it so.
+/// Returns the kind of a texture binding and the index of its limit. `None` if the device cannot bind the texture this
+/// way.
 fn textured(cx: &Cx<'_>, access: &Access, desc: &TextureDesc, format: Format) -> Option<(BindingKind, usize)> {
     let layers = match desc.dimension {
         Dimension::D2 => access.range.layer_range(desc.layers.into()).len() as u32,
@@ -153,7 +155,7 @@ fn textured(cx: &Cx<'_>, access: &Access, desc: &TextureDesc, format: Format) ->
     };
     let aspect = access.range.aspect;
     let shape = TextureBinding { format, aspect, dimension: desc.dimension, layers, samples: desc.samples };
-    // A multisampled array can be bound nowhere.
+    // WebGPU has no multisampled array textures.
     if desc.samples > 1 && layers > 1 {
         return None;
     }
@@ -171,7 +173,7 @@ fn textured(cx: &Cx<'_>, access: &Access, desc: &TextureDesc, format: Format) ->
 }
 
 impl TextureBinding {
-    /// The WGSL type of a texture that is fetched from, and the function that makes four floats of a fetched texel.
+    /// Returns the WGSL type of a texture for `textureLoad`, and the function that converts a texel to `vec4f`.
     pub(super) fn fetched(&self) -> (String, &'static str) {
         let (scalar, depth, floats) = match self.format.numeric() {
             Numeric::Depth if self.aspect == Aspect::Stencil || !self.format.has_depth() => ("u32", false, "from_uint"),
@@ -192,7 +194,7 @@ impl TextureBinding {
         (name + &of, floats)
     }
 
-    /// The WGSL type of a storage texture, and the type of its texels.
+    /// Returns the WGSL type of a storage texture, and the type of its texels.
     pub(super) fn stored(&self, access: StorageTextureAccess) -> (String, &'static str) {
         let dimension = match (self.dimension, self.layers) {
             (Dimension::D3, _) => "3d",

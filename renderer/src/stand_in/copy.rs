@@ -1,4 +1,4 @@
-//! Stand-ins of copy passes: the sources go into the targets one after the other, as far as they fit.
+//! Mock recorders of copy passes: copy each source to the targets of equal shape.
 
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
@@ -27,7 +27,7 @@ pub(super) fn record(cx: &mut Cx<'_>) -> Result<(), RecordError> {
     Ok(())
 }
 
-/// Copies if the two are alike; returns whether they were.
+/// Copies if source and target have equal shapes. Returns whether they have.
 fn copy(cx: &mut Cx<'_>, from: (&Access, &BoundResource), to: (&Access, &BoundResource)) -> Result<bool, RecordError> {
     match (from.1, to.1) {
         (BoundResource::Texture { texture: source, .. }, BoundResource::Texture { texture: target, .. }) => {
@@ -70,7 +70,7 @@ fn texture_to_texture(
 
 fn buffer_to_buffer(cx: &mut Cx<'_>, source: &BoundBuffer, target: &BoundBuffer) -> Result<bool, RecordError> {
     let bytes = source.bytes / 4 * 4;
-    // A part would not be all of the target.
+    // A partial copy would not overwrite the whole target.
     let alike = source.bytes == target.bytes && source.buffer != target.buffer;
     if alike {
         cx.encoder()?.copy_buffer_to_buffer(&source.buffer, source.offset, &target.buffer, target.offset, bytes);
@@ -78,7 +78,7 @@ fn buffer_to_buffer(cx: &mut Cx<'_>, source: &BoundBuffer, target: &BoundBuffer)
     Ok(alike)
 }
 
-/// Keeps the promise to overwrite where no source fits.
+/// Clears a target that is declared as overwritten and has no matching source.
 fn clear(cx: &mut Cx<'_>, access: &Access, target: &BoundResource) -> Result<(), RecordError> {
     let clears = cx.gpu().device.features().contains(Features::CLEAR_TEXTURE);
     match target {

@@ -1,4 +1,4 @@
-//! Textures and buffers for everything that a plan imports.
+//! Mock imports: textures and buffers for everything that a plan imports.
 
 use crate::device::error::DeviceError;
 use crate::device::format::{both_forms, buffer_usages, texture_format, texture_usages};
@@ -7,19 +7,20 @@ use crate::resources::imports::Imports;
 use framegraph::{Desc, Dimension, Placement, Plan, ResourceId};
 use wgpu::{BufferUsages, Texture, TextureUsages};
 
-/// What [`imports`] made.
+/// Textures and buffers that [`imports`] created.
 #[derive(Debug)]
 pub struct Imported {
-    /// Bound to the resources of the plan, to execute with.
+    /// Bindings to pass to [`Executor::execute`](crate::Executor::execute).
     pub bound: Imports,
-    /// The textures, to read them back.
+    /// Created textures, for reading them back.
     pub textures: Vec<(ResourceId, Texture)>,
 }
 
-/// Makes what the plan imports and uses: zeros in the declared shape, with the uses that the plan needs and copying.
+/// Creates a zero-filled texture or buffer for each import that the plan uses. Usages are those that the plan needs,
+/// plus copying, sampling and rendering where the format allows it.
 ///
 /// # Errors
-/// When the device refuses one of them.
+/// Fails if the device rejects one of the resources.
 pub fn imports(gpu: &Gpu, plan: &Plan) -> Result<Imported, DeviceError> {
     let mut made = Imported { bound: Imports::new(), textures: Vec::new() };
     gpu.guard("a stand-in for an import", || {
@@ -56,7 +57,7 @@ fn texture(gpu: &Gpu, plan: &Plan, resource: ResourceId) -> Texture {
     };
     let [width, height] = desc.extent.texels(plan.frame());
     let allowed = gpu.format_features(desc.format).allowed_usages;
-    // Attachable, so that a pass may ask for it to be cleared to any value.
+    // Render attachment usage lets a pass clear the texture to any value.
     let wanted = TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT;
     let offered = wanted & allowed;
     let formats = both_forms(texture_format(desc.format));

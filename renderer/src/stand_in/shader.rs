@@ -1,4 +1,4 @@
-//! The shaders of stand-ins: one value for each texel, made of the pass's name, the place, and all that the pass reads.
+//! Shaders of mock recorders. Each texel gets a value computed from the pass's name, the position and all inputs.
 
 use super::bind::{BindingKind, Bindings, TextureBinding, WORKGROUP};
 use crate::execute::cx::Cx;
@@ -6,7 +6,7 @@ use framegraph::{Access, AccessKind, Dimension, Numeric};
 use std::fmt::Write;
 use wgpu::StorageTextureAccess;
 
-/// Integers keep to one byte, so that they are exact in every format.
+/// Integers stay below 256, so that they are exact in every format.
 const COMMON: &str = "
 fn from_depth(depth: f32) -> vec4f { return vec4f(depth); }
 fn from_uint(texel: vec4u) -> vec4f { return vec4f(texel & vec4u(255)) / 255.0; }
@@ -15,14 +15,15 @@ fn as_uint(value: vec4f) -> vec4u { return vec4u(value * 100.0); }
 fn as_sint(value: vec4f) -> vec4i { return vec4i(value * 100.0); }
 ";
 
-/// A number between 0 and 1 that differs from name to name.
+/// Returns a number in 0…1 derived from the name.
 fn share(name: &str, salt: u8) -> f32 {
     let hash =
         name.bytes().chain([salt]).fold(0x811c_9dc5u32, |hash, b| (hash ^ u32::from(b)).wrapping_mul(16_777_619));
     (hash >> 8) as f32 / 16_777_216.0
 }
 
-/// Declarations of all bindings, and the function `value(at, salt)`: `at` is the place, 0…1 across and down.
+/// Generates declarations of all bindings and the function `value(at, salt)`. `at` is the position in the target, 0…1
+/// on both axes.
 fn common(name: &str, bindings: &Bindings) -> String {
     let mut text = String::from(COMMON);
     let mut sum = String::new();
@@ -54,7 +55,7 @@ fn common(name: &str, bindings: &Bindings) -> String {
         };
         push(&mut text, &format!("@group(0) @binding({number}) {declared}\n"));
         if !matches!(what, BindingKind::Stored(_) | BindingKind::Written) {
-            // Weights differ, so that exchanged inputs show.
+            // Weights differ, so that swapped inputs change the result.
             let weight = 0.25 + 0.5 * share(name, number as u8 + 1);
             push(&mut sum, &format!("  sum += {weight:.6} * read{number}(at);\n"));
         }
@@ -73,12 +74,12 @@ fn common(name: &str, bindings: &Bindings) -> String {
     text
 }
 
-/// A function that returns `value` for binding `number`, wherever `at` is.
+/// Generates a function that returns `value` for binding `number`, independent of `at`.
 fn reads(text: &mut String, number: usize, value: &str) {
     push(text, &format!("fn read{number}(at: vec2f) -> vec4f {{ return {value}; }}\n"));
 }
 
-/// A function that sums the texels under `at` of all levels and layers.
+/// Generates a function that sums the texels at `at` over all levels and layers.
 fn fetch(text: &mut String, number: usize, shape: &TextureBinding) {
     let (_, floats) = shape.fetched();
     let source = format!("source{number}");
@@ -132,7 +133,8 @@ fn load(text: &mut String, number: usize, shape: &TextureBinding) {
     push(text, &format!("fn read{number}(at: vec2f) -> vec4f {{\n  {body}\n}}\n"));
 }
 
-/// Writes a value into everything that is stored to, as far as it reaches; `at` is the texel, `all` what is dispatched.
+/// Generates stores to all storage bindings. `texel` is the invocation's position and `all_texels` the size of the
+/// dispatch.
 fn stores(bindings: &Bindings, level: u32) -> String {
     let mut text = String::new();
     for (number, what) in bindings.what.iter().enumerate() {
@@ -179,12 +181,12 @@ fn stores(bindings: &Bindings, level: u32) -> String {
     text
 }
 
-/// The shader of a raster pass.
+/// Generates the shader of a raster pass.
 pub(super) fn raster_wgsl(cx: &Cx<'_>, own: &[Access], bindings: &Bindings, whole: bool) -> String {
     let name = cx.pass_name();
     let [width, height] = cx.targets().extent;
     let mut text = common(name, bindings);
-    // Depths of different passes differ, and lie off the ends.
+    // Depth differs between passes and is neither 0 nor 1.
     let (reach, depth) = (if whole { "4.0" } else { "2.0" }, 0.1 + 0.8 * share(name, 7));
     let (mut outputs, mut values) = (String::new(), String::new());
     for access in own.iter().filter(|a| a.kind == AccessKind::Color) {
@@ -199,7 +201,7 @@ pub(super) fn raster_wgsl(cx: &Cx<'_>, own: &[Access], bindings: &Bindings, whol
         push(&mut values, &format!("  out.color{slot} = {convert}(value(at, {slot}.0 * 0.05));\n"));
     }
     let (returns, out, result) = if outputs.is_empty() {
-        // What is read must be used, or the shader would not bind it.
+        // Unused bindings would be removed from the shader's layout.
         ("", "", "  if value(at, 0.0).x < -1.0 { discard; }\n")
     } else {
         push(&mut text, &format!("struct Out {{\n{outputs}}}\n"));
@@ -223,7 +225,7 @@ pub(super) fn raster_wgsl(cx: &Cx<'_>, own: &[Access], bindings: &Bindings, whol
     text
 }
 
-/// The shader of a compute pass that writes level number `level` of what it stores to.
+/// Generates the shader of a compute pass that writes mip level `level` of its storage textures.
 pub(super) fn compute_wgsl(name: &str, bindings: &Bindings, level: u32) -> String {
     let mut text = common(name, bindings);
     let [width, height] = bindings.extent.map(|side| side.next_multiple_of(WORKGROUP));
