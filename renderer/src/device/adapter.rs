@@ -1,16 +1,15 @@
-//! Which adapter to render on: hardware before software, and what the environment asks for.
+//! Adapter selection: prefers hardware over software and follows environment variables.
 
 use wgpu::{Adapter, AdapterInfo, Backend, Backends, DeviceType, Instance, Limits};
 
-/// What is asked of the adapter. [`AdapterRequest::from_env`] is what programs use.
+/// Requirements for an adapter. Programs usually create it with [`AdapterRequest::from_env`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterRequest {
-    /// The graphics interfaces that may be used. The one that does nothing (`Backends::NOOP`) is used only when it is the
-    /// only one asked for.
+    /// Graphics APIs that may be used. The `NOOP` backend is used only if it is the only one.
     pub backends: Backends,
-    /// A part of the adapter's name, in any case; `None` for any adapter.
+    /// Part of the adapter's name, case-insensitive; `None` accepts every adapter.
     pub name: Option<String>,
-    /// Words of `WGPU_BACKEND` that name no interface; with any, nothing is opened.
+    /// Words of `WGPU_BACKEND` that name no graphics API. If there are any, opening a device fails.
     pub unknown: Vec<String>,
 }
 
@@ -21,8 +20,10 @@ impl Default for AdapterRequest {
 }
 
 impl AdapterRequest {
-    /// What `WGPU_BACKEND` (`vulkan`, `gl`, `metal`, `dx12`, `noop`, separated by commas) and `WGPU_ADAPTER_NAME` (a part
-    /// of the name) ask for; the defaults where they are not set.
+    /// Reads the request from environment variables. Unset variables leave the defaults.
+    ///
+    /// - `WGPU_BACKEND`: `vulkan`, `gl`, `metal`, `dx12` or `noop`, separated by commas
+    /// - `WGPU_ADAPTER_NAME`: part of the adapter's name
     pub fn from_env() -> Self {
         let variable = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
         let text = |value: std::ffi::OsString| value.to_string_lossy().into_owned();
@@ -31,7 +32,7 @@ impl AdapterRequest {
         Self { name, ..asked.map_or_else(Self::default, |words| Self::of_backends(&words)) }
     }
 
-    /// Interfaces by name, separated by commas.
+    /// Parses names of graphics APIs, separated by commas.
     fn of_backends(words: &str) -> Self {
         let mut request = Self { backends: Backends::empty(), ..Self::default() };
         for word in words.split(',').map(str::trim) {
@@ -43,7 +44,7 @@ impl AdapterRequest {
         request
     }
 
-    /// Whether `info` is what was asked for.
+    /// Returns whether an adapter fulfills the request.
     pub fn accepts(&self, info: &AdapterInfo) -> bool {
         let name = info.name.to_lowercase();
         self.backends.contains(Backends::from(info.backend))
@@ -51,7 +52,8 @@ impl AdapterRequest {
     }
 }
 
-/// Smaller is better: discrete, integrated, virtual, unknown, then software; among equals the explicit interfaces first.
+/// Returns a sort key; smaller is better. Discrete GPUs come first, then integrated, virtual and unknown ones, then
+/// software. Ties prefer Vulkan and Metal, then DirectX 12, WebGPU and OpenGL.
 pub(crate) fn rank(info: &AdapterInfo) -> (u8, u8) {
     let kind = match info.device_type {
         DeviceType::DiscreteGpu => 0,
@@ -70,19 +72,20 @@ pub(crate) fn rank(info: &AdapterInfo) -> (u8, u8) {
     (kind, interface)
 }
 
-/// Whether there can be a GPU at all: on Linux every driver has a device node, and starting an interface to find that
-/// there is none takes time and prints complaints.
+/// Returns whether the system may have a GPU. On Linux every GPU driver has a device node; checking it is faster than
+/// starting a graphics API, and prints no complaints.
 pub(crate) fn may_have_hardware() -> bool {
     let nodes = ["/dev/dri", "/dev/nvidiactl", "/dev/dxg", "/dev/kgsl-3d0", "/dev/mali0"];
     !cfg!(target_os = "linux") || nodes.iter().any(|node| std::path::Path::new(node).exists())
 }
 
-/// Whether the adapter renders in software on the CPU.
+/// Returns whether the adapter is a software renderer on the CPU.
 pub fn is_software(info: &AdapterInfo) -> bool {
     info.device_type == DeviceType::Cpu
 }
 
-/// Name, kind, interface and driver in one line: `llvmpipe (LLVM 15.0.6, 256 bits) (software, vulkan, llvmpipe Mesa 22.3.6)`.
+/// Describes an adapter in one line, for example `llvmpipe (LLVM 15.0.6, 256 bits) (software, vulkan, llvmpipe Mesa
+/// 22.3.6)`.
 pub fn describe(info: &AdapterInfo) -> String {
     let kind = match info.device_type {
         DeviceType::DiscreteGpu => "discrete GPU",
@@ -97,8 +100,8 @@ pub fn describe(info: &AdapterInfo) -> String {
     format!("{} ({kind}, {}, {driver})", info.name, info.backend)
 }
 
-/// Every adapter on the interfaces asked for. Those of the second rank are looked at only when the first ones offer
-/// nothing that fits, or only software although there may be a GPU.
+/// Enumerates the adapters of the requested graphics APIs. Secondary APIs are enumerated only if the primary ones have
+/// no acceptable adapter, or only software although there may be a GPU.
 pub(crate) fn adapters(request: &AdapterRequest) -> Vec<Adapter> {
     let first = enumerate(request.backends & Backends::PRIMARY);
     let enough = |info: AdapterInfo| request.accepts(&info) && !(is_software(&info) && may_have_hardware());
@@ -118,12 +121,12 @@ fn enumerate(backends: Backends) -> Vec<Adapter> {
     descriptor.backend_options = wgpu::BackendOptions::from_env_or_default();
     descriptor.backend_options.noop.enable = backends == Backends::NOOP;
     descriptor.backend_options.noop.limits = Some(noop_limits());
-    // The driver's own validation is for those who ask for it (WGPU_VALIDATION, WGPU_DEBUG); wgpu's is always on.
+    // Driver validation is off unless requested (WGPU_VALIDATION, WGPU_DEBUG). wgpu's own validation is always on.
     descriptor.flags = wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL.with_env();
     pollster::block_on(Instance::new(descriptor).enumerate_adapters(backends))
 }
 
-/// WebGPU's guaranteed limits, and several layers attached at once: by itself the adapter that does nothing has no limits, which
+/// Returns WebGPU's default limits with multiview. The default limits of wgpu's noop adapter are so large that they
 /// overflow inside wgpu.
 fn noop_limits() -> Limits {
     Limits { max_multiview_view_count: u32::BITS, ..Limits::default() }

@@ -1,7 +1,7 @@
-//! How many layers can be drawn into at once: what the device offers, where that is true.
+//! Number of layers that one render pass can draw into (multiview).
 //!
-//! Mesa's software driver offers multiview rendering, but up to version 22.3 at least it clears all layers and draws into
-//! the first alone. Frames would be wrong without an error, so two layers are drawn and read back before multiview is used.
+//! Mesa's llvmpipe offers multiview. Up to version 22.3 at least, it clears all layers but draws only into the first,
+//! without an error. Two layers are therefore drawn and read back before multiview is used.
 
 use crate::device::draw_texel::draw_texel;
 use crate::device::error::DeviceError;
@@ -10,11 +10,13 @@ use crate::device::readback::{Readback, ReadbackError, Subresource};
 use wgpu::{Backend, Features, TextureFormat};
 
 impl Gpu {
-    /// How many layers can be attached and drawn into at once; 1 where the device has no multiview rendering, or offers
-    /// it and draws into the first layer alone. The first call draws two texels and waits for them.
+    /// Returns the number of layers that can be attached and drawn into at once.
+    ///
+    /// Returns 1 if the device has no multiview, or offers it but draws only into the first layer. The first call draws
+    /// two texels and waits for them.
     ///
     /// # Errors
-    /// When the device is lost, or fails the measurement.
+    /// Fails if the device is lost or the test cannot be drawn.
     pub fn max_attached_layers(&self) -> Result<u32, DeviceError> {
         if let Some(&known) = self.attached_layers.get() {
             return Ok(known);
@@ -23,39 +25,38 @@ impl Gpu {
         Ok(*self.attached_layers.get_or_init(|| measured))
     }
 
-    /// Trusts the driver on [`Gpu::max_attached_layers`], on this device from now on: for an engine that knows its
-    /// drivers and does not want to wait, or a test that looks at operations alone. Has no effect once it was measured.
+    /// Skips the test of [`Gpu::max_attached_layers`] and trusts the driver from now on. For applications that know
+    /// their drivers, and for tests that only compare operations. Has no effect after the test ran.
     pub fn trust_attached_layers(&self) {
         self.attached_layers.get_or_init(|| offered(self));
     }
 }
 
-/// The number of layers that the driver says a render pass can draw into; 1 without multiview rendering.
+/// Returns the number of layers that the driver reports; 1 without multiview.
 fn offered(gpu: &Gpu) -> u32 {
     let several = gpu.device.features().contains(Features::MULTIVIEW);
     if several { gpu.device.limits().max_multiview_view_count.clamp(1, u32::BITS) } else { 1 }
 }
 
-/// The number of layers that a render pass of the device really draws into; 1 without multiview rendering. Waits for the
-/// device.
+/// Returns the number of layers that a render pass really draws into; 1 without multiview. Waits for the device.
 ///
 /// # Errors
-/// When the device is lost, or fails the measurement.
+/// Fails if the device is lost or the test cannot be drawn.
 fn measure(gpu: &Gpu) -> Result<u32, DeviceError> {
     let offered = offered(gpu);
-    // A device without a driver draws nothing that could be read back.
+    // The noop device draws nothing that could be read back.
     if offered < 2 || gpu.info().backend == Backend::Noop {
         return Ok(offered);
     }
     match draw_two(gpu) {
         Ok(read) => Ok(confirmed(offered, &read)),
         Err(ReadbackError::Device(error)) => Err(error),
-        // What cannot be read back is not relied on.
+        // Without a readback the driver's claim cannot be confirmed.
         Err(_) => Ok(1),
     }
 }
 
-/// The first byte of each of two layers, drawn at once: 51 in the first and 102 in the second where that works.
+/// Draws into two layers at once and returns the first byte of each. Correct values are 51 and 102.
 fn draw_two(gpu: &Gpu) -> Result<[Option<u8>; 2], ReadbackError> {
     let fragment = "
         @fragment fn fs_main(@builtin(view_index) view: u32) -> @location(0) vec4f {
@@ -71,7 +72,7 @@ fn draw_two(gpu: &Gpu) -> Result<[Option<u8>; 2], ReadbackError> {
     Ok([first_byte(0)?, first_byte(1)?])
 }
 
-/// What the driver offers, if two layers hold what was drawn into each; 1 otherwise.
+/// Returns `offered` if both layers have the expected values, otherwise 1.
 fn confirmed(offered: u32, read: &[Option<u8>; 2]) -> u32 {
     if *read == [Some(51), Some(102)] { offered } else { 1 }
 }

@@ -1,13 +1,13 @@
-//! What a wgpu device can do, as the compiler's plain data.
+//! Conversion of wgpu limits to the compiler's [`Caps`].
 
 use framegraph::Caps;
 use wgpu::{AdapterInfo, Limits};
 
-/// The caps of a device with these limits on this adapter.
+/// Returns the capabilities of a device with these limits on this adapter.
 ///
-/// `max_samples` stays at the 4 that WebGPU guarantees for every renderable format. Memoryless attachments are accepted
-/// everywhere; whether they save anything is what the adapter says ([`AdapterInfo::transient_saves_memory`]). There are no
-/// input attachments, no placed resources and no barriers to give: wgpu tracks them itself.
+/// `max_samples` stays at 4, which WebGPU guarantees for every multisampled format. Memoryless attachments are always
+/// accepted; [`AdapterInfo::transient_saves_memory`] says whether they save memory. Input attachments, placed resources
+/// and explicit barriers are off, since wgpu tracks resources itself.
 pub(crate) fn caps_of(info: &AdapterInfo, limits: &Limits) -> Caps {
     Caps {
         name: format!("{} ({})", info.name, info.backend),

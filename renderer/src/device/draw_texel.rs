@@ -1,4 +1,4 @@
-//! One texel drawn by a shader: what a device does where its interface leaves room, or where its driver errs.
+//! Draws one texel with a shader, to test behavior that the specification leaves open or that drivers get wrong.
 
 use crate::device::gpu::Gpu;
 use std::num::NonZeroU32;
@@ -15,10 +15,10 @@ const VERTEX: &str = "
     }
 ";
 
-/// A texture of one texel and `layers` layers (1 to 32), cleared to black, all of it covered by `fragment`, a WGSL entry
-/// point `fs_main`. More than one layer are attached and drawn into at once.
+/// Draws `fragment`, a WGSL entry point `fs_main`, into a texture of one texel and `layers` layers (1 to 32), cleared
+/// to black. Several layers are drawn at once with multiview.
 ///
-/// Nothing is checked here: call it within [`Gpu::guard`].
+/// Errors are not checked here: call it within [`Gpu::guard`].
 pub(crate) fn draw_texel(gpu: &Gpu, fragment: &str, target: TextureFormat, layers: u32) -> Texture {
     let Gpu { device, queue, .. } = gpu;
     let module = device.create_shader_module(ShaderModuleDescriptor {

@@ -1,8 +1,13 @@
-//! Errors of the device as values: lost devices, exhausted memory and refused calls become errors, never panics.
+//! Device errors as values: lost devices, exhausted memory and rejected calls become errors instead of panics.
 //!
-//! wgpu reports in three ways: error scopes (per thread), a handler for what no scope caught, and a callback when the
-//! device is lost. [`DeviceErrors`] collects the last two for a device that this crate opened; [`ErrorScopes`] wraps a
-//! piece of work in the first, [`Watch`] a part of a frame in what costs least. An engine that owns its device keeps its own handlers and forwards losses with
+//! wgpu reports errors in three ways: error scopes (per thread), a handler for errors outside of scopes, and a callback
+//! when the device is lost. Three types cover them:
+//!
+//! - [`DeviceErrors`] collects handler and callback reports of a device that this crate opened.
+//! - [`ErrorScopes`] catches the errors of a piece of work.
+//! - [`Watch`] catches the errors of a part of a frame at the lowest cost.
+//!
+//! An application that owns its device keeps its handlers, and forwards a lost device with
 //! [`DeviceErrors::report_lost`].
 
 use std::cell::Cell;
@@ -10,43 +15,43 @@ use std::sync::Mutex;
 use wgpu::{Device, ErrorFilter, ErrorScopeGuard};
 
 thread_local! {
-    /// [`ErrorScopes`] that are open on this thread.
+    /// Number of open [`ErrorScopes`] on this thread.
     static OPEN: Cell<u32> = const { Cell::new(0) };
-    /// What a [`Watch`] of this thread does.
+    /// Description of the current [`Watch`] on this thread.
     static DOING: Cell<Option<&'static str>> = const { Cell::new(None) };
 }
 
-/// What went wrong on the device.
+/// Error of a device.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DeviceError {
-    /// The device is gone, with everything made on it; open a new one.
+    /// The device is lost with all its resources. Open a new device.
     #[error("the device was lost while {doing}: {reason}; open a new device and make everything anew")]
     Lost {
-        /// What was being done: the end of "while …" or "refused …".
+        /// Operation that failed, for the text "while …" or "refused …".
         doing: &'static str,
-        /// What the driver said.
+        /// Reason given by the driver.
         reason: String,
     },
-    /// The device has no memory left for what was asked.
+    /// The device is out of memory.
     #[error("the device is out of memory while {doing}; use a smaller frame, fewer samples or smaller textures")]
     OutOfMemory {
-        /// What was being done: the end of "while …" or "refused …".
+        /// Operation that failed, for the text "while …" or "refused …".
         doing: &'static str,
     },
-    /// wgpu refused a call: wrong use, or something that the device cannot do.
+    /// wgpu rejected a call: wrong usage, or not supported by the device.
     #[error("wgpu refused {doing}: {message}")]
     Refused {
-        /// What was being done: the end of "while …" or "refused …".
+        /// Operation that failed, for the text "while …" or "refused …".
         doing: &'static str,
-        /// wgpu's reason, on one line.
+        /// Reason given by wgpu, on one line.
         message: String,
     },
-    /// The driver failed inside.
+    /// The driver failed internally.
     #[error("the driver failed while {doing}: {message}")]
     Internal {
-        /// What was being done: the end of "while …" or "refused …".
+        /// Operation that failed, for the text "while …" or "refused …".
         doing: &'static str,
-        /// What it said, on one line.
+        /// Reason given by the driver, on one line.
         message: String,
     },
 }
@@ -57,7 +62,7 @@ impl std::fmt::Debug for DeviceError {
     }
 }
 
-/// What the device's own handlers reported since it was last asked.
+/// Errors that the handlers of a device reported since the last check.
 #[derive(Debug, Default)]
 pub struct DeviceErrors {
     state: Mutex<State>,
@@ -70,26 +75,27 @@ struct State {
 }
 
 impl DeviceErrors {
-    /// Notes that the device is lost; the first reason stays.
+    /// Reports that the device is lost. The first reason is kept.
     pub fn report_lost(&self, reason: impl Into<String>) {
         self.locked().lost.get_or_insert_with(|| reason.into());
     }
 
-    /// Notes an error that no scope caught; the first one stays until it is taken.
+    /// Stores an error that no scope caught. The first one is kept until it is taken.
     pub(crate) fn uncaught(&self, error: &wgpu::Error) {
         let doing = DOING.get().unwrap_or("something outside of a frame");
         self.locked().uncaught.get_or_insert_with(|| from_wgpu(error, doing));
     }
 
-    /// Why the device was lost, if it was.
+    /// Returns why the device was lost, or `None` if it was not.
     pub fn lost(&self) -> Option<String> {
         self.locked().lost.clone()
     }
 
-    /// The loss as an error, if there was one; then the uncaught error, which is forgotten.
+    /// Fails if the device is lost or a handler reported an error. Reported errors are removed; a lost device stays
+    /// lost.
     ///
     /// # Errors
-    /// What was noted.
+    /// Returns [`DeviceError::Lost`], or else the first reported error.
     pub fn check(&self, doing: &'static str) -> Result<(), DeviceError> {
         let mut state = self.locked();
         if let Some(reason) = &state.lost {
@@ -99,20 +105,20 @@ impl DeviceErrors {
     }
 
     fn locked(&self) -> std::sync::MutexGuard<'_, State> {
-        // A panic while the lock was held cannot leave half a note behind: each is one assignment.
+        // A panic while the lock was held cannot leave the state inconsistent: each update is one assignment.
         self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
 }
 
-/// Open error scopes for all three kinds of error on this thread.
+/// Open error scopes for all three kinds of wgpu errors on this thread.
 #[must_use = "errors are reported by `close`"]
 pub struct ErrorScopes {
-    // Closed in reverse order of opening.
+    // Scopes are closed in reverse order of opening.
     guards: [ErrorScopeGuard; 3],
     counted: Counted,
 }
 
-/// One more in [`OPEN`] while it lives.
+/// Counts one open scope in [`OPEN`] during its lifetime.
 struct Counted;
 
 impl Counted {
@@ -129,7 +135,7 @@ impl Drop for Counted {
 }
 
 impl ErrorScopes {
-    /// Opens the scopes: errors of this thread are caught from now on.
+    /// Opens the scopes. Errors of this thread are caught from now on.
     pub fn open(device: &Device) -> Self {
         let kinds = [ErrorFilter::Internal, ErrorFilter::OutOfMemory, ErrorFilter::Validation];
         Self { guards: kinds.map(|kind| device.push_error_scope(kind)), counted: Counted::new() }
@@ -138,7 +144,7 @@ impl ErrorScopes {
     /// Closes the scopes.
     ///
     /// # Errors
-    /// The first error of the gravest kind that was caught: exhausted memory, then internal failure, then refusal.
+    /// Returns the most severe error that was caught: out of memory, then internal errors, then validation errors.
     pub fn close(self, doing: &'static str) -> Result<(), DeviceError> {
         let Self { guards: [internal, memory, validation], counted: _counted } = self;
         let validation = pollster::block_on(validation.pop());
@@ -148,9 +154,10 @@ impl ErrorScopes {
     }
 }
 
-/// A part of a frame, whose errors are found when it ends. Opening and closing scopes takes wgpu as long as recording a small pass, so
-/// they are opened only where errors would not come to the device's own handler: a device whose handler is not this crate's, or a
-/// thread with [`ErrorScopes`] around the frame.
+/// A part of a frame whose errors are reported at its end.
+///
+/// Opening and closing scopes costs as much as recording a small pass. They are opened only if errors would not reach
+/// this crate's handler: on devices with another handler, or within [`ErrorScopes`] on this thread.
 #[must_use = "errors are reported by `end`"]
 pub(crate) struct Watch {
     scopes: Option<ErrorScopes>,
@@ -158,17 +165,18 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Begins: `handled` says that what no scope catches is noted in the errors that are handed to [`Watch::end`].
+    /// Begins a part of a frame. `handled` says whether errors outside of scopes are stored in the `errors` passed to
+    /// [`Watch::end`].
     pub(crate) fn begin(device: &Device, handled: bool, doing: &'static str) -> Self {
         let scopes = (!handled || OPEN.get() > 0).then(|| ErrorScopes::open(device));
         DOING.set(Some(doing));
         Self { scopes, doing }
     }
 
-    /// Ends.
+    /// Ends the part of the frame.
     ///
     /// # Errors
-    /// What was caught, or noted in `errors`.
+    /// Returns the error that was caught, or stored in `errors`.
     pub(crate) fn end(self, errors: &DeviceErrors) -> Result<(), DeviceError> {
         DOING.set(None);
         self.scopes.map_or(Ok(()), |scopes| scopes.close(self.doing)).and_then(|()| errors.check(self.doing))
@@ -183,7 +191,8 @@ fn from_wgpu(error: &wgpu::Error, doing: &'static str) -> DeviceError {
     }
 }
 
-/// wgpu writes a tree of causes over several lines; the causes alone, from the outside in, on one, whatever labels they name.
+/// Joins wgpu's multi-line tree of causes into one line, outermost cause first. Control characters in labels are
+/// escaped.
 pub(crate) fn one_line(description: &str) -> String {
     let noise = ["Validation Error", "Caused by:"];
     let lines = description.lines().map(str::trim).filter(|l| !l.is_empty() && !noise.contains(l));

@@ -1,9 +1,9 @@
-//! Formats and uses, from the compiler's to wgpu's and back.
+//! Conversion of formats and usages between the compiler and wgpu.
 
 use framegraph::{Aspect, Format, Usage};
 use wgpu::{AstcBlock, AstcChannel, BufferUsages, TextureAspect, TextureFormat, TextureUsages};
 
-/// The wgpu format of the same name.
+/// Returns the wgpu format of the same name.
 pub const fn texture_format(format: Format) -> TextureFormat {
     use TextureFormat as T;
     match format {
@@ -67,13 +67,14 @@ pub const fn texture_format(format: Format) -> TextureFormat {
     }
 }
 
-/// The format that wgpu calls `format`; `None` for the few that the compiler does not know (video planes, 16-bit
-/// normalised, further ASTC blocks).
+/// Returns the compiler's format of the same name. `None` for formats that the compiler does not know (video planes,
+/// 16-bit normalized, most ASTC blocks).
 pub fn format_of(format: TextureFormat) -> Option<Format> {
     Format::ALL.into_iter().find(|f| texture_format(*f) == format)
 }
 
-/// The wgpu uses of a texture. Same-pixel reads are texel fetches here: wgpu has no input attachments.
+/// Returns the wgpu usages of a texture. Input attachments become texture bindings, since wgpu has no input
+/// attachments.
 pub fn texture_usages(usage: Usage) -> TextureUsages {
     let table = [
         (Usage::ATTACHMENT, TextureUsages::RENDER_ATTACHMENT),
@@ -86,7 +87,7 @@ pub fn texture_usages(usage: Usage) -> TextureUsages {
     table.into_iter().filter(|(u, _)| usage.contains(*u)).fold(TextureUsages::empty(), |all, (_, w)| all | w)
 }
 
-/// The wgpu uses of a buffer.
+/// Returns the wgpu usages of a buffer.
 pub fn buffer_usages(usage: Usage) -> BufferUsages {
     let table = [
         (Usage::STORAGE, BufferUsages::STORAGE),
@@ -100,7 +101,7 @@ pub fn buffer_usages(usage: Usage) -> BufferUsages {
     table.into_iter().filter(|(u, _)| usage.contains(*u)).fold(BufferUsages::empty(), |all, (_, w)| all | w)
 }
 
-/// The wgpu name of some planes.
+/// Returns wgpu's name of a plane selection.
 pub const fn texture_aspect(aspect: Aspect) -> TextureAspect {
     match aspect {
         Aspect::All => TextureAspect::All,
@@ -109,7 +110,7 @@ pub const fn texture_aspect(aspect: Aspect) -> TextureAspect {
     }
 }
 
-/// What a shader may bind of these planes: depth with stencil is sampled as depth.
+/// Returns the planes that a shader can sample. For formats with depth and stencil, `All` means depth.
 pub const fn sampled_aspect(format: Format, aspect: Aspect) -> TextureAspect {
     match aspect {
         Aspect::All if format.has_depth() && format.has_stencil() => TextureAspect::DepthOnly,
@@ -117,7 +118,7 @@ pub const fn sampled_aspect(format: Format, aspect: Aspect) -> TextureAspect {
     }
 }
 
-/// The sRGB form of a format and its linear one: what views of a texture may have that is seen through both.
+/// Returns the sRGB and the linear form of a format, for `view_formats` of a texture that is viewed as both.
 pub(crate) fn both_forms(format: TextureFormat) -> [TextureFormat; 2] {
     [format.add_srgb_suffix(), format.remove_srgb_suffix()]
 }

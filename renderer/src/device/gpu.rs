@@ -1,4 +1,4 @@
-//! The opened device: queue, limits, features, and the errors that it reported.
+//! The opened device with its queue, limits and features, and the errors it reported.
 
 use crate::device::adapter::{AdapterRequest, adapters, describe, is_software, rank};
 use crate::device::caps::caps_of;
@@ -11,31 +11,31 @@ use wgpu::{
     TextureFormatFeatureFlags, TextureFormatFeatures, TextureUsages,
 };
 
-/// A device with its queue. Cloning is cheap and names the same device.
+/// A wgpu device with its queue. Clones refer to the same device and are cheap.
 ///
 /// ```no_run
 /// use framegraph_wgpu::{AdapterRequest, Gpu};
 ///
-/// // WGPU_BACKEND and WGPU_ADAPTER_NAME choose; hardware comes before software.
+/// // WGPU_BACKEND and WGPU_ADAPTER_NAME select the adapter; hardware is preferred over software.
 /// let gpu = Gpu::open(&AdapterRequest::from_env())?;
 /// println!("rendering on {}", gpu.describe());
-/// // What wgpu refuses is an error, also outside of frames.
+/// // Calls that wgpu rejects become errors, also outside of frames.
 /// let sampler = gpu.guard("a sampler", || gpu.device.create_sampler(&Default::default()))?;
 /// # drop(sampler);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// An engine that has a device already keeps it: [`Gpu::wrap`].
+/// Applications that already have a device use [`Gpu::wrap`].
 #[derive(Clone, Debug)]
 pub struct Gpu {
-    /// The opened device.
+    /// wgpu device.
     pub device: Device,
-    /// The queue of the device.
+    /// Queue of the device.
     pub queue: Queue,
     adapter: Adapter,
     info: AdapterInfo,
     errors: Arc<DeviceErrors>,
-    /// What no scope catches is noted in `errors`.
+    /// Whether errors outside of scopes are stored in `errors`.
     handled: bool,
     waits: Arc<atomic::AtomicU64>,
     caps: Arc<OnceLock<Caps>>,
@@ -44,35 +44,35 @@ pub struct Gpu {
     pub(super) attached_layers: Arc<OnceLock<u32>>,
 }
 
-/// Of one device opened once; handles of wgpu alone may be equal for devices of two instances.
+/// Compares devices by identity. wgpu handles of devices from two instances may compare equal, so they are not used.
 impl PartialEq for Gpu {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.errors, &other.errors)
     }
 }
 
-/// No device could be opened.
+/// Error: no device could be opened.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
-    /// `WGPU_BACKEND` holds words that name no graphics API.
+    /// `WGPU_BACKEND` contains words that name no graphics API.
     #[error("WGPU_BACKEND: {} names no graphics API; there are vulkan, metal, dx12, gl and noop, separated by commas", quoted(.words))]
     UnknownBackend {
-        /// The words.
+        /// The unknown words.
         words: Vec<String>,
     },
-    /// The program was built without the graphics APIs that were asked for.
+    /// The program was built without the requested graphics APIs.
     #[error(
         "none of {asked:?} was built into this program, which has {}; build `framegraph-wgpu` with one of the features \
          `vulkan`, `metal`, `dx12`, `gles`, or `noop` for a device that draws nothing",
         if .built.is_empty() { "no graphics API".to_owned() } else { format!("{built:?}") }
     )]
     NotBuilt {
-        /// The APIs that were asked for.
+        /// Requested APIs.
         asked: Backends,
-        /// The APIs that were built in and that this system can have.
+        /// APIs that are built in and exist on this system.
         built: Backends,
     },
-    /// No adapter is what was asked for.
+    /// No adapter fulfills the request.
     #[error(
         "no adapter on {:?}{}; found: {}; install a driver (Mesa's llvmpipe renders without a GPU), or change WGPU_BACKEND \
          and WGPU_ADAPTER_NAME",
@@ -81,15 +81,15 @@ pub enum OpenError {
         listed(.found.iter().map(describe))
     )]
     NoAdapter {
-        /// What was asked for.
+        /// The request.
         asked: AdapterRequest,
-        /// The adapters that there are.
+        /// All adapters that were found.
         found: Vec<AdapterInfo>,
     },
-    /// Every adapter that fits refused to open.
+    /// Every suitable adapter failed to open a device.
     #[error("no adapter would open a device: {}", listed(.refusals.iter().map(|(info, why)| format!("{}: {why}", describe(info)))))]
     Refused {
-        /// Each adapter with the driver's reason.
+        /// Adapters with the driver's reasons.
         refusals: Vec<(AdapterInfo, String)>,
     },
 }
@@ -104,13 +104,13 @@ fn quoted(words: &[String]) -> String {
     words.iter().map(|word| format!("{word:?}")).collect::<Vec<_>>().join(", ")
 }
 
-/// The words with semicolons between them.
+/// Joins strings with semicolons.
 fn listed(words: impl Iterator<Item = String>) -> String {
     let all: Vec<_> = words.collect();
     if all.is_empty() { "none".to_owned() } else { all.join("; ") }
 }
 
-/// What is asked for where the adapter has it. None of it is needed.
+/// Features that are enabled if the adapter has them. None of them is required.
 const WANTED: Features = Features::TIMESTAMP_QUERY
     .union(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS)
     .union(Features::RG11B10UFLOAT_RENDERABLE)
@@ -130,10 +130,10 @@ const WANTED: Features = Features::TIMESTAMP_QUERY
     .union(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
 
 impl AdapterRequest {
-    /// Whether it names graphics APIs alone, be they built in or not.
+    /// Fails if `WGPU_BACKEND` contained unknown words. APIs that are not built in are accepted here.
     ///
     /// # Errors
-    /// [`OpenError::UnknownBackend`].
+    /// Fails with [`OpenError::UnknownBackend`].
     pub fn check(&self) -> Result<(), OpenError> {
         let words = self.unknown.clone();
         if words.is_empty() { Ok(()) } else { Err(OpenError::UnknownBackend { words }) }
@@ -141,11 +141,14 @@ impl AdapterRequest {
 }
 
 impl Gpu {
-    /// Opens the best adapter that fits: hardware first, software otherwise. An adapter that refuses is passed over. What wgpu
-    /// refuses outside of error scopes is noted for frames to report: open none of your own around a frame.
+    /// Opens a device on the best adapter that fulfills the request, preferring hardware over software. Adapters that
+    /// fail to open are skipped.
+    ///
+    /// Errors outside of error scopes are stored and reported by the next frame. Do not open your own error scopes
+    /// around a frame, because they would catch its errors.
     ///
     /// # Errors
-    /// [`OpenError`], with the adapters that there are and their reasons.
+    /// Fails with [`OpenError`], which lists the adapters and their reasons.
     pub fn open(request: &AdapterRequest) -> Result<Self, OpenError> {
         request.check()?;
         let built = Instance::enabled_backend_features();
@@ -169,17 +172,20 @@ impl Gpu {
         Err(OpenError::Refused { refusals })
     }
 
-    /// A device that validates everything and draws nothing, for tests without a driver; with the feature `noop`.
+    /// Opens a device that validates all calls and draws nothing, for tests without a driver. Requires the feature
+    /// `noop`.
     ///
     /// # Errors
-    /// [`OpenError`], when wgpu refuses: none is known.
+    /// Fails with [`OpenError`] if wgpu cannot open the noop device, which is not known to happen.
     #[cfg(feature = "noop")]
     pub fn noop() -> Result<Self, OpenError> {
         Self::open(&AdapterRequest { backends: Backends::NOOP, ..AdapterRequest::default() })
     }
 
-    /// Wraps a device that the application opened and whose error handlers it keeps. Errors inside a frame are caught by
-    /// scopes all the same; forward a loss to [`Gpu::shared_errors`] with [`DeviceErrors::report_lost`] to have frames report it.
+    /// Wraps a device that the application opened. The application keeps its error handlers.
+    ///
+    /// Errors inside a frame are caught with error scopes. To make frames report a lost device, forward the loss with
+    /// [`DeviceErrors::report_lost`] of [`Gpu::shared_errors`].
     pub fn wrap(adapter: &Adapter, device: &Device, queue: &Queue) -> Self {
         let (device, queue) = (device.clone(), queue.clone());
         let flags = adapter.get_downlevel_capabilities().flags;
@@ -200,9 +206,10 @@ impl Gpu {
         }
     }
 
-    /// What a toolkit is to open the device with that is [wrapped](Gpu::wrap), for all that frames can use of an adapter.
+    /// Returns the device descriptor to use before [`Gpu::wrap`]. It requests every useful feature the adapter offers,
+    /// and all its limits.
     pub fn descriptor(adapter: &Adapter) -> wgpu::DeviceDescriptor<'static> {
-        // The adapter that does nothing claims everything: formats then have no use at all.
+        // The noop adapter claims this feature, but then reports no usages for any format.
         let noop = adapter.get_info().backend == Backend::Noop;
         let mut wanted = WANTED;
         wanted.set(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES, !noop);
@@ -225,7 +232,7 @@ impl Gpu {
         gpu
     }
 
-    /// Name, kind, interface and driver in one line.
+    /// Describes the adapter in one line: name, kind, graphics API and driver.
     pub fn describe(&self) -> String {
         describe(&self.info)
     }
@@ -234,17 +241,17 @@ impl Gpu {
         &self.adapter
     }
 
-    /// What wgpu knows of the adapter.
+    /// Returns wgpu's information about the adapter.
     pub fn info(&self) -> &AdapterInfo {
         &self.info
     }
 
-    /// Whether pictures are computed in software.
+    /// Returns whether the adapter is a software renderer.
     pub fn is_software(&self) -> bool {
         is_software(&self.info)
     }
 
-    /// The device as the compiler sees it.
+    /// Returns the capabilities of the device for the compiler.
     pub fn caps(&self) -> Caps {
         self.caps.get_or_init(|| self.asked_caps()).clone()
     }
@@ -252,7 +259,7 @@ impl Gpu {
     fn asked_caps(&self) -> Caps {
         let averaged = |format: &Format| {
             let flags = self.format_features(*format).flags;
-            // Others have no samples.
+            // Formats without multisampling need no resolve.
             !flags.contains(TextureFormatFeatureFlags::MULTISAMPLE_X4)
                 || flags.contains(TextureFormatFeatureFlags::MULTISAMPLE_RESOLVE)
         };
@@ -260,8 +267,8 @@ impl Gpu {
         Caps { not_averaged, ..caps_of(&self.info, &self.device.limits()) }
     }
 
-    /// What the device can do with a format; asked of the driver once. Nothing, where the format takes a feature that the
-    /// device was opened without.
+    /// Returns what the device can do with a format. The driver is queried once per format. Empty if the format needs a
+    /// feature that is not enabled.
     pub fn format_features(&self, format: Format) -> TextureFormatFeatures {
         *self.formats[format as usize].get_or_init(|| {
             let (format, features) = (texture_format(format), self.device.features());
@@ -277,25 +284,25 @@ impl Gpu {
         })
     }
 
-    /// Whether views may change the transfer function of a texture; OpenGL's cannot.
+    /// Returns whether texture views may change between linear and sRGB. OpenGL does not support this.
     pub fn has_view_formats(&self) -> bool {
         self.view_formats
     }
 
-    /// What the device's handlers reported.
+    /// Returns the errors that the device's handlers reported.
     pub fn errors(&self) -> &DeviceErrors {
         &self.errors
     }
 
-    /// The same, to be held by a handler of the caller's: it keeps no device alive.
+    /// Returns the reported errors as a shared value for error handlers. It does not keep the device alive.
     pub fn shared_errors(&self) -> Arc<DeviceErrors> {
         self.errors.clone()
     }
 
-    /// Runs `work` and turns what wgpu reports meanwhile into an error. `doing` ends the sentence "wgpu refused …".
+    /// Runs `work` and returns errors that wgpu reports during it. `doing` completes the sentence "wgpu refused …".
     ///
     /// # Errors
-    /// [`DeviceError`] when the device is lost, or refused something that `work` did.
+    /// Fails with [`DeviceError`] if the device is lost, or wgpu rejects a call of `work`.
     pub fn guard<T>(&self, doing: &'static str, work: impl FnOnce() -> T) -> Result<T, DeviceError> {
         self.errors.check(doing)?;
         let scopes = ErrorScopes::open(&self.device);
@@ -305,7 +312,7 @@ impl Gpu {
         Ok(out)
     }
 
-    /// Begins a part of a frame.
+    /// Begins a part of a frame whose errors are collected.
     pub(crate) fn watch(&self, doing: &'static str) -> Watch {
         Watch::begin(&self.device, self.handled, doing)
     }
@@ -313,28 +320,28 @@ impl Gpu {
     /// Runs callbacks of finished work without waiting.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// Fails if the device is lost.
     pub fn poll(&self) -> Result<(), DeviceError> {
         self.poll_as(wgpu::PollType::Poll, "looking for finished work")
     }
 
-    /// Waits until everything that was submitted is done.
+    /// Waits until all submitted work is done.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// Fails if the device is lost.
     pub fn wait(&self) -> Result<(), DeviceError> {
         self.waits.fetch_add(1, atomic::Ordering::Relaxed);
         self.poll_as(wgpu::PollType::wait_indefinitely(), "waiting for submitted work")
     }
 
-    /// How often anything has waited for this device by [`Gpu::wait`]: a frame loop that never stalls adds nothing to it.
+    /// Returns how many times [`Gpu::wait`] was called. Stays constant in a frame loop that never stalls.
     pub fn waits(&self) -> u64 {
         self.waits.load(atomic::Ordering::Relaxed)
     }
 
     pub(crate) fn poll_as(&self, kind: wgpu::PollType, doing: &'static str) -> Result<(), DeviceError> {
         self.errors.check(doing)?;
-        // wgpu 30 panics when the device is lost during the wait itself (`handle_error_fatal` in `Device::poll`).
+        // wgpu 30 panics if the device is lost during the wait (`handle_error_fatal` in `Device::poll`).
         let polled = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| self.device.poll(kind)));
         let reason = match polled {
             Ok(Ok(_)) => return self.errors.check(doing),

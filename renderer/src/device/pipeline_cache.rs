@@ -1,25 +1,25 @@
-//! What a driver compiled, as bytes for the next run: wgpu's pipeline cache, with a checksum around it.
+//! Pipeline cache on disk: wgpu's pipeline cache data with a checksum and the name of the device.
 
 use crate::device::gpu::Gpu;
 use crate::hash::fnv;
 use std::fmt;
 use wgpu::{Features, PipelineCache, PipelineCacheDescriptor};
 
-/// Bytes that were kept in an earlier run are of no use.
+/// Error: pipeline cache data of an earlier run cannot be used.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PipelineCacheError {
-    /// They are not what was kept.
+    /// The data are damaged.
     #[error("the kept pipelines are damaged: {found} bytes do not have their checksum; delete the file")]
     Damaged {
-        /// How many bytes there are.
+        /// Size of the data in bytes.
         found: usize,
     },
-    /// They are of another device or driver.
+    /// The data belong to another device or driver.
     #[error("the kept pipelines are of {theirs}, not of {ours}; delete the file, or keep one for each device")]
     OtherDevice {
-        /// wgpu's name for the device and driver that they are of.
+        /// Name of the device and driver that wrote the data.
         theirs: String,
-        /// The same of this device.
+        /// Name of this device and driver.
         ours: String,
     },
 }
@@ -30,13 +30,13 @@ impl fmt::Debug for PipelineCacheError {
     }
 }
 
-/// Before the checksum, the key's length and the key.
+/// Magic number. It is followed by checksum, key length, key and data.
 const MAGIC: &[u8; 8] = b"FGPIPES1";
-/// Magic, checksum and length of the key.
+/// Bytes of magic number, checksum and key length.
 const HEAD_BYTES: usize = 8 + 8 + 4;
 
-/// A cache for this device, that holds what `earlier` does; none where the device has no such thing. With it, why `earlier`
-/// was not taken.
+/// Creates a pipeline cache filled with `earlier` data. `None` if the device has no pipeline caches. The second value
+/// says why `earlier` was not used.
 #[allow(unsafe_code, reason = "wgpu cannot tell bytes of its own from others'")]
 pub(crate) fn open_cache(gpu: &Gpu, earlier: Option<&[u8]>) -> (Option<PipelineCache>, Option<PipelineCacheError>) {
     if !gpu.device.features().contains(Features::PIPELINE_CACHE) {
@@ -55,12 +55,12 @@ pub(crate) fn open_cache(gpu: &Gpu, earlier: Option<&[u8]>) -> (Option<PipelineC
     (Some(cache), refused)
 }
 
-/// What a cache holds, for [`open_cache`].
+/// Returns the data of a cache for a later [`open_cache`].
 pub(crate) fn cache_bytes(gpu: &Gpu, cache: &PipelineCache) -> Option<Vec<u8>> {
     Some(pack(&key(gpu), &cache.get_data()?))
 }
 
-/// Device and driver in one word: the driver's version is part of it.
+/// Returns a name of device and driver, including the driver's version.
 fn key(gpu: &Gpu) -> String {
     let info = gpu.info();
     let known = wgpu::util::pipeline_cache_key(info);

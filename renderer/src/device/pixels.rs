@@ -1,44 +1,45 @@
-//! What the bytes of a texel mean: from any format that can be copied to linear RGBA, to display codes, or to depth.
+//! Conversion of texel bytes to linear RGBA, 8-bit sRGB, or depth, for every format that can be copied.
 
 use framegraph::{Aspect, Format};
 use half::f16;
 
-/// A picture as it came from the GPU: rows without padding, top row first.
+/// Pixels read back from the GPU, in rows without padding, top row first.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pixels {
-    /// What a texel holds.
+    /// Format of the texels.
     pub format: Format,
-    /// Which plane; `All` for color.
+    /// Plane; `All` for color.
     pub aspect: Aspect,
-    /// Width and height.
+    /// Width and height in texels.
     pub texels: [u32; 2],
-    /// The rows, from the top, without padding.
+    /// Texel data: rows from top to bottom, without padding.
     pub bytes: Vec<u8>,
 }
 
 impl Pixels {
-    /// Bytes of one texel.
+    /// Returns the size of one texel in bytes.
     pub fn texel_bytes(&self) -> usize {
         let count = self.texels[0] as usize * self.texels[1] as usize;
         self.bytes.len().checked_div(count).unwrap_or(0)
     }
 
-    /// The bytes of the texel at column `x`, row `y`; `None` outside of the picture.
+    /// Returns the bytes of the texel at column `x` and row `y`; `None` outside of the image.
     pub fn at(&self, x: u32, y: u32) -> Option<&[u8]> {
         let [width, height] = self.texels;
         let (index, bytes) = (y as usize * width as usize + x as usize, self.texel_bytes());
         (x < width && y < height).then(|| &self.bytes[index * bytes..(index + 1) * bytes])
     }
 
-    /// Red, green, blue and alpha of every texel as numbers: sRGB formats are decoded to linear, integers are taken as
-    /// they are, missing channels are 0 and missing alpha is 1. Depth and stencil stand in the red channel.
+    /// Returns red, green, blue and alpha of every texel as floats. sRGB formats are decoded to linear. Integers are
+    /// converted to floats without scaling. Missing channels are 0, missing alpha is 1. Depth and stencil are returned
+    /// in the red channel.
     pub fn rgba(&self) -> Vec<[f32; 4]> {
         let bytes = self.texel_bytes().max(1);
         self.bytes.chunks_exact(bytes).map(|texel| rgba_of(self.format, self.aspect, texel)).collect()
     }
 
-    /// Display codes, four bytes a texel: the bytes themselves of 8-bit normalised formats (red first), and for all others
-    /// the numbers clamped to 0…1 and encoded with the sRGB transfer function (alpha stays linear).
+    /// Returns 8-bit RGBA for display, four bytes per texel. Normalized 8-bit formats are returned unchanged in RGBA
+    /// order. Other formats are clamped to 0…1 and encoded with the sRGB transfer function; alpha stays linear.
     pub fn rgba8(&self) -> Vec<u8> {
         match self.format {
             Format::Rgba8Unorm | Format::Rgba8UnormSrgb => self.bytes.clone(),
@@ -51,31 +52,31 @@ impl Pixels {
         }
     }
 
-    /// The depth of every texel, 0…1; `None` when the format has no depth, or the stencil plane was read.
+    /// Returns the depth of every texel, 0…1. `None` if the format has no depth, or the stencil plane was read.
     pub fn depth(&self) -> Option<Vec<f32>> {
         let depth = self.format.has_depth() && self.aspect != Aspect::Stencil;
         depth.then(|| self.rgba().into_iter().map(|[depth, ..]| depth).collect())
     }
 }
 
-/// Linear light from an sRGB code, both 0…1 (IEC 61966-2-1).
+/// Decodes an sRGB value to linear light, both 0…1 (IEC 61966-2-1).
 fn linear_from_srgb(code: f32) -> f32 {
     if code <= 0.040_45 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }
 }
 
-/// The sRGB code of linear light, both 0…1 (IEC 61966-2-1).
+/// Encodes linear light as sRGB, both 0…1 (IEC 61966-2-1).
 pub(crate) fn srgb_from_linear(light: f32) -> f32 {
     if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
 }
 
 fn code([r, g, b, a]: [f32; 4]) -> [u8; 4] {
-    // NaN becomes 0: `clamp` keeps it and the cast maps it there.
+    // NaN becomes 0: `clamp` keeps it, and the cast to `u8` turns it into 0.
     let quantized = |x: f32| (x.clamp(0.0, 1.0) * 255.0).round() as u8;
     let encoded = |x: f32| quantized(srgb_from_linear(x.clamp(0.0, 1.0)));
     [encoded(r), encoded(g), encoded(b), quantized(a)]
 }
 
-/// How the channels of a plain format are stored.
+/// Type of the channels of an unpacked format.
 #[derive(Clone, Copy)]
 enum Channel {
     Unorm8,
@@ -117,7 +118,7 @@ impl Channel {
     }
 }
 
-/// The channel type of a format whose channels are all alike; `None` for packed, depth and compressed ones.
+/// Returns the channel type of an unpacked format; `None` for packed, depth and compressed formats.
 const fn channel(format: Format) -> Option<Channel> {
     use Format::*;
     Some(match format {
@@ -135,7 +136,7 @@ const fn channel(format: Format) -> Option<Channel> {
     })
 }
 
-/// The numbers of one texel; zeros for a compressed format, whose blocks are no texels.
+/// Converts one texel to floats; zeros for compressed formats, whose blocks are not texels.
 fn rgba_of(format: Format, aspect: Aspect, texel: &[u8]) -> [f32; 4] {
     if let Some(channel) = channel(format) {
         let mut rgba = [0.0, 0.0, 0.0, 1.0];
@@ -172,7 +173,7 @@ fn rgba_of(format: Format, aspect: Aspect, texel: &[u8]) -> [f32; 4] {
     }
 }
 
-/// An unsigned float of 5 exponent bits and `mantissa` bits below them: a half float cut short.
+/// Converts an unsigned float with 5 exponent bits and `mantissa` mantissa bits, which is a truncated half float.
 fn small_float(bits: u32, mantissa: u32) -> f32 {
     f16::from_bits((bits << (10 - mantissa)) as u16).to_f32()
 }
@@ -225,7 +226,7 @@ mod tests {
     fn display_codes_keep_bytes_and_encode_light() {
         assert_eq!(pixels(Format::Bgra8UnormSrgb, &[1, 2, 3, 4]).rgba8(), [3, 2, 1, 4]);
         let floats: Vec<u8> = [0.5f32, -1.0, f32::NAN, 0.5].iter().flat_map(|f| f.to_le_bytes()).collect();
-        // Half of linear light has the sRGB code 188 (0.735 · 255).
+        // Linear 0.5 is 188 in 8-bit sRGB (0.735 · 255).
         assert_eq!(pixels(Format::Rgba32Float, &floats).rgba8(), [188, 0, 0, 128]);
         for code in 0..=255u8 {
             let light = linear_from_srgb(f32::from(code) / 255.0);

@@ -1,4 +1,4 @@
-//! From the GPU to the CPU: textures of any format that can be copied, and buffers, without waiting unless asked to.
+//! Readback of textures and buffers to the CPU, with and without waiting.
 
 use crate::device::error::DeviceError;
 use crate::device::format::{format_of, texture_aspect};
@@ -13,57 +13,57 @@ const WAITING: u8 = 0;
 const READY: u8 = 1;
 const FAILED: u8 = 2;
 
-/// Which part of a texture is read.
+/// Part of a texture to read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Subresource {
     /// Mip level.
     pub mip: u32,
-    /// Array layer, or slice of a three-dimensional texture.
+    /// Array layer, or slice of a 3D texture.
     pub layer: u32,
-    /// Plane: `All` for color; depth or stencil of a format that has both must be named.
+    /// Plane. `All` for color; formats with depth and stencil need one of the two.
     pub aspect: Aspect,
 }
 
 impl Subresource {
-    /// The first level of the first layer.
+    /// First mip level of the first layer.
     pub const FIRST: Self = Self { mip: 0, layer: 0, aspect: Aspect::All };
 }
 
-/// A texture cannot be read.
+/// Error: a texture or buffer cannot be read back.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ReadbackError {
-    /// The format cannot be copied or understood.
+    /// The format cannot be copied, or is not known to this crate.
     #[error(
         "a texture of format {format:?} cannot be read back ({aspect:?} plane); copy it to a color or 32-bit depth texture first"
     )]
     Format {
         /// Format of the texture.
         format: wgpu::TextureFormat,
-        /// The plane asked for.
+        /// Requested plane.
         aspect: Aspect,
     },
-    /// The texture has several samples per texel.
+    /// The texture is multisampled.
     #[error("a texture of {samples} samples cannot be read back; resolve it first")]
     Multisampled {
         /// Samples per texel.
         samples: u32,
     },
-    /// The texture may not be copied from.
+    /// The texture lacks the usage `COPY_SRC`.
     #[error("the texture may not be copied from; declare it with `Graph::readback`, or create it with COPY_SRC")]
     Usage,
-    /// The part does not exist.
+    /// Mip level or layer is out of range.
     #[error("level {mip}, layer {layer} was asked of a texture of {mips} levels and {layers} layers")]
     OutOfRange {
-        /// Level asked for.
+        /// Requested mip level.
         mip: u32,
-        /// Layer asked for.
+        /// Requested layer.
         layer: u32,
-        /// Levels that there are.
+        /// Number of mip levels of the texture.
         mips: u32,
-        /// Layers that there are.
+        /// Number of layers of the texture.
         layers: u32,
     },
-    /// The device is lost, or refused the copy.
+    /// The device is lost, or rejected the copy.
     #[error(transparent)]
     Device(#[from] DeviceError),
 }
@@ -74,7 +74,7 @@ impl std::fmt::Debug for ReadbackError {
     }
 }
 
-/// A copy on its way to the CPU.
+/// A readback in progress.
 #[derive(Debug)]
 pub struct Readback {
     buffer: Buffer,
@@ -85,10 +85,10 @@ pub struct Readback {
 }
 
 impl Readback {
-    /// Copies a part of `texture` as it is after everything submitted so far.
+    /// Starts a copy of a part of `texture`, after all work submitted so far.
     ///
     /// # Errors
-    /// What cannot be copied ([`ReadbackError`]), or an error of the device.
+    /// Fails with [`ReadbackError`] if the texture cannot be copied or the device reports an error.
     pub fn start(gpu: &Gpu, texture: &Texture, part: Subresource) -> Result<Self, ReadbackError> {
         let Subresource { mip, layer, aspect } = part;
         let (format, aspect, texel_bytes) = readable(texture, aspect)?;
@@ -126,10 +126,10 @@ impl Readback {
         Ok(Self { buffer, state, pixels, row_bytes: row_bytes as usize, padded_bytes: padded_bytes as usize })
     }
 
-    /// The pixels, if they have arrived; otherwise the copy itself, to ask again later. Never waits.
+    /// Returns the pixels if they have arrived, otherwise the readback itself for a later call. Never waits.
     ///
     /// # Errors
-    /// When the device is lost, or mapping failed.
+    /// Fails if the device is lost or the buffer could not be mapped.
     pub fn try_take(self, gpu: &Gpu) -> Result<Result<Pixels, Self>, ReadbackError> {
         gpu.poll()?;
         match self.state.load(Ordering::Acquire) {
@@ -141,7 +141,7 @@ impl Readback {
     /// Waits for the pixels.
     ///
     /// # Errors
-    /// When the device is lost, or mapping failed.
+    /// Fails if the device is lost or the buffer could not be mapped.
     pub fn wait(self, gpu: &Gpu) -> Result<Pixels, ReadbackError> {
         gpu.wait()?;
         self.take()
@@ -156,18 +156,19 @@ impl Readback {
     }
 }
 
-/// Reads a texture's first level and layer, waiting for it: for tools and tests.
+/// Reads the first mip level and layer of a texture and waits for it. Intended for tools and tests.
 ///
 /// # Errors
-/// As [`Readback::start`] and [`Readback::wait`].
+/// Fails like [`Readback::start`] and [`Readback::wait`].
 pub fn read_texture(gpu: &Gpu, texture: &Texture) -> Result<Pixels, ReadbackError> {
     Readback::start(gpu, texture, Subresource::FIRST)?.wait(gpu)
 }
 
-/// Reads the first `bytes` bytes of a buffer, rounded up to a multiple of 4, waiting for them: for tools and tests.
+/// Reads the first `bytes` bytes of a buffer, rounded up to a multiple of 4, and waits for them. Intended for tools and
+/// tests.
 ///
 /// # Errors
-/// When the buffer may not be copied from or is shorter, or on an error of the device.
+/// Fails if the buffer is shorter or lacks the usage `COPY_SRC`, or if the device reports an error.
 pub fn read_buffer(gpu: &Gpu, buffer: &Buffer, bytes: u64) -> Result<Vec<u8>, ReadbackError> {
     let state = Arc::new(AtomicU8::new(WAITING));
     let size = bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
@@ -204,7 +205,7 @@ fn mapped(buffer: &Buffer, state: &AtomicU8) -> Result<wgpu::BufferView, Readbac
     }
 }
 
-/// Format, plane and bytes of one texel of what can be copied.
+/// Returns format, plane and bytes per texel if the texture can be copied.
 fn readable(texture: &Texture, aspect: Aspect) -> Result<(Format, Aspect, u32), ReadbackError> {
     let refuse = || ReadbackError::Format { format: texture.format(), aspect };
     if texture.sample_count() != 1 {
@@ -217,7 +218,7 @@ fn readable(texture: &Texture, aspect: Aspect) -> Result<(Format, Aspect, u32), 
     if !aspect.exists_in(format) {
         return Err(refuse());
     }
-    // wgpu has no size for both planes together: they are copied one at a time.
+    // wgpu copies depth and stencil one at a time.
     let texel_bytes = texture.format().block_copy_size(Some(texture_aspect(aspect))).ok_or_else(refuse)?;
     Ok((format, aspect, texel_bytes))
 }

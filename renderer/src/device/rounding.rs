@@ -1,8 +1,8 @@
-//! How a device rounds when a shader writes more bits than its target keeps.
+//! Rounding of shader outputs in formats with fewer bits.
 //!
-//! WebGPU leaves it open, and devices differ: hardware rounds half floats to nearest, Mesa's software rasterizer cuts them
-//! off. An epilogue that is to give the same bits as a pass that reads its input from a texture has to do the same, so it
-//! is measured.
+//! WebGPU leaves the rounding open: hardware rounds half floats to nearest, Mesa's llvmpipe truncates them. An inlined
+//! epilogue must reproduce this rounding, so that it gives the same result as a separate pass that reads a stored
+//! texture. The rounding is therefore measured.
 
 use crate::device::draw_texel::draw_texel;
 use crate::device::error::DeviceError;
@@ -12,44 +12,44 @@ use crate::device::readback::{ReadbackError, read_texture};
 use framegraph::Format;
 use wgpu::TextureUsages;
 
-/// How a number is rounded to fewer bits.
+/// Rounding mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Rounding {
-    /// To the nearest number, ties to the even one.
+    /// To the nearest value, ties to even.
     Nearest,
-    /// Toward zero: the excess bits are cut off.
+    /// Toward zero: excess bits are truncated.
     TowardZero,
 }
 
-/// How a device rounds colors that it stores in small floating-point formats.
+/// Rounding modes of a device for colors stored in small float formats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct StoreRounding {
-    /// `Rgba16Float`.
+    /// Rounding of `Rgba16Float`.
     pub rgba16float: Rounding,
-    /// `Rg11b10Ufloat`; none where the device cannot draw into it.
+    /// Rounding of `Rg11b10Ufloat`; `None` if the device cannot render to it.
     pub rg11b10ufloat: Option<Rounding>,
 }
 
-/// The rounding could not be measured.
+/// Error: the rounding could not be measured.
 #[derive(Clone, PartialEq, thiserror::Error)]
 pub enum RoundingError {
-    /// The device is lost, or refused to draw.
+    /// The device is lost, or rejected the draw.
     #[error(transparent)]
     Device(#[from] DeviceError),
     /// The drawn texel could not be read back.
     #[error(transparent)]
     Readback(#[from] ReadbackError),
-    /// The device rounds, but in no known way.
+    /// The device uses another rounding mode.
     #[error(
         "this device stores {written:?} in {format:?} as {kept:?}, which is neither rounding to nearest nor toward zero; \
          compile with `Options::inline` off to keep the texture"
     )]
     Unknown {
-        /// The format that was drawn into.
+        /// Format that was rendered to.
         format: Format,
-        /// What was drawn.
+        /// Color that was drawn.
         written: [f32; 3],
-        /// What came back.
+        /// Color that was read back.
         kept: [f32; 3],
     },
 }
@@ -61,10 +61,10 @@ impl std::fmt::Debug for RoundingError {
 }
 
 impl StoreRounding {
-    /// Draws one texel in each format and looks at what came of it. Waits for the device.
+    /// Measures the rounding by drawing one texel in each format. Waits for the device.
     ///
     /// # Errors
-    /// [`RoundingError`].
+    /// Fails with [`RoundingError`] if the texel cannot be drawn or read back, or the rounding is of an unknown kind.
     pub fn measure(gpu: &Gpu) -> Result<Self, RoundingError> {
         let small = Format::Rg11b10Ufloat;
         let drawable = gpu.format_features(small).allowed_usages.contains(TextureUsages::RENDER_ATTACHMENT);
@@ -74,7 +74,7 @@ impl StoreRounding {
         })
     }
 
-    /// The rounding of one format; none for formats that are not measured.
+    /// Returns the rounding mode of one format; `None` for other formats.
     pub fn of(&self, format: Format) -> Option<Rounding> {
         match format {
             Format::Rgba16Float => Some(self.rgba16float),
@@ -84,10 +84,10 @@ impl StoreRounding {
     }
 }
 
-/// Shares of a step above 1 that are drawn: they tell up from down, and what becomes of a tie.
+/// Test values, in steps of the format above 1. They distinguish the modes and show how ties are rounded.
 const SHARES: [f32; 3] = [0.75, 0.5, 1.5];
 
-/// `bits` are the explicit mantissa bits of red, green and blue.
+/// Measures one format. `bits` is the number of mantissa bits of red, green and blue.
 fn measure(gpu: &Gpu, format: Format, bits: [i32; 3]) -> Result<Rounding, RoundingError> {
     let above_one = |steps: [f32; 3]| -> [f32; 3] { std::array::from_fn(|c| 1.0 + steps[c] * 2.0_f32.powi(-bits[c])) };
     let written = above_one(SHARES);
@@ -101,10 +101,10 @@ fn measure(gpu: &Gpu, format: Format, bits: [i32; 3]) -> Result<Rounding, Roundi
     }
 }
 
-/// One texel of the format with `color` drawn into it.
+/// Draws `color` into one texel of the format and reads it back.
 fn draw_and_read(gpu: &Gpu, format: Format, color: [f32; 3]) -> Result<[f32; 3], RoundingError> {
     let [r, g, b] = color;
-    // Twice the position of the only pixel is one: the compiler must not do the rounding.
+    // The factor is 1 at run time, so that the shader compiler cannot round the constants itself.
     let fragment = format!(
         "@fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {{
              return vec4f(vec3f({r:?}, {g:?}, {b:?}) * (2.0 * at.x), 1.0);

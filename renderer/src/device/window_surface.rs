@@ -1,11 +1,11 @@
-//! A window's surface that follows the window: sizes, images that are late or lost, and none while it is minimized.
+//! Window surfaces: handles resizing, outdated and lost surfaces, and minimized windows.
 
 use crate::device::error::DeviceError;
 use crate::device::gpu::Gpu;
 use std::fmt;
 use wgpu::{CurrentSurfaceTexture, PresentMode, Surface, SurfaceConfiguration, SurfaceTexture, TextureFormat};
 
-/// A surface with its configuration.
+/// A window surface with its configuration.
 ///
 /// ```no_run
 /// # use framegraph_wgpu::{Gpu, SurfaceError, WindowSurface};
@@ -22,23 +22,23 @@ pub struct WindowSurface {
     gpu: Gpu,
     surface: Surface<'static>,
     config: SurfaceConfiguration,
-    /// The surface is not configured as `config` says, or its images no longer fit the window.
+    /// Whether `config` has changed since the surface was configured, or its images no longer fit the window.
     stale: bool,
 }
 
-/// A surface hands out no images.
+/// Error: a surface provides no images.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SurfaceError {
-    /// The adapter cannot draw into the window.
+    /// The adapter cannot render to the surface.
     #[error("the adapter cannot draw into the window; choose another with WGPU_BACKEND or WGPU_ADAPTER_NAME")]
     Unfit,
-    /// The surface is gone, and the window may still be there.
+    /// The surface was lost. The window may still exist.
     #[error("the surface was lost; create it anew from the window and hand it to `WindowSurface::replace`")]
     Lost,
-    /// wgpu refused to hand out an image.
+    /// wgpu failed to acquire an image.
     #[error("the surface gave no image; WGPU_VALIDATION=1 says why")]
     Refused,
-    /// wgpu refused the configuration, or the device is lost.
+    /// wgpu rejected the configuration, or the device is lost.
     #[error(transparent)]
     Device(#[from] DeviceError),
 }
@@ -50,10 +50,11 @@ impl fmt::Debug for SurfaceError {
 }
 
 impl WindowSurface {
-    /// For a window of `size` pixels: in step with the screen, and with sRGB codes where the surface can have them.
+    /// Configures a surface for a window of `size` pixels. Uses vertical synchronization, and an sRGB format if the
+    /// surface offers one.
     ///
     /// # Errors
-    /// [`SurfaceError::Unfit`].
+    /// Fails with [`SurfaceError::Unfit`].
     pub fn new(gpu: &Gpu, surface: Surface<'static>, size: [u32; 2]) -> Result<Self, SurfaceError> {
         let offered = surface.get_capabilities(gpu.adapter());
         let [width, height] = size.map(|side| side.max(1));
@@ -65,34 +66,34 @@ impl WindowSurface {
         Ok(window)
     }
 
-    /// The format of its images.
+    /// Returns the format of the surface's images.
     pub fn format(&self) -> TextureFormat {
         self.config.format
     }
 
-    /// Width and height of its images in texels; 0 while the window is minimized.
+    /// Returns width and height in texels; 0 while the window is minimized.
     pub fn size(&self) -> [u32; 2] {
         [self.config.width, self.config.height]
     }
 
-    /// Follows the window. Nothing is configured before the next image is asked for, so a drag that sends many sizes between
-    /// two frames costs one configuration.
+    /// Sets the size of the window. The surface is configured when the next image is acquired, so several size changes
+    /// between two frames cost one configuration.
     pub fn resize(&mut self, size: [u32; 2]) {
         self.stale |= self.size() != size;
         [self.config.width, self.config.height] = size;
     }
 
-    /// Takes another surface of the same window in the place of one that was lost.
+    /// Replaces a lost surface with a new one of the same window.
     pub fn replace(&mut self, surface: Surface<'static>) {
         self.surface = surface;
         self.stale = true;
     }
 
-    /// The next image to draw into; none when this frame is to be skipped, because the window has no texels, is hidden, or the
-    /// screen is busy.
+    /// Acquires the next image to render to. `None` if the frame should be skipped: the window is minimized or hidden,
+    /// or acquiring timed out.
     ///
     /// # Errors
-    /// [`SurfaceError`].
+    /// Fails with [`SurfaceError`].
     pub fn acquire(&mut self) -> Result<Option<SurfaceTexture>, SurfaceError> {
         let Begin { skip, configure } = begin(self.size(), self.stale);
         if skip {
@@ -116,26 +117,26 @@ impl WindowSurface {
         Ok(image.filter(|_| draw))
     }
 
-    /// Shows an image that was drawn into.
+    /// Presents an image.
     pub fn present(&self, image: SurfaceTexture) {
         self.gpu.queue.present(image);
     }
 }
 
-/// What is done before the surface is asked for an image.
+/// Steps before an image is acquired.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Begin {
     skip: bool,
     configure: bool,
 }
 
-/// A window without texels has no images, and cannot be configured; that waits until it has some.
+/// A window of zero size is skipped and stays unconfigured until it has a size.
 fn begin(size: [u32; 2], stale: bool) -> Begin {
     let skip = size.contains(&0);
     Begin { skip, configure: stale && !skip }
 }
 
-/// What the surface says when it is asked for an image.
+/// Result of acquiring an image, without the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
     Fits,
@@ -147,7 +148,7 @@ enum Answer {
     Validation,
 }
 
-/// What is done with the answer: the image is drawn into or the frame skipped, and the surface configured before the next one.
+/// Consequences of a result: whether to draw, and whether to configure the surface before the next image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct After {
     draw: bool,
@@ -157,7 +158,7 @@ struct After {
 fn after(answer: Answer) -> Result<After, SurfaceError> {
     match answer {
         Answer::Fits => Ok(After { draw: true, stale: false }),
-        // It can be drawn into; the next one shall fit.
+        // The image can be used, but the next one should fit.
         Answer::Suboptimal => Ok(After { draw: true, stale: true }),
         Answer::Timeout | Answer::Occluded => Ok(After { draw: false, stale: false }),
         Answer::Outdated => Ok(After { draw: false, stale: true }),
@@ -166,7 +167,7 @@ fn after(answer: Answer) -> Result<After, SurfaceError> {
     }
 }
 
-/// The first format that encodes sRGB itself.
+/// Returns the first sRGB format.
 fn preferred(offered: &[TextureFormat]) -> Option<TextureFormat> {
     offered.iter().copied().find(TextureFormat::is_srgb)
 }
@@ -189,7 +190,7 @@ mod tests {
         }
     }
 
-    /// Each answer: drawn or not, configured anew or not; or the error.
+    /// Checks each result: drawn or not, configured again or not, or an error.
     #[test]
     fn every_answer_of_a_surface_is_drawn_skipped_mended_or_told() {
         let cases = [

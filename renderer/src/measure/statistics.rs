@@ -1,33 +1,33 @@
-//! Repeated measurements of one time, and what is reported of them: least, first quartile, median.
+//! Statistics of repeated time measurements: minimum, first quartile and median.
 //!
-//! Times on a shared machine have a hard floor and a long tail, so the mean says little; the least is the cost without
-//! disturbance, the median what to expect.
+//! Times on a shared machine have a hard minimum and a long tail, so the mean is not useful. The minimum is the cost
+//! without disturbance, the median the typical cost.
 
-/// The latest measurements of one time, in milliseconds.
+/// The most recent measurements of one time, in milliseconds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Durations {
     values: Vec<f64>,
     next: usize,
 }
 
-/// What is reported of the latest 256 measurements of one time.
+/// Statistics of the last 256 measurements of one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
-    /// The least, in milliseconds.
+    /// Minimum, in milliseconds.
     pub min_ms: f64,
-    /// A quarter of the measurements are below or equal.
+    /// First quartile, in milliseconds.
     pub p25_ms: f64,
-    /// Half of the measurements are below or equal.
+    /// Median, in milliseconds.
     pub median_ms: f64,
-    /// How many measurements there are.
+    /// Number of measurements.
     pub count: usize,
 }
 
 impl Durations {
-    /// Measurements kept; older ones make way.
+    /// Maximum number of measurements; older ones are overwritten.
     const KEPT: usize = 256;
 
-    /// Adds one; what is not finite or negative is dropped.
+    /// Adds a measurement. Negative and non-finite values are ignored.
     pub(crate) fn push(&mut self, ms: f64) {
         if !ms.is_finite() || ms < 0.0 {
             return;
@@ -40,13 +40,13 @@ impl Durations {
         }
     }
 
-    /// Forgets all measurements.
+    /// Removes all measurements.
     pub(crate) fn clear(&mut self) {
         self.values.clear();
         self.next = 0;
     }
 
-    /// Least, first quartile and median by the nearest-rank method; `None` without measurements.
+    /// Returns minimum, first quartile and median by the nearest-rank method; `None` without measurements.
     pub(crate) fn summary(&self) -> Option<Summary> {
         let mut sorted = self.values.clone();
         sorted.sort_by(f64::total_cmp);

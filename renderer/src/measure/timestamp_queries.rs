@@ -1,4 +1,4 @@
-//! Timestamps on their way from the GPU: written by steps, copied out with the frame, mapped when it is done.
+//! GPU timestamps: written by steps, resolved at the end of the frame, and mapped when the GPU is done.
 
 use crate::device::gpu::Gpu;
 use std::sync::Arc;
@@ -10,20 +10,20 @@ const WAITING: u8 = 1;
 const READY: u8 = 2;
 const FAILED: u8 = 3;
 
-/// The timestamps of one frame on their way.
+/// Timestamp queries of one frame, with the buffers to read them.
 #[derive(Debug)]
 pub(crate) struct FrameTimestamps {
     queries: QuerySet,
     resolved: Buffer,
     read: Buffer,
     state: Arc<AtomicU8>,
-    /// Which plan the frame executed.
+    /// Plan that the frame executed, as a number that changes with the steps.
     pub(crate) generation: u64,
-    /// Queries that the frame writes.
+    /// Number of queries that the frame writes.
     pub(crate) used: u32,
-    /// Whether the frame is one of those that are measured.
+    /// Whether the frame counts for statistics.
     pub(crate) counted: bool,
-    /// The frame's number, where frames are written down.
+    /// Frame number for the trace, if enabled.
     pub(crate) frame: Option<u64>,
 }
 
@@ -49,28 +49,28 @@ impl FrameTimestamps {
         }
     }
 
-    /// Where steps write.
+    /// Returns the query set that steps write to.
     pub(crate) fn queries(&self) -> &QuerySet {
         &self.queries
     }
 
-    /// How many queries there are.
+    /// Returns the number of queries in the set.
     pub(crate) fn capacity(&self) -> u32 {
         self.queries.count()
     }
 
-    /// Whether no frame is using it.
+    /// Returns whether no frame is using the queries.
     pub(crate) fn is_idle(&self) -> bool {
         self.state.load(Ordering::Acquire) == IDLE
     }
 
-    /// Copies the timestamps to where they can be read, at the end of the frame.
+    /// Resolves the queries and copies them to the readable buffer, at the end of the frame.
     pub(crate) fn resolve(&self, encoder: &mut CommandEncoder) {
         encoder.resolve_query_set(&self.queries, 0..self.used, &self.resolved, 0);
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.read, 0, u64::from(self.used) * 8);
     }
 
-    /// Asks for the timestamps of a frame that was submitted.
+    /// Requests mapping of the buffer, after the frame was submitted.
     pub(crate) fn map(&self) {
         self.state.store(WAITING, Ordering::Release);
         let state = self.state.clone();
@@ -79,7 +79,7 @@ impl FrameTimestamps {
         });
     }
 
-    /// Takes the timestamps as the GPU wrote them, if they are there, and is idle again then.
+    /// Returns the timestamps if they have arrived, and makes the queries idle again.
     pub(crate) fn take(&self) -> Option<Vec<u64>> {
         let taken = match self.state.load(Ordering::Acquire) {
             READY => {
@@ -99,7 +99,7 @@ impl FrameTimestamps {
     }
 }
 
-/// A stretch of the GPU's time, in nanoseconds of its own clock.
+/// Interval of GPU time, in nanoseconds of the GPU's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Span {
     pub(crate) begin_ns: f64,
@@ -112,18 +112,20 @@ impl Span {
     }
 }
 
-/// When the steps of a frame ran on the GPU.
+/// GPU time intervals of the steps of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct StepSpans {
-    /// None for a step that was not measured, or whose timestamps are no good.
+    /// Interval of each step; `None` if it was not measured or its timestamps are invalid.
     pub(crate) steps: Vec<Option<Span>>,
-    /// Every step that should have been measured was.
+    /// Whether all measured steps have valid intervals.
     complete: bool,
 }
 
 impl StepSpans {
-    /// From the timestamps, and the first of the two queries of each step. A timestamp of 0 was not written, and an end that is
-    /// not after its begin is that of a counter which wrapped, or of a driver that gave up: both are dropped.
+    /// Converts timestamps to intervals. `queries` has the index of the first of two queries of each step.
+    ///
+    /// A timestamp of 0 was not written. An end that is not after its begin comes from a wrapped counter or a driver
+    /// that gave up. Both are dropped.
     pub(crate) fn new(timestamps: &[u64], queries: &[Option<u32>], period_ns: f64) -> Self {
         let span = |query: u32| {
             let pair = timestamps.get(query as usize).zip(timestamps.get(query as usize + 1));
@@ -135,8 +137,8 @@ impl StepSpans {
         Self { steps, complete }
     }
 
-    /// From the first timestamp of the frame to the last; none when a step's timestamps were dropped, or when the counter wrapped
-    /// between two steps.
+    /// Returns the interval from the first to the last timestamp of the frame. `None` if a step is invalid, or the
+    /// counter wrapped between two steps.
     pub(crate) fn frame(&self) -> Option<Span> {
         let mut spans = self.steps.iter().flatten();
         let first = *spans.next().filter(|_| self.complete)?;

@@ -1,9 +1,10 @@
-//! GPU and CPU time of each step, without ever waiting.
+//! GPU and CPU time of each step, measured without waiting.
 //!
-//! The GPU writes a timestamp at the begin and end of each step; they are copied out, mapped when the frame is done, and
-//! read some frames later. A few frames are in flight at once; when all are still busy, a frame goes unmeasured. The
-//! first frames after a change of the steps compile shaders and are left out. Timestamps that are zero or run backwards (a
-//! counter that wrapped, a driver that gave up) are dropped.
+//! The GPU writes a timestamp at the begin and end of each step. They are resolved with the frame and read back some
+//! frames later. Up to four frames are in flight; if all are busy, a frame is not measured.
+//!
+//! The first frames after the steps change compile shaders and are ignored. Timestamps that are zero or run backwards
+//! are dropped.
 
 use crate::device::gpu::Gpu;
 use crate::execute::recording::{Recording, StepTime};
@@ -15,21 +16,21 @@ use framegraph::{PassKind, Plan, StepId};
 use std::time::{Duration, Instant};
 use wgpu::{CommandEncoder, Features, QuerySet};
 
-/// Frames whose timestamps are on their way.
+/// Maximum number of frames with timestamps in flight.
 const IN_FLIGHT: usize = 4;
 
-/// Times of the steps of the plan that was executed last, in a ring of a few frames that are still on their way.
+/// Times of the steps of the last executed plan.
 #[derive(Debug)]
 pub struct Timing {
     slots: Vec<FrameTimestamps>,
-    /// The slot of the frame that is being recorded.
+    /// Slot of the frame that is being recorded.
     current: Option<usize>,
-    /// The first of the two queries of each step; none for a step that cannot be measured.
+    /// Index of the first of two queries of each step; `None` for steps that cannot be measured.
     queries: Vec<Option<u32>>,
     steps: Vec<StepDurations>,
     frame: StepDurations,
     generation: u64,
-    /// The compilation whose plan was executed last.
+    /// Compilation number of the last executed plan.
     compilation: u64,
     warm_up_left: u32,
     begun: Option<Instant>,
@@ -44,16 +45,16 @@ struct StepDurations {
     cpu: Durations,
 }
 
-/// Times of one step, or of the whole frame; `None` while there are no measurements, or none are possible.
+/// Times of one step or of the whole frame. `None` without measurements.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Times {
-    /// On the GPU.
+    /// GPU time.
     pub gpu: Option<Summary>,
-    /// Recording on the CPU; for the whole frame, from realizing to submitting.
+    /// CPU time of recording. For the whole frame, from resource creation until submission.
     pub cpu: Option<Summary>,
 }
 
-/// Where a step writes the times of its begin and end.
+/// Queries that a step writes at its begin and end.
 #[derive(Debug)]
 pub(crate) struct TimestampWrites {
     pub(crate) queries: QuerySet,
@@ -62,16 +63,16 @@ pub(crate) struct TimestampWrites {
 }
 
 impl Timing {
-    /// Frames left out after the steps change: they compile shaders and fill caches.
+    /// Number of frames ignored after the steps change, since they compile shaders and fill caches.
     pub const WARM_UP: u32 = 4;
 
-    /// Whether times are read back.
+    /// Returns whether step times are measured.
     pub(crate) fn is_enabled(&self) -> bool {
         self.enabled || self.trace.is_some()
     }
 
-    /// Measures where the device can, if `enabled`; the CPU times of frames are taken in any case. With `trace`, every frame is
-    /// written down.
+    /// Creates a timing. `enabled` turns on step times; CPU times of whole frames are always measured. `trace` stores
+    /// the times of every frame.
     pub(crate) fn new(enabled: bool, trace: bool) -> Self {
         Self {
             slots: Vec::new(),
@@ -89,38 +90,38 @@ impl Timing {
         }
     }
 
-    /// Times of one step of the plan that was executed last.
+    /// Returns the times of one step of the last executed plan.
     pub fn step(&self, step: StepId) -> Times {
         self.steps.get(step.index()).map(StepDurations::times).unwrap_or_default()
     }
 
-    /// Times of the whole frame; on the GPU, from the first timestamp to the last.
+    /// Returns the times of the whole frame. GPU time spans the first to the last timestamp.
     pub fn frame(&self) -> Times {
         self.frame.times()
     }
 
-    /// CPU time of a frame that was spent inside of wgpu's calls to open and close passes, to finish, submit and poll, and
-    /// to upload; what recorders call themselves is not in it. None where the times of steps are not measured.
+    /// Returns the CPU time per frame spent in wgpu calls of the executor: begin and end passes, finish, submit, poll
+    /// and upload. Calls of recorders are not included. `None` if step times are not measured.
     pub fn wgpu(&self) -> Option<Summary> {
         self.wgpu.summary()
     }
 
-    /// The frames that were written down; none unless that was asked for.
+    /// Returns the trace of stored frames; `None` if tracing is off.
     pub fn trace(&self) -> Option<&Trace> {
         self.trace.as_ref().map(Recorder::trace)
     }
 
-    /// Forgets all measurements and warms up again.
+    /// Removes all measurements and starts the warm-up again.
     pub fn reset(&mut self) {
         self.steps.iter_mut().for_each(StepDurations::clear);
         self.frame.clear();
         self.wgpu.clear();
         self.warm_up_left = Self::WARM_UP;
-        // Frames in flight are of before.
+        // Frames in flight started before the reset.
         self.slots.iter_mut().for_each(|s| s.counted = false);
     }
 
-    /// Begins a frame: reads what has arrived, and takes an idle slot if there is one.
+    /// Begins a frame: reads timestamps that have arrived, and reserves an idle slot if there is one.
     pub(crate) fn begin_frame(&mut self, gpu: &Gpu, plan: &Plan) {
         self.begun = Some(Instant::now());
         self.current = None;
@@ -162,19 +163,19 @@ impl Timing {
         self.current = Some(index);
     }
 
-    /// The number of the plan that is executed: another one where its frame's size or the passes of its steps are others.
+    /// Returns a number that identifies the plan's steps. It changes with the frame size and the passes of the steps.
     pub(crate) fn plan(&self) -> u64 {
         self.generation
     }
 
-    /// Where a step writes its timestamps; none when it is not measured.
+    /// Returns the queries that a step writes; `None` if it is not measured.
     pub(crate) fn writes(&self, step: StepId) -> Option<TimestampWrites> {
         let begin = (*self.queries.get(step.index())?)?;
         let queries = self.slots[self.current?].queries().clone();
         Some(TimestampWrites { queries, begin, end: begin + 1 })
     }
 
-    /// Copies the timestamps of the frame to where they can be read.
+    /// Resolves the timestamps of the frame.
     pub(crate) fn resolve(&self, encoder: &mut CommandEncoder) {
         if let Some(slot) = self.current.map(|c| &self.slots[c]) {
             slot.resolve(encoder);
@@ -213,7 +214,7 @@ impl Timing {
         }
     }
 
-    /// Gives the timestamps of the frame in `slot` to its steps.
+    /// Adds the timestamps of the frame in `slot` to the statistics of its steps.
     fn credit(&mut self, slot: usize, timestamps: &[u64], period_ns: f64) {
         let Self { slots, queries, steps, frame, generation, trace, .. } = self;
         let slot = &slots[slot];
@@ -232,10 +233,10 @@ impl Timing {
         }
     }
 
-    /// Waits for nothing, but reads what has arrived since the last frame: call it before a report.
+    /// Reads measurements that have arrived since the last frame, without waiting. Call it before a report.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// Fails if the device is lost.
     pub fn catch_up(&mut self, gpu: &Gpu) -> Result<(), crate::device::error::DeviceError> {
         gpu.poll()?;
         self.collect(f64::from(gpu.queue.get_timestamp_period()));
@@ -254,7 +255,8 @@ impl StepDurations {
     }
 }
 
-/// The first of the two queries of each step of `plan`, and how many queries that are; `copies` can be measured or not.
+/// Assigns two queries to each step of `plan` and returns the number of queries. `copies` says whether copy steps can
+/// be measured.
 fn assign(plan: &Plan, copies: bool, queries: &mut Vec<Option<u32>>) -> u32 {
     let mut used = 0;
     queries.clear();
@@ -270,7 +272,7 @@ fn ms(duration: Duration) -> f64 {
     duration.as_secs_f64() * 1e3
 }
 
-/// Equal for plans of one frame size whose steps have the same passes.
+/// Returns a hash of the frame size and the pass names of all steps.
 fn fingerprint(plan: &Plan) -> u64 {
     let size = plan.frame().into_iter().flat_map(u32::to_le_bytes);
     let names = plan.step_ids().flat_map(|step| {
@@ -287,7 +289,7 @@ mod tests {
 
     type TestResult = Result<(), Box<dyn std::error::Error>>;
 
-    /// A raster, a copy, a compute and a raster step.
+    /// Creates a plan with a raster, a copy, a compute and a raster step.
     fn four_steps() -> Result<Plan, Box<dyn std::error::Error>> {
         let mut graph = Graph::new();
         let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
@@ -311,7 +313,7 @@ mod tests {
         Ok(plan)
     }
 
-    /// Each step writes stamps of its own length where it was told to; the lengths come back under the same steps.
+    /// Writes timestamps of a different duration for each step, and checks that each step gets its own duration.
     #[test]
     fn every_step_gets_the_time_between_its_own_stamps() -> TestResult {
         let (gpu, plan) = (Gpu::noop()?, four_steps()?);

@@ -1,4 +1,4 @@
-//! Frames written down one by one, and handed out in the trace event format that Chrome's tracing and Perfetto read.
+//! Traces: times of individual frames, exported in the Trace Event Format of Chrome and Perfetto.
 
 use crate::execute::recording::StepTime;
 use crate::measure::timestamp_queries::StepSpans;
@@ -8,25 +8,25 @@ use std::fmt::Write;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Frames kept, more than `render --trace` draws; older ones make way.
+/// Maximum number of frames kept, more than `render --trace` draws.
 const KEPT: usize = 1 << 14;
 
-/// The latest frames with the times of their steps on both sides.
+/// CPU and GPU times of the most recent frames and their steps.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     frames: VecDeque<Traced>,
 }
 
-/// The times of one frame.
+/// Times of one frame.
 #[derive(Clone, Debug)]
 struct Traced {
     number: u64,
     warm_up: bool,
     described: Arc<Described>,
-    /// Nanoseconds since the recorder was made.
+    /// CPU interval, in nanoseconds since the recorder was created.
     cpu: Between,
     cpu_steps: Vec<Between>,
-    /// In nanoseconds of the GPU's own clock.
+    /// GPU intervals, in nanoseconds of the GPU's clock.
     gpu_steps: Vec<Option<Between>>,
 }
 
@@ -42,33 +42,33 @@ impl Between {
     }
 }
 
-/// One frame that was written down ([`Trace::latest`]).
+/// Times of one frame ([`Trace::latest`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameTimes<'a> {
-    /// Its number.
+    /// Frame number, counted from the first traced frame.
     pub number: u64,
-    /// One of the first, in which pipelines are made.
+    /// Whether this is a warm-up frame, which creates pipelines.
     pub warm_up: bool,
-    /// From realizing to submitting, in milliseconds.
+    /// CPU time from resource creation until submission, in milliseconds.
     pub cpu_ms: f64,
-    /// From the begin of its first step on the device to the end of its last, in milliseconds; none before that is known.
+    /// GPU time from the begin of the first step to the end of the last, in milliseconds. `None` until it is known.
     pub gpu_ms: Option<f64>,
-    /// Its steps, in their order.
+    /// Steps in order of execution.
     pub steps: Vec<StepTimes<'a>>,
 }
 
-/// One step of such a frame.
+/// Times of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepTimes<'a> {
-    /// Its passes, joined by ` + `.
+    /// Names of the passes, joined by ` + `.
     pub name: &'a str,
-    /// Recording, in milliseconds.
+    /// CPU time of recording, in milliseconds.
     pub cpu_ms: Option<f64>,
-    /// On the device, in milliseconds; none where it was not measured.
+    /// GPU time, in milliseconds; `None` if it was not measured.
     pub gpu_ms: Option<f64>,
 }
 
-/// What a plan says of its steps.
+/// Names and counts of the steps of a plan.
 #[derive(Debug)]
 struct Described {
     generation: u64,
@@ -77,7 +77,7 @@ struct Described {
     traffic: Traffic,
 }
 
-/// Writes frames down.
+/// Stores the times of frames.
 #[derive(Debug)]
 pub(crate) struct Recorder {
     trace: Trace,
@@ -97,7 +97,7 @@ impl Recorder {
         &self.trace
     }
 
-    /// The number of the frame that is open.
+    /// Returns the number of the current frame.
     pub(crate) fn frame(&self) -> u64 {
         self.next
     }
@@ -130,7 +130,7 @@ impl Recorder {
         }
     }
 
-    /// The times on the GPU of a frame have arrived.
+    /// Stores GPU times of a frame that have arrived.
     pub(crate) fn measured(&mut self, number: u64, spans: &StepSpans) {
         if let Some(frame) = self.trace.frames.iter_mut().rev().find(|f| f.number == number) {
             let steps = spans.steps.iter().map(|s| s.map(|s| Between { begin_ns: s.begin_ns, end_ns: s.end_ns }));
@@ -155,19 +155,19 @@ impl Described {
     }
 }
 
-/// Tracks: process and thread numbers of the format.
+/// Process and thread IDs of the tracks.
 const CPU: u32 = 1;
 const GPU: u32 = 2;
 const FRAMES: u32 = 1;
 const STEPS: u32 = 2;
 
 impl Trace {
-    /// How many frames were written down.
+    /// Returns the number of stored frames.
     pub fn frames(&self) -> usize {
         self.frames.len()
     }
 
-    /// The times of the latest frames, at most so many, the oldest first.
+    /// Returns the times of up to `max` most recent frames, oldest first.
     pub fn latest(&self, most: usize) -> impl Iterator<Item = FrameTimes<'_>> {
         self.frames.iter().skip(self.frames.len().saturating_sub(most)).map(|frame| {
             let steps = frame.described.steps.iter().enumerate().map(|(index, (name, ..))| StepTimes {
@@ -188,12 +188,14 @@ impl Trace {
         })
     }
 
-    /// The frames as JSON (the Trace Event Format, Google, 2016): a CPU and a GPU process, each with a track of frames and
-    /// a track of steps. Names are those of the passes; counts and bytes are arguments.
+    /// Exports the frames as JSON in the Trace Event Format (Google, 2016).
     ///
-    /// CPU times are of recording and, for a frame, from realizing to submitting. The GPU has a clock of its own, which
-    /// wgpu does not relate to the CPU's: its track is moved by one amount, the least that lets no frame begin before it
-    /// was submitted.
+    /// There is one process for the CPU and one for the GPU, each with a track of frames and a track of steps. Events
+    /// are named after passes; counts and bytes are arguments.
+    ///
+    /// CPU times cover recording; those of frames cover resource creation until submission. wgpu does not relate the
+    /// GPU's clock to the CPU's. All GPU events are therefore shifted by one offset, the smallest for which no frame
+    /// begins before its submission.
     pub fn chrome_json(&self) -> String {
         let mut events = Vec::new();
         for (process, name) in [(CPU, "CPU"), (GPU, "GPU")] {
@@ -230,7 +232,7 @@ impl Trace {
         format!("{{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n{}\n]}}\n", events.join(",\n"))
     }
 
-    /// What is added to the GPU's clock.
+    /// Returns the offset added to GPU times.
     fn gpu_offset_ns(&self) -> f64 {
         let offsets = self.frames.iter().filter_map(|frame| {
             let first = frame.gpu_steps.iter().flatten().map(|s| s.begin_ns).reduce(f64::min)?;
@@ -251,7 +253,7 @@ fn named(what: &str, process: u32, thread: u32, name: &str) -> String {
     format!("{{\"name\":\"{what}\",\"ph\":\"M\",\"pid\":{process},\"tid\":{thread},\"args\":{{\"name\":\"{name}\"}}}}")
 }
 
-/// A complete event; times are in microseconds.
+/// Formats a complete event. Times are in microseconds.
 fn complete(name: &str, process: u32, thread: u32, span: Between, offset_ns: f64, arguments: &str) -> String {
     let (begin_us, length_us) = ((span.begin_ns + offset_ns) / 1e3, (span.end_ns - span.begin_ns) / 1e3);
     format!(
@@ -261,7 +263,7 @@ fn complete(name: &str, process: u32, thread: u32, span: Between, offset_ns: f64
     )
 }
 
-/// A text within the quotes of JSON.
+/// Escapes a string for JSON.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
