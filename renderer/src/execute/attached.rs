@@ -1,17 +1,17 @@
-//! What one render pass attaches, owned, as wgpu wants it.
+//! Attachments of a render pass as wgpu descriptors.
 
 use framegraph::{Counts, LoadOp};
 use wgpu::{Color, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment, TextureView};
 
-/// The attachments of one render pass, owned; kept from step to step for its memory.
+/// Attachments of one render pass. Reused from step to step to keep its memory.
 #[derive(Debug, Default)]
 pub(crate) struct Attached {
-    /// By slot, up to the last that is attached.
+    /// Color attachments by slot, up to the last one in use.
     pub(crate) colors: Vec<Option<ColorTarget>>,
     pub(crate) depth: Option<DepthTarget>,
 }
 
-/// One color attachment.
+/// A color attachment.
 #[derive(Clone, Debug)]
 pub(crate) struct ColorTarget {
     pub(crate) view: TextureView,
@@ -20,7 +20,7 @@ pub(crate) struct ColorTarget {
     pub(crate) depth_slice: Option<u32>,
 }
 
-/// The depth-stencil attachment; a plane without operations is read only.
+/// The depth-stencil attachment. A plane without operations is read-only.
 #[derive(Clone, Debug)]
 pub(crate) struct DepthTarget {
     pub(crate) view: TextureView,
@@ -29,25 +29,25 @@ pub(crate) struct DepthTarget {
 }
 
 impl Attached {
-    /// Lets go of everything, and keeps the memory.
+    /// Removes all attachments but keeps the memory.
     pub(crate) fn clear(&mut self) {
         self.colors.clear();
         self.depth = None;
     }
 
-    /// The descriptor's color attachment of a slot, which borrows from here.
+    /// Returns the color attachment of a slot for a wgpu descriptor.
     pub(crate) fn color(&self, slot: usize) -> Option<RenderPassColorAttachment<'_>> {
         let ColorTarget { view, resolve, ops, depth_slice } = self.colors.get(slot)?.as_ref()?;
         Some(RenderPassColorAttachment { view, depth_slice: *depth_slice, resolve_target: resolve.as_ref(), ops: *ops })
     }
 
-    /// The descriptor's depth-stencil attachment, which borrows from here.
+    /// Returns the depth-stencil attachment for a wgpu descriptor.
     pub(crate) fn depth(&self) -> Option<RenderPassDepthStencilAttachment<'_>> {
         let DepthTarget { view, depth, stencil } = self.depth.as_ref()?;
         Some(RenderPassDepthStencilAttachment { view, depth_ops: *depth, stencil_ops: *stencil })
     }
 
-    /// The operations of a render pass with these attachments.
+    /// Returns the load and store operations of a render pass with these attachments.
     pub(crate) fn counts(&self) -> Counts {
         let mut counts = Counts { render_passes: 1, ..Counts::default() };
         for color in self.colors.iter().flatten() {

@@ -1,4 +1,4 @@
-//! Attachments of one step, from the plan's to wgpu's: views, operations, resolve targets.
+//! Conversion of a step's attachments to wgpu: views, operations and resolve targets.
 
 use crate::device::format::texture_format;
 use crate::execute::attached::{Attached, ColorTarget, DepthTarget};
@@ -12,10 +12,11 @@ use framegraph::{Attachment, ClearValue, Dimension, Format, Range, ResolveMode, 
 use wgpu::{TextureUsages, TextureView};
 
 impl Attached {
-    /// Takes the attachments of `step`; there are none here yet.
+    /// Adds the attachments of `step` to an empty value.
     ///
     /// # Errors
-    /// When more layers are attached at once than the device offers, and for resolves in the store that wgpu has not.
+    /// Fails if more layers are attached at once than the device supports, or a resolve mode is not supported in the
+    /// store operation.
     pub(crate) fn gather(&mut self, frame: &Prepared<'_>, step: StepId) -> Result<(), ExecuteError> {
         let plan = frame.plan;
         for attachment in plan.attachments_of(step) {
@@ -29,7 +30,7 @@ impl Attached {
                     self.colors.resize_with(slots, || None);
                     self.colors[slot] = Some(ColorTarget { view, resolve: None, ops, depth_slice });
                 }
-                // wgpu always stores a resolve target, so one that no later pass reads is left out.
+                // wgpu always stores a resolve target, so an unused one is left out.
                 Role::ResolveTarget(..) if attachment.store == StoreOp::Discard => {}
                 Role::ResolveTarget(slot, ResolveMode::Average) => {
                     if let Some(Some(color)) = self.colors.get_mut(usize::from(slot)) {
@@ -51,11 +52,14 @@ impl Attached {
     }
 }
 
-/// The attachment, stored in place of discarded where wgpu would take later contents for missing and fill them with zero:
+/// Returns the attachment with store instead of discard where wgpu would otherwise zero-fill later contents. There are
+/// two cases:
 ///
-/// - Memory is shared, so that a frame has several command buffers, and the texture is used again in this frame. wgpu notes a
-///   discard when the first of them is submitted, after it looked at what the next ones write.
-/// - It is placed itself and next written by a shader: wgpu fills first, and cannot fill what is placed.
+/// - The frame has aliased memory and therefore several command buffers, and the texture is used again in this frame.
+///   wgpu processes a discard when its command buffer is submitted, after it has checked the writes of later command
+///   buffers.
+/// - The texture is placed and next written by a shader. wgpu would zero-fill it first, which does not work for placed
+///   textures.
 fn kept_initialized(frame: &Prepared<'_>, step: StepId, attachment: &Attachment) -> Attachment {
     let row = &frame.plan.resources()[attachment.resource.index()];
     let again = frame.realized.shares_memory() && row.last != step;
@@ -66,7 +70,7 @@ fn kept_initialized(frame: &Prepared<'_>, step: StepId, attachment: &Attachment)
     Attachment { store: color, stencil_store: stencil, ..*attachment }
 }
 
-/// The view to attach, and the slice of a three-dimensional texture.
+/// Returns the view to attach, and the slice of a 3D texture.
 fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView, Option<u32>), ExecuteError> {
     let Prepared { plan, gpu, realized, caches, .. } = *frame;
     let Physical::Texture { texture, shape, .. } = realized.get(attachment.resource) else {

@@ -1,8 +1,8 @@
-//! Finds the pass whose commands wgpu refuses, and the import that it refuses to submit.
+//! Finds the pass whose commands wgpu rejected, or the import that prevented a submission.
 //!
-//! A frame that is well has one [`Watch`](crate::device::error::Watch) for all passes, which says at the end that something was wrong. Then
-//! each step is recorded once more, into an encoder and scopes of its own, and the step that is refused with one more of
-//! its passes each time, until wgpu refuses it: the last of these passes is the one.
+//! A successful frame has only one [`Watch`](crate::device::error::Watch) for all passes. If it reports an error, each
+//! step is recorded again with its own encoder and error scopes. The failing step is then recorded with one more pass
+//! each time, until wgpu rejects it; the last pass added is at fault.
 
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::gpu::Gpu;
@@ -15,7 +15,7 @@ use crate::resources::imports::Imports;
 use framegraph::{Join, PassId, Plan, ResourceId, StepId, StepPass};
 use wgpu::{BufferTransition, BufferUses, CommandEncoderDescriptor, TextureTransition, TextureViewDescriptor};
 
-/// The first pass that wgpu refuses, with its reason; none when it refuses none of them alone.
+/// Returns the first pass that wgpu rejects, with its reason. `None` if every pass is accepted on its own.
 pub(crate) fn refused_pass<W: ?Sized + 'static>(
     frame: &Prepared<'_>,
     passes: &Passes<'_, W>,
@@ -38,14 +38,14 @@ pub(crate) fn refused_pass<W: ?Sized + 'static>(
     recorded.find_map(|(at, member)| refused(step, &members(step)[..=at]).map(|message| (member.pass, message)))
 }
 
-/// Why a frame that was recorded was not submitted: the import that cannot be used, or none of them.
+/// Returns the error of a recorded frame that could not be submitted, with the unusable import if there is one.
 pub(crate) fn not_submitted(gpu: &Gpu, plan: &Plan, imports: &Imports, message: String) -> ExecuteError {
     let import = plan.graph().resource_ids().find(|resource| is_unusable(gpu, plan, imports, *resource));
     ExecuteError::Submission { import: import.map(|import| Named::resource(plan, import)), message }
 }
 
-/// Whether a resource is an import that wgpu does not take: a view is not made of a destroyed texture, and commands that do
-/// nothing but name a buffer are not submitted when it is destroyed or mapped.
+/// Returns whether a resource is an import that wgpu does not accept. A view of a destroyed texture cannot be created.
+/// Commands that use a destroyed or mapped buffer cannot be submitted.
 fn is_unusable(gpu: &Gpu, plan: &Plan, imports: &Imports, resource: ResourceId) -> bool {
     let scopes = ErrorScopes::open(&gpu.device);
     if let Some((texture, _)) = imports.texture_of(plan.graph(), resource) {

@@ -1,4 +1,4 @@
-//! Filling resources outside of the passes that use them: a storage texture or buffer that a pass declares as cleared.
+//! Clears outside of render passes, for storage textures and buffers that a pass declares as cleared.
 
 use crate::execute::error::ExecuteError;
 use crate::execute::prepared::Prepared;
@@ -11,7 +11,7 @@ use wgpu::{
     RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureUsages, TextureView,
 };
 
-/// Whether a pass of `step` declares something as cleared that it does not attach.
+/// Returns whether a pass of `step` declares a resource as cleared without attaching it.
 pub(crate) fn clears_stored(plan: &Plan, step: StepId) -> bool {
     stored_clears(plan, step).next().is_some()
 }
@@ -22,10 +22,10 @@ fn stored_clears(plan: &Plan, step: StepId) -> impl Iterator<Item = &Access> {
     members.flat_map(|member| plan.graph().accesses_of(member.pass)).filter(move |a| stored(a) && a.mode == Mode::Clear)
 }
 
-/// Clears everything that the passes of `step` declare as cleared and do not attach, before the step is opened.
+/// Clears every resource that the passes of `step` declare as cleared without attaching it, before the step begins.
 ///
 /// # Errors
-/// When the device has no way to fill a texture with the value.
+/// Fails if the device cannot fill the texture with the value.
 pub(crate) fn clear_stored(
     frame: &Prepared<'_>,
     step: StepId,
@@ -56,7 +56,7 @@ pub(crate) fn clear_stored(
     Ok(())
 }
 
-/// All bits zero; for a color the fourth channel too.
+/// Returns whether all components are zero, including alpha.
 fn is_zero(value: ClearValue) -> bool {
     match value {
         ClearValue::Zero => true,
@@ -65,8 +65,8 @@ fn is_zero(value: ClearValue) -> bool {
     }
 }
 
-/// Fills the range of `access`, with a render pass for each level and layer, or with wgpu's own clear where the value is
-/// zero. Returns false when neither can.
+/// Fills the range of `access`. Zero values use wgpu's clear, others one render pass per level and layer. Returns false
+/// if neither is possible.
 fn fill_texture(frame: &Prepared<'_>, access: &Access, value: ClearValue, encoder: &mut CommandEncoder) -> bool {
     let Prepared { plan, realized, .. } = *frame;
     let Physical::Texture { texture, shape, .. } = realized.get(access.resource) else {
@@ -75,7 +75,7 @@ fn fill_texture(frame: &Prepared<'_>, access: &Access, value: ClearValue, encode
     let layers = access.range.layer_range(if shape.dimension == Dimension::D3 { 1 } else { shape.size[2] });
     let mips = access.range.mip_range(shape.mips);
     let format = access.range.view.or(plan.format(access.resource)).unwrap_or(shape.format);
-    // wgpu's own clear takes both planes whatever it is asked for.
+    // wgpu's clear always clears both planes.
     let whole = format.planes() == 1 || access.range.aspect == Aspect::All;
     let placed = realized.placed_at(access.resource).is_some();
     if !placed && whole && is_zero(value) && frame.gpu.device.features().contains(Features::CLEAR_TEXTURE) {
@@ -104,7 +104,7 @@ fn fill_texture(frame: &Prepared<'_>, access: &Access, value: ClearValue, encode
     true
 }
 
-/// What a view is filled with: the color of a color format, the planes of a depth-stencil format.
+/// Clear values for a color or depth-stencil format.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Values {
     pub(crate) color: Color,
@@ -123,8 +123,8 @@ impl From<ClearValue> for Values {
     }
 }
 
-/// Fills the planes of one level of one layer (or slice of a three-dimensional texture) with a render pass; a plane that is
-/// not named stays as it is.
+/// Fills one level of one layer (or slice of a 3D texture) with a render pass. Planes outside of `aspect` are not
+/// changed.
 pub(crate) fn fill_view(
     label: &str,
     (view, depth_slice): (&TextureView, Option<u32>),

@@ -1,14 +1,16 @@
-//! The commands of a frame on their way to the queue.
+//! Recorded commands of a frame.
 
 use wgpu::{CommandBuffer, Queue, SubmissionIndex};
 
-/// The commands of a frame, recorded and not yet submitted. One command buffer, unless textures share memory
-/// ([`framegraph::Alias::Heap`]): then one ends wherever memory changes hands.
+/// Commands of a frame, recorded but not submitted.
+///
+/// Consists of one command buffer. If textures share memory ([`framegraph::Alias::Heap`]), there is one more for each
+/// time that memory is reused.
 #[must_use = "a frame whose commands are not submitted is not drawn"]
 #[derive(Debug)]
 pub struct FrameCommands {
     buffers: Vec<CommandBuffer>,
-    /// Each is a submission of its own.
+    /// Whether each command buffer must be submitted on its own.
     apart: bool,
 }
 
@@ -17,9 +19,10 @@ impl FrameCommands {
         Self { buffers, apart }
     }
 
-    /// Submits them in order, with commands of the caller's `before` and `behind` them; all at once where the driver keeps the
-    /// order of commands that touch one memory through different textures. Mesa's llvmpipe before version 25 does not, and
-    /// gets each command buffer apart.
+    /// Submits the commands in order, between the caller's command buffers `before` and `behind`.
+    ///
+    /// Uses a single submission if the driver keeps the order of commands that access shared memory through different
+    /// textures. Mesa's llvmpipe before version 25 does not, and gets one submission per command buffer.
     pub fn submit(
         self,
         queue: &Queue,
@@ -38,17 +41,17 @@ impl FrameCommands {
         queue.submit(before.into_iter().flatten().chain(last).chain(behind))
     }
 
-    /// The command buffers, to be submitted in this order among those of the caller's, however it submits: before the next frame
-    /// of the same executor is recorded, on the device's queue.
+    /// Returns the command buffers. The caller must submit them in this order on the device's queue, before the next
+    /// frame of the executor is recorded. Other command buffers may be submitted in between.
     ///
     /// # Errors
-    /// They come back where each must be a submission of its own (Mesa's llvmpipe before version 25, with
-    /// [`framegraph::Alias::Heap`]): then [`FrameCommands::submit`] does it.
+    /// Returns the commands unchanged if each command buffer must be submitted on its own (Mesa's llvmpipe before
+    /// version 25 with [`framegraph::Alias::Heap`]). Use [`FrameCommands::submit`] in that case.
     pub fn into_buffers(self) -> Result<Vec<CommandBuffer>, Self> {
         if self.apart { Err(self) } else { Ok(self.buffers) }
     }
 
-    /// How many command buffers they are.
+    /// Returns the number of command buffers.
     pub fn buffers(&self) -> usize {
         self.buffers.len()
     }

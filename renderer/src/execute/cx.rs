@@ -1,4 +1,4 @@
-//! What a recorder works with: the open step, the physical resources behind its handles, and the caches.
+//! The recording context of a pass: the current step, resources and caches.
 
 use crate::device::error::DeviceError;
 use crate::device::gpu::Gpu;
@@ -15,19 +15,19 @@ use crate::pipelines::state::{Compute, Raster};
 use framegraph::{AccessKind, PassId, PassKind, Plan, StepId};
 use wgpu::{BindGroup, BindGroupDescriptor, BindGroupLayoutDescriptor, CommandEncoder, ComputePass, RenderPass};
 
-/// What the commands of a step go into. Passes are long, and not moved.
+/// Encoder of the current step. wgpu's pass types are large, so they are borrowed instead of moved.
 #[derive(Debug)]
 pub(crate) enum Open<'a> {
     /// A render pass.
     Raster(&'a mut RenderPass<'static>),
     /// A compute pass.
     Compute(&'a mut ComputePass<'static>),
-    /// The encoder itself, for copies.
+    /// Command encoder, for copies.
     Copy(&'a mut CommandEncoder),
 }
 
 impl Open<'_> {
-    /// The same for one pass of the step.
+    /// Borrows the encoder for one pass of the step.
     pub(crate) fn reborrow(&mut self) -> Open<'_> {
         match self {
             Open::Raster(pass) => Open::Raster(pass),
@@ -37,15 +37,17 @@ impl Open<'_> {
     }
 }
 
-/// What the recorder of one pass works with: the open pass, views of declared resources, pipelines, bind groups. Everything it hands out is a cheap clone, so that the render pass can be borrowed
-/// while bindings are at hand.
+/// Context of a recorder: gives access to the current render or compute pass, views of declared resources, pipelines
+/// and bind groups.
+///
+/// Returned objects are cheap clones, so they can be used while the render pass is borrowed.
 ///
 /// ```
 /// use framegraph::View;
 /// use framegraph_wgpu::{Cx, Raster, RecordError, SamplerDesc, Shader};
 ///
 /// # const COPY: Shader<'static> = Shader::new("copy", "");
-/// /// Draws one triangle over everything, which samples what the pass declared as `source`.
+/// /// Draws a fullscreen triangle that samples the texture declared as `source`.
 /// fn draw(source: View, brightness: f32, cx: &mut Cx<'_>) -> Result<(), RecordError> {
 ///     let pipeline = cx.raster_pipeline(&Raster::new(COPY))?;
 ///     let bindings = [
@@ -69,43 +71,43 @@ pub struct Cx<'a> {
     pub(crate) targets: &'a Targets,
     pub(crate) recording: &'a mut Recording,
     pub(crate) open: Open<'a>,
-    /// What the plan put at the end of this pass's fragment shader.
+    /// Passes that the plan inlined into this pass's fragment shader.
     pub(crate) inlined: &'a [Inlined],
-    /// Whether the recorder asked for them.
+    /// Whether the recorder requested them.
     pub(crate) asked_inlined: bool,
 }
 
 impl<'a> Cx<'a> {
-    /// The device and its queue.
+    /// Returns the device and its queue.
     pub fn gpu(&self) -> &'a Gpu {
         self.frame.gpu
     }
 
-    /// The full name of the pass.
+    /// Returns the full name of the pass.
     pub fn pass_name(&self) -> &'a str {
         self.frame.plan.graph().pass_name(self.pass)
     }
 
-    /// The plan that is being executed.
+    /// Returns the plan that is being executed.
     pub fn plan(&self) -> &'a Plan {
         self.frame.plan
     }
 
-    /// Width and height of the frame in texels.
+    /// Returns width and height of the frame in texels.
     pub fn frame_texels(&self) -> [u32; 2] {
         self.frame.plan.frame()
     }
 
-    /// Formats, samples and size of the attachments of the open step.
+    /// Returns formats, samples and size of the current step's attachments.
     pub fn targets(&self) -> &'a Targets {
         self.targets
     }
 
-    /// The open render pass. Viewport and scissor cover the attachments, stencil reference and blend constant are 0,
-    /// whatever the passes before set.
+    /// Returns the current render pass. Viewport and scissor cover the attachments, and stencil reference and blend
+    /// constant are 0, even after other passes of the step.
     ///
     /// # Errors
-    /// When the pass is no raster pass.
+    /// Fails if the pass is not a raster pass.
     pub fn render_pass(&mut self) -> Result<&mut RenderPass<'static>, RecordError> {
         match &mut self.open {
             Open::Raster(pass) => Ok(pass),
@@ -114,10 +116,10 @@ impl<'a> Cx<'a> {
         }
     }
 
-    /// The open compute pass.
+    /// Returns the current compute pass.
     ///
     /// # Errors
-    /// When the pass is no compute pass.
+    /// Fails if the pass is not a compute pass.
     pub fn compute_pass(&mut self) -> Result<&mut ComputePass<'static>, RecordError> {
         match &mut self.open {
             Open::Compute(pass) => Ok(pass),
@@ -126,10 +128,10 @@ impl<'a> Cx<'a> {
         }
     }
 
-    /// The command encoder, for copies.
+    /// Returns the command encoder, for copies.
     ///
     /// # Errors
-    /// When the pass is no copy pass: the encoder is locked while a render or compute pass is open.
+    /// Fails if the pass is not a copy pass, since wgpu locks the encoder during render and compute passes.
     pub fn encoder(&mut self) -> Result<&mut CommandEncoder, RecordError> {
         match &mut self.open {
             Open::Copy(encoder) => Ok(encoder),
@@ -138,25 +140,28 @@ impl<'a> Cx<'a> {
         }
     }
 
-    /// Uploads a block of constants for this frame and returns what to bind. The layout is the shader's (the rules of WGSL's
-    /// uniform address space are the caller's business), and so is the size: fewer bytes than the shader's type has are
-    /// refused when they are bound.
+    /// Uploads a value to a uniform buffer of this frame and returns its binding.
+    ///
+    /// The type must follow the layout rules of WGSL's uniform address space. A value smaller than the shader's type is
+    /// rejected when it is bound.
     pub fn uniform<T: bytemuck::NoUninit>(&mut self, value: &T) -> Binding {
         self.recording.uniforms.push(&self.frame.gpu.device, bytemuck::bytes_of(value))
     }
 
-    /// As [`Cx::uniform`], for several values in a row.
+    /// Uploads an array of values like [`Cx::uniform`].
     pub fn uniforms<T: bytemuck::NoUninit>(&mut self, values: &[T]) -> Binding {
         self.recording.uniforms.push(&self.frame.gpu.device, bytemuck::cast_slice(values))
     }
 
-    /// The sampler of that description, made when it is first asked for.
+    /// Returns the sampler with this description. Samplers are cached.
     pub fn sampler(&mut self, shape: SamplerDesc) -> wgpu::Sampler {
         self.frame.caches.samplers.get(&self.frame.gpu.device, shape)
     }
 
-    /// The bind group of that layout, each binding beside its `@binding` number. What wgpu refuses of it fails the pass when
-    /// its recorder returns, with the names of shader, group, binding and variable ([`RecordError::Binding`]).
+    /// Returns a bind group with the layout `group`. Each binding has its `@binding` number. Bind groups are cached.
+    ///
+    /// If wgpu rejects the bind group, the pass fails when its recorder returns. The error names shader, group, binding
+    /// and variable ([`RecordError::Binding`]).
     pub fn bind_group<'l>(&mut self, group: impl Into<Group<'l>>, bindings: &[(u32, Binding)]) -> BindGroup {
         let (group, device) = (group.into(), &self.frame.gpu.device);
         let (frame, pass) = (self.frame, self.pass);
@@ -176,7 +181,7 @@ impl<'a> Cx<'a> {
         }
     }
 
-    /// Notes why there is no bind group, and returns an empty one.
+    /// Stores the error for the end of the pass and returns an empty bind group.
     fn no_group(&mut self, error: RecordError) -> BindGroup {
         self.recording.refused.get_or_insert(error);
         let device = &self.frame.gpu.device;
@@ -185,10 +190,11 @@ impl<'a> Cx<'a> {
         device.create_bind_group(&BindGroupDescriptor { label: Some("refused"), layout: &layout, entries: &[] })
     }
 
-    /// The raster pipeline for the targets of the open step. Color slots that this pass does not declare are left alone.
+    /// Returns the render pipeline for the targets of the current step. Write masks are zero for color slots that this
+    /// pass does not declare. Pipelines are cached.
     ///
     /// # Errors
-    /// A shader that does not compile or does not fit, with its name.
+    /// Fails with the shader's name if it does not compile or does not match the targets.
     pub fn raster_pipeline(&mut self, raster: &Raster<'_>) -> Result<RasterPipeline, RecordError> {
         let Prepared { gpu, plan, caches, .. } = *self.frame;
         let own_slots = || {
@@ -200,28 +206,30 @@ impl<'a> Cx<'a> {
         Ok(caches.pipelines.raster(last, &gpu.device, raster, targets, own_slots)?)
     }
 
-    /// The compute pipeline.
+    /// Returns the compute pipeline. Pipelines are cached.
     ///
     /// # Errors
-    /// As [`Cx::raster_pipeline`].
+    /// Fails like [`Cx::raster_pipeline`].
     pub fn compute_pipeline(&mut self, compute: &Compute<'_>) -> Result<ComputePipeline, RecordError> {
         let last = self.recording.remembered.step().computes.next();
         Ok(self.frame.caches.pipelines.compute(last, &self.frame.gpu.device, compute)?)
     }
 
-    /// The passes that became epilogues of this pass's shader, in order; they record nothing themselves. A recorder whose
-    /// pass declares `takes_epilogue` has to ask, here or with [`Cx::epilogues`], and to run them at the end of its
-    /// fragment shader.
+    /// Returns the passes that the plan inlined into this pass's shader, in order. These passes record nothing
+    /// themselves.
+    ///
+    /// If the pass declares `takes_epilogue`, its recorder must call this function or [`Cx::epilogues`], and run the
+    /// epilogues at the end of its fragment shader.
     pub fn inlined(&mut self) -> impl Iterator<Item = PassId> + use<'a> {
         self.asked_inlined = true;
         self.inlined.iter().map(|i| i.pass)
     }
 
-    /// What to do at the end of this pass's fragment shader: for each inlined pass, in order, the color output that it
-    /// works on and what it does.
+    /// Returns the epilogues to run at the end of this pass's fragment shader, in order, each with the color slot that
+    /// it modifies.
     ///
     /// # Errors
-    /// When an inlined pass does not say what it does ([`Record::epilogue`](crate::Record::epilogue)).
+    /// Fails if an inlined pass returns no epilogue ([`Record::epilogue`](crate::Record::epilogue)).
     pub fn epilogues(&mut self) -> Result<Vec<(u8, &'a Epilogue)>, RecordError> {
         self.asked_inlined = true;
         let said = |i: &'a Inlined| {

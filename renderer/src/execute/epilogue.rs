@@ -1,8 +1,8 @@
-//! Point-wise passes as the end of another pass's fragment shader.
+//! Epilogues: point-wise passes that run at the end of another pass's fragment shader.
 //!
-//! Where the plan inlines a pass, the pass records nothing. It says what it does to a color ([`Epilogue`]), and the pass
-//! that makes the color does that in its own shader: it asks with [`Cx::epilogues`](crate::Cx::epilogues), resolves its
-//! shader with the effects, and binds what they need.
+//! A pass that the plan inlines records nothing. Instead it returns an [`Epilogue`] that describes its effect on a
+//! color. The pass that produces the color calls [`Cx::epilogues`](crate::Cx::epilogues), adds the effects to its
+//! shader, and binds their resources.
 
 use crate::execute::error::{EffectSetting, RecordError};
 use crate::pipelines::bind_groups::Binding;
@@ -10,12 +10,13 @@ use framegraph::{AccessKind, Join, PassId, Plan, ResourceId, StepId};
 use std::fmt;
 use std::hash::{Hash, Hasher};
 
-/// A point-wise function of a color, as shader text. Effects are told apart by name: two of one name are one effect.
+/// A point-wise function of a color, as a WGSL module. Effects are identified by name: two effects of equal name are
+/// the same.
 #[derive(Clone, Copy, Debug)]
 pub struct Effect {
     /// Name of the WGSL module and of its function `NAME(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32>`.
     pub name: &'static str,
-    /// The text of the module.
+    /// WGSL source of the module.
     pub wgsl: &'static str,
 }
 
@@ -33,8 +34,8 @@ impl Hash for Effect {
     }
 }
 
-/// The name of a constant or variable of an effect, with a key by which names are told apart while passes are recorded: a
-/// hash of the text (FNV-1a, 64 bits), made where the name is written if that is a `const`.
+/// Name of a constant or variable of an effect, with its FNV-1a hash (64 bits). Names are compared by hash. The hash is
+/// computed at compile time if the name is a `const`.
 #[derive(Clone, Copy)]
 pub struct SettingName {
     text: &'static str,
@@ -42,7 +43,7 @@ pub struct SettingName {
 }
 
 impl SettingName {
-    /// The name of that text.
+    /// Creates a name.
     pub const fn new(text: &'static str) -> Self {
         let (bytes, mut key, mut at) = (text.as_bytes(), 0xCBF2_9CE4_8422_2325, 0);
         while at < bytes.len() {
@@ -52,7 +53,7 @@ impl SettingName {
         Self { text, key }
     }
 
-    /// The text, as in WGSL.
+    /// Returns the name as in WGSL.
     pub const fn text(self) -> &'static str {
         self.text
     }
@@ -72,23 +73,23 @@ impl fmt::Debug for SettingName {
     }
 }
 
-/// What a point-wise pass does to a color.
+/// Effect of a point-wise pass on a color.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Epilogue {
-    /// What happens to the color, in this order.
+    /// Effects to apply, in order.
     pub effects: Vec<Effect>,
-    /// Values of the effects' `override` constants, by name, as pipelines take them.
+    /// Values of the effects' `override` constants.
     pub constants: Vec<(SettingName, f64)>,
-    /// What the effects bind, by the names of their variables. Where a shader puts them is known when it is resolved.
+    /// Resources of the effects, by variable name. Binding numbers are known once the shader is assembled.
     pub bindings: Vec<(SettingName, Binding)>,
 }
 
 impl Epilogue {
-    /// Does what `next` does after what this one does.
+    /// Appends the effects of `next`.
     ///
     /// # Errors
-    /// [`RecordError::EffectTwice`] when both give one constant or binding, and not the same: an effect that occurs twice
-    /// has one set of settings only.
+    /// Fails with [`RecordError::EffectTwice`] if both set a constant or binding to different values. An effect that
+    /// occurs twice has only one set of values.
     pub fn append(&mut self, next: &Self) -> Result<(), RecordError> {
         for (name, value) in &next.constants {
             match self.constants.iter().find(|(n, _)| n == name) {
@@ -113,19 +114,19 @@ impl Epilogue {
     }
 }
 
-/// A pass that the plan made the end of another one's fragment shader.
+/// A pass that the plan inlined into another pass's fragment shader.
 #[derive(Clone, Debug)]
 pub(crate) struct Inlined {
-    /// The inlined pass.
+    /// Inlined pass.
     pub(crate) pass: PassId,
-    /// Color output of the shader that it works on.
+    /// Color slot that it modifies.
     pub(crate) slot: u8,
-    /// What it does; none when its recorder does not say.
+    /// Its epilogue; `None` if its recorder returns none.
     pub(crate) epilogue: Option<Epilogue>,
 }
 
-/// The passes of a step that work on what `pass` draws, in order, each with the color slot: those that read it at the
-/// same pixel, those that read what the former would have drawn, and so on.
+/// Returns the passes of a step that are inlined into `pass`, in order, each with its color slot. Includes passes that
+/// read the output of other inlined passes.
 pub(crate) fn inlined_after(plan: &Plan, step: StepId, pass: PassId) -> Vec<(PassId, u8)> {
     let graph = plan.graph();
     let drawn = graph.accesses_of(pass).iter();
@@ -159,7 +160,7 @@ mod tests {
         let (zero, map) = (SettingName::new("RGBA16FLOAT_TOWARD_ZERO"), SettingName::new("TONE_MAP"));
         let store = Epilogue { effects: vec![STORE], constants: vec![(zero, 1.0)], bindings: Vec::new() };
         let tone = |curve| Epilogue { effects: vec![TONE], constants: vec![(map, curve)], bindings: Vec::new() };
-        // Told apart by what is written, wherever it is.
+        // Names are compared by contents, not by address.
         assert_eq!(map, SettingName::new(Box::leak(String::from("TONE_MAP").into_boxed_str())));
         assert_ne!(map, SettingName::new("TONE_MAQ"));
         let mut all = Epilogue::default();
@@ -173,7 +174,7 @@ mod tests {
         Ok(())
     }
 
-    /// Two shaded colors of one step, one with a chain of two, the other with one reader.
+    /// Declares two color outputs in one step, one with a chain of two inlined passes, the other with one.
     #[test]
     fn chains_are_told_apart_by_slot() -> Result<(), Box<dyn std::error::Error>> {
         let desc = |format| TextureDesc::new(Extent::FRAME, format);

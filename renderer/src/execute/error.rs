@@ -1,4 +1,4 @@
-//! Why a frame could not be executed.
+//! Errors of executing a frame.
 
 use crate::device::adapter::describe;
 use crate::device::error::DeviceError;
@@ -18,9 +18,9 @@ use wgpu::AdapterInfo;
 /// A setting of an effect that occurs twice in one shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EffectSetting {
-    /// An `override` constant, by name.
+    /// `override` constant with this name.
     Constant(&'static str),
-    /// What a variable is bound to, by its name.
+    /// Binding of the variable with this name.
     Binding(&'static str),
 }
 
@@ -33,36 +33,36 @@ impl fmt::Display for EffectSetting {
     }
 }
 
-/// A recorder was refused something, or refused itself.
+/// Error of a recorder.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum RecordError {
-    /// A handle or token of another graph, or from before a reset.
-    #[error("a handle or token is of another graph, or from before the frame was reset; use what `declare` returned")]
+    /// Handle or token of another graph, or from before a reset.
+    #[error("the handle or token belongs to another graph or a frame before a reset; use the value that `declare` returned")]
     Foreign,
-    /// A token of another pass.
+    /// Token of another pass.
     #[error(
-        "`{resource}` is touched as `{}`, which this pass did not declare; declare it, or use the pass's own handle", .access.word()
+        "`{resource}` is accessed as `{}`, which this pass did not declare; declare it, or use the pass's own handle", .access.word()
     )]
     Undeclared {
-        /// The resource concerned.
+        /// Resource of the access.
         resource: Named<ResourceId>,
-        /// The kind of access.
+        /// Kind of access.
         access: AccessKind,
     },
-    /// A handle that this pass did not write.
-    #[error("the handle names contents that no pass wrote; use the handle that `declare` returned for the write")]
+    /// Handle of contents that this pass did not write.
+    #[error("no pass wrote the contents that this handle names; use the handle that `declare` returned for the write")]
     NotWritten,
-    /// No texture or buffer stands behind the resource: it is memoryless, inlined or unused.
-    #[error("`{resource}` has no memory ({why}); only attachments can be used so")]
+    /// The resource has no texture or buffer: it is memoryless, inlined or unused.
+    #[error("`{resource}` cannot be used: {why}; export it or read it in a later pass to keep it in memory")]
     NoMemory {
-        /// The resource concerned.
+        /// Resource without memory.
         resource: Named<ResourceId>,
-        /// The reason.
+        /// Reason.
         why: NoMemory,
     },
-    /// Commands of another kind of pass.
+    /// Commands of another kind of pass were requested.
     #[error(
-        "{} was asked for in a {} pass; declare the pass's accesses so that it becomes one, or split it",
+        "{} was requested in a {} pass; declare accesses of the requested kind, or split the pass",
         match .asked {
             PassKind::Raster => "a render pass",
             PassKind::Compute => "a compute pass",
@@ -71,56 +71,56 @@ pub enum RecordError {
         .open.word()
     )]
     WrongKind {
-        /// The kind of pass whose commands were asked for.
+        /// Kind of pass whose commands were requested.
         asked: PassKind,
-        /// The kind of the open step.
+        /// Kind of the current pass.
         open: PassKind,
     },
-    /// A pass was made the end of this one's shader, and does not say what it does.
+    /// An inlined pass returns no epilogue.
     #[error(
-        "`{pass}` is inlined into this pass, but does not say what it does to a color; implement `Record::epilogue` for it, \
-         do not declare it point-wise, or compile with `Options::inline` off"
+        "`{pass}` is inlined into this pass but returns no epilogue; implement `Record::epilogue` for it, do not declare it \
+         point-wise, or compile with `Options::inline` off"
     )]
     NoEpilogue {
-        /// The inlined pass.
+        /// Inlined pass.
         pass: Named<PassId>,
     },
-    /// Two inlined passes set one constant or binding of an effect to different values.
+    /// Two inlined passes set a constant or binding of one effect to different values.
     #[error(
-        "two inlined passes give {0} different values; keep one of them a pass of its own (`PassBuilder::never_merge`)"
+        "two inlined passes set {0} to different values; keep one of them separate with `PassBuilder::never_merge`"
     )]
     EffectTwice(EffectSetting),
-    /// A view of a texture was refused.
+    /// wgpu rejected a texture view.
     #[error("wgpu refused a view of `{resource}`: {message}")]
     View {
-        /// The resource concerned.
+        /// Resource of the view.
         resource: Named<ResourceId>,
-        /// wgpu's reason, on one line.
+        /// Reason given by wgpu, on one line.
         message: String,
     },
-    /// A bind group was refused, or the pipeline does not have it.
+    /// A bind group was rejected, or the pipeline has no such group.
     #[error(transparent)]
     Binding(Box<BindingError>),
     /// A shader or pipeline does not compile.
     #[error(transparent)]
     Shader(#[from] ShaderError),
-    /// The device is lost, or refused a call.
+    /// The device is lost, or rejected a call.
     #[error(transparent)]
     Device(#[from] DeviceError),
-    /// What is to be drawn asks for more than the device can: the input is at fault, not the program or the device.
+    /// The content exceeds a limit of the device, for example a scene that is too large.
     #[error("{0}")]
     Content(PassReason),
-    /// The pass's own reason.
+    /// Error of the pass itself.
     #[error("{0}")]
     Custom(PassReason),
 }
 
-/// Why a pass could not be recorded, in its own terms: any error, with its fields. Equal to others of the same sentence.
+/// Error of a pass, which may be of any type. Compares equal to errors with the same message.
 #[derive(Clone)]
 pub struct PassReason(Arc<dyn Error + Send + Sync>);
 
 impl PassReason {
-    /// The pass's error, if it is of that type.
+    /// Returns the error if it has the type `E`.
     pub fn downcast_ref<E: Error + 'static>(&self) -> Option<&E> {
         self.0.downcast_ref()
     }
@@ -159,139 +159,138 @@ impl From<BindingError> for RecordError {
 }
 
 impl RecordError {
-    /// A reason of the pass's own: its error, or a sentence.
+    /// Creates an error of the pass itself, from an error or a message.
     pub fn custom(reason: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         Self::Custom(PassReason(reason.into().into()))
     }
 
-    /// What is to be drawn asks for more than the device can: an error that says so.
+    /// Creates an error for content that exceeds a limit of the device.
     pub fn content(reason: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         Self::Content(PassReason(reason.into().into()))
     }
 }
 
-/// A frame was not executed. Nothing of it reached the GPU, and the next one starts clean.
+/// Error of a frame that was not executed. Nothing of it was submitted, and the next frame starts clean.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ExecuteError {
-    /// The plan is of another frame.
-    #[error("the plan was not compiled from this frame as it is declared now; compile it again")]
+    /// The plan belongs to another frame.
+    #[error("the plan was not compiled from the current declaration of this frame; compile it again")]
     OtherPlan,
-    /// A pass cannot be recorded.
+    /// A pass has no recorder.
     #[error("pass `{pass}` has no recorder; add it with `Frame::add` instead of `Graph::add`")]
     NoRecorder {
-        /// The pass concerned.
+        /// Pass without a recorder.
         pass: Named<PassId>,
     },
     /// A recorder failed.
     #[error("pass `{pass}`: {error}")]
     Record {
-        /// The pass concerned.
+        /// Pass of the recorder.
         pass: Named<PassId>,
-        /// What its recorder returned.
+        /// Error that the recorder returned.
         error: RecordError,
     },
-    /// wgpu refused the commands of a pass. The error scopes of a frame do not tell passes apart; the frame was recorded
-    /// once more to find this one.
-    #[error("pass `{pass}`: wgpu refused its commands: {message}")]
+    /// wgpu rejected the commands of a pass. The frame was recorded again to find the pass.
+    #[error("pass `{pass}`: wgpu rejected its commands: {message}")]
     Refused {
-        /// The pass concerned.
+        /// Rejected pass.
         pass: Named<PassId>,
-        /// wgpu's reason, on one line.
+        /// Reason given by wgpu, on one line.
         message: String,
     },
-    /// wgpu refused the frame's commands when they were submitted. They were sound when they were finished, so it is about what
-    /// they use or what was submitted with them.
+    /// wgpu rejected the submission of the frame, although its commands were valid. The cause is a resource that they
+    /// use, or another command buffer of the submission.
     #[error(
-        "wgpu refused to submit the frame: {message}; {}", match .import {
+        "wgpu rejected the submission of the frame: {message}; {}", match .import {
             Some(import) => format!("the import `{import}` must be neither destroyed nor mapped until the frame is submitted"),
-            None => "the frame's own commands and imports are sound: look at command buffers that were submitted with them, and \
-                     at what recorders bind beside what their passes declare".into(),
+            None => "the frame's commands and imports are valid: check other command buffers of the submission, and undeclared \
+                     resources that recorders bind".into(),
         }
     )]
     Submission {
-        /// The import that cannot be used, where that is the reason.
+        /// Import that cannot be used, if that is the cause.
         import: Option<Named<ResourceId>>,
-        /// wgpu's reason, on one line.
+        /// Reason given by wgpu, on one line.
         message: String,
     },
-    /// Passes were made epilogues of a shader whose recorder did not look.
+    /// A pass has inlined passes, but its recorder did not request the epilogues.
     #[error(
-        "pass `{pass}` declares that its shader takes epilogues, but its recorder did not ask for them; call `Cx::epilogues`"
+        "pass `{pass}` declares `takes_epilogue`, but its recorder ignores its epilogues; call `Cx::epilogues`"
     )]
     EpilogueIgnored {
-        /// The pass concerned.
+        /// Pass that ignores its epilogues.
         pass: Named<PassId>,
     },
-    /// More layers are attached at once than the device can draw into.
+    /// More layers are attached at once than the device supports.
     #[error(
-        "`{resource}` is attached with {layers} layers at once; {} offers {most}; attach one layer in each pass: \
+        "`{resource}` is attached with {layers} layers at once, but {} supports {most}; attach one layer per pass with \
          `texture.layer(n)`",
         describe(.adapter)
     )]
     Layers {
-        /// The resource concerned.
+        /// Attached resource.
         resource: Named<ResourceId>,
-        /// Layers that the pass attaches.
+        /// Number of layers that the pass attaches.
         layers: u16,
-        /// Layers that the device can draw into at once.
+        /// Maximum number of layers that the device can attach at once.
         most: u32,
-        /// The adapter of the device.
+        /// Adapter of the device.
         adapter: Box<AdapterInfo>,
     },
-    /// wgpu tracks depth and stencil of a texture together.
+    /// A step reads one plane of a depth-stencil texture and writes the other, which wgpu does not support.
     #[error(
-        "`{resource}` is read in one plane and written in the other by one step; wgpu allows that for no texture with depth \
-         and stencil: use two textures, or copy the plane that is read"
+        "a step reads one plane of `{resource}` and writes the other, which wgpu does not support for depth-stencil textures; \
+         use two textures, or copy the plane that is read"
     )]
     Planes {
-        /// The resource concerned.
+        /// Depth-stencil resource.
         resource: Named<ResourceId>,
     },
-    /// A render pass of wgpu draws into something.
-    #[error("raster pass `{pass}` attaches nothing; attach a texture, or declare it as a compute pass")]
+    /// A raster pass has no attachments, which wgpu does not support.
+    #[error("raster pass `{pass}` has no attachments; attach a texture, or declare it as a compute pass")]
     NoAttachment {
-        /// The pass concerned.
+        /// Pass without attachments.
         pass: Named<PassId>,
     },
-    /// wgpu resolves colors by their average alone while it stores them.
+    /// The plan has a resolve mode other than average in a store operation, which wgpu does not support.
     #[error(
-        "`{resource}` gets the resolve `{}` in the store of its step, which this device does not do; compile with `Caps` of \
-         this device, and a full-screen pass does it", .mode.word()
+        "`{resource}` is resolved with mode `{}` in a store operation, which this device does not support; compile with the \
+         `Caps` of this device, which use a full-screen pass", .mode.word()
     )]
     StoreResolve {
-        /// The target.
+        /// Resolve target.
         resource: Named<ResourceId>,
-        /// What is to be made of the samples.
+        /// Resolve mode.
         mode: ResolveMode,
     },
-    /// Contents cannot be cleared that way.
-    #[error("`{resource}` cannot be cleared to that value outside of a render pass; clear to zero, or overwrite it")]
+    /// The contents cannot be cleared to the requested value.
+    #[error("`{resource}` cannot be cleared to this value outside of a render pass; clear it to zero, or overwrite it")]
     Clear {
-        /// The resource concerned.
+        /// Resource to clear.
         resource: Named<ResourceId>,
     },
-    /// The plan places a resource in a heap that this device has not, or where it does not fit.
+    /// The plan places a resource in a heap that does not exist on this device, or where it does not fit.
     #[error(
-        "`{resource}` is placed in a heap that this device has not, or has in other sizes; compile with `Executor::compile`, \
-         which asks the driver"
+        "`{resource}` is placed in a heap that this device does not have, or has in another size; compile with \
+         `Executor::compile`, which queries the driver"
     )]
     Heap {
-        /// The resource concerned.
+        /// Placed resource.
         resource: Named<ResourceId>,
     },
-    /// The driver does not make what the plan places in a heap.
+    /// The driver cannot create the placed resources.
     #[error("the frame's textures cannot share one block of memory: {0}; compile with `Alias::Pool`")]
     NotPlaced(#[from] NotPlaced),
-    /// The device has no memory left for the frame's textures and buffers.
-    #[error("the device is out of memory while making {0}; use a smaller frame, fewer samples or smaller textures")]
+    /// The device is out of memory for the textures and buffers of the frame.
+    #[error("the device is out of memory while creating {0}; use a smaller frame, fewer samples or smaller textures")]
     OutOfMemory(Box<MemoryAsked>),
-    /// An import is missing, or is not what was declared.
+    /// An import is missing, or does not match its declaration.
     #[error(transparent)]
     Import(#[from] ImportError),
-    /// A texture or buffer that the device cannot make.
+    /// The device does not support a texture or buffer.
     #[error(transparent)]
     Unsupported(#[from] Unsupported),
-    /// The device is lost, or refused a call.
+    /// The device is lost, or rejected a call.
     #[error(transparent)]
     Device(#[from] DeviceError),
 }
@@ -302,14 +301,14 @@ impl fmt::Debug for ExecuteError {
     }
 }
 
-/// What a frame asks of the device's memory.
+/// Memory that a frame needs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MemoryAsked {
-    /// All textures and buffers of the plan, in bytes.
+    /// Size of all textures and buffers of the plan, in bytes.
     pub bytes: u64,
-    /// The largest of them, with its bytes.
+    /// Largest resource, with its size in bytes.
     pub largest: Option<(Named<ResourceId>, u64)>,
-    /// The adapter of the device.
+    /// Adapter of the device.
     pub adapter: AdapterInfo,
 }
 

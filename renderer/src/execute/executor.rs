@@ -1,4 +1,4 @@
-//! Executing frames on a device, and everything that is kept from one to the next.
+//! The executor: executes frames on a device and owns everything that is kept between frames.
 
 mod histories;
 mod placing;
@@ -39,22 +39,24 @@ use wgpu::SubmissionIndex;
 /// Options of an executor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExecutorOptions {
-    /// Frames after which a texture, buffer, view or bind group that no frame used is dropped. The default of 30 is half a
-    /// second at 60 frames a second: longer than a toggle or a drag of the window's edge. A history that no frame
-    /// writes for so long is dropped too.
+    /// Number of frames after which unused textures, buffers, views and bind groups are dropped. Also drops histories
+    /// that were not written for as long. The default is 30, half a second at 60 frames per second, which outlasts
+    /// toggling an option or resizing a window.
     pub max_age: u64,
-    /// How many times the bytes of a frame's plan the pools and placed blocks of memory may hold, 3 by default: while a window is dragged, the sizes that
-    /// no frame asked for the longest go first ([`PoolCounts::budget_bytes`](crate::PoolCounts::budget_bytes)). What the last two frames used stays.
+    /// Maximum size of pools and memory blocks, as a multiple of the plan's memory; 3 by default. While a window is
+    /// resized, the sizes that were unused for longest are dropped first
+    /// ([`PoolCounts::budget_bytes`](crate::PoolCounts::budget_bytes)). Resources of the last two frames are always
+    /// kept.
     pub pool_budget: u32,
-    /// Frames after which a pipeline and a shader module that no frame asked for are dropped; 36,000 by default, ten minutes
-    /// at 60 frames a second.
+    /// Number of frames after which unused pipelines and shader modules are dropped; 36,000 by default, ten minutes at
+    /// 60 frames per second.
     pub max_pipeline_age: u64,
-    /// Measure the times of steps: on the CPU, and on the GPU where the device can. Without it, and without `trace`, the CPU
-    /// time of whole frames is all that is measured, and a frame asks the clock twice.
+    /// Measures CPU times of steps, and GPU times if the device supports timestamps. If both `timing` and `trace` are
+    /// off, only the CPU time of whole frames is measured, with two clock reads per frame.
     pub timing: bool,
-    /// Write down the times of every frame ([`Timing::trace`]), beside the statistics.
+    /// Stores the times of every frame in addition to the statistics ([`Timing::trace`]).
     pub trace: bool,
-    /// Fill undefined contents with NaN or magenta, to find passes that read what no pass wrote.
+    /// Fills undefined contents with NaN or magenta, to find passes that read contents no pass wrote.
     pub poison: bool,
 }
 
@@ -71,7 +73,7 @@ impl ExecutorOptions {
     }
 }
 
-/// Executes frames on one device. Pools, caches, histories and measurements live as long as it does.
+/// Executes frames on one device. Owns the pools, caches, histories and measurements.
 ///
 /// ```
 /// use framegraph::{ClearValue, Extent, Format, Intent, Options, Plan, Scratch, TextureDesc, recompile};
@@ -81,7 +83,7 @@ impl ExecutorOptions {
 /// let mut executor = Executor::new(&gpu);
 /// let (mut frame, mut plan, mut scratch) = (Frame::<()>::new(), Plan::new(), Scratch::new());
 /// for _ in 0..3 {
-///     // Declared anew each frame; nothing is compiled or allocated again while it stays the same.
+///     // Redeclared in each frame. While it stays the same, nothing is compiled or allocated again.
 ///     frame.reset();
 ///     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
 ///     let sky = frame.graph_mut().texture("sky", desc);
@@ -110,19 +112,19 @@ pub struct Executor {
     realized: Realized,
     timing: Timing,
     executed: Counts,
-    /// A frame was recorded, and nobody said that it was submitted.
+    /// A frame was recorded, and its submission was not reported yet.
     unsubmitted: bool,
-    /// By access of the graph: whether a recorder looked it up.
+    /// For each access of the graph, whether a recorder looked it up.
     touched: Vec<AtomicBool>,
 }
 
 impl Executor {
-    /// An executor with the default options.
+    /// Creates an executor with the default options.
     pub fn new(gpu: &Gpu) -> Self {
         Self::with(gpu, ExecutorOptions::default())
     }
 
-    /// An executor with these options.
+    /// Creates an executor with the given options.
     pub fn with(gpu: &Gpu, options: ExecutorOptions) -> Self {
         let limits = options.limits();
         Self {
@@ -143,20 +145,22 @@ impl Executor {
         }
     }
 
-    /// The device that it executes on.
+    /// Returns the device of the executor.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
 
-    /// Executes a frame: `plan` is compiled from `frame` as it is declared now (`framegraph::recompile` sees to that),
-    /// `world` is handed to the recorders, `imports` says what the graph's imports stand for.
+    /// Executes a frame.
     ///
-    /// Returns when the commands are submitted, not when the GPU is done: the index is what [`wgpu::PollType::Wait`] waits
-    /// for.
+    /// `plan` must be compiled from the current declaration of `frame`, for example with `framegraph::recompile`.
+    /// `world` is passed to the recorders, and `imports` has the resources behind the graph's imports.
+    ///
+    /// Returns when the commands are submitted, not when the GPU has finished. Wait for the returned index with
+    /// [`wgpu::PollType::Wait`].
     ///
     /// # Errors
-    /// [`ExecuteError`]. Nothing of the frame reached the GPU then, histories did not move, and the next frame starts
-    /// clean.
+    /// Fails with [`ExecuteError`]. Nothing of the frame is submitted in that case, histories do not advance, and the
+    /// next frame starts clean.
     pub fn execute<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
@@ -168,9 +172,10 @@ impl Executor {
         self.execute_with(plan, frame, world, imports, |commands| commands.submit(&queue, [], []))
     }
 
-    /// As [`Executor::execute`], submitted by the caller: `submit` gets the frame's commands and submits them on the
-    /// device's queue, with commands of its own before and behind them if it wants. What wgpu refuses meanwhile is this
-    /// frame's error.
+    /// Executes a frame like [`Executor::execute`], but lets `submit` submit the commands.
+    ///
+    /// `submit` must submit them on the device's queue, and may add its own command buffers before and after them.
+    /// Errors that wgpu reports during the submission are returned as errors of this frame.
     ///
     /// ```
     /// # use framegraph::{ClearValue, Extent, Format, Intent, Options, Plan, Scratch, TextureDesc, compile};
@@ -192,7 +197,7 @@ impl Executor {
     /// ```
     ///
     /// # Errors
-    /// As [`Executor::execute`]; `submit` is not called when recording failed.
+    /// Fails like [`Executor::execute`]. If recording fails, `submit` is not called.
     pub fn execute_with<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
@@ -205,8 +210,8 @@ impl Executor {
         self.run(plan, &Passes { frame, world, extra: None }, imports, submit)
     }
 
-    /// As [`Executor::execute_with`], of a plan whose graph may have one pass more than the frame, and may lack others: that
-    /// of an inspection.
+    /// Executes a frame like [`Executor::execute_with`]. For inspections, the plan's graph may lack passes of the frame
+    /// and have one additional pass.
     pub(crate) fn run<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
@@ -233,7 +238,7 @@ impl Executor {
         Ok(index)
     }
 
-    /// Sends the constants that recorders pushed, ahead of what is submitted next.
+    /// Uploads the uniforms of all recorders, before the next submission.
     fn upload(&self) {
         self.recording.uniforms.upload(&self.gpu.queue);
         self.threads.upload(&self.gpu.queue);
@@ -246,8 +251,8 @@ impl Executor {
         self.give_up();
     }
 
-    /// Records a frame. `recorded` is told each step that is done, and how many pipelines were made until then; one thread
-    /// records all of them then.
+    /// Records a frame. `recorded` is called after each step with the number of pipelines created so far; with it, all
+    /// steps are recorded on one thread.
     fn record_frame<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
@@ -255,7 +260,7 @@ impl Executor {
         imports: &Imports,
         recorded: Option<&mut dyn FnMut(StepId, u64)>,
     ) -> Result<FrameCommands, ExecuteError> {
-        // Submitting the frame before has looked for finished work already; times are read back.
+        // The last submission has already polled the device, so polling is only needed to read times.
         if self.timing.is_enabled() {
             self.gpu.poll()?;
         } else {
@@ -289,7 +294,7 @@ impl Executor {
         }
     }
 
-    /// What the device's error means for the frame.
+    /// Converts an error of the device to an error of the frame.
     fn told(&self, plan: &Plan, error: DeviceError) -> ExecuteError {
         match error {
             DeviceError::OutOfMemory { .. } => ExecuteError::OutOfMemory(Box::new(self.memory_asked(plan))),
@@ -297,8 +302,8 @@ impl Executor {
         }
     }
 
-    /// The pass whose commands wgpu refused, found by recording the frame once more, pass by pass; nothing of it is
-    /// submitted. None where the fault is not in one pass.
+    /// Records the frame again, pass by pass, to find the pass whose commands wgpu rejected. Submits nothing. Returns
+    /// `None` if no single pass is at fault.
     fn blame<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
@@ -315,7 +320,7 @@ impl Executor {
         blamed.map(|(pass, message)| ExecuteError::Refused { pass: Named::pass(plan, pass), message })
     }
 
-    /// Makes, or finds again, every texture and buffer of the frame.
+    /// Creates or reuses all textures and buffers of the frame.
     fn prepare(&mut self, plan: &Plan, owner: &FrameKey, imports: &Imports) -> Result<(), ExecuteError> {
         let Self { gpu, textures, buffers, histories, arenas, realized, options, touched, .. } = self;
         touched.clear();
@@ -324,7 +329,7 @@ impl Executor {
         realized.realize(plan, &mut Sources { gpu, owner, textures, buffers, histories, imports, arenas, poison })
     }
 
-    /// Records all steps. What wgpu refuses on other threads than this one is put into `elsewhere`.
+    /// Records all steps. Errors on other threads are stored in `elsewhere`.
     fn record_steps<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
@@ -350,7 +355,7 @@ impl Executor {
         Ok(commands)
     }
 
-    /// What a frame asks of the device's memory.
+    /// Returns how much memory the frame needs.
     fn memory_asked(&self, plan: &Plan) -> MemoryAsked {
         let (memory, bytes) = (plan.memory(), |r: ResourceId| plan.resources()[r.index()].bytes);
         let largest = plan.graph().resource_ids().max_by_key(|r| bytes(*r));
@@ -362,13 +367,13 @@ impl Executor {
     }
 }
 
-/// Whether a plan is that of a frame.
+/// Checks that a plan belongs to a frame.
 fn check<W: ?Sized + 'static>(plan: &Plan, frame: &Frame<W>) -> Result<(), ExecuteError> {
     if frame.graph().same_as(plan.graph()) { Ok(()) } else { Err(ExecuteError::OtherPlan) }
 }
 
-/// Whether what was `said` while recording follows from the device's `error`, such as a view of a texture that there is no
-/// memory for. Else what a recorder said is nearer to the cause than what wgpu refused because of it.
+/// Returns whether the error `said` of recording is a consequence of the device's `error`, such as a view of a texture
+/// that could not be allocated. Otherwise the recorder's error is closer to the cause.
 fn follows(said: &ExecuteError, error: &DeviceError) -> bool {
     let of_a_view =
         matches!(said, ExecuteError::Device(_) | ExecuteError::Record { error: RecordError::View { .. }, .. });

@@ -1,5 +1,5 @@
-//! Resolves that wgpu does not make while it stores: a full-screen pass fetches the samples and writes what the mode makes of
-//! them.
+//! Resolves that wgpu cannot do in a store operation. A full-screen pass loads the samples and writes the resolved
+//! value.
 
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
@@ -15,11 +15,11 @@ const VERTEX: &str = "@vertex fn vs_main(@builtin(vertex_index) i: u32) -> @buil
 }
 ";
 
-/// Draws all resolves of the open step, which is a step of nothing else.
+/// Draws all resolves of the current step, which contains nothing else.
 ///
 /// # Errors
-/// On OpenGL, of which wgpu 30 makes no texture of several samples that can be fetched from; what the pipeline is refused
-/// for.
+/// Fails on OpenGL, where wgpu 30 has no multisampled textures that shaders can load from, and if the pipeline is
+/// rejected.
 pub(crate) fn record(cx: &mut Cx<'_>) -> Result<(), RecordError> {
     let plan = cx.plan();
     let (mut resolves, mut bindings, mut depth) = (Vec::new(), Vec::new(), Depth::NONE);
@@ -27,8 +27,8 @@ pub(crate) fn record(cx: &mut Cx<'_>) -> Result<(), RecordError> {
         if cx.gpu().info().backend == wgpu::Backend::Gl {
             let samples = Named::resource(plan, samples.resource);
             return Err(RecordError::custom(format!(
-                "`{samples}` is resolved by `{}`, which takes its samples from memory, and wgpu keeps none there on OpenGL; \
-                 use another back end, or one sample",
+                "`{samples}` is resolved with mode `{}`, which loads its samples in a shader; wgpu does not support this on OpenGL: \
+                 use another backend, or one sample",
                 resolve.resolve.word()
             )));
         }
@@ -47,9 +47,9 @@ pub(crate) fn record(cx: &mut Cx<'_>) -> Result<(), RecordError> {
     Ok(())
 }
 
-/// Samples that a shader resolves.
+/// Multisampled input of a resolve shader.
 struct Fetched {
-    /// The `@binding`.
+    /// `@binding` number.
     number: usize,
     format: Format,
     /// Color slot of the target, or [`Access::DEPTH`].
@@ -58,7 +58,7 @@ struct Fetched {
 }
 
 impl Fetched {
-    /// The type of the variable, and that of a texel.
+    /// Returns the WGSL types of the texture and of a texel.
     fn types(&self) -> [&'static str; 2] {
         match self.format.numeric() {
             Numeric::Float => ["texture_multisampled_2d<f32>", "vec4f"],
@@ -69,7 +69,7 @@ impl Fetched {
     }
 }
 
-/// The shader that makes these resolves.
+/// Generates the shader for these resolves.
 fn wgsl(resolves: &[Fetched]) -> String {
     let (mut variables, mut outputs, mut body) = (String::new(), String::new(), String::new());
     for fetched in resolves {

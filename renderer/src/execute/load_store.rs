@@ -1,12 +1,12 @@
-//! Load and store operations, from the plan's to wgpu's.
+//! Conversion of load and store operations to wgpu.
 //!
-//! The only unsafe call of the crate's portable part is here: the token of wgpu's `LoadOp::DontCare`.
+//! Contains the only unsafe call outside of the Vulkan code: the token of wgpu's `LoadOp::DontCare`.
 
 use crate::execute::clear::Values;
 use framegraph::{Aspect, Attachment, ClearValue, Format, LoadOp, Role, StoreOp};
 use wgpu::{Color, Operations};
 
-/// The load operation that lets the old contents be anything.
+/// Returns the load operation for undefined contents.
 fn dont_care<V>() -> wgpu::LoadOp<V> {
     #[allow(unsafe_code, reason = "the token of LoadOp::DontCare has no safe constructor")]
     // SAFETY: wgpu asks that every texel is written before it is read or stored. The plan gives `DontCare` only to
@@ -25,8 +25,8 @@ fn load<V>(op: LoadOp, clear: V) -> wgpu::LoadOp<V> {
     }
 }
 
-/// What was only read stays in memory; wgpu has no such operation where an attachment may be written, and storing the
-/// unchanged contents comes to the same.
+/// Converts a store operation. wgpu has no `StoreOp::None` for writable attachments; storing the unchanged contents is
+/// equivalent.
 const fn store(op: StoreOp) -> wgpu::StoreOp {
     match op {
         StoreOp::Store | StoreOp::None => wgpu::StoreOp::Store,
@@ -34,14 +34,14 @@ const fn store(op: StoreOp) -> wgpu::StoreOp {
     }
 }
 
-/// The operations of a color attachment.
+/// Returns the operations of a color attachment.
 pub(crate) fn color_ops(attachment: &Attachment, clear: ClearValue) -> Operations<Color> {
     Operations { load: load(attachment.load, Values::from(clear).color), store: store(attachment.store) }
 }
 
-/// The operations of both planes of a depth-stencil attachment; `None` for a plane that is read only or not there.
+/// Returns the operations of depth and stencil; `None` for a plane that is read-only or does not exist.
 ///
-/// When one plane is stored, so is the other: wgpu clears a plane that is discarded alone at once.
+/// If one plane is stored, the other is stored too, since wgpu clears a plane that is discarded alone.
 pub(crate) fn depth_ops(
     attachment: &Attachment,
     format: Format,

@@ -1,7 +1,7 @@
-//! From the handles and tokens of a pass to the textures and buffers behind them.
+//! Lookup of the textures and buffers behind the handles and tokens of a pass.
 //!
-//! Every look-up is checked against what the pass declared, and noted, so that both an undeclared access and an unused
-//! declaration come to light.
+//! Every lookup is checked against the pass's declaration and noted. Undeclared accesses are errors, and unused
+//! declarations can be listed.
 
 use crate::device::error::DeviceError;
 use crate::device::format::texture_format;
@@ -21,67 +21,67 @@ use std::sync::atomic::Ordering;
 use wgpu::TextureView;
 
 impl<'a> Cx<'a> {
-    /// The view behind the token of a read: one layer as two-dimensional, several as an array, depth with stencil as
-    /// depth.
+    /// Returns the view of a texture that the pass declared to read. One layer becomes a 2D view, several layers a 2D
+    /// array view; of depth-stencil textures the depth plane is viewed.
     ///
     /// # Errors
-    /// A token of another graph or pass.
+    /// Fails if the token belongs to another graph or pass.
     pub fn view(&mut self, view: View) -> Result<TextureView, RecordError> {
         let access = self.read(view)?;
         self.view_at(access, ViewPart::WHOLE)
     }
 
-    /// As [`Cx::view`], a part of it, or bound by shaders as another dimension.
+    /// Returns the view of a part of a texture that the pass declared to read, or with another dimension.
     ///
     /// # Errors
-    /// As [`Cx::view`], and a level or layer that the pass did not declare.
+    /// Fails like [`Cx::view`], and if the level or layer was not declared.
     pub fn view_part(&mut self, view: View, part: ViewPart) -> Result<TextureView, RecordError> {
         let access = self.read(view)?;
         self.view_at(access, part)
     }
 
-    /// The view of the part that this pass writes as storage; `texture` is the handle that the write returned. Where the
-    /// pass writes several levels, name one: [`Cx::view_of_part`].
+    /// Returns the view of a storage texture that the pass writes. `texture` is the handle that the write returned. If
+    /// the pass writes several levels, select one with [`Cx::view_of_part`].
     ///
     /// # Errors
-    /// A handle of another graph, or one that this pass did not write.
+    /// Fails if the handle belongs to another graph, or the pass did not write it.
     pub fn view_of(&mut self, texture: Texture) -> Result<TextureView, RecordError> {
         let access = self.written(texture)?;
         self.view_at(access, ViewPart::WHOLE)
     }
 
-    /// As [`Cx::view_of`], a part of it, or bound by shaders as another dimension.
+    /// Returns the view of a part of a storage texture that the pass writes, or with another dimension.
     ///
     /// # Errors
-    /// As [`Cx::view_of`], and a level or layer that the pass did not declare.
+    /// Fails like [`Cx::view_of`], and if the level or layer was not declared.
     pub fn view_of_part(&mut self, texture: Texture, part: ViewPart) -> Result<TextureView, RecordError> {
         let access = self.written(texture)?;
         self.view_at(access, part)
     }
 
-    /// The texture behind the token of a read, for copies.
+    /// Returns the texture that the pass declared to read, for copies.
     ///
     /// # Errors
-    /// As [`Cx::view`].
+    /// Fails like [`Cx::view`].
     pub fn texture(&mut self, view: View) -> Result<wgpu::Texture, RecordError> {
         let access = self.read(view)?;
         self.physical_texture(access.1.resource).map(|(texture, _)| texture.clone())
     }
 
-    /// The texture that this pass writes, for copies; `texture` is the handle that the write returned.
+    /// Returns the texture that the pass writes, for copies. `texture` is the handle that the write returned.
     ///
     /// # Errors
-    /// As [`Cx::view_of`].
+    /// Fails like [`Cx::view_of`].
     pub fn texture_of(&mut self, texture: Texture) -> Result<wgpu::Texture, RecordError> {
         let access = self.written(texture)?;
         self.physical_texture(access.1.resource).map(|(texture, _)| texture.clone())
     }
 
-    /// Width and height in texels of the first level of the part that a token names. That of a history's earlier image is
-    /// the size in which it was written, which a resize or dynamic resolution may have changed since.
+    /// Returns width and height in texels of the first level of an access. For previous images of a history, this is
+    /// the size they were written with, which may differ from the current size.
     ///
     /// # Errors
-    /// As [`Cx::view`].
+    /// Fails like [`Cx::view`].
     pub fn texels(&self, view: View) -> Result<[u32; 2], RecordError> {
         let access = self.graph().access_of(view).ok_or(RecordError::Foreign)?;
         let level = u32::from(access.range.mip);
@@ -94,30 +94,30 @@ impl<'a> Cx<'a> {
         Ok(desc.texture().map_or([0; 2], |t| t.mip_extent(self.frame.plan.frame(), level)))
     }
 
-    /// The format that a texture is made with: the declared one, or that of the target which an inlined pass draws in its
-    /// stead. Any version of the handle will do.
+    /// Returns the format of a texture, for any version of the handle. This is the declared format; if the plan inlines
+    /// the pass that reads it, it is the format of the target drawn instead.
     ///
     /// # Errors
-    /// A handle of another graph.
+    /// Fails if the handle belongs to another graph.
     pub fn format_of(&self, texture: Texture) -> Result<Format, RecordError> {
         let resource = self.graph().resource_of(texture).ok_or(RecordError::Foreign)?;
         self.frame.plan.format(resource).ok_or(RecordError::Foreign)
     }
 
-    /// The buffer behind the token of a read, ready to bind.
+    /// Returns the buffer that the pass declared to read, ready to bind.
     ///
     /// # Errors
-    /// A token of another graph or pass.
+    /// Fails if the token belongs to another graph or pass.
     pub fn buffer(&mut self, view: BufferView) -> Result<BoundBuffer, RecordError> {
         let access = self.graph().access_of_buffer(view).ok_or(RecordError::Foreign)?;
         self.touch(access)?;
         self.physical_buffer(access)
     }
 
-    /// The buffer that this pass writes, ready to bind; `buffer` is the handle that the write returned.
+    /// Returns the buffer that the pass writes, ready to bind. `buffer` is the handle that the write returned.
     ///
     /// # Errors
-    /// A handle of another graph, or one that this pass did not write.
+    /// Fails if the handle belongs to another graph, or the pass did not write it.
     pub fn buffer_of(&mut self, buffer: Buffer) -> Result<BoundBuffer, RecordError> {
         self.graph().resource_of_buffer(buffer).ok_or(RecordError::Foreign)?;
         let access = self.graph().writer_of_buffer(buffer).ok_or(RecordError::NotWritten)?;
@@ -125,10 +125,10 @@ impl<'a> Cx<'a> {
         self.physical_buffer(access)
     }
 
-    /// What there is of the image of an earlier frame: whether that frame wrote it, and in which size.
+    /// Returns validity, age and size of a previous image of a history.
     ///
     /// # Errors
-    /// A handle of another graph.
+    /// Fails if the handle belongs to another graph.
     pub fn history(&self, previous: Previous) -> Result<HistoryImage, RecordError> {
         let resource = self.graph().resource_of_previous(previous).ok_or(RecordError::Foreign)?;
         Ok(match self.frame.realized.get(resource) {
@@ -139,35 +139,35 @@ impl<'a> Cx<'a> {
         })
     }
 
-    /// Whether the image of an earlier frame holds what that frame wrote ([`HistoryImage::valid`]).
+    /// Returns whether a previous image of a history has valid contents ([`HistoryImage::valid`]).
     ///
     /// # Errors
-    /// A handle of another graph.
+    /// Fails if the handle belongs to another graph.
     pub fn is_valid(&self, previous: Previous) -> Result<bool, RecordError> {
         Ok(self.history(previous)?.valid)
     }
 
-    /// The accesses of the pass, for recorders that are not written for one pass: graphs from files, tools, tests.
+    /// Returns the accesses of the pass. For generic recorders, such as those of graph files, tools and tests.
     pub fn accesses(&self) -> impl Iterator<Item = AccessId> + use<> {
         let rows = self.graph().passes()[self.pass.index()].accesses.range();
         rows.filter_map(AccessId::new)
     }
 
-    /// What stands behind an access of the pass; the view of a texture is that of the accessed part, of its first level
-    /// when it is used as storage.
+    /// Returns the texture or buffer of an access. Views of storage textures show the first level of the access, other
+    /// views all of it.
     ///
     /// # Errors
-    /// When the access is of another pass, or what it names has no memory.
+    /// Fails if the access belongs to another pass, or its resource has no memory.
     pub fn resource(&mut self, access: AccessId) -> Result<BoundResource, RecordError> {
         let row = self.graph().accesses().get(access.index()).ok_or(RecordError::Foreign)?;
         let storage = matches!(row.kind, AccessKind::StorageRead | AccessKind::StorageWrite);
         self.resource_part(access, ViewPart { mip: storage.then_some(row.range.mip), ..ViewPart::WHOLE })
     }
 
-    /// As [`Cx::resource`], the view being that of a part; a buffer has no parts.
+    /// Returns the texture or buffer of an access, with a view of the given part. The part is ignored for buffers.
     ///
     /// # Errors
-    /// As [`Cx::resource`], and a level or layer that the pass did not declare.
+    /// Fails like [`Cx::resource`], and if the level or layer was not declared.
     pub fn resource_part(&mut self, access: AccessId, part: ViewPart) -> Result<BoundResource, RecordError> {
         let access = self.graph().accesses().get(access.index()).ok_or(RecordError::Foreign)?;
         let (index, access) = self.touch(access)?;
@@ -194,7 +194,7 @@ impl<'a> Cx<'a> {
         self.touch(access)
     }
 
-    /// Notes that the recorder uses `access`, which must be of its own pass, and returns it with its number.
+    /// Marks `access` as used and returns it with its index. Fails if it belongs to another pass.
     fn touch<'g>(&self, access: &'g Access) -> Result<(usize, &'g Access), RecordError> {
         let own = self.graph().passes()[self.pass.index()].accesses.range();
         let index = own.clone().find(|a| std::ptr::eq(&self.graph().accesses()[*a], access));
@@ -209,7 +209,7 @@ impl<'a> Cx<'a> {
         RecordError::Undeclared { resource: Named::resource(self.frame.plan, access.resource), access: access.kind }
     }
 
-    /// The view of a part of what an access names.
+    /// Returns the view of a part of an access.
     fn view_at(&mut self, (index, access): (usize, &Access), part: ViewPart) -> Result<TextureView, RecordError> {
         let stamp = self.frame.realized.stamp(access.resource);
         let asked = stamp.map(|stamp| (index, part, stamp));
@@ -235,7 +235,8 @@ impl<'a> Cx<'a> {
         let range = part.of(access.range, counts).ok_or_else(|| self.undeclared(access))?;
         let mut view = ViewDesc::new(format, shape.dimension, range, counts, false);
         view = part.dimension.map_or(view, |d| view.as_dimension(d));
-        // The texture may be made in the linear form of the view's sRGB format, and have uses that the view cannot have.
+        // The texture may have been created in the linear form of an sRGB format, with usages that an sRGB view cannot
+        // have.
         if texture.format() != texture_format(format) {
             view = view.used_as(shape.view_usages(format));
         }

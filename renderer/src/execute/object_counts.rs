@@ -1,15 +1,15 @@
-//! How many objects of wgpu an executor made.
+//! Number of wgpu objects that an executor created.
 
-/// How many wgpu objects were made since the executor was. Equal before and after a frame in the steady state.
+/// Number of wgpu objects created since the executor was created. Constant between frames once everything is cached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ObjectCounts {
-    /// Textures of the pool, and textures and buffers placed in a heap.
+    /// Pooled textures, and placed textures and buffers.
     pub textures: u64,
     /// Images of histories.
     pub histories: u64,
-    /// Buffers of the pool.
+    /// Pooled buffers.
     pub buffers: u64,
-    /// Buffers of constants.
+    /// Uniform buffers.
     pub uniform_buffers: u64,
     /// Texture views.
     pub views: u64,
@@ -24,7 +24,7 @@ pub struct ObjectCounts {
 }
 
 impl ObjectCounts {
-    /// What was made since `before`.
+    /// Returns the number of objects created since `before`.
     #[must_use]
     pub fn since(&self, before: &Self) -> Self {
         Self {
@@ -40,7 +40,7 @@ impl ObjectCounts {
         }
     }
 
-    /// Each count with its name.
+    /// Returns names and counts, for reports.
     pub fn rows(&self) -> [(&'static str, u64); 9] {
         let Self {
             textures,

@@ -1,4 +1,4 @@
-//! Opening a step: what it attaches, gathered where something is other than it was.
+//! Begin of a step: updates its attachments if they changed.
 
 use crate::debug::poison;
 use crate::execute::clear::clears_stored;
@@ -10,10 +10,10 @@ use crate::named::Named;
 use framegraph::{AccessKind, Attachment, Format, Join, PassKind, Plan, Range, Role, StepId};
 
 impl Opened {
-    /// Makes it that of `step`, and returns how many views are those of before.
+    /// Prepares this value for `step`. Returns the number of attachment views that were reused.
     ///
     /// # Errors
-    /// What cannot be attached.
+    /// Fails if an attachment cannot be created.
     pub(crate) fn open(&mut self, frame: &Prepared<'_>, step: StepId) -> Result<usize, ExecuteError> {
         let plan = frame.plan;
         if self.compilation == 0 || self.compilation != plan.compilation() {
@@ -46,7 +46,7 @@ impl Opened {
     }
 }
 
-/// Whether a raster step attaches something, and nothing that it samples too.
+/// Checks that a raster step has attachments and does not sample what it writes.
 fn check(plan: &Plan, step: StepId) -> Result<(), ExecuteError> {
     if plan.steps()[step.index()].kind != PassKind::Raster {
         return Ok(());
@@ -62,8 +62,8 @@ fn check(plan: &Plan, step: StepId) -> Result<(), ExecuteError> {
     }
 }
 
-/// Whether a pass of the step reads the attached level and layers other than as an attachment, in whichever plane. What an
-/// inlined pass reads at the same pixel is no attachment any more.
+/// Returns whether a pass of the step reads the attached levels and layers other than as an attachment, in any plane.
+/// Same-pixel reads of inlined passes do not count, since they no longer read memory.
 fn is_sampled(plan: &Plan, step: StepId, attachment: &Attachment) -> bool {
     let Attachment { mip, layer, layers, .. } = *attachment;
     let attached = Range { mip, mips: 1, layer, layers, ..Range::ALL };

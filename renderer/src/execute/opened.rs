@@ -1,34 +1,34 @@
-//! A step as it was opened last: what it attaches stays as it is while its plan and the textures behind its attachments do.
+//! Cached attachments of a step. They stay valid until the plan or one of the attached textures changes.
 
 use crate::execute::attached::Attached;
 use crate::execute::targets::Targets;
 use framegraph::Counts;
 
-/// See the [module](self).
+/// Cached state of a step. See the [module documentation](self).
 #[derive(Debug, Default)]
 pub(crate) struct Opened {
-    /// The compilation of the plan; 0 before the first.
+    /// Compilation number of the plan; 0 before the first use.
     pub(crate) compilation: u64,
-    /// Of the textures that are attached; none where `attached` is not of them.
+    /// Stamps of the attached textures; `None` if `attached` is not valid.
     pub(crate) stamps: Option<Vec<u64>>,
     pub(crate) targets: Targets,
     pub(crate) attached: Attached,
-    /// What opening it adds to the counts of what was executed.
+    /// Operations that executing the step adds to the counts.
     pub(crate) counts: Counts,
-    /// Planes that are filled because their contents may be anything.
+    /// Number of planes filled by poisoning.
     pub(crate) poisoned: u32,
-    /// A pass declares something as cleared that it does not attach.
+    /// Whether a pass declares a resource as cleared without attaching it.
     pub(crate) clears_stored: bool,
 }
 
 impl Opened {
-    /// Lets go of the attached views.
+    /// Releases the attached views.
     pub(crate) fn let_go(&mut self) {
         self.stamps = None;
         self.attached.clear();
     }
 
-    /// Ends the step: views of textures that are lent for this frame alone are let go of.
+    /// Ends the step. Releases views of surface textures, which are imported for one frame only.
     pub(crate) fn close(&mut self) {
         if self.stamps.is_none() {
             self.attached.clear();

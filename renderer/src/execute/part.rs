@@ -1,53 +1,56 @@
-//! What a look-up takes and returns: parts of accesses, and what stands behind them.
+//! Parameters and results of resource lookups.
 
 use crate::pipelines::bind_groups::Binding;
 use framegraph::{Aspect, Range};
 use wgpu::{TextureView, TextureViewDimension};
 
-/// The image of a history as an earlier frame left it.
+/// State of a previous image of a history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HistoryImage {
-    /// It holds what that frame wrote. False on the first frame, after a reset, after more frames without the history than
-    /// [`ExecutorOptions::max_age`](crate::ExecutorOptions::max_age), and after a change of its format, layers, samples or
-    /// number of frames: it holds zeros then.
+    /// Whether the image has valid contents; otherwise it is zero-filled.
+    ///
+    /// False in the first frame, after a reset, and after the format, layers, samples or length of the history changed.
+    /// Also false if the history was not written for more than
+    /// [`ExecutorOptions::max_age`](crate::ExecutorOptions::max_age) frames.
     pub valid: bool,
-    /// How many times the [`Frame`](crate::Frame) was executed without writing the history since it last did; 0 where the
-    /// frame before wrote it. What has no use for a picture that is older than the last one rejects it by this.
+    /// Number of times the [`Frame`](crate::Frame) was executed since without writing the history; 0 if the last frame
+    /// wrote it. Passes that need the image of the last frame can reject older ones.
     pub missed: u64,
-    /// Width and height in texels. A change of size alone keeps earlier images as they were written, so this is the size of
-    /// that frame, not of this one; 0 where the history has no images. An earlier image that a pass attaches is not
-    /// kept then, nor one that lacks a mip level which a pass names; a pass that samples all levels gets those that there are.
+    /// Width and height in texels when the image was written; 0 if there is no image.
+    ///
+    /// A change of size alone keeps previous images at their old size. Exceptions are images that a pass attaches, or
+    /// that lack a mip level a pass names: they are dropped. A pass that samples all levels gets those that exist.
     pub texels: [u32; 2],
 }
 
-/// A part of what an access declares, and how shaders see it.
+/// Part of a declared access, and how shaders view it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ViewPart {
-    /// One level, counted from the texture's first; all that were declared by default.
+    /// Mip level, counted from the texture's first. `None` selects all declared levels.
     pub mip: Option<u8>,
-    /// One layer, counted from the texture's first; all that were declared by default.
+    /// Layer, counted from the texture's first. `None` selects all declared layers.
     pub layer: Option<u16>,
-    /// A cube, or an array of one layer; by default one layer is two-dimensional and several are an array.
+    /// View dimension, for cubes or arrays of one layer. `None` gives 2D for one layer, 2D array for several.
     pub dimension: Option<TextureViewDimension>,
-    /// One plane; by default what was declared, and of depth with stencil the depth.
+    /// Plane. `None` selects the declared planes, and depth for depth-stencil textures.
     pub aspect: Option<Aspect>,
 }
 
 impl ViewPart {
-    /// All that was declared.
+    /// The whole declared access.
     pub const WHOLE: Self = Self { mip: None, layer: None, dimension: None, aspect: None };
 
-    /// One mip level of what was declared.
+    /// Selects one mip level.
     pub const fn mip(mip: u8) -> Self {
         Self { mip: Some(mip), ..Self::WHOLE }
     }
 
-    /// Bound by shaders as another dimension.
+    /// Selects the whole access with another view dimension.
     pub const fn as_dimension(dimension: TextureViewDimension) -> Self {
         Self { dimension: Some(dimension), ..Self::WHOLE }
     }
 
-    /// The part of `declared`; `None` when it lies outside.
+    /// Returns the selected part of `declared`, or `None` if it is outside.
     pub(super) fn of(self, declared: Range, (mips, layers): (u32, u32)) -> Option<Range> {
         let mut range = declared;
         if let Some(mip) = self.mip {
@@ -64,34 +67,34 @@ impl ViewPart {
     }
 }
 
-/// What stands behind an access.
+/// Texture or buffer of an access.
 #[derive(Clone, Debug)]
 pub enum BoundResource {
-    /// A texture, and the view of the accessed part.
+    /// A texture with a view of the accessed part.
     Texture {
-        /// The texture behind the access.
+        /// Texture of the access.
         texture: wgpu::Texture,
-        /// A view of the accessed part.
+        /// View of the accessed part.
         view: TextureView,
     },
     /// The declared bytes of a buffer.
     Buffer(BoundBuffer),
 }
 
-/// The bytes of a buffer that an access declares: all of the resource, which may be less than the buffer has, or those that
-/// it names.
+/// A range of a buffer: the bytes that an access declares. By default this is the whole resource, which may be smaller
+/// than the buffer.
 #[derive(Clone, Debug)]
 pub struct BoundBuffer {
-    /// The buffer, which may be longer than the resource.
+    /// Buffer; may be larger than the resource.
     pub buffer: wgpu::Buffer,
-    /// Bytes in front of those that are declared.
+    /// Start of the declared range, in bytes.
     pub offset: u64,
-    /// How many bytes are declared.
+    /// Size of the declared range, in bytes.
     pub bytes: u64,
 }
 
 impl BoundBuffer {
-    /// The declared bytes, for vertices and indices.
+    /// Returns the declared range as a slice, for vertex and index buffers.
     pub fn slice(&self) -> wgpu::BufferSlice<'_> {
         self.buffer.slice(self.offset..self.offset + self.bytes)
     }

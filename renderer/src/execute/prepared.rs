@@ -1,4 +1,4 @@
-//! What recording reads: everything that is settled before the first step and shared by all of them.
+//! State shared by all steps of a frame while it is recorded.
 
 use crate::device::gpu::Gpu;
 use crate::measure::timing::Timing;
@@ -12,7 +12,7 @@ use framegraph::Plan;
 use std::sync::atomic::AtomicBool;
 use wgpu::Texture;
 
-/// Objects that recorders ask for by description, kept from frame to frame and shared by reference.
+/// Caches of objects that recorders request by description. Kept between frames and shared by reference.
 #[derive(Debug, Default)]
 pub(crate) struct Caches {
     pub(crate) views: ViewCache,
@@ -22,8 +22,8 @@ pub(crate) struct Caches {
 }
 
 impl Caches {
-    /// Begins a frame and drops views and bind groups that no frame asked for during `max_age` frames, and pipelines after
-    /// `max_pipeline_age`.
+    /// Begins a frame. Drops views and bind groups that were not requested for `max_age` frames, and pipelines after
+    /// `max_pipeline_age` frames.
     pub(crate) fn begin_frame(&mut self, max_age: u64, max_pipeline_age: u64) {
         self.views.begin_frame(max_age);
         self.groups.begin_frame(max_age);
@@ -31,13 +31,13 @@ impl Caches {
         self.pipelines.begin_frame(max_pipeline_age);
     }
 
-    /// Drops what holds a texture that is given up.
+    /// Drops all objects that refer to a texture that is being freed.
     pub(crate) fn forget(&mut self, texture: &Texture) {
         self.views.forget(texture);
         self.groups.forget(texture);
     }
 
-    /// The same of what was placed in memory that is given up.
+    /// Drops all objects that refer to a placed resource that is being freed.
     pub(crate) fn forget_placed(&mut self, object: &Object) {
         match object {
             Object::Texture(placed) => self.forget(placed.texture()),
@@ -46,7 +46,7 @@ impl Caches {
     }
 }
 
-/// A frame whose textures and buffers are there, ready to be recorded. Several threads may record steps of it at once.
+/// A frame whose textures and buffers exist, ready to be recorded. Several threads may record steps of it at once.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Prepared<'a> {
     pub(crate) gpu: &'a Gpu,
@@ -54,8 +54,8 @@ pub(crate) struct Prepared<'a> {
     pub(crate) realized: &'a Realized,
     pub(crate) caches: &'a Caches,
     pub(crate) timing: &'a Timing,
-    /// By access of the graph: whether a recorder looked it up.
+    /// For each access of the graph, whether a recorder looked it up.
     pub(crate) touched: &'a [AtomicBool],
-    /// Contents that may be anything are filled ([`poison`](crate::debug::poison)).
+    /// Whether undefined contents are filled ([`poison`](crate::debug::poison)).
     pub(crate) poison: bool,
 }

@@ -1,4 +1,4 @@
-//! What recording writes, beside commands: the constants, counts and times of the steps that one thread records.
+//! Mutable state of recording: uniforms, counts and times of the steps that one thread records.
 
 use crate::execute::error::RecordError;
 use crate::execute::remembered::Remembered;
@@ -7,31 +7,31 @@ use framegraph::{Counts, PassId, StepId};
 use std::time::{Duration, Instant};
 use wgpu::Device;
 
-/// Kept from frame to frame, for its memory. One thread records into it at a time.
+/// State of one recording thread. Reused in every frame.
 #[derive(Debug)]
 pub(crate) struct Recording {
     pub(crate) uniforms: Uniforms,
-    /// What its steps asked of the caches, for the next frame.
+    /// Requests of the last frame and their results.
     pub(crate) remembered: Remembered,
-    /// Whether times are asked for.
+    /// Whether times are measured.
     measured: bool,
-    /// Whether times are taken in this frame: reading the clock costs as much as opening a pass.
+    /// Whether this frame is measured. Reading the clock costs as much as beginning a pass.
     timed: bool,
     /// Steps, passes and operations recorded so far.
     pub(crate) executed: Counts,
-    /// Fills that poisoning added.
+    /// Number of fills added by poisoning.
     pub(crate) poisoned: u32,
-    /// When each step was recorded, where times are taken.
+    /// Times of the steps, if measured.
     pub(crate) steps: Vec<StepTime>,
-    /// Time spent inside of wgpu's calls to open, close and finish, where times are taken.
+    /// Time spent in wgpu calls that begin, end and finish passes, if measured.
     pub(crate) in_wgpu: Duration,
-    /// The passes of the open step that became part of the shader of another one.
+    /// Passes inlined into the current step.
     pub(crate) inlined: Vec<PassId>,
-    /// The first thing that the pass which records was refused by a call that returns no error.
+    /// First error of the current pass in a call that returns no `Result`.
     pub(crate) refused: Option<RecordError>,
 }
 
-/// When a step was recorded, on the CPU.
+/// CPU interval in which a step was recorded.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepTime {
     pub(crate) step: StepId,
@@ -40,7 +40,7 @@ pub(crate) struct StepTime {
 }
 
 impl Recording {
-    /// For a device; times are taken in each frame if they are `measured`.
+    /// Creates the state for a device. `measured` turns on time measurements.
     pub(crate) fn new(device: &Device, measured: bool) -> Self {
         let (executed, in_wgpu, remembered) = (Counts::default(), Duration::ZERO, Remembered::default());
         let (uniforms, steps, inlined) = (Uniforms::new(device), Vec::new(), Vec::new());
@@ -48,8 +48,8 @@ impl Recording {
         Self { uniforms, remembered, measured, timed, executed, poisoned, steps, in_wgpu, inlined, refused }
     }
 
-    /// Begins a frame: everything recorded before is forgotten. Its steps are `timed` even if nobody asks for times. Views are
-    /// asked for anew every `max_age` frames.
+    /// Begins a frame and resets counts and times. `timed` measures steps even if measurements are off. Cached views
+    /// are released every `max_age` frames.
     pub(crate) fn begin_frame(&mut self, timed: bool, max_age: u64) {
         self.uniforms.begin_frame();
         self.remembered.begin_frame(max_age);
@@ -60,7 +60,7 @@ impl Recording {
         self.refused = None;
     }
 
-    /// Adds what another thread counted and timed, whose steps come behind these.
+    /// Adds counts and times of another thread, whose steps follow.
     pub(crate) fn add(&mut self, other: &mut Self) {
         self.executed += other.executed;
         self.poisoned += other.poisoned;
@@ -68,7 +68,7 @@ impl Recording {
         self.steps.append(&mut other.steps);
     }
 
-    /// Runs `call`, whose time is wgpu's.
+    /// Runs `call` and counts its duration as time in wgpu.
     pub(crate) fn in_wgpu<T>(&mut self, call: impl FnOnce() -> T) -> T {
         let begun = self.now();
         let out = call();
@@ -76,17 +76,17 @@ impl Recording {
         out
     }
 
-    /// What the clock says, where times are taken.
+    /// Returns the current time, if measured.
     pub(crate) fn now(&self) -> Option<Instant> {
         self.timed.then(Instant::now)
     }
 
-    /// The time since `begun` is wgpu's.
+    /// Counts the time since `begun` as time in wgpu.
     pub(crate) fn took_in_wgpu(&mut self, begun: Option<Instant>) {
         self.in_wgpu += begun.map_or(Duration::ZERO, |begun| begun.elapsed());
     }
 
-    /// Ends a step, or the part of one, that was begun then and spent its time since `closing` inside of wgpu.
+    /// Ends a step that began at `begun`. The time since `closing` counts as time in wgpu.
     pub(crate) fn end_step(&mut self, step: StepId, begun: Option<Instant>, closing: Option<Instant>) {
         let (Some(begun), Some(closing), Some(ended)) = (begun, closing, self.now()) else { return };
         self.in_wgpu += ended.duration_since(closing);

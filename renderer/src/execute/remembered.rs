@@ -1,5 +1,5 @@
-//! What the steps of a frame attached, and what they asked of the caches, in order, with what each request got: the same
-//! request of the next frame finds it by comparing alone.
+//! Cache of the requests that recorders make, in order, with their results. A request that repeats the last frame's is
+//! answered by one comparison.
 
 use crate::execute::opened::Opened;
 use crate::execute::part::ViewPart;
@@ -8,7 +8,7 @@ use crate::pipelines::cache::{LastCompute, LastRaster};
 use framegraph::StepId;
 use wgpu::TextureView;
 
-/// The attachments of one step, and its requests by kind.
+/// Requests of one step: its attachments, and requests of recorders by kind.
 #[derive(Debug, Default)]
 pub(crate) struct RememberedStep {
     pub(crate) opened: Opened,
@@ -18,11 +18,11 @@ pub(crate) struct RememberedStep {
     pub(crate) computes: InOrder<LastCompute>,
 }
 
-/// The view that a request got last: of a part of an access, while the texture had that stamp.
+/// Last result of a view request: access, part and texture stamp, with the view.
 #[derive(Debug, Default)]
 pub(crate) struct LastView(pub(crate) Option<((usize, ViewPart, u64), TextureView)>);
 
-/// Requests of one kind. Where a frame asks for others, or in another order, they are only slower.
+/// Requests of one kind, in order. Requests that change or move between frames miss the cache and are only slower.
 #[derive(Debug)]
 pub(crate) struct InOrder<T> {
     last: Vec<T>,
@@ -36,7 +36,7 @@ impl<T> Default for InOrder<T> {
 }
 
 impl<T: Default> InOrder<T> {
-    /// What the request got last that is made now.
+    /// Advances to the next request and returns its last result.
     pub(crate) fn next(&mut self) -> &mut T {
         let index = self.next;
         self.next += 1;
@@ -46,25 +46,25 @@ impl<T: Default> InOrder<T> {
         &mut self.last[index]
     }
 
-    /// What the request got last that was made last.
+    /// Returns the last result of the current request.
     pub(crate) fn last(&mut self) -> &mut T {
         &mut self.last[self.next - 1]
     }
 }
 
-/// The requests of all steps that one thread records.
+/// Requests of all steps that one thread records.
 #[derive(Debug, Default)]
 pub(crate) struct Remembered {
     steps: Vec<RememberedStep>,
     current: usize,
-    /// Frames until views are let go of.
+    /// Number of frames until views are released.
     left: u64,
-    /// Views that were found here, since the beginning.
+    /// Number of view requests answered from this cache since its creation.
     pub(crate) views_found: u64,
 }
 
 impl Remembered {
-    /// Begins a frame. Views are asked for anew every `max_age` frames, so that caches know what is in use.
+    /// Begins a frame. Releases views every `max_age` frames, so that the view cache learns which are in use.
     pub(crate) fn begin_frame(&mut self, max_age: u64) {
         match self.left.checked_sub(1) {
             Some(left) => self.left = left,
@@ -75,7 +75,7 @@ impl Remembered {
         }
     }
 
-    /// Lets go of all views.
+    /// Releases all views.
     pub(crate) fn let_go(&mut self) {
         for step in &mut self.steps {
             step.opened.let_go();
@@ -83,7 +83,7 @@ impl Remembered {
         }
     }
 
-    /// Begins a step: its first request is its first of the frame before.
+    /// Begins a step at the first request of its last recording.
     pub(crate) fn begin(&mut self, step: StepId) {
         self.current = step.index();
         if self.steps.len() <= self.current {
@@ -93,7 +93,7 @@ impl Remembered {
         (views.next, groups.next, rasters.next, computes.next) = (0, 0, 0, 0);
     }
 
-    /// Those of the step that has begun.
+    /// Returns the requests of the current step.
     pub(crate) fn step(&mut self) -> &mut RememberedStep {
         &mut self.steps[self.current]
     }
@@ -103,7 +103,7 @@ impl Remembered {
 mod tests {
     use super::*;
 
-    /// Requests of a steady frame take no more memory the longer it runs, and steps do not share what they remember.
+    /// Checks that requests of repeated frames take no additional memory, and that steps are separate.
     #[test]
     fn a_step_that_begins_anew_goes_through_the_same_requests() {
         let mut remembered = Remembered::default();

@@ -1,4 +1,4 @@
-//! The command buffers of a part of a frame while its steps are recorded: one, or a new one wherever memory changes hands.
+//! Command buffers of a part of a frame. A new one begins wherever aliased memory is reused.
 
 use crate::device::gpu::Gpu;
 use crate::execute::prepared::Prepared;
@@ -10,7 +10,7 @@ use framegraph::{Plan, ResourceId, StepId};
 use std::ops::Range;
 use wgpu::{CommandBuffer, CommandEncoder, CommandEncoderDescriptor, TextureTransition};
 
-/// See the [module](self).
+/// Command buffers while they are recorded. See the [module documentation](self).
 pub(crate) struct Segments<'a> {
     gpu: &'a Gpu,
     pub(crate) encoder: CommandEncoder,
@@ -19,30 +19,30 @@ pub(crate) struct Segments<'a> {
     sharing: Option<Sharing<'a>>,
 }
 
-/// What shares memory in this frame.
+/// Aliased resources of the frame.
 struct Sharing<'a> {
     driver: &'a Driver,
     arena: &'a Arena,
     plan: &'a Plan,
     realized: &'a Realized,
-    /// What comes, the last first.
+    /// Activations that follow, in reverse order.
     coming: Vec<Activation>,
-    /// What has its memory.
+    /// Resources that currently own their memory.
     active: Vec<ResourceId>,
 }
 
 impl<'a> Segments<'a> {
-    /// Begins the part of a frame that these steps are. Opens an encoder, which is told to be wgpu's time by who calls.
+    /// Begins recording the given steps.
     pub(crate) fn new(frame: &Prepared<'a>, arenas: &'a Arenas, steps: Range<u32>) -> Self {
         let Prepared { gpu, plan, realized, .. } = *frame;
         let sharing = arenas.current().zip(arenas.placing()).map(|(arena, driver)| {
             let mut coming = activations(plan, |resource| realized.placed_at(resource).is_some());
             if arenas.leaves_out_hand_overs() {
-                // All at once, before the first step.
+                // Without barriers, all resources are activated before the first step.
                 let resources = coming.drain(..).flat_map(|a| a.resources).collect();
                 coming.push(Activation { before: StepId::at(0), resources });
             }
-            // Parts before have handed over and taken back what was due until then.
+            // Earlier parts of the frame activated and retired the resources before the first step.
             let begin = StepId::at(steps.start as usize);
             let here = coming.partition_point(|a| a.before < begin);
             let before = coming.drain(..here).flat_map(|a| a.resources);
@@ -53,20 +53,20 @@ impl<'a> Segments<'a> {
         Self { gpu, encoder: encoder(gpu), done: Vec::new(), steps, sharing }
     }
 
-    /// Begins a step: what uses memory from here on gets it.
+    /// Begins a step. Activates the resources that use their memory from here on.
     pub(crate) fn begin_step(&mut self, step: StepId) {
         let Some(sharing) = &mut self.sharing else { return };
         let Some(now) = sharing.coming.pop_if(|a| a.before == step) else { return };
         sharing.retire(step, &mut self.encoder);
         let before = std::mem::replace(&mut self.encoder, encoder(self.gpu));
-        // In front of the first step there is nothing to end.
+        // Before the first step, the command buffer is still empty.
         if step.index() > self.steps.start as usize {
             self.done.push(before.finish());
         }
         self.done.push(sharing.activate(now.resources));
     }
 
-    /// Ends the part.
+    /// Ends the part of the frame and returns its command buffers.
     pub(crate) fn finish(mut self) -> Vec<CommandBuffer> {
         if let Some(sharing) = &mut self.sharing {
             let last = self.steps.end as usize == sharing.plan.steps().len();
@@ -86,7 +86,7 @@ impl<'a> Sharing<'a> {
         }
     }
 
-    /// Puts what no step from `step` on uses back into the state in which it is found by the next frame.
+    /// Returns resources that are not used from `step` on to their resting usage, where the next frame expects them.
     fn retire(&mut self, step: StepId, encoder: &mut CommandEncoder) {
         let over = |r: &ResourceId| self.plan.resources()[r.index()].last < step;
         let (over, active): (Vec<_>, Vec<_>) = self.active.iter().copied().partition(over);

@@ -1,64 +1,65 @@
-//! Which steps of a frame go to which thread, and whether sharing them out pays.
+//! Balances the steps of a frame over threads, and decides whether recording on several threads is faster.
 //!
-//! Whether it does is measured, not guessed: a few frames are recorded on one thread with a clock at each step, then as
-//! many with their steps shared out evenly by what they took, and the faster way stays until it is tried again. A frame
-//! that takes less than threads take to wake is not tried at all. What trials lose against the better way is kept as a debt,
-//! which other frames pay off before there is another trial, of this plan or of the next.
+//! The decision is measured. A few frames are recorded on one thread with each step timed, then as many with the steps
+//! distributed evenly by their times. The faster way is kept until the next trial.
+//!
+//! Frames that take less time than waking threads are never split. Time that trials lose against the better way is
+//! accumulated, and limits how often there are trials, also across plans.
 
 use std::ops::Range;
 use std::time::Duration;
 
-/// Frames after a change that fill caches and are not measured.
+/// Number of frames after a change that fill caches and are not measured.
 const WARM_UP: u32 = 3;
-/// Frames that are measured of each way.
+/// Number of measured frames of each way.
 const MEASURED: u32 = 5;
-/// Frames from one trial to the next, at least.
+/// Minimum number of frames between two trials.
 const HELD: u32 = 1000;
-/// Trials may have lost this part of all time before there is another.
+/// Maximum share of the total time that trials may have lost before another one starts.
 const LOST: f64 = 0.02;
-/// Recording shorter than this is not shared out.
+/// Minimum recording time for splitting a frame.
 const WORTH: Duration = Duration::from_micros(60);
-/// Sharing out stays only where it takes less than this part of the time on one thread.
+/// Splitting is kept only if it takes less than this share of the single-threaded time.
 const GAIN: f64 = 0.95;
 
-/// How frames of one plan are recorded. See the [module](self).
+/// Decides how the frames of one plan are recorded. See the [module documentation](self).
 #[derive(Debug, Default)]
 pub(crate) struct Share {
-    /// The plan that all this is about.
+    /// Number of the current plan.
     plan: u64,
     phase: Phase,
-    /// Frames of the phase so far.
+    /// Number of frames in the current phase.
     frames: u32,
-    /// The least time that each step took on one thread.
+    /// Minimum time of each step on one thread.
     steps: Vec<Duration>,
-    /// The least times on one thread, and shared out.
+    /// Minimum frame times, single-threaded and split.
     best: [Duration; 2],
-    /// Bounds of the parts, in steps.
+    /// Step ranges of the parts.
     parts: Vec<Range<u32>>,
-    /// What a frame takes by the way that a trial is compared with; none is known for the first frames of a plan.
+    /// Frame time of the way that a trial is compared with; `None` in the first frames of a plan.
     expected: Option<Duration>,
-    /// Time of all frames, whatever their plans, and what trials lost of it.
+    /// Total time of all frames of all plans, and the share lost by trials.
     spent: [Duration; 2],
-    /// All frames are shared out, whether it pays or not, by the number of steps.
+    /// Splits every frame evenly by step count, for tests.
     always: bool,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Phase {
-    /// On one thread, measured step by step.
+    /// Single-threaded, with each step timed.
     #[default]
     Alone,
-    /// Shared out, on trial.
+    /// Split, during a trial.
     Trial,
-    /// On one thread from now on.
+    /// Single-threaded until the next trial.
     StaysAlone,
-    /// Shared out from now on.
+    /// Split until the next trial.
     StaysShared,
 }
 
 impl Share {
-    /// Begins a frame of `plan`, told apart by its number, for so many threads; of each of its steps, whether a part may begin
-    /// with it, as the first may. Returns whether the steps are to be timed.
+    /// Begins a frame of the plan with this number. `may_begin` says for each step whether a part may begin with it;
+    /// true for the first. Returns whether steps must be timed.
     pub(crate) fn begin_frame(&mut self, plan: u64, may_begin: &[bool], threads: usize) -> bool {
         if self.always {
             self.parts = even_parts(&vec![Duration::from_secs(1); may_begin.len()], may_begin, threads);
@@ -80,7 +81,8 @@ impl Share {
         self.phase == Phase::Alone
     }
 
-    /// Begins a frame that one thread records without a clock, and returns true; or does nothing.
+    /// Begins a single-threaded frame without time measurements and returns true, if one is due. Otherwise does nothing
+    /// and returns false.
     pub(crate) fn rests(&mut self, plan: u64, steps: usize) -> bool {
         let rests = self.phase == Phase::StaysAlone && self.frames < HELD;
         let rests = rests && self.plan == plan && self.steps.len() == steps;
@@ -91,13 +93,13 @@ impl Share {
         rests
     }
 
-    /// Shares all frames out, whatever it costs: for tests.
+    /// Splits all frames regardless of cost, for tests.
     #[cfg(all(feature = "threads", any(test, feature = "testing")))]
     pub(crate) fn always(&mut self) {
         self.always = true;
     }
 
-    /// The parts of the frame, one a thread, in order; empty where one thread records all of it.
+    /// Returns the step ranges to record, one per thread, in order. Empty if the frame is recorded on one thread.
     pub(crate) fn parts(&self) -> &[Range<u32>] {
         match self.phase {
             Phase::Trial | Phase::StaysShared => &self.parts,
@@ -105,7 +107,7 @@ impl Share {
         }
     }
 
-    /// Ends a frame that took so long to record, and its steps so long each where they were timed.
+    /// Ends a frame with its recording time, and the times of its steps if they were measured.
     pub(crate) fn end_frame(&mut self, took: Duration, steps: impl Iterator<Item = (usize, Duration)>) {
         self.frames += 1;
         self.spent[0] += took;
@@ -151,7 +153,7 @@ impl Share {
                 self.best[1] = Duration::MAX;
                 self.steps.iter_mut().filter(|took| **took == Duration::MAX).for_each(|took| *took = Duration::ZERO);
                 let parts = even_parts(&self.steps, may_begin, threads);
-                // Those of the trial before are kept where they are nearly as even: what was recorded with them is known.
+                // Parts of the last trial are kept if they are nearly as even, since their request caches are filled.
                 if !(self.parts.len() == parts.len()
                     && longest(&self.parts, &self.steps) <= longest(&parts, &self.steps).mul_f64(1.1))
                 {
@@ -164,15 +166,15 @@ impl Share {
     }
 }
 
-/// The time of the longest part.
+/// Returns the time of the longest part.
 fn longest(parts: &[Range<u32>], steps: &[Duration]) -> Duration {
     let time = |part: &Range<u32>| steps[part.start as usize..part.end as usize].iter().sum();
     parts.iter().map(time).max().unwrap_or_default()
 }
 
-/// At most `count` parts in a row, of which the longest is as short as can be.
+/// Splits the steps into at most `count` consecutive parts, such that the longest is as short as possible.
 fn even_parts(steps: &[Duration], may_begin: &[bool], count: usize) -> Vec<Range<u32>> {
-    // What cannot be cut is taken together.
+    // Steps that cannot be separated form one block.
     let mut blocks: Vec<(Range<u32>, Duration)> = Vec::new();
     for (step, (took, may)) in (0..).zip(steps.iter().zip(may_begin)) {
         match blocks.last_mut().filter(|_| !may) {
@@ -180,7 +182,7 @@ fn even_parts(steps: &[Duration], may_begin: &[bool], count: usize) -> Vec<Range
             None => blocks.push((step..step + 1, *took)),
         }
     }
-    // The least bound that `count` parts keep, by bisection; filling each part as far as the bound goes is best for it.
+    // Finds the smallest bound that `count` parts satisfy by bisection. Filling each part up to the bound is optimal.
     let filled = |bound: Duration| {
         let mut parts: Vec<(Range<u32>, Duration)> = Vec::new();
         for (block, took) in &blocks {
@@ -223,7 +225,7 @@ mod tests {
             "no part is shorter than the longest step"
         );
         assert_eq!(even_parts(&[Duration::ZERO; 3], &[true; 3], 2).len(), 1);
-        // Against all ways to cut into three.
+        // Compares with all ways to split into three parts.
         let steps = [3, 9, 4, 4, 2, 7, 1, 6].map(us);
         let sum = |range: Range<usize>| steps[range].iter().sum::<Duration>();
         let all = (0..=8).flat_map(|a| (a..=8).map(move |b| (a, b)));
@@ -231,7 +233,7 @@ mod tests {
         assert_eq!(Some(longest(&even_parts(&steps, &[true; 8], 3), &steps)), least);
     }
 
-    /// Time of many frames, where one thread takes `alone` and the threads take `shared`.
+    /// Returns the total time of many frames that take the given times, and the number of split frames.
     fn simulated(alone: [Duration; 4], shared: Duration) -> (Duration, usize) {
         let (mut share, mut spent, mut in_parts) = (Share::default(), Duration::ZERO, 0);
         let one: Duration = alone.iter().sum();
@@ -251,7 +253,7 @@ mod tests {
         (spent, in_parts)
     }
 
-    /// Whatever sharing costs or wins, no more than 3 % is lost against the better of both ways.
+    /// Checks that at most 3 % is lost against the better way (6 % near break-even).
     #[test]
     fn the_better_way_is_found_and_trials_cost_little() {
         let alone = [20, 200, 100, 80].map(us);
@@ -266,8 +268,8 @@ mod tests {
         assert_eq!(in_parts, 0, "what takes 20 µs is not tried");
     }
 
-    /// However slow threads are, and however often plans change, frames take at most 3 % more than on one thread beside what the
-    /// first trial takes.
+    /// Checks that trials cost at most 3 % in addition to the first trial, however slow threads are and however often
+    /// plans change.
     #[test]
     fn trials_are_paid_off_before_there_are_more() {
         let steps = [20, 200, 100, 80].map(us);

@@ -1,4 +1,4 @@
-//! Recording one step of a plan: its attachments, its passes in order, and the end of the pass.
+//! Recording of one step: begins its pass, runs its recorders in order, and ends it.
 
 use crate::debug::poison;
 use crate::execute::clear::clear_stored;
@@ -19,14 +19,14 @@ use wgpu::{
     RenderPassTimestampWrites,
 };
 
-/// A pass whose recorder is not in the frame: the one that an inspection adds.
+/// Pass that an inspection adds, with its recorder.
 #[derive(Clone, Copy)]
 pub(crate) struct Extra<'x> {
     pub(crate) pass: PassId,
     pub(crate) record: &'x (dyn Fn(&mut Cx<'_>) -> Result<(), RecordError> + Sync),
 }
 
-/// Who records the passes of a plan.
+/// Recorders of the passes of a plan.
 pub(crate) struct Passes<'x, W: ?Sized + 'static> {
     pub(crate) frame: &'x Frame<W>,
     pub(crate) world: &'x W,
@@ -36,7 +36,7 @@ pub(crate) struct Passes<'x, W: ?Sized + 'static> {
 /// Records `step` into `encoder`.
 ///
 /// # Errors
-/// What cannot be attached or cleared, and what a recorder refused. What was recorded until then is of no use.
+/// Fails if an attachment or clear is not supported, or a recorder fails. The encoder must be dropped in that case.
 pub(crate) fn record_step<W: ?Sized + 'static>(
     frame: &Prepared<'_>,
     passes: &Passes<'_, W>,
@@ -47,7 +47,7 @@ pub(crate) fn record_step<W: ?Sized + 'static>(
     record_members(frame, passes, (step, frame.plan.passes_of(step)), recording, encoder)
 }
 
-/// As [`record_step`], the first of its passes.
+/// Records the first passes of a step.
 pub(crate) fn record_members<W: ?Sized + 'static>(
     frame: &Prepared<'_>,
     passes: &Passes<'_, W>,
@@ -76,7 +76,7 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
         let mut recorded = members.iter().filter(|m| m.join != Join::Inlined);
         recorded
             .try_for_each(|member| record_pass(frame, passes, (step, *member), &targets, recording, open.reborrow()))?;
-        // Here the pass ends, where it lies, and wgpu looks at everything that was recorded into it.
+        // The pass ends when it is dropped; wgpu validates its commands then.
         Ok::<_, ExecuteError>(recording.now())
     };
     let label = Some(label(frame.plan, step));
@@ -111,7 +111,7 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
     if frame.poison {
         recording.poisoned += poison::at_end(frame, step, encoder);
     }
-    // Two passes that draw into one target both take what comes after them.
+    // Two passes that draw into one target both run the epilogues that follow.
     if !recording.inlined.is_empty() {
         recording.inlined.sort_unstable();
         recording.inlined.dedup();
@@ -122,8 +122,8 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
     Ok(())
 }
 
-/// Opens the render pass of a step. The encoder is not touched again before the pass is dropped.
-// A render pass is long, and copied where this is called.
+/// Begins the render pass of a step. The encoder must not be used before the pass is dropped.
+// Inlined, since a render pass is large and would be copied.
 #[inline(always)]
 fn begin_raster(
     Opened { attached, targets, .. }: &Opened,
@@ -136,7 +136,7 @@ fn begin_raster(
         beginning_of_pass_write_index: Some(t.begin),
         end_of_pass_write_index: Some(t.end),
     });
-    // One color is what most passes have, and eight are long.
+    // Most passes have one color attachment; an array of eight is expensive to fill.
     let (one, all);
     let color_attachments: &[_] = match attached.colors.len() {
         0 => &[],
@@ -190,7 +190,7 @@ fn record_pass<W: ?Sized + 'static>(
     };
     let asked = cx.asked_inlined;
     let name = || Named::pass(frame.plan, pass);
-    // What was refused while recording is nearer to the cause than what the recorder made of it.
+    // A stored error is closer to the cause than the recorder's result.
     let recorded = if recording.refused.is_some() { recording.refused.take().map(Err) } else { recorded };
     match recorded {
         None => return Err(ExecuteError::NoRecorder { pass: name() }),
@@ -204,7 +204,7 @@ fn record_pass<W: ?Sized + 'static>(
     Ok(())
 }
 
-/// What the plan put at the end of the shader of the pass of `cx`, as the recorders tell.
+/// Returns the inlined passes of the current pass with their epilogues.
 fn inlined_into<W: ?Sized + 'static>(
     cx: &mut Cx<'_>,
     declared: &Frame<W>,
@@ -224,12 +224,12 @@ fn inlined_into<W: ?Sized + 'static>(
     Ok(inlined)
 }
 
-/// What debuggers and errors call a step: its first pass.
+/// Returns the label of a step for debuggers and errors: the name of its first pass.
 fn label(plan: &Plan, step: StepId) -> &str {
     plan.passes_of(step).first().map_or("", |m| plan.graph().pass_name(m.pass))
 }
 
-/// Undoes what an earlier pass of a merged step set.
+/// Resets state that earlier passes of a merged step may have set.
 fn reset_state(pass: &mut RenderPass<'_>, [width, height]: [u32; 2]) {
     pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
     pass.set_scissor_rect(0, 0, width, height);

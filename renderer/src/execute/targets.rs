@@ -1,22 +1,22 @@
-//! The attachments of the open step as pipelines see them: formats, samples, size.
+//! Attachments of the current step as pipelines see them: formats, samples and size.
 
 use crate::device::format::texture_format;
 use framegraph::{Format, MAX_COLORS, Plan, Role, StepId};
 use std::num::NonZeroU32;
 use wgpu::TextureFormat;
 
-/// What pipelines of a step must match, and viewports may cover.
+/// Attachment formats and sizes of a step. Pipelines must match them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Targets {
-    /// Formats of the color attachments by slot.
+    /// Formats of the color attachments, by slot.
     pub colors: [Option<Format>; MAX_COLORS as usize],
     /// Format of the depth-stencil attachment.
     pub depth: Option<Format>,
-    /// The depth attachment is only tested: pipelines must not write it.
+    /// Whether the depth attachment is read-only; pipelines must not write it.
     pub depth_read_only: bool,
     /// Samples per texel.
     pub samples: u32,
-    /// Layers that are attached at once: a draw goes into each of them, and the vertex shader tells them apart by
+    /// Number of layers attached at once. Each draw is repeated for every layer; shaders get the layer in
     /// `@builtin(view_index)`.
     pub layers: u32,
     /// Width and height in texels.
@@ -24,10 +24,10 @@ pub struct Targets {
 }
 
 impl Targets {
-    /// The targets of one step; nothing but one sample for a step without attachments.
+    /// Returns the targets of a step. A step without attachments has one sample and no formats.
     ///
     /// # Panics
-    /// When `step` is not of this plan.
+    /// Panics if `step` is not a step of the plan.
     pub fn of(plan: &Plan, step: StepId) -> Self {
         let row = &plan.steps()[step.index()];
         let (samples, layers) = (u32::from(row.samples.max(1)), row.layers.max(1));
@@ -44,12 +44,12 @@ impl Targets {
         targets
     }
 
-    /// wgpu's set of the layers that are drawn into at once; none for a single layer.
+    /// Returns wgpu's multiview mask; `None` for a single layer.
     pub(crate) fn multiview_mask(&self) -> Option<NonZeroU32> {
         NonZeroU32::new(u32::MAX.unbounded_shr(u32::BITS - self.layers.min(u32::BITS))).filter(|_| self.layers > 1)
     }
 
-    /// wgpu's format of the depth-stencil attachment.
+    /// Returns the wgpu format of the depth-stencil attachment.
     pub(crate) fn depth_format(&self) -> Option<TextureFormat> {
         self.depth.map(texture_format)
     }

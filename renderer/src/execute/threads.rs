@@ -1,5 +1,5 @@
-//! A frame whose steps are recorded on several threads: each records a part of them, in order, into command buffers of its
-//! own. They are submitted in the order of the steps, so the device sees what it sees of one thread.
+//! Recording on several threads. Each thread records a part of the steps into its own command buffers. They are
+//! submitted in the order of the steps, so the result does not depend on the number of threads.
 
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::execute::error::ExecuteError;
@@ -17,21 +17,21 @@ use std::time::Instant;
 use wgpu::Device;
 use wgpu::{CommandBuffer, Queue};
 
-/// Who records beside the thread that submits, and what.
+/// State of multithreaded recording.
 #[derive(Debug, Default)]
 pub(crate) struct Threads {
     workers: Option<Workers>,
-    /// What the other threads write.
+    /// Recording state of the other threads.
     others: Vec<Recording>,
     share: Share,
     begun: Option<Instant>,
-    /// Threads that recorded the frame.
+    /// Number of threads that recorded the frame.
     recorded: usize,
-    /// By step, kept for its memory.
+    /// Reused memory for a flag per step.
     may_begin: Vec<bool>,
 }
 
-/// What one thread records of a frame.
+/// Part of a frame that one thread records.
 struct Part<'a> {
     steps: Range<u32>,
     recording: &'a mut Recording,
@@ -45,7 +45,7 @@ impl Threads {
         self.workers.as_ref()
     }
 
-    /// Those of `workers` from the next frame on; without, the submitting thread records alone.
+    /// Sets the worker threads from the next frame on. `None` records on the submitting thread only.
     #[cfg(feature = "threads")]
     pub(crate) fn set(&mut self, workers: Option<Workers>, device: &Device, timed: bool) {
         let others = workers.as_ref().map_or(0, |workers| workers.threads() - 1);
@@ -54,13 +54,13 @@ impl Threads {
         (self.workers, self.share) = (workers, Share::default());
     }
 
-    /// Shares all frames out, whatever it costs: for tests.
+    /// Splits all frames regardless of cost, for tests.
     #[cfg(all(feature = "threads", any(test, feature = "testing")))]
     pub(crate) fn always(&mut self) {
         self.share.always();
     }
 
-    /// Begins a frame of `plan`, told apart by its number; returns whether its steps are to be timed.
+    /// Begins a frame of the plan with this number. Returns whether its steps must be timed.
     pub(crate) fn begin_frame(&mut self, plan: &Plan, number: u64, max_age: u64) -> bool {
         self.recorded = 1;
         let Some(workers) = &self.workers else { return false };
@@ -73,7 +73,7 @@ impl Threads {
         self.share.begin_frame(number, &self.may_begin, workers.threads())
     }
 
-    /// Ends the recording of a frame, of which `recording` was written by the submitting thread.
+    /// Ends the recording of a frame. `recording` is the state of the submitting thread.
     pub(crate) fn end_frame(&mut self, recording: &Recording) {
         if let Some(begun) = self.begun.take() {
             let steps = recording.steps.iter().map(|time| (time.step.index(), time.ended - time.begun));
@@ -81,34 +81,35 @@ impl Threads {
         }
     }
 
-    /// How many threads recorded the frame.
+    /// Returns the number of threads that recorded the frame.
     #[cfg(feature = "threads")]
     pub(crate) fn recording(&self) -> usize {
         self.recorded
     }
 
-    /// Uniform buffers made by the other threads, since the beginning.
+    /// Returns the number of uniform buffers that the other threads created.
     pub(crate) fn uniform_buffers(&self) -> u64 {
         self.others.iter().map(|other| other.uniforms.created()).sum()
     }
 
-    /// Views that the other threads found as they were, since the beginning.
+    /// Returns the number of view requests that the other threads answered from their caches.
     pub(crate) fn views_found(&self) -> u64 {
         self.others.iter().map(|other| other.remembered.views_found).sum()
     }
 
-    /// Lets go of all views that the other threads keep.
+    /// Releases all cached views of the other threads.
     pub(crate) fn let_go(&mut self) {
         self.others.iter_mut().for_each(|other| other.remembered.let_go());
     }
 
-    /// Sends the constants of all other threads to the device.
+    /// Uploads the uniforms of all other threads.
     pub(crate) fn upload(&self, queue: &Queue) {
         self.others.iter().for_each(|other| other.uniforms.upload(queue));
     }
 
-    /// Records the frame in parts, if it is to be, and adds what all threads counted to `first`, which is the submitting
-    /// thread's. What wgpu refused on the others is put into `caught`.
+    /// Records the frame in parts, if it should be split. Adds the counts of all threads to `first`, the state of the
+    /// submitting thread. Errors on other threads are stored in `caught`. Returns `None` if the frame should be
+    /// recorded on one thread.
     pub(crate) fn record<W: ?Sized + Sync + 'static>(
         &mut self,
         frame: &Prepared<'_>,
@@ -143,7 +144,7 @@ impl Threads {
         });
         let mut commands = Ok(Vec::new());
         for part in parts {
-            // What stands first in the frame is told, as where one thread records it.
+            // Reports the first error in the order of the steps, as with one thread.
             *caught = std::mem::replace(caught, Ok(())).and(part.caught);
             commands = commands.and_then(|mut all: Vec<_>| {
                 all.extend(part.commands?);
@@ -155,13 +156,15 @@ impl Threads {
     }
 }
 
-/// Of each step, whether a command buffer may begin with it. wgpu notes a discard when the command buffer is submitted, and
-/// looked before at what later ones write: a texture that is discarded and then stored in another command buffer would be
-/// taken for missing, and filled with zero. So the two stay in one.
+/// Computes for each step whether a command buffer may begin with it.
+///
+/// wgpu processes a discard when its command buffer is submitted, after it has checked the writes of later command
+/// buffers. A texture that is discarded in one command buffer and stored in a later one would be zero-filled in
+/// between. Both steps therefore stay in one command buffer.
 fn may_begin(plan: &Plan, may: &mut Vec<bool>) {
     may.clear();
     may.resize(plan.steps().len(), true);
-    // By texture, the first step that discards it.
+    // First step that discards each texture.
     let mut discarded: [Vec<Option<usize>>; 2] = [Vec::new(), Vec::new()];
     let texture = |resource: usize| match plan.resources()[resource].placement {
         Placement::Slot(slot) => Some((0, slot.index())),
@@ -184,7 +187,7 @@ fn may_begin(plan: &Plan, may: &mut Vec<bool>) {
             }
         }
     }
-    // What is written other than as an attachment is kept in any case.
+    // Writes other than by attachments are always kept.
     for (resource, row) in plan.resources().iter().enumerate() {
         let written = row.usage.contains(Usage::STORAGE) || row.usage.contains(Usage::COPY_TARGET);
         let Some((list, at)) = texture(resource).filter(|_| written && !row.last.is_none()) else { continue };
@@ -194,7 +197,7 @@ fn may_begin(plan: &Plan, may: &mut Vec<bool>) {
     }
 }
 
-/// Records these steps on this thread. `recorded` is told each that is done, and how many pipelines were made until then.
+/// Records steps on this thread. `recorded` is called after each step with the number of pipelines created so far.
 pub(crate) fn record_part<W: ?Sized + 'static>(
     frame: &Prepared<'_>,
     arenas: &Arenas,

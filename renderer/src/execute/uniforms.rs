@@ -1,21 +1,21 @@
-//! Small constants of passes, packed into few buffers and uploaded once a frame.
+//! Uniform buffers for small constants of passes, uploaded once per frame.
 //!
-//! Recorders push bytes and bind the returned part at once; the bytes reach the GPU before the frame's commands, in one
-//! write per buffer. The order of pushes is that of the recorders, so in a steady frame every part keeps its place and
-//! the bind groups made with it are found again.
+//! Recorders push bytes and get a binding at once. The bytes are uploaded before the frame's commands, with one write
+//! per buffer. Pushes have the same order in every frame, so bindings stay the same and their bind groups are found in
+//! the cache.
 
 use crate::pipelines::bind_groups::Binding;
 use std::num::NonZeroU64;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, Device, Queue};
 
-/// Bytes of one buffer: enough for 256 blocks at the largest alignment that WebGPU allows.
+/// Size of a buffer in bytes: 256 blocks at the largest alignment that WebGPU allows.
 const CHUNK_BYTES: u64 = 64 << 10;
 
-/// The constants of one frame. See the [module](self).
+/// Uniforms of one frame. See the [module documentation](self).
 #[derive(Debug)]
 pub struct Uniforms {
     chunks: Vec<Chunk>,
-    /// The chunk that is being filled.
+    /// Index of the chunk that is being filled.
     current: usize,
     alignment: u64,
     created: u64,
@@ -28,28 +28,28 @@ struct Chunk {
 }
 
 impl Uniforms {
-    /// For a device with these limits.
+    /// Creates an allocator with the alignment that the device requires.
     pub fn new(device: &Device) -> Self {
         let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment.max(16)).next_power_of_two();
         Self { chunks: Vec::new(), current: 0, alignment, created: 0 }
     }
 
-    /// Buffers made since the beginning.
+    /// Returns the number of buffers created.
     pub fn created(&self) -> u64 {
         self.created
     }
 
-    /// Begins a frame: everything pushed before is forgotten.
+    /// Begins a frame and removes all uniforms.
     pub fn begin_frame(&mut self) {
         self.current = 0;
         self.chunks.iter_mut().for_each(|c| c.bytes.clear());
     }
 
-    /// Adds `bytes` and returns the part of a uniform buffer that will hold them, and no more than them: a shader's type that
-    /// is larger is refused. An empty slice takes 16 bytes of zeros, because an empty binding does not exist.
+    /// Adds `bytes` and returns a binding of exactly that size, so that a larger shader type is rejected. An empty
+    /// slice gets 16 zero bytes, since empty bindings are not allowed.
     pub fn push(&mut self, device: &Device, bytes: &[u8]) -> Binding {
         let length = (bytes.len() as u64).max(1).next_multiple_of(16);
-        // A power of two, as every limit of alignment.
+        // Alignment limits are powers of two.
         let mask = self.alignment - 1;
         let offset = |c: &Chunk| (c.bytes.len() as u64 + mask) & !mask;
         let fits = |c: &Chunk| offset(c) + length <= c.buffer.size();
@@ -76,7 +76,7 @@ impl Uniforms {
         Binding::Buffer { buffer: chunk.buffer.clone(), offset, bytes: NonZeroU64::new(bound) }
     }
 
-    /// Sends everything to the GPU, ahead of what is submitted next.
+    /// Uploads all uniforms, before the next submission.
     pub fn upload(&self, queue: &Queue) {
         for chunk in self.chunks.iter().filter(|c| !c.bytes.is_empty()) {
             queue.write_buffer(&chunk.buffer, 0, &chunk.bytes);

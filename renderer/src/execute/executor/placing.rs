@@ -1,24 +1,26 @@
-//! Compiling for the executor's device, and what its driver was asked for in memory.
+//! Compilation for the executor's device, and the memory its driver allocated.
 
 use super::Executor;
 use crate::placed::not_placed::NotPlaced;
 use framegraph::{Alias, CompileErrors, Graph, Options, Plan, Scratch, recompile};
 
-/// Memory that a driver gave, in bytes; not what a plan says, but what was allocated.
+/// Allocated memory in bytes, as reported by the driver and wgpu.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Allocated {
-    /// Blocks in which textures and buffers share memory.
+    /// Size of the memory blocks shared by placed textures and buffers.
     pub placed: u64,
-    /// What the driver asks for the same textures and buffers, each in memory of its own.
+    /// Size that the same textures and buffers would need without sharing.
     pub placed_apart: u64,
-    /// Everything that wgpu allocated on the device, by this executor or another; 0 where wgpu does not say.
+    /// Size of everything that wgpu allocated on the device, by any executor; 0 if wgpu does not report it.
     pub by_wgpu: u64,
 }
 
 impl Executor {
-    /// As [`framegraph::recompile`], for this executor's device; with [`Alias::Heap`] the driver is asked for the sizes of what
-    /// is placed, and the graph compiled again when it pads them. Where nothing can be placed the plan falls back to
-    /// [`Alias::Pool`], and [`Executor::not_placed`] says why.
+    /// Compiles a graph like [`framegraph::recompile`], for the executor's device.
+    ///
+    /// With [`Alias::Heap`], the sizes of placed resources are queried from the driver, and the graph is compiled again
+    /// if the driver pads them. If the device cannot place resources, the plan falls back to [`Alias::Pool`], and
+    /// [`Executor::not_placed`] returns the reason.
     ///
     /// ```
     /// # use framegraph::{Alias, Graph, Options, Plan, Scratch};
@@ -28,13 +30,13 @@ impl Executor {
     /// let options = Options { alias: Alias::Heap, ..Options::for_frame(64, 64) };
     /// executor.compile(&graph, &options, &mut Scratch::new(), &mut plan)?;
     /// if let Some(why) = executor.not_placed() {
-    ///     println!("textures of one shape share memory: {why}");
+///     println!("textures of equal shape share memory: {why}");
     /// }
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
-    /// As [`framegraph::compile()`].
+    /// Fails like [`framegraph::compile()`].
     pub fn compile(
         &mut self,
         graph: &Graph,
@@ -47,7 +49,7 @@ impl Executor {
             recompile(graph, &gpu.caps(), options, scratch, plan)?;
             return Ok(());
         }
-        // Each turn knows more sizes; the first mostly knows all.
+        // Each iteration learns more sizes; the first usually learns all.
         for _ in 0..4 {
             recompile(graph, arenas.caps(gpu), options, scratch, plan)?;
             match arenas.ask(gpu, plan) {
@@ -61,20 +63,20 @@ impl Executor {
         Ok(())
     }
 
-    /// Why [`Executor::compile`] places nothing on this device; none where it does, or was not asked to.
+    /// Returns why [`Executor::compile`] cannot place resources on this device. `None` if it can, or heap aliasing was
+    /// not requested.
     pub fn not_placed(&self) -> Option<&NotPlaced> {
         self.arenas.not_placed()
     }
 
-    /// What the driver gave until now.
+    /// Returns the memory that is currently allocated.
     pub fn allocated(&self) -> Allocated {
         let by_wgpu = self.gpu.device.generate_allocator_report().map_or(0, |report| report.total_allocated_bytes);
         let [placed, placed_apart] = self.arenas.allocated_bytes();
         Allocated { placed, placed_apart, by_wgpu }
     }
 
-    /// Breaks sharing on purpose: memory changes hands without a barrier and within one command buffer. For tests that look
-    /// for the harm.
+    /// Disables aliasing barriers and the split of command buffers. For tests that check that this corrupts images.
     #[cfg(any(test, feature = "testing"))]
     pub fn leave_out_hand_overs(&mut self) {
         self.arenas.leave_out_hand_overs();

@@ -1,4 +1,4 @@
-//! Frames whose commands the caller submits, when and among whichever it likes.
+//! Frames that the caller submits.
 
 use super::{Executor, check};
 use crate::execute::commands::FrameCommands;
@@ -9,13 +9,15 @@ use crate::resources::imports::Imports;
 use framegraph::Plan;
 
 impl Executor {
-    /// The first half of [`Executor::execute`]: records a frame and hands out its commands. The caller submits them and then
-    /// calls [`Executor::submitted`]; a frame of which it does not say so counts as not executed: histories do not move.
+    /// Records a frame and returns its commands. The caller submits them and then calls [`Executor::submitted`].
+    /// Otherwise the frame counts as not executed, and histories do not advance.
     ///
-    /// Between the two the caller may record and submit commands of its own, also such that use what the frame leaves
-    /// ([`Executor::texture`]) if they are submitted behind it. It must not destroy imports, and not record, execute or inspect
-    /// another frame with this executor, since that takes the constants of this one and the memory that it draws into; commands of
-    /// a frame that was left so are to be dropped. What wgpu refuses at submission goes to the caller's own error scopes.
+    /// In between, the caller may record and submit other commands. They may use results of the frame
+    /// ([`Executor::texture`]) if they are submitted after it.
+    ///
+    /// The caller must not destroy imports. It must not record, execute or inspect another frame with this executor,
+    /// which would overwrite the uniforms and textures of this one; if it does, the returned commands must be dropped.
+    /// Errors at submission are reported to the caller's error scopes.
     ///
     /// ```
     /// # use framegraph::{ClearValue, Extent, Format, Intent, Options, Plan, Scratch, TextureDesc, compile};
@@ -32,7 +34,7 @@ impl Executor {
     /// let mut all = vec![engine()];
     /// match commands.into_buffers() {
     ///     Ok(buffers) => all.extend(buffers),
-    ///     // Each has to be a submission of its own here.
+///     // Each one has to be submitted separately.
     ///     Err(commands) => drop(commands.submit(&gpu.queue, all.drain(..), [])),
     /// }
     /// all.push(engine());
@@ -42,7 +44,7 @@ impl Executor {
     /// ```
     ///
     /// # Errors
-    /// As [`Executor::execute`].
+    /// Fails like [`Executor::execute`].
     pub fn record<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
@@ -62,8 +64,8 @@ impl Executor {
         Ok(commands)
     }
 
-    /// The second half: what [`Executor::record`] handed out last was submitted. Histories and pools move on. Without such a
-    /// frame it does nothing.
+    /// Reports that the commands last returned by [`Executor::record`] were submitted. Advances histories and pools.
+    /// Does nothing if there are no such commands.
     pub fn submitted(&mut self) {
         if std::mem::take(&mut self.unsubmitted) {
             self.end_frame();

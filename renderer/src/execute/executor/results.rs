@@ -1,4 +1,4 @@
-//! What an executor has to show for its last frame: textures, counts, times, and what was declared in vain.
+//! Results of the last frame: textures, counts, times and unused declarations.
 
 use super::Executor;
 use crate::cache::CacheCounts;
@@ -11,25 +11,25 @@ use crate::resources::realize::Physical;
 use framegraph::{AccessKind, Buffer, Counts, Join, PassId, Plan, ResourceId, Texture};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// An access that a pass declared and its recorder did not look up, so that it was probably not bound.
+/// A declared access that the recorder did not look up, and therefore probably did not bind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnusedAccess {
-    /// The pass that declared it.
+    /// Pass that declared the access.
     pub pass: PassId,
-    /// The resource that it declared to access.
+    /// Resource of the access.
     pub resource: ResourceId,
-    /// The kind of access.
+    /// Kind of access.
     pub kind: AccessKind,
 }
 
 impl Executor {
-    /// The physical texture behind any version of `handle`, as the frame executed last left it; `None` when it has none.
-    /// An exported texture stays as it is until the next frame.
+    /// Returns the texture behind any version of `handle`, with the contents after the last frame. `None` if the
+    /// resource has no memory. Exported textures keep their contents until the next frame.
     pub fn texture(&self, plan: &Plan, handle: Texture) -> Option<&wgpu::Texture> {
         self.texture_at(plan.graph().resource_of(handle)?)
     }
 
-    /// As [`Executor::texture`], by the row of the graph: for graphs from files, whose resources are found by name.
+    /// Returns the texture of a resource. For graphs from files, whose resources are found by name.
     pub fn texture_at(&self, resource: ResourceId) -> Option<&wgpu::Texture> {
         match self.realized.get(resource) {
             Physical::Texture { texture, .. } => Some(texture),
@@ -37,12 +37,12 @@ impl Executor {
         }
     }
 
-    /// As [`Executor::texture`], for a buffer.
+    /// Returns the buffer behind any version of `handle`, like [`Executor::texture`].
     pub fn buffer(&self, plan: &Plan, handle: Buffer) -> Option<&wgpu::Buffer> {
         self.buffer_at(plan.graph().resource_of_buffer(handle)?)
     }
 
-    /// As [`Executor::texture_at`], for a buffer.
+    /// Returns the buffer of a resource, like [`Executor::texture_at`].
     pub fn buffer_at(&self, resource: ResourceId) -> Option<&wgpu::Buffer> {
         match self.realized.get(resource) {
             Physical::Buffer { buffer, .. } => Some(buffer),
@@ -50,18 +50,20 @@ impl Executor {
         }
     }
 
-    /// What the frame executed last really did, counted where wgpu is called; to be compared with `plan.counts()`.
+    /// Returns the operations of the last frame, counted at the wgpu calls. Equal to `plan.counts()` if the frame was
+    /// executed as planned.
     pub fn executed(&self) -> Counts {
         self.executed
     }
 
-    /// How many fills of undefined contents the frame executed last added; 0 unless it was asked to
-    /// ([`ExecutorOptions::poison`](crate::ExecutorOptions::poison)). These fills are no part of [`Executor::executed`].
+    /// Returns the number of fills that poisoning added to the last frame; 0 if
+    /// [`ExecutorOptions::poison`](crate::ExecutorOptions::poison) is off. [`Executor::executed`] does not include
+    /// them.
     pub fn poisoned(&self) -> u32 {
         self.recording.poisoned
     }
 
-    /// Objects made since the beginning.
+    /// Returns the number of objects created since the executor was created.
     pub fn objects(&self) -> ObjectCounts {
         ObjectCounts {
             textures: self.textures.counts().created + self.arenas.counts().created,
@@ -76,28 +78,28 @@ impl Executor {
         }
     }
 
-    /// Hits, creations and memory of the pool of textures.
+    /// Returns hits, creations and memory of the texture pool.
     pub fn texture_pool(&self) -> PoolCounts {
         self.textures.counts()
     }
 
-    /// The same of buffers.
+    /// Returns hits, creations and memory of the buffer pool.
     pub fn buffer_pool(&self) -> PoolCounts {
         self.buffers.counts()
     }
 
-    /// The same of the blocks of memory in which textures and buffers are placed ([`framegraph::Alias::Heap`]): hits, evictions
-    /// and objects are blocks, `created` is what was placed in them, and bytes are those that the driver gave.
+    /// Returns counts of the memory blocks for placed resources ([`framegraph::Alias::Heap`]). Hits, evictions and
+    /// objects count blocks; `created` counts placed resources. Bytes are as allocated by the driver.
     pub fn placed_blocks(&self) -> PoolCounts {
         self.arenas.counts()
     }
 
-    /// Bytes of the images of all histories, without padding.
+    /// Returns the size of all history images in bytes, without padding.
     pub fn history_bytes(&self) -> u64 {
         self.histories.bytes()
     }
 
-    /// Hits and creations of the caches of views, bind groups and pipelines.
+    /// Returns hits and creations of the view, bind group and pipeline caches.
     pub fn caches(&self) -> [(&'static str, CacheCounts); 3] {
         let Caches { views, groups, pipelines, .. } = &self.caches;
         let found = self.recording.remembered.views_found + self.threads.views_found();
@@ -106,21 +108,21 @@ impl Executor {
         [("views", views), ("bind groups", groups.counts()), ("pipelines", pipelines.counts())]
     }
 
-    /// Times of steps and frames.
+    /// Returns times of steps and frames.
     pub fn timing(&self) -> &Timing {
         &self.timing
     }
 
-    /// Reads the times that have arrived since the last frame, and returns them.
+    /// Reads measurements that have arrived since the last frame, and returns the times.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// Fails if the device is lost.
     pub fn catch_up(&mut self) -> Result<&Timing, ExecuteError> {
         self.timing.catch_up(&self.gpu)?;
         Ok(&self.timing)
     }
 
-    /// What the passes of the frame executed last declared and did not look up. Attachments are used by being attached.
+    /// Returns accesses that passes of the last frame declared but did not look up. Attachments always count as used.
     pub fn unused_accesses(&self, plan: &Plan) -> impl Iterator<Item = UnusedAccess> {
         let graph = plan.graph();
         let recorded = plan.running().filter(|m| m.join != Join::Inlined);

@@ -1,4 +1,4 @@
-//! What threads that record one frame share.
+//! Tests of the executor's internal state.
 
 use super::*;
 use crate::execute::cx::Cx;
@@ -6,7 +6,7 @@ use crate::execute::cx::Cx;
 fn needs_send<T: Send>() {}
 fn needs_sync<T: Sync>() {}
 
-/// A recorder's context goes to another thread, and what contexts share is shared by reference.
+/// Checks that contexts can be moved to other threads, and that their shared state is `Sync`.
 #[test]
 fn contexts_of_one_frame_may_live_on_several_threads() {
     needs_send::<Cx<'_>>();
@@ -15,8 +15,8 @@ fn contexts_of_one_frame_may_live_on_several_threads() {
     needs_sync::<Passes<'_, ()>>();
 }
 
-/// What a frame attached and sampled is remembered for the next one, but for what was lent; every `max_age` frames, and when
-/// an object is given up, it is let go of.
+/// Checks that views of attached and sampled textures are cached for the next frame, except surface textures. They are
+/// released every `max_age` frames, and when an object is dropped.
 #[test]
 fn views_are_remembered_until_they_may_be_gone() -> Result<(), Box<dyn std::error::Error>> {
     use framegraph::{ClearValue, Entry, Exit, Extent, Format, Intent, Options, Scratch, TextureDesc, compile};
@@ -47,7 +47,7 @@ fn views_are_remembered_until_they_may_be_gone() -> Result<(), Box<dyn std::erro
         let before = executor.recording.remembered.views_found;
         executor.execute(&plan, &frame, &(), &imports).map(|_| executor.recording.remembered.views_found - before)
     };
-    // The sky attached, the sky sampled, the image attached.
+    // Three views: the sky attached, the sky sampled, the image attached.
     let found = (0..9).map(|_| execute(&mut executor, false)).collect::<Result<Vec<_>, _>>()?;
     assert_eq!(found, [0, 3, 3, 3, 0, 3, 3, 3, 0]);
     assert_eq!(execute(&mut executor, true)?, 2);
@@ -57,9 +57,8 @@ fn views_are_remembered_until_they_may_be_gone() -> Result<(), Box<dyn std::erro
     Ok(())
 }
 
-/// What wgpu refuses of a frame is that frame's error, not the caller's: on a device whose handler tells, inside of scopes that the
-/// caller opened, and on a device that was wrapped, whose handler is another's. What was refused before it is told, and not as the
-/// frame's.
+/// Checks that rejected commands are errors of their frame: with this crate's error handler, within error scopes of the
+/// caller, and on a wrapped device. Earlier errors are reported separately.
 #[test]
 fn a_frame_finds_its_errors_whoever_else_catches_some() -> Result<(), Box<dyn std::error::Error>> {
     use framegraph::{ClearValue, Extent, Format, Intent, Options, Scratch, TextureDesc, compile};
@@ -68,7 +67,7 @@ fn a_frame_finds_its_errors_whoever_else_catches_some() -> Result<(), Box<dyn st
     let (mut frame, mut plan) = (Frame::<()>::new(), Plan::new());
     let sky = frame.graph_mut().texture("sky", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
     let clear = Intent::Clear(ClearValue::BLACK);
-    // A draw without a pipeline.
+    // Draws without a pipeline.
     let sky = frame.add_fn(
         "sky",
         |p| p.color(sky, clear),

@@ -1,4 +1,4 @@
-//! What an executor gives up: objects that no recent frame used, and those of a frame that failed.
+//! Eviction of objects that recent frames did not use, and cleanup after failed frames.
 
 use super::Executor;
 use crate::placed::arenas::Arenas;
@@ -6,7 +6,7 @@ use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::Pool;
 
 impl Executor {
-    /// After the device refused something: objects made in this frame may be no good, so none that it used is kept.
+    /// Drops all objects that the current frame used. Called after a device error, since they may be invalid.
     pub(super) fn forget_frame(&mut self) {
         let Self { caches, textures, buffers, histories, arenas, realized, recording, threads, .. } = self;
         recording.remembered.let_go();
@@ -20,9 +20,8 @@ impl Executor {
         histories.forget_frame();
     }
 
-    /// Gives up at once what the last frame did not use, and returns how many bytes that were: textures and buffers of
-    /// the pools, and blocks of memory in which they are placed, with their views and bind groups, whatever their age.
-    /// Histories stay.
+    /// Frees everything that the last frame did not use, regardless of age, and returns the number of bytes. Affects
+    /// pools and memory blocks, with their views and bind groups, but not histories.
     pub fn trim(&mut self) -> u64 {
         let Self { caches, textures, buffers, arenas, recording, threads, .. } = self;
         recording.remembered.let_go();
@@ -37,7 +36,7 @@ impl Executor {
         before - held(textures, buffers, arenas)
     }
 
-    /// Drops objects that no recent frame used, and what was lent for this frame alone.
+    /// Drops objects that recent frames did not use, and references to surface textures.
     pub(super) fn give_up(&mut self) {
         let Self { caches, textures, buffers, arenas, realized, options, recording, threads, .. } = self;
         let mut any = false;
@@ -54,7 +53,7 @@ impl Executor {
             recording.remembered.let_go();
             threads.let_go();
         }
-        // Nothing of these is remembered.
+        // These textures have no cached requests.
         realized.end_loans(|texture| caches.forget(texture));
     }
 }

@@ -1,4 +1,4 @@
-//! Pipelines ahead of the first frame, kept over runs, and shaders that change while the program runs.
+//! Pipelines: created ahead of the first frame, cached between runs, and reloaded while the program runs.
 
 use super::{Executor, check};
 use crate::device::pipeline_cache::{PipelineCacheError, cache_bytes, open_cache};
@@ -9,23 +9,25 @@ use crate::pipelines::shader::{Shader, ShaderError};
 use crate::resources::imports::Imports;
 use framegraph::Plan;
 
-/// How far [`Executor::warm_up`] is.
+/// Progress of [`Executor::warm_up`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WarmUp<'a> {
-    /// Steps that are done.
+    /// Number of finished steps.
     pub done: usize,
-    /// Steps of the plan.
+    /// Number of steps of the plan.
     pub of: usize,
-    /// The first pass of the step that was done last.
+    /// Name of the first pass in the last finished step.
     pub pass: &'a str,
-    /// Pipelines that this call made so far.
+    /// Number of pipelines created by this call so far.
     pub pipelines: u64,
 }
 
 impl Executor {
-    /// Makes everything that a frame takes before it is wanted: textures, views, bind groups, and above all pipelines, whose
-    /// shaders drivers compile for long. The frame is recorded and thrown away; nothing is submitted, and histories do not
-    /// move. `progress` is told each step.
+    /// Creates everything that a frame needs: textures, views, bind groups and pipelines. Use it to compile shaders
+    /// before the first frame is shown.
+    ///
+    /// Records the frame and drops the commands. Nothing is submitted, and histories do not advance. `progress` is
+    /// called after each step.
     ///
     /// ```
     /// # use framegraph::{Extent, Format, Intent, Options, Plan, Scratch, TextureDesc, compile};
@@ -50,7 +52,7 @@ impl Executor {
     /// ```
     ///
     /// # Errors
-    /// As [`Executor::execute`].
+    /// Fails like [`Executor::execute`].
     pub fn warm_up<W: ?Sized + Sync + 'static>(
         &mut self,
         plan: &Plan,
@@ -77,21 +79,23 @@ impl Executor {
         Ok(())
     }
 
-    /// Replaces the text of a shader in all pipelines that were made from it, and in those to come: recorders go on asking
-    /// with `shader` as it was compiled into the program. Returns how many pipelines were made anew.
+    /// Replaces the source of a shader in all existing and future pipelines. Recorders continue to pass the original
+    /// `shader`. Returns the number of recompiled pipelines.
     ///
     /// # Errors
-    /// Why the new text does not compile, or which of the pipelines it does not fit. The old text stays in use then.
+    /// Fails if the new source does not compile or does not match one of the pipelines. The old source stays in use.
     pub fn reload_shader(&mut self, shader: &Shader<'_>, text: &str) -> Result<usize, ShaderError> {
         self.caches.pipelines.reload(&self.gpu.device, shader, text)
     }
 
-    /// Has the driver keep what it compiles from now on, so that a later run compiles faster; `earlier` is what
-    /// [`Executor::pipeline_bytes`] gave in an earlier run, on the same machine and driver. Returns whether the device can:
-    /// wgpu offers it on Vulkan, and most drivers on desktops keep files of their own anyway.
+    /// Uses a driver pipeline cache from now on, so that later runs compile faster. `earlier` is the result of
+    /// [`Executor::pipeline_bytes`] from an earlier run on the same machine and driver.
+    ///
+    /// Returns whether the device supports pipeline caches. wgpu supports them on Vulkan; most desktop drivers also
+    /// have their own cache.
     ///
     /// # Errors
-    /// `earlier` is damaged or of another device; pipelines are kept all the same, from nothing.
+    /// Fails if `earlier` is damaged or belongs to another device. An empty cache is used in that case.
     pub fn keep_pipelines(&mut self, earlier: Option<&[u8]>) -> Result<bool, PipelineCacheError> {
         let (cache, refused) = open_cache(&self.gpu, earlier);
         let can = cache.is_some();
@@ -99,8 +103,8 @@ impl Executor {
         refused.map_or(Ok(can), Err)
     }
 
-    /// What the driver keeps of the pipelines made since [`Executor::keep_pipelines`], to be written to a file beside and
-    /// renamed; none where it keeps nothing.
+    /// Returns the data of the pipeline cache, to be written to a file. `None` if there is no cache. Write to a
+    /// temporary file and rename it, so that an interrupted write does no damage.
     pub fn pipeline_bytes(&self) -> Option<Vec<u8>> {
         self.caches.pipelines.driver_cache().and_then(|cache| cache_bytes(&self.gpu, cache))
     }
