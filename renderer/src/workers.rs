@@ -28,7 +28,7 @@ pub struct Workers {
 
 /// Error: the operating system refused to start a thread.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
-#[error("no threads to record on: {reason}; record on one")]
+#[error("no worker threads could be started: {reason}; record on one thread instead")]
 pub struct WorkersError {
     /// Message of the operating system.
     pub reason: String,

@@ -56,16 +56,16 @@ impl Mode {
     /// Returns the likely cause if only this mode changes the image.
     pub const fn suspect(self) -> &'static str {
         match self {
-            Self::NoCull => "a culled pass does something that it does not declare",
-            Self::NoMerge => "passes of one step disturb each other, or one reads what it draws into",
+            Self::NoCull => "a culled pass has an effect that it does not declare",
+            Self::NoMerge => "merged passes affect each other, or one samples its own attachment",
             Self::NoInline => {
-                "a shader with its epilogue does not do what the two passes do; several samples are graded one by one, so \
-                 that differs by intent"
+                "an inlined epilogue differs from its separate pass; with multisampling this is expected, since the epilogue runs \
+                 per sample"
             }
-            Self::NoAlias => "a pass reads a texture or buffer outside of the time that it declares",
+            Self::NoAlias => "a pass uses a texture or buffer outside of its declared lifetime",
             Self::Immediate => "a pass relies on an order that it does not declare",
             Self::Poison => {
-                "a pass reads contents that no pass wrote, or does not write all that it declared to overwrite"
+                "a pass reads contents that no pass wrote, or does not write everything it declares to overwrite"
             }
         }
     }
@@ -149,7 +149,7 @@ impl Outcome {
 
     /// Returns the likely cause if this is the first image that differs.
     pub fn suspect(&self) -> &'static str {
-        let again = "the picture changes from run to run: a pass reads contents that no pass wrote, or something outside of the frame";
+        let again = "the image changes between runs: a pass reads undefined contents, or state outside of the frame";
         self.mode.map_or(again, Mode::suspect)
     }
 }

@@ -96,7 +96,7 @@ pub fn describe(info: &AdapterInfo) -> String {
     };
     let driver = [info.driver.as_str(), info.driver_info.as_str()].into_iter().filter(|s| !s.is_empty());
     let driver = driver.collect::<Vec<_>>().join(" ");
-    let driver = if driver.is_empty() { "no driver named".to_owned() } else { driver };
+    let driver = if driver.is_empty() { "unknown driver".to_owned() } else { driver };
     format!("{} ({kind}, {}, {driver})", info.name, info.backend)
 }
 

@@ -25,7 +25,7 @@ thread_local! {
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DeviceError {
     /// The device is lost with all its resources. Open a new device.
-    #[error("the device was lost while {doing}: {reason}; open a new device and make everything anew")]
+    #[error("the device was lost while {doing}: {reason}; open a new device and create all resources again")]
     Lost {
         /// Operation that failed, for the text "while …" or "refused …".
         doing: &'static str,

@@ -123,6 +123,12 @@ pub(crate) fn both_forms(format: TextureFormat) -> [TextureFormat; 2] {
     [format.add_srgb_suffix(), format.remove_srgb_suffix()]
 }
 
+/// Joins names of flags with commas, for error messages.
+pub(crate) fn joined<'n, F>(names: impl Iterator<Item = (&'n str, F)>) -> String {
+    let names: Vec<_> = names.map(|(name, _)| name).collect();
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

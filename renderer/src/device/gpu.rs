@@ -3,7 +3,7 @@
 use crate::device::adapter::{AdapterRequest, adapters, describe, is_software, rank};
 use crate::device::caps::caps_of;
 use crate::device::error::{DeviceError, DeviceErrors, ErrorScopes, Watch};
-use crate::device::format::texture_format;
+use crate::device::format::{joined, texture_format};
 use framegraph::{Caps, Format};
 use std::sync::{Arc, OnceLock, atomic};
 use wgpu::{
@@ -55,16 +55,16 @@ impl PartialEq for Gpu {
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
     /// `WGPU_BACKEND` contains words that name no graphics API.
-    #[error("WGPU_BACKEND: {} names no graphics API; there are vulkan, metal, dx12, gl and noop, separated by commas", quoted(.words))]
+    #[error("WGPU_BACKEND: {} names no graphics API; use vulkan, metal, dx12, gl or noop, separated by commas", quoted(.words))]
     UnknownBackend {
         /// The unknown words.
         words: Vec<String>,
     },
     /// The program was built without the requested graphics APIs.
     #[error(
-        "none of {asked:?} was built into this program, which has {}; build `framegraph-wgpu` with one of the features \
-         `vulkan`, `metal`, `dx12`, `gles`, or `noop` for a device that draws nothing",
-        if .built.is_empty() { "no graphics API".to_owned() } else { format!("{built:?}") }
+        "the program was built without the requested graphics APIs ({}), only with {}; build `framegraph-wgpu` with one of the \
+         features `vulkan`, `metal`, `dx12`, `gles`, or `noop` for a device that draws nothing",
+        joined(.asked.iter_names()), joined(.built.iter_names())
     )]
     NotBuilt {
         /// Requested APIs.
@@ -74,9 +74,9 @@ pub enum OpenError {
     },
     /// No adapter fulfills the request.
     #[error(
-        "no adapter on {:?}{}; found: {}; install a driver (Mesa's llvmpipe renders without a GPU), or change WGPU_BACKEND \
-         and WGPU_ADAPTER_NAME",
-        .asked.backends,
+        "no adapter for {}{}; found: {}; install a driver (Mesa's llvmpipe renders without a GPU), or change WGPU_BACKEND and \
+         WGPU_ADAPTER_NAME",
+        joined(.asked.backends.iter_names()),
         .asked.name.as_ref().map(|n| format!(" with `{n}` in its name")).unwrap_or_default(),
         listed(.found.iter().map(describe))
     )]
@@ -87,7 +87,7 @@ pub enum OpenError {
         found: Vec<AdapterInfo>,
     },
     /// Every suitable adapter failed to open a device.
-    #[error("no adapter would open a device: {}", listed(.refusals.iter().map(|(info, why)| format!("{}: {why}", describe(info)))))]
+    #[error("no adapter could open a device: {}", listed(.refusals.iter().map(|(info, why)| format!("{}: {why}", describe(info)))))]
     Refused {
         /// Adapters with the driver's reasons.
         refusals: Vec<(AdapterInfo, String)>,

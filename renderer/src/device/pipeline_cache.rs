@@ -9,13 +9,13 @@ use wgpu::{Features, PipelineCache, PipelineCacheDescriptor};
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PipelineCacheError {
     /// The data are damaged.
-    #[error("the kept pipelines are damaged: {found} bytes do not have their checksum; delete the file")]
+    #[error("the pipeline cache is damaged: the checksum of its {found} bytes is wrong; delete the file")]
     Damaged {
         /// Size of the data in bytes.
         found: usize,
     },
     /// The data belong to another device or driver.
-    #[error("the kept pipelines are of {theirs}, not of {ours}; delete the file, or keep one for each device")]
+    #[error("the pipeline cache belongs to {theirs}, not to {ours}; delete the file, or keep one per device")]
     OtherDevice {
         /// Name of the device and driver that wrote the data.
         theirs: String,

@@ -43,16 +43,16 @@ pub enum ReadbackError {
         aspect: Aspect,
     },
     /// The texture is multisampled.
-    #[error("a texture of {samples} samples cannot be read back; resolve it first")]
+    #[error("a texture with {samples} samples cannot be read back; resolve it first")]
     Multisampled {
         /// Samples per texel.
         samples: u32,
     },
     /// The texture lacks the usage `COPY_SRC`.
-    #[error("the texture may not be copied from; declare it with `Graph::readback`, or create it with COPY_SRC")]
+    #[error("the texture lacks the usage COPY_SRC; declare it with `Graph::readback`, or create it with COPY_SRC")]
     Usage,
     /// Mip level or layer is out of range.
-    #[error("level {mip}, layer {layer} was asked of a texture of {mips} levels and {layers} layers")]
+    #[error("level {mip}, layer {layer} is out of range; the texture has {mips} levels and {layers} layers")]
     OutOfRange {
         /// Requested mip level.
         mip: u32,

@@ -41,8 +41,8 @@ pub enum RoundingError {
     Readback(#[from] ReadbackError),
     /// The device uses another rounding mode.
     #[error(
-        "this device stores {written:?} in {format:?} as {kept:?}, which is neither rounding to nearest nor toward zero; \
-         compile with `Options::inline` off to keep the texture"
+        "this device stores {written:?} in {format:?} as {kept:?}, which is rounded neither to nearest nor toward zero; compile \
+         with `Options::inline` off to keep the texture"
     )]
     Unknown {
         /// Format that was rendered to.

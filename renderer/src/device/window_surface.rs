@@ -33,10 +33,10 @@ pub enum SurfaceError {
     #[error("the adapter cannot draw into the window; choose another with WGPU_BACKEND or WGPU_ADAPTER_NAME")]
     Unfit,
     /// The surface was lost. The window may still exist.
-    #[error("the surface was lost; create it anew from the window and hand it to `WindowSurface::replace`")]
+    #[error("the surface was lost; create a new one from the window and pass it to `WindowSurface::replace`")]
     Lost,
     /// wgpu failed to acquire an image.
-    #[error("the surface gave no image; WGPU_VALIDATION=1 says why")]
+    #[error("the surface returned no image; set WGPU_VALIDATION=1 for the reason")]
     Refused,
     /// wgpu rejected the configuration, or the device is lost.
     #[error(transparent)]

@@ -37,7 +37,9 @@ impl fmt::Display for EffectSetting {
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum RecordError {
     /// Handle or token of another graph, or from before a reset.
-    #[error("the handle or token belongs to another graph or a frame before a reset; use the value that `declare` returned")]
+    #[error(
+        "the handle or token belongs to another graph or a frame before a reset; use the value that `declare` returned"
+    )]
     Foreign,
     /// Token of another pass.
     #[error(
@@ -53,7 +55,7 @@ pub enum RecordError {
     #[error("no pass wrote the contents that this handle names; use the handle that `declare` returned for the write")]
     NotWritten,
     /// The resource has no texture or buffer: it is memoryless, inlined or unused.
-    #[error("`{resource}` cannot be used: {why}; export it or read it in a later pass to keep it in memory")]
+    #[error("`{resource}` cannot be looked up: {why}")]
     NoMemory {
         /// Resource without memory.
         resource: Named<ResourceId>,
@@ -214,9 +216,7 @@ pub enum ExecuteError {
         message: String,
     },
     /// A pass has inlined passes, but its recorder did not request the epilogues.
-    #[error(
-        "pass `{pass}` declares `takes_epilogue`, but its recorder ignores its epilogues; call `Cx::epilogues`"
-    )]
+    #[error("pass `{pass}` declares `takes_epilogue`, but its recorder ignores its epilogues; call `Cx::epilogues`")]
     EpilogueIgnored {
         /// Pass that ignores its epilogues.
         pass: Named<PassId>,

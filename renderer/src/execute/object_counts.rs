@@ -55,7 +55,7 @@ impl ObjectCounts {
         } = *self;
         [
             ("textures", textures),
-            ("images of histories", histories),
+            ("history images", histories),
             ("buffers", buffers),
             ("uniform buffers", uniform_buffers),
             ("views", views),

@@ -1,6 +1,6 @@
-//! From numbers to a picture for the eye: exposure, linear depth, false color, single channels.
+//! Conversion of texels to an image for viewing: exposure, linear depth, false color, single channels.
 //!
-//! Whatever the mode, a texel with a number that is not finite is magenta and counted, so that it cannot hide.
+//! In every mode, texels with NaN or infinity are magenta and counted.
 
 use super::false_color::turbo;
 use super::texels::Texels;
@@ -8,39 +8,43 @@ use crate::device::pixels::srgb_from_linear;
 use framegraph::{Format, Numeric};
 use std::str::FromStr;
 
-/// How numbers are shown.
+/// Mapping from texel values to colors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum DisplayMode {
-    /// By format: display codes as they are, light by its first three channels at exposure 0, anything with fewer channels
-    /// and depth stretched, integers and stencil in false color.
+    /// Chooses the mode by format.
+    ///
+    /// - Normalized 8-bit colors are shown unchanged.
+    /// - Float colors with at least three channels are shown at exposure 0.
+    /// - Depth, and floats with fewer channels, are stretched.
+    /// - Integers and stencil are shown in false color.
     #[default]
     Auto,
-    /// Linear light times 2^stops, clamped, with the sRGB transfer function.
+    /// Linear color times 2^`stops`, clamped to 0…1 and encoded as sRGB.
     Color {
         /// Exposure in stops.
         stops: f32,
     },
-    /// Distance from the camera as a gray that grows linearly from 0 to the greatest finite distance; white where nothing
-    /// was drawn. Of reversed depth with the far plane at infinity.
+    /// Distance from the camera as gray, linear from 0 to the maximum finite distance; white for the far plane. Expects
+    /// reversed depth with the far plane at infinity.
     Depth {
-        /// Distance of the near plane in meters; none takes the caller's.
+        /// Distance of the near plane in meters; `None` uses the caller's value.
         near_m: Option<f32>,
     },
-    /// One channel as a gray that grows linearly from its least to its greatest finite number.
+    /// One channel as gray, linear from its minimum to its maximum finite value.
     Stretch {
-        /// The channel that is shown.
+        /// Channel to show.
         channel: Channel,
     },
-    /// One channel as it is, 0…1, as a gray.
+    /// One channel as gray, with values 0…1.
     Plain {
-        /// The channel that is shown.
+        /// Channel to show.
         channel: Channel,
     },
-    /// One channel in the colors of the Turbo map (Mikhailov, 2019), over a range or from its least to its greatest finite number.
+    /// One channel in the Turbo color map (Mikhailov, 2019).
     False {
-        /// The channel that is shown.
+        /// Channel to show.
         channel: Channel,
-        /// What is shown as the first color and as the last one.
+        /// Values of the first and the last color; `None` uses the minimum and maximum finite value.
         range: Option<[f32; 2]>,
     },
 }
@@ -56,28 +60,28 @@ pub enum Channel {
     Alpha,
 }
 
-/// A picture of texels.
+/// An image of texels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DisplayImage {
-    /// sRGB codes, four bytes a texel, opaque.
+    /// sRGB-encoded RGBA, four bytes per texel, opaque.
     pub rgba8: Vec<u8>,
-    /// The finite numbers that the mode showed as its first color and as its last one; in meters for depth.
+    /// Values that are shown as the first and the last color; in meters for depth.
     pub range: [f32; 2],
-    /// Texels with a number that is not finite.
+    /// Number of texels with NaN or infinity.
     pub non_finite: usize,
 }
 
-/// What a texel is shown as when its numbers are not finite.
+/// Color of texels with NaN or infinity.
 const LOUD: [u8; 3] = [255, 0, 255];
 
-/// No such mode.
+/// Error: the text is not a display mode.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "`{text}` is no way to show a texture; there are auto, color[:STOPS], depth[:NEAR_M], stretch[:r|g|b|a], \
-     plain[:r|g|b|a] and false[:r|g|b|a][:LOW,HIGH]"
+    "`{text}` is not a display mode; use auto, color[:STOPS], depth[:NEAR_M], stretch[:r|g|b|a], plain[:r|g|b|a] or \
+     false[:r|g|b|a][:LOW,HIGH]"
 )]
 pub struct DisplayModeError {
-    /// What was given.
+    /// The text that was given.
     pub text: String,
 }
 
@@ -141,13 +145,14 @@ impl Channel {
 }
 
 impl Texels {
-    /// The texels as a picture; `near_m` is the distance of the near plane in meters, for a depth mode that names none.
+    /// Converts the texels to an image. `near_m` is the distance of the near plane in meters, for depth modes without
+    /// one.
     pub fn display(&self, mode: DisplayMode, near_m: f32) -> DisplayImage {
         let numbers = self.numbers();
         match mode {
             DisplayMode::Auto => self.display(self.natural(), near_m),
             DisplayMode::Color { stops } => {
-                // Display codes of a linear format are codes already.
+                // Normalized linear formats are shown unchanged.
                 let codes = self.is_display() && !self.format.is_srgb();
                 let scale = stops.exp2();
                 let encode =
@@ -160,7 +165,7 @@ impl Texels {
                 let distances = self.distances_m(near_m).unwrap_or_else(|| numbers.iter().map(|n| n[0]).collect());
                 let [_, far] = extent(distances.iter().copied());
                 let gray = |distance: f32| if far > 0.0 { quantized(distance / far) } else { 0 };
-                // An infinite distance is a good one: it is white, and only a depth that is no number is loud.
+                // An infinite distance is valid and white; only NaN is marked.
                 let rows: Vec<_> = distances.iter().zip(&numbers).map(|(d, n)| [n[0], *d, 0.0, 0.0]).collect();
                 paint(&rows, 1, [0.0, far], |[_, distance, ..]| [gray(*distance); 3])
             }
@@ -178,7 +183,7 @@ impl Texels {
         }
     }
 
-    /// The mode that `Auto` stands for.
+    /// Returns the mode that `Auto` selects.
     fn natural(&self) -> DisplayMode {
         let channel = Channel::Red;
         match self.numeric() {
@@ -189,7 +194,7 @@ impl Texels {
         }
     }
 
-    /// Whether texels are display codes: unsigned and normalised.
+    /// Returns whether the format is unsigned normalized, so that texels can be shown unchanged.
     fn is_display(&self) -> bool {
         use Format::*;
         matches!(
@@ -198,7 +203,7 @@ impl Texels {
         )
     }
 
-    /// Channels that are looked at for numbers that are not finite.
+    /// Returns the number of channels that are checked for NaN and infinity.
     fn looked_at(&self, channel: Channel) -> usize {
         self.channels().max(channel as usize + 1)
     }
@@ -208,11 +213,11 @@ impl Texels {
     }
 }
 
-/// Colors every texel, the loud ones apart: those with a bad number among the first `channels`.
+/// Colors all texels, and marks those with NaN or infinity in the first `channels`.
 fn paint(numbers: &[[f32; 4]], channels: usize, range: [f32; 2], color: impl Fn(&[f32; 4]) -> [u8; 3]) -> DisplayImage {
     let mut shown = DisplayImage { rgba8: Vec::with_capacity(numbers.len() * 4), range, non_finite: 0 };
     for texel in numbers {
-        // By bits: all exponent bits are set in NaN and infinity alone.
+        // Only NaN and infinity have all exponent bits set.
         let bad = texel.iter().take(channels).any(|n| n.to_bits() & 0x7f80_0000 == 0x7f80_0000);
         shown.non_finite += usize::from(bad);
         shown.rgba8.extend(if bad { LOUD } else { color(texel) });
@@ -221,7 +226,7 @@ fn paint(numbers: &[[f32; 4]], channels: usize, range: [f32; 2], color: impl Fn(
     shown
 }
 
-/// The least and the greatest finite number; zeros when there is none.
+/// Returns the minimum and the maximum finite value; zeros if there is none.
 fn extent(numbers: impl Iterator<Item = f32>) -> [f32; 2] {
     let finite = numbers.filter(|n| n.is_finite());
     let found = finite
@@ -229,7 +234,7 @@ fn extent(numbers: impl Iterator<Item = f32>) -> [f32; 2] {
     found.unwrap_or_default()
 }
 
-/// Where `x` lies in the range, 0…1; 0 in an empty range.
+/// Maps `x` from the range to 0…1; returns 0 for an empty range.
 fn within(x: f32, [low, high]: [f32; 2]) -> f32 {
     if high > low { (x - low) / (high - low) } else { 0.0 }
 }
@@ -255,7 +260,7 @@ mod tests {
     #[test]
     fn exposure_is_in_stops_and_light_is_encoded() {
         let light = of(Format::Rgba16Float, &[[0.25, 1.0, 0.0, 1.0]]);
-        // 0.25 has the sRGB code 137 (0.5371 · 255), 0.5 has 188.
+        // In sRGB, 0.25 is 137 (0.5371 · 255) and 0.5 is 188.
         assert_eq!(light.display(DisplayMode::Auto, 1.0).rgba8, [137, 255, 0, 255]);
         assert_eq!(light.display(DisplayMode::Color { stops: 1.0 }, 1.0).rgba8, [188, 255, 0, 255]);
         let codes = of(Format::Rgba8Unorm, &[[0.25, 1.0, 0.0, 1.0]]);
@@ -264,7 +269,7 @@ mod tests {
 
     #[test]
     fn depth_is_linear_in_distance() {
-        // 0.1 m over these depths is 0.1, 0.2, 0.4 m; 0 is beyond everything.
+        // With the near plane at 0.1 m, the depths are 0.1, 0.2 and 0.4 m; 0 is infinitely far.
         let depth = of(Format::Depth32Float, &[1.0, 0.5, 0.25, 0.0].map(|d| [d, 0.0, 0.0, 1.0]));
         let shown = depth.display(DisplayMode::Depth { near_m: Some(0.1) }, 9.0);
         assert_eq!((first_channel(&shown), shown.range), (vec![64, 128, 255, 255], [0.0, 0.4]));

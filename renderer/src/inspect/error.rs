@@ -1,4 +1,4 @@
-//! Why a texture could not be inspected.
+//! Errors of inspecting a texture.
 
 use crate::device::readback::ReadbackError;
 use crate::execute::error::ExecuteError;
@@ -7,83 +7,83 @@ use crate::named::Named;
 use framegraph::{Aspect, CompileError, DeclareError, Format, ResourceId, plain};
 use std::fmt;
 
-/// A texture cannot be looked at. The frame under study and its plan are as they were.
+/// Error of an inspection. The original frame and its plan are not changed.
 #[derive(Clone, PartialEq, thiserror::Error)]
 pub enum InspectError {
-    /// No such resource.
+    /// The resource does not exist.
     #[error("there is no texture `{shown}`; the frame has {}", listed(.known.iter().map(|known| format!("`{}`", plain::name(known)))), shown = plain::name(.name))]
     NoTexture {
-        /// What was asked for.
+        /// Requested name.
         name: String,
-        /// The textures that there are.
+        /// Names of the textures that exist.
         known: Vec<String>,
     },
-    /// The name is that of a buffer.
-    #[error("`{shown}` is a buffer, which has no picture; read it with `read_buffer`", shown = plain::name(.name))]
+    /// The resource is a buffer.
+    #[error("`{shown}` is a buffer, which cannot be shown as an image; read it with `read_buffer`", shown = plain::name(.name))]
     Buffer {
-        /// What was asked for.
+        /// Requested name.
         name: String,
     },
-    /// No such version.
+    /// The version does not exist.
     #[error("`{shown}` has no version {}; it has {}", asked_version(.asked, *.steps), listed(.known.iter().map(VersionName::to_string)), shown = plain::name(.name))]
     NoVersion {
-        /// The inspected texture.
+        /// Name of the texture.
         name: String,
-        /// What was asked for.
+        /// Requested version.
         asked: VersionSelector,
-        /// How many steps the plan has.
+        /// Number of steps of the plan.
         steps: usize,
-        /// The versions that there are.
+        /// Versions that exist.
         known: Vec<VersionName>,
     },
-    /// No such level, layer, plane or sample.
+    /// The level, layer, plane or sample does not exist.
     #[error("`{shown}` has no {part}", shown = plain::name(.name))]
     NoPart {
-        /// The inspected texture.
+        /// Name of the texture.
         name: String,
-        /// What was asked for, and what there is.
+        /// Requested part, and the parts that exist.
         part: MissingPart,
     },
-    /// An import that the frame writes over what it holds, and of which no copy can be made.
+    /// The inspected frame writes an import that cannot be copied first.
     #[error(
-        "looking at `{shown}` runs passes that write the import `{import}`, and no copy of that can be made; create it with \
+        "inspecting `{shown}` runs passes that write the import `{import}`, which cannot be copied first; create it with \
          COPY_SRC", shown = plain::name(.name))]
     Import {
-        /// The texture asked for.
+        /// Name of the texture.
         name: String,
-        /// The import, in the inspected graph.
+        /// Import, in the inspected graph.
         import: Named<ResourceId>,
     },
-    /// The inspection's own pass was refused.
+    /// The inspection pass could not be declared.
     #[error("`{shown}` cannot be read: {error}", shown = plain::name(.name))]
     Declare {
-        /// The inspected texture.
+        /// Name of the texture.
         name: String,
-        /// The reason.
+        /// Reason.
         error: Box<DeclareError>,
     },
-    /// The inspected frame does not compile: the part asked for was not written yet, mostly.
-    #[error("`{shown}` cannot be looked at there: {error}", shown = plain::name(.name))]
+    /// The inspected frame does not compile, usually because the requested part is not written at that point.
+    #[error("`{shown}` cannot be inspected there: {error}", shown = plain::name(.name))]
     Compile {
-        /// The inspected texture.
+        /// Name of the texture.
         name: String,
-        /// The reason.
+        /// Reason.
         error: Box<CompileError>,
     },
     /// The inspected frame could not be executed.
-    #[error("looking at `{shown}`: {error}", shown = plain::name(.name))]
+    #[error("inspecting `{shown}`: {error}", shown = plain::name(.name))]
     Execute {
-        /// The inspected texture.
+        /// Name of the texture.
         name: String,
-        /// The reason.
+        /// Reason.
         error: Box<ExecuteError>,
     },
     /// The result could not be read back.
-    #[error("looking at `{shown}`: {error}", shown = plain::name(.name))]
+    #[error("inspecting `{shown}`: {error}", shown = plain::name(.name))]
     Readback {
-        /// The inspected texture.
+        /// Name of the texture.
         name: String,
-        /// The reason.
+        /// Reason.
         error: Box<ReadbackError>,
     },
 }
@@ -97,36 +97,36 @@ impl fmt::Debug for InspectError {
 /// A part that a texture does not have.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MissingPart {
-    /// A level, counted from 0.
+    /// Mip level, counted from 0.
     #[error("level {asked}; it has levels 0 to {}", .levels - 1)]
     Level {
-        /// The level asked for.
+        /// Requested level.
         asked: u8,
-        /// How many there are.
+        /// Number of levels.
         levels: u32,
     },
-    /// A layer of an array or slice of a three-dimensional texture, counted from 0.
+    /// Layer of an array or slice of a 3D texture, counted from 0.
     #[error("layer {asked}; it has layers 0 to {}", .layers - 1)]
     Layer {
-        /// The layer asked for.
+        /// Requested layer.
         asked: u16,
-        /// How many there are.
+        /// Number of layers.
         layers: u32,
     },
-    /// A plane of a depth-stencil format.
-    #[error("{asked:?} plane; it has the format {format:?}")]
+    /// Plane of a depth-stencil format.
+    #[error("{} plane; it has the format {format:?}", match .asked { Aspect::All => "color", Aspect::Depth => "depth", Aspect::Stencil => "stencil" })]
     Plane {
-        /// The plane asked for.
+        /// Requested plane.
         asked: Aspect,
-        /// The format of the texture.
+        /// Format of the texture.
         format: Format,
     },
-    /// A sample of each texel, counted from 0.
+    /// Sample of a multisampled texture, counted from 0.
     #[error("sample {asked}; it has {samples} samples")]
     Sample {
-        /// The sample asked for.
+        /// Requested sample.
         asked: u8,
-        /// How many there are.
+        /// Number of samples.
         samples: u8,
     },
 }
@@ -137,12 +137,12 @@ impl fmt::Debug for MissingPart {
     }
 }
 
-/// A version of a texture: its number, and the full name of the pass that wrote it.
+/// Name of a version: its number, and the full name of the pass that wrote it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VersionName {
-    /// The contents on entry are 0.
+    /// Version number; 0 for the contents on entry.
     pub number: usize,
-    /// None for the contents on entry.
+    /// Pass that wrote the version; `None` for the contents on entry.
     pub writer: Option<String>,
 }
 
@@ -164,7 +164,7 @@ fn asked_version(asked: &VersionSelector, steps: usize) -> String {
     }
 }
 
-/// The first forty words, and how many more there are.
+/// Joins the first forty names and counts the rest.
 fn listed(words: impl Iterator<Item = String>) -> String {
     const LISTED: usize = 40;
     let all: Vec<_> = words.collect();

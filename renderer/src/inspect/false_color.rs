@@ -1,9 +1,10 @@
-//! From one number to a color that the eye can rank: the Turbo map.
+//! The Turbo color map.
 
-/// The sRGB codes of Turbo at `x`, 0 (blue) to 1 (red); what lies outside is clamped, NaN is taken as 0.
+/// Returns the sRGB color of the Turbo map at `x`, 0 (blue) to 1 (red), as 8-bit values. Values outside are clamped;
+/// NaN is 0.
 ///
-/// Anton Mikhailov, "Turbo, An Improved Rainbow Colormap for Visualization", 2019, in the polynomial of fifth degree that
-/// Ruofei Du fitted to its table.
+/// Source: Anton Mikhailov, "Turbo, An Improved Rainbow Colormap for Visualization", 2019, as the fifth-degree
+/// polynomial fitted by Ruofei Du.
 pub(super) fn turbo(x: f32) -> [u8; 3] {
     const RED: [f64; 6] = [0.135_721_38, 4.615_392_60, -42.660_322_58, 132.131_082_34, -152.942_393_96, 59.286_379_43];
     const GREEN: [f64; 6] = [0.091_402_61, 2.194_188_39, 4.842_966_58, -14.185_033_33, 4.277_298_57, 2.829_566_04];
@@ -21,7 +22,7 @@ mod tests {
 
     #[test]
     fn the_map_goes_from_blue_over_green_to_red() {
-        // Entries of the published table as bytes. The published fit is off by up to 32 codes at the dark end of blue.
+        // Entries of the published table. The polynomial differs by up to 32 steps at the dark end of blue.
         let table =
             [(0, [48, 18, 59]), (64, [40, 187, 236]), (128, [164, 252, 60]), (192, [251, 126, 33]), (255, [122, 4, 3])];
         for (index, expected) in table {

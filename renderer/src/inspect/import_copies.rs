@@ -1,5 +1,4 @@
-//! Copies of what a frame writes over: an inspection runs passes a second time, and what they leave in the caller's
-//! textures and buffers must not change by that.
+//! Copies of imports. An inspection runs passes a second time, which must not change the caller's textures and buffers.
 
 use crate::device::format::both_forms;
 use crate::device::gpu::Gpu;
@@ -9,11 +8,11 @@ use wgpu::{
     Buffer, BufferDescriptor, BufferUsages, CommandEncoderDescriptor, Texture, TextureDescriptor, TextureUsages,
 };
 
-/// The imports for an inspected plan: those that were bound for the graph under study, with a fresh copy in the place of
-/// each that the inspected plan writes.
+/// Returns the imports for an inspected plan: the original ones, but a fresh copy of each that the inspected plan
+/// writes.
 ///
 /// # Errors
-/// The first resource of which no copy can be made.
+/// Returns the first resource that cannot be copied.
 pub(super) fn import_copies(
     gpu: &Gpu,
     studied: &Graph,
@@ -32,7 +31,7 @@ pub(super) fn import_copies(
         if !matches!(row.kind, Kind::Imported { .. }) {
             continue;
         }
-        // What is bound to no import, or does not fit it, is an error when the plan is executed.
+        // Missing or mismatched imports are reported when the plan is executed.
         match row.desc {
             Desc::Texture(_) => {
                 if let Some((texture, _)) = imports.texture_of(studied, resource) {
@@ -56,7 +55,7 @@ pub(super) fn import_copies(
     Ok(own)
 }
 
-/// A texture of the same shape and contents; none when the original may not be copied from.
+/// Returns a texture of equal shape and contents, or `None` if the original cannot be copied.
 fn copy_of_texture(gpu: &Gpu, texture: &Texture) -> Option<Texture> {
     if !texture.usage().contains(TextureUsages::COPY_SRC) {
         return None;

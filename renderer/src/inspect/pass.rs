@@ -1,5 +1,5 @@
-//! The pass that an inspection adds: reads the inspected part as any shader would and writes its bits into a texture that
-//! can be copied, whatever format, plane and samples it has.
+//! The pass that an inspection adds. It reads a texture of any format, plane or sample count in a shader, and writes
+//! the bits to a texture that can be read back.
 
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
@@ -10,10 +10,10 @@ use framegraph::{
     View,
 };
 
-/// What the bits go into: four 32-bit integers a texel, which no driver alters on the way.
+/// Format of the result: four 32-bit integers per texel, which drivers do not alter.
 const BITS: Format = Format::Rgba32Uint;
 
-/// The part to read, settled.
+/// Part to read, with all defaults resolved.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
     pub(super) desc: TextureDesc,
@@ -23,7 +23,7 @@ pub(super) struct Part {
     pub(super) sample: Option<u8>,
 }
 
-/// The declared pass.
+/// Inspection pass after its declaration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InspectionPass {
     pub(super) pass: PassId,
@@ -36,7 +36,7 @@ impl Part {
     /// Declares the pass at the end of `graph`.
     ///
     /// # Errors
-    /// When the graph refuses the read.
+    /// Fails if the graph rejects the read.
     pub(super) fn declare(
         &self,
         graph: &mut Graph,
@@ -56,12 +56,12 @@ impl Part {
         Ok(InspectionPass { pass, view, out, size: [width, height] })
     }
 
-    /// Whether samples have an average.
+    /// Returns whether samples can be averaged.
     fn averages(&self) -> bool {
         self.desc.format.numeric() == Numeric::Float
     }
 
-    /// The shader that reads this part.
+    /// Generates the shader that reads this part.
     fn wgsl(&self) -> String {
         let Self { desc, layer, aspect, sample, .. } = *self;
         let (scalar, depth) = match desc.format.numeric() {
@@ -74,7 +74,7 @@ impl Part {
         let texture = match (desc.dimension, desc.samples, depth) {
             (Dimension::D3, ..) => format!("texture_3d<{scalar}>"),
             (_, 1, false) => format!("texture_2d<{scalar}>"),
-            // As plain numbers: OpenGL's shaders cannot load texels of a depth texture.
+            // Bound as a float texture, since OpenGL shaders cannot load texels of depth textures.
             (_, 1, true) => "texture_2d<f32>".to_owned(),
             (_, _, false) => format!("texture_multisampled_2d<{scalar}>"),
             (_, _, true) => "texture_depth_multisampled_2d".to_owned(),
@@ -90,7 +90,7 @@ impl Part {
             }
             (_, _, sample) => load(&sample.unwrap_or(0).to_string()),
         };
-        // A texture of one channel reads as (x, 0, 0, 1); so does depth here.
+        // Single-channel textures are read as (x, 0, 0, 1). Depth is converted to the same form.
         let bits = if depth { "vec4f(value, 0.0, 0.0, 1.0)" } else { "value" };
         format!(
             "@group(0) @binding(0) var source: {texture};
@@ -108,7 +108,7 @@ impl Part {
     /// Records the pass.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// Fails if the device rejects a call.
     pub(super) fn record(&self, inspection: &InspectionPass, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let text = self.wgsl();
         let pipeline = cx.raster_pipeline(&Raster::new(Shader::new("inspection", &text)))?;

@@ -1,58 +1,65 @@
-//! What is asked of an inspection: which version of which texture, and which part of it.
+//! Inspection requests: texture, version and part.
 
 use framegraph::Aspect;
 use std::fmt;
 use std::str::FromStr;
 
-/// One version of one texture, and the part of it to look at.
+/// A version of a texture, and the part of it to inspect.
 ///
-/// As text: `NAME[@PASS|@vN|@sN][:MIP[:LAYER]]`. `hdr` is the newest version of `hdr`, `hdr@color` the one that pass
-/// `color` wrote, `hdr@v1` the first one written (`v0` is what it holds on entry), `hdr@s3` what it holds after step 3,
-/// `pyramid:2` its third level, `cascades:0:3` its fourth layer.
+/// The text form is `NAME[@PASS|@vN|@sN][:MIP[:LAYER]]`:
+///
+/// - `hdr`: newest version of `hdr`
+/// - `hdr@color`: version written by the pass `color`
+/// - `hdr@v1`: first version that a pass wrote; `v0` is the contents on entry
+/// - `hdr@s3`: contents after step 3
+/// - `pyramid:2`: mip level 2
+/// - `cascades:0:3`: layer 3 of level 0
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Request {
     /// Full name of the texture.
     pub name: String,
-    /// Which version.
+    /// Version of the texture.
     pub which: VersionSelector,
     /// Mip level.
     pub mip: u8,
-    /// Layer of an array, or slice of a three-dimensional texture.
+    /// Layer of an array, or slice of a 3D texture.
     pub layer: u16,
-    /// Plane of a depth-stencil texture; by default depth, where there is one.
+    /// Plane of a depth-stencil texture. `All` selects depth if there is one.
     pub aspect: Aspect,
-    /// One sample of a multisampled texture. By default colors are averaged, as a resolve does; of depth, stencil and
-    /// integers, which have no average, the first sample is taken.
+    /// Sample of a multisampled texture. `None` averages colors as a resolve does, and selects the first sample for
+    /// depth, stencil and integers.
     pub sample: Option<u8>,
 }
 
 /// Selects one version of a texture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum VersionSelector {
-    /// The last one of the frame.
+    /// Last version of the frame.
     #[default]
     Newest,
-    /// The one that the pass of this full name wrote.
+    /// Version written by the pass with this full name.
     After(String),
-    /// By number, the contents on entry being 0.
+    /// Version with this number; 0 for the contents on entry.
     Number(usize),
-    /// What the texture holds after this step of the plan.
+    /// Contents after the step with this number.
     Step(usize),
 }
 
 impl Request {
-    /// The newest version of a texture: its first level and layer.
+    /// Creates a request for the newest version of a texture, its first level and layer.
     pub fn newest(name: &str) -> Self {
         let name = name.to_owned();
         Self { name, which: VersionSelector::Newest, mip: 0, layer: 0, aspect: Aspect::All, sample: None }
     }
 }
 
-/// A text that names no part of a texture.
+/// Error: the text is not an inspection request.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{text}` names no texture; write NAME[@PASS|@vN|@sN][:MIP[:LAYER]], such as `hdr@color` or `pyramid@v1:2`")]
+#[error(
+    "`{text}` is not a texture request; write NAME[@PASS|@vN|@sN][:MIP[:LAYER]], such as `hdr@color` or `pyramid@v1:2`"
+)]
 pub struct RequestError {
-    /// What was given.
+    /// The text that was given.
     pub text: String,
 }
 
@@ -78,7 +85,7 @@ impl FromStr for Request {
             [layer, mip] => (mip, layer),
             _ => return Err(refuse()),
         };
-        // `taa@-1` is the name of an earlier image of a history.
+        // `taa@-1` is the name of a previous image of a history.
         let split = rest.rsplit_once('@').filter(|(_, which)| !which.starts_with('-'));
         let (name, which) = match split {
             None => (rest, VersionSelector::Newest),

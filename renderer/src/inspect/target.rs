@@ -1,36 +1,36 @@
-//! From names to versions and parts; says what there is when something is not.
+//! Resolves names to versions and parts. Errors list the names that exist.
 
 use super::error::{InspectError, MissingPart, VersionName};
 use super::pass::Part;
 use super::request::{Request, VersionSelector};
 use framegraph::{Aspect, Dimension, Format, Graph, Numeric, PassId, Plan, ResourceId, TextureDesc, VersionId};
 
-/// One part of one version of one texture.
+/// One part of one version of a texture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InspectTarget {
     /// Full name of the texture.
     pub name: String,
-    /// The version of the texture.
+    /// Version of the texture.
     pub version: VersionId,
-    /// Its number, the contents on entry being 0.
+    /// Version number; 0 for the contents on entry.
     pub number: usize,
-    /// Full name of the pass that wrote it; none for the contents on entry.
+    /// Full name of the pass that wrote it; `None` for the contents on entry.
     pub writer: Option<String>,
-    /// What the texture holds.
+    /// Format of the texture.
     pub format: Format,
     /// Mip level.
     pub mip: u8,
-    /// Layer of an array, or slice of a three-dimensional texture.
+    /// Layer of an array, or slice of a 3D texture.
     pub layer: u16,
     /// Plane; `All` for color.
     pub aspect: Aspect,
-    /// One sample; none for the average, or for what has one sample.
+    /// Sample; `None` for the average, or for textures with one sample.
     pub sample: Option<u8>,
     desc: TextureDesc,
 }
 
 impl InspectTarget {
-    /// What it is, in words: `hdr@color, level 2`.
+    /// Returns a title such as `hdr@color, level 2`.
     pub fn title(&self) -> String {
         let writer = self.writer.as_deref().map_or_else(|| "v0".to_owned(), str::to_owned);
         let mut title = format!("{}@{writer}", self.name);
@@ -45,7 +45,7 @@ impl InspectTarget {
         title + &self.sample.map_or_else(String::new, |s| format!(", sample {s}"))
     }
 
-    /// A name for a file, without an ending: letters, digits, `.`, `_`, `-` and `@` alone.
+    /// Returns a file name without extension, made of letters, digits, `.`, `_`, `-` and `@`.
     pub fn file_stem(&self) -> String {
         let parts = self.title().replace(", ", ".").replace(' ', "");
         let allowed = |c: char| c.is_ascii_alphanumeric() || "._-@".contains(c);
@@ -59,8 +59,8 @@ impl InspectTarget {
     }
 }
 
-/// Everything that there is to look at in a plan: each version that a pass of it writes, in the parts that were written,
-/// and what resources hold on entry. In the order in which versions come to be.
+/// Returns everything that can be inspected in a plan, in order of creation. Includes each version that a pass writes,
+/// limited to the written parts, and the contents of resources on entry.
 pub fn all_targets(plan: &Plan) -> Vec<InspectTarget> {
     let graph = plan.graph();
     let mut all = Vec::new();
@@ -98,10 +98,10 @@ pub fn all_targets(plan: &Plan) -> Vec<InspectTarget> {
     all
 }
 
-/// Finds what a request names.
+/// Finds the target that a request names.
 ///
 /// # Errors
-/// What is not there, with what is.
+/// Fails if the name or part does not exist. The error lists those that exist.
 pub fn find(plan: &Plan, request: &Request) -> Result<InspectTarget, InspectError> {
     let graph = plan.graph();
     let Request { name, which, mip, layer, aspect, sample } = request;
@@ -123,7 +123,7 @@ pub fn find(plan: &Plan, request: &Request) -> Result<InspectTarget, InspectErro
         let defined = graph.resources()[row.resource.index()].kind.defined_on_entry();
         let holds = row.writer.some().is_some() || defined;
         let wrote = |pass: &str| row.writer.some().is_some_and(|w| graph.pass_name(w) == pass);
-        // A pass may be called `v1` or `s1`; its name comes first.
+        // Passes may be named `v1` or `s1`; pass names take precedence.
         let meant = |text: String| if graph.find_pass(&text).is_some() { Some(wrote(&text)) } else { None };
         match which {
             VersionSelector::Newest => holds,
@@ -189,7 +189,7 @@ fn target(graph: &Graph, resource: ResourceId, version: VersionId, number: usize
     }
 }
 
-/// The planes that are looked at one by one.
+/// Returns the planes that are inspected separately.
 fn planes(format: Format) -> impl Iterator<Item = Aspect> {
     let both = format.has_depth() && format.has_stencil();
     [Aspect::Depth, Aspect::Stencil, Aspect::All].into_iter().filter(move |a| (*a == Aspect::All) != both)
@@ -199,7 +199,7 @@ fn overlap(plane: Aspect, asked: Aspect) -> bool {
     plane == asked || plane == Aspect::All || asked == Aspect::All
 }
 
-/// The versions of a resource that can be inspected.
+/// Returns the versions of a resource that can be inspected.
 fn versions(graph: &Graph, resource: ResourceId) -> impl Iterator<Item = VersionName> {
     let defined = graph.resources()[resource.index()].kind.defined_on_entry();
     graph.versions_of(resource).enumerate().filter_map(move |(number, version)| {

@@ -1,23 +1,23 @@
-//! What an inspection returns: the numbers of a texture as a shader reads them, bit for bit.
+//! Result of an inspection: the values of a texture as a shader reads them, bit for bit.
 
 use crate::device::format::texture_format;
 use framegraph::{Aspect, Format, Numeric};
 
-/// The texels of one part of a texture, rows from the top.
+/// Texel values of one part of a texture, top row first.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texels {
-    /// What the texture holds.
+    /// Format of the texture.
     pub format: Format,
-    /// Which plane of a depth-stencil texture; `All` for color.
+    /// Plane of a depth-stencil texture; `All` for color.
     pub aspect: Aspect,
-    /// Width and height.
+    /// Width and height in texels.
     pub size: [u32; 2],
-    /// Four channels a texel: the bits of a 32-bit float, or an integer. Missing channels are 0, missing alpha is 1.
+    /// Four channels per texel, as bits of 32-bit floats or as integers. Missing channels are 0, missing alpha is 1.
     pub bits: Vec<[u32; 4]>,
 }
 
 impl Texels {
-    /// How the bits are to be read: floats (depth among them), or integers.
+    /// Returns the type of the values: float, depth or integer.
     pub fn numeric(&self) -> Numeric {
         match self.format.numeric() {
             Numeric::Depth if self.aspect == Aspect::Stencil || !self.format.has_depth() => Numeric::Uint,
@@ -26,8 +26,8 @@ impl Texels {
         }
     }
 
-    /// The numbers: linear light for color, whatever the texture's transfer function; depth and stencil in the first
-    /// channel. Integers above 2²⁴ are rounded.
+    /// Returns the values as floats. sRGB colors are linear; depth and stencil are in the first channel. Integers above
+    /// 2²⁴ are rounded.
     pub fn numbers(&self) -> Vec<[f32; 4]> {
         let number: fn(u32) -> f32 = match self.numeric() {
             Numeric::Float | Numeric::Depth => f32::from_bits,
@@ -37,22 +37,22 @@ impl Texels {
         self.bits.iter().map(|texel| texel.map(number)).collect()
     }
 
-    /// Distances from the camera in meters, of reversed depth with the far plane at infinity: `near_m / depth`, which is
-    /// infinite where nothing was drawn. `None` when the texels are no depths.
+    /// Returns distances from the camera in meters (`near_m / depth`), for reversed depth with the far plane at
+    /// infinity. Infinite for the far plane. `None` if the texels are not depth.
     pub fn distances_m(&self, near_m: f32) -> Option<Vec<f32>> {
         let depth = self.numeric() == Numeric::Depth;
         depth.then(|| self.bits.iter().map(|[depth, ..]| near_m / f32::from_bits(*depth)).collect())
     }
 
-    /// Texels of which one of the `channels` first channels is NaN or infinite, found by bits.
+    /// Returns the number of texels with NaN or infinity in the first `channels` channels.
     pub fn non_finite(&self, channels: usize) -> usize {
         let float = matches!(self.numeric(), Numeric::Float | Numeric::Depth);
-        // All exponent bits set.
+        // All exponent bits are set in NaN and infinity.
         let off = |bits: &u32| float && bits & 0x7f80_0000 == 0x7f80_0000;
         self.bits.iter().filter(|texel| texel.iter().take(channels).any(off)).count()
     }
 
-    /// Channels that the format has; one for a plane of depth or stencil.
+    /// Returns the number of channels of the format; 1 for depth or stencil.
     pub fn channels(&self) -> usize {
         if self.format.is_depth_stencil() { 1 } else { texture_format(self.format).components().into() }
     }

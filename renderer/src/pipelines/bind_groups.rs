@@ -1,4 +1,4 @@
-//! Bind groups, made once for each layout and set of resources and kept while recorders ask for them.
+//! Cache of bind groups by layout and resources.
 
 use crate::cache::{Cache, CacheCounts, Last};
 use crate::device::error::{DeviceError, ErrorScopes};
@@ -13,17 +13,17 @@ use wgpu::{
 /// A resource to bind at one `@binding` of a group.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Binding {
-    /// A sampled, fetched or storage texture.
+    /// A sampled or storage texture.
     View(TextureView),
-    /// A sampler, filtering or comparing.
+    /// A filtering or comparison sampler.
     Sampler(Sampler),
-    /// A uniform or storage buffer, or a part of it.
+    /// A uniform or storage buffer, or a range of it.
     Buffer {
-        /// The buffer that holds the bound part.
+        /// Buffer to bind.
         buffer: Buffer,
-        /// First byte; a multiple of the device's offset alignment.
+        /// Offset in bytes, a multiple of the device's offset alignment.
         offset: u64,
-        /// Bytes; `None` for all that follow.
+        /// Size in bytes; `None` binds up to the end of the buffer.
         bytes: Option<NonZeroU64>,
     },
 }
@@ -58,27 +58,27 @@ impl Binding {
     }
 }
 
-/// What a bind group was made from.
+/// Description of a bind group: layout and bindings.
 type Bound = (BindGroupLayout, Box<[(u32, Binding)]>);
 
-/// The bind group that a request got last.
+/// Last bind group of a request.
 pub(crate) type LastGroup = Last<Bound, BindGroup>;
 
-/// Bind groups in use. See the [module](self).
+/// Cache of bind groups. See the [module documentation](self).
 #[derive(Debug, Default)]
 pub(crate) struct BindGroupCache(Cache<Bound, BindGroup>);
 
 impl BindGroupCache {
-    /// Hits and creations since the cache was made.
+    /// Returns hits and creations since the cache was created.
     pub(crate) fn counts(&self) -> CacheCounts {
         self.0.counts()
     }
 
-    /// The group of that layout with `bindings`, each beside its `@binding` number. Cloning a group is cheap. `label` names
-    /// it for debuggers and errors when it has to be made. `last` is what this request got in the frame before.
+    /// Returns the bind group of `layout` with `bindings`, which are pairs of `@binding` number and resource. `last` is
+    /// the last result of this request. `label` is called if the group is created.
     ///
     /// # Errors
-    /// wgpu's reason; nothing is kept then.
+    /// Fails with wgpu's reason; nothing is cached in that case.
     pub(crate) fn get(
         &self,
         last: &mut LastGroup,
@@ -106,19 +106,19 @@ impl BindGroupCache {
         )
     }
 
-    /// Begins a frame and drops groups that no frame asked for during `max_age` frames.
+    /// Begins a frame. Drops groups that were not requested for `max_age` frames.
     pub(crate) fn begin_frame(&mut self, max_age: u64) {
         self.0.begin_frame(max_age);
     }
 
-    /// Drops the groups that hold a view of a texture that is given up.
+    /// Drops all groups with a view of a texture that is being freed.
     pub(crate) fn forget(&mut self, texture: &wgpu::Texture) {
         self.0.retain(|(_, bound)| {
             !bound.iter().any(|(_, b)| matches!(b, Binding::View(view) if view.texture() == texture))
         });
     }
 
-    /// Drops the groups that hold a part of a buffer that is given up.
+    /// Drops all groups with a buffer that is being freed.
     pub(crate) fn forget_buffer(&mut self, buffer: &Buffer) {
         self.0.retain(|(_, bound)| {
             !bound.iter().any(|(_, b)| matches!(b, Binding::Buffer { buffer: held, .. } if held == buffer))

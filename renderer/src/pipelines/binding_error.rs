@@ -1,52 +1,52 @@
-//! Why a bind group was refused, in the words of the shader: which variable, what was given, what it takes.
+//! Explanation of rejected bind groups, in terms of the shader's variables.
 
 use crate::pipelines::bind_groups::Binding;
 use std::fmt;
 use wgpu::naga;
 
-/// wgpu refused a bind group.
+/// Error: wgpu rejected a bind group.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}: {reason}", place(.shader, *.group, *.binding, .variable.as_deref()))]
 pub struct BindingError {
-    /// Name of the shader; empty for a layout that was made without one.
+    /// Name of the shader; empty if the layout was created without one.
     pub shader: String,
     /// Index of the bind group.
     pub group: usize,
-    /// The `@binding` number, where one is at fault.
+    /// `@binding` number at fault, if known.
     pub binding: Option<u32>,
-    /// The shader's variable of that number.
+    /// Shader variable with this number.
     pub variable: Option<String>,
-    /// What is wrong.
+    /// Reason.
     pub reason: BindingReason,
 }
 
-/// What is wrong with a bind group.
+/// Reason why a bind group was rejected.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum BindingReason {
-    /// The pipeline has no such group.
-    #[error("the pipeline has {groups} bind groups, counted from 0; ask for one that its entry points use")]
+    /// The pipeline has no bind group with this index.
+    #[error("the pipeline has {groups} bind groups, counted from 0; use one that its entry points use")]
     NoGroup {
-        /// How many it has.
+        /// Number of bind groups of the pipeline.
         groups: usize,
     },
-    /// A buffer that is smaller than the shader's type.
+    /// The bound buffer range is smaller than the shader's type.
     #[error(
-        "{given} bytes were given and the shader's type takes {needed}; give the struct WGSL's padding, also behind its last \
+        "{given} bytes are bound, but the shader's type needs {needed}; pad the struct as in WGSL, also after its last \
          member"
     )]
     TooSmall {
-        /// Bytes given.
+        /// Size of the bound range in bytes.
         given: u64,
-        /// Bytes of the shader's type.
+        /// Size of the shader's type in bytes.
         needed: u64,
     },
-    /// A variable that nothing was given for.
-    #[error("nothing was given for it; pass its number and a binding to `Cx::bind_group`")]
+    /// A variable has no binding.
+    #[error("no resource is bound; pass its number and a resource to `Cx::bind_group`")]
     Missing,
-    /// A number that the shader does not use in this group.
-    #[error("the entry points of this pipeline use no such binding; leave it out, or number it as the shader does")]
+    /// The shader does not use this binding number.
+    #[error("the entry points of this pipeline do not use this binding; leave it out, or change its number")]
     Unused,
-    /// Something else, in wgpu's words.
+    /// Another reason, as reported by wgpu.
     #[error("{0}")]
     Refused(String),
 }
@@ -70,7 +70,7 @@ fn place(shader: &str, group: usize, binding: Option<u32>, variable: Option<&str
     format!("{shader}bind group {group}{binding}{variable}")
 }
 
-/// What wgpu's `message` means for a group of the shader of that name and text.
+/// Explains wgpu's `message` about a bind group of the shader with this name and source.
 pub(crate) fn explain(
     (shader, text): (&str, &str),
     group: usize,
@@ -90,7 +90,7 @@ pub(crate) fn explain(
     let unused = || bindings.iter().find(|(n, _)| named(*n).is_none()).map(|(n, _)| (*n, BindingReason::Unused));
     let found = match small {
         Some(small) => Some(small),
-        // wgpu compares how many there are; which one it misses, or has too many, it does not say.
+        // In this case wgpu only reports the number of bindings, not which one is missing or unused.
         None if message.contains("Number of bindings") => missing().or_else(unused),
         None if message.contains("corresponding declaration") => numbered(&message).map(|n| (n, BindingReason::Unused)),
         None => None,
@@ -103,21 +103,21 @@ pub(crate) fn explain(
     BindingError { shader: shader.to_owned(), group, binding, variable, reason }
 }
 
-/// The number behind the word "binding" in wgpu's message.
+/// Parses the number after the word "binding" in wgpu's message.
 fn numbered(message: &str) -> Option<u32> {
     let mut behind = message.split("inding ").skip(1);
     behind.find_map(|text| text.split(|c: char| !c.is_ascii_digit()).next()?.parse().ok())
 }
 
-/// A variable of the shader that is bound.
+/// A resource variable of a shader.
 struct Variable {
     number: u32,
     name: String,
-    /// The least bytes that a buffer has; 0 for textures and samplers.
+    /// Minimum buffer size in bytes; 0 for textures and samplers.
     bytes: u64,
 }
 
-/// The variables of one group of a shader; none when its text cannot be read.
+/// Returns the variables of one bind group of a shader; none if its source does not parse.
 fn variables(text: &str, group: usize) -> Vec<Variable> {
     let Ok(module) = naga::front::wgsl::parse_str(text) else { return Vec::new() };
     let all = module.global_variables.iter().filter_map(|(_, variable)| {

@@ -1,9 +1,10 @@
-//! Whether the indices of a shader are in range, proved on naga's representation of it.
+//! Proof that the indices of a shader are in bounds, on naga's representation of the shader.
 //!
-//! wgpu clamps indices, or tests them, in the shaders that it hands to drivers, since reading beyond an array is undefined behavior
-//! there. Where each index is seen to be in range that is not needed. Functions are gone through statement by statement with what is
-//! known of whole numbers: the least and the greatest that a value can be. Numbers in the text are known, sums and products of what is
-//! known, what is masked, clamped or a remainder, and the counter of a loop from its first value to below its bound.
+//! Out-of-bounds accesses are undefined behavior in drivers, so wgpu clamps or checks every index at run time. These
+//! checks can be omitted if every index is proven to be in bounds.
+//!
+//! Each function is analyzed statement by statement with intervals of integers. Intervals are known for constants and
+//! loop counters, and for sums, products, masks, clamps and remainders of known intervals.
 
 use super::counting_loop::{CountingLoop, changed, number, root, whole};
 use std::collections::HashMap;
@@ -14,8 +15,11 @@ use wgpu::naga::{
     Statement, TypeInner, front::wgsl, proc::TypeResolution,
 };
 
-/// Why the indices of a shader are tested while it runs: the name of the first function with an index, or a texel that is loaded or
-/// stored by its place, that is not seen to be in range; none where all are, and for a text that does not compile.
+/// Returns the name of the first function with an index that is not proven to be in bounds. Such shaders keep wgpu's
+/// run-time checks.
+///
+/// Texel coordinates of loads and stores always count as unproven. Returns `None` if all indices are proven, or if the
+/// source does not compile.
 ///
 /// ```
 /// use framegraph_wgpu::unproved_index;
@@ -31,7 +35,7 @@ pub fn unproved_index(text: &str) -> Option<String> {
     first_unproved(&wgsl::parse_str(text).ok()?)
 }
 
-/// The name of the first function with such an index; none for a module that is not valid, too.
+/// Returns the name of the first function with an unproven index; `None` also for an invalid module.
 pub(crate) fn first_unproved(module: &Module) -> Option<String> {
     let info = Validator::new(ValidationFlags::empty(), Capabilities::all()).validate(module).ok()?;
     let own = module.functions.iter().map(|(handle, function)| (function, &info[handle], function.name.as_deref()));
@@ -48,21 +52,21 @@ pub(crate) fn first_unproved(module: &Module) -> Option<String> {
         .map(|(.., name)| name.unwrap_or_default().to_owned())
 }
 
-/// The least and the greatest value of a whole number.
+/// Interval of an integer.
 type Span = RangeInclusive<i64>;
 
 struct Proof<'m> {
     module: &'m Module,
     function: &'m Function,
     types: &'m FunctionInfo,
-    /// Of expressions that were gone by, as they were then.
+    /// Intervals of expressions at the point where they were evaluated.
     values: HashMap<Handle<Expression>, Span>,
-    /// Of local variables, now.
+    /// Current intervals of local variables.
     variables: HashMap<Handle<LocalVariable>, Span>,
 }
 
 impl Proof<'_> {
-    /// Whether all indices of a block are in range.
+    /// Returns whether all indices of a block are proven.
     fn block(&mut self, block: &Block) -> bool {
         block.iter().all(|statement| self.statement(statement))
     }
@@ -91,12 +95,13 @@ impl Proof<'_> {
                 true
             }
             Statement::Break | Statement::Continue | Statement::Return { .. } | Statement::Kill => true,
-            // What writes by a place, and what is not looked into.
+            // Statements that write through coordinates, and statements that are not analyzed.
             _ => false,
         }
     }
 
-    /// Each of several blocks from what is known now; afterwards nothing is known of what any changes.
+    /// Analyzes several alternative blocks from the current state. Afterwards, variables that any of them changes are
+    /// unknown.
     fn branches(&mut self, blocks: &[&Block]) -> bool {
         let before = self.variables.clone();
         let proved = blocks.iter().all(|block| {
@@ -113,7 +118,7 @@ impl Proof<'_> {
         self.forget(body);
         self.forget(continuing);
         let before = self.variables.clone();
-        // What is tested stands before the counter is known to be below its bound.
+        // The counter is known to be below its bound only after the loop condition.
         let tested = body.iter().position(|statement| matches!(statement, Statement::If { .. })).unwrap_or(0);
         let all: Vec<&Statement> = body.iter().collect();
         let (head, rest) = all.split_at(tested);
@@ -126,12 +131,12 @@ impl Proof<'_> {
         proved
     }
 
-    /// The counter of a loop that goes up from a known number to a known bound, with what it is in a turn.
+    /// Returns the counter of a loop with constant step and known bounds, with its interval inside of the loop.
     fn counter(&mut self, body: &Block, continuing: &Block) -> Option<(Handle<LocalVariable>, Span)> {
         let CountingLoop { counter, bound, equal, step } =
             CountingLoop::find(self.module, self.function, body, continuing)?;
         let first = *self.variables.get(&counter)?.start();
-        // The bound may be worked out in each turn, of what no turn changes.
+        // The bound may be computed in each iteration from values that the loop does not change.
         let before = self.variables.clone();
         self.forget(body);
         self.forget(continuing);
@@ -141,17 +146,17 @@ impl Proof<'_> {
         let bound = self.span(bound).map(|span| *span.end());
         self.variables = before;
         let last = bound? - i64::from(!equal);
-        // Beyond the last it ends before numbers of either kind wrap around.
+        // The loop ends before the counter can overflow.
         (last <= i64::from(i32::MAX) - step).then(|| (counter, first..=last.max(first)))
     }
 
-    /// Nothing is known any more of what a block changes.
+    /// Removes the intervals of all variables that a block changes.
     fn forget(&mut self, block: &Block) {
         let changed = changed(self.function, block);
         self.variables.retain(|variable, _| !changed.contains(variable));
     }
 
-    /// Notes what is known of a value, and tells whether what it takes an element of has that element.
+    /// Computes the interval of an expression. Returns false if it is an index that is not proven to be in bounds.
     fn emit(&mut self, value: Handle<Expression>) -> bool {
         if let Some(span) = self.worked_out(value) {
             self.values.insert(value, span);
@@ -169,7 +174,7 @@ impl Proof<'_> {
         }
     }
 
-    /// How many elements what `base` is, or points to, has; none where the text does not say.
+    /// Returns the number of elements of a value or pointer; `None` if it is not constant.
     fn elements(&self, base: Handle<Expression>) -> Option<i64> {
         let inner = |resolution: &TypeResolution| match resolution {
             TypeResolution::Handle(handle) => self.module.types[*handle].inner.clone(),
@@ -192,7 +197,7 @@ impl Proof<'_> {
         self.values.get(&value).cloned().or_else(|| written().map(|number| number..=number))
     }
 
-    /// What is known of a value by what is known of those that it is made of.
+    /// Computes the interval of an expression from its operands.
     fn worked_out(&self, value: Handle<Expression>) -> Option<Span> {
         let (least, most) = match self.types[value].ty.inner_with(&self.module.types) {
             TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Uint && scalar.width == 4 => {
@@ -243,7 +248,7 @@ impl Proof<'_> {
             Expression::As { expr, convert: Some(4), .. } => self.span(expr)?,
             _ => return None,
         };
-        // What does not fit wraps around.
+        // Values outside of the type's range wrap around, so nothing is known.
         (*found.start() >= least && *found.end() <= most).then_some(found)
     }
 }
@@ -282,7 +287,7 @@ mod tests {
         }
     }
 
-    /// Each is nearly one of those, and may be out of range.
+    /// Variations of the cases above that may be out of bounds.
     #[test]
     fn what_may_be_out_of_range_is_told() {
         for body in [

@@ -1,4 +1,4 @@
-//! Pipelines, made once for each combination of shader, state and targets, and kept while frames ask for them.
+//! Cache of pipelines by shader, state and targets.
 
 use crate::cache::{Cache, CacheCounts, Last};
 use crate::device::error::{DeviceError, ErrorScopes};
@@ -15,21 +15,21 @@ use wgpu::{
     PipelineLayoutDescriptor, VertexBufferLayout,
 };
 
-/// The raster pipeline that a request got last.
+/// Last raster pipeline of a request.
 #[derive(Debug, Default)]
 pub(crate) struct LastRaster {
     last: Last<RasterKey, RasterPipeline>,
-    /// Where it was made: the same pass of one compilation has the same targets.
+    /// Pass and compilation of the request. Equal values imply equal targets.
     place: Option<Place>,
 }
 
-/// A pass of the plan that a compilation made.
+/// A compilation number and a pass of its plan.
 pub(crate) type Place = (u64, PassId);
 
-/// The compute pipeline that a request got last.
+/// Last compute pipeline of a request.
 pub(crate) type LastCompute = Last<StagesKey, ComputePipeline>;
 
-/// All pipelines and shader modules that were asked for. See the [module](self).
+/// Cache of pipelines and shader modules. See the [module documentation](self).
 #[derive(Debug, Default)]
 pub(crate) struct Pipelines {
     raster: Cache<RasterKey, RasterPipeline>,
@@ -39,39 +39,39 @@ pub(crate) struct Pipelines {
 }
 
 impl Pipelines {
-    /// Hits and creations since the beginning, raster and compute together.
+    /// Returns hits and creations since the beginning, of raster and compute pipelines together.
     pub(crate) fn counts(&self) -> CacheCounts {
         let [raster, compute] = [self.raster.counts(), self.compute.counts()];
         CacheCounts { hits: raster.hits + compute.hits, created: raster.created + compute.created }
     }
 
-    /// The shader modules.
+    /// Returns the cache of shader modules.
     pub(crate) fn modules(&self) -> &ShaderModules {
         &self.modules
     }
 
-    /// Begins a frame, and drops what no frame asked for during `max_age` frames.
+    /// Begins a frame. Drops pipelines and modules that were not requested for `max_age` frames.
     pub(crate) fn begin_frame(&mut self, max_age: u64) {
         self.raster.begin_frame(max_age);
         self.compute.begin_frame(max_age);
         self.modules.begin_frame(max_age);
     }
 
-    /// What the driver compiled is kept in `cache` from now on.
+    /// Sets the driver's pipeline cache for pipelines created from now on.
     pub(crate) fn set_driver_cache(&mut self, cache: Option<PipelineCache>) {
         self.driver_cache = cache;
     }
 
-    /// Where the driver keeps what it compiled, if it does.
+    /// Returns the driver's pipeline cache, if any.
     pub(crate) fn driver_cache(&self) -> Option<&PipelineCache> {
         self.driver_cache.as_ref()
     }
 
-    /// The raster pipeline for the targets of a `place`; `own_slots` are the color slots that its pass declares, the others
-    /// are left alone. `last` is what this request got in the frame before.
+    /// Returns the raster pipeline for the targets of a `place`. `own_slots` is a mask of the color slots that the pass
+    /// declares; other slots are not written. `last` is the last result of this request.
     ///
     /// # Errors
-    /// [`ShaderError`], with the shader's name.
+    /// Fails with [`ShaderError`], which has the shader's name.
     pub(crate) fn raster(
         &self,
         last: &mut LastRaster,
@@ -85,7 +85,7 @@ impl Pipelines {
         {
             return Ok(pipeline);
         }
-        // Not of this place before it is found.
+        // Invalid until the lookup succeeds.
         last.place = None;
         let own_slots = own_slots();
         let Targets { colors, depth, samples, layers, .. } = targets;
@@ -101,10 +101,10 @@ impl Pipelines {
         Ok(pipeline)
     }
 
-    /// The compute pipeline. `last` is what this request got in the frame before.
+    /// Returns the compute pipeline. `last` is the last result of this request.
     ///
     /// # Errors
-    /// [`ShaderError`], with the shader's name.
+    /// Fails with [`ShaderError`], which has the shader's name.
     pub(crate) fn compute(
         &self,
         last: &mut LastCompute,
@@ -120,10 +120,11 @@ impl Pipelines {
         self.compute.again(last, || Keyed::default().hash_one(compute), is, make)
     }
 
-    /// Gives `shader` another text, and makes its pipelines anew; returns how many. Nothing changes when one is refused.
+    /// Replaces the source of `shader` and recreates its pipelines. Returns their number. Nothing changes if one of
+    /// them fails.
     ///
     /// # Errors
-    /// [`ShaderError`]: the text does not compile, or a pipeline does not take it.
+    /// Fails with [`ShaderError`] if the source does not compile or does not match a pipeline.
     pub(crate) fn reload(&mut self, device: &Device, shader: &Shader<'_>, text: &str) -> Result<usize, ShaderError> {
         let module = ShaderModules::compile(device, shader.name(), text)?;
         let (mut raster, mut compute) = (std::mem::take(&mut self.raster), std::mem::take(&mut self.compute));
@@ -193,7 +194,7 @@ fn refused<'e>(scopes: ErrorScopes, name: &str, entries: impl Iterator<Item = &'
     })
 }
 
-/// The explicit pipeline layout, or `None` to leave it to the shader.
+/// Returns the explicit pipeline layout, or `None` to derive it from the shader.
 fn layout(device: &Device, label: &str, groups: &[BindGroupLayout]) -> Option<PipelineLayout> {
     let layouts: Vec<_> = groups.iter().map(Some).collect();
     let descriptor =
@@ -201,8 +202,8 @@ fn layout(device: &Device, label: &str, groups: &[BindGroupLayout]) -> Option<Pi
     (!groups.is_empty()).then(|| device.create_pipeline_layout(&descriptor))
 }
 
-/// Stands in for the fragment stage of a depth-only pass that shares its step with passes that write color: wgpu asks
-/// every pipeline of a render pass for the same targets, and without a fragment stage a pipeline has none.
+/// Empty fragment stage for depth-only passes in a step with color targets. All pipelines of a render pass must have
+/// the same color targets, which requires a fragment stage.
 const NOTHING: Shader<'static> = Shader::new("nothing", "@fragment fn fs_nothing() {}");
 
 fn create_raster(

@@ -1,21 +1,21 @@
-//! Loops that count, and what else is asked of statements: what a block changes, and what it works out itself.
+//! Detection of counting loops, and analysis of the statements of a block.
 
 use wgpu::naga::{BinaryOperator, Block, Expression, Function, Handle, Literal, LocalVariable, Module, Statement};
 
-/// A loop that goes on while a local variable is less than a bound, to which each turn adds a number at its end and nothing else
-/// stores.
+/// A loop that runs while a local variable is below a bound. Each iteration adds a constant to the variable at its end,
+/// and nothing else stores to it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CountingLoop {
     pub(super) counter: Handle<LocalVariable>,
     pub(super) bound: Handle<Expression>,
-    /// It goes on where the counter is the bound, too.
+    /// Whether the loop also runs when the counter equals the bound.
     pub(super) equal: bool,
-    /// What is added, from 1.
+    /// Increment per iteration, at least 1.
     pub(super) step: i64,
 }
 
 impl CountingLoop {
-    /// That of a body and what continues it; none where it is no such loop.
+    /// Returns the counting loop with this body and continuing block, or `None` if it is another kind of loop.
     pub(super) fn find(module: &Module, function: &Function, body: &Block, continuing: &Block) -> Option<Self> {
         let tested = body.iter().find(|statement| !matches!(statement, Statement::Emit(_)))?;
         let Statement::If { condition, accept, reject } = tested else { return None };
@@ -30,16 +30,16 @@ impl CountingLoop {
             BinaryOperator::GreaterEqual => (right, left, true),
             _ => return None,
         };
-        // As it is in this turn, not as it was once.
+        // The counter must be loaded in this iteration, not before the loop.
         let counter = loaded(function, read).filter(|_| is_emitted(body, read))?;
         let step = continuing.iter().find_map(|statement| step(module, function, counter, statement, continuing))?;
-        // One store at the end of a turn, and none elsewhere.
+        // The counter must be stored once in the continuing block, and nowhere else.
         let stores = |block| changed(function, block).into_iter().filter(|variable| *variable == counter).count();
         (stores(body) == 0 && stores(continuing) == 1).then_some(Self { counter, bound, equal, step })
     }
 }
 
-/// By how much a statement makes a whole number go up, from 1.
+/// Returns the positive constant that a statement adds to the counter.
 fn step(
     module: &Module,
     function: &Function,
@@ -54,7 +54,7 @@ fn step(
     (root(function, *pointer) == Some(counter) && from_itself && step > 0).then_some(step)
 }
 
-/// The local variable whose value an expression is.
+/// Returns the local variable that an expression loads.
 fn loaded(function: &Function, value: Handle<Expression>) -> Option<Handle<LocalVariable>> {
     let Expression::Load { pointer } = function.expressions[value] else { return None };
     match function.expressions[pointer] {
@@ -63,7 +63,7 @@ fn loaded(function: &Function, value: Handle<Expression>) -> Option<Handle<Local
     }
 }
 
-/// A number that is written in the text.
+/// Returns the value of a literal or constant.
 pub(super) fn number(module: &Module, function: &Function, value: Handle<Expression>) -> Option<Literal> {
     match function.expressions[value] {
         Expression::Literal(literal) => Some(literal),
@@ -75,7 +75,7 @@ pub(super) fn number(module: &Module, function: &Function, value: Handle<Express
     }
 }
 
-/// A whole number of 32 bits.
+/// Returns the value of a 32-bit integer literal.
 pub(super) fn whole(literal: Literal) -> Option<i64> {
     match literal {
         Literal::U32(number) => Some(number.into()),
@@ -84,13 +84,13 @@ pub(super) fn whole(literal: Literal) -> Option<i64> {
     }
 }
 
-/// Whether a value is worked out in a block itself, each time it is run.
+/// Returns whether a block itself evaluates an expression.
 fn is_emitted(block: &Block, value: Handle<Expression>) -> bool {
     let emits = |range: &wgpu::naga::Range<Expression>| range.clone().any(|own| own == value);
     block.iter().any(|statement| matches!(statement, Statement::Emit(range) if emits(range)))
 }
 
-/// The local variable into which a pointer points.
+/// Returns the local variable that a pointer refers to.
 pub(super) fn root(function: &Function, pointer: Handle<Expression>) -> Option<Handle<LocalVariable>> {
     match function.expressions[pointer] {
         Expression::LocalVariable(variable) => Some(variable),
@@ -99,7 +99,7 @@ pub(super) fn root(function: &Function, pointer: Handle<Expression>) -> Option<H
     }
 }
 
-/// The local variables that a block may change, once for each statement that may.
+/// Returns the local variables that a block may change, once per statement.
 pub(super) fn changed(function: &Function, block: &Block) -> Vec<Handle<LocalVariable>> {
     let of = |statement: &Statement| match statement {
         Statement::Store { pointer, .. } => root(function, *pointer).into_iter().collect(),

@@ -1,4 +1,4 @@
-//! The keys of the pipeline cache: the recorder's description together with the targets of the step.
+//! Keys of the pipeline cache: the recorder's pipeline description with the targets of the step.
 
 use crate::device::format::texture_format;
 use crate::execute::targets::Targets;
@@ -10,7 +10,7 @@ use wgpu::{
     VertexStepMode,
 };
 
-/// The key of a raster pipeline: everything that it was made from.
+/// Key of a raster pipeline.
 #[derive(Debug)]
 pub(crate) struct RasterKey {
     pub(crate) stages: StagesKey,
@@ -21,11 +21,11 @@ pub(crate) struct RasterKey {
     colors: Vec<Output>,
     alpha_to_coverage: bool,
     targets: Targets,
-    /// The color slots that the pass declares.
+    /// Mask of the color slots that the pass declares.
     own_slots: u8,
 }
 
-/// The part of a key that raster and compute pipelines share.
+/// Part of the key shared by raster and compute pipelines.
 #[derive(Debug)]
 pub(crate) struct StagesKey {
     /// [`Shader::hash`].
@@ -35,7 +35,7 @@ pub(crate) struct StagesKey {
     groups: Vec<BindGroupLayout>,
 }
 
-/// The state that follows from recorder and targets together.
+/// Pipeline state derived from the description and the targets.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Fixed {
     pub(crate) colors: [Option<ColorTargetState>; 8],
@@ -55,7 +55,7 @@ impl StagesKey {
         }
     }
 
-    /// Calls `make` with the description that the key was made from.
+    /// Calls `make` with the description that the key was created from.
     pub(crate) fn with<T>(&self, shader: Shader<'_>, make: impl FnOnce(&Compute<'_>) -> T) -> T {
         let Self { entry, constants, groups, .. } = self;
         let constants: Vec<_> = constants.iter().map(|(n, v)| (n.as_str(), f64::from_bits(*v))).collect();
@@ -94,7 +94,7 @@ impl RasterKey {
         }
     }
 
-    /// Calls `make` with the description that the key was made from, and what it makes together with the targets.
+    /// Calls `make` with the description that the key was created from, and the state derived from it.
     pub(crate) fn with<T>(&self, shader: Shader<'_>, make: impl FnOnce(&Raster<'_>, &Fixed) -> T) -> T {
         let Self { stages, fragment, buffers, primitive, depth, colors, alpha_to_coverage, targets, own_slots } = self;
         let buffers: Vec<_> = buffers
@@ -122,7 +122,7 @@ impl RasterKey {
         })
     }
 
-    /// Whether it is a key with these targets.
+    /// Returns whether the key has these targets.
     pub(crate) fn fits(&self, targets: &Targets, own_slots: u8) -> bool {
         let own = &self.targets;
         self.own_slots == own_slots
@@ -130,7 +130,8 @@ impl RasterKey {
             && (own.samples, own.layers) == (targets.samples, targets.layers)
     }
 
-    /// Whether it is a key of this description. Nothing is made to be compared: this is asked for each pipeline of each frame.
+    /// Returns whether the key has this description. Does not allocate, since it is called for every pipeline in every
+    /// frame.
     pub(crate) fn describes(&self, raster: &Raster<'_>) -> bool {
         let Self { stages, fragment, buffers, primitive, depth, colors, alpha_to_coverage, .. } = self;
         let same =
@@ -148,7 +149,7 @@ impl RasterKey {
     }
 }
 
-/// Combines what the recorder wants with the targets that there are.
+/// Combines a pipeline description with the targets of a step.
 pub(crate) fn fixed(raster: &Raster<'_>, targets: &Targets, own_slots: u8) -> Fixed {
     let colors = std::array::from_fn(|slot| color_state(raster, targets, own_slots, slot));
     let (samples, multiview_mask) = (targets.samples, targets.multiview_mask());

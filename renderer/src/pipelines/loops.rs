@@ -1,30 +1,33 @@
-//! Whether the loops of a shader end, proved on naga's representation of it.
+//! Proof that the loops of a shader terminate, on naga's representation of the shader.
 //!
-//! wgpu counts the turns of every loop in the shaders that it hands to drivers, since an endless loop is undefined behavior
-//! there. Where each loop is one that counts, that is not needed: a local variable that nothing else stores to goes up by one at
-//! the end of each turn, and the loop ends unless it is less than some bound. It never wraps around, because what is less than
-//! a number is less than the greatest one; so the loop ends, whatever the bound is and even if it changes meanwhile. With another
-//! step, or with "less or equal", the bound must be a number that is not too near to the greatest.
+//! Endless loops are undefined behavior in drivers, so wgpu adds an iteration counter to every loop. It can be omitted
+//! if all loops are counting loops that are proven to terminate.
+//!
+//! A counting loop increments a local variable that nothing else writes, and runs while it is less than a bound. With
+//! step 1 it terminates for any bound, even one that changes: a value less than another cannot be the maximum, so the
+//! increment cannot overflow. Other steps, and "less or equal", require a constant bound below the maximum.
 
 use super::counting_loop::{CountingLoop, number};
 use wgpu::naga::{Block, Function, Literal, Module, Statement, front::wgsl};
 
-/// Why the loops of a shader are counted while it runs: the name of the first function with a loop that is not seen to end; none
-/// where all are, and for a text that does not compile.
+/// Returns the name of the first function with a loop that is not proven to terminate. Such shaders keep wgpu's
+/// iteration counters.
+///
+/// Returns `None` if all loops are proven to terminate, or if the source does not compile.
 ///
 /// ```
 /// use framegraph_wgpu::endless_loop;
 ///
 /// let counts = |step: &str| format!("fn sum(n: u32) -> u32 {{ var s = 0u; for (var i = 0u; i < n; {step}) {{ s += i; }} return s; }}");
 /// assert_eq!(endless_loop(&counts("i++")), None);
-/// assert_eq!(endless_loop(&counts("i += 2")).as_deref(), Some("sum")); // From the greatest number it goes on from 0 or 1.
+/// assert_eq!(endless_loop(&counts("i += 2")).as_deref(), Some("sum")); // May overflow and start again at 0 or 1.
 /// ```
 #[must_use]
 pub fn endless_loop(text: &str) -> Option<String> {
     wgsl::parse_str(text).ok().and_then(|module| first_endless(&module))
 }
 
-/// The name of the first function with a loop that is not seen to end.
+/// Returns the name of the first function with a loop that is not proven to terminate.
 pub(crate) fn first_endless(module: &Module) -> Option<String> {
     let functions = module.functions.iter().map(|(_, function)| function);
     let entries = module.entry_points.iter().map(|entry| (&entry.function, entry.name.clone()));
@@ -39,7 +42,7 @@ struct Proof<'m> {
 }
 
 impl Proof<'_> {
-    /// Whether all loops in a block end.
+    /// Returns whether all loops of a block are proven to terminate.
     fn ends(&self, block: &Block) -> bool {
         block.iter().all(|statement| match statement {
             Statement::Block(inner) => self.ends(inner),
@@ -52,7 +55,7 @@ impl Proof<'_> {
         })
     }
 
-    /// Whether a loop counts up to a bound.
+    /// Returns whether a loop counts up to a bound without overflow.
     fn counts(&self, body: &Block, continuing: &Block) -> bool {
         let Some(CountingLoop { bound, equal, step, .. }) =
             CountingLoop::find(self.module, self.function, body, continuing)
@@ -98,7 +101,7 @@ mod tests {
         }
     }
 
-    /// Each is nearly one of those, and may never end.
+    /// Variations of the cases above that may not terminate.
     #[test]
     fn what_is_not_seen_to_end_is_told() {
         for (head, body) in [
@@ -129,7 +132,7 @@ mod tests {
         let text = "fn a() { for (var i = 0; i < 3; i++) {} } @compute @workgroup_size(1) fn main() { a(); loop {} }";
         assert_eq!(endless_loop(text).as_deref(), Some("main"));
         assert_eq!(endless_loop("no shader"), None);
-        // What was read of the counter before the loop stays what it was.
+        // A value of the counter that was loaded before the loop does not change.
         let stale = "fn f(n: i32) { var i = 0; let x = i; for (; x < n; i++) {} }";
         assert_eq!(endless_loop(stale).as_deref(), Some("f"));
         let stale = "fn f(n: i32) { var i = 0; let x = i; for (; i < n; i = x + 1) {} }";

@@ -1,11 +1,11 @@
-//! A pipeline with the layouts of its bind groups and the text that it was made from.
+//! Pipelines with their bind group layouts and shader source.
 
 use crate::pipelines::bind_groups::Binding;
 use crate::pipelines::binding_error::{BindingError, BindingReason, explain};
 use std::sync::Arc;
 use wgpu::{BindGroupLayout, Device};
 
-/// A pipeline with the layouts of its bind groups; dereferences to the wgpu pipeline. Cloning is cheap.
+/// A pipeline with its bind group layouts. Dereferences to the wgpu pipeline. Clones are cheap.
 #[derive(Clone, Debug)]
 pub struct Pipeline<P>(Arc<Made<P>>);
 
@@ -16,12 +16,12 @@ struct Made<P> {
     groups: Vec<BindGroupLayout>,
 }
 
-/// What a shader module was compiled from.
+/// Name and source of a compiled shader module.
 #[derive(Debug)]
 pub(crate) struct Source {
     pub(crate) name: String,
     pub(crate) text: String,
-    /// Bind groups that its variables name, from 0 to the last.
+    /// Number of bind groups that the source declares.
     groups: u32,
 }
 
@@ -32,12 +32,12 @@ impl Source {
     }
 }
 
-/// The last group that a text names, counted from 1; never more than there may be. wgpu has layouts for all that there may
-/// be, and does not tell which of them are used.
+/// Returns the highest `@group` index in the source plus 1, at most `max`. Needed because wgpu returns layouts for
+/// unused groups as well.
 fn named_groups(text: &str, most: u32) -> u32 {
     let index = |behind: &str| {
         let digits = behind.trim_start().split(|c: char| !c.is_ascii_digit()).next()?;
-        // Not a number: a constant's name, which may stand for any group.
+        // A named constant may have any value.
         Some(digits.parse().unwrap_or(most))
     };
     let last = text.split("@group(").skip(1).filter_map(index).max();
@@ -45,7 +45,8 @@ fn named_groups(text: &str, most: u32) -> u32 {
 }
 
 impl<P> Pipeline<P> {
-    /// With the layouts that were given, or those that wgpu read off the shader.
+    /// Creates a pipeline with the given layouts, or with the layouts that wgpu derived from the shader if there are
+    /// none.
     pub(crate) fn new(
         pipeline: P,
         source: Arc<Source>,
@@ -59,8 +60,8 @@ impl<P> Pipeline<P> {
         Self(Arc::new(Made { pipeline, source, groups }))
     }
 
-    /// Bind group `index` of the pipeline, for [`Cx::bind_group`](crate::Cx::bind_group), which refuses an index that the
-    /// pipeline does not have.
+    /// Returns bind group `index` of the pipeline, for [`Cx::bind_group`](crate::Cx::bind_group). Creating the group
+    /// fails if the pipeline has no group with this index.
     pub fn group(&self, index: usize) -> Group<'_> {
         let Made { source, groups, .. } = &*self.0;
         Group { layout: groups.get(index), index, of: Some((source, groups.len())) }
@@ -79,13 +80,13 @@ pub type RasterPipeline = Pipeline<wgpu::RenderPipeline>;
 /// A compute pipeline.
 pub type ComputePipeline = Pipeline<wgpu::ComputePipeline>;
 
-/// A bind group that is to be made: its layout, and the shader that it is for. A layout of one's own becomes one too, and
-/// errors name no shader then.
+/// Layout of a bind group with the name of its shader for errors. Can also be created from a [`BindGroupLayout`],
+/// without a shader name.
 #[derive(Clone, Copy, Debug)]
 pub struct Group<'a> {
     layout: Option<&'a BindGroupLayout>,
     index: usize,
-    /// The shader, and how many groups its pipeline has.
+    /// Shader, and number of groups of its pipeline.
     of: Option<(&'a Source, usize)>,
 }
 
@@ -96,10 +97,10 @@ impl<'a> From<&'a BindGroupLayout> for Group<'a> {
 }
 
 impl<'a> Group<'a> {
-    /// The layout of the group.
+    /// Returns the layout of the group.
     ///
     /// # Errors
-    /// [`BindingReason::NoGroup`] when the pipeline has no group of that index.
+    /// Fails with [`BindingReason::NoGroup`] if the pipeline has no group with this index.
     pub fn layout(&self) -> Result<&'a BindGroupLayout, BindingError> {
         let groups = self.of.map_or(0, |(_, groups)| groups);
         self.layout.ok_or_else(|| BindingError {
@@ -111,17 +112,17 @@ impl<'a> Group<'a> {
         })
     }
 
-    /// Index of the group in its pipeline; 0 for a layout of one's own.
+    /// Returns the index of the group in its pipeline; 0 if created from a layout.
     pub fn index(&self) -> usize {
         self.index
     }
 
-    /// Name of the shader; empty for a layout of one's own.
+    /// Returns the name of the shader; empty if created from a layout.
     pub fn shader(&self) -> &'a str {
         self.of.map_or("", |(source, _)| &source.name)
     }
 
-    /// What wgpu's refusal of `bindings` means.
+    /// Explains why wgpu rejected `bindings`.
     pub(crate) fn explain(&self, bindings: &[(u32, Binding)], message: String) -> BindingError {
         let text = self.of.map_or("", |(source, _)| &source.text);
         explain((self.shader(), text), self.index, bindings, message)

@@ -1,4 +1,4 @@
-//! Samplers, made once for each set of choices.
+//! Cache of samplers by their descriptions.
 
 use crate::cache::Cache;
 use crate::hash::Keyed;
@@ -6,23 +6,23 @@ use std::convert::Infallible;
 use std::hash::BuildHasher;
 use wgpu::{AddressMode, CompareFunction, Device, FilterMode, MipmapFilterMode, Sampler, SamplerDescriptor};
 
-/// How a texture is sampled. The defaults clamp and filter nothing.
+/// Description of a sampler. The default clamps to the edge and uses nearest filtering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SamplerDesc {
-    /// How coordinates outside of 0…1 are wrapped, in u, v and w.
+    /// Address modes for u, v and w outside of 0…1.
     pub address: [AddressMode; 3],
-    /// Filter within a level, where the texture is magnified and where it is minified.
+    /// Magnification and minification filter.
     pub filter: [FilterMode; 2],
     /// Filter between mip levels.
     pub mipmap: MipmapFilterMode,
-    /// Compares with a reference instead of returning the value (shadow maps).
+    /// Comparison function, for shadow maps; `None` returns the sampled value.
     pub compare: Option<CompareFunction>,
-    /// Samples along the axis of anisotropy, 1 to 16; above 1 all filters must be linear.
+    /// Maximum anisotropy, 1 to 16. Values above 1 require linear filters.
     pub anisotropy: u16,
 }
 
 impl SamplerDesc {
-    /// The nearest texel of the nearest level, clamped to the edge.
+    /// Nearest texel of the nearest mip level, clamped to the edge.
     pub const NEAREST: Self = Self {
         address: [AddressMode::ClampToEdge; 3],
         filter: [FilterMode::Nearest; 2],
@@ -31,14 +31,14 @@ impl SamplerDesc {
         anisotropy: 1,
     };
 
-    /// Linear in all three directions, clamped to the edge.
+    /// Trilinear filtering, clamped to the edge.
     pub const LINEAR: Self =
         Self { filter: [FilterMode::Linear; 2], mipmap: MipmapFilterMode::Linear, ..Self::NEAREST };
 
-    /// Linear in all three directions, repeated.
+    /// Trilinear filtering, repeated.
     pub const REPEAT: Self = Self { address: [AddressMode::Repeat; 3], ..Self::LINEAR };
 
-    /// Linear comparison for shadow maps with reversed depth: lit where the reference is nearer or equal.
+    /// Linear comparison sampler for shadow maps with reversed depth: returns 1 where the reference is nearer or equal.
     pub const SHADOW: Self =
         Self { compare: Some(CompareFunction::GreaterEqual), mipmap: MipmapFilterMode::Nearest, ..Self::LINEAR };
 }
@@ -49,12 +49,12 @@ impl Default for SamplerDesc {
     }
 }
 
-/// All samplers that were asked for; there are few, and none is ever dropped.
+/// Cache of samplers. They are few and never dropped.
 #[derive(Debug, Default)]
 pub(crate) struct SamplerCache(Cache<SamplerDesc, Sampler>);
 
 impl SamplerCache {
-    /// Samplers made since the beginning.
+    /// Returns the number of samplers created.
     pub(crate) fn created(&self) -> u64 {
         self.0.counts().created
     }
@@ -64,7 +64,7 @@ impl SamplerCache {
         self.0.begin_frame(u64::MAX);
     }
 
-    /// The sampler of that description.
+    /// Returns the sampler with this description.
     pub(crate) fn get(&self, device: &Device, desc: SamplerDesc) -> Sampler {
         let hash = Keyed::default().hash_one(desc);
         let made = self.0.get::<Infallible>(hash, |known| *known == desc, || Ok((desc, create(device, desc))));

@@ -1,4 +1,4 @@
-//! Shader modules, compiled once for each text.
+//! Cache of shader modules by name and source.
 
 use crate::cache::Cache;
 use crate::device::error::{DeviceError, ErrorScopes};
@@ -13,11 +13,13 @@ use std::sync::Arc;
 use wgpu::naga::front::wgsl;
 use wgpu::{Device, ShaderModule, ShaderModuleDescriptor, ShaderRuntimeChecks, ShaderSource};
 
-/// A WGSL module with its name.
+/// A named WGSL module.
 ///
-/// Two shaders are the same when the hash of name and text is; a changed text under an old name is compiled anew, with all
-/// pipelines made from it. Making a `Shader` reads the whole text once: a constant does that when the program is
-/// compiled; a program that keeps a text from frame to frame should keep its [`Shader::hash`] beside it ([`Shader::hashed`]).
+/// Shaders are compared by a hash of name and source. If the source changes under a name, module and pipelines are
+/// compiled again.
+///
+/// Creating a `Shader` hashes the whole source. For constants this happens at compile time. Programs that generate
+/// source at run time should keep its [`Shader::hash`] and use [`Shader::hashed`].
 #[derive(Clone, Copy, Debug)]
 pub struct Shader<'a> {
     name: &'a str,
@@ -26,30 +28,30 @@ pub struct Shader<'a> {
 }
 
 impl<'a> Shader<'a> {
-    /// A shader of that name and text: WGSL with every import resolved. Errors and debuggers show the name.
+    /// Creates a shader from a name, which errors and debuggers show, and WGSL source with all imports resolved.
     pub const fn new(name: &'a str, text: &'a str) -> Self {
-        // A byte that no UTF-8 has stands between the two.
+        // Name and source are separated by a byte that does not occur in UTF-8.
         let named = fnv_append(fnv_append(FNV_START, name.as_bytes()), &[0xff]);
         Self::hashed(name, text, fnv_append(named, text.as_bytes()))
     }
 
-    /// As [`Shader::new`], with the hash that an earlier `Shader` of the same name and text had. With another hash, the
-    /// pipelines of another shader may be taken for this one's.
+    /// Creates a shader with the hash of an earlier `Shader` of equal name and source. A wrong hash may select
+    /// pipelines of another shader.
     pub const fn hashed(name: &'a str, text: &'a str, hash: u64) -> Self {
         Self { name, text, hash }
     }
 
-    /// The name that errors and debuggers show.
+    /// Returns the name that errors and debuggers show.
     pub const fn name(&self) -> &'a str {
         self.name
     }
 
-    /// The WGSL.
+    /// Returns the WGSL source.
     pub const fn text(&self) -> &'a str {
         self.text
     }
 
-    /// What tells shaders apart: a hash of name and text, of 64 bits.
+    /// Returns the 64-bit hash of name and source, which identifies the shader.
     pub const fn hash(&self) -> u64 {
         self.hash
     }
@@ -69,28 +71,28 @@ impl Hash for Shader<'_> {
     }
 }
 
-/// A shader or pipeline could not be compiled.
+/// Error: a shader or pipeline does not compile.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ShaderError {
-    /// The text is wrong.
+    /// The source does not compile.
     #[error("shader `{name}` does not compile: {message}")]
     Module {
         /// Name of the shader.
         name: String,
-        /// Line and reason.
+        /// Location and reason.
         message: String,
     },
-    /// The text is right, but not for this pipeline.
-    #[error("pipeline of shader `{name}` ({}) is refused: {message}", .entries.join(", "))]
+    /// The source compiles, but does not match the pipeline.
+    #[error("pipeline of shader `{name}` ({}) was rejected: {message}", .entries.join(", "))]
     Pipeline {
         /// Name of the shader.
         name: String,
-        /// The entry points, in the order of their stages.
+        /// Entry points, in the order of their stages.
         entries: Vec<String>,
-        /// wgpu's reason.
+        /// Reason given by wgpu.
         message: String,
     },
-    /// The device failed meanwhile.
+    /// The device failed.
     #[error(transparent)]
     Device(DeviceError),
 }
@@ -101,36 +103,36 @@ impl std::fmt::Debug for ShaderError {
     }
 }
 
-/// A module with what it was compiled from.
+/// A compiled module with its source.
 #[derive(Clone, Debug)]
 pub(crate) struct Compiled {
     pub(crate) module: ShaderModule,
     pub(crate) source: Arc<Source>,
 }
 
-/// Compiled modules by the hash of the shader that is asked for.
+/// Compiled modules by shader hash.
 #[derive(Debug, Default)]
 pub(crate) struct ShaderModules {
     compiled: Cache<u64, Compiled>,
-    /// What took the place of a shader's own text; kept, since nobody else has it.
+    /// Modules that replace a shader's original source. Never dropped, since the source is not kept elsewhere.
     reloaded: BTreeMap<u64, Compiled>,
 }
 
 impl ShaderModules {
-    /// Modules compiled since the beginning, reloaded ones apart.
+    /// Returns the number of compiled modules, without reloaded ones.
     pub(crate) fn created(&self) -> u64 {
         self.compiled.counts().created
     }
 
-    /// Begins a frame, and drops what no pipeline was made from during `max_age` frames.
+    /// Begins a frame. Drops modules that were not requested for `max_age` frames.
     pub(crate) fn begin_frame(&mut self, max_age: u64) {
         self.compiled.begin_frame(max_age);
     }
 
-    /// The module of that name and text.
+    /// Returns the module of a shader.
     ///
     /// # Errors
-    /// [`ShaderError::Module`] with the name, place and reason when the text does not compile.
+    /// Fails with [`ShaderError::Module`] if the source does not compile.
     pub(crate) fn get(&self, device: &Device, shader: &Shader<'_>) -> Result<Compiled, ShaderError> {
         if let Some(reloaded) = self.reloaded.get(&shader.hash) {
             return Ok(reloaded.clone());
@@ -139,17 +141,18 @@ impl ShaderModules {
         self.compiled.get(shader.hash, |hash| *hash == shader.hash, compile)
     }
 
-    /// A module that is not kept.
+    /// Compiles a module without caching it.
     ///
     /// # Errors
-    /// As [`ShaderModules::get`].
+    /// Fails like [`ShaderModules::get`].
     pub(crate) fn compile(device: &Device, name: &str, text: &str) -> Result<Compiled, ShaderError> {
         let of_source = |source: ShaderSource<'_>| {
             let scopes = ErrorScopes::open(device);
             let module = create_module(device, ShaderModuleDescriptor { label: Some(name), source });
             scopes.close("a shader").map(|()| module)
         };
-        // What naga has read is not read again. Of a module wgpu could not quote the line that it refuses.
+        // Passes naga's module to wgpu to avoid parsing twice. On errors, the source is passed instead, so that wgpu
+        // can quote it.
         let read = wgsl::parse_str(text).ok().and_then(|read| of_source(ShaderSource::Naga(Cow::Owned(read))).ok());
         let module = read.map_or_else(|| of_source(ShaderSource::Wgsl(text.into())), Ok);
         let module = module.map_err(|error| match error {
@@ -159,13 +162,14 @@ impl ShaderModules {
         Ok(Compiled { module, source: Arc::new(Source::new(device, name, text)) })
     }
 
-    /// Takes `compiled` for the shader of that hash from now on.
+    /// Uses `compiled` for the shader with this hash from now on.
     pub(crate) fn replace(&mut self, hash: u64, compiled: Compiled) {
         self.reloaded.insert(hash, compiled);
     }
 }
 
-/// A module in which loops are not counted if they are proved to end, and indices not tested if they are proved to be in range.
+/// Creates a module without loop counters if all loops are proven to terminate, and without index checks if all indices
+/// are proven to be in bounds.
 #[allow(unsafe_code, reason = "wgpu takes the promise that loops end, and indices are in range, by a call of its own")]
 fn create_module(device: &Device, descriptor: ShaderModuleDescriptor<'_>) -> ShaderModule {
     let ShaderSource::Naga(module) = &descriptor.source else { return device.create_shader_module(descriptor) };
@@ -200,7 +204,7 @@ mod tests {
     #[test]
     fn a_wrong_text_is_an_error_with_name_and_place() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
-        // What cannot be read, and what can but makes no sense.
+        // A syntax error, and two sources that parse but are invalid.
         for line in ["return nonsense;", "return array<f32, 2>()[4u32];", "if 1.0 { } return 0.0;"] {
             let text = format!("fn f() -> f32 {{\n  {line}\n}}\n@fragment fn fs() {{ _ = f(); }}");
             let refused = ShaderModules::default().get(&gpu.device, &Shader::new("effects/bad", &text));

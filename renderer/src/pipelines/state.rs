@@ -1,5 +1,5 @@
-//! What a recorder says of a pipeline: shader, blending, depth test. Formats and samples of the targets come from the step
-//! that is open, so one recorder serves every format and sample count.
+//! Pipeline descriptions of recorders: shader, blending, depth test. Formats and sample counts come from the current
+//! step, so that one recorder works with all of them.
 
 use crate::pipelines::shader::Shader;
 use std::hash::{Hash, Hasher};
@@ -8,33 +8,35 @@ use wgpu::{
     StencilState, VertexAttribute, VertexStepMode,
 };
 
-/// What a raster pipeline needs beside its targets.
+/// Description of a render pipeline, without its targets.
 #[derive(Clone, Debug, Hash)]
 pub struct Raster<'a> {
-    /// The module with the entry points.
+    /// Module with the entry points.
     pub shader: Shader<'a>,
     /// Entry point of the vertex stage.
     pub vertex: &'a str,
-    /// Entry point of the fragment stage; `None` draws depth alone.
+    /// Entry point of the fragment stage; `None` for depth-only passes.
     pub fragment: Option<&'a str>,
-    /// Values of `override` constants by name.
+    /// Values of `override` constants.
     pub constants: Constants<'a>,
-    /// Layouts of the bind groups; empty leaves them to the shader ([`Pipeline::group`](crate::Pipeline::group) returns them either way).
+    /// Layouts of the bind groups. If empty, they are derived from the shader
+    /// ([`Pipeline::group`](crate::Pipeline::group)).
     pub groups: &'a [BindGroupLayout],
     /// Layouts of the vertex buffers.
     pub buffers: &'a [VertexBuffer<'a>],
-    /// Topology, culling, front face.
+    /// Topology, culling and front face.
     pub primitive: PrimitiveState,
-    /// How depth and stencil are tested and written; by default neither.
+    /// Depth and stencil state; off by default.
     pub depth: Depth,
-    /// Blending and masks by color slot; slots beyond the end are written without blending.
+    /// Blending and write masks by color slot. Missing slots are written without blending.
     pub colors: &'a [Output],
-    /// Alpha chooses samples, where the targets are multisampled.
+    /// Converts alpha to a coverage mask, if the targets are multisampled.
     pub alpha_to_coverage: bool,
 }
 
 impl<'a> Raster<'a> {
-    /// Entry points `vs_main` and `fs_main`, no vertex buffers, no depth test, no blending.
+    /// Creates a description with the entry points `vs_main` and `fs_main`, without vertex buffers, depth test and
+    /// blending.
     pub const fn new(shader: Shader<'a>) -> Self {
         Self {
             shader,
@@ -59,7 +61,7 @@ impl<'a> Raster<'a> {
     }
 }
 
-/// Values of `override` constants, equal when they are so bit for bit.
+/// Values of `override` constants, compared bit for bit.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Constants<'a>(pub &'a [(&'a str, f64)]);
 
@@ -69,32 +71,32 @@ impl Hash for Constants<'_> {
     }
 }
 
-/// The layout of one vertex buffer.
+/// Layout of a vertex buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct VertexBuffer<'a> {
-    /// Bytes from one vertex or instance to the next.
+    /// Distance between two vertices or instances, in bytes.
     pub stride_bytes: u64,
-    /// Whether the buffer advances per vertex or per instance.
+    /// Step mode: per vertex or per instance.
     pub step: VertexStepMode,
-    /// Formats, offsets and locations.
+    /// Formats, offsets and shader locations.
     pub attributes: &'a [VertexAttribute],
 }
 
-/// How depth and stencil are used.
+/// Depth and stencil state.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Depth {
-    /// A fragment passes when its depth compares so with what is stored; `GreaterEqual` for reversed depth.
+    /// Depth comparison with the stored value. `GreaterEqual` passes nearer fragments with reversed depth.
     pub compare: CompareFunction,
-    /// Passing fragments write their depth.
+    /// Whether passing fragments write their depth.
     pub write: bool,
     /// Constant and slope-scaled bias.
     pub bias: DepthBiasState,
-    /// How stencil is tested and written, where the target has it.
+    /// Stencil state, for targets with stencil.
     pub stencil: StencilState,
 }
 
 impl Depth {
-    /// Neither tested nor written.
+    /// No depth test and no depth writes.
     pub const NONE: Self = Self {
         compare: CompareFunction::Always,
         write: false,
@@ -106,41 +108,41 @@ impl Depth {
             write_mask: 0,
         },
     };
-    /// Reversed depth: nearer or equal passes and is written.
+    /// Depth test and depth writes for reversed depth: nearer or equal fragments pass.
     pub const NEARER: Self = Self { compare: CompareFunction::GreaterEqual, write: true, ..Self::NONE };
-    /// Tested for equality against a prepass, not written.
+    /// Depth test for equality after a depth prepass, without depth writes.
     pub const EQUAL: Self = Self { compare: CompareFunction::Equal, write: false, ..Self::NONE };
 }
 
-/// How one color slot is written.
+/// Blending and write mask of one color slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Output {
-    /// Blending with what is there.
+    /// Blend state; `None` replaces the color.
     pub blend: Option<BlendState>,
-    /// The channels that are written.
+    /// Channels to write.
     pub write: ColorWrites,
 }
 
 impl Output {
-    /// All channels, replacing.
+    /// Writes all channels without blending.
     pub const REPLACE: Self = Self { blend: None, write: ColorWrites::ALL };
 }
 
-/// What a compute pipeline needs.
+/// Description of a compute pipeline.
 #[derive(Clone, Copy, Debug, Hash)]
 pub struct Compute<'a> {
-    /// The module with the entry point.
+    /// Module with the entry point.
     pub shader: Shader<'a>,
-    /// The entry point.
+    /// Entry point of the compute stage.
     pub entry: &'a str,
-    /// Values of `override` constants by name.
+    /// Values of `override` constants.
     pub constants: Constants<'a>,
-    /// Layouts of the bind groups; empty leaves them to the shader.
+    /// Layouts of the bind groups. If empty, they are derived from the shader.
     pub groups: &'a [BindGroupLayout],
 }
 
 impl<'a> Compute<'a> {
-    /// Entry point `main`.
+    /// Creates a description with the entry point `main`.
     pub const fn new(shader: Shader<'a>) -> Self {
         Self { shader, entry: "main", constants: Constants(&[]), groups: &[] }
     }

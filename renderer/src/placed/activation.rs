@@ -1,17 +1,20 @@
-//! Where in a frame memory changes hands, from the plan's barriers.
+//! Points of a frame where memory passes from one resource to another, derived from the plan's barriers.
 
 use framegraph::{Placement, Plan, ResourceId, StepId};
 
-/// Before this step, these resources get their memory.
+/// Resources that acquire their memory before a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Activation {
     pub(crate) before: StepId,
     pub(crate) resources: Vec<ResourceId>,
 }
 
-/// As few moments as there can be, in order, at which every placed resource of `plan` for which `is_placed` holds gets its
-/// memory: behind the last step of all that had it before, as the plan's hand-overs name it, and not behind its own first
-/// step. What nobody had before in this frame, others had in the frame before, so it is among them too.
+/// Returns the smallest set of points, in order, at which every placed resource accepted by `is_placed` acquires its
+/// memory.
+///
+/// A resource acquires its memory after the last step of every resource that used the memory before in this frame, and
+/// no later than its own first step. Resources whose memory was not used before in this frame are included, since the
+/// previous frame may have used it.
 pub(crate) fn activations(plan: &Plan, is_placed: impl Fn(ResourceId) -> bool) -> Vec<Activation> {
     let heap = |r: &ResourceId| matches!(plan.resources()[r.index()].placement, Placement::Heap { .. });
     let mut earliest = vec![0; plan.resources().len()];
@@ -22,7 +25,8 @@ pub(crate) fn activations(plan: &Plan, is_placed: impl Fn(ResourceId) -> bool) -
     let mut waiting: Vec<_> = plan.graph().resource_ids().filter(heap).filter(|r| is_placed(*r)).collect();
     waiting.sort_by_key(|r| (plan.resources()[r.index()].first, *r));
     let mut out: Vec<Activation> = Vec::new();
-    // The one that must be served first sets the moment, as late as it can wait; whoever may be served then is.
+    // The resource with the earliest deadline sets the point, as late as possible. All resources that are ready by then
+    // join it.
     for resource in waiting {
         match out.last_mut() {
             Some(last) if earliest[resource.index()] <= last.before.index() => last.resources.push(resource),
@@ -41,7 +45,7 @@ mod tests {
     use framegraph::testing::generate::{self, Entropy, FRAME, Profile};
     use framegraph::{Alias, Caps, Options, Plan, Scratch, compile};
 
-    /// Bytes of a heap that a resource takes, from an offset to behind its last one.
+    /// Returns the heap and the byte range of a resource.
     fn bytes(plan: &Plan, resource: ResourceId) -> Option<(bool, u64, u64)> {
         let row = &plan.resources()[resource.index()];
         let buffer = plan.graph().resources()[resource.index()].desc.texture().is_none();
@@ -51,7 +55,7 @@ mod tests {
         }
     }
 
-    /// By brute force: from its activation to its last step nobody else uses its bytes.
+    /// Checks by brute force that no other resource uses the memory from acquisition to the last step.
     #[test]
     fn memory_is_free_when_it_is_handed_over() {
         let caps = Caps { placed_histories: false, separate_heaps: true, ..Caps::desktop() };

@@ -1,5 +1,5 @@
-//! Blocks of memory with the textures and buffers placed in them, kept from frame to frame; and what the planner must know of
-//! the driver to place them.
+//! Memory blocks with the textures and buffers placed in them, kept between frames; and the driver's memory
+//! requirements for the compiler.
 
 use crate::device::gpu::Gpu;
 use crate::execute::error::ExecuteError;
@@ -15,19 +15,19 @@ use crate::resources::support::{Unsupported, check_buffer, check_texture};
 use framegraph::{Caps, Desc, Extent, Plan, TextureDesc};
 use wgpu::{Buffer, Texture};
 
-/// One block for textures and one for buffers, with what lies in them.
+/// A block for textures and a block for buffers, with the resources placed in them.
 #[derive(Debug)]
 pub(crate) struct Arena {
-    /// Shape and offset of each object.
+    /// Description and offset of each object.
     key: Vec<(Shape, u64)>,
     pub(crate) objects: Vec<Object>,
-    /// Bytes that the driver was asked for, and those that it asks for the objects one by one.
+    /// Allocated bytes, and bytes that the objects would need without sharing.
     allocated_bytes: [u64; 2],
-    /// The frame that used it last.
+    /// Number of the last frame that used the arena.
     used: u64,
 }
 
-/// All arenas of an executor. See the [module](self).
+/// All arenas of an executor. See the [module documentation](self).
 #[derive(Debug, Default)]
 pub(crate) struct Arenas {
     driver: Option<Result<Driver, NotPlaced>>,
@@ -36,22 +36,22 @@ pub(crate) struct Arenas {
     requests: Requests,
     arenas: Vec<Arena>,
     frame: u64,
-    /// Bytes that the last frames used, in a ring.
+    /// Sizes of recent frames in bytes, as a ring buffer.
     recent: [u64; RECENT],
-    /// Its counts of objects are of arenas, but `created`, which counts what lies in them.
+    /// Object counts are numbers of arenas, except `created`, which counts placed objects.
     counts: PoolCounts,
     broken: bool,
 }
 
 impl Arenas {
-    /// The device as the compiler must see it to place; as it is without, where it cannot.
+    /// Returns the capabilities for compiling with placed resources; those of the device if it does not support them.
     pub(crate) fn caps(&mut self, gpu: &Gpu) -> &Caps {
         let placed = self.driver(gpu).is_ok();
         self.caps.get_or_insert_with(|| match placed {
             true => Caps {
                 placed: true,
                 placed_histories: false,
-                // Images and buffers may need other kinds of memory.
+                // Images and buffers may need different memory types.
                 separate_heaps: true,
                 texture_alignment_bytes: 1,
                 buffer_alignment_bytes: 1,
@@ -62,12 +62,12 @@ impl Arenas {
         })
     }
 
-    /// Why nothing is placed; none where it is, or nobody asked.
+    /// Returns why nothing is placed; `None` if placing works or was not requested.
     pub(crate) fn not_placed(&self) -> Option<&NotPlaced> {
         self.driver.as_ref().and_then(|driver| driver.as_ref().err())
     }
 
-    /// From now on nothing is placed.
+    /// Turns placing off from now on.
     pub(crate) fn give_up(&mut self, gpu: &Gpu, why: NotPlaced) {
         (self.driver, self.caps) = (Some(Err(why)), Some(gpu.caps()));
     }
@@ -76,14 +76,14 @@ impl Arenas {
         self.driver.get_or_insert_with(|| Driver::of(gpu)).as_ref().map_err(Clone::clone)
     }
 
-    /// Asks the driver what the placed textures and buffers of `plan` take. True when that is more than the plan knew of: it
-    /// must be compiled again, with [`Arenas::caps`] as they are now. Whether contents will be poisoned changes no plan, so
-    /// what either takes is asked.
+    /// Queries the memory requirements of the placed resources of `plan`. Returns true if they exceed the plan's
+    /// assumptions; it must then be compiled again with [`Arenas::caps`]. Requirements are queried with and without
+    /// poisoning, since both use the same plan.
     pub(crate) fn ask(&mut self, gpu: &Gpu, plan: &Plan) -> Result<bool, NotPlaced> {
         let mut more = false;
         for poison in [false, true] {
             let mut requests = std::mem::take(&mut self.requests);
-            // What cannot be collected is refused when the plan is executed.
+            // Errors are reported when the plan is executed.
             let told = requests.collect(plan, gpu, poison).is_ok();
             for request in requests.placed().iter().filter(|_| told) {
                 more |= self.learn(gpu, plan, request)?;
@@ -94,7 +94,7 @@ impl Arenas {
         Ok(more)
     }
 
-    /// Asks of one; true when the caps changed.
+    /// Queries the requirements of one resource. Returns true if the capabilities changed.
     fn learn(&mut self, gpu: &Gpu, plan: &Plan, request: &PlacedRequest) -> Result<bool, NotPlaced> {
         if check(gpu, &request.shape, "").is_err() {
             return Ok(false);
@@ -104,7 +104,7 @@ impl Arenas {
         let Some(caps) = &mut self.caps else { return Ok(false) };
         let aligned = match request.shape {
             Shape::Texture(_) => &mut caps.texture_alignment_bytes,
-            // Rounding up to the alignment is also how a buffer gets the driver's padding.
+            // Rounding up to the alignment also accounts for the driver's padding of buffers.
             Shape::Buffer(_) => &mut caps.buffer_alignment_bytes,
         };
         let padding = bytes.saturating_sub(plan.resources()[request.resource.index()].bytes);
@@ -130,7 +130,7 @@ impl Arenas {
         Ok(more)
     }
 
-    /// What the driver says that a shape takes; asked once.
+    /// Returns the driver's memory requirements for a description, cached after the first query.
     fn needs(&mut self, gpu: &Gpu, shape: &Shape) -> Result<Needs, NotPlaced> {
         if let Some((_, needs)) = self.asked.iter().find(|(known, _)| known == shape) {
             return Ok(*needs);
@@ -140,15 +140,15 @@ impl Arenas {
         Ok(needs)
     }
 
-    /// Begins a frame: no arena is in use.
+    /// Begins a frame without a current arena.
     pub(crate) fn begin_frame(&mut self) {
         self.frame += 1;
     }
 
-    /// Finds or makes the arena in which everything of `requests` lies; it is [`Arenas::current`] then.
+    /// Finds or creates the arena for `requests` and makes it [`Arenas::current`].
     ///
     /// # Errors
-    /// When the device places nothing, or the plan's offsets do not suit what the driver asks for.
+    /// Fails if the device cannot place resources, or the plan's offsets do not satisfy the driver's requirements.
     pub(crate) fn acquire(&mut self, gpu: &Gpu, plan: &Plan, requests: &[PlacedRequest]) -> Result<(), ExecuteError> {
         if requests.is_empty() {
             return Ok(());
@@ -187,23 +187,23 @@ impl Arenas {
         Ok(())
     }
 
-    /// The arena of this frame; none when nothing is placed.
+    /// Returns the arena of this frame; `None` if nothing is placed.
     pub(crate) fn current(&self) -> Option<&Arena> {
         self.arenas.first().filter(|arena| arena.used == self.frame)
     }
 
-    /// Whether each command buffer of this frame is to be a submission of its own.
+    /// Returns whether each command buffer of this frame must be submitted separately.
     pub(crate) fn submits_apart(&self, gpu: &Gpu) -> bool {
         self.current().is_some() && !keeps_order_of_aliases(gpu.info())
     }
 
-    /// The driver, where something is placed.
+    /// Returns the driver, if placing works.
     pub(crate) fn placing(&self) -> Option<&Driver> {
         self.driver.as_ref().and_then(|driver| driver.as_ref().ok())
     }
 
-    /// Ends a frame: of the arenas that no frame used for as long as `limits` say none stays, and beside those of the last two
-    /// frames not more than one, if all are within the budget. `gone` is told what lay in them.
+    /// Ends a frame. Keeps the arenas of the last two frames, and at most one older arena if it is within `limits`.
+    /// Calls `gone` for each object that is dropped.
     pub(crate) fn evict(&mut self, limits: Limits, gone: impl FnMut(&Object)) {
         let (frame, held) = (self.frame, self.bytes());
         let used_bytes = self.current().map_or(0, Arena::bytes);
@@ -219,7 +219,7 @@ impl Arenas {
         self.counts = PoolCounts { used_bytes, peak_bytes, budget_bytes, ..self.counts };
     }
 
-    /// Gives up all but the arena of this frame, and tells `gone` what lay in them.
+    /// Drops all arenas except that of this frame, and calls `gone` for each object.
     pub(crate) fn trim(&mut self, gone: impl FnMut(&Object)) {
         let frame = self.frame;
         self.retain(|arena| arena.used == frame, gone);
@@ -237,33 +237,33 @@ impl Arenas {
         self.counts.evicted += (before - self.arenas.len()) as u64;
     }
 
-    /// Arenas found again and given up, what was placed in them, and what they hold now.
+    /// Returns hits, creations and evictions since the beginning, and the current size.
     pub(crate) fn counts(&self) -> PoolCounts {
         PoolCounts { objects: self.arenas.len() as u64, bytes: self.bytes(), ..self.counts }
     }
 
-    /// Gives up the arena of this frame: after the device refused something, nothing is known of it.
+    /// Drops the arena of this frame. Called after a device error, since it may be invalid.
     pub(crate) fn forget_frame(&mut self) {
         let frame = self.frame;
         self.arenas.retain(|arena| arena.used != frame);
     }
 
-    /// Bytes that the driver gave for all arenas, and those that it asks for what lies in them one by one.
+    /// Returns the allocated bytes of all arenas, and the bytes that their objects would need without sharing.
     pub(crate) fn allocated_bytes(&self) -> [u64; 2] {
         [0, 1].map(|which| self.arenas.iter().map(|arena| arena.allocated_bytes[which]).sum())
     }
 
-    /// Bytes that the driver gave for all arenas.
+    /// Returns the allocated bytes of all arenas.
     pub(crate) fn bytes(&self) -> u64 {
         self.arenas.iter().map(Arena::bytes).sum()
     }
 
-    /// Whether memory changes hands without a word, as a test may ask for.
+    /// Returns whether aliasing barriers are omitted, for tests.
     pub(crate) fn leaves_out_hand_overs(&self) -> bool {
         self.broken
     }
 
-    /// From now on memory changes hands without a word.
+    /// Omits aliasing barriers from now on.
     #[cfg(any(test, feature = "testing"))]
     pub(crate) fn leave_out_hand_overs(&mut self) {
         self.broken = true;
@@ -271,12 +271,12 @@ impl Arenas {
 }
 
 impl Arena {
-    /// Bytes that the driver gave.
+    /// Returns the allocated bytes.
     fn bytes(&self) -> u64 {
         self.allocated_bytes[0]
     }
 
-    /// The texture of that number.
+    /// Returns the texture with this index.
     pub(crate) fn texture(&self, at: usize) -> Option<(&Texture, PhysicalTextureDesc)> {
         match (&self.objects[at], self.key[at].0) {
             (Object::Texture(placed), Shape::Texture(shape)) => Some((placed.texture(), shape)),
@@ -284,7 +284,7 @@ impl Arena {
         }
     }
 
-    /// The buffer of that number.
+    /// Returns the buffer with this index.
     pub(crate) fn buffer(&self, at: usize) -> Option<&Buffer> {
         match &self.objects[at] {
             Object::Buffer(buffer) => Some(buffer),
@@ -293,7 +293,7 @@ impl Arena {
     }
 }
 
-/// Whether the device makes such a thing at all.
+/// Checks that the device supports the resource.
 fn check(gpu: &Gpu, shape: &Shape, name: &str) -> Result<(), Unsupported> {
     match shape {
         Shape::Texture(shape) => check_texture(gpu, shape, name),
@@ -301,7 +301,7 @@ fn check(gpu: &Gpu, shape: &Shape, name: &str) -> Result<(), Unsupported> {
     }
 }
 
-/// The shape with its extent in texels, as the caps know it.
+/// Returns the description with its extent in texels, as used in the capabilities.
 fn absolute(desc: TextureDesc, frame: [u32; 2]) -> TextureDesc {
     let [width, height] = desc.extent.texels(frame);
     TextureDesc { extent: Extent::Absolute { width, height }, ..desc }

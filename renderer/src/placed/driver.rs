@@ -1,5 +1,4 @@
-//! Vulkan beside wgpu: images and buffers in blocks of memory, and the barriers between their owners. All calls of Vulkan that
-//! wgpu does not make are here.
+//! Vulkan calls that wgpu does not make: images and buffers in shared memory blocks, and aliasing barriers.
 
 #![allow(
     unsafe_code,
@@ -19,38 +18,38 @@ use wgpu::hal::api::Vulkan;
 use wgpu::hal::vulkan::{Buffer as HalBuffer, TextureMemory, conv};
 use wgpu::{Buffer, CommandBuffer, Extent3d, Texture, TextureDimension, TextureUses};
 
-/// A placed image or buffer, as wgpu knows it.
+/// A placed texture or buffer.
 #[derive(Debug)]
 pub(crate) enum Object {
     Texture(PlacedTexture),
     Buffer(Buffer),
 }
 
-/// A placed image.
+/// A placed texture.
 #[derive(Debug)]
 pub(crate) struct PlacedTexture {
     texture: Texture,
     home: TextureUses,
-    /// Lives as long as `texture`.
+    /// Handle of the image, valid as long as `texture`.
     raw: vk::Image,
-    /// Layout and planes at home.
+    /// Layout and planes in the resting usage.
     layout: vk::ImageLayout,
     planes: vk::ImageAspectFlags,
 }
 
 impl PlacedTexture {
-    /// The texture as wgpu knows it.
+    /// Returns the wgpu texture.
     pub(crate) fn texture(&self) -> &Texture {
         &self.texture
     }
 
-    /// The use that it is in between its last step of a frame and its first of the next.
+    /// Returns the usage between the last step of a frame and the first step of the next.
     pub(crate) fn home(&self) -> TextureUses {
         self.home
     }
 }
 
-/// The functions of the device that wgpu opened.
+/// Vulkan functions of the device that wgpu opened.
 pub(crate) struct Driver {
     /// Keeps the device open.
     gpu: Gpu,
@@ -64,7 +63,7 @@ impl std::fmt::Debug for Driver {
     }
 }
 
-/// Memory of the driver, given back when the last image in it is destroyed.
+/// A memory allocation, freed when the last resource in it is destroyed.
 struct Block {
     device: ash::Device,
     raw: vk::DeviceMemory,
@@ -78,11 +77,11 @@ impl Drop for Block {
     }
 }
 
-/// An image that is destroyed with this.
+/// An image that is destroyed on drop.
 struct Image {
     device: ash::Device,
     raw: vk::Image,
-    /// What it is bound to.
+    /// Memory that the image is bound to.
     _block: Option<Arc<Block>>,
 }
 
@@ -94,11 +93,11 @@ impl Drop for Image {
     }
 }
 
-/// A buffer that is destroyed with this.
+/// A buffer that is destroyed on drop.
 struct Bytes {
     device: ash::Device,
     raw: vk::Buffer,
-    /// What it is bound to.
+    /// Memory that the buffer is bound to.
     _block: Option<Arc<Block>>,
 }
 
@@ -114,10 +113,10 @@ fn refused(call: &'static str) -> impl Fn(vk::Result) -> NotPlaced {
 }
 
 impl Driver {
-    /// The driver of a device of Vulkan.
+    /// Returns the driver of a Vulkan device.
     ///
     /// # Errors
-    /// For a device of another interface.
+    /// Fails if the device uses another graphics API.
     pub(crate) fn of(gpu: &Gpu) -> Result<Self, NotPlaced> {
         let other = || NotPlaced::Backend(gpu.info().backend);
         // SAFETY: the device of wgpu is looked at and not destroyed; `gpu` keeps it open.
@@ -129,10 +128,10 @@ impl Driver {
         Ok(Self { gpu: gpu.clone(), device, memory })
     }
 
-    /// What the driver asks for `shape`: the object is made, looked at and destroyed.
+    /// Queries the memory requirements of a resource, by creating and destroying it.
     ///
     /// # Errors
-    /// When the driver makes no such thing.
+    /// Fails if the driver cannot create the resource.
     pub(crate) fn needs(&self, shape: &Shape) -> Result<Needs, NotPlaced> {
         let asked = match shape {
             Shape::Texture(shape) => {
@@ -149,11 +148,14 @@ impl Driver {
         Ok(Needs { bytes: asked.size, alignment: asked.alignment.max(1), memory_types: asked.memory_type_bits })
     }
 
-    /// Makes all objects, textures in one block and buffers in another, at their offsets; and says how many bytes were taken.
-    /// `needs` are those of the items, and offsets suit them. The third of an item is what debuggers call it.
+    /// Creates all objects at their offsets, textures in one block and buffers in another. Returns the objects and the
+    /// number of allocated bytes.
+    ///
+    /// An item is a description, an offset and a label. `needs` are the memory requirements of the items, which the
+    /// offsets must satisfy.
     ///
     /// # Errors
-    /// When there is no such memory, or not enough of it.
+    /// Fails if no memory type fits, or the device is out of memory.
     pub(crate) fn place(&self, items: &[(Shape, u64, &str)], needs: &[Needs]) -> Result<(Vec<Object>, u64), NotPlaced> {
         let (mut blocks, mut allocated) = ([None, None], 0);
         for (heap, block) in blocks.iter_mut().enumerate() {
@@ -174,8 +176,8 @@ impl Driver {
         Ok((made.collect::<Result<_, _>>()?, allocated))
     }
 
-    /// Commands that wait for everything submitted before, hand memory over to these textures (and whatever buffers), and put
-    /// the images into their homes.
+    /// Records a barrier that waits for all earlier submissions, makes the memory available to these textures (and all
+    /// buffers), and moves the images to their resting layouts.
     pub(crate) fn hand_over(&self, textures: &[&PlacedTexture]) -> CommandBuffer {
         let images: Vec<_> = textures
             .iter()
@@ -267,7 +269,7 @@ impl Driver {
         Ok(Bytes { device: self.device.clone(), raw, _block: block })
     }
 
-    /// Memory of the device's own of one of these types.
+    /// Allocates device-local memory of one of these types.
     fn block(&self, bytes: u64, types: u32) -> Result<Arc<Block>, NotPlaced> {
         let unfit = vk::MemoryPropertyFlags::LAZILY_ALLOCATED | vk::MemoryPropertyFlags::PROTECTED;
         let known = self.memory.memory_types_as_slice().iter().enumerate();
@@ -351,7 +353,7 @@ fn heap_of(shape: &Shape) -> usize {
     usize::from(matches!(shape, Shape::Buffer(_)))
 }
 
-/// The shape in the words of wgpu's back end.
+/// Returns the description for wgpu-hal.
 fn described<'n>(shape: &PhysicalTextureDesc, label: Option<&'n str>) -> wgpu::hal::TextureDescriptor<'n> {
     let ([width, height, depth_or_array_layers], format) = (shape.size, texture_format(shape.format));
     wgpu::hal::TextureDescriptor {

@@ -1,8 +1,8 @@
-//! The uses of wgpu's textures and buffers one by one, as its trackers know them, and the one that a placed texture rests in.
+//! Conversion of usages to the states that wgpu tracks, and the resting usage of placed textures.
 
 use wgpu::{BufferUsages, BufferUses, TextureFormat, TextureUsages, TextureUses};
 
-/// What a texture made for `usage` may be in.
+/// Returns all states that a texture with these usages can have.
 pub(crate) fn texture_uses(usage: TextureUsages, format: TextureFormat) -> TextureUses {
     let drawn = if format.is_depth_stencil_format() {
         TextureUses::DEPTH_STENCIL_READ | TextureUses::DEPTH_STENCIL_WRITE
@@ -22,8 +22,8 @@ pub(crate) fn texture_uses(usage: TextureUsages, format: TextureFormat) -> Textu
     .fold(TextureUses::empty(), |all, (_, uses)| all | uses)
 }
 
-/// The use that a texture is in from its last step of one frame to its first of the next: one that it is made for, and
-/// mostly that of its first step, so that no transition follows.
+/// Returns the state of a placed texture between its last step in one frame and its first step in the next. It is one
+/// of the texture's usages, and usually that of its first step, which saves a transition.
 pub(crate) fn home(usage: TextureUsages, format: TextureFormat) -> TextureUses {
     if usage.contains(TextureUsages::RENDER_ATTACHMENT) {
         if format.is_depth_stencil_format() { TextureUses::DEPTH_STENCIL_WRITE } else { TextureUses::COLOR_TARGET }
@@ -38,7 +38,7 @@ pub(crate) fn home(usage: TextureUsages, format: TextureFormat) -> TextureUses {
     }
 }
 
-/// What a buffer made for `usage` may be in.
+/// Returns all states that a buffer with these usages can have.
 pub(crate) fn buffer_uses(usage: BufferUsages) -> BufferUses {
     [
         (BufferUsages::COPY_SRC, BufferUses::COPY_SRC),

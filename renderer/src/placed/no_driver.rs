@@ -1,19 +1,19 @@
-//! In the place of [`driver`](super) where the program was built without Vulkan: there is no driver, so nothing is placed.
+//! Replacement for the Vulkan driver when the feature `vulkan` is off. No resources are placed.
 
 use crate::device::gpu::Gpu;
 use crate::placed::not_placed::NotPlaced;
 use crate::placed::shape::{Needs, Shape};
 use wgpu::{Buffer, CommandBuffer, Texture, TextureUses};
 
-/// No value.
+/// Uninhabited type: there is no driver.
 #[derive(Debug)]
 pub(crate) enum Driver {}
 
-/// No value.
+/// Uninhabited type: there are no placed textures.
 #[derive(Debug)]
 pub(crate) enum PlacedTexture {}
 
-/// An image or buffer.
+/// A placed texture or buffer.
 #[derive(Debug)]
 pub(crate) enum Object {
     Texture(PlacedTexture),

@@ -1,32 +1,32 @@
-//! Why textures cannot share one block of memory here.
+//! Reasons why textures cannot share a block of memory.
 
 use wgpu::Backend;
 
-/// Why frames that ask for [`Alias::Heap`](framegraph::Alias::Heap) get textures of the pool instead.
+/// Reason why [`Alias::Heap`](framegraph::Alias::Heap) is not available, so that pooled textures are used instead.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NotPlaced {
-    /// The device is not of Vulkan.
-    #[error("{0} places no textures; only Vulkan does (WGPU_BACKEND=vulkan)")]
+    /// The device does not use Vulkan.
+    #[error("{0} does not support placed textures; use Vulkan (WGPU_BACKEND=vulkan)")]
     Backend(Backend),
     /// The program was built without Vulkan.
     #[error("the program was built without Vulkan; build `framegraph-wgpu` with the feature `vulkan`")]
     NotBuilt,
-    /// No kind of memory holds all of a frame's textures, or all of its buffers.
-    #[error("no memory type of the driver holds all of them (types {types:#b} of bits, device-local)")]
+    /// No memory type can hold all textures, or all buffers, of a frame.
+    #[error("no device-local memory type of the driver can hold all of them (allowed types: {types:#b})")]
     MemoryType {
-        /// The types that all of them allow, as bits.
+        /// Bit mask of the memory types that all of them allow.
         types: u32,
     },
-    /// The driver refused a call.
-    #[error("the driver refused `{call}`: {why}")]
+    /// The driver rejected a call.
+    #[error("the driver rejected `{call}`: {why}")]
     Driver {
-        /// The function of Vulkan.
+        /// Vulkan function.
         call: &'static str,
-        /// Its result.
+        /// Vulkan result.
         why: String,
     },
-    /// The sizes that the driver states did not come to rest.
-    #[error("the driver states other sizes for the same textures each time it is asked")]
+    /// The driver reported different sizes for the same textures.
+    #[error("the driver reports different sizes for the same textures")]
     Restless,
 }
 

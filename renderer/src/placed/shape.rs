@@ -1,21 +1,21 @@
-//! What a heap holds, and what that takes.
+//! Descriptions of placed resources and their memory requirements.
 
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 
-/// What is placed.
+/// Description of a placed texture or buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
     Texture(PhysicalTextureDesc),
     Buffer(PhysicalBufferDesc),
 }
 
-/// What the driver asks for an image or buffer.
+/// Memory requirements of an image or buffer, as reported by the driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Needs {
-    /// Size, padding included.
+    /// Size in bytes, including padding.
     pub(crate) bytes: u64,
-    /// What its offset must be a multiple of; a power of two.
+    /// Alignment of the offset in bytes; a power of two.
     pub(crate) alignment: u64,
-    /// The kinds of memory that it may lie in, as bits.
+    /// Bit mask of the allowed memory types.
     pub(crate) memory_types: u32,
 }

@@ -1,9 +1,11 @@
-//! Whether a driver keeps the order of commands that reach one memory through different textures.
+//! Detection of drivers that do not order accesses to shared memory within a submission.
 
 use wgpu::AdapterInfo;
 
-/// Mesa's llvmpipe orders commands by texture and not by memory within one submission, whatever barriers say: a dispatch into
-/// an alias runs before the drawing that reads the earlier one. From version 25 on it waits at barriers.
+/// Returns whether the driver orders accesses to memory that several textures share.
+///
+/// Mesa's llvmpipe before version 25 orders commands by texture within a submission, regardless of barriers: a dispatch
+/// into one alias may run before the draw that reads another. Newer versions wait at barriers.
 pub(crate) fn keeps_order_of_aliases(info: &AdapterInfo) -> bool {
     if info.driver != "llvmpipe" {
         return true;

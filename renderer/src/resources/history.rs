@@ -1,13 +1,13 @@
-//! Images that outlive the frame in rings: what one frame writes, later ones read, without copies.
+//! Histories: rings of images that outlive a frame, so that later frames read earlier results without copies.
 //!
-//! A history of `n` frames is a ring of `n + 1` images, known by its [`Frame`](crate::Frame) and its full name. Each frame that
-//! writes it and succeeds moves the ring on by one. Fresh images hold zeros and are not *valid*; recorders are told so
-//! ([`Cx::history`](crate::Cx::history)) and reject them.
+//! A history of `n` frames is a ring of `n + 1` images, identified by its [`Frame`](crate::Frame) and its full name.
+//! Each successful frame that writes it advances the ring by one. New images are zero-filled and not *valid*; recorders
+//! query this with [`Cx::history`](crate::Cx::history).
 //!
-//! A ring is kept until it is reset, until its `Frame` is dropped, or until nobody wrote it for
-//! [`ExecutorOptions::max_age`](crate::ExecutorOptions::max_age) frames of the executor, whoever declared those. No other `Frame`
-//! takes it over. A change of width and height keeps the earlier images, each in the size that it was written in; any other
-//! change of shape starts anew.
+//! A ring is dropped on reset, when its `Frame` is dropped, or when it was not written for
+//! [`ExecutorOptions::max_age`](crate::ExecutorOptions::max_age) frames of the executor. Frames never share rings. A
+//! change of width and height keeps previous images at the size they were written with. Any other change of shape
+//! starts a new ring.
 
 use crate::device::gpu::Gpu;
 use crate::frame_key::{FrameKey, FrameTag};
@@ -16,14 +16,14 @@ use crate::resources::pool::Pooled;
 use crate::resources::support::Unsupported;
 use wgpu::Texture;
 
-/// All histories, by their frame and the full name of their resource.
+/// All histories of an executor.
 #[derive(Clone, Debug, Default)]
 pub struct Histories {
     rings: Vec<Ring>,
     created: u64,
-    /// Frames that succeeded.
+    /// Number of successful frames.
     frame: u64,
-    /// Who is executed now.
+    /// Frame that is currently executed.
     now: FrameTag,
 }
 
@@ -32,17 +32,17 @@ struct Ring {
     owner: FrameTag,
     name: String,
     images: Vec<Image>,
-    /// The image that this frame writes.
+    /// Index of the image that the current frame writes.
     head: usize,
-    /// How many earlier images hold what a frame wrote.
+    /// Number of previous images with valid contents.
     valid: usize,
-    /// Frames of its owner since the one that wrote it last.
+    /// Number of executions of its frame since the last write.
     missed: u64,
     declared: bool,
     written: bool,
-    /// An image was made in this frame.
+    /// Whether an image was created in this frame.
     fresh: bool,
-    /// The frame that wrote it last.
+    /// Frame number of the last write.
     moved: u64,
 }
 
@@ -52,27 +52,27 @@ struct Image {
     shape: PhysicalTextureDesc,
 }
 
-/// What a frame declares of a history.
+/// Declaration of a history in the current frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Declared {
-    /// The shape of the image that the frame writes.
+    /// Shape of the image that the frame writes.
     pub(crate) shape: PhysicalTextureDesc,
-    /// How many earlier images there are.
+    /// Number of previous images.
     pub(crate) frames: u8,
-    /// A pass writes it.
+    /// Whether a pass writes the history.
     pub(crate) written: bool,
-    /// Earlier images are attached, so that they must have the size of this frame's.
+    /// Whether previous images are attached, which requires the current size.
     pub(crate) attached: bool,
-    /// How many levels earlier images must have for what reads them; not more than `shape` has.
+    /// Minimum number of mip levels that readers of previous images need; at most that of `shape`.
     pub(crate) levels: u32,
 }
 
-/// The image of an earlier frame.
+/// A previous image.
 #[derive(Clone, Debug)]
 pub(crate) struct Earlier {
     pub(crate) texture: Texture,
     pub(crate) shape: PhysicalTextureDesc,
-    /// How many frames of its owner went by without writing the history; none where the image holds nothing of use.
+    /// Number of executions without a write; `None` if the contents are not valid.
     pub(crate) missed: Option<u64>,
 }
 
@@ -81,7 +81,7 @@ impl Image {
         Ok(Self { texture: shape.create(gpu, name)?, shape })
     }
 
-    /// Whether passes that are declared to read `now` can read this image, which may be of another size.
+    /// Returns whether the passes that read `now` can read this image, which may have another size.
     fn reads_as(&self, now: &Declared) -> bool {
         let Declared { shape, attached, levels, .. } = now;
         let Self { shape: own, .. } = self;
@@ -91,17 +91,17 @@ impl Image {
 }
 
 impl Histories {
-    /// Images made since the beginning.
+    /// Returns the number of images created.
     pub fn created(&self) -> u64 {
         self.created
     }
 
-    /// Bytes of all images, without padding.
+    /// Returns the size of all images in bytes, without padding.
     pub fn bytes(&self) -> u64 {
         self.rings.iter().flat_map(|ring| &ring.images).map(|image| image.shape.bytes()).sum()
     }
 
-    /// Begins a frame of `owner`: nothing is declared yet, and rings whose frames were dropped go.
+    /// Begins a frame of `owner`. Drops rings of frames that no longer exist.
     pub(crate) fn begin_frame(&mut self, owner: &FrameKey) {
         if !self.now.is_of(owner) {
             self.now = owner.tag();
@@ -110,10 +110,10 @@ impl Histories {
         self.rings.iter_mut().for_each(|r| (r.declared, r.fresh) = (false, false));
     }
 
-    /// Declares a history and returns the image that this frame writes.
+    /// Declares a history and returns the image that the current frame writes.
     ///
     /// # Errors
-    /// When the device offers no such texture.
+    /// Fails if the device does not support the texture.
     pub(crate) fn current(&mut self, gpu: &Gpu, name: &str, now: Declared) -> Result<Texture, Unsupported> {
         let length = usize::from(now.frames) + 1;
         let is = |ring: &Ring| ring.is(&self.now, name);
@@ -131,7 +131,8 @@ impl Histories {
             }
         };
         let ring = &mut self.rings[at];
-        // An image that cannot be read makes those before it unreachable; what is not valid holds zeros in today's shape.
+        // An image that cannot be read makes all older ones unreachable. Invalid images are zero-filled and have the
+        // current shape.
         let kept = (1..=ring.valid).find(|age| !ring.image(*age).reads_as(&now)).map_or(ring.valid, |age| age - 1);
         for age in 0..length {
             let fits = if age <= kept && age > 0 { true } else { ring.image(age).shape.serves(&now.shape) };
@@ -144,7 +145,7 @@ impl Histories {
         Ok(ring.image(0).texture.clone())
     }
 
-    /// The image as it was `age` frames ago; `None` when the history is not declared.
+    /// Returns the image from `age` writes ago; `None` if the history is not declared.
     pub(crate) fn previous(&self, name: &str, age: u8) -> Option<Earlier> {
         let ring = self.rings.iter().find(|ring| ring.declared && ring.is(&self.now, name))?;
         let age = usize::from(age);
@@ -152,14 +153,15 @@ impl Histories {
         Some(Earlier { texture, shape, missed: (age <= ring.valid).then_some(ring.missed) })
     }
 
-    /// Width and height of the image as it was `age` frames before the next one of `owner`; none when that is not valid.
+    /// Returns width and height of the image `age` writes before the next frame of `owner`; `None` if it is not valid.
     pub(crate) fn texels(&self, owner: &FrameKey, name: &str, age: u8) -> Option<[u32; 2]> {
         let ring = self.rings.iter().find(|ring| ring.owner.is_of(owner) && ring.name == name)?;
         let [width, height, _] = ring.image(age.into()).shape.size;
         (usize::from(age) <= ring.valid).then_some([width, height])
     }
 
-    /// Ends a frame that succeeded: rings that it wrote move on, and those that nobody wrote for `max_age` frames are dropped.
+    /// Ends a successful frame. Advances rings that it wrote, and drops rings that were not written for `max_age`
+    /// frames.
     pub(crate) fn advance(&mut self, max_age: u64) {
         self.frame += 1;
         let Self { rings, frame, now, .. } = self;
@@ -176,24 +178,24 @@ impl Histories {
         rings.retain(|ring| *frame - ring.moved <= max_age);
     }
 
-    /// After the device refused something: an image made in this frame may be no good.
+    /// Drops rings with images created in this frame. Called after a device error, since they may be invalid.
     pub(crate) fn forget_frame(&mut self) {
         self.rings.retain(|ring| !ring.fresh);
     }
 
-    /// Forgets the earlier frames of the histories of one name: after a camera cut, say.
+    /// Drops all histories of this name.
     pub(crate) fn reset(&mut self, name: &str) {
         self.rings.retain(|ring| ring.name != name);
     }
 
-    /// Forgets the earlier frames of all histories.
+    /// Drops all histories.
     pub(crate) fn reset_all(&mut self) {
         self.rings.clear();
     }
 }
 
 impl Ring {
-    /// A ring of images that hold nothing yet.
+    /// Creates a ring without valid images.
     fn new(owner: FrameTag, name: &str, images: Vec<Image>, moved: u64) -> Self {
         let (name, head, valid, missed) = (name.to_owned(), 0, 0, 0);
         Self { owner, name, images, head, valid, missed, declared: false, written: false, fresh: true, moved }
@@ -229,7 +231,7 @@ mod tests {
         Declared { shape, frames, written: true, attached: false, levels: 1 }
     }
 
-    /// Histories with who executes.
+    /// Histories with a frame that owns them.
     struct Bench {
         gpu: Gpu,
         histories: Histories,
@@ -241,7 +243,7 @@ mod tests {
             Ok(Self { gpu: Gpu::noop()?, histories: Histories::default(), owner: FrameKey::new() })
         }
 
-        /// One frame with the history `taa`: how wide its earlier image is, and whether that is valid.
+        /// Executes one frame with the history `taa`. Returns the width of its previous image, and whether it is valid.
         fn frame(&mut self, now: Declared, success: bool) -> Result<(u32, bool), Box<dyn std::error::Error>> {
             self.histories.begin_frame(&self.owner);
             self.histories.current(&self.gpu, "taa", now)?;
@@ -253,7 +255,7 @@ mod tests {
             Ok((earlier.shape.size[0], earlier.missed.is_some()))
         }
 
-        /// Frames without the history: of somebody else, or of its own graph.
+        /// Executes frames that do not use the history, of its own frame or another one.
         fn without(&mut self, frames: u64, own: bool) {
             let other = FrameKey::new();
             for _ in 0..frames {
@@ -338,7 +340,7 @@ mod tests {
         Ok(())
     }
 
-    /// Of an earlier image with fewer levels, those that it has are enough for a pass that samples all.
+    /// A pass that samples all levels accepts a previous image with fewer levels.
     #[test]
     fn a_resize_keeps_an_image_that_has_the_levels_that_are_read() -> TestResult {
         let of = |side, levels| {

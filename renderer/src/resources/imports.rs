@@ -1,12 +1,12 @@
-//! Textures and buffers that the application owns, bound to the graph's imports for one frame.
+//! Imports: textures and buffers of the application, bound to a graph for one frame.
 
 use crate::named::Named;
 use framegraph::{Buffer, Desc, Dimension, Format, Graph, Plan, ResourceId, Texture};
 use wgpu::TextureDimension;
 
-use crate::device::format::{buffer_usages, texture_format, texture_usages};
+use crate::device::format::{buffer_usages, joined, texture_format, texture_usages};
 
-/// What each import stands for in this frame.
+/// Textures and buffers to bind to the imports of a graph in one frame.
 ///
 /// ```
 /// # use framegraph_wgpu::Imports;
@@ -22,12 +22,12 @@ pub struct Imports {
     buffers: Vec<(Key<Buffer>, wgpu::Buffer)>,
 }
 
-/// How long views of an imported texture are kept.
+/// How long views of an imported texture are cached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Lifetime {
-    /// As long as it keeps being imported.
+    /// Until the texture is no longer imported.
     Kept,
-    /// For this frame.
+    /// For one frame, as needed for surface textures.
     Frame,
 }
 
@@ -38,23 +38,23 @@ enum Key<H> {
     Row(ResourceId),
 }
 
-/// What is wrong with an import.
+/// Error: an import is missing or does not match its declaration.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ImportError {
-    /// Nothing was bound to an import that passes use.
-    #[error("nothing is bound to the import `{resource}`; bind it with `Imports::{}`", if *.is_buffer { "buffer" } else { "texture" })]
+    /// No texture or buffer is bound to an import that passes use.
+    #[error("no {} is bound to the import `{resource}`; bind one with `Imports::{}`", kind(*.is_buffer), kind(*.is_buffer))]
     Missing {
-        /// The imported resource.
+        /// Imported resource.
         resource: Named<ResourceId>,
-        /// Whether it is a buffer, not a texture.
+        /// Whether the resource is a buffer.
         is_buffer: bool,
     },
-    /// What was bound is not what was declared.
+    /// The bound texture or buffer does not match the declaration.
     #[error("the import `{resource}` was declared with {mismatch}")]
     Differs {
-        /// The imported resource.
+        /// Imported resource.
         resource: Named<ResourceId>,
-        /// The property that differs.
+        /// Property that differs.
         mismatch: ImportMismatch,
     },
 }
@@ -65,33 +65,33 @@ impl std::fmt::Debug for ImportError {
     }
 }
 
-/// A property of an import as it was declared (or as the passes need it), and as it is.
+/// Mismatch between the declaration of an import (or the usages of its passes) and the bound texture or buffer.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "the fields of each are what was declared or needed, and what there is")]
 pub enum ImportMismatch {
     /// Width and height in texels.
-    #[error("{}×{} texels, but what is bound to it has {}×{} texels; declare its true size, or compile for the frame's new size", .declared[0], .declared[1], .actual[0], .actual[1])]
+    #[error("{}×{} texels, but the bound texture has {}×{}; declare its actual size, or compile for the new frame size", .declared[0], .declared[1], .actual[0], .actual[1])]
     Size { declared: [u32; 2], actual: [u32; 2] },
-    /// The texture's format.
-    #[error("format {declared:?}, but what is bound to it has format {actual:?}; declare its true format")]
+    /// Format of a texture.
+    #[error("format {declared:?}, but the bound texture has format {actual:?}; declare its actual format")]
     Format { declared: Format, actual: wgpu::TextureFormat },
-    /// Layers of an array, or the depth of a three-dimensional texture.
-    #[error("{} layers, {:?}, but what is bound to it has {} layers, {:?}; declare its true layers", .declared.0, .declared.1, .actual.0, .actual.1)]
+    /// Layers of an array texture, or depth of a 3D texture.
+    #[error("{} layers ({}), but the bound texture has {} ({}); declare its actual layers", .declared.0, dimensions(.declared.1), .actual.0, dimensions(.actual.1))]
     Layers { declared: (u32, TextureDimension), actual: (u32, TextureDimension) },
-    /// Mip levels.
-    #[error("{declared} levels, but what is bound to it has {actual} levels; declare its true levels")]
+    /// Number of mip levels.
+    #[error("{declared} mip levels, but the bound texture has {actual}; declare its actual levels")]
     Levels { declared: u32, actual: u32 },
     /// Samples per texel.
-    #[error("{declared} samples, but what is bound to it has {actual} samples; declare its true samples")]
+    #[error("{declared} samples, but the bound texture has {actual}; declare its actual samples")]
     Samples { declared: u32, actual: u32 },
-    /// Uses of a texture.
-    #[error("{needed:?}, but what is bound to it has {actual:?}; create it with these uses")]
+    /// Usages of a texture.
+    #[error("usages {}, but the bound texture has {}; create it with these usages", joined(.needed.iter_names()), joined(.actual.iter_names()))]
     TextureUsages { needed: wgpu::TextureUsages, actual: wgpu::TextureUsages },
     /// Size of a buffer in bytes.
-    #[error("{declared} bytes, but what is bound to it has {actual} bytes; declare its true size")]
+    #[error("{declared} bytes, but the bound buffer has {actual}; declare its actual size")]
     Bytes { declared: u64, actual: u64 },
-    /// Uses of a buffer.
-    #[error("{needed:?}, but what is bound to it has {actual:?}; create it with these uses")]
+    /// Usages of a buffer.
+    #[error("usages {}, but the bound buffer has {}; create it with these usages", joined(.needed.iter_names()), joined(.actual.iter_names()))]
     BufferUsages { needed: wgpu::BufferUsages, actual: wgpu::BufferUsages },
 }
 
@@ -102,65 +102,66 @@ impl std::fmt::Debug for ImportMismatch {
 }
 
 impl Imports {
-    /// A set without imports.
+    /// Creates an empty set of imports.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Binds `texture` to the import that any version of `handle` names. Views of it are kept from frame to frame.
+    /// Binds `texture` to the import of any version of `handle`. Views of it are cached between frames.
     pub fn texture(&mut self, handle: Texture, texture: &wgpu::Texture) -> &mut Self {
         self.textures.push((Key::Handle(handle), texture.clone(), Lifetime::Kept));
         self
     }
 
-    /// As [`Imports::texture`], by the full name of the resource.
+    /// Binds `texture` to the import with this full name, like [`Imports::texture`].
     pub fn texture_named(&mut self, name: &str, texture: &wgpu::Texture) -> &mut Self {
         self.textures.push((Key::Name(name.to_owned()), texture.clone(), Lifetime::Kept));
         self
     }
 
-    /// Binds the image of a surface: nothing of it is kept when the frame has been submitted.
+    /// Binds the texture of a surface. All references to it are released once the frame is submitted.
     pub fn surface(&mut self, handle: Texture, texture: &wgpu::Texture) -> &mut Self {
         self.textures.push((Key::Handle(handle), texture.clone(), Lifetime::Frame));
         self
     }
 
-    /// Binds `buffer` to the import that any version of `handle` names.
+    /// Binds `buffer` to the import of any version of `handle`.
     pub fn buffer(&mut self, handle: Buffer, buffer: &wgpu::Buffer) -> &mut Self {
         self.buffers.push((Key::Handle(handle), buffer.clone()));
         self
     }
 
-    /// As [`Imports::buffer`], by the full name of the resource.
+    /// Binds `buffer` to the import with this full name, like [`Imports::buffer`].
     pub fn buffer_named(&mut self, name: &str, buffer: &wgpu::Buffer) -> &mut Self {
         self.buffers.push((Key::Name(name.to_owned()), buffer.clone()));
         self
     }
 
-    /// Binds `texture` to a resource, and keeps nothing of it when the frame has been submitted.
+    /// Binds `texture` to a resource for one frame only.
     pub(crate) fn lend_at(&mut self, resource: ResourceId, texture: wgpu::Texture) {
         self.textures.push((Key::Row(resource), texture, Lifetime::Frame));
     }
 
-    /// As [`Imports::texture`], by the row of the graph: for graphs from files, whose resources have no handles.
+    /// Binds `texture` to a resource, like [`Imports::texture`]. For graphs from files, whose resources have no
+    /// handles.
     pub fn texture_at(&mut self, resource: ResourceId, texture: &wgpu::Texture) -> &mut Self {
         self.textures.push((Key::Row(resource), texture.clone(), Lifetime::Kept));
         self
     }
 
-    /// As [`Imports::buffer`], by the row of the graph.
+    /// Binds `buffer` to a resource, like [`Imports::buffer`].
     pub fn buffer_at(&mut self, resource: ResourceId, buffer: &wgpu::Buffer) -> &mut Self {
         self.buffers.push((Key::Row(resource), buffer.clone()));
         self
     }
 
-    /// Forgets everything bound and keeps the memory.
+    /// Removes all bindings but keeps the memory.
     pub fn clear(&mut self) {
         self.textures.clear();
         self.buffers.clear();
     }
 
-    /// The texture bound to a resource, checked against its declaration.
+    /// Returns the texture bound to a resource, checked against its declaration.
     pub(crate) fn find_texture(
         &self,
         plan: &Plan,
@@ -175,20 +176,20 @@ impl Imports {
         }
     }
 
-    /// The texture bound to a resource of `graph`, unchecked.
+    /// Returns the texture bound to a resource of `graph`, without checks.
     pub(crate) fn texture_of(&self, graph: &Graph, resource: ResourceId) -> Option<(&wgpu::Texture, Lifetime)> {
         let found = self.textures.iter().rev().find(|(key, ..)| key.names(graph, resource, |g, h| g.resource_of(h)));
         found.map(|(_, texture, lifetime)| (texture, *lifetime))
     }
 
-    /// The buffer bound to a resource of `graph`, unchecked.
+    /// Returns the buffer bound to a resource of `graph`, without checks.
     pub(crate) fn buffer_of(&self, graph: &Graph, resource: ResourceId) -> Option<&wgpu::Buffer> {
         let found =
             self.buffers.iter().rev().find(|(key, _)| key.names(graph, resource, |g, h| g.resource_of_buffer(h)));
         found.map(|(_, buffer)| buffer)
     }
 
-    /// The buffer bound to a resource, checked against its declaration.
+    /// Returns the buffer bound to a resource, checked against its declaration.
     pub(crate) fn find_buffer(&self, plan: &Plan, resource: ResourceId) -> Result<&wgpu::Buffer, ImportError> {
         let graph = plan.graph();
         let Some(buffer) = self.buffer_of(graph, resource) else {
@@ -217,7 +218,19 @@ impl<H: Copy> Key<H> {
     }
 }
 
-/// The first property in which `texture` is not what was declared, if there is one.
+const fn kind(is_buffer: bool) -> &'static str {
+    if is_buffer { "buffer" } else { "texture" }
+}
+
+const fn dimensions(dimension: TextureDimension) -> &'static str {
+    match dimension {
+        TextureDimension::D1 => "1D",
+        TextureDimension::D2 => "2D",
+        TextureDimension::D3 => "3D",
+    }
+}
+
+/// Returns the first mismatch between `texture` and its declaration.
 fn texture_mismatch(plan: &Plan, resource: ResourceId, texture: &wgpu::Texture) -> Option<ImportMismatch> {
     let Desc::Texture(desc) = &plan.graph().resources()[resource.index()].desc else {
         return None;

@@ -1,31 +1,31 @@
-//! Why no texture or buffer stands behind a resource.
+//! Reasons why a resource has no texture or buffer.
 
-/// Why no texture or buffer stands behind a resource.
+/// Reason why a resource has no texture or buffer.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NoMemory {
     /// No frame was executed, or the last one failed.
-    #[error("the frame has not been realized")]
+    #[error("no frame was executed, or the last one failed; execute one first")]
     NotRealized,
-    /// No pass that the plan kept touches it.
-    #[error("no kept pass touches it")]
+    /// No pass of the plan uses the resource.
+    #[error("no pass of the plan uses it; read or export it")]
     Unused,
-    /// The plan made its reader part of its writer's shader.
-    #[error("its reader is part of its writer's shader")]
+    /// The plan inlined the pass that reads the resource.
+    #[error("it is inlined into the shader that produces it; compile with `Options::inline` off to keep it")]
     Inlined,
-    /// It is an attachment whose contents never leave the tile.
-    #[error("it lives in the tile")]
+    /// The resource is a memoryless attachment.
+    #[error("it is a memoryless attachment; read it in a later pass, or export it, to keep it in memory")]
     Memoryless,
-    /// It is an image of a history that no pass declared in this frame.
-    #[error("its history is not declared")]
+    /// The history is not declared in this frame.
+    #[error("its history is not declared in this frame; declare it")]
     NoHistory,
-    /// The image of a surface, which was lent for one frame.
-    #[error("it was lent for the frame alone")]
+    /// The resource is a surface texture, which is imported for one frame only.
+    #[error("it is a surface texture, which is released after its frame; use it before")]
     Lent,
-    /// A texture was asked for, and it is a buffer.
-    #[error("it is a buffer")]
+    /// A texture was requested, but the resource is a buffer.
+    #[error("it is a buffer; look it up as one")]
     IsBuffer,
-    /// A buffer was asked for, and it is a texture.
-    #[error("it is a texture")]
+    /// A buffer was requested, but the resource is a texture.
+    #[error("it is a texture; look it up as one")]
     IsTexture,
 }
 

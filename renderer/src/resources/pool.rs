@@ -1,87 +1,86 @@
-//! Physical textures and buffers that are used again: within a frame by the plan's slots, and from frame to frame.
+//! Pools of physical textures and buffers, reused within a frame through the plan's slots, and from frame to frame.
 //!
-//! A request is served by the object that served the same tenant last (so views and bind groups made for it stay good),
-//! else by the idle object that covers it with the least waste, else by a new one. An object that no frame asked for during
-//! `max_age` frames is given up; until then a resize back, an odd size or a toggled effect finds it again, as long as the pool
-//! keeps to its budget ([`Limits`]).
+//! A request is served by the object that last served the same tenant, so that views and bind groups stay valid.
+//! Otherwise it is served by the idle object that fits with the least waste, or by a new one. Objects that were not
+//! requested for `max_age` frames are dropped, or earlier if the pool exceeds its budget ([`Limits`]).
 
 use crate::device::gpu::Gpu;
 use crate::resources::support::Unsupported;
 
-/// What a pool needs of the shape of its objects.
+/// Description of objects that a pool can hold.
 pub trait Pooled: Copy + Eq {
-    /// The wgpu object.
+    /// wgpu object.
     type Object: Clone + std::fmt::Debug;
-    /// Whether an object of this shape can be used where `request` is asked for.
+    /// Returns whether an object of this description can serve `request`.
     fn serves(&self, request: &Self) -> bool;
-    /// How much more than `request` an object of this shape offers; 0 is a perfect fit.
+    /// Returns how much an object of this description exceeds `request`; 0 is a perfect fit.
     fn waste(&self, request: &Self) -> u32;
-    /// Bytes without padding.
+    /// Returns the size in bytes, without padding.
     fn bytes(&self) -> u64;
-    /// Makes an object, called `label` in debuggers and errors.
+    /// Creates an object with a label for debuggers and errors.
     ///
     /// # Errors
-    /// When the device offers no such thing.
+    /// Fails if the device does not support the object.
     fn create(&self, gpu: &Gpu, label: &str) -> Result<Self::Object, Unsupported>;
 }
 
-/// What one frame asks of the pool.
+/// A request for an object of the pool.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<S> {
-    /// What the object must be.
+    /// Description of the object.
     pub shape: S,
-    /// Who asks: requests of one tenant in successive frames get one object, as long as it fits.
+    /// Identity of the requester. Requests of one tenant get the same object in each frame, as long as it fits.
     pub tenant: u64,
 }
 
-/// How long and how much a pool keeps.
+/// Limits of age and size of a pool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Frames after which an object that no frame asked for is given up.
+    /// Number of frames after which unused objects are dropped.
     pub max_age: u64,
-    /// Beyond so many times the bytes that the largest of the last [`RECENT`] frames used, objects are given up before they
-    /// are old: those first that no frame asked for the longest, so the sizes that a drag has left behind. What the last
-    /// two frames used stays in any case: two graphs that take turns must not make everything anew.
+    /// Maximum size of the pool, as a multiple of the largest of the last [`RECENT`] frames. If it is exceeded, the
+    /// objects that were unused for longest are dropped first. Objects of the last two frames are always kept, so that
+    /// two alternating graphs do not recreate everything.
     pub budget: u32,
 }
 
-/// Frames among which the largest sets the budget.
+/// Number of recent frames whose maximum size sets the budget.
 pub(crate) const RECENT: usize = 8;
 
 /// Hits, misses and memory of a pool.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PoolCounts {
-    /// Requests that an existing object served.
+    /// Number of requests served by existing objects.
     pub hits: u64,
-    /// Requests for which an object was made.
+    /// Number of objects created.
     pub created: u64,
-    /// Objects given up.
+    /// Number of objects dropped.
     pub evicted: u64,
-    /// Objects held now.
+    /// Number of objects in the pool.
     pub objects: u64,
-    /// Bytes held now, without padding.
+    /// Size of all objects in bytes, without padding.
     pub bytes: u64,
-    /// Bytes of what the last frame used.
+    /// Size of the objects that the last frame used, in bytes.
     pub used_bytes: u64,
-    /// The most bytes that were held after a frame.
+    /// Maximum size after any frame, in bytes.
     pub peak_bytes: u64,
-    /// What may be held beside what the last two frames used.
+    /// Current size limit in bytes. Objects of the last two frames may exceed it.
     pub budget_bytes: u64,
 }
 
-/// Objects of one kind. See the [module](self).
+/// A pool of objects. See the [module documentation](self).
 #[derive(Debug)]
 pub struct Pool<S: Pooled> {
     entries: Vec<Entry<S>>,
     next: u64,
     frame: u64,
     limits: Limits,
-    /// Bytes that the last frames used, in a ring.
+    /// Sizes of recent frames in bytes, as a ring buffer.
     recent: [u64; RECENT],
     counts: PoolCounts,
-    /// The entry of each request of the frame.
+    /// Index of the entry that serves each request of the frame.
     chosen: Vec<Option<usize>>,
-    /// They are all there, and no entry has moved since.
+    /// Whether `chosen` is complete and no entry has moved since.
     settled: bool,
 }
 
@@ -93,18 +92,18 @@ struct Entry<S: Pooled> {
     bytes: u64,
     object: S::Object,
     tenant: u64,
-    /// The frame that used it last.
+    /// Number of the last frame that used the object.
     used: u64,
 }
 
 impl<S: Pooled> Pool<S> {
-    /// An empty pool.
+    /// Creates an empty pool.
     pub fn new(limits: Limits) -> Self {
         let (recent, counts) = ([0; RECENT], PoolCounts::default());
         Self { entries: Vec::new(), next: 0, frame: 0, limits, recent, counts, chosen: Vec::new(), settled: false }
     }
 
-    /// Hits, creations and evictions since the pool was made, and what it holds now.
+    /// Returns hits, creations and evictions since the pool was created, and its current size.
     pub fn counts(&self) -> PoolCounts {
         PoolCounts { objects: self.entries.len() as u64, bytes: self.bytes(|_| true), ..self.counts }
     }
@@ -113,16 +112,16 @@ impl<S: Pooled> Pool<S> {
         self.entries.iter().filter(|e| counted(e)).map(|e| e.bytes).sum()
     }
 
-    /// Begins a frame: everything is idle again.
+    /// Begins a frame. All objects become idle.
     pub fn begin_frame(&mut self) {
         self.frame += 1;
     }
 
-    /// Serves all requests of a frame, in order; no object serves two of them. `label` gives the name of a request, for
-    /// debuggers and errors, when its object has to be made.
+    /// Serves all requests of a frame, in order. Each object serves at most one request. `label` returns the label of a
+    /// request, for objects that are created.
     ///
     /// # Errors
-    /// When the device offers no such object as one of them asks for.
+    /// Fails if the device does not support a requested object.
     pub fn acquire<'n>(
         &mut self,
         gpu: &Gpu,
@@ -134,7 +133,7 @@ impl<S: Pooled> Pool<S> {
         self.settled = false;
         let mut chosen = std::mem::take(&mut self.chosen);
         chosen.clear();
-        // Requests whose earlier object still fits come first, so that no other request takes it.
+        // Requests whose last object still fits are served first, so that no other request takes it.
         chosen.extend(requests.iter().map(|r| self.take(r, |e| e.tenant == r.tenant && e.shape.serves(&r.shape))));
         for (at, (request, index)) in requests.iter().zip(&mut chosen).enumerate() {
             let served = match index.or_else(|| self.take(request, |e| e.shape.serves(&request.shape))) {
@@ -148,12 +147,12 @@ impl<S: Pooled> Pool<S> {
         Ok(())
     }
 
-    /// Whether the requests of the frame before would be served as they were.
+    /// Returns whether repeating the last frame's requests would return the same objects.
     pub fn is_settled(&self) -> bool {
         self.settled
     }
 
-    /// Serves the requests of the frame before as they were. Only where the pool [is settled](Pool::is_settled).
+    /// Repeats the requests of the last frame. Valid only if the pool [is settled](Pool::is_settled).
     pub fn acquire_again(&mut self) {
         for index in self.chosen.iter().flatten() {
             self.entries[*index].used = self.frame;
@@ -161,7 +160,7 @@ impl<S: Pooled> Pool<S> {
         self.counts.hits += self.chosen.len() as u64;
     }
 
-    /// Marks the best idle entry that fits as used.
+    /// Marks the best fitting idle entry as used.
     fn take(&mut self, request: &Request<S>, fits: impl Fn(&Entry<S>) -> bool) -> Option<usize> {
         let idle = self.entries.iter().enumerate().filter(|(_, e)| e.used != self.frame && fits(e));
         let (index, _) = idle.min_by_key(|(_, e)| (e.shape.waste(&request.shape), e.id))?;
@@ -181,7 +180,7 @@ impl<S: Pooled> Pool<S> {
         Ok(self.entries.len() - 1)
     }
 
-    /// Ends a frame: gives up what is too old or beyond the budget, and calls `gone` for each.
+    /// Ends a frame. Drops objects that are too old or exceed the budget, and calls `gone` for each.
     pub fn evict(&mut self, mut gone: impl FnMut(&S::Object)) {
         let (frame, Limits { max_age, budget }) = (self.frame, self.limits);
         self.retain(|e| frame - e.used <= max_age, &mut gone);
@@ -200,13 +199,13 @@ impl<S: Pooled> Pool<S> {
         self.counts = PoolCounts { used_bytes, peak_bytes, budget_bytes, ..self.counts };
     }
 
-    /// Gives up everything that this frame did not use, and calls `gone` for each.
+    /// Drops all objects that this frame did not use, and calls `gone` for each.
     pub fn trim(&mut self, gone: impl FnMut(&S::Object)) {
         let frame = self.frame;
         self.retain(|e| e.used == frame, gone);
     }
 
-    /// Gives up everything that this frame used: after the device refused something, nothing is known of it.
+    /// Drops all objects that this frame used. Called after a device error, since they may be invalid.
     pub fn forget_frame(&mut self, gone: impl FnMut(&S::Object)) {
         let frame = self.frame;
         self.retain(|e| e.used != frame, gone);
@@ -232,12 +231,12 @@ mod tests {
     use super::*;
     use crate::device::gpu::{Gpu, OpenError};
 
-    /// A stand-in: size in the higher digits, offered uses in the last one.
+    /// Test description: size in the higher digits, usages in the last digit.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     struct Toy(u32);
 
     impl Pooled for Toy {
-        /// How many were made before it.
+        /// Number of objects created before.
         type Object = u64;
         fn serves(&self, request: &Self) -> bool {
             self.0 / 10 == request.0 / 10 && self.0 % 10 >= request.0 % 10
@@ -263,12 +262,12 @@ mod tests {
             Ok(Self { gpu: Gpu::noop()?, pool: Pool::new(Limits { max_age, budget }) })
         }
 
-        /// One frame of (tenant, shape); returns the ids.
+        /// Executes one frame with pairs of tenant and description. Returns the object numbers.
         fn frame(&mut self, asked: &[(u64, u32)]) -> Vec<u64> {
             self.pool.begin_frame();
             let requests: Vec<_> = asked.iter().map(|(t, s)| Request { shape: Toy(*s), tenant: *t }).collect();
             let mut out = Vec::new();
-            // A toy is as many as there were before it: its label's length.
+            // The object number is encoded in the length of the label.
             let labels = "1".repeat(64);
             let made = std::cell::Cell::new(self.pool.counts.created as usize);
             let label = |_: usize| &labels[..made.replace(made.get() + 1)];
@@ -314,7 +313,7 @@ mod tests {
         Ok(())
     }
 
-    /// A drag: each frame asks for two objects of a size that no other frame has. Without a budget, all of the last 30 stay.
+    /// Simulates a window resize: each frame requests two objects of a new size.
     #[test]
     fn sizes_that_a_drag_leaves_behind_go_once_the_budget_is_reached() -> Result<(), OpenError> {
         let mut bench = Bench::new(30, 3)?;
@@ -325,7 +324,7 @@ mod tests {
             assert_eq!(budget_bytes, used_bytes * 3);
             assert!(bytes <= budget_bytes && peak_bytes >= bytes, "{bytes} of {budget_bytes}");
             if size > 102 {
-                // Three frames' worth, of which the first ends below the budget.
+                // The budget allows three frames.
                 assert_eq!(bytes, u64::from(size + size - 1) * 2 + u64::from(size - 2) * 2, "size {size}");
                 assert_eq!(ids[0], u64::from(size - 100) * 2);
             }

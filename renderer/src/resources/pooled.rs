@@ -1,4 +1,4 @@
-//! Textures and buffers as the pools hold them: which object serves which request, and how one is made.
+//! Pool implementation for textures and buffers: which object serves a request, and how it is created.
 
 use crate::device::format::{both_forms, texture_format};
 use crate::device::gpu::Gpu;
@@ -58,7 +58,7 @@ impl Pooled for PhysicalBufferDesc {
     type Object = Buffer;
 
     fn serves(&self, request: &Self) -> bool {
-        // Equal sizes, so that a shader's `arrayLength` is the same whichever buffer serves.
+        // Sizes must be equal, so that `arrayLength` in shaders does not depend on the buffer.
         self.bytes == request.bytes && self.usage.contains(request.usage)
     }
 

@@ -1,4 +1,4 @@
-//! From the plan's placements to physical textures and buffers.
+//! Allocation of physical textures and buffers according to the plan.
 
 use crate::device::gpu::Gpu;
 use crate::execute::error::ExecuteError;
@@ -13,52 +13,53 @@ use crate::resources::requests::{Requests, offered, shaped};
 use framegraph::{Access, AccessKind, Desc, Kind, Placement, Plan, ResourceId, Usage};
 use wgpu::{Buffer, Texture};
 
-/// What stands behind one resource in this frame.
+/// Physical resource of the current frame.
 #[derive(Clone, Debug)]
 pub(crate) enum Physical {
-    /// Nothing, and why.
+    /// No memory, with the reason.
     Absent(NoMemory),
-    /// A texture; `missed` is how many frames a history was not written for, and none where its image holds nothing of use.
+    /// A texture. For histories, `missed` is the number of executions without a write, or `None` if the contents are
+    /// not valid.
     Texture { texture: Texture, shape: PhysicalTextureDesc, missed: Option<u64>, lifetime: Lifetime },
-    /// A buffer, of which the first `bytes` bytes are the resource.
+    /// A buffer. The resource is its first `bytes` bytes.
     Buffer { buffer: Buffer, bytes: u64 },
 }
 
-/// What stands behind all resources of a plan.
+/// Physical resources of a plan.
 #[derive(Debug, Default)]
 pub(crate) struct Realized {
-    /// Parallel to the graph's resources.
+    /// Physical resources, in the order of the graph's resources.
     resources: Vec<Physical>,
-    /// For each resource a number, given once, that changes when another texture stands behind it; 0 where it is lent for
-    /// this frame alone.
+    /// Unique number for each resource, which changes when its texture changes; 0 for surface textures, which change in
+    /// every frame.
     stamps: Vec<u64>,
-    /// The last that was given.
+    /// Last stamp that was assigned.
     last_stamp: u64,
-    /// What may be something else in each frame of one plan: imports and images of histories.
+    /// Resources that may change in every frame of the same plan: imports and histories.
     changing: Vec<ResourceId>,
-    /// Resources behind which there is a texture that takes no memory where the device has tiles.
+    /// Number of memoryless textures.
     memoryless: u32,
-    /// The compilation of the plan that this is of; 0 of none.
+    /// Compilation number of the plan; 0 if empty.
     compilation: u64,
     requests: Requests,
 }
 
-/// Where textures and buffers come from.
+/// Pools, histories and imports to allocate from.
 pub(crate) struct Sources<'a> {
     pub(crate) gpu: &'a Gpu,
-    /// The frame that is executed.
+    /// Frame that is executed.
     pub(crate) owner: &'a FrameKey,
     pub(crate) textures: &'a mut Pool<PhysicalTextureDesc>,
     pub(crate) buffers: &'a mut Pool<PhysicalBufferDesc>,
     pub(crate) histories: &'a mut Histories,
     pub(crate) imports: &'a Imports,
     pub(crate) arenas: &'a mut Arenas,
-    /// Contents that may be anything will be filled: textures must allow that.
+    /// Whether undefined contents will be filled, which requires additional usages.
     pub(crate) poison: bool,
 }
 
 impl Realized {
-    /// Forgets everything, so that no object is kept alive.
+    /// Removes all references to physical objects.
     pub(crate) fn clear(&mut self) {
         self.compilation = 0;
         self.resources.clear();
@@ -67,18 +68,18 @@ impl Realized {
         self.requests.clear();
     }
 
-    /// The physical resource behind `resource`, which is absent when the frame has not been realized.
+    /// Returns the physical resource of `resource`; absent if no frame was executed.
     pub(crate) fn get(&self, resource: ResourceId) -> &Physical {
         self.resources.get(resource.index()).unwrap_or(&Physical::Absent(NoMemory::NotRealized))
     }
 
-    /// A number that stays while a texture stands behind `resource`, and is never given to another one; none of what must not
-    /// be kept beyond this frame.
+    /// Returns a number that identifies the texture of `resource` and is never reused. `None` for textures that must
+    /// not be cached beyond this frame.
     pub(crate) fn stamp(&self, resource: ResourceId) -> Option<u64> {
         self.stamps.get(resource.index()).copied().filter(|stamp| *stamp != 0)
     }
 
-    /// Lets go of what was lent for this frame alone, and calls `gone` for each.
+    /// Releases surface textures and calls `gone` for each.
     pub(crate) fn end_loans(&mut self, mut gone: impl FnMut(&Texture)) {
         for resource in &self.changing {
             let physical = &mut self.resources[resource.index()];
@@ -89,16 +90,16 @@ impl Realized {
         }
     }
 
-    /// Makes or finds everything that `plan` names. Of the plan of the frame before, only what may have changed is looked up.
+    /// Allocates everything in `plan`. If the plan is unchanged, only resources that may have changed are updated.
     ///
     /// # Errors
-    /// An import that is missing or different, or a shape that the device cannot make.
+    /// Fails if an import is missing or does not match, or the device does not support a resource.
     pub(crate) fn realize(&mut self, plan: &Plan, from: &mut Sources<'_>) -> Result<(), ExecuteError> {
         from.textures.begin_frame();
         from.buffers.begin_frame();
         from.histories.begin_frame(from.owner);
         from.arenas.begin_frame();
-        // Not of this plan before all of it is there.
+        // Invalid until allocation succeeds.
         let before = std::mem::take(&mut self.compilation);
         let settled = from.textures.is_settled() && from.buffers.is_settled() && !self.shares_memory();
         if before != 0 && before == plan.compilation() && settled {
@@ -116,7 +117,7 @@ impl Realized {
             let physical = self.place(plan, *resource, from)?;
             self.set(*resource, physical);
         }
-        // An earlier image is found once its history is declared, which may come later in the list.
+        // Previous images are looked up after their history is declared, which may come later in the list.
         for (resource, (current, age)) in changing.iter().filter_map(|r| Some((r, earlier(r)?))) {
             let physical = self.previous(plan, current, age, from.histories);
             self.set(*resource, physical);
@@ -125,7 +126,7 @@ impl Realized {
         Ok(())
     }
 
-    /// Asks for everything that the pools and heaps of a plan have, and notes what has to be looked up in each frame.
+    /// Allocates everything from pools and heaps, and collects the resources that must be updated in every frame.
     fn realize_anew(&mut self, plan: &Plan, from: &mut Sources<'_>) -> Result<(), ExecuteError> {
         self.clear();
         self.requests.collect(plan, from.gpu, from.poison)?;
@@ -149,7 +150,7 @@ impl Realized {
         Ok(())
     }
 
-    /// Puts something behind a resource, under a new number unless it is the texture that stood there.
+    /// Sets the physical resource, with a new stamp if its texture changed.
     fn set(&mut self, resource: ResourceId, physical: Physical) {
         let (known, stamp) = (&mut self.resources[resource.index()], &mut self.stamps[resource.index()]);
         if let Physical::Texture { texture, shape, lifetime, .. } = &physical {
@@ -164,22 +165,22 @@ impl Realized {
         *known = physical;
     }
 
-    /// The number of a resource in its arena; none of what lies elsewhere.
+    /// Returns the index of a resource in its arena; `None` if it is not placed.
     pub(crate) fn placed_at(&self, resource: ResourceId) -> Option<usize> {
         self.requests.placed_at(resource)
     }
 
-    /// Whether textures or buffers lie in one block of memory.
+    /// Returns whether there are placed resources.
     pub(crate) fn shares_memory(&self) -> bool {
         !self.requests.placed().is_empty()
     }
 
-    /// Resources behind which there is a texture that takes no memory where the device has tiles.
+    /// Returns the number of memoryless textures.
     pub(crate) fn memoryless(&self) -> u32 {
         self.memoryless
     }
 
-    /// What stands behind one resource, now that the pools have served.
+    /// Returns the physical resource for one resource, after the pools have served their requests.
     fn place(&self, plan: &Plan, resource: ResourceId, from: &mut Sources<'_>) -> Result<Physical, ExecuteError> {
         let (row, declared) = (&plan.resources()[resource.index()], &plan.graph().resources()[resource.index()]);
         match row.placement {
@@ -238,7 +239,7 @@ impl Realized {
             return Ok(Physical::Absent(NoMemory::Unused));
         }
         let mut shape = PhysicalTextureDesc::new(&desc, plan.frame(), usage, views);
-        // An inspection reads the ring whatever the frame itself does with it.
+        // An inspection may read the history regardless of the frame's own usages.
         shape.usage |= offered(from.gpu, desc.format);
         let reads =
             plan.graph().accesses().iter().filter(|a| is_earlier(plan.graph().resources()[a.resource.index()].kind));
@@ -263,15 +264,15 @@ impl Realized {
     }
 }
 
-/// How many of `mips` levels a texture must have for an access: shaders that sample all levels make do with those that there
-/// are, and copies do not.
+/// Returns the number of mip levels that a texture must have for an access. Shaders that sample all levels accept
+/// fewer, copies do not.
 fn levels_for(access: &Access, mips: u32) -> u32 {
     let levels = access.range.mip_range(mips);
     let all = access.kind == AccessKind::Sampled && access.range.mips == u8::MAX;
     if all { levels.start + 1 } else { levels.end }
 }
 
-/// What lies in an arena.
+/// Returns the physical resource for a placed resource.
 fn in_arena(plan: &Plan, resource: ResourceId, arena: Option<&Arena>, at: usize) -> Physical {
     let texture = arena.and_then(|arena| arena.texture(at));
     let buffer = arena.and_then(|arena| arena.buffer(at));

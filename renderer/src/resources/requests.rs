@@ -1,5 +1,5 @@
-//! What one frame asks for: of the pools an object for each slot of the plan, each exported transient, and each memoryless
-//! attachment of a step; of a heap what the plan places there.
+//! Collects the objects that a plan needs: pool objects for slots, exported transients and memoryless attachments, and
+//! placed resources.
 
 use crate::device::format::{buffer_usages, texture_usages};
 use crate::device::gpu::Gpu;
@@ -16,24 +16,24 @@ use wgpu::{Buffer, Texture, TextureUsages};
 
 const NONE: usize = usize::MAX;
 
-/// The requests of a frame and what they got; kept for its memory.
+/// Requests of a frame and their results. Reused to keep the memory.
 #[derive(Debug, Default)]
 pub(crate) struct Requests {
     textures: Asked<PhysicalTextureDesc>,
     buffers: Asked<PhysicalBufferDesc>,
-    /// For each slot, the request that serves it; where views cannot change the transfer function, a second one for its
-    /// sRGB tenants.
+    /// Request of each slot. If texture views cannot change between linear and sRGB, sRGB tenants get the second one.
     slots: Vec<[usize; 2]>,
-    /// For each resource, its request.
+    /// Request of each resource.
     served_by: Vec<usize>,
-    /// For each resource, uses that no access names.
+    /// Usages of each resource that no access declares.
     extra: Vec<Usage>,
-    /// What lies in a heap, and for each resource its number there.
+    /// Placed resources.
     placed: Vec<PlacedRequest>,
+    /// Index of each resource in `placed`.
     placed_at: Vec<usize>,
 }
 
-/// A texture or buffer at an offset of a heap.
+/// A texture or buffer at an offset in a heap.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedRequest {
     pub(crate) resource: ResourceId,
@@ -41,7 +41,7 @@ pub(crate) struct PlacedRequest {
     pub(crate) offset: u64,
 }
 
-/// Requests to one pool, the resource that names each, and what they got.
+/// Requests to one pool, the resource that labels each, and the results.
 #[derive(Debug)]
 struct Asked<S: Pooled> {
     requests: Vec<Request<S>>,
@@ -76,32 +76,32 @@ impl<S: Pooled> Asked<S> {
 }
 
 impl Requests {
-    /// Forgets what was asked and served, so that no object is kept alive.
+    /// Removes requests and results, so that no object is kept alive.
     pub(crate) fn clear(&mut self) {
         self.textures.clear();
         self.buffers.clear();
         self.placed.clear();
     }
 
-    /// What lies in a heap.
+    /// Returns the placed resources.
     pub(crate) fn placed(&self) -> &[PlacedRequest] {
         &self.placed
     }
 
-    /// The number of a resource among [`Requests::placed`]; none of what lies elsewhere.
+    /// Returns the index of a resource in [`Requests::placed`]; `None` if it is not placed.
     pub(crate) fn placed_at(&self, resource: ResourceId) -> Option<usize> {
         self.placed_at.get(resource.index()).copied().filter(|at| *at != NONE)
     }
 
-    /// Uses of a resource that no access names.
+    /// Returns usages of a resource that no access declares.
     pub(crate) fn extra(&self, resource: ResourceId) -> Usage {
         self.extra[resource.index()]
     }
 
-    /// Works out what the plan needs; with `poison`, contents can be filled.
+    /// Collects the requests of a plan. `poison` adds the usages for filling undefined contents.
     ///
     /// # Errors
-    /// When the plan places images of a history in a heap.
+    /// Fails if the plan places history images in a heap.
     pub(crate) fn collect(&mut self, plan: &Plan, gpu: &Gpu, poison: bool) -> Result<(), ExecuteError> {
         self.clear();
         extra_usage(plan, &mut self.extra);
@@ -155,10 +155,10 @@ impl Requests {
         Ok(())
     }
 
-    /// Gets everything from the pools.
+    /// Gets all objects from the pools.
     ///
     /// # Errors
-    /// When the device offers no such texture or buffer.
+    /// Fails if the device does not support a texture or buffer.
     pub(crate) fn serve(
         &mut self,
         gpu: &Gpu,
@@ -170,21 +170,21 @@ impl Requests {
         self.buffers.serve(gpu, plan, buffers)
     }
 
-    /// The texture that serves a resource, with its shape.
+    /// Returns the texture of a resource, with its description.
     pub(crate) fn texture(&self, resource: ResourceId) -> (Texture, PhysicalTextureDesc) {
         let request = self.served_by[resource.index()];
         (self.textures.served[request].clone(), self.textures.requests[request].shape)
     }
 
-    /// The buffer that serves a resource.
+    /// Returns the buffer of a resource.
     pub(crate) fn buffer(&self, resource: ResourceId) -> Buffer {
         self.buffers.served[self.served_by[resource.index()]].clone()
     }
 
-    /// The request that serves a tenant of a slot: a new one for the first tenant, which later ones widen.
+    /// Returns the request of a slot's tenant. The first tenant creates it; later ones add their usages.
     fn slot_request(&mut self, plan: &Plan, resource: ResourceId, slot: SlotId, usage: Usage, gpu: &Gpu) -> usize {
         let shared = &plan.slots()[slot.index()];
-        // One that is seen through its twin needs both formats whoever shares its slot; else tenants can go apart.
+        // A tenant with views in both forms needs both; other tenants can be separated by form.
         let apart = shared.srgb_views && !gpu.has_view_formats() && !plan.resources()[resource.index()].srgb_views;
         let form = usize::from(apart && plan.format(resource).is_some_and(Format::is_srgb));
         let known = self.slots[slot.index()][form];
@@ -192,7 +192,7 @@ impl Requests {
             self.widen(known, &shared.desc, usage);
             return known;
         }
-        // Apart, a tenant has its own uses alone: sRGB formats lack some that linear ones have.
+        // A separated tenant has only its own usages, since sRGB formats lack some that linear ones have.
         let request = if apart {
             self.push(plan, resource, shaped(plan, resource), usage, false)
         } else {
@@ -212,7 +212,7 @@ impl Requests {
         }
     }
 
-    /// Adds uses to a request that serves several tenants.
+    /// Adds usages to a request that serves several tenants.
     fn widen(&mut self, request: usize, desc: &Desc, usage: Usage) {
         match desc {
             Desc::Texture(_) => {
@@ -222,15 +222,15 @@ impl Requests {
         }
     }
 
-    /// Allows sampling and copying of an exported texture after the frame, where the format allows that.
+    /// Adds sampling and copying to an exported texture, if the format allows it.
     fn offer(&mut self, plan: &Plan, resource: ResourceId, request: usize, gpu: &Gpu) {
         if let Some(format) = plan.format(resource) {
             self.textures.requests[request].shape.usage |= offered(gpu, format);
         }
     }
 
-    /// The request of a memoryless attachment: one of equal shape that serves other steps alone, because nothing stays in
-    /// it between steps; otherwise a new one.
+    /// Returns the request of a memoryless attachment. Requests of equal description are shared between steps, since
+    /// memoryless contents do not outlive a step.
     fn memoryless_request(&mut self, plan: &Plan, resource: ResourceId) -> usize {
         let Desc::Texture(desc) = shaped(plan, resource) else {
             unreachable!("only attachments are memoryless");
@@ -250,8 +250,9 @@ impl Requests {
     }
 }
 
-/// Whether wgpu's own clear may be asked of a texture, which it does not have for what is placed: by a copy pass, whose recorder
-/// has the encoder; or by the executor, for a pass that declares storage as cleared that cannot be cleared by drawing.
+/// Returns whether wgpu's clear may be used on a texture, which does not work for placed textures. Copy passes may call
+/// it, since they access the encoder. The executor calls it for cleared storage textures that cannot be cleared by
+/// rendering.
 fn takes_wgpus_clear(plan: &Plan, resource: ResourceId, shape: &Shape) -> bool {
     let Shape::Texture(shape) = shape else { return false };
     let drawn = shape.usage.contains(TextureUsages::RENDER_ATTACHMENT) && shape.dimension == Dimension::D2;
@@ -260,12 +261,12 @@ fn takes_wgpus_clear(plan: &Plan, resource: ResourceId, shape: &Shape) -> bool {
     plan.resources()[resource.index()].usage.contains(Usage::COPY_TARGET) || !drawn && cleared.next().is_some()
 }
 
-/// Copying and sampling, where the format allows them: what readers outside of the frame need.
+/// Returns the usages for readers outside of the frame (copying and sampling), if the format allows them.
 pub(crate) fn offered(gpu: &Gpu, format: Format) -> TextureUsages {
     gpu.format_features(format).allowed_usages & (TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING)
 }
 
-/// The shape of a resource in the format that the plan gave it.
+/// Returns the description of a resource with the format that the plan chose.
 pub(crate) fn shaped(plan: &Plan, resource: ResourceId) -> Desc {
     let desc = plan.graph().resources()[resource.index()].desc;
     match (desc, plan.format(resource)) {
@@ -274,8 +275,7 @@ pub(crate) fn shaped(plan: &Plan, resource: ResourceId) -> Desc {
     }
 }
 
-/// Uses that no access names but that executing needs: a clear outside of a render pass is made by one, and what is read
-/// back is copied.
+/// Adds usages that execution needs and no access declares: clears outside of render passes, and readback.
 fn extra_usage(plan: &Plan, extra: &mut Vec<Usage>) {
     let graph = plan.graph();
     extra.clear();
@@ -297,7 +297,7 @@ fn extra_usage(plan: &Plan, extra: &mut Vec<Usage>) {
     }
 }
 
-/// Adds the uses that filling undefined contents takes ([`poison`](crate::debug::poison)).
+/// Adds the usages for filling undefined contents ([`poison`](crate::debug::poison)).
 fn poison_usage(plan: &Plan, gpu: &Gpu, extra: &mut [Usage]) {
     for resource in plan.graph().resource_ids() {
         let row = &plan.graph().resources()[resource.index()];

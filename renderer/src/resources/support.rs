@@ -1,24 +1,25 @@
-//! What the device can and cannot make, said before wgpu refuses it: what was asked, what the adapter offers, what to do.
+//! Checks of device support before wgpu rejects a resource. Errors name the request, the limit of the adapter, and a
+//! solution.
 //!
-//! Optional formats have stated fallbacks ([`supported_format`]): a pass asks for the format that it prefers and gets the
-//! next best where the device has it not.
+//! Optional formats have fallbacks ([`supported_format`]): a pass can request a preferred format and gets the next best
+//! if the device lacks it.
 
 use crate::device::adapter::describe;
-use crate::device::format::{texture_format, texture_usages};
+use crate::device::format::{joined, texture_format, texture_usages};
 use crate::device::gpu::Gpu;
 use crate::resources::physical::PhysicalTextureDesc;
 use framegraph::{Dimension, Format, Usage, plain};
 use wgpu::{AdapterInfo, Features, TextureFormatFeatures, TextureUsages};
 
-/// The device offers no such texture or buffer.
+/// Error: the device does not support a texture or buffer.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{}` {}", plain::name(.name), .reason.sentence(&describe(.adapter)))]
+#[error("`{}`: {}", plain::name(.name), .reason.sentence(&describe(.adapter)))]
 pub struct Unsupported {
     /// Full name of the resource.
     pub name: String,
-    /// The adapter of the device.
+    /// Adapter of the device.
     pub adapter: Box<AdapterInfo>,
-    /// What it asks for, and what there is instead.
+    /// Property that is not supported.
     pub reason: UnsupportedReason,
 }
 
@@ -28,49 +29,49 @@ impl std::fmt::Debug for Unsupported {
     }
 }
 
-/// What a device does not offer.
+/// Property of a texture or buffer that a device does not support.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}", self.sentence("the device"))]
 pub enum UnsupportedReason {
-    /// A texture of that many texels.
+    /// Texture size.
     Size {
-        /// Width, height, layers or depth.
+        /// Requested width, height, and layers or depth.
         asked: [u32; 3],
-        /// The most that there may be of each.
+        /// Maximum of each.
         most: [u32; 3],
     },
-    /// A format for some use.
+    /// Usages of a texture format.
     Usage {
         /// Format of the texture.
         format: Format,
-        /// The uses that it cannot have.
+        /// Usages that the format does not support.
         missing: TextureUsages,
-        /// The uses that it can have.
+        /// Usages that the format supports.
         offered: TextureUsages,
-        /// Features of wgpu that the format takes and the device was opened without.
+        /// Features that the format needs and the device does not have.
         features: Features,
-        /// The first of its fallbacks that can have all uses asked for.
+        /// First fallback format that supports all requested usages.
         fallback: Option<Format>,
     },
-    /// That many samples per texel.
+    /// Number of samples per texel.
     Samples {
         /// Format of the texture.
         format: Format,
-        /// Samples per texel.
+        /// Requested number of samples.
         asked: u32,
-        /// The counts that there are.
+        /// Supported numbers of samples.
         offered: Vec<u32>,
     },
-    /// Views in another format than the texture's own.
+    /// Views that change between linear and sRGB.
     Views {
         /// Format of the texture.
         format: Format,
     },
-    /// A buffer of that size.
+    /// Size of a buffer.
     BufferBytes {
-        /// Size in bytes.
+        /// Requested size in bytes.
         asked: u64,
-        /// The most that there may be.
+        /// Maximum size in bytes.
         most: u64,
     },
 }
@@ -83,47 +84,39 @@ impl std::fmt::Debug for UnsupportedReason {
 
 impl UnsupportedReason {
     fn sentence(&self, device: &str) -> String {
-        format!("asks for {}; {device} offers {}; {}", self.asked(), self.offered(), self.hint())
-    }
-
-    fn asked(&self) -> String {
         match self {
-            Self::Size { asked: [width, height, layers], .. } => format!("{width}×{height}×{layers} texels"),
-            Self::Usage { format, missing, .. } => format!("{format:?} as {missing:?}"),
-            Self::Samples { format, asked, .. } => format!("{asked} samples of {format:?}"),
-            Self::Views { format } => format!("views of {format:?} through its sRGB twin"),
-            Self::BufferBytes { asked, .. } => format!("{asked} bytes"),
-        }
-    }
-
-    fn offered(&self) -> String {
-        match self {
-            Self::Size { most: [width, height, layers], .. } => format!("at most {width}×{height}×{layers}"),
-            Self::Usage { offered, features, fallback, .. } => {
-                let offered = match features.is_empty() {
-                    true => format!("{offered:?}"),
-                    false => format!("no such format, which takes {features:?}"),
+            Self::Size { asked: [width, height, layers], most: [max_width, max_height, max_layers] } => format!(
+                "{width}×{height}×{layers} texels exceed the limit of {device}, {max_width}×{max_height}×{max_layers}; use a \
+                 smaller frame or texture"
+            ),
+            Self::Usage { format, missing, offered, features, fallback } => {
+                let needs = match features.is_empty() {
+                    true => format!("only for {}", joined(offered.iter_names())),
+                    false => format!("without the feature {}", joined(features.iter_names())),
                 };
-                fallback.map_or(offered.clone(), |format| format!("{offered}, and {format:?} as all of that"))
+                let instead = fallback.map_or("another format".to_owned(), |format| format!("{format:?}"));
+                format!(
+                    "{device} does not support {format:?} for {} ({needs}); use {instead}, or `supported_format` to choose a \
+                     fallback",
+                    joined(missing.iter_names())
+                )
             }
-            Self::Samples { offered, .. } => format!("{offered:?}"),
-            Self::Views { .. } => "views in a texture's own format".into(),
-            Self::BufferBytes { most, .. } => format!("at most {most} bytes"),
-        }
-    }
-
-    const fn hint(&self) -> &'static str {
-        match self {
-            Self::Size { .. } => "use a smaller frame or a smaller texture",
-            Self::Usage { .. } => "choose another format: `supported_format` takes the fallback by itself",
-            Self::Samples { .. } => "use 1 or 4 samples",
-            Self::BufferBytes { .. } => "split the buffer",
-            Self::Views { .. } => "declare it in one format, or open a device that has `VIEW_FORMATS`",
+            Self::Samples { format, asked, offered } => {
+                let offered: Vec<_> = offered.iter().map(u32::to_string).collect();
+                format!("{device} does not support {asked} samples of {format:?}; use {}", offered.join(" or "))
+            }
+            Self::Views { format } => format!(
+                "{device} does not support views of {format:?} in both linear and sRGB form; declare it in one format, or use a \
+                 device with `VIEW_FORMATS`"
+            ),
+            Self::BufferBytes { asked, most } => {
+                format!("{asked} bytes exceed the maximum buffer size of {device}, {most} bytes; split the buffer")
+            }
         }
     }
 }
 
-/// Checks size, layers, samples and uses of a texture against the device.
+/// Checks size, layers, samples and usages of a texture against the device.
 pub(crate) fn check_texture(gpu: &Gpu, desc: &PhysicalTextureDesc, name: &str) -> Result<(), Unsupported> {
     let limits = gpu.device.limits();
     let [width, height, layers] = desc.size;
@@ -165,7 +158,7 @@ pub(crate) fn check_buffer(gpu: &Gpu, bytes: u64, name: &str) -> Result<(), Unsu
     Err(Unsupported { name: name.to_owned(), adapter: gpu.info().clone().into(), reason })
 }
 
-/// The next best format, when the device lacks one: more bits where there is such a format, fewer for the 32-bit ones.
+/// Returns the next best format: one with more bits if there is one, or fewer for 32-bit formats.
 const fn fallback(format: Format) -> Option<Format> {
     match format {
         Format::Rg11b10Ufloat | Format::Rgb9e5Ufloat | Format::Rgba32Float => Some(Format::Rgba16Float),
@@ -179,8 +172,8 @@ const fn fallback(format: Format) -> Option<Format> {
     }
 }
 
-/// `wanted`, or the first of its fallbacks that the device offers for `usage`; with `filtered`, one that can be sampled
-/// with a linear filter. `None` when there is none.
+/// Returns `wanted`, or its first fallback that the device supports for `usage`. With `filtered`, the format must
+/// support linear filtering. `None` if there is no such format.
 pub fn supported_format(gpu: &Gpu, wanted: Format, usage: Usage, filtered: bool) -> Option<Format> {
     first_offered(gpu, wanted, texture_usages(usage), filtered)
 }
@@ -199,7 +192,7 @@ fn first_offered(gpu: &Gpu, wanted: Format, usages: TextureUsages, filtered: boo
     None
 }
 
-/// Whether a shader may sample the format with a linear filter on this device.
+/// Returns whether shaders can sample the format with a linear filter on this device.
 fn is_filterable(gpu: &Gpu, format: Format) -> bool {
     let theirs = texture_format(format);
     let sampled = theirs.sample_type(None, Some(gpu.device.features()));
@@ -227,7 +220,7 @@ mod tests {
         assert_eq!(check_texture(&gpu, &shape(Format::Rgba8Unorm, 64, 4, Usage::ATTACHMENT), "color"), Ok(()));
         let told = |shape| check_texture(&gpu, &shape, "color").map_err(|e| e.to_string()).err().unwrap_or_default();
         let large = told(shape(Format::Rgba8Unorm, 1 << 20, 1, Usage::ATTACHMENT));
-        assert!(large.contains("1048576×1048576") && large.contains("at most 8192"), "{large}");
+        assert!(large.contains("1048576×1048576") && large.contains("8192×8192"), "{large}");
         let attached = told(shape(Format::Rgb9e5Ufloat, 4, 1, Usage::ATTACHMENT));
         assert!(attached.contains("Rgb9e5Ufloat") && attached.contains("RENDER_ATTACHMENT"), "{attached}");
         let samples = told(shape(Format::Rgba8Unorm, 4, 3, Usage::ATTACHMENT));
@@ -236,7 +229,7 @@ mod tests {
         Ok(())
     }
 
-    /// A device that has nothing beyond what every one has.
+    /// Opens a device without optional features.
     fn bare() -> Result<Gpu, Box<dyn std::error::Error>> {
         let full = Gpu::noop()?;
         let adapter = full.adapter();
@@ -260,7 +253,7 @@ mod tests {
             assert_eq!(supported_format(&gpu, wanted, usage, filtered), Some(expected), "{wanted:?}");
             assert_eq!(supported_format(&full, wanted, usage, filtered), Some(wanted), "{wanted:?}, with its feature");
         }
-        // What the two words say is what wgpu does: the format itself is refused, its fallback is made.
+        // Checks that wgpu rejects the original format and accepts the fallback.
         for (format, usage) in [(Format::Rg11b10Ufloat, drawn), (Format::Depth32FloatStencil8, Usage::ATTACHMENT)] {
             let desc = |format| wgpu::TextureDescriptor {
                 label: None,
@@ -288,11 +281,11 @@ mod tests {
             checked.err().unwrap_or_default()
         };
         let both = told(Format::Depth32FloatStencil8, Usage::ATTACHMENT);
-        assert!(both.contains("`hdr` asks for Depth32FloatStencil8 as TextureUsages(RENDER_ATTACHMENT)"), "{both}");
-        assert!(both.contains("takes Features") && both.contains("DEPTH32FLOAT_STENCIL8"), "{both}");
-        assert!(both.contains("Depth24PlusStencil8 as all of that"), "{both}");
+        assert!(both.contains("does not support Depth32FloatStencil8 for RENDER_ATTACHMENT"), "{both}");
+        assert!(both.contains("without the feature DEPTH32FLOAT_STENCIL8"), "{both}");
+        assert!(both.contains("use Depth24PlusStencil8"), "{both}");
         let small = told(Format::Rg11b10Ufloat, Usage::ATTACHMENT);
-        assert!(small.contains("Rgba16Float as all of that"), "{small}");
+        assert!(small.contains("use Rgba16Float"), "{small}");
         Ok(())
     }
 

@@ -1,4 +1,4 @@
-//! Texture views, made once for each texture and part and kept while the texture is in use.
+//! Cache of texture views by texture and part.
 
 use crate::cache::{Cache, CacheCounts};
 use crate::device::error::{DeviceError, ErrorScopes};
@@ -8,28 +8,28 @@ use framegraph::{Dimension, Format, Range};
 use std::hash::BuildHasher;
 use wgpu::{Device, Texture, TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension};
 
-/// What a view is made from: the part of the texture, and how shaders bind it.
+/// Description of a texture view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ViewDesc {
-    /// The format of the texels.
+    /// Format of the texels.
     pub format: Format,
-    /// What a shader binds it as.
+    /// Dimension in shaders.
     pub dimension: TextureViewDimension,
-    /// Planes of a depth-stencil format; `All` of a color.
+    /// Planes of a depth-stencil format; `All` for color.
     pub aspect: TextureAspect,
     /// First level and number of levels.
     pub mips: (u32, u32),
     /// First layer and number of layers.
     pub layers: (u32, u32),
-    /// What the view may be used for.
+    /// Usages of the view; empty inherits those of the texture.
     pub usage: TextureUsages,
 }
 
 impl ViewDesc {
-    /// The view of `range` of a texture that has `mips` levels and `layers` layers.
+    /// Creates the description of a view of `range`, for a texture with `mips` levels and `layers` layers.
     ///
-    /// One layer is bound as two-dimensional, several as an array; with `attached`, both planes of a depth-stencil format,
-    /// otherwise depth.
+    /// One layer becomes a 2D view, several layers a 2D array view. With `attached`, both planes of a depth-stencil
+    /// format are included, otherwise depth only.
     pub fn new(format: Format, dimension: Dimension, range: Range, (mips, layers): (u32, u32), attached: bool) -> Self {
         let levels = range.mip_range(mips);
         let slices = range.layer_range(layers);
@@ -43,33 +43,33 @@ impl ViewDesc {
         Self { format, dimension, aspect, mips: (levels.start, levels.len() as u32), layers, usage }
     }
 
-    /// The same, bound by shaders as another dimension (a cube, an array of one layer).
+    /// Returns the description with another dimension (for example a cube or an array of one layer).
     #[must_use]
     pub fn as_dimension(self, dimension: TextureViewDimension) -> Self {
         Self { dimension, ..self }
     }
 
-    /// The same, for these uses.
+    /// Returns the description with these usages.
     #[must_use]
     pub fn used_as(self, usage: TextureUsages) -> Self {
         Self { usage, ..self }
     }
 }
 
-/// Views of all textures in use. See the [module](self).
+/// Cache of texture views. See the [module documentation](self).
 #[derive(Debug, Default)]
 pub(crate) struct ViewCache(Cache<(Texture, ViewDesc), TextureView>);
 
 impl ViewCache {
-    /// Hits and creations since the cache was made.
+    /// Returns hits and creations since the cache was created.
     pub(crate) fn counts(&self) -> CacheCounts {
         self.0.counts()
     }
 
-    /// The view of that part. Cloning a view is cheap. `name` is what debuggers and errors call the texture.
+    /// Returns the view with this description. `name` is the name of the texture, for the view's label.
     ///
     /// # Errors
-    /// wgpu's reason: a form of the format that an import was not made for, say.
+    /// Fails with wgpu's reason, for example if an import lacks the view format.
     pub(crate) fn get(
         &self,
         device: &Device,
@@ -87,12 +87,12 @@ impl ViewCache {
         })
     }
 
-    /// Begins a frame and drops views that no frame asked for during `max_age` frames.
+    /// Begins a frame. Drops views that were not requested for `max_age` frames.
     pub(crate) fn begin_frame(&mut self, max_age: u64) {
         self.0.begin_frame(max_age);
     }
 
-    /// Drops the views of a texture that is given up, so that they do not keep it alive.
+    /// Drops all views of a texture that is being freed, so that they do not keep it alive.
     pub(crate) fn forget(&mut self, texture: &Texture) {
         self.0.retain(|(of, _)| of != texture);
     }

@@ -30,7 +30,7 @@ impl Executor {
     /// let options = Options { alias: Alias::Heap, ..Options::for_frame(64, 64) };
     /// executor.compile(&graph, &options, &mut Scratch::new(), &mut plan)?;
     /// if let Some(why) = executor.not_placed() {
-///     println!("textures of equal shape share memory: {why}");
+    ///     println!("textures of equal shape share memory: {why}");
     /// }
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

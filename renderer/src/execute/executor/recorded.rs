@@ -34,7 +34,7 @@ impl Executor {
     /// let mut all = vec![engine()];
     /// match commands.into_buffers() {
     ///     Ok(buffers) => all.extend(buffers),
-///     // Each one has to be submitted separately.
+    ///     // Each one has to be submitted separately.
     ///     Err(commands) => drop(commands.submit(&gpu.queue, all.drain(..), [])),
     /// }
     /// all.push(engine());
