@@ -6,7 +6,7 @@
 //!
 //! A caller with the same request in every frame keeps a [`LastEntry`], which finds the object again without hashing.
 
-use crate::hash::Keyed;
+use crate::hash::KeyHashBuilder;
 use std::collections::{BTreeSet, HashMap};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -33,7 +33,7 @@ pub(crate) struct Cache<K, V> {
 }
 
 /// Maps hashes to entries, so that a lookup needs no owned description. Entries with equal hashes are compared.
-type Table<K, V> = HashMap<u64, Vec<Arc<Entry<K, V>>>, Keyed>;
+type Table<K, V> = HashMap<u64, Vec<Arc<Entry<K, V>>>, KeyHashBuilder>;
 
 #[derive(Debug)]
 struct Entry<K, V> {
@@ -45,9 +45,9 @@ struct Entry<K, V> {
 
 /// Weak reference to the entry that a request last returned. Expires when the cache drops the entry.
 #[derive(Debug)]
-pub(crate) struct Last<K, V>(Weak<Entry<K, V>>);
+pub(crate) struct LastEntry<K, V>(Weak<Entry<K, V>>);
 
-impl<K, V> Default for Last<K, V> {
+impl<K, V> Default for LastEntry<K, V> {
     fn default() -> Self {
         Self(Weak::new())
     }
@@ -88,9 +88,9 @@ impl<K, V: Clone> Cache<K, V> {
     ///
     /// # Errors
     /// Fails like [`Cache::get`].
-    pub(crate) fn again<E>(
+    pub(crate) fn get_repeated<E>(
         &self,
-        last: &mut Last<K, V>,
+        last: &mut LastEntry<K, V>,
         hash: impl FnOnce() -> u64,
         is: impl Fn(&K) -> bool,
         make: impl FnOnce() -> Result<(K, V), E>,
@@ -104,9 +104,9 @@ impl<K, V: Clone> Cache<K, V> {
     }
 
     /// Returns the object in `last` if it still exists and `is` accepts it.
-    pub(crate) fn last(&self, last: &Last<K, V>, is: impl Fn(&K) -> bool) -> Option<V> {
+    pub(crate) fn last(&self, last: &LastEntry<K, V>, is: impl Fn(&K) -> bool) -> Option<V> {
         let entry = last.0.upgrade().filter(|entry| is(&entry.key))?;
-        self.note(&entry);
+        self.mark_used(&entry);
         Some(entry.value.clone())
     }
 
@@ -133,12 +133,12 @@ impl<K, V: Clone> Cache<K, V> {
 
     fn find(&self, table: &Table<K, V>, hash: u64, is: &impl Fn(&K) -> bool) -> Option<Arc<Entry<K, V>>> {
         let entry = table.get(&hash)?.iter().find(|entry| is(&entry.key))?;
-        self.note(entry);
+        self.mark_used(entry);
         Some(Arc::clone(entry))
     }
 
     /// Marks the entry as used by the current frame.
-    fn note(&self, entry: &Entry<K, V>) {
+    fn mark_used(&self, entry: &Entry<K, V>) {
         // Only the first request of a frame writes to the entry.
         if entry.used.load(Ordering::Relaxed) != self.frame {
             entry.used.store(self.frame, Ordering::Relaxed);
@@ -148,7 +148,7 @@ impl<K, V: Clone> Cache<K, V> {
 
     /// Begins a frame. Every `max_age` frames, drops objects that were not requested during the last `max_age` frames.
     pub(crate) fn begin_frame(&mut self, max_age: u64) {
-        self.adopt();
+        self.merge_fresh();
         self.frame += 1;
         let frame = self.frame;
         // Checking all entries in every frame would cost more than keeping a few for longer.
@@ -159,7 +159,7 @@ impl<K, V: Clone> Cache<K, V> {
 
     /// Drops the objects whose descriptions `stays` rejects.
     pub(crate) fn retain(&mut self, stays: impl Fn(&K) -> bool) {
-        self.adopt();
+        self.merge_fresh();
         self.retain_entries(|entry| stays(&entry.key));
     }
 
@@ -168,12 +168,12 @@ impl<K, V: Clone> Cache<K, V> {
     ///
     /// # Errors
     /// Returns the first error of `make`.
-    pub(crate) fn remade<E>(
+    pub(crate) fn rebuild<E>(
         &mut self,
         is: impl Fn(&K) -> bool,
         make: impl Fn(&K) -> Result<V, E>,
     ) -> Result<Vec<(u64, usize, V)>, E> {
-        self.adopt();
+        self.merge_fresh();
         let hashes: BTreeSet<u64> = self.known.keys().copied().collect();
         let entries = hashes.iter().flat_map(|hash| self.known[hash].iter().enumerate().map(move |e| (*hash, e)));
         let meant = entries.filter(|(_, (_, entry))| is(&entry.key));
@@ -181,8 +181,8 @@ impl<K, V: Clone> Cache<K, V> {
     }
 
     /// Replaces objects with the results of [`Cache::rebuild`].
-    pub(crate) fn replace(&mut self, remade: Vec<(u64, usize, V)>) {
-        for (hash, index, value) in remade {
+    pub(crate) fn replace(&mut self, rebuilt: Vec<(u64, usize, V)>) {
+        for (hash, index, value) in rebuilt {
             let Some(entries) = self.known.get_mut(&hash).filter(|entries| index < entries.len()) else { continue };
             // A new entry invalidates each `LastEntry`. No thread holds the old one here.
             if let Some(Entry { key, used, .. }) = Arc::into_inner(entries.remove(index)) {
@@ -197,7 +197,7 @@ impl<K, V: Clone> Cache<K, V> {
     }
 
     /// Moves the objects created in the last frame to the main table.
-    fn adopt(&mut self) {
+    fn merge_fresh(&mut self) {
         let Self { known, fresh, .. } = self;
         let fresh = fresh.get_mut().unwrap_or_else(PoisonError::into_inner);
         fresh.drain().for_each(|(hash, entries)| known.entry(hash).or_default().extend(entries));
@@ -241,36 +241,36 @@ mod tests {
     }
 
     /// Requests a word through `last`. Also returns whether the hash was computed.
-    fn again(cache: &Cache<String, usize>, last: &mut Last<String, usize>, word: &str) -> (usize, bool) {
+    fn get_repeated(cache: &Cache<String, usize>, last: &mut LastEntry<String, usize>, word: &str) -> (usize, bool) {
         let mut hashed = false;
         let hash = || {
             hashed = true;
             word.len() as u64
         };
         let make = || Ok::<_, Infallible>((word.to_owned(), cache.counts().created as usize));
-        let got = cache.again(last, hash, |known| known == word, make).unwrap_or_else(|never| match never {});
+        let got = cache.get_repeated(last, hash, |known| known == word, make).unwrap_or_else(|never| match never {});
         (got, hashed)
     }
 
     #[test]
     fn who_asks_again_needs_no_hash_until_it_asks_for_another_or_the_object_is_gone() {
-        let (mut cache, mut last) = (Cache::default(), Last::default());
-        assert_eq!(again(&cache, &mut last, "a"), (0, true), "made");
-        assert_eq!(again(&cache, &mut last, "a"), (0, false));
-        assert_eq!(again(&cache, &mut last, "b"), (1, true), "another");
-        assert_eq!(again(&cache, &mut last, "b"), (1, false));
+        let (mut cache, mut last) = (Cache::default(), LastEntry::default());
+        assert_eq!(get_repeated(&cache, &mut last, "a"), (0, true), "made");
+        assert_eq!(get_repeated(&cache, &mut last, "a"), (0, false));
+        assert_eq!(get_repeated(&cache, &mut last, "b"), (1, true), "another");
+        assert_eq!(get_repeated(&cache, &mut last, "b"), (1, false));
         assert_eq!(cache.counts(), CacheCounts { hits: 2, created: 2 });
         for _ in 0..3 {
             cache.begin_frame(1);
-            assert_eq!(again(&cache, &mut last, "b"), (1, false), "asking keeps it young");
+            assert_eq!(get_repeated(&cache, &mut last, "b"), (1, false), "asking keeps it young");
         }
-        assert_eq!(get(&cache, "a"), 2, "nobody asked for the other");
-        let remade =
-            cache.remade(|word| word == "b", |_| Ok::<_, Infallible>(9)).unwrap_or_else(|never| match never {});
-        cache.replace(remade);
-        assert_eq!(again(&cache, &mut last, "b"), (9, true), "replaced");
+        assert_eq!(get(&cache, "a"), 2, "the other was not requested");
+        let rebuilt =
+            cache.rebuild(|word| word == "b", |_| Ok::<_, Infallible>(9)).unwrap_or_else(|never| match never {});
+        cache.replace(rebuilt);
+        assert_eq!(get_repeated(&cache, &mut last, "b"), (9, true), "replaced");
         cache.clear();
-        assert_eq!(again(&cache, &mut last, "b"), (3, true), "dropped");
+        assert_eq!(get_repeated(&cache, &mut last, "b"), (3, true), "dropped");
     }
 
     #[test]

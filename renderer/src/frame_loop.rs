@@ -3,7 +3,7 @@
 use crate::device::gpu::Gpu;
 use crate::execute::commands::FrameCommands;
 use crate::execute::error::ExecuteError;
-use crate::execute::executor::{Executor, ExecutorOptions, WarmUp};
+use crate::execute::executor::{Executor, ExecutorOptions, WarmUpProgress};
 use crate::frame::Frame;
 use crate::frames_in_flight::FramesInFlight;
 use crate::placed::not_placed::NotPlaced;
@@ -25,14 +25,14 @@ use wgpu::SubmissionIndex;
 /// let gpu = Gpu::noop()?;
 /// let mut frames = FrameLoop::new(&gpu);
 /// for size in [[64, 36], [0, 0], [80, 45]] {
-///     let ran = frames.run(size, &(), |frame, _imports| {
+///     let output = frames.run(size, &(), |frame, _imports| {
 ///         let sky = frame.graph_mut().texture("sky", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
 ///         let sky = frame.add_fn("clear", |pass| pass.color(sky, Intent::Clear(ClearValue::BLACK)), |_, _, _| Ok(()))?;
 ///         frame.graph_mut().readback(sky)?;
 ///         Ok::<_, DeclareError>(sky)
 ///     })?;
-///     let Some(ran) = ran else { continue }; // A minimized window has no texels.
-///     let texture = frames.executor().texture(frames.plan(), ran.io).ok_or("no picture")?;
+///     let Some(output) = output else { continue }; // A minimized window has no texels.
+///     let texture = frames.executor().texture(frames.plan(), output.io).ok_or("no picture")?;
 ///     assert_eq!(read_texture(&gpu, texture)?.texels, size);
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -50,7 +50,7 @@ pub struct FrameLoop<W: ?Sized + 'static = ()> {
 
 /// Result of an executed frame.
 #[derive(Clone, Debug)]
-pub struct Ran<T> {
+pub struct FrameOutput<T> {
     /// Value returned by the closure that declared the frame.
     pub io: T,
     /// Index of the submission that contains the frame's commands.
@@ -118,7 +118,7 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
         size: [u32; 2],
         world: &W,
         declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
-    ) -> Result<Option<Ran<T>>, FrameError<E>> {
+    ) -> Result<Option<FrameOutput<T>>, FrameError<E>> {
         let queue = self.executor.gpu().queue.clone();
         self.run_with(size, world, declare, |commands| commands.submit(&queue, [], []))
     }
@@ -133,7 +133,7 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
         world: &W,
         declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
         submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
-    ) -> Result<Option<Ran<T>>, FrameError<E>> {
+    ) -> Result<Option<FrameOutput<T>>, FrameError<E>> {
         if size.contains(&0) {
             return Ok(None);
         }
@@ -141,9 +141,9 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
         let Some(io) = self.declare(size, declare)? else { return Ok(None) };
         let submission = self.executor.execute_with(&self.plan, &self.frame, world, &self.imports, submit)?;
         self.flight.submitted(submission.clone());
-        let asked = self.options.alias == Alias::Heap;
-        let not_placed = self.executor.not_placed().filter(|_| asked).cloned();
-        Ok(Some(Ran { io, submission, not_placed }))
+        let requested = self.options.alias == Alias::Heap;
+        let not_placed = self.executor.not_placed().filter(|_| requested).cloned();
+        Ok(Some(FrameOutput { io, submission, not_placed }))
     }
 
     /// Runs a frame like [`FrameLoop::run`], but returns its commands instead of submitting them.
@@ -198,7 +198,7 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
     ///
     /// # Errors
     /// Fails like [`Executor::execute`].
-    pub fn warm_up(&mut self, world: &W, progress: &mut dyn FnMut(WarmUp<'_>)) -> Result<(), ExecuteError> {
+    pub fn warm_up(&mut self, world: &W, progress: &mut dyn FnMut(WarmUpProgress<'_>)) -> Result<(), ExecuteError> {
         self.executor.warm_up(&self.plan, &self.frame, world, &self.imports, progress)
     }
 

@@ -30,9 +30,9 @@ use wgpu::{PollType, SubmissionIndex};
 #[derive(Debug)]
 pub struct FramesInFlight {
     gpu: Gpu,
-    most: NonZeroU32,
+    max: NonZeroU32,
     queued: VecDeque<Queued>,
-    begun: Option<Instant>,
+    started: Option<Instant>,
     waits: u64,
     latency: Durations,
 }
@@ -40,7 +40,7 @@ pub struct FramesInFlight {
 #[derive(Debug)]
 struct Queued {
     submission: SubmissionIndex,
-    begun: Instant,
+    started: Instant,
     /// Time when the device finished the frame, set by a callback while the device is polled.
     done: Arc<OnceLock<Instant>>,
 }
@@ -52,18 +52,18 @@ impl FramesInFlight {
     /// Creates an empty queue with the default maximum of two frames.
     pub fn new(gpu: &Gpu) -> Self {
         let (queued, latency) = (VecDeque::new(), Durations::default());
-        Self { gpu: gpu.clone(), most: Self::DEFAULT, queued, begun: None, waits: 0, latency }
+        Self { gpu: gpu.clone(), max: Self::DEFAULT, queued, started: None, waits: 0, latency }
     }
 
     /// Sets the maximum number of queued frames, from the next frame on. 1 gives the lowest latency; higher values give
     /// a more even frame rate.
-    pub fn set_most(&mut self, most: NonZeroU32) {
-        self.most = most;
+    pub fn set_max(&mut self, max: NonZeroU32) {
+        self.max = max;
     }
 
     /// Returns the maximum number of queued frames.
-    pub fn most(&self) -> NonZeroU32 {
-        self.most
+    pub fn max(&self) -> NonZeroU32 {
+        self.max
     }
 
     /// Begins a frame. Blocks until fewer frames than the maximum are queued.
@@ -73,27 +73,27 @@ impl FramesInFlight {
     pub fn begin(&mut self) -> Result<(), DeviceError> {
         self.gpu.poll()?;
         self.collect();
-        let Self { gpu, most, queued, waits, latency, .. } = self;
+        let Self { gpu, max, queued, waits, latency, .. } = self;
         let wait = |oldest: &Queued| {
             *waits += 1;
             let oldest = PollType::Wait { submission_index: Some(oldest.submission.clone()), timeout: None };
             gpu.poll_as(oldest, "waiting for an older frame")
         };
-        make_room(queued, *most, wait, |done| latency.push(done.ms()))?;
-        self.begun = Some(Instant::now());
+        make_room(queued, *max, wait, |done| latency.push(done.ms()))?;
+        self.started = Some(Instant::now());
         Ok(())
     }
 
     /// Ends the current frame, whose commands have the index `submission`. If [`FramesInFlight::begin`] was not called,
     /// the frame begins now.
     pub fn submitted(&mut self, submission: SubmissionIndex) {
-        let begun = self.begun.take().unwrap_or_else(Instant::now);
+        let started = self.started.take().unwrap_or_else(Instant::now);
         let done = Arc::new(OnceLock::new());
-        let told = done.clone();
+        let finished = done.clone();
         self.gpu.queue.on_submitted_work_done(move || {
-            told.get_or_init(Instant::now);
+            finished.get_or_init(Instant::now);
         });
-        self.queued.push_back(Queued { submission, begun, done });
+        self.queued.push_back(Queued { submission, started, done });
     }
 
     /// Returns the number of submitted frames that are not known to be finished.
@@ -127,18 +127,18 @@ impl Queued {
     /// Returns the milliseconds from the begin of the frame until its end, or until now.
     fn ms(&self) -> f64 {
         let done = self.done.get().copied().unwrap_or_else(Instant::now);
-        done.duration_since(self.begun).as_secs_f64() * 1e3
+        done.duration_since(self.started).as_secs_f64() * 1e3
     }
 }
 
 /// Calls `wait` with the oldest frame until fewer than `max` are queued. Hands each awaited frame to `done`.
 fn make_room<T, E>(
     queued: &mut VecDeque<T>,
-    most: NonZeroU32,
+    max: NonZeroU32,
     mut wait: impl FnMut(&T) -> Result<(), E>,
     mut done: impl FnMut(T),
 ) -> Result<(), E> {
-    while queued.len() >= most.get() as usize
+    while queued.len() >= max.get() as usize
         && let Some(oldest) = queued.front()
     {
         wait(oldest)?;
@@ -153,17 +153,17 @@ mod tests {
 
     /// Simulates a device that finishes a frame only when waited for. Returns pairs of a frame and the one it waited
     /// for.
-    fn waited(most: u32, frames: u32) -> Vec<(u32, u32)> {
+    fn waited(max: u32, frames: u32) -> Vec<(u32, u32)> {
         let (mut queued, mut waited) = (VecDeque::new(), Vec::new());
-        let most = NonZeroU32::new(most).unwrap_or(NonZeroU32::MIN);
+        let max = NonZeroU32::new(max).unwrap_or(NonZeroU32::MIN);
         for frame in 0..frames {
             let wait = |oldest: &u32| {
                 waited.push((frame, *oldest));
                 Ok::<_, ()>(())
             };
-            assert_eq!(make_room(&mut queued, most, wait, drop), Ok(()));
+            assert_eq!(make_room(&mut queued, max, wait, drop), Ok(()));
             queued.push_back(frame);
-            assert!(queued.len() <= most.get() as usize);
+            assert!(queued.len() <= max.get() as usize);
         }
         waited
     }

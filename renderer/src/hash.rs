@@ -25,7 +25,7 @@ const fn fnv_step(hash: u64, byte: u8) -> u64 {
 }
 
 /// Builds hashers for cache keys, which are short and never chosen by an attacker.
-pub(crate) type Keyed = BuildHasherDefault<KeyHasher>;
+pub(crate) type KeyHashBuilder = BuildHasherDefault<KeyHasher>;
 
 /// Hashes words by rotating, XOR and multiplying, like `rustc-hash` 1.
 #[derive(Clone, Copy, Debug, Default)]
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn neighbouring_keys_spread() {
-        let hashed = |key: (u32, u8, &str)| Keyed::default().hash_one(key);
+        let hashed = |key: (u32, u8, &str)| KeyHashBuilder::default().hash_one(key);
         let keys = (0..64u32).flat_map(|a| (0..16u8).map(move |b| (a, b, "name")));
         let hashes: Vec<u64> = keys.map(hashed).collect();
         assert_eq!(hashes.iter().collect::<BTreeSet<_>>().len(), 1024, "no two are equal");

@@ -121,8 +121,9 @@ impl Inspector {
         target: InspectTarget,
     ) -> Result<Inspection, InspectError> {
         let name = || target.name.clone();
-        let asked = VersionSelector::Number(target.number);
-        let missing = || InspectError::NoVersion { name: name(), asked: asked.clone(), steps: 0, known: Vec::new() };
+        let requested = VersionSelector::Number(target.number);
+        let missing =
+            || InspectError::NoVersion { name: name(), requested: requested.clone(), steps: 0, known: Vec::new() };
         let (mut graph, handle) = plan.graph().ending_with(target.version).ok_or_else(missing)?;
         let mut part = target.part();
         let resource = plan.graph().versions()[target.version.index()].resource;

@@ -2,7 +2,7 @@
 //!
 //! [`frame`] is what authors of passes see, [`Executor`] executes on a [`Gpu`].
 //! [`inspect`] reads any texture of a frame, [`debug`] has switches to find faults with; with the feature `testing`,
-//! `stand_in` executes graphs that have no recorders yet.
+//! `mock` executes graphs that have no recorders yet.
 //! A pass declares what it touches and records what it draws; nothing else is needed to run it:
 //!
 //! ```
@@ -71,14 +71,14 @@ mod frames_in_flight;
 mod hash;
 pub mod inspect;
 mod measure;
+#[cfg(feature = "testing")]
+pub mod mock;
 mod named;
 mod pipelines;
 mod placed;
 mod record;
 mod recorders;
 mod resources;
-#[cfg(feature = "testing")]
-pub mod stand_in;
 #[cfg(feature = "threads")]
 mod workers;
 #[cfg(not(feature = "threads"))]
@@ -100,13 +100,13 @@ pub use device::window_surface::{SurfaceError, WindowSurface};
 pub use execute::commands::FrameCommands;
 pub use execute::cx::Cx;
 pub use execute::epilogue::{Effect, Epilogue, SettingName};
-pub use execute::error::{EffectSetting, ExecuteError, MemoryAsked, PassReason, RecordError};
-pub use execute::executor::{Allocated, Executor, ExecutorOptions, UnusedAccess, WarmUp};
+pub use execute::error::{EffectSetting, ExecuteError, MemoryRequest, PassReason, RecordError};
+pub use execute::executor::{Allocated, Executor, ExecutorOptions, UnusedAccess, WarmUpProgress};
 pub use execute::object_counts::ObjectCounts;
 pub use execute::part::{BoundBuffer, BoundResource, HistoryImage, ViewPart};
 pub use execute::targets::Targets;
 pub use frame::Frame;
-pub use frame_loop::{FrameError, FrameLoop, Ran};
+pub use frame_loop::{FrameError, FrameLoop, FrameOutput};
 pub use frames_in_flight::FramesInFlight;
 pub use measure::statistics::Summary;
 pub use measure::timing::{Times, Timing};

@@ -11,20 +11,20 @@
 //!   undefined layout to the layout that wgpu tracks, its *resting usage*. The old contents are discarded.
 //! - After the last use, wgpu moves the image back to its resting usage.
 //! - wgpu inserts the first transition of a texture in a command buffer before that buffer. Command buffers are
-//!   therefore split wherever memory changes its owner ([`activations`](activation::activations)), and the barriers are
+//!   therefore split wherever memory changes its owner ([`alias_barriers`](alias_barriers::alias_barriers)), and the barriers are
 //!   submitted in between.
 //!
 //! wgpu never zero-initializes placed resources. `execute/attachments.rs` stores attachments instead of discarding them
 //! where wgpu would fill them afterwards. `resources/requests.rs` does not place textures that need wgpu's clear.
 
-pub(crate) mod activation;
+pub(crate) mod alias_barriers;
 pub(crate) mod arenas;
 #[cfg(all(feature = "vulkan", any(windows, target_os = "linux", target_os = "android", target_os = "freebsd")))]
 pub(crate) mod driver;
 #[cfg(not(all(feature = "vulkan", any(windows, target_os = "linux", target_os = "android", target_os = "freebsd"))))]
 #[path = "placed/no_driver.rs"]
 pub(crate) mod driver;
-pub(crate) mod home;
 pub(crate) mod not_placed;
+pub(crate) mod resting_usage;
 pub(crate) mod shape;
 pub(crate) mod submission;

@@ -189,7 +189,7 @@ impl Running {
             program::line(dump::text(self.app.frames.plan()));
             let flight = self.app.frames.frames_in_flight();
             if let Some(latency) = flight.latency() {
-                let (median_ms, most) = (latency.median_ms, flight.most());
+                let (median_ms, most) = (latency.median_ms, flight.max());
                 program::line(format_args!("latency: median {median_ms:.2} ms with {most} frames queued at most"));
             }
         }

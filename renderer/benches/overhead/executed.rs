@@ -71,7 +71,7 @@ impl Executed {
     pub fn on_threads(mut self, threads: usize, always: bool) -> Result<Self, Box<dyn Error>> {
         let workers = Workers::with_threads(threads)?;
         match always {
-            true => self.executor.always_record_on(workers),
+            true => self.executor.force_record_on(workers),
             false => self.executor.record_on(Some(workers)),
         }
         Ok(self)

@@ -54,7 +54,7 @@ impl Mode {
     }
 
     /// Returns the likely cause if only this mode changes the image.
-    pub const fn suspect(self) -> &'static str {
+    pub const fn likely_cause(self) -> &'static str {
         match self {
             Self::NoCull => "a culled pass has an effect that it does not declare",
             Self::NoMerge => "merged passes affect each other, or one samples its own attachment",
@@ -133,7 +133,7 @@ pub struct Outcome {
     /// Number of pixels with a difference in any channel.
     pub pixels: usize,
     /// Largest difference of a channel, in 8-bit steps (0…255).
-    pub worst_codes: u8,
+    pub max_difference: u8,
 }
 
 impl Outcome {
@@ -148,9 +148,9 @@ impl Outcome {
     }
 
     /// Returns the likely cause if this is the first image that differs.
-    pub fn suspect(&self) -> &'static str {
+    pub fn likely_cause(&self) -> &'static str {
         let again = "the image changes between runs: a pass reads undefined contents, or state outside of the frame";
-        self.mode.map_or(again, Mode::suspect)
+        self.mode.map_or(again, Mode::likely_cause)
     }
 }
 
@@ -166,16 +166,16 @@ pub fn bisect<E>(mut render: impl FnMut(Option<Mode>) -> Result<Vec<u8>, E>) -> 
 }
 
 fn compare(mode: Option<Mode>, expected: &[u8], found: &[u8]) -> Outcome {
-    let mut outcome = Outcome { mode, pixels: 0, worst_codes: 0 };
+    let mut outcome = Outcome { mode, pixels: 0, max_difference: 0 };
     for (a, b) in expected.chunks(4).zip(found.chunks(4)) {
         let worst = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
         outcome.pixels += usize::from(worst > 0);
-        outcome.worst_codes = outcome.worst_codes.max(worst);
+        outcome.max_difference = outcome.max_difference.max(worst);
     }
     // Counts pixels that only one image has.
     let missing = expected.len().abs_diff(found.len()).div_ceil(4);
-    let worst = if missing > 0 { u8::MAX } else { outcome.worst_codes };
-    Outcome { pixels: outcome.pixels + missing, worst_codes: worst, mode }
+    let worst = if missing > 0 { u8::MAX } else { outcome.max_difference };
+    Outcome { pixels: outcome.pixels + missing, max_difference: worst, mode }
 }
 
 #[cfg(test)]
@@ -220,7 +220,7 @@ mod tests {
             })
         })?;
         let changed: Vec<_> =
-            outcomes.iter().filter(|o| !o.is_same()).map(|o| (o.mode, o.pixels, o.worst_codes)).collect();
+            outcomes.iter().filter(|o| !o.is_same()).map(|o| (o.mode, o.pixels, o.max_difference)).collect();
         assert_eq!(changed, [(Some(Mode::NoAlias), 1, 255), (Some(Mode::Poison), 1, 8)]);
         assert_eq!((outcomes.len(), outcomes[0].name()), (Mode::ALL.len() + 1, "again"));
         Ok(())

@@ -1,4 +1,4 @@
-//! Adapter selection: prefers hardware over software and follows environment variables.
+//! Adapter selection: prefers hardware over software and is_consequence environment variables.
 
 use wgpu::{Adapter, AdapterInfo, Backend, Backends, DeviceType, Instance, Limits};
 

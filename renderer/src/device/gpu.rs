@@ -64,11 +64,11 @@ pub enum OpenError {
     #[error(
         "the program was built without the requested graphics APIs ({}), only with {}; build `framegraph-wgpu` with one of the \
          features `vulkan`, `metal`, `dx12`, `gles`, or `noop` for a device that draws nothing",
-        joined(.asked.iter_names()), joined(.built.iter_names())
+        joined(.requested.iter_names()), joined(.built.iter_names())
     )]
     NotBuilt {
         /// Requested APIs.
-        asked: Backends,
+        requested: Backends,
         /// APIs that are built in and exist on this system.
         built: Backends,
     },
@@ -76,13 +76,13 @@ pub enum OpenError {
     #[error(
         "no adapter for {}{}; found: {}; install a driver (Mesa's llvmpipe renders without a GPU), or change WGPU_BACKEND and \
          WGPU_ADAPTER_NAME",
-        joined(.asked.backends.iter_names()),
-        .asked.name.as_ref().map(|n| format!(" with `{n}` in its name")).unwrap_or_default(),
+        joined(.requested.backends.iter_names()),
+        .requested.name.as_ref().map(|n| format!(" with `{n}` in its name")).unwrap_or_default(),
         listed(.found.iter().map(describe))
     )]
     NoAdapter {
         /// The request.
-        asked: AdapterRequest,
+        requested: AdapterRequest,
         /// All adapters that were found.
         found: Vec<AdapterInfo>,
     },
@@ -153,14 +153,14 @@ impl Gpu {
         request.check()?;
         let built = Instance::enabled_backend_features();
         if !built.intersects(request.backends) {
-            return Err(OpenError::NotBuilt { asked: request.backends, built });
+            return Err(OpenError::NotBuilt { requested: request.backends, built });
         }
         let all = adapters(request);
         let mut fitting: Vec<_> = all.iter().filter(|a| request.accepts(&a.get_info())).collect();
         fitting.sort_by_key(|a| rank(&a.get_info()));
         if fitting.is_empty() {
             let found = all.iter().map(Adapter::get_info).collect();
-            return Err(OpenError::NoAdapter { asked: request.clone(), found });
+            return Err(OpenError::NoAdapter { requested: request.clone(), found });
         }
         let mut refusals = Vec::new();
         for adapter in fitting {
@@ -253,10 +253,10 @@ impl Gpu {
 
     /// Returns the capabilities of the device for the compiler.
     pub fn caps(&self) -> Caps {
-        self.caps.get_or_init(|| self.asked_caps()).clone()
+        self.caps.get_or_init(|| self.query_caps()).clone()
     }
 
-    fn asked_caps(&self) -> Caps {
+    fn query_caps(&self) -> Caps {
         let averaged = |format: &Format| {
             let flags = self.format_features(*format).flags;
             // Formats without multisampling need no resolve.

@@ -77,10 +77,10 @@ fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView
         unreachable!("the plan attaches `{}`, which has no texture", Named::resource(plan, attachment.resource));
     };
     let layers = attachment.layers;
-    let most = if layers == 1 || shape.samples > 1 { 1 } else { gpu.max_attached_layers()? };
-    if u32::from(layers) > most {
+    let max = if layers == 1 || shape.samples > 1 { 1 } else { gpu.max_attached_layers()? };
+    if u32::from(layers) > max {
         let (resource, adapter) = (Named::resource(plan, attachment.resource), gpu.info().clone().into());
-        return Err(ExecuteError::Layers { resource, layers, most, adapter });
+        return Err(ExecuteError::Layers { resource, layers, max, adapter });
     }
     let format = attachment.view.or(plan.format(attachment.resource)).unwrap_or(shape.format);
     let Attachment { mip, layer, .. } = *attachment;

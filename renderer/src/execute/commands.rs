@@ -11,15 +11,15 @@ use wgpu::{CommandBuffer, Queue, SubmissionIndex};
 pub struct FrameCommands {
     buffers: Vec<CommandBuffer>,
     /// Whether each command buffer must be submitted on its own.
-    apart: bool,
+    separate: bool,
 }
 
 impl FrameCommands {
-    pub(crate) fn new(buffers: Vec<CommandBuffer>, apart: bool) -> Self {
-        Self { buffers, apart }
+    pub(crate) fn new(buffers: Vec<CommandBuffer>, separate: bool) -> Self {
+        Self { buffers, separate }
     }
 
-    /// Submits the commands in order, between the caller's command buffers `before` and `behind`.
+    /// Submits the commands in order, between the caller's command buffers `before` and `after`.
     ///
     /// Uses a single submission if the driver keeps the order of commands that access shared memory through different
     /// textures. Mesa's llvmpipe before version 25 does not, and gets one submission per command buffer.
@@ -27,18 +27,18 @@ impl FrameCommands {
         self,
         queue: &Queue,
         before: impl IntoIterator<Item = CommandBuffer>,
-        behind: impl IntoIterator<Item = CommandBuffer>,
+        after: impl IntoIterator<Item = CommandBuffer>,
     ) -> SubmissionIndex {
-        let Self { mut buffers, apart } = self;
+        let Self { mut buffers, separate } = self;
         let last = buffers.pop();
-        if !apart {
-            return queue.submit(before.into_iter().chain(buffers).chain(last).chain(behind));
+        if !separate {
+            return queue.submit(before.into_iter().chain(buffers).chain(last).chain(after));
         }
         let mut before = Some(before);
         for buffer in buffers {
             queue.submit(before.take().into_iter().flatten().chain([buffer]));
         }
-        queue.submit(before.into_iter().flatten().chain(last).chain(behind))
+        queue.submit(before.into_iter().flatten().chain(last).chain(after))
     }
 
     /// Returns the command buffers. The caller must submit them in this order on the device's queue, before the next
@@ -48,7 +48,7 @@ impl FrameCommands {
     /// Returns the commands unchanged if each command buffer must be submitted on its own (Mesa's llvmpipe before
     /// version 25 with [`framegraph::Alias::Heap`]). Use [`FrameCommands::submit`] in that case.
     pub fn into_buffers(self) -> Result<Vec<CommandBuffer>, Self> {
-        if self.apart { Err(self) } else { Ok(self.buffers) }
+        if self.separate { Err(self) } else { Ok(self.buffers) }
     }
 
     /// Returns the number of command buffers.
@@ -65,9 +65,9 @@ mod tests {
     #[test]
     fn what_must_be_submitted_apart_is_not_handed_out() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
-        let commands = |apart| {
+        let commands = |separate| {
             let buffers = [1, 2].map(|_| gpu.device.create_command_encoder(&Default::default()).finish());
-            FrameCommands::new(buffers.into(), apart)
+            FrameCommands::new(buffers.into(), separate)
         };
         assert_eq!(commands(false).into_buffers().map(|buffers| buffers.len()).ok(), Some(2));
         let back = commands(true).into_buffers().err().ok_or("handed out")?;

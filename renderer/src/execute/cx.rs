@@ -17,7 +17,7 @@ use wgpu::{BindGroup, BindGroupDescriptor, BindGroupLayoutDescriptor, CommandEnc
 
 /// Encoder of the current step. wgpu's pass types are large, so they are borrowed instead of moved.
 #[derive(Debug)]
-pub(crate) enum Open<'a> {
+pub(crate) enum StepEncoder<'a> {
     /// A render pass.
     Raster(&'a mut RenderPass<'static>),
     /// A compute pass.
@@ -26,13 +26,13 @@ pub(crate) enum Open<'a> {
     Copy(&'a mut CommandEncoder),
 }
 
-impl Open<'_> {
+impl StepEncoder<'_> {
     /// Borrows the encoder for one pass of the step.
-    pub(crate) fn reborrow(&mut self) -> Open<'_> {
+    pub(crate) fn reborrow(&mut self) -> StepEncoder<'_> {
         match self {
-            Open::Raster(pass) => Open::Raster(pass),
-            Open::Compute(pass) => Open::Compute(pass),
-            Open::Copy(encoder) => Open::Copy(encoder),
+            StepEncoder::Raster(pass) => StepEncoder::Raster(pass),
+            StepEncoder::Compute(pass) => StepEncoder::Compute(pass),
+            StepEncoder::Copy(encoder) => StepEncoder::Copy(encoder),
         }
     }
 }
@@ -70,11 +70,11 @@ pub struct Cx<'a> {
     pub(crate) pass: PassId,
     pub(crate) targets: &'a Targets,
     pub(crate) recording: &'a mut Recording,
-    pub(crate) open: Open<'a>,
+    pub(crate) encoder: StepEncoder<'a>,
     /// Passes that the plan inlined into this pass's fragment shader.
     pub(crate) inlined: &'a [Inlined],
     /// Whether the recorder requested them.
-    pub(crate) asked_inlined: bool,
+    pub(crate) requested_inlined: bool,
 }
 
 impl<'a> Cx<'a> {
@@ -109,10 +109,10 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// Fails if the pass is not a raster pass.
     pub fn render_pass(&mut self) -> Result<&mut RenderPass<'static>, RecordError> {
-        match &mut self.open {
-            Open::Raster(pass) => Ok(pass),
-            Open::Compute(_) => Err(wrong_kind(PassKind::Raster, PassKind::Compute)),
-            Open::Copy(_) => Err(wrong_kind(PassKind::Raster, PassKind::Copy)),
+        match &mut self.encoder {
+            StepEncoder::Raster(pass) => Ok(pass),
+            StepEncoder::Compute(_) => Err(wrong_kind(PassKind::Raster, PassKind::Compute)),
+            StepEncoder::Copy(_) => Err(wrong_kind(PassKind::Raster, PassKind::Copy)),
         }
     }
 
@@ -121,10 +121,10 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// Fails if the pass is not a compute pass.
     pub fn compute_pass(&mut self) -> Result<&mut ComputePass<'static>, RecordError> {
-        match &mut self.open {
-            Open::Compute(pass) => Ok(pass),
-            Open::Raster(_) => Err(wrong_kind(PassKind::Compute, PassKind::Raster)),
-            Open::Copy(_) => Err(wrong_kind(PassKind::Compute, PassKind::Copy)),
+        match &mut self.encoder {
+            StepEncoder::Compute(pass) => Ok(pass),
+            StepEncoder::Raster(_) => Err(wrong_kind(PassKind::Compute, PassKind::Raster)),
+            StepEncoder::Copy(_) => Err(wrong_kind(PassKind::Compute, PassKind::Copy)),
         }
     }
 
@@ -133,10 +133,10 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// Fails if the pass is not a copy pass, since wgpu locks the encoder during render and compute passes.
     pub fn encoder(&mut self) -> Result<&mut CommandEncoder, RecordError> {
-        match &mut self.open {
-            Open::Copy(encoder) => Ok(encoder),
-            Open::Raster(_) => Err(wrong_kind(PassKind::Copy, PassKind::Raster)),
-            Open::Compute(_) => Err(wrong_kind(PassKind::Copy, PassKind::Compute)),
+        match &mut self.encoder {
+            StepEncoder::Copy(encoder) => Ok(encoder),
+            StepEncoder::Raster(_) => Err(wrong_kind(PassKind::Copy, PassKind::Raster)),
+            StepEncoder::Compute(_) => Err(wrong_kind(PassKind::Copy, PassKind::Compute)),
         }
     }
 
@@ -169,7 +169,7 @@ impl<'a> Cx<'a> {
             let pass = frame.plan.graph().pass_name(pass);
             format!("{pass}: group {} of {}", group.index(), group.shader())
         };
-        let last = self.recording.remembered.step().groups.next();
+        let last = self.recording.requests.step().groups.next();
         let made = match group.layout() {
             Ok(layout) => frame.caches.groups.get(last, device, layout, bindings, label),
             Err(error) => return self.no_group(error.into()),
@@ -202,7 +202,7 @@ impl<'a> Cx<'a> {
             own.fold(0, |slots, access| slots | 1 << access.slot)
         };
         let targets = ((plan.compilation(), self.pass), self.targets);
-        let last = self.recording.remembered.step().rasters.next();
+        let last = self.recording.requests.step().rasters.next();
         Ok(caches.pipelines.raster(last, &gpu.device, raster, targets, own_slots)?)
     }
 
@@ -211,7 +211,7 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// Fails like [`Cx::raster_pipeline`].
     pub fn compute_pipeline(&mut self, compute: &Compute<'_>) -> Result<ComputePipeline, RecordError> {
-        let last = self.recording.remembered.step().computes.next();
+        let last = self.recording.requests.step().computes.next();
         Ok(self.frame.caches.pipelines.compute(last, &self.frame.gpu.device, compute)?)
     }
 
@@ -221,7 +221,7 @@ impl<'a> Cx<'a> {
     /// If the pass declares `takes_epilogue`, its recorder must call this function or [`Cx::epilogues`], and run the
     /// epilogues at the end of its fragment shader.
     pub fn inlined(&mut self) -> impl Iterator<Item = PassId> + use<'a> {
-        self.asked_inlined = true;
+        self.requested_inlined = true;
         self.inlined.iter().map(|i| i.pass)
     }
 
@@ -231,7 +231,7 @@ impl<'a> Cx<'a> {
     /// # Errors
     /// Fails if an inlined pass returns no epilogue ([`Record::epilogue`](crate::Record::epilogue)).
     pub fn epilogues(&mut self) -> Result<Vec<(u8, &'a Epilogue)>, RecordError> {
-        self.asked_inlined = true;
+        self.requested_inlined = true;
         let said = |i: &'a Inlined| {
             let pass = || Named::pass(self.frame.plan, i.pass);
             i.epilogue.as_ref().map(|e| (i.slot, e)).ok_or_else(|| RecordError::NoEpilogue { pass: pass() })
@@ -240,6 +240,6 @@ impl<'a> Cx<'a> {
     }
 }
 
-const fn wrong_kind(asked: PassKind, open: PassKind) -> RecordError {
-    RecordError::WrongKind { asked, open }
+const fn wrong_kind(requested: PassKind, actual: PassKind) -> RecordError {
+    RecordError::WrongKind { requested, actual }
 }

@@ -88,13 +88,13 @@ impl Epilogue {
     /// Appends the effects of `next`.
     ///
     /// # Errors
-    /// Fails with [`RecordError::EffectTwice`] if both set a constant or binding to different values. An effect that
+    /// Fails with [`RecordError::EffectConflict`] if both set a constant or binding to different values. An effect that
     /// occurs twice has only one set of values.
     pub fn append(&mut self, next: &Self) -> Result<(), RecordError> {
         for (name, value) in &next.constants {
             match self.constants.iter().find(|(n, _)| n == name) {
                 Some((_, own)) if own.to_bits() != value.to_bits() => {
-                    return Err(RecordError::EffectTwice(EffectSetting::Constant(name.text)));
+                    return Err(RecordError::EffectConflict(EffectSetting::Constant(name.text)));
                 }
                 Some(_) => {}
                 None => self.constants.push((*name, *value)),
@@ -103,7 +103,7 @@ impl Epilogue {
         for (name, binding) in &next.bindings {
             match self.bindings.iter().find(|(n, _)| n == name).map(|(_, binding)| binding) {
                 Some(own) if own != binding => {
-                    return Err(RecordError::EffectTwice(EffectSetting::Binding(name.text)));
+                    return Err(RecordError::EffectConflict(EffectSetting::Binding(name.text)));
                 }
                 Some(_) => {}
                 None => self.bindings.push((*name, binding.clone())),
@@ -207,7 +207,7 @@ mod tests {
         let names: Vec<_> = found.iter().map(|(pass, slot)| (graph.pass_name(*pass), *slot)).collect();
         assert_eq!(names, [("b0", 1), ("a0", 0), ("a1", 0)]);
         let other = graph.find_pass("a0").ok_or("a0")?;
-        assert_eq!(inlined_after(&plan, step, other).len(), 1, "only what follows");
+        assert_eq!(inlined_after(&plan, step, other).len(), 1, "only what is_consequence");
         Ok(())
     }
 }

@@ -65,18 +65,18 @@ pub enum RecordError {
     /// Commands of another kind of pass were requested.
     #[error(
         "{} was requested in a {} pass; declare accesses of the requested kind, or split the pass",
-        match .asked {
+        match .requested {
             PassKind::Raster => "a render pass",
             PassKind::Compute => "a compute pass",
             PassKind::Copy => "the encoder",
         },
-        .open.word()
+        .actual.word()
     )]
     WrongKind {
         /// Kind of pass whose commands were requested.
-        asked: PassKind,
+        requested: PassKind,
         /// Kind of the current pass.
-        open: PassKind,
+        actual: PassKind,
     },
     /// An inlined pass returns no epilogue.
     #[error(
@@ -91,7 +91,7 @@ pub enum RecordError {
     #[error(
         "two inlined passes set {0} to different values; keep one of them separate with `PassBuilder::never_merge`"
     )]
-    EffectTwice(EffectSetting),
+    EffectConflict(EffectSetting),
     /// wgpu rejected a texture view.
     #[error("wgpu refused a view of `{resource}`: {message}")]
     View {
@@ -223,7 +223,7 @@ pub enum ExecuteError {
     },
     /// More layers are attached at once than the device supports.
     #[error(
-        "`{resource}` is attached with {layers} layers at once, but {} supports {most}; attach one layer per pass with \
+        "`{resource}` is attached with {layers} layers at once, but {} supports {max}; attach one layer per pass with \
          `texture.layer(n)`",
         describe(.adapter)
     )]
@@ -233,7 +233,7 @@ pub enum ExecuteError {
         /// Number of layers that the pass attaches.
         layers: u16,
         /// Maximum number of layers that the device can attach at once.
-        most: u32,
+        max: u32,
         /// Adapter of the device.
         adapter: Box<AdapterInfo>,
     },
@@ -283,7 +283,7 @@ pub enum ExecuteError {
     NotPlaced(#[from] NotPlaced),
     /// The device is out of memory for the textures and buffers of the frame.
     #[error("the device is out of memory while creating {0}; use a smaller frame, fewer samples or smaller textures")]
-    OutOfMemory(Box<MemoryAsked>),
+    OutOfMemory(Box<MemoryRequest>),
     /// An import is missing, or does not match its declaration.
     #[error(transparent)]
     Import(#[from] ImportError),
@@ -303,7 +303,7 @@ impl fmt::Debug for ExecuteError {
 
 /// Memory that a frame needs.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MemoryAsked {
+pub struct MemoryRequest {
     /// Size of all textures and buffers of the plan, in bytes.
     pub bytes: u64,
     /// Largest resource, with its size in bytes.
@@ -312,7 +312,7 @@ pub struct MemoryAsked {
     pub adapter: AdapterInfo,
 }
 
-impl fmt::Display for MemoryAsked {
+impl fmt::Display for MemoryRequest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
         write!(f, "a frame's textures and buffers ({:.1} MiB", mib(self.bytes))?;

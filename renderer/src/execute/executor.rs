@@ -1,23 +1,23 @@
 //! The executor: executes frames on a device and owns everything that is kept between frames.
 
+mod eviction;
 mod histories;
 mod placing;
+mod record;
 #[cfg(feature = "threads")]
 mod record_on;
-mod recorded;
 mod results;
-mod upkeep;
 mod warm_up;
 
 pub use placing::Allocated;
 pub use results::UnusedAccess;
-pub use warm_up::WarmUp;
+pub use warm_up::WarmUpProgress;
 
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::gpu::Gpu;
 use crate::execute::blame::{not_submitted, refused_pass};
 use crate::execute::commands::FrameCommands;
-use crate::execute::error::{ExecuteError, MemoryAsked, RecordError};
+use crate::execute::error::{ExecuteError, MemoryRequest, RecordError};
 use crate::execute::prepared::{Caches, Prepared};
 use crate::execute::recording::Recording;
 use crate::execute::steps::Passes;
@@ -227,12 +227,12 @@ impl Executor {
         let caught = watch.end(self.gpu.errors());
         self.recording.took_in_wgpu(begun);
         if let Err(error) = caught {
-            let told = match error {
+            let error = match error {
                 DeviceError::Refused { message, .. } => not_submitted(&self.gpu, plan, imports, message),
-                other => self.told(plan, other),
+                other => self.execute_error(plan, other),
             };
-            self.forget_frame();
-            return Err(told);
+            self.discard_frame();
+            return Err(error);
         }
         self.end_frame();
         Ok(index)
@@ -248,7 +248,7 @@ impl Executor {
     fn end_frame(&mut self) {
         self.timing.submitted(&self.recording);
         self.histories.advance(self.options.max_age);
-        self.give_up();
+        self.drop_unused();
     }
 
     /// Records a frame. `recorded` is called after each step with the number of pipelines created so far; with it, all
@@ -283,21 +283,21 @@ impl Executor {
         match (ran, caught) {
             (ran, Ok(())) => ran,
             (Err(said), Err(error)) => {
-                self.forget_frame();
-                Err(if follows(&said, &error) { self.told(plan, error) } else { said })
+                self.discard_frame();
+                Err(if is_consequence(&said, &error) { self.execute_error(plan, error) } else { said })
             }
             (Ok(_), Err(error)) => {
-                self.forget_frame();
+                self.discard_frame();
                 let blamed = matches!(error, DeviceError::Refused { .. }).then(|| self.blame(plan, passes, imports));
-                Err(blamed.flatten().unwrap_or_else(|| self.told(plan, error)))
+                Err(blamed.flatten().unwrap_or_else(|| self.execute_error(plan, error)))
             }
         }
     }
 
     /// Converts an error of the device to an error of the frame.
-    fn told(&self, plan: &Plan, error: DeviceError) -> ExecuteError {
+    fn execute_error(&self, plan: &Plan, error: DeviceError) -> ExecuteError {
         match error {
-            DeviceError::OutOfMemory { .. } => ExecuteError::OutOfMemory(Box::new(self.memory_asked(plan))),
+            DeviceError::OutOfMemory { .. } => ExecuteError::OutOfMemory(Box::new(self.memory_request(plan))),
             other => ExecuteError::Device(other),
         }
     }
@@ -316,7 +316,7 @@ impl Executor {
         let Self { gpu, caches, realized, timing, touched, options, recording, .. } = self;
         let frame = &Prepared { gpu, plan, realized, caches, timing, touched, poison: options.poison };
         let blamed = refused.then(|| refused_pass(frame, passes, recording)).flatten();
-        self.forget_frame();
+        self.discard_frame();
         blamed.map(|(pass, message)| ExecuteError::Refused { pass: Named::pass(plan, pass), message })
     }
 
@@ -344,7 +344,7 @@ impl Executor {
         let shared = if alone { None } else { threads.record(frame, arenas, passes, recording, elsewhere) };
         let all = 0..plan.steps().len() as u32;
         let commands = shared.unwrap_or_else(|| record_part(frame, arenas, passes, all, recording, recorded));
-        let commands = commands.map(|buffers| FrameCommands::new(buffers, arenas.submits_apart(gpu)));
+        let commands = commands.map(|buffers| FrameCommands::new(buffers, arenas.submits_separately(gpu)));
         if !alone {
             threads.end_frame(recording);
         }
@@ -356,10 +356,10 @@ impl Executor {
     }
 
     /// Returns how much memory the frame needs.
-    fn memory_asked(&self, plan: &Plan) -> MemoryAsked {
+    fn memory_request(&self, plan: &Plan) -> MemoryRequest {
         let (memory, bytes) = (plan.memory(), |r: ResourceId| plan.resources()[r.index()].bytes);
         let largest = plan.graph().resource_ids().max_by_key(|r| bytes(*r));
-        MemoryAsked {
+        MemoryRequest {
             bytes: memory.bytes.saturating_add(memory.own_bytes),
             largest: largest.map(|r| (Named::resource(plan, r), bytes(r))),
             adapter: self.gpu.info().clone(),
@@ -374,7 +374,7 @@ fn check<W: ?Sized + 'static>(plan: &Plan, frame: &Frame<W>) -> Result<(), Execu
 
 /// Returns whether the error `said` of recording is a consequence of the device's `error`, such as a view of a texture
 /// that could not be allocated. Otherwise the recorder's error is closer to the cause.
-fn follows(said: &ExecuteError, error: &DeviceError) -> bool {
+fn is_consequence(said: &ExecuteError, error: &DeviceError) -> bool {
     let of_a_view =
         matches!(said, ExecuteError::Device(_) | ExecuteError::Record { error: RecordError::View { .. }, .. });
     of_a_view || matches!(error, DeviceError::OutOfMemory { .. } | DeviceError::Lost { .. })

@@ -8,7 +8,7 @@ use crate::device::format::texture_format;
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
 use crate::execute::part::{BoundBuffer, BoundResource, HistoryImage, ViewPart};
-use crate::execute::remembered::LastView;
+use crate::execute::request_cache::LastView;
 use crate::named::Named;
 use crate::resources::no_memory::NoMemory;
 use crate::resources::physical::PhysicalTextureDesc;
@@ -212,18 +212,18 @@ impl<'a> Cx<'a> {
     /// Returns the view of a part of an access.
     fn view_at(&mut self, (index, access): (usize, &Access), part: ViewPart) -> Result<TextureView, RecordError> {
         let stamp = self.frame.realized.stamp(access.resource);
-        let asked = stamp.map(|stamp| (index, part, stamp));
-        let last = self.recording.remembered.step().views.next();
-        if let (Some(asked), LastView(Some((known, view)))) = (asked, last)
-            && asked == *known
+        let request = stamp.map(|stamp| (index, part, stamp));
+        let last = self.recording.requests.step().views.next();
+        if let (Some(request), LastView(Some((known, view)))) = (request, last)
+            && request == *known
         {
             let view = view.clone();
-            self.recording.remembered.views_found += 1;
+            self.recording.requests.views_found += 1;
             return Ok(view);
         }
         let view = self.make_view(access, part)?;
-        let last = self.recording.remembered.step().views.last();
-        *last = LastView(asked.map(|asked| (asked, view.clone())));
+        let last = self.recording.requests.step().views.last();
+        *last = LastView(request.map(|request| (request, view.clone())));
         Ok(view)
     }
 

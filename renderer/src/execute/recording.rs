@@ -1,7 +1,7 @@
 //! Mutable state of recording: uniforms, counts and times of the steps that one thread records.
 
 use crate::execute::error::RecordError;
-use crate::execute::remembered::Remembered;
+use crate::execute::request_cache::RequestCache;
 use crate::execute::uniforms::Uniforms;
 use framegraph::{Counts, PassId, StepId};
 use std::time::{Duration, Instant};
@@ -12,7 +12,7 @@ use wgpu::Device;
 pub(crate) struct Recording {
     pub(crate) uniforms: Uniforms,
     /// Requests of the last frame and their results.
-    pub(crate) remembered: Remembered,
+    pub(crate) requests: RequestCache,
     /// Whether times are measured.
     measured: bool,
     /// Whether this frame is measured. Reading the clock costs as much as beginning a pass.
@@ -42,17 +42,17 @@ pub(crate) struct StepTime {
 impl Recording {
     /// Creates the state for a device. `measured` turns on time measurements.
     pub(crate) fn new(device: &Device, measured: bool) -> Self {
-        let (executed, in_wgpu, remembered) = (Counts::default(), Duration::ZERO, Remembered::default());
+        let (executed, in_wgpu, requests) = (Counts::default(), Duration::ZERO, RequestCache::default());
         let (uniforms, steps, inlined) = (Uniforms::new(device), Vec::new(), Vec::new());
         let (timed, poisoned, refused) = (measured, 0, None);
-        Self { uniforms, remembered, measured, timed, executed, poisoned, steps, in_wgpu, inlined, refused }
+        Self { uniforms, requests, measured, timed, executed, poisoned, steps, in_wgpu, inlined, refused }
     }
 
     /// Begins a frame and resets counts and times. `timed` measures steps even if measurements are off. Cached views
     /// are released every `max_age` frames.
     pub(crate) fn begin_frame(&mut self, timed: bool, max_age: u64) {
         self.uniforms.begin_frame();
-        self.remembered.begin_frame(max_age);
+        self.requests.begin_frame(max_age);
         self.timed = self.measured || timed;
         (self.executed, self.poisoned, self.in_wgpu) = (Counts::default(), 0, Duration::ZERO);
         self.steps.clear();

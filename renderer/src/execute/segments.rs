@@ -2,7 +2,7 @@
 
 use crate::device::gpu::Gpu;
 use crate::execute::prepared::Prepared;
-use crate::placed::activation::{Activation, activations};
+use crate::placed::alias_barriers::{AliasBarrier, alias_barriers};
 use crate::placed::arenas::{Arena, Arenas};
 use crate::placed::driver::{Driver, Object, PlacedTexture};
 use crate::resources::realize::Realized;
@@ -26,7 +26,7 @@ struct Sharing<'a> {
     plan: &'a Plan,
     realized: &'a Realized,
     /// Activations that follow, in reverse order.
-    coming: Vec<Activation>,
+    pending: Vec<AliasBarrier>,
     /// Resources that currently own their memory.
     active: Vec<ResourceId>,
 }
@@ -36,19 +36,19 @@ impl<'a> Segments<'a> {
     pub(crate) fn new(frame: &Prepared<'a>, arenas: &'a Arenas, steps: Range<u32>) -> Self {
         let Prepared { gpu, plan, realized, .. } = *frame;
         let sharing = arenas.current().zip(arenas.placing()).map(|(arena, driver)| {
-            let mut coming = activations(plan, |resource| realized.placed_at(resource).is_some());
-            if arenas.leaves_out_hand_overs() {
+            let mut pending = alias_barriers(plan, |resource| realized.placed_at(resource).is_some());
+            if arenas.skips_alias_barriers() {
                 // Without barriers, all resources are activated before the first step.
-                let resources = coming.drain(..).flat_map(|a| a.resources).collect();
-                coming.push(Activation { before: StepId::at(0), resources });
+                let resources = pending.drain(..).flat_map(|a| a.resources).collect();
+                pending.push(AliasBarrier { before: StepId::at(0), resources });
             }
             // Earlier parts of the frame activated and retired the resources before the first step.
             let begin = StepId::at(steps.start as usize);
-            let here = coming.partition_point(|a| a.before < begin);
-            let before = coming.drain(..here).flat_map(|a| a.resources);
+            let here = pending.partition_point(|a| a.before < begin);
+            let before = pending.drain(..here).flat_map(|a| a.resources);
             let active = before.filter(|r| plan.resources()[r.index()].last >= begin).collect();
-            coming.reverse();
-            Sharing { driver, arena, plan, realized, coming, active }
+            pending.reverse();
+            Sharing { driver, arena, plan, realized, pending, active }
         });
         Self { gpu, encoder: encoder(gpu), done: Vec::new(), steps, sharing }
     }
@@ -56,7 +56,7 @@ impl<'a> Segments<'a> {
     /// Begins a step. Activates the resources that use their memory from here on.
     pub(crate) fn begin_step(&mut self, step: StepId) {
         let Some(sharing) = &mut self.sharing else { return };
-        let Some(now) = sharing.coming.pop_if(|a| a.before == step) else { return };
+        let Some(now) = sharing.pending.pop_if(|a| a.before == step) else { return };
         sharing.retire(step, &mut self.encoder);
         let before = std::mem::replace(&mut self.encoder, encoder(self.gpu));
         // Before the first step, the command buffer is still empty.
@@ -92,16 +92,17 @@ impl<'a> Sharing<'a> {
         let (over, active): (Vec<_>, Vec<_>) = self.active.iter().copied().partition(over);
         self.active = active;
         let textures: Vec<_> = over.into_iter().filter_map(|r| self.texture(r)).collect();
-        let home = |t: &'a PlacedTexture| TextureTransition { texture: t.texture(), selector: None, state: t.home() };
+        let resting_usage =
+            |t: &'a PlacedTexture| TextureTransition { texture: t.texture(), selector: None, state: t.resting_usage() };
         if !textures.is_empty() {
-            encoder.transition_resources(std::iter::empty(), textures.into_iter().map(home));
+            encoder.transition_resources(std::iter::empty(), textures.into_iter().map(resting_usage));
         }
     }
 
     fn activate(&mut self, resources: Vec<ResourceId>) -> CommandBuffer {
         let textures: Vec<_> = resources.iter().filter_map(|r| self.texture(*r)).collect();
         self.active.extend(resources);
-        self.driver.hand_over(&textures)
+        self.driver.alias_barrier(&textures)
     }
 }
 

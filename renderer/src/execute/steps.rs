@@ -1,12 +1,12 @@
 //! Recording of one step: begins its pass, runs its recorders in order, and ends it.
 
 use crate::debug::poison;
+use crate::execute::cached_step::CachedStep;
 use crate::execute::clear::clear_stored;
-use crate::execute::cx::{Cx, Open};
+use crate::execute::cx::{Cx, StepEncoder};
 use crate::execute::epilogue::{Inlined, inlined_after};
 use crate::execute::error::{ExecuteError, RecordError};
 use crate::execute::full_screen_resolve;
-use crate::execute::opened::Opened;
 use crate::execute::prepared::Prepared;
 use crate::execute::recording::Recording;
 use crate::execute::targets::Targets;
@@ -55,37 +55,38 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
     recording: &mut Recording,
     encoder: &mut CommandEncoder,
 ) -> Result<(), ExecuteError> {
-    recording.remembered.begin(step);
+    recording.requests.begin(step);
     if frame.poison {
         recording.poisoned += poison::at_first_use(frame, step, encoder);
     }
-    let opened = &mut recording.remembered.step().opened;
-    let found = opened.open(frame, step)?;
-    let Opened { targets, poisoned, clears_stored: clears, .. } = *opened;
-    recording.remembered.views_found += found as u64;
+    let cached = &mut recording.requests.step().cached;
+    let found = cached.begin(frame, step)?;
+    let CachedStep { targets, poisoned, clears_stored: clears, .. } = *cached;
+    recording.requests.views_found += found as u64;
     recording.poisoned += poisoned;
     if clears {
         clear_stored(frame, step, encoder)?;
     }
     let begun = recording.now();
     let timestamps = frame.timing.writes(step);
-    let each = |recording: &mut Recording, mut open: Open<'_>| {
+    let each = |recording: &mut Recording, mut encoder: StepEncoder<'_>| {
         recording.took_in_wgpu(begun);
-        recording.remembered.step().opened.close();
+        recording.requests.step().cached.close();
         recording.executed.steps += 1;
         let mut recorded = members.iter().filter(|m| m.join != Join::Inlined);
-        recorded
-            .try_for_each(|member| record_pass(frame, passes, (step, *member), &targets, recording, open.reborrow()))?;
+        recorded.try_for_each(|member| {
+            record_pass(frame, passes, (step, *member), &targets, recording, encoder.reborrow())
+        })?;
         // The pass ends when it is dropped; wgpu validates its commands then.
         Ok::<_, ExecuteError>(recording.now())
     };
     let label = Some(label(frame.plan, step));
     let closing = match frame.plan.steps()[step.index()].kind {
         PassKind::Raster => {
-            let opened = &recording.remembered.step().opened;
-            let mut pass = begin_raster(opened, label, timestamps.as_ref(), encoder);
-            recording.executed += opened.counts;
-            each(recording, Open::Raster(&mut pass))?
+            let cached = &recording.requests.step().cached;
+            let mut pass = begin_raster(cached, label, timestamps.as_ref(), encoder);
+            recording.executed += cached.counts;
+            each(recording, StepEncoder::Raster(&mut pass))?
         }
         PassKind::Compute => {
             let timestamp_writes = timestamps.as_ref().map(|t| ComputePassTimestampWrites {
@@ -95,14 +96,14 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
             });
             let mut pass =
                 encoder.begin_compute_pass(&ComputePassDescriptor { label, timestamp_writes }).forget_lifetime();
-            each(recording, Open::Compute(&mut pass))?
+            each(recording, StepEncoder::Compute(&mut pass))?
         }
         PassKind::Copy => {
             let write = |encoder: &mut CommandEncoder, index: fn(&TimestampWrites) -> u32| {
                 timestamps.iter().for_each(|t| encoder.write_timestamp(&t.queries, index(t)));
             };
             write(encoder, |t| t.begin);
-            let closing = each(recording, Open::Copy(&mut *encoder))?;
+            let closing = each(recording, StepEncoder::Copy(&mut *encoder))?;
             write(encoder, |t| t.end);
             closing
         }
@@ -126,7 +127,7 @@ pub(crate) fn record_members<W: ?Sized + 'static>(
 // Inlined, since a render pass is large and would be copied.
 #[inline(always)]
 fn begin_raster(
-    Opened { attached, targets, .. }: &Opened,
+    CachedStep { attached, targets, .. }: &CachedStep,
     label: Option<&str>,
     timestamps: Option<&TimestampWrites>,
     encoder: &mut CommandEncoder,
@@ -166,29 +167,30 @@ fn record_pass<W: ?Sized + 'static>(
     (step, StepPass { pass, join }): (StepId, StepPass),
     targets: &Targets,
     recording: &mut Recording,
-    mut open: Open<'_>,
+    mut encoder: StepEncoder<'_>,
 ) -> Result<(), ExecuteError> {
     let Passes { frame: declared, world, extra } = *passes;
-    if let (Open::Raster(raster), true) = (&mut open, frame.plan.passes_of(step)[0].pass != pass) {
+    if let (StepEncoder::Raster(raster), true) = (&mut encoder, frame.plan.passes_of(step)[0].pass != pass) {
         reset_state(raster, targets.extent);
     }
     let resolves = join == Join::Resolve;
     let takes_epilogue = frame.plan.graph().passes()[pass.index()].flags.has(PassFlags::TAKES_EPILOGUE);
     let mut inlined = Vec::new();
     if takes_epilogue && !resolves {
-        let (inlined_yet, asked_inlined) = (&[][..], false);
-        let (recording, open) = (&mut *recording, open.reborrow());
-        let mut cx = Cx { frame, step, pass, targets, recording, open, inlined: inlined_yet, asked_inlined };
+        let (inlined_yet, requested_inlined) = (&[][..], false);
+        let (recording, encoder) = (&mut *recording, encoder.reborrow());
+        let mut cx = Cx { frame, step, pass, targets, recording, encoder, inlined: inlined_yet, requested_inlined };
         inlined = inlined_into(&mut cx, declared, world)?;
     }
-    let (own, asked_inlined) = (&*inlined, false);
-    let mut cx = Cx { frame, step, pass, targets, recording: &mut *recording, open, inlined: own, asked_inlined };
+    let (own, requested_inlined) = (&*inlined, false);
+    let mut cx =
+        Cx { frame, step, pass, targets, recording: &mut *recording, encoder, inlined: own, requested_inlined };
     let recorded = match extra {
         _ if resolves => Some(full_screen_resolve::record(&mut cx)),
         Some(extra) if extra.pass == pass => Some((extra.record)(&mut cx)),
         _ => declared.recorders().record(pass, world, &mut cx),
     };
-    let asked = cx.asked_inlined;
+    let requested = cx.requested_inlined;
     let name = || Named::pass(frame.plan, pass);
     // A stored error is closer to the cause than the recorder's result.
     let recorded = if recording.refused.is_some() { recording.refused.take().map(Err) } else { recorded };
@@ -196,7 +198,9 @@ fn record_pass<W: ?Sized + 'static>(
         None => return Err(ExecuteError::NoRecorder { pass: name() }),
         Some(Err(RecordError::Device(error))) => return Err(ExecuteError::Device(error)),
         Some(Err(error)) => return Err(ExecuteError::Record { pass: name(), error }),
-        Some(Ok(())) if !asked && !inlined.is_empty() => return Err(ExecuteError::EpilogueIgnored { pass: name() }),
+        Some(Ok(())) if !requested && !inlined.is_empty() => {
+            return Err(ExecuteError::EpilogueIgnored { pass: name() });
+        }
         Some(Ok(())) => {}
     }
     recording.inlined.extend(inlined.iter().map(|i| i.pass));

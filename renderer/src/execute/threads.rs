@@ -6,8 +6,8 @@ use crate::execute::error::ExecuteError;
 use crate::execute::prepared::Prepared;
 use crate::execute::recording::Recording;
 use crate::execute::segments::Segments;
-use crate::execute::share::Share;
 use crate::execute::steps::{Passes, record_step};
+use crate::execute::thread_balancer::ThreadBalancer;
 use crate::placed::arenas::Arenas;
 use crate::workers::Workers;
 use framegraph::{Placement, Plan, StepId, StoreOp, Usage};
@@ -23,7 +23,7 @@ pub(crate) struct Threads {
     workers: Option<Workers>,
     /// Recording state of the other threads.
     others: Vec<Recording>,
-    share: Share,
+    balancer: ThreadBalancer,
     begun: Option<Instant>,
     /// Number of threads that recorded the frame.
     recorded: usize,
@@ -51,13 +51,13 @@ impl Threads {
         let others = workers.as_ref().map_or(0, |workers| workers.threads() - 1);
         self.others.truncate(others);
         self.others.resize_with(others, || Recording::new(device, timed));
-        (self.workers, self.share) = (workers, Share::default());
+        (self.workers, self.balancer) = (workers, ThreadBalancer::default());
     }
 
     /// Splits all frames regardless of cost, for tests.
     #[cfg(all(feature = "threads", any(test, feature = "testing")))]
-    pub(crate) fn always(&mut self) {
-        self.share.always();
+    pub(crate) fn always_split(&mut self) {
+        self.balancer.always_split();
     }
 
     /// Begins a frame of the plan with this number. Returns whether its steps must be timed.
@@ -65,19 +65,19 @@ impl Threads {
         self.recorded = 1;
         let Some(workers) = &self.workers else { return false };
         self.others.iter_mut().for_each(|other| other.begin_frame(false, max_age));
-        if self.share.rests(number, plan.steps().len()) {
+        if self.balancer.begin_unmeasured(number, plan.steps().len()) {
             return false;
         }
         self.begun = Some(Instant::now());
         may_begin(plan, &mut self.may_begin);
-        self.share.begin_frame(number, &self.may_begin, workers.threads())
+        self.balancer.begin_frame(number, &self.may_begin, workers.threads())
     }
 
     /// Ends the recording of a frame. `recording` is the state of the submitting thread.
     pub(crate) fn end_frame(&mut self, recording: &Recording) {
         if let Some(begun) = self.begun.take() {
             let steps = recording.steps.iter().map(|time| (time.step.index(), time.ended - time.begun));
-            self.share.end_frame(begun.elapsed(), steps);
+            self.balancer.end_frame(begun.elapsed(), steps);
         }
     }
 
@@ -94,12 +94,12 @@ impl Threads {
 
     /// Returns the number of view requests that the other threads answered from their caches.
     pub(crate) fn views_found(&self) -> u64 {
-        self.others.iter().map(|other| other.remembered.views_found).sum()
+        self.others.iter().map(|other| other.requests.views_found).sum()
     }
 
     /// Releases all cached views of the other threads.
-    pub(crate) fn let_go(&mut self) {
-        self.others.iter_mut().for_each(|other| other.remembered.let_go());
+    pub(crate) fn release_views(&mut self) {
+        self.others.iter_mut().for_each(|other| other.requests.release_views());
     }
 
     /// Uploads the uniforms of all other threads.
@@ -118,10 +118,10 @@ impl Threads {
         first: &mut Recording,
         caught: &mut Result<(), DeviceError>,
     ) -> Option<Result<Vec<CommandBuffer>, ExecuteError>> {
-        let Self { workers, others, share, recorded, .. } = self;
-        let workers = workers.as_ref().filter(|_| share.parts().len() > 1)?;
+        let Self { workers, others, balancer, recorded, .. } = self;
+        let workers = workers.as_ref().filter(|_| balancer.parts().len() > 1)?;
         let recordings = std::iter::once(&mut *first).chain(others.iter_mut());
-        let mut parts: Vec<Part<'_>> = share
+        let mut parts: Vec<Part<'_>> = balancer
             .parts()
             .iter()
             .zip(recordings)

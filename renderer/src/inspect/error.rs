@@ -25,12 +25,12 @@ pub enum InspectError {
         name: String,
     },
     /// The version does not exist.
-    #[error("`{shown}` has no version {}; it has {}", asked_version(.asked, *.steps), listed(.known.iter().map(VersionName::to_string)), shown = plain::name(.name))]
+    #[error("`{shown}` has no version {}; it has {}", version_text(.requested, *.steps), listed(.known.iter().map(VersionName::to_string)), shown = plain::name(.name))]
     NoVersion {
         /// Name of the texture.
         name: String,
         /// Requested version.
-        asked: VersionSelector,
+        requested: VersionSelector,
         /// Number of steps of the plan.
         steps: usize,
         /// Versions that exist.
@@ -98,34 +98,34 @@ impl fmt::Debug for InspectError {
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MissingPart {
     /// Mip level, counted from 0.
-    #[error("level {asked}; it has levels 0 to {}", .levels - 1)]
+    #[error("level {requested}; it has levels 0 to {}", .levels - 1)]
     Level {
         /// Requested level.
-        asked: u8,
+        requested: u8,
         /// Number of levels.
         levels: u32,
     },
     /// Layer of an array or slice of a 3D texture, counted from 0.
-    #[error("layer {asked}; it has layers 0 to {}", .layers - 1)]
+    #[error("layer {requested}; it has layers 0 to {}", .layers - 1)]
     Layer {
         /// Requested layer.
-        asked: u16,
+        requested: u16,
         /// Number of layers.
         layers: u32,
     },
     /// Plane of a depth-stencil format.
-    #[error("{} plane; it has the format {format:?}", match .asked { Aspect::All => "color", Aspect::Depth => "depth", Aspect::Stencil => "stencil" })]
+    #[error("{} plane; it has the format {format:?}", match .requested { Aspect::All => "color", Aspect::Depth => "depth", Aspect::Stencil => "stencil" })]
     Plane {
         /// Requested plane.
-        asked: Aspect,
+        requested: Aspect,
         /// Format of the texture.
         format: Format,
     },
     /// Sample of a multisampled texture, counted from 0.
-    #[error("sample {asked}; it has {samples} samples")]
+    #[error("sample {requested}; it has {samples} samples")]
     Sample {
         /// Requested sample.
-        asked: u8,
+        requested: u8,
         /// Number of samples.
         samples: u8,
     },
@@ -155,8 +155,8 @@ impl fmt::Display for VersionName {
     }
 }
 
-fn asked_version(asked: &VersionSelector, steps: usize) -> String {
-    match asked {
+fn version_text(requested: &VersionSelector, steps: usize) -> String {
+    match requested {
         VersionSelector::Newest => "that a pass wrote".to_owned(),
         VersionSelector::After(pass) => format!("of a pass `{}`", plain::name(pass)),
         VersionSelector::Number(number) => format!("v{number}"),

@@ -19,7 +19,7 @@ pub struct Request {
     /// Full name of the texture.
     pub name: String,
     /// Version of the texture.
-    pub which: VersionSelector,
+    pub version: VersionSelector,
     /// Mip level.
     pub mip: u8,
     /// Layer of an array, or slice of a 3D texture.
@@ -49,7 +49,7 @@ impl Request {
     /// Creates a request for the newest version of a texture, its first level and layer.
     pub fn newest(name: &str) -> Self {
         let name = name.to_owned();
-        Self { name, which: VersionSelector::Newest, mip: 0, layer: 0, aspect: Aspect::All, sample: None }
+        Self { name, version: VersionSelector::Newest, mip: 0, layer: 0, aspect: Aspect::All, sample: None }
     }
 }
 
@@ -86,26 +86,26 @@ impl FromStr for Request {
             _ => return Err(refuse()),
         };
         // `taa@-1` is the name of a previous image of a history.
-        let split = rest.rsplit_once('@').filter(|(_, which)| !which.starts_with('-'));
-        let (name, which) = match split {
+        let split = rest.rsplit_once('@').filter(|(_, version)| !version.starts_with('-'));
+        let (name, version) = match split {
             None => (rest, VersionSelector::Newest),
-            Some((name, which)) => {
+            Some((name, version)) => {
                 let number = |prefix: char| {
-                    let digits = which.strip_prefix(prefix).filter(|n| is_number(n));
+                    let digits = version.strip_prefix(prefix).filter(|n| is_number(n));
                     digits.map(|n| n.parse().map_err(|_| refuse())).transpose()
                 };
                 match (number('v')?, number('s')?) {
                     (Some(number), _) => (name, VersionSelector::Number(number)),
                     (_, Some(step)) => (name, VersionSelector::Step(step)),
-                    _ => (name, VersionSelector::After(which.to_owned())),
+                    _ => (name, VersionSelector::After(version.to_owned())),
                 }
             }
         };
         let mip = u8::try_from(mip).map_err(|_| refuse())?;
-        if name.is_empty() || which == VersionSelector::After(String::new()) {
+        if name.is_empty() || version == VersionSelector::After(String::new()) {
             return Err(refuse());
         }
-        Ok(Self { which, mip, layer, ..Self::newest(name) })
+        Ok(Self { version, mip, layer, ..Self::newest(name) })
     }
 }
 
@@ -116,7 +116,7 @@ fn is_number(text: &str) -> bool {
 impl fmt::Display for Request {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.name)?;
-        match &self.which {
+        match &self.version {
             VersionSelector::Newest => {}
             VersionSelector::After(pass) => write!(f, "@{pass}")?,
             VersionSelector::Number(number) => write!(f, "@v{number}")?,
@@ -141,13 +141,13 @@ mod tests {
             ("hdr", newest("hdr")),
             ("bloom/down:2", Request { mip: 2, ..newest("bloom/down") }),
             ("cascades:1:3", Request { mip: 1, layer: 3, ..newest("cascades") }),
-            ("hdr@color", Request { which: VersionSelector::After("color".into()), ..newest("hdr") }),
-            ("hdr@v2:1", Request { which: VersionSelector::Number(2), mip: 1, ..newest("hdr") }),
-            ("hdr@s0", Request { which: VersionSelector::Step(0), ..newest("hdr") }),
-            ("hdr@sky", Request { which: VersionSelector::After("sky".into()), ..newest("hdr") }),
+            ("hdr@color", Request { version: VersionSelector::After("color".into()), ..newest("hdr") }),
+            ("hdr@v2:1", Request { version: VersionSelector::Number(2), mip: 1, ..newest("hdr") }),
+            ("hdr@s0", Request { version: VersionSelector::Step(0), ..newest("hdr") }),
+            ("hdr@sky", Request { version: VersionSelector::After("sky".into()), ..newest("hdr") }),
             ("taa@-1", newest("taa@-1")),
-            ("taa@-1@v0", Request { which: VersionSelector::Number(0), ..newest("taa@-1") }),
-            ("hdr@vignette", Request { which: VersionSelector::After("vignette".into()), ..newest("hdr") }),
+            ("taa@-1@v0", Request { version: VersionSelector::Number(0), ..newest("taa@-1") }),
+            ("hdr@vignette", Request { version: VersionSelector::After("vignette".into()), ..newest("hdr") }),
             ("a:b", newest("a:b")),
         ];
         for (text, expected) in cases {

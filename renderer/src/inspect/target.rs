@@ -104,7 +104,7 @@ pub fn all_targets(plan: &Plan) -> Vec<InspectTarget> {
 /// Fails if the name or part does not exist. The error lists those that exist.
 pub fn find(plan: &Plan, request: &Request) -> Result<InspectTarget, InspectError> {
     let graph = plan.graph();
-    let Request { name, which, mip, layer, aspect, sample } = request;
+    let Request { name, version: selector, mip, layer, aspect, sample } = request;
     let named: Vec<_> = graph.resource_ids().filter(|r| graph.resource_name(*r) == name).collect();
     if named.is_empty() {
         let textures = graph.resource_ids().filter(|r| graph.resources()[r.index()].desc.texture().is_some());
@@ -125,7 +125,7 @@ pub fn find(plan: &Plan, request: &Request) -> Result<InspectTarget, InspectErro
         let wrote = |pass: &str| row.writer.some().is_some_and(|w| graph.pass_name(w) == pass);
         // Passes may be named `v1` or `s1`; pass names take precedence.
         let meant = |text: String| if graph.find_pass(&text).is_some() { Some(wrote(&text)) } else { None };
-        match which {
+        match selector {
             VersionSelector::Newest => holds,
             VersionSelector::After(pass) => wrote(pass),
             VersionSelector::Number(wanted) => meant(format!("v{wanted}")).unwrap_or(number == wanted && holds),
@@ -143,7 +143,7 @@ pub fn find(plan: &Plan, request: &Request) -> Result<InspectTarget, InspectErro
         let known = textures().flat_map(|(resource, _)| versions(graph, resource)).collect();
         return Err(InspectError::NoVersion {
             name: name.clone(),
-            asked: which.clone(),
+            requested: selector.clone(),
             steps: plan.steps().len(),
             known,
         });
@@ -151,21 +151,21 @@ pub fn find(plan: &Plan, request: &Request) -> Result<InspectTarget, InspectErro
     let refuse = |part| Err(InspectError::NoPart { name: name.clone(), part });
     let (desc, mips) = (found.desc, found.desc.mip_count(plan.frame()));
     if u32::from(*mip) >= mips {
-        return refuse(MissingPart::Level { asked: *mip, levels: mips });
+        return refuse(MissingPart::Level { requested: *mip, levels: mips });
     }
     let layers = match desc.dimension {
         Dimension::D2 => u32::from(desc.layers),
         Dimension::D3 => (u32::from(desc.layers) >> mip).max(1),
     };
     if u32::from(*layer) >= layers {
-        return refuse(MissingPart::Layer { asked: *layer, layers });
+        return refuse(MissingPart::Layer { requested: *layer, layers });
     }
     let aspect = match planes(desc.format).find(|a| overlap(*a, *aspect)) {
         Some(aspect) => aspect,
-        None => return refuse(MissingPart::Plane { asked: *aspect, format: desc.format }),
+        None => return refuse(MissingPart::Plane { requested: *aspect, format: desc.format }),
     };
     if let Some(sample) = sample.filter(|s| *s >= desc.samples) {
-        return refuse(MissingPart::Sample { asked: sample, samples: desc.samples });
+        return refuse(MissingPart::Sample { requested: sample, samples: desc.samples });
     }
     let averaged = desc.format.numeric() == Numeric::Float;
     let sample = sample.or((desc.samples > 1 && !averaged).then_some(0)).filter(|_| desc.samples > 1);
@@ -195,8 +195,8 @@ fn planes(format: Format) -> impl Iterator<Item = Aspect> {
     [Aspect::Depth, Aspect::Stencil, Aspect::All].into_iter().filter(move |a| (*a == Aspect::All) != both)
 }
 
-fn overlap(plane: Aspect, asked: Aspect) -> bool {
-    plane == asked || plane == Aspect::All || asked == Aspect::All
+fn overlap(plane: Aspect, requested: Aspect) -> bool {
+    plane == requested || plane == Aspect::All || requested == Aspect::All
 }
 
 /// Returns the versions of a resource that can be inspected.

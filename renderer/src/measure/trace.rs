@@ -168,8 +168,8 @@ impl Trace {
     }
 
     /// Returns the times of up to `max` most recent frames, oldest first.
-    pub fn latest(&self, most: usize) -> impl Iterator<Item = FrameTimes<'_>> {
-        self.frames.iter().skip(self.frames.len().saturating_sub(most)).map(|frame| {
+    pub fn latest(&self, max: usize) -> impl Iterator<Item = FrameTimes<'_>> {
+        self.frames.iter().skip(self.frames.len().saturating_sub(max)).map(|frame| {
             let steps = frame.described.steps.iter().enumerate().map(|(index, (name, ..))| StepTimes {
                 name,
                 cpu_ms: frame.cpu_steps.get(index).map(Between::ms),

@@ -1,8 +1,8 @@
 //! Cache of bind groups by layout and resources.
 
-use crate::cache::{Cache, CacheCounts, Last};
+use crate::cache::{Cache, CacheCounts, LastEntry};
 use crate::device::error::{DeviceError, ErrorScopes};
-use crate::hash::Keyed;
+use crate::hash::KeyHashBuilder;
 use std::hash::BuildHasher;
 use std::num::NonZeroU64;
 use wgpu::{
@@ -62,7 +62,7 @@ impl Binding {
 type Bound = (BindGroupLayout, Box<[(u32, Binding)]>);
 
 /// Last bind group of a request.
-pub(crate) type LastGroup = Last<Bound, BindGroup>;
+pub(crate) type LastGroup = LastEntry<Bound, BindGroup>;
 
 /// Cache of bind groups. See the [module documentation](self).
 #[derive(Debug, Default)]
@@ -87,9 +87,9 @@ impl BindGroupCache {
         bindings: &[(u32, Binding)],
         label: impl FnOnce() -> String,
     ) -> Result<BindGroup, DeviceError> {
-        self.0.again(
+        self.0.get_repeated(
             last,
-            || Keyed::default().hash_one((layout, bindings)),
+            || KeyHashBuilder::default().hash_one((layout, bindings)),
             |(of, bound)| of == layout && **bound == *bindings,
             || {
                 let entries: Vec<_> = bindings

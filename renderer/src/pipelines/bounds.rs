@@ -199,7 +199,7 @@ impl Proof<'_> {
 
     /// Computes the interval of an expression from its operands.
     fn worked_out(&self, value: Handle<Expression>) -> Option<Span> {
-        let (least, most) = match self.types[value].ty.inner_with(&self.module.types) {
+        let (min, max) = match self.types[value].ty.inner_with(&self.module.types) {
             TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Uint && scalar.width == 4 => {
                 (0, i64::from(u32::MAX))
             }
@@ -208,7 +208,7 @@ impl Proof<'_> {
             }
             _ => return None,
         };
-        let any = || least..=most;
+        let any = || min..=max;
         let span = |value| self.span(value).unwrap_or(any());
         let found = match self.function.expressions[value] {
             Expression::Load { pointer } => match self.function.expressions[pointer] {
@@ -249,7 +249,7 @@ impl Proof<'_> {
             _ => return None,
         };
         // Values outside of the type's range wrap around, so nothing is known.
-        (*found.start() >= least && *found.end() <= most).then_some(found)
+        (*found.start() >= min && *found.end() <= max).then_some(found)
     }
 }
 

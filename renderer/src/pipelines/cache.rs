@@ -1,9 +1,9 @@
 //! Cache of pipelines by shader, state and targets.
 
-use crate::cache::{Cache, CacheCounts, Last};
+use crate::cache::{Cache, CacheCounts, LastEntry};
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::execute::targets::Targets;
-use crate::hash::Keyed;
+use crate::hash::KeyHashBuilder;
 use crate::pipelines::key::{Fixed, RasterKey, StagesKey, fixed};
 use crate::pipelines::pipeline::{ComputePipeline, Pipeline, RasterPipeline};
 use crate::pipelines::shader::{Compiled, Shader, ShaderError, ShaderModules};
@@ -18,7 +18,7 @@ use wgpu::{
 /// Last raster pipeline of a request.
 #[derive(Debug, Default)]
 pub(crate) struct LastRaster {
-    last: Last<RasterKey, RasterPipeline>,
+    last: LastEntry<RasterKey, RasterPipeline>,
     /// Pass and compilation of the request. Equal values imply equal targets.
     place: Option<Place>,
 }
@@ -27,7 +27,7 @@ pub(crate) struct LastRaster {
 pub(crate) type Place = (u64, PassId);
 
 /// Last compute pipeline of a request.
-pub(crate) type LastCompute = Last<StagesKey, ComputePipeline>;
+pub(crate) type LastCompute = LastEntry<StagesKey, ComputePipeline>;
 
 /// Cache of pipelines and shader modules. See the [module documentation](self).
 #[derive(Debug, Default)]
@@ -89,14 +89,14 @@ impl Pipelines {
         last.place = None;
         let own_slots = own_slots();
         let Targets { colors, depth, samples, layers, .. } = targets;
-        let hash = || Keyed::default().hash_one((raster, colors, depth, samples, layers, own_slots));
+        let hash = || KeyHashBuilder::default().hash_one((raster, colors, depth, samples, layers, own_slots));
         let make = || {
             let fixed = fixed(raster, targets, own_slots);
             let made = self.make_raster(device, raster, &self.modules.get(device, &raster.shader)?, &fixed)?;
             Ok((RasterKey::new(raster, targets, own_slots), made))
         };
         let is = |key: &RasterKey| key.fits(targets, own_slots) && key.describes(raster);
-        let pipeline = self.raster.again(&mut last.last, hash, is, make)?;
+        let pipeline = self.raster.get_repeated(&mut last.last, hash, is, make)?;
         last.place = Some(place);
         Ok(pipeline)
     }
@@ -117,7 +117,7 @@ impl Pipelines {
             Ok((StagesKey::new(&shader, entry, constants, groups), made))
         };
         let is = |key: &StagesKey| key.is(&shader, entry, constants, groups);
-        self.compute.again(last, || Keyed::default().hash_one(compute), is, make)
+        self.compute.get_repeated(last, || KeyHashBuilder::default().hash_one(compute), is, make)
     }
 
     /// Replaces the source of `shader` and recreates its pipelines. Returns their number. Nothing changes if one of
@@ -128,21 +128,21 @@ impl Pipelines {
     pub(crate) fn reload(&mut self, device: &Device, shader: &Shader<'_>, text: &str) -> Result<usize, ShaderError> {
         let module = ShaderModules::compile(device, shader.name(), text)?;
         let (mut raster, mut compute) = (std::mem::take(&mut self.raster), std::mem::take(&mut self.compute));
-        let rasters = raster.remade(
+        let rasters = raster.rebuild(
             |key| key.stages.shader == shader.hash(),
             |key| key.with(*shader, |raster, fixed| self.make_raster(device, raster, &module, fixed)),
         );
-        let computes = compute.remade(
+        let computes = compute.rebuild(
             |key| key.shader == shader.hash(),
             |key| key.with(*shader, |compute| self.make_compute(device, compute, &module)),
         );
         (self.raster, self.compute) = (raster, compute);
         let (rasters, computes) = (rasters?, computes?);
-        let remade = rasters.len() + computes.len();
+        let rebuilt = rasters.len() + computes.len();
         self.raster.replace(rasters);
         self.compute.replace(computes);
         self.modules.replace(shader.hash(), module);
-        Ok(remade)
+        Ok(rebuilt)
     }
 
     fn make_raster(

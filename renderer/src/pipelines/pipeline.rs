@@ -32,16 +32,16 @@ impl Source {
     }
 }
 
-/// Returns the highest `@group` index in the source plus 1, at most `max`. Needed because wgpu returns layouts for
+/// Returns the highest `@group` index in the source plus 1, at max `max`. Needed because wgpu returns layouts for
 /// unused groups as well.
-fn named_groups(text: &str, most: u32) -> u32 {
+fn named_groups(text: &str, max: u32) -> u32 {
     let index = |behind: &str| {
         let digits = behind.trim_start().split(|c: char| !c.is_ascii_digit()).next()?;
         // A named constant may have any value.
-        Some(digits.parse().unwrap_or(most))
+        Some(digits.parse().unwrap_or(max))
     };
     let last = text.split("@group(").skip(1).filter_map(index).max();
-    last.map_or(0, |last| last.saturating_add(1).min(most))
+    last.map_or(0, |last| last.saturating_add(1).min(max))
 }
 
 impl<P> Pipeline<P> {

@@ -1,7 +1,7 @@
 //! Cache of samplers by their descriptions.
 
 use crate::cache::Cache;
-use crate::hash::Keyed;
+use crate::hash::KeyHashBuilder;
 use std::convert::Infallible;
 use std::hash::BuildHasher;
 use wgpu::{AddressMode, CompareFunction, Device, FilterMode, MipmapFilterMode, Sampler, SamplerDescriptor};
@@ -66,7 +66,7 @@ impl SamplerCache {
 
     /// Returns the sampler with this description.
     pub(crate) fn get(&self, device: &Device, desc: SamplerDesc) -> Sampler {
-        let hash = Keyed::default().hash_one(desc);
+        let hash = KeyHashBuilder::default().hash_one(desc);
         let made = self.0.get::<Infallible>(hash, |known| *known == desc, || Ok((desc, create(device, desc))));
         made.unwrap_or_else(|never| match never {})
     }

@@ -6,7 +6,7 @@ use crate::execute::error::ExecuteError;
 use crate::named::Named;
 use crate::placed::driver::{Driver, Object};
 use crate::placed::not_placed::NotPlaced;
-use crate::placed::shape::{Needs, Shape};
+use crate::placed::shape::{MemoryRequirements, Shape};
 use crate::placed::submission::keeps_order_of_aliases;
 use crate::resources::physical::PhysicalTextureDesc;
 use crate::resources::pool::{Limits, PoolCounts, RECENT};
@@ -32,7 +32,7 @@ pub(crate) struct Arena {
 pub(crate) struct Arenas {
     driver: Option<Result<Driver, NotPlaced>>,
     caps: Option<Caps>,
-    asked: Vec<(Shape, Needs)>,
+    requirements: Vec<(Shape, MemoryRequirements)>,
     requests: Requests,
     arenas: Vec<Arena>,
     frame: u64,
@@ -40,7 +40,7 @@ pub(crate) struct Arenas {
     recent: [u64; RECENT],
     /// Object counts are numbers of arenas, except `created`, which counts placed objects.
     counts: PoolCounts,
-    broken: bool,
+    skip_barriers: bool,
 }
 
 impl Arenas {
@@ -68,7 +68,7 @@ impl Arenas {
     }
 
     /// Turns placing off from now on.
-    pub(crate) fn give_up(&mut self, gpu: &Gpu, why: NotPlaced) {
+    pub(crate) fn disable(&mut self, gpu: &Gpu, why: NotPlaced) {
         (self.driver, self.caps) = (Some(Err(why)), Some(gpu.caps()));
     }
 
@@ -84,8 +84,8 @@ impl Arenas {
         for poison in [false, true] {
             let mut requests = std::mem::take(&mut self.requests);
             // Errors are reported when the plan is executed.
-            let told = requests.collect(plan, gpu, poison).is_ok();
-            for request in requests.placed().iter().filter(|_| told) {
+            let collected = requests.collect(plan, gpu, poison).is_ok();
+            for request in requests.placed().iter().filter(|_| collected) {
                 more |= self.learn(gpu, plan, request)?;
             }
             requests.clear();
@@ -99,7 +99,7 @@ impl Arenas {
         if check(gpu, &request.shape, "").is_err() {
             return Ok(false);
         }
-        let Needs { bytes, alignment, .. } = self.needs(gpu, &request.shape)?;
+        let MemoryRequirements { bytes, alignment, .. } = self.requirements_of(gpu, &request.shape)?;
         self.caps(gpu);
         let Some(caps) = &mut self.caps else { return Ok(false) };
         let aligned = match request.shape {
@@ -131,12 +131,12 @@ impl Arenas {
     }
 
     /// Returns the driver's memory requirements for a description, cached after the first query.
-    fn needs(&mut self, gpu: &Gpu, shape: &Shape) -> Result<Needs, NotPlaced> {
-        if let Some((_, needs)) = self.asked.iter().find(|(known, _)| known == shape) {
+    fn requirements_of(&mut self, gpu: &Gpu, shape: &Shape) -> Result<MemoryRequirements, NotPlaced> {
+        if let Some((_, needs)) = self.requirements.iter().find(|(known, _)| known == shape) {
             return Ok(*needs);
         }
-        let needs = self.driver(gpu)?.needs(shape)?;
-        self.asked.push((*shape, needs));
+        let needs = self.driver(gpu)?.memory_requirements(shape)?;
+        self.requirements.push((*shape, needs));
         Ok(needs)
     }
 
@@ -163,7 +163,7 @@ impl Arenas {
         let mut all = Vec::with_capacity(requests.len());
         for request in requests {
             check(gpu, &request.shape, plan.graph().resource_name(request.resource))?;
-            let needs = self.needs(gpu, &request.shape)?;
+            let needs = self.requirements_of(gpu, &request.shape)?;
             let (row, caps) = (&plan.resources()[request.resource.index()], plan.caps());
             let alignment = match request.shape {
                 Shape::Texture(_) => caps.texture_alignment_bytes,
@@ -193,7 +193,7 @@ impl Arenas {
     }
 
     /// Returns whether each command buffer of this frame must be submitted separately.
-    pub(crate) fn submits_apart(&self, gpu: &Gpu) -> bool {
+    pub(crate) fn submits_separately(&self, gpu: &Gpu) -> bool {
         self.current().is_some() && !keeps_order_of_aliases(gpu.info())
     }
 
@@ -243,7 +243,7 @@ impl Arenas {
     }
 
     /// Drops the arena of this frame. Called after a device error, since it may be invalid.
-    pub(crate) fn forget_frame(&mut self) {
+    pub(crate) fn discard_frame(&mut self) {
         let frame = self.frame;
         self.arenas.retain(|arena| arena.used != frame);
     }
@@ -259,14 +259,14 @@ impl Arenas {
     }
 
     /// Returns whether aliasing barriers are omitted, for tests.
-    pub(crate) fn leaves_out_hand_overs(&self) -> bool {
-        self.broken
+    pub(crate) fn skips_alias_barriers(&self) -> bool {
+        self.skip_barriers
     }
 
     /// Omits aliasing barriers from now on.
     #[cfg(any(test, feature = "testing"))]
-    pub(crate) fn leave_out_hand_overs(&mut self) {
-        self.broken = true;
+    pub(crate) fn skip_alias_barriers(&mut self) {
+        self.skip_barriers = true;
     }
 }
 

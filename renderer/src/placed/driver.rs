@@ -7,9 +7,9 @@
 
 use crate::device::format::{both_forms, texture_format};
 use crate::device::gpu::Gpu;
-use crate::placed::home::{buffer_uses, home, texture_uses};
 use crate::placed::not_placed::NotPlaced;
-use crate::placed::shape::{Needs, Shape};
+use crate::placed::resting_usage::{buffer_uses, resting_usage, texture_uses};
+use crate::placed::shape::{MemoryRequirements, Shape};
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use ash::vk;
 use framegraph::Dimension;
@@ -29,7 +29,7 @@ pub(crate) enum Object {
 #[derive(Debug)]
 pub(crate) struct PlacedTexture {
     texture: Texture,
-    home: TextureUses,
+    resting_usage: TextureUses,
     /// Handle of the image, valid as long as `texture`.
     raw: vk::Image,
     /// Layout and planes in the resting usage.
@@ -44,8 +44,8 @@ impl PlacedTexture {
     }
 
     /// Returns the usage between the last step of a frame and the first step of the next.
-    pub(crate) fn home(&self) -> TextureUses {
-        self.home
+    pub(crate) fn resting_usage(&self) -> TextureUses {
+        self.resting_usage
     }
 }
 
@@ -132,8 +132,8 @@ impl Driver {
     ///
     /// # Errors
     /// Fails if the driver cannot create the resource.
-    pub(crate) fn needs(&self, shape: &Shape) -> Result<Needs, NotPlaced> {
-        let asked = match shape {
+    pub(crate) fn memory_requirements(&self, shape: &Shape) -> Result<MemoryRequirements, NotPlaced> {
+        let required = match shape {
             Shape::Texture(shape) => {
                 let image = self.image(shape, None)?;
                 // SAFETY: the image was made above by this device.
@@ -145,7 +145,11 @@ impl Driver {
                 unsafe { self.device.get_buffer_memory_requirements(buffer.raw) }
             }
         };
-        Ok(Needs { bytes: asked.size, alignment: asked.alignment.max(1), memory_types: asked.memory_type_bits })
+        Ok(MemoryRequirements {
+            bytes: required.size,
+            alignment: required.alignment.max(1),
+            memory_types: required.memory_type_bits,
+        })
     }
 
     /// Creates all objects at their offsets, textures in one block and buffers in another. Returns the objects and the
@@ -156,7 +160,11 @@ impl Driver {
     ///
     /// # Errors
     /// Fails if no memory type fits, or the device is out of memory.
-    pub(crate) fn place(&self, items: &[(Shape, u64, &str)], needs: &[Needs]) -> Result<(Vec<Object>, u64), NotPlaced> {
+    pub(crate) fn place(
+        &self,
+        items: &[(Shape, u64, &str)],
+        needs: &[MemoryRequirements],
+    ) -> Result<(Vec<Object>, u64), NotPlaced> {
         let (mut blocks, mut allocated) = ([None, None], 0);
         for (heap, block) in blocks.iter_mut().enumerate() {
             let own = || items.iter().zip(needs).filter(|((shape, ..), _)| heap_of(shape) == heap);
@@ -167,7 +175,7 @@ impl Driver {
             }
         }
         let made = items.iter().map(|(shape, offset, name)| {
-            let block = blocks[heap_of(shape)].as_ref().ok_or(NotPlaced::Restless)?;
+            let block = blocks[heap_of(shape)].as_ref().ok_or(NotPlaced::UnstableSizes)?;
             match shape {
                 Shape::Texture(shape) => self.texture(shape, block, *offset, name).map(Object::Texture),
                 Shape::Buffer(shape) => self.buffer(shape, block, *offset, name).map(Object::Buffer),
@@ -178,7 +186,7 @@ impl Driver {
 
     /// Records a barrier that waits for all earlier submissions, makes the memory available to these textures (and all
     /// buffers), and moves the images to their resting layouts.
-    pub(crate) fn hand_over(&self, textures: &[&PlacedTexture]) -> CommandBuffer {
+    pub(crate) fn alias_barrier(&self, textures: &[&PlacedTexture]) -> CommandBuffer {
         let images: Vec<_> = textures
             .iter()
             .map(|placed| {
@@ -296,7 +304,7 @@ impl Driver {
         // SAFETY: the image is new, the offset suits what the driver asked for it, and it ends inside of the block (`place`).
         unsafe { self.device.bind_image_memory(raw, block.raw, offset) }.map_err(refused("vkBindImageMemory"))?;
         let format = texture_format(shape.format);
-        let home = home(shape.usage, format);
+        let resting_usage = resting_usage(shape.usage, format);
         let described = described(shape, Some(name));
         // SAFETY: the device of wgpu is looked at and not destroyed.
         let hal = unsafe { self.gpu.device.as_hal::<Vulkan>() };
@@ -316,13 +324,13 @@ impl Driver {
             usage: shape.usage,
             view_formats: &described.view_formats,
         };
-        // SAFETY: the texture is of this device and made as described. It is in its home whenever wgpu uses it: `hand_over` puts
+        // SAFETY: the texture is of this device and made as described. It is in its home whenever wgpu uses it: `alias_barrier` puts
         // it there before its first step of each frame. What it holds then is memory of this device alone, and no pass reads
         // it: the plan has every part written before it is read, which the compiler checks.
-        let texture = unsafe { self.gpu.device.create_texture_from_hal::<Vulkan>(texture, &descriptor, home) };
-        let layout = conv::derive_image_layout(home, format);
+        let texture = unsafe { self.gpu.device.create_texture_from_hal::<Vulkan>(texture, &descriptor, resting_usage) };
+        let layout = conv::derive_image_layout(resting_usage, format);
         let planes = conv::map_aspects(wgpu::hal::FormatAspects::from(format));
-        Ok(PlacedTexture { texture, home, raw, layout, planes })
+        Ok(PlacedTexture { texture, resting_usage, raw, layout, planes })
     }
 
     fn buffer(

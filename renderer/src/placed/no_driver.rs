@@ -2,7 +2,7 @@
 
 use crate::device::gpu::Gpu;
 use crate::placed::not_placed::NotPlaced;
-use crate::placed::shape::{Needs, Shape};
+use crate::placed::shape::{MemoryRequirements, Shape};
 use wgpu::{Buffer, CommandBuffer, Texture, TextureUses};
 
 /// Uninhabited type: there is no driver.
@@ -25,7 +25,7 @@ impl PlacedTexture {
         match *self {}
     }
 
-    pub(crate) fn home(&self) -> TextureUses {
+    pub(crate) fn resting_usage(&self) -> TextureUses {
         match *self {}
     }
 }
@@ -35,15 +35,19 @@ impl Driver {
         Err(NotPlaced::NotBuilt)
     }
 
-    pub(crate) fn needs(&self, _: &Shape) -> Result<Needs, NotPlaced> {
+    pub(crate) fn memory_requirements(&self, _: &Shape) -> Result<MemoryRequirements, NotPlaced> {
         match *self {}
     }
 
-    pub(crate) fn place(&self, _: &[(Shape, u64, &str)], _: &[Needs]) -> Result<(Vec<Object>, u64), NotPlaced> {
+    pub(crate) fn place(
+        &self,
+        _: &[(Shape, u64, &str)],
+        _: &[MemoryRequirements],
+    ) -> Result<(Vec<Object>, u64), NotPlaced> {
         match *self {}
     }
 
-    pub(crate) fn hand_over(&self, _: &[&PlacedTexture]) -> CommandBuffer {
+    pub(crate) fn alias_barrier(&self, _: &[&PlacedTexture]) -> CommandBuffer {
         match *self {}
     }
 }

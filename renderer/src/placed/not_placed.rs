@@ -27,7 +27,7 @@ pub enum NotPlaced {
     },
     /// The driver reported different sizes for the same textures.
     #[error("the driver reports different sizes for the same textures")]
-    Restless,
+    UnstableSizes,
 }
 
 impl std::fmt::Debug for NotPlaced {

@@ -11,7 +11,7 @@ pub(crate) enum Shape {
 
 /// Memory requirements of an image or buffer, as reported by the driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Needs {
+pub(crate) struct MemoryRequirements {
     /// Size in bytes, including padding.
     pub(crate) bytes: u64,
     /// Alignment of the offset in bytes; a power of two.

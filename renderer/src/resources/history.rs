@@ -179,7 +179,7 @@ impl Histories {
     }
 
     /// Drops rings with images created in this frame. Called after a device error, since they may be invalid.
-    pub(crate) fn forget_frame(&mut self) {
+    pub(crate) fn discard_frame(&mut self) {
         self.rings.retain(|ring| !ring.fresh);
     }
 

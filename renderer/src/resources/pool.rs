@@ -206,7 +206,7 @@ impl<S: Pooled> Pool<S> {
     }
 
     /// Drops all objects that this frame used. Called after a device error, since they may be invalid.
-    pub fn forget_frame(&mut self, gone: impl FnMut(&S::Object)) {
+    pub fn discard_frame(&mut self, gone: impl FnMut(&S::Object)) {
         let frame = self.frame;
         self.retain(|e| e.used != frame, gone);
     }

@@ -19,8 +19,8 @@ const NONE: usize = usize::MAX;
 /// Requests of a frame and their results. Reused to keep the memory.
 #[derive(Debug, Default)]
 pub(crate) struct Requests {
-    textures: Asked<PhysicalTextureDesc>,
-    buffers: Asked<PhysicalBufferDesc>,
+    textures: PoolRequests<PhysicalTextureDesc>,
+    buffers: PoolRequests<PhysicalBufferDesc>,
     /// Request of each slot. If texture views cannot change between linear and sRGB, sRGB tenants get the second one.
     slots: Vec<[usize; 2]>,
     /// Request of each resource.
@@ -43,19 +43,19 @@ pub(crate) struct PlacedRequest {
 
 /// Requests to one pool, the resource that labels each, and the results.
 #[derive(Debug)]
-struct Asked<S: Pooled> {
+struct PoolRequests<S: Pooled> {
     requests: Vec<Request<S>>,
     named: Vec<ResourceId>,
     served: Vec<S::Object>,
 }
 
-impl<S: Pooled> Default for Asked<S> {
+impl<S: Pooled> Default for PoolRequests<S> {
     fn default() -> Self {
         Self { requests: Vec::new(), named: Vec::new(), served: Vec::new() }
     }
 }
 
-impl<S: Pooled> Asked<S> {
+impl<S: Pooled> PoolRequests<S> {
     fn clear(&mut self) {
         self.requests.clear();
         self.named.clear();

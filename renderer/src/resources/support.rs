@@ -36,9 +36,9 @@ pub enum UnsupportedReason {
     /// Texture size.
     Size {
         /// Requested width, height, and layers or depth.
-        asked: [u32; 3],
+        requested: [u32; 3],
         /// Maximum of each.
-        most: [u32; 3],
+        max: [u32; 3],
     },
     /// Usages of a texture format.
     Usage {
@@ -58,7 +58,7 @@ pub enum UnsupportedReason {
         /// Format of the texture.
         format: Format,
         /// Requested number of samples.
-        asked: u32,
+        requested: u32,
         /// Supported numbers of samples.
         offered: Vec<u32>,
     },
@@ -70,9 +70,9 @@ pub enum UnsupportedReason {
     /// Size of a buffer.
     BufferBytes {
         /// Requested size in bytes.
-        asked: u64,
+        requested: u64,
         /// Maximum size in bytes.
-        most: u64,
+        max: u64,
     },
 }
 
@@ -85,7 +85,7 @@ impl std::fmt::Debug for UnsupportedReason {
 impl UnsupportedReason {
     fn sentence(&self, device: &str) -> String {
         match self {
-            Self::Size { asked: [width, height, layers], most: [max_width, max_height, max_layers] } => format!(
+            Self::Size { requested: [width, height, layers], max: [max_width, max_height, max_layers] } => format!(
                 "{width}×{height}×{layers} texels exceed the limit of {device}, {max_width}×{max_height}×{max_layers}; use a \
                  smaller frame or texture"
             ),
@@ -101,16 +101,16 @@ impl UnsupportedReason {
                     joined(missing.iter_names())
                 )
             }
-            Self::Samples { format, asked, offered } => {
+            Self::Samples { format, requested, offered } => {
                 let offered: Vec<_> = offered.iter().map(u32::to_string).collect();
-                format!("{device} does not support {asked} samples of {format:?}; use {}", offered.join(" or "))
+                format!("{device} does not support {requested} samples of {format:?}; use {}", offered.join(" or "))
             }
             Self::Views { format } => format!(
                 "{device} does not support views of {format:?} in both linear and sRGB form; declare it in one format, or use a \
                  device with `VIEW_FORMATS`"
             ),
-            Self::BufferBytes { asked, most } => {
-                format!("{asked} bytes exceed the maximum buffer size of {device}, {most} bytes; split the buffer")
+            Self::BufferBytes { requested, max } => {
+                format!("{requested} bytes exceed the maximum buffer size of {device}, {max} bytes; split the buffer")
             }
         }
     }
@@ -120,15 +120,15 @@ impl UnsupportedReason {
 pub(crate) fn check_texture(gpu: &Gpu, desc: &PhysicalTextureDesc, name: &str) -> Result<(), Unsupported> {
     let limits = gpu.device.limits();
     let [width, height, layers] = desc.size;
-    let most = match desc.dimension {
+    let max = match desc.dimension {
         Dimension::D2 => {
             [limits.max_texture_dimension_2d, limits.max_texture_dimension_2d, limits.max_texture_array_layers]
         }
         Dimension::D3 => [limits.max_texture_dimension_3d; 3],
     };
     let refuse = |reason| Err(Unsupported { name: name.to_owned(), adapter: gpu.info().clone().into(), reason });
-    if width > most[0] || height > most[1] || layers > most[2] {
-        return refuse(UnsupportedReason::Size { asked: desc.size, most });
+    if width > max[0] || height > max[1] || layers > max[2] {
+        return refuse(UnsupportedReason::Size { requested: desc.size, max });
     }
     if desc.srgb_views && !gpu.has_view_formats() {
         return refuse(UnsupportedReason::Views { format: desc.format });
@@ -143,18 +143,18 @@ pub(crate) fn check_texture(gpu: &Gpu, desc: &PhysicalTextureDesc, name: &str) -
     }
     if !flags.sample_count_supported(desc.samples) {
         let offered = flags.supported_sample_counts();
-        return refuse(UnsupportedReason::Samples { format, asked: desc.samples, offered });
+        return refuse(UnsupportedReason::Samples { format, requested: desc.samples, offered });
     }
     Ok(())
 }
 
 /// Checks the size of a buffer against the device.
 pub(crate) fn check_buffer(gpu: &Gpu, bytes: u64, name: &str) -> Result<(), Unsupported> {
-    let most = gpu.device.limits().max_buffer_size;
-    if bytes <= most {
+    let max = gpu.device.limits().max_buffer_size;
+    if bytes <= max {
         return Ok(());
     }
-    let reason = UnsupportedReason::BufferBytes { asked: bytes, most };
+    let reason = UnsupportedReason::BufferBytes { requested: bytes, max };
     Err(Unsupported { name: name.to_owned(), adapter: gpu.info().clone().into(), reason })
 }
 

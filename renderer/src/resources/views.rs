@@ -3,7 +3,7 @@
 use crate::cache::{Cache, CacheCounts};
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::format::{sampled_aspect, texture_aspect, texture_format};
-use crate::hash::Keyed;
+use crate::hash::KeyHashBuilder;
 use framegraph::{Dimension, Format, Range};
 use std::hash::BuildHasher;
 use wgpu::{Device, Texture, TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension};
@@ -77,7 +77,7 @@ impl ViewCache {
         desc: ViewDesc,
         name: &str,
     ) -> Result<TextureView, DeviceError> {
-        let hash = Keyed::default().hash_one((texture, desc));
+        let hash = KeyHashBuilder::default().hash_one((texture, desc));
         let is = |(of, known): &(Texture, ViewDesc)| of == texture && *known == desc;
         self.0.get(hash, is, || {
             let scopes = ErrorScopes::open(device);

@@ -9,7 +9,7 @@ use framegraph_wgpu::debug::Mode;
 use framegraph_wgpu::{
     Compute, Cx, Executor, ExecutorOptions, Gpu, ObjectCounts, Raster, RecordError, Shader, read_buffer,
 };
-use framegraph_wgpu::{Frame, stand_in};
+use framegraph_wgpu::{Frame, mock};
 
 /// A pass that is culled, two that merge, one that is inlined, and a chain that shares textures.
 const FRAME: &str = r#"(version: 1,
@@ -39,13 +39,13 @@ const FRAME: &str = r#"(version: 1,
 fn under(gpu: &Gpu, mode: Option<Mode>) -> Result<(Counts, ObjectCounts, u32), Box<dyn std::error::Error>> {
     let mut frame = Frame::<()>::new();
     GraphFile::parse("frame.ron", FRAME)?.declare(&[], &Registry::new(), &mut frame)?;
-    stand_in::fill_in(&mut frame);
+    mock::add_recorders(&mut frame);
     let (mut options, mut execute) = (Options::for_frame(16, 8), ExecutorOptions::default());
     mode.iter().for_each(|m| m.apply(&mut options, &mut execute));
     let mut plan = Plan::new();
     framegraph::compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
     let mut executor = Executor::with(gpu, execute);
-    executor.execute(&plan, &frame, &(), &stand_in::imports(gpu, &plan)?.bound)?;
+    executor.execute(&plan, &frame, &(), &mock::imports(gpu, &plan)?.bound)?;
     assert_eq!(executor.executed(), plan.counts(), "{mode:?}");
     Ok((executor.executed(), executor.objects(), executor.poisoned()))
 }

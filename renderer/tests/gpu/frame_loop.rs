@@ -44,7 +44,7 @@ fn a_loop_draws_skips_and_goes_on_after_errors() -> TestResult {
         };
         frames.declare([4, 4], |frame, imports| declare(frame, imports, &small))?;
         let mut steps = 0;
-        frames.warm_up(&RED, &mut |at| steps += at.of)?;
+        frames.warm_up(&RED, &mut |at| steps += at.total)?;
         let made = frames.executor().objects();
         shows(&mut frames, &small, GREEN)?;
         assert_eq!((steps, frames.executor().objects()), (1, made), "the first frame makes nothing");
@@ -165,7 +165,7 @@ fn handles_of_a_pass_need_not_be_copies() -> TestResult {
 fn a_loop_queues_no_more_frames_than_it_may() -> TestResult {
     on_every_device("a_loop_queues_no_more_frames_than_it_may", |gpu, _| {
         let mut frames = FrameLoop::<()>::new(gpu);
-        assert_eq!(frames.frames_in_flight().most(), FramesInFlight::DEFAULT);
+        assert_eq!(frames.frames_in_flight().max(), FramesInFlight::DEFAULT);
         assert!(frames.frames_in_flight().latency().is_none());
         let run = |frames: &mut FrameLoop<()>, size| {
             frames.run(size, &(), |frame, _| {
@@ -178,7 +178,7 @@ fn a_loop_queues_no_more_frames_than_it_may() -> TestResult {
         };
         let mut ran = 0;
         for most in [2, 1, 3] {
-            frames.frames_in_flight_mut().set_most(NonZeroU32::new(most).ok_or("none")?);
+            frames.frames_in_flight_mut().set_max(NonZeroU32::new(most).ok_or("none")?);
             for _ in 0..6 {
                 run(&mut frames, [512, 512])?;
                 ran += 1;

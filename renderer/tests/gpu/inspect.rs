@@ -211,7 +211,7 @@ fn levels_layers_planes_and_slices_are_seen_apart() -> TestResult {
         }
         // Levels of version 1 that only later passes write.
         let told = refused(&bench, &mut inspector, "pyramid@v1:1");
-        assert!(told.contains("cannot be looked at there"), "{told}");
+        assert!(told.contains("cannot be inspected there"), "{told}");
         for (request, part) in [("pyramid:2", "no level 2; it has levels 0 to 1"), ("pyramid:0:3", "layers 0 to 2")] {
             let told = refused(&bench, &mut inspector, request);
             assert!(told.contains(part), "{told}");

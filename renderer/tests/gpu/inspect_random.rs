@@ -5,7 +5,7 @@ use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{Options, Plan, Scratch, compile, dump};
 use framegraph_wgpu::inspect::{InspectError, Inspector, all_targets};
 use framegraph_wgpu::{ExecuteError, Executor, Gpu};
-use framegraph_wgpu::{Frame, stand_in};
+use framegraph_wgpu::{Frame, mock};
 
 /// Random graphs with stand-ins, on the device that validates every call: whatever there is can be looked at.
 #[test]
@@ -18,8 +18,8 @@ fn everything_in_random_graphs_is_seen() -> TestResult {
         let mut plan = Plan::new();
         compile(&graph, &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
         let mut frame = Frame::<()>::from_graph(graph);
-        stand_in::fill_in(&mut frame);
-        let Ok(imported) = stand_in::imports(&gpu, &plan) else {
+        mock::add_recorders(&mut frame);
+        let Ok(imported) = mock::imports(&gpu, &plan) else {
             beyond += 1;
             continue;
         };

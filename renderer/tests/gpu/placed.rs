@@ -72,7 +72,7 @@ impl Ran {
         let options = Options { alias, ..Options::for_frame(96, 64) };
         executor.compile(frame.graph(), &options, &mut Scratch::new(), &mut plan)?;
         if broken {
-            executor.leave_out_hand_overs();
+            executor.skip_alias_barriers();
         }
         Ok(Self { executor, frame, plan, last })
     }

@@ -10,7 +10,7 @@ use framegraph_wgpu::{
     Binding, BoundResource, Compute, Cx, ExecuteError, Executor, Gpu, Output, Raster, RecordError, Shader,
     texture_format,
 };
-use framegraph_wgpu::{Frame, stand_in};
+use framegraph_wgpu::{Frame, mock};
 use std::collections::BTreeMap;
 use wgpu::{
     BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, ColorWrites, ShaderStages, TextureSampleType,
@@ -150,7 +150,7 @@ fn wgpu_accepts_every_plan() -> TestResult {
                 record(cx, kind)
             });
         }
-        let Ok(imported) = stand_in::imports(&gpu, &plan) else {
+        let Ok(imported) = mock::imports(&gpu, &plan) else {
             *beyond.entry("import").or_default() += 1;
             continue;
         };

@@ -166,7 +166,7 @@ fn pipelines_are_made_ahead_of_the_first_frame() -> TestResult {
         let [sum, color] = bench.declare(declare)?;
         let mut told = Vec::new();
         bench.executor.warm_up(&bench.plan, &bench.frame, &(), &bench.imports, &mut |at| {
-            told.push((at.done, at.of, at.pass.to_owned(), at.pipelines));
+            told.push((at.done, at.total, at.pass.to_owned(), at.pipelines));
         })?;
         assert_eq!(told, [(1, 2, "add".to_owned(), 1), (2, 2, "fill".to_owned(), 2)]);
         let made = bench.executor.objects();
@@ -258,16 +258,16 @@ fn pipelines_that_nobody_asks_for_are_dropped() -> TestResult {
 fn compiled_pipelines_are_kept_for_the_next_run() -> TestResult {
     on_adapter("compiled_pipelines_are_kept_for_the_next_run", |gpu| {
         let mut first = Bench::new(gpu, 4, 4);
-        if !first.executor.keep_pipelines(None)? {
-            assert_eq!(first.executor.pipeline_bytes(), None);
+        if !first.executor.use_pipeline_cache(None)? {
+            assert_eq!(first.executor.pipeline_cache_data(), None);
             return crate::bench::skip("compiled_pipelines_are_kept_for_the_next_run", "the device keeps no pipelines");
         }
         first.run(|f| tinted(f, Format::Rgba8Unorm))?;
-        let kept = first.executor.pipeline_bytes().ok_or("nothing was kept")?;
+        let kept = first.executor.pipeline_cache_data().ok_or("nothing was kept")?;
         let empty = {
             let mut executor = Executor::new(gpu);
-            executor.keep_pipelines(None)?;
-            executor.pipeline_bytes().ok_or("nothing was kept")?
+            executor.use_pipeline_cache(None)?;
+            executor.pipeline_cache_data().ok_or("nothing was kept")?
         };
         // Mesa's software drivers offer a cache and keep nothing in it.
         let grown = kept.len() > empty.len() || (gpu.is_software() && kept.len() == empty.len());
@@ -277,11 +277,11 @@ fn compiled_pipelines_are_kept_for_the_next_run() -> TestResult {
         damaged[middle] ^= 1;
         for (bytes, sound) in [(&kept, true), (&damaged, false)] {
             let mut second = Bench::new(gpu, 4, 4);
-            let told = second.executor.keep_pipelines(Some(bytes));
+            let told = second.executor.use_pipeline_cache(Some(bytes));
             assert!(if sound { told == Ok(true) } else { matches!(told, Err(PipelineCacheError::Damaged { .. })) });
             let target = second.run(|f| tinted(f, Format::Rgba8Unorm))?;
             assert!(second.pixels(target)?.rgba().iter().all(|texel| *texel == RED));
-            assert!(second.executor.pipeline_bytes().is_some_and(|bytes| bytes.len() >= kept.len()));
+            assert!(second.executor.pipeline_cache_data().is_some_and(|bytes| bytes.len() >= kept.len()));
         }
         Ok(())
     })

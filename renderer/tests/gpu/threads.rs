@@ -60,7 +60,7 @@ fn bench(gpu: &framegraph_wgpu::Gpu, threads: usize) -> Result<Bench, Box<dyn st
     let mut bench = Bench::new(gpu, 16, 16);
     bench.executor =
         Executor::with(gpu, ExecutorOptions { timing: threads.is_multiple_of(2), ..ExecutorOptions::default() });
-    bench.executor.always_record_on(Workers::with_threads(threads)?);
+    bench.executor.force_record_on(Workers::with_threads(threads)?);
     Ok(bench)
 }
 

@@ -1,7 +1,7 @@
 //! Every frame under `cases/` on a device: what was done is what was planned, under every debug mode.
 //!
 //! The passes of these files have no shaders; stand-ins bind what they declare and keep what they promise
-//! (`framegraph_wgpu::stand_in`). Counts are taken where wgpu was told, objects where they were made.
+//! (`framegraph_wgpu::mock`). Counts are taken where wgpu was told, objects where they were made.
 
 use crate::cases::{cases_of, files};
 use crate::stage::gpu;
@@ -9,7 +9,7 @@ use framegraph::file::{GraphFile, Registry};
 use framegraph::{Desc, Kind, Options, Placement, Plan, Scratch, TextureDesc, compile};
 use framegraph_wgpu::debug::Mode;
 use framegraph_wgpu::{ExecuteError, Executor, ExecutorOptions, Gpu, Unsupported, read_texture};
-use framegraph_wgpu::{Frame, stand_in};
+use framegraph_wgpu::{Frame, mock};
 use std::error::Error;
 
 type TestResult = Result<(), Box<dyn Error>>;
@@ -44,7 +44,7 @@ pub fn staged() -> Vec<Staged> {
             }
             let mut frame = Frame::new();
             file.declare(&asked.0, &Registry::new(), &mut frame).unwrap_or_else(|e| panic!("{e}"));
-            stand_in::fill_in(&mut frame);
+            mock::add_recorders(&mut frame);
             let mut options = Options { frame: FRAME, order: case.order, ..Options::default() };
             if case.plain {
                 (options.merge, options.inline, options.memoryless) = (false, false, false);
@@ -108,7 +108,7 @@ fn planned(gpu: &Gpu, staged: &Staged, mode: Option<Mode>) -> (Plan, ExecutorOpt
 /// own, whose objects are counted too. Returns the bytes of every picture that outlives the frame.
 fn check(gpu: &Gpu, staged: &Staged, mode: Option<Mode>, by: &mut Executors) -> Result<Vec<Vec<u8>>, Box<dyn Error>> {
     let (plan, options) = planned(gpu, staged, mode);
-    let imported = stand_in::imports(gpu, &plan)?;
+    let imported = mock::imports(gpu, &plan)?;
     let (executor, fresh) = by.get(gpu, options);
     executor.reset_histories();
     // A history swaps two images, so views of both are made in the first two frames.

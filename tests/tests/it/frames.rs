@@ -129,7 +129,7 @@ fn frames_in_one_block_of_memory_are_the_frames_apart() -> Result<(), Box<dyn Er
     let others = [(Alias::Heap, 1, few), (Alias::Pool, 3, few), (Alias::Off, 3, few)];
     for (alias, threads, count) in ways.into_iter().chain(others) {
         film.forget();
-        film.executor.always_record_on(Workers::with_threads(threads)?);
+        film.executor.force_record_on(Workers::with_threads(threads)?);
         for (index, shot) in shots[..count].iter().enumerate() {
             let found = film.shoot(&Shot { options: Options { alias, ..shot.options }, ..*shot })?;
             match apart.get(index) {
@@ -150,7 +150,7 @@ fn frames_in_one_block_of_memory_are_the_frames_apart() -> Result<(), Box<dyn Er
         );
         // What the driver gave is less than it asks for one by one.
         let given = film.executor.allocated();
-        assert_eq!(given.placed > 0 && given.placed < given.placed_apart, alias == Alias::Heap, "{given:?}");
+        assert_eq!(given.placed > 0 && given.placed < given.unshared, alias == Alias::Heap, "{given:?}");
     }
     assert!(is_picture(&apart[0]));
     Ok(())
@@ -161,7 +161,7 @@ fn toggles_and_odd_sizes_show_neither_black_nor_stale_frames() -> Result<(), Box
     let Some(gpu) = gpu("toggles_and_odd_sizes_show_neither_black_nor_stale_frames") else { return Ok(()) };
     let mut film = Film::new(&gpu, "spheres")?;
     // The frames that each is compared with are recorded on one thread.
-    film.executor.always_record_on(Workers::with_threads(2)?);
+    film.executor.force_record_on(Workers::with_threads(2)?);
     let base = Settings { samples: 1, shadows: Some(ShadowSettings::texels(256)), ..Settings::default() };
     let sequence = [
         (base, [64, 36]),

@@ -10,7 +10,7 @@ use framegraph_passes::shadow::{ShadowFilter, ShadowSettings};
 use framegraph_passes::{OcclusionSettings, ReflectionSettings, Settings, TaaSettings};
 use framegraph_wgpu::{
     AdapterRequest, ExecuteError, Executor, ExecutorOptions, Frame, FrameLoop, Gpu, NotPlaced, Unsupported, Workers,
-    stand_in,
+    mock,
 };
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -91,8 +91,8 @@ impl Way {
     fn set(self, executor: &mut Executor) -> TestResult {
         match self {
             Self::Apart => {}
-            Self::Block => executor.always_record_on(Workers::with_threads(3)?),
-            Self::Broken => executor.leave_out_hand_overs(),
+            Self::Block => executor.force_record_on(Workers::with_threads(3)?),
+            Self::Broken => executor.skip_alias_barriers(),
         }
         Ok(())
     }
@@ -135,7 +135,7 @@ const COPIES: &str = r#"(version: 1,
 fn copies() -> Result<Staged, Box<dyn Error>> {
     let mut frame = Frame::new();
     GraphFile::parse("copies.ron", COPIES)?.declare(&[], &Registry::new(), &mut frame)?;
-    stand_in::fill_in(&mut frame);
+    mock::add_recorders(&mut frame);
     Ok(Staged { label: "copies".to_owned(), frame, options: Options { frame: SIZE_PX, ..Options::default() } })
 }
 
@@ -144,7 +144,7 @@ fn by_stand_ins(gpu: &Gpu, staged: &Staged, way: Way, covered: &mut Covered) -> 
     let options = Options { alias: way.alias(), ..staged.options };
     executor.compile(staged.frame.graph(), &options, &mut Scratch::new(), &mut plan)?;
     way.set(&mut executor)?;
-    let imported = stand_in::imports(gpu, &plan)?;
+    let imported = mock::imports(gpu, &plan)?;
     for _ in 0..3 {
         executor.execute(&plan, &staged.frame, &(), &imported.bound).map_err(|error| match error {
             ExecuteError::Unsupported(missing) => Box::<dyn Error>::from(missing),

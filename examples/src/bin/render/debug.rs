@@ -308,12 +308,12 @@ pub fn run_bisect(args: &Args) -> Result<(), Failure> {
     let mut rows = vec![["mode", "picture", "pixels", "worst"].map(String::from)];
     rows.extend(outcomes.iter().map(|o| {
         let same = if o.is_same() { "same" } else { "different" };
-        [o.name().into(), same.into(), o.pixels.to_string(), o.worst_codes.to_string()]
+        [o.name().into(), same.into(), o.pixels.to_string(), o.max_difference.to_string()]
     }));
     program::print(aligned(&rows, 2));
     match outcomes.iter().find(|o| !o.is_same()) {
         Some(first) => {
-            let (name, suspect) = (Outcome::name(first), first.suspect());
+            let (name, suspect) = (Outcome::name(first), first.likely_cause());
             program::line(format_args!("{name} is the first to change the picture: {suspect}"));
         }
         None => program::line("no mode changes the picture"),
@@ -359,7 +359,7 @@ mod tests {
             (&["--inspect-mode", "sepia"], "--inspect-mode: `sepia`"),
             (&["--inspect-sample", "-1"], "--inspect-sample -1"),
             (&["--trace", "t.txt"], "--trace t.txt: the file must end in .json"),
-            (&["--debug", "fast"], "--debug: `fast` is no debug mode"),
+            (&["--debug", "fast"], "--debug: `fast` is not a debug mode"),
             (&["--inspect"], "--inspect: a value is missing"),
             (&["--no-such"], "--no-such: unknown"),
         ];

@@ -18,7 +18,7 @@ pub fn table(args: &Args, prepared: &mut Prepared, plan: &Plan, executor: &mut E
     let mut rows = vec![["frames queued", "latency p25", "median", "frame to frame"].map(String::from)];
     for most in (1..=3).filter_map(NonZeroU32::new) {
         let mut flight = FramesInFlight::new(&prepared.gpu);
-        flight.set_most(most);
+        flight.set_max(most);
         let begun = Instant::now();
         for index in 0..args.frames {
             flight.begin().map_err(device)?;

@@ -35,7 +35,7 @@ pub fn memory(plan: &Plan, executor: &Executor) -> String {
         None => format!(
             "in one block: {} allocated, for what the driver asks {} for one by one",
             mebibytes(allocated.placed),
-            mebibytes(allocated.placed_apart)
+            mebibytes(allocated.unshared)
         ),
     };
     format!("{block}; wgpu has allocated {}\n", mebibytes(allocated.by_wgpu))

@@ -10,7 +10,7 @@ pub struct Allocated {
     /// Size of the memory blocks shared by placed textures and buffers.
     pub placed: u64,
     /// Size that the same textures and buffers would need without sharing.
-    pub placed_apart: u64,
+    pub unshared: u64,
     /// Size of everything that wgpu allocated on the device, by any executor; 0 if wgpu does not report it.
     pub by_wgpu: u64,
 }
@@ -55,10 +55,10 @@ impl Executor {
             match arenas.ask(gpu, plan) {
                 Ok(false) => return Ok(()),
                 Ok(true) => {}
-                Err(why) => arenas.give_up(gpu, why),
+                Err(why) => arenas.disable(gpu, why),
             }
         }
-        arenas.give_up(gpu, NotPlaced::Restless);
+        arenas.disable(gpu, NotPlaced::UnstableSizes);
         recompile(graph, arenas.caps(gpu), options, scratch, plan)?;
         Ok(())
     }
@@ -72,13 +72,13 @@ impl Executor {
     /// Returns the memory that is currently allocated.
     pub fn allocated(&self) -> Allocated {
         let by_wgpu = self.gpu.device.generate_allocator_report().map_or(0, |report| report.total_allocated_bytes);
-        let [placed, placed_apart] = self.arenas.allocated_bytes();
-        Allocated { placed, placed_apart, by_wgpu }
+        let [placed, unshared] = self.arenas.allocated_bytes();
+        Allocated { placed, unshared, by_wgpu }
     }
 
     /// Disables aliasing barriers and the split of command buffers. For tests that check that this corrupts images.
     #[cfg(any(test, feature = "testing"))]
-    pub fn leave_out_hand_overs(&mut self) {
-        self.arenas.leave_out_hand_overs();
+    pub fn skip_alias_barriers(&mut self) {
+        self.arenas.skip_alias_barriers();
     }
 }

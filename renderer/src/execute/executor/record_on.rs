@@ -20,9 +20,9 @@ impl Executor {
 
     /// Records every frame on several threads, even if it is slower. For tests and measurements.
     #[cfg(any(test, feature = "testing"))]
-    pub fn always_record_on(&mut self, workers: Workers) {
+    pub fn force_record_on(&mut self, workers: Workers) {
         self.record_on(Some(workers));
-        self.threads.always();
+        self.threads.always_split();
     }
 
     /// Returns the number of threads that recorded the last frame.

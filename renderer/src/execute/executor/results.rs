@@ -102,7 +102,7 @@ impl Executor {
     /// Returns hits and creations of the view, bind group and pipeline caches.
     pub fn caches(&self) -> [(&'static str, CacheCounts); 3] {
         let Caches { views, groups, pipelines, .. } = &self.caches;
-        let found = self.recording.remembered.views_found + self.threads.views_found();
+        let found = self.recording.requests.views_found + self.threads.views_found();
         let CacheCounts { hits, created } = views.counts();
         let views = CacheCounts { hits: hits + found, created };
         [("views", views), ("bind groups", groups.counts()), ("pipelines", pipelines.counts())]

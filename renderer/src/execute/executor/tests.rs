@@ -44,8 +44,8 @@ fn views_are_remembered_until_they_may_be_gone() -> Result<(), Box<dyn std::erro
     let execute = |executor: &mut Executor, lent: bool| {
         let mut imports = Imports::new();
         let _ = if lent { imports.surface(shown, &image) } else { imports.texture(shown, &image) };
-        let before = executor.recording.remembered.views_found;
-        executor.execute(&plan, &frame, &(), &imports).map(|_| executor.recording.remembered.views_found - before)
+        let before = executor.recording.requests.views_found;
+        executor.execute(&plan, &frame, &(), &imports).map(|_| executor.recording.requests.views_found - before)
     };
     // Three views: the sky attached, the sky sampled, the image attached.
     let found = (0..9).map(|_| execute(&mut executor, false)).collect::<Result<Vec<_>, _>>()?;

@@ -11,11 +11,11 @@ use framegraph::Plan;
 
 /// Progress of [`Executor::warm_up`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct WarmUp<'a> {
+pub struct WarmUpProgress<'a> {
     /// Number of finished steps.
     pub done: usize,
     /// Number of steps of the plan.
-    pub of: usize,
+    pub total: usize,
     /// Name of the first pass in the last finished step.
     pub pass: &'a str,
     /// Number of pipelines created by this call so far.
@@ -44,7 +44,7 @@ impl Executor {
     /// # frame.graph_mut().export(sky)?;
     /// # compile(frame.graph(), &gpu.caps(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan)?;
     /// let imports = Imports::new();
-    /// executor.warm_up(&plan, &frame, &(), &imports, &mut |at| println!("{}/{}: {}", at.done, at.of, at.pass))?;
+    /// executor.warm_up(&plan, &frame, &(), &imports, &mut |at| println!("{}/{}: {}", at.done, at.total, at.pass))?;
     /// let made = executor.objects();
     /// executor.execute(&plan, &frame, &(), &imports)?;
     /// assert_eq!((made.pipelines, executor.objects()), (1, made));
@@ -59,11 +59,11 @@ impl Executor {
         frame: &Frame<W>,
         world: &W,
         imports: &Imports,
-        progress: &mut dyn FnMut(WarmUp<'_>),
+        progress: &mut dyn FnMut(WarmUpProgress<'_>),
     ) -> Result<(), ExecuteError> {
         check(plan, frame)?;
         let before = self.objects().pipelines;
-        let (of, mut done) = (plan.steps().len(), 0);
+        let (total, mut done) = (plan.steps().len(), 0);
         let unsent = self.record_frame(
             plan,
             &Passes { frame, world, extra: None },
@@ -71,11 +71,11 @@ impl Executor {
             Some(&mut |step, pipelines| {
                 done += 1;
                 let pass = plan.passes_of(step).first().map_or("", |m| plan.graph().pass_name(m.pass));
-                progress(WarmUp { done, of, pass, pipelines: pipelines - before });
+                progress(WarmUpProgress { done, total, pass, pipelines: pipelines - before });
             }),
         )?;
         drop(unsent);
-        self.give_up();
+        self.drop_unused();
         Ok(())
     }
 
@@ -89,14 +89,14 @@ impl Executor {
     }
 
     /// Uses a driver pipeline cache from now on, so that later runs compile faster. `earlier` is the result of
-    /// [`Executor::pipeline_bytes`] from an earlier run on the same machine and driver.
+    /// [`Executor::pipeline_cache_data`] from an earlier run on the same machine and driver.
     ///
     /// Returns whether the device supports pipeline caches. wgpu supports them on Vulkan; most desktop drivers also
     /// have their own cache.
     ///
     /// # Errors
     /// Fails if `earlier` is damaged or belongs to another device. An empty cache is used in that case.
-    pub fn keep_pipelines(&mut self, earlier: Option<&[u8]>) -> Result<bool, PipelineCacheError> {
+    pub fn use_pipeline_cache(&mut self, earlier: Option<&[u8]>) -> Result<bool, PipelineCacheError> {
         let (cache, refused) = open_cache(&self.gpu, earlier);
         let can = cache.is_some();
         self.caches.pipelines.set_driver_cache(cache);
@@ -105,7 +105,7 @@ impl Executor {
 
     /// Returns the data of the pipeline cache, to be written to a file. `None` if there is no cache. Write to a
     /// temporary file and rename it, so that an interrupted write does no damage.
-    pub fn pipeline_bytes(&self) -> Option<Vec<u8>> {
+    pub fn pipeline_cache_data(&self) -> Option<Vec<u8>> {
         self.caches.pipelines.driver_cache().and_then(|cache| cache_bytes(&self.gpu, cache))
     }
 }

@@ -89,7 +89,7 @@ impl Runner {
             |poison| Executor::with(gpu, ExecutorOptions { poison, timing: false, ..ExecutorOptions::default() });
         // One of the two records on several threads.
         let mut threaded = executor(false);
-        threaded.always_record_on(Workers::with_threads(3)?);
+        threaded.force_record_on(Workers::with_threads(3)?);
         Ok(Self {
             gpu: gpu.clone(),
             executors: [threaded, executor(true)],

@@ -26,7 +26,7 @@ fn modes(ui: &mut Ui, live: &mut Live) {
     let mut modes = live.asked.modes.clone();
     for mode in Mode::ALL {
         let mut on = modes.0.contains(&mode);
-        let tip = format!("a picture that changes under it: {}", mode.suspect());
+        let tip = format!("a picture that changes under it: {}", mode.likely_cause());
         if ui.checkbox(&mut on, mode.name()).on_hover_text(tip).changed() {
             modes.0.retain(|other| *other != mode);
             modes.0.extend(on.then_some(mode));
@@ -78,13 +78,13 @@ fn bisecting(ui: &mut Ui, live: &mut Live, session: &mut Session) {
             let (word, ink) = if outcome.is_same() { ("same", Ink::Text) } else { ("different", Ink::Worse) };
             ui.label(RichText::new(word).color(color(ink, theme)));
             ui.label(outcome.pixels.to_string());
-            ui.label(outcome.worst_codes.to_string());
+            ui.label(outcome.max_difference.to_string());
             ui.end_row();
         }
     });
     match bisecting.outcomes.iter().find(|outcome| !outcome.is_same()) {
         Some(first) => {
-            ui.add(egui::Label::new(format!("{} is the first to change it: {}", first.name(), first.suspect())).wrap())
+            ui.add(egui::Label::new(format!("{} is the first to change it: {}", first.name(), first.likely_cause())).wrap())
         }
         None => ui.label("no mode changes the picture"),
     };

@@ -122,7 +122,7 @@ fn statistics(live: &Live) -> String {
         ms(times.cpu),
         ms(times.gpu),
         ms(flight.latency()),
-        flight.most()
+        flight.max()
     )
 }
 

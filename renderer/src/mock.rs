@@ -14,7 +14,7 @@
 //! use framegraph::file::{GraphFile, Registry};
 //! use framegraph::{Options, Plan, Scratch};
 //! use framegraph_wgpu::{Executor, Gpu};
-//! use framegraph_wgpu::{Frame, stand_in};
+//! use framegraph_wgpu::{Frame, mock};
 //!
 //! let text = r#"(version: 1,
 //!     resources: [
@@ -28,10 +28,10 @@
 //! )"#;
 //! let (gpu, mut frame, mut plan) = (Gpu::noop()?, Frame::<()>::new(), Plan::new());
 //! GraphFile::parse("frame.ron", text)?.declare(&[], &Registry::new(), &mut frame)?;
-//! stand_in::fill_in(&mut frame);
+//! mock::add_recorders(&mut frame);
 //! framegraph::compile(frame.graph(), &gpu.caps(), &Options::for_frame(64, 64), &mut Scratch::new(), &mut plan)?;
 //! let mut executor = Executor::new(&gpu);
-//! executor.execute(&plan, &frame, &(), &stand_in::imports(&gpu, &plan)?.bound)?;
+//! executor.execute(&plan, &frame, &(), &mock::imports(&gpu, &plan)?.bound)?;
 //! assert_eq!(executor.executed(), plan.counts());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -41,7 +41,7 @@ mod copy;
 mod imports;
 mod shader;
 
-pub use imports::{Imported, imports};
+pub use imports::{MockImports, imports};
 
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
@@ -54,7 +54,7 @@ use shader::{compute_wgsl, raster_wgsl};
 use wgpu::{CompareFunction, StencilFaceState, StencilOperation, StencilState};
 
 /// Adds a mock recorder to every pass without a recorder. See the [module documentation](self).
-pub fn fill_in<W: ?Sized + 'static>(frame: &mut Frame<W>) {
+pub fn add_recorders<W: ?Sized + 'static>(frame: &mut Frame<W>) {
     for pass in frame.graph().pass_ids() {
         if !frame.has_recorder(pass) {
             let kind = frame.graph().passes()[pass.index()].kind;

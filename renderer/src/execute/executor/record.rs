@@ -57,8 +57,8 @@ impl Executor {
         let watch = self.gpu.watch("uploading the constants of a frame");
         self.upload();
         if let Err(error) = watch.end(self.gpu.errors()) {
-            self.forget_frame();
-            return Err(self.told(plan, error));
+            self.discard_frame();
+            return Err(self.execute_error(plan, error));
         }
         self.unsubmitted = true;
         Ok(commands)

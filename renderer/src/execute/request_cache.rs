@@ -1,7 +1,7 @@
 //! Cache of the requests that recorders make, in order, with their results. A request that repeats the last frame's is
 //! answered by one comparison.
 
-use crate::execute::opened::Opened;
+use crate::execute::cached_step::CachedStep;
 use crate::execute::part::ViewPart;
 use crate::pipelines::bind_groups::LastGroup;
 use crate::pipelines::cache::{LastCompute, LastRaster};
@@ -10,12 +10,12 @@ use wgpu::TextureView;
 
 /// Requests of one step: its attachments, and requests of recorders by kind.
 #[derive(Debug, Default)]
-pub(crate) struct RememberedStep {
-    pub(crate) opened: Opened,
-    pub(crate) views: InOrder<LastView>,
-    pub(crate) groups: InOrder<LastGroup>,
-    pub(crate) rasters: InOrder<LastRaster>,
-    pub(crate) computes: InOrder<LastCompute>,
+pub(crate) struct StepRequests {
+    pub(crate) cached: CachedStep,
+    pub(crate) views: RequestList<LastView>,
+    pub(crate) groups: RequestList<LastGroup>,
+    pub(crate) rasters: RequestList<LastRaster>,
+    pub(crate) computes: RequestList<LastCompute>,
 }
 
 /// Last result of a view request: access, part and texture stamp, with the view.
@@ -24,18 +24,18 @@ pub(crate) struct LastView(pub(crate) Option<((usize, ViewPart, u64), TextureVie
 
 /// Requests of one kind, in order. Requests that change or move between frames miss the cache and are only slower.
 #[derive(Debug)]
-pub(crate) struct InOrder<T> {
+pub(crate) struct RequestList<T> {
     last: Vec<T>,
     next: usize,
 }
 
-impl<T> Default for InOrder<T> {
+impl<T> Default for RequestList<T> {
     fn default() -> Self {
         Self { last: Vec::new(), next: 0 }
     }
 }
 
-impl<T: Default> InOrder<T> {
+impl<T: Default> RequestList<T> {
     /// Advances to the next request and returns its last result.
     pub(crate) fn next(&mut self) -> &mut T {
         let index = self.next;
@@ -54,8 +54,8 @@ impl<T: Default> InOrder<T> {
 
 /// Requests of all steps that one thread records.
 #[derive(Debug, Default)]
-pub(crate) struct Remembered {
-    steps: Vec<RememberedStep>,
+pub(crate) struct RequestCache {
+    steps: Vec<StepRequests>,
     current: usize,
     /// Number of frames until views are released.
     left: u64,
@@ -63,22 +63,22 @@ pub(crate) struct Remembered {
     pub(crate) views_found: u64,
 }
 
-impl Remembered {
+impl RequestCache {
     /// Begins a frame. Releases views every `max_age` frames, so that the view cache learns which are in use.
     pub(crate) fn begin_frame(&mut self, max_age: u64) {
         match self.left.checked_sub(1) {
             Some(left) => self.left = left,
             None => {
-                self.let_go();
+                self.release_views();
                 self.left = max_age.saturating_sub(1);
             }
         }
     }
 
     /// Releases all views.
-    pub(crate) fn let_go(&mut self) {
+    pub(crate) fn release_views(&mut self) {
         for step in &mut self.steps {
-            step.opened.let_go();
+            step.cached.release_views();
             step.views.last.clear();
         }
     }
@@ -87,14 +87,14 @@ impl Remembered {
     pub(crate) fn begin(&mut self, step: StepId) {
         self.current = step.index();
         if self.steps.len() <= self.current {
-            self.steps.resize_with(self.current + 1, RememberedStep::default);
+            self.steps.resize_with(self.current + 1, StepRequests::default);
         }
-        let RememberedStep { views, groups, rasters, computes, .. } = self.step();
+        let StepRequests { views, groups, rasters, computes, .. } = self.step();
         (views.next, groups.next, rasters.next, computes.next) = (0, 0, 0, 0);
     }
 
     /// Returns the requests of the current step.
-    pub(crate) fn step(&mut self) -> &mut RememberedStep {
+    pub(crate) fn step(&mut self) -> &mut StepRequests {
         &mut self.steps[self.current]
     }
 }
@@ -106,21 +106,21 @@ mod tests {
     /// Checks that requests of repeated frames take no additional memory, and that steps are separate.
     #[test]
     fn a_step_that_begins_anew_goes_through_the_same_requests() {
-        let mut remembered = Remembered::default();
+        let mut cache = RequestCache::default();
         for _ in 0..3 {
             for (step, requests) in [(StepId::at(1), 2), (StepId::at(0), 3)] {
-                remembered.begin(step);
+                cache.begin(step);
                 for _ in 0..requests {
-                    remembered.step().views.next();
-                    remembered.step().groups.next();
-                    remembered.step().rasters.next();
-                    remembered.step().computes.next();
+                    cache.step().views.next();
+                    cache.step().groups.next();
+                    cache.step().rasters.next();
+                    cache.step().computes.next();
                 }
             }
         }
-        let lengths = |s: &RememberedStep| [s.views.last.len(), s.groups.last.len(), s.rasters.last.len()];
-        let computes: Vec<_> = remembered.steps.iter().map(|s| s.computes.last.len()).collect();
-        assert_eq!(remembered.steps.iter().map(lengths).collect::<Vec<_>>(), [[3; 3], [2; 3]]);
+        let lengths = |s: &StepRequests| [s.views.last.len(), s.groups.last.len(), s.rasters.last.len()];
+        let computes: Vec<_> = cache.steps.iter().map(|s| s.computes.last.len()).collect();
+        assert_eq!(cache.steps.iter().map(lengths).collect::<Vec<_>>(), [[3; 3], [2; 3]]);
         assert_eq!(computes, [3, 2]);
     }
 }

@@ -24,7 +24,7 @@ pub(crate) fn texture_uses(usage: TextureUsages, format: TextureFormat) -> Textu
 
 /// Returns the state of a placed texture between its last step in one frame and its first step in the next. It is one
 /// of the texture's usages, and usually that of its first step, which saves a transition.
-pub(crate) fn home(usage: TextureUsages, format: TextureFormat) -> TextureUses {
+pub(crate) fn resting_usage(usage: TextureUsages, format: TextureFormat) -> TextureUses {
     if usage.contains(TextureUsages::RENDER_ATTACHMENT) {
         if format.is_depth_stencil_format() { TextureUses::DEPTH_STENCIL_WRITE } else { TextureUses::COLOR_TARGET }
     } else if usage.contains(TextureUsages::STORAGE_BINDING) {
@@ -63,9 +63,9 @@ mod tests {
         for format in [TextureFormat::Rgba8Unorm, TextureFormat::Depth32Float] {
             for bits in 1..32 {
                 let usage = TextureUsages::from_bits_truncate(bits);
-                let (uses, home) = (texture_uses(usage, format), home(usage, format));
-                assert!(uses.contains(home), "{usage:?} of {format:?}: {home:?} is none of {uses:?}");
-                assert!(home.bits().is_power_of_two(), "{home:?}");
+                let (uses, resting_usage) = (texture_uses(usage, format), resting_usage(usage, format));
+                assert!(uses.contains(resting_usage), "{usage:?} of {format:?}: {resting_usage:?} is none of {uses:?}");
+                assert!(resting_usage.bits().is_power_of_two(), "{resting_usage:?}");
             }
         }
     }

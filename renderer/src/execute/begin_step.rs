@@ -1,23 +1,23 @@
 //! Begin of a step: updates its attachments if they changed.
 
 use crate::debug::poison;
+use crate::execute::cached_step::CachedStep;
 use crate::execute::clear::clears_stored;
 use crate::execute::error::ExecuteError;
-use crate::execute::opened::Opened;
 use crate::execute::prepared::Prepared;
 use crate::execute::targets::Targets;
 use crate::named::Named;
 use framegraph::{AccessKind, Attachment, Format, Join, PassKind, Plan, Range, Role, StepId};
 
-impl Opened {
+impl CachedStep {
     /// Prepares this value for `step`. Returns the number of attachment views that were reused.
     ///
     /// # Errors
     /// Fails if an attachment cannot be created.
-    pub(crate) fn open(&mut self, frame: &Prepared<'_>, step: StepId) -> Result<usize, ExecuteError> {
+    pub(crate) fn begin(&mut self, frame: &Prepared<'_>, step: StepId) -> Result<usize, ExecuteError> {
         let plan = frame.plan;
         if self.compilation == 0 || self.compilation != plan.compilation() {
-            self.let_go();
+            self.release_views();
             self.compilation = 0;
             check(plan, step)?;
             (self.targets, self.clears_stored) = (Targets::of(plan, step), clears_stored(plan, step));
@@ -34,7 +34,7 @@ impl Opened {
         if known {
             return Ok(attachments.len());
         }
-        self.let_go();
+        self.release_views();
         self.attached.gather(frame, step)?;
         self.counts = self.attached.counts();
         if frame.poison {

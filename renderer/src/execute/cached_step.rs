@@ -6,7 +6,7 @@ use framegraph::Counts;
 
 /// Cached state of a step. See the [module documentation](self).
 #[derive(Debug, Default)]
-pub(crate) struct Opened {
+pub(crate) struct CachedStep {
     /// Compilation number of the plan; 0 before the first use.
     pub(crate) compilation: u64,
     /// Stamps of the attached textures; `None` if `attached` is not valid.
@@ -21,9 +21,9 @@ pub(crate) struct Opened {
     pub(crate) clears_stored: bool,
 }
 
-impl Opened {
+impl CachedStep {
     /// Releases the attached views.
-    pub(crate) fn let_go(&mut self) {
+    pub(crate) fn release_views(&mut self) {
         self.stamps = None;
         self.attached.clear();
     }

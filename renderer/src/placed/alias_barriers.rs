@@ -4,7 +4,7 @@ use framegraph::{Placement, Plan, ResourceId, StepId};
 
 /// Resources that acquire their memory before a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Activation {
+pub(crate) struct AliasBarrier {
     pub(crate) before: StepId,
     pub(crate) resources: Vec<ResourceId>,
 }
@@ -15,7 +15,7 @@ pub(crate) struct Activation {
 /// A resource acquires its memory after the last step of every resource that used the memory before in this frame, and
 /// no later than its own first step. Resources whose memory was not used before in this frame are included, since the
 /// previous frame may have used it.
-pub(crate) fn activations(plan: &Plan, is_placed: impl Fn(ResourceId) -> bool) -> Vec<Activation> {
+pub(crate) fn alias_barriers(plan: &Plan, is_placed: impl Fn(ResourceId) -> bool) -> Vec<AliasBarrier> {
     let heap = |r: &ResourceId| matches!(plan.resources()[r.index()].placement, Placement::Heap { .. });
     let mut earliest = vec![0; plan.resources().len()];
     for barrier in plan.barriers().iter().filter(|b| !b.hand_over.is_none()) {
@@ -24,7 +24,7 @@ pub(crate) fn activations(plan: &Plan, is_placed: impl Fn(ResourceId) -> bool) -
     }
     let mut waiting: Vec<_> = plan.graph().resource_ids().filter(heap).filter(|r| is_placed(*r)).collect();
     waiting.sort_by_key(|r| (plan.resources()[r.index()].first, *r));
-    let mut out: Vec<Activation> = Vec::new();
+    let mut out: Vec<AliasBarrier> = Vec::new();
     // The resource with the earliest deadline sets the point, as late as possible. All resources that are ready by then
     // join it.
     for resource in waiting {
@@ -32,7 +32,7 @@ pub(crate) fn activations(plan: &Plan, is_placed: impl Fn(ResourceId) -> bool) -
             Some(last) if earliest[resource.index()] <= last.before.index() => last.resources.push(resource),
             _ => {
                 let before = plan.resources()[resource.index()].first;
-                out.push(Activation { before, resources: vec![resource] });
+                out.push(AliasBarrier { before, resources: vec![resource] });
             }
         }
     }
@@ -67,7 +67,7 @@ mod tests {
             if compile(&graph, &caps, &options, &mut scratch, &mut plan).is_err() {
                 continue;
             }
-            let found = activations(&plan, |_| true);
+            let found = alias_barriers(&plan, |_| true);
             assert!(found.is_sorted_by(|a, b| a.before < b.before), "seed {seed}: {found:?}");
             let placed: Vec<_> = plan.graph().resource_ids().filter(|r| bytes(&plan, *r).is_some()).collect();
             let all = found.iter().flat_map(|a| a.resources.iter().map(|r| (a.before, *r)));

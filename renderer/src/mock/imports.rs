@@ -9,7 +9,7 @@ use wgpu::{BufferUsages, Texture, TextureUsages};
 
 /// Textures and buffers that [`imports`] created.
 #[derive(Debug)]
-pub struct Imported {
+pub struct MockImports {
     /// Bindings to pass to [`Executor::execute`](crate::Executor::execute).
     pub bound: Imports,
     /// Created textures, for reading them back.
@@ -21,9 +21,9 @@ pub struct Imported {
 ///
 /// # Errors
 /// Fails if the device rejects one of the resources.
-pub fn imports(gpu: &Gpu, plan: &Plan) -> Result<Imported, DeviceError> {
-    let mut made = Imported { bound: Imports::new(), textures: Vec::new() };
-    gpu.guard("a stand-in for an import", || {
+pub fn imports(gpu: &Gpu, plan: &Plan) -> Result<MockImports, DeviceError> {
+    let mut made = MockImports { bound: Imports::new(), textures: Vec::new() };
+    gpu.guard("a mock import", || {
         let graph = plan.graph();
         for (resource, row) in graph.resource_ids().zip(plan.resources()) {
             if row.placement != Placement::External || row.first.is_none() {

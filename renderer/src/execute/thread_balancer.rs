@@ -24,7 +24,7 @@ const GAIN: f64 = 0.95;
 
 /// Decides how the frames of one plan are recorded. See the [module documentation](self).
 #[derive(Debug, Default)]
-pub(crate) struct Share {
+pub(crate) struct ThreadBalancer {
     /// Number of the current plan.
     plan: u64,
     phase: Phase,
@@ -41,29 +41,29 @@ pub(crate) struct Share {
     /// Total time of all frames of all plans, and the share lost by trials.
     spent: [Duration; 2],
     /// Splits every frame evenly by step count, for tests.
-    always: bool,
+    always_split: bool,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Phase {
     /// Single-threaded, with each step timed.
     #[default]
-    Alone,
+    Single,
     /// Split, during a trial.
     Trial,
     /// Single-threaded until the next trial.
-    StaysAlone,
+    KeepSingle,
     /// Split until the next trial.
-    StaysShared,
+    KeepSplit,
 }
 
-impl Share {
+impl ThreadBalancer {
     /// Begins a frame of the plan with this number. `may_begin` says for each step whether a part may begin with it;
     /// true for the first. Returns whether steps must be timed.
     pub(crate) fn begin_frame(&mut self, plan: u64, may_begin: &[bool], threads: usize) -> bool {
-        if self.always {
+        if self.always_split {
             self.parts = even_parts(&vec![Duration::from_secs(1); may_begin.len()], may_begin, threads);
-            self.phase = Phase::StaysShared;
+            self.phase = Phase::KeepSplit;
             return false;
         }
         let cut = |part: &Range<u32>| !may_begin.get(part.start as usize).is_some_and(|may| *may);
@@ -72,38 +72,38 @@ impl Share {
             *self = Self { plan, steps, best: [Duration::MAX; 2], spent: self.spent, ..Self::default() };
         }
         let over = match self.phase {
-            Phase::Alone | Phase::Trial => WARM_UP + MEASURED,
-            Phase::StaysAlone | Phase::StaysShared => HELD,
+            Phase::Single | Phase::Trial => WARM_UP + MEASURED,
+            Phase::KeepSingle | Phase::KeepSplit => HELD,
         };
         if self.frames == over {
             self.enter(self.next(threads), may_begin, threads);
         }
-        self.phase == Phase::Alone
+        self.phase == Phase::Single
     }
 
     /// Begins a single-threaded frame without time measurements and returns true, if one is due. Otherwise does nothing
     /// and returns false.
-    pub(crate) fn rests(&mut self, plan: u64, steps: usize) -> bool {
-        let rests = self.phase == Phase::StaysAlone && self.frames < HELD;
-        let rests = rests && self.plan == plan && self.steps.len() == steps;
-        self.frames += u32::from(rests);
-        if rests && self.best[0] != Duration::MAX {
+    pub(crate) fn begin_unmeasured(&mut self, plan: u64, steps: usize) -> bool {
+        let begin_unmeasured = self.phase == Phase::KeepSingle && self.frames < HELD;
+        let begin_unmeasured = begin_unmeasured && self.plan == plan && self.steps.len() == steps;
+        self.frames += u32::from(begin_unmeasured);
+        if begin_unmeasured && self.best[0] != Duration::MAX {
             self.spent[0] += self.best[0];
         }
-        rests
+        begin_unmeasured
     }
 
     /// Splits all frames regardless of cost, for tests.
     #[cfg(all(feature = "threads", any(test, feature = "testing")))]
-    pub(crate) fn always(&mut self) {
-        self.always = true;
+    pub(crate) fn always_split(&mut self) {
+        self.always_split = true;
     }
 
     /// Returns the step ranges to record, one per thread, in order. Empty if the frame is recorded on one thread.
     pub(crate) fn parts(&self) -> &[Range<u32>] {
         match self.phase {
-            Phase::Trial | Phase::StaysShared => &self.parts,
-            Phase::Alone | Phase::StaysAlone => &[],
+            Phase::Trial | Phase::KeepSplit => &self.parts,
+            Phase::Single | Phase::KeepSingle => &[],
         }
     }
 
@@ -111,33 +111,35 @@ impl Share {
     pub(crate) fn end_frame(&mut self, took: Duration, steps: impl Iterator<Item = (usize, Duration)>) {
         self.frames += 1;
         self.spent[0] += took;
-        if let (Some(expected), Phase::Alone | Phase::Trial) = (self.expected, self.phase) {
+        if let (Some(expected), Phase::Single | Phase::Trial) = (self.expected, self.phase) {
             self.spent[1] += took.saturating_sub(expected);
         }
         if self.frames <= WARM_UP {
             return;
         }
         match self.phase {
-            Phase::Alone => {
+            Phase::Single => {
                 self.best[0] = self.best[0].min(took);
                 for (step, took) in steps {
                     self.steps[step] = self.steps[step].min(took);
                 }
             }
             Phase::Trial => self.best[1] = self.best[1].min(took),
-            Phase::StaysAlone | Phase::StaysShared => {}
+            Phase::KeepSingle | Phase::KeepSplit => {}
         }
     }
 
     fn next(&self, threads: usize) -> Phase {
         let may_lose = self.spent[1].as_secs_f64() <= LOST * self.spent[0].as_secs_f64();
         match self.phase {
-            Phase::StaysShared if !may_lose => Phase::StaysShared,
-            Phase::StaysAlone | Phase::StaysShared => Phase::Alone,
-            Phase::Alone if !may_lose || self.best[0] < WORTH || threads.min(self.steps.len()) < 2 => Phase::StaysAlone,
-            Phase::Alone => Phase::Trial,
-            Phase::Trial if self.best[1].as_secs_f64() < GAIN * self.best[0].as_secs_f64() => Phase::StaysShared,
-            Phase::Trial => Phase::StaysAlone,
+            Phase::KeepSplit if !may_lose => Phase::KeepSplit,
+            Phase::KeepSingle | Phase::KeepSplit => Phase::Single,
+            Phase::Single if !may_lose || self.best[0] < WORTH || threads.min(self.steps.len()) < 2 => {
+                Phase::KeepSingle
+            }
+            Phase::Single => Phase::Trial,
+            Phase::Trial if self.best[1].as_secs_f64() < GAIN * self.best[0].as_secs_f64() => Phase::KeepSplit,
+            Phase::Trial => Phase::KeepSingle,
         }
     }
 
@@ -145,7 +147,7 @@ impl Share {
         let known = self.best.into_iter().min().filter(|best| *best != Duration::MAX);
         self.expected = known.or(self.expected);
         match phase {
-            Phase::Alone => {
+            Phase::Single => {
                 self.steps.fill(Duration::MAX);
                 self.best = [Duration::MAX; 2];
             }
@@ -160,7 +162,7 @@ impl Share {
                     self.parts = parts;
                 }
             }
-            Phase::StaysAlone | Phase::StaysShared => {}
+            Phase::KeepSingle | Phase::KeepSplit => {}
         }
         (self.phase, self.frames) = (phase, 0);
     }
@@ -235,20 +237,20 @@ mod tests {
 
     /// Returns the total time of many frames that take the given times, and the number of split frames.
     fn simulated(alone: [Duration; 4], shared: Duration) -> (Duration, usize) {
-        let (mut share, mut spent, mut in_parts) = (Share::default(), Duration::ZERO, 0);
+        let (mut balancer, mut spent, mut in_parts) = (ThreadBalancer::default(), Duration::ZERO, 0);
         let one: Duration = alone.iter().sum();
         for _ in 0..20_000 {
-            if share.rests(7, 4) {
+            if balancer.begin_unmeasured(7, 4) {
                 spent += one;
                 continue;
             }
-            let timed = share.begin_frame(7, &[true; 4], 2);
-            let parts = share.parts();
+            let timed = balancer.begin_frame(7, &[true; 4], 2);
+            let parts = balancer.parts();
             assert!(parts.is_empty() || parts[0].start == 0 && parts.last().is_some_and(|part| part.end == 4));
             let took = if parts.is_empty() { one } else { shared };
             in_parts += usize::from(!parts.is_empty());
             spent += took;
-            share.end_frame(took, alone.iter().copied().enumerate().filter(|_| timed));
+            balancer.end_frame(took, alone.iter().copied().enumerate().filter(|_| timed));
         }
         (spent, in_parts)
     }
@@ -275,19 +277,19 @@ mod tests {
         let steps = [20, 200, 100, 80].map(us);
         let one: Duration = steps.iter().sum();
         for (slower, change_every) in [(2, 20_000), (10, 20_000), (100, 20_000), (2, 17), (10, 17), (10, 40)] {
-            let (mut share, mut spent, mut trials) = (Share::default(), Duration::ZERO, 0_u32);
+            let (mut balancer, mut spent, mut trials) = (ThreadBalancer::default(), Duration::ZERO, 0_u32);
             for frame in 0..20_000_u64 {
                 let plan = frame / change_every;
-                if share.rests(plan, 4) {
+                if balancer.begin_unmeasured(plan, 4) {
                     spent += one;
                     continue;
                 }
-                let timed = share.begin_frame(plan, &[true; 4], 2);
-                let shared = !share.parts().is_empty();
+                let timed = balancer.begin_frame(plan, &[true; 4], 2);
+                let shared = !balancer.parts().is_empty();
                 let took = if shared { one * slower } else { one };
                 trials += u32::from(shared);
                 spent += took;
-                share.end_frame(took, steps.iter().copied().enumerate().filter(|_| timed));
+                balancer.end_frame(took, steps.iter().copied().enumerate().filter(|_| timed));
             }
             let first = (WARM_UP + MEASURED) * slower * one;
             let most = 1.03 * (20_000 * one).as_secs_f64() + first.as_secs_f64();
@@ -300,19 +302,19 @@ mod tests {
 
     #[test]
     fn another_plan_is_measured_anew() {
-        let mut share = Share::default();
+        let mut balancer = ThreadBalancer::default();
         for frame in 0..30 {
-            share.begin_frame(1, &[true; 2], 2);
-            let took = if share.parts().is_empty() { us(400) } else { us(200) };
-            share.end_frame(took, [(0, us(200)), (1, us(200))].into_iter());
-            assert!(frame < 8 || share.parts() == [0..1, 1..2], "frame {frame}");
+            balancer.begin_frame(1, &[true; 2], 2);
+            let took = if balancer.parts().is_empty() { us(400) } else { us(200) };
+            balancer.end_frame(took, [(0, us(200)), (1, us(200))].into_iter());
+            assert!(frame < 8 || balancer.parts() == [0..1, 1..2], "frame {frame}");
         }
-        assert!(share.begin_frame(2, &[true; 2], 2) && share.parts().is_empty());
+        assert!(balancer.begin_frame(2, &[true; 2], 2) && balancer.parts().is_empty());
         assert!(
             !(0..50).any(|_| {
-                share.begin_frame(2, &[true; 2], 1);
-                share.end_frame(us(400), [(0, us(200)), (1, us(200))].into_iter());
-                !share.parts().is_empty()
+                balancer.begin_frame(2, &[true; 2], 1);
+                balancer.end_frame(us(400), [(0, us(200)), (1, us(200))].into_iter());
+                !balancer.parts().is_empty()
             }),
             "one thread shares with nobody"
         );

@@ -7,25 +7,25 @@ use crate::resources::pool::Pool;
 
 impl Executor {
     /// Drops all objects that the current frame used. Called after a device error, since they may be invalid.
-    pub(super) fn forget_frame(&mut self) {
+    pub(super) fn discard_frame(&mut self) {
         let Self { caches, textures, buffers, histories, arenas, realized, recording, threads, .. } = self;
-        recording.remembered.let_go();
-        threads.let_go();
+        recording.requests.release_views();
+        threads.release_views();
         realized.clear();
-        arenas.forget_frame();
+        arenas.discard_frame();
         caches.views.clear();
         caches.groups.clear();
-        textures.forget_frame(|_| ());
-        buffers.forget_frame(|_| ());
-        histories.forget_frame();
+        textures.discard_frame(|_| ());
+        buffers.discard_frame(|_| ());
+        histories.discard_frame();
     }
 
     /// Frees everything that the last frame did not use, regardless of age, and returns the number of bytes. Affects
     /// pools and memory blocks, with their views and bind groups, but not histories.
     pub fn trim(&mut self) -> u64 {
         let Self { caches, textures, buffers, arenas, recording, threads, .. } = self;
-        recording.remembered.let_go();
-        threads.let_go();
+        recording.requests.release_views();
+        threads.release_views();
         let held = |textures: &Pool<PhysicalTextureDesc>, buffers: &Pool<PhysicalBufferDesc>, arenas: &Arenas| {
             textures.counts().bytes + buffers.counts().bytes + arenas.bytes()
         };
@@ -37,7 +37,7 @@ impl Executor {
     }
 
     /// Drops objects that recent frames did not use, and references to surface textures.
-    pub(super) fn give_up(&mut self) {
+    pub(super) fn drop_unused(&mut self) {
         let Self { caches, textures, buffers, arenas, realized, options, recording, threads, .. } = self;
         let mut any = false;
         arenas.evict(options.limits(), |object| {
@@ -50,8 +50,8 @@ impl Executor {
         });
         buffers.evict(|buffer| caches.groups.forget_buffer(buffer));
         if any {
-            recording.remembered.let_go();
-            threads.let_go();
+            recording.requests.release_views();
+            threads.release_views();
         }
         // These textures have no cached requests.
         realized.end_loans(|texture| caches.forget(texture));
