@@ -1,13 +1,30 @@
-//! Executes the plans of [`framegraph`] on wgpu: device, executor, pools, pipelines, timing, inspection.
+//! Executes render graphs on wgpu.
 //!
-//! [`frame`] is what authors of passes see, [`Executor`] executes on a [`Gpu`].
-//! [`inspect`] reads any texture of a frame, [`debug`] has switches to find faults with; with the feature `testing`,
-//! `mock` executes graphs that have no recorders yet.
-//! A pass declares what it touches and records what it draws; nothing else is needed to run it:
+//! The crate [`framegraph`] compiles a graph of passes to a [`Plan`](framegraph::Plan). This crate executes plans: it creates
+//! textures and buffers, begins render and compute passes, calls the recorders of the application, and submits the commands.
+//! It also measures GPU times, and reads any intermediate texture back for debugging.
+//!
+//! # When to use it
+//!
+//! Use this crate if a frame has several passes that depend on each other, and if any of these matters:
+//!
+//! - Load and store operations should be derived instead of written by hand.
+//! - Intermediate textures should share memory, or never leave tile memory.
+//! - Passes come and go at run time, for example with the settings of the user.
+//! - Intermediate results should be inspected, and every pass should be timed.
+//!
+//! Plain wgpu is simpler for a few passes that never change. The crate [`framegraph`] alone is enough if another API
+//! executes the plan, since it does not depend on wgpu. wgpu has a single queue, so this crate does not use async compute.
+//!
+//! # Example
+//!
+//! A pass declares the resources it accesses, and records its commands. This example runs without a GPU, on wgpu's noop
+//! backend. Applications open a device with [`Gpu::open`], or share their own with [`Gpu::wrap`].
 //!
 //! ```
-//! use framegraph::{DeclareError, Extent, Format, Intent, Options, Pass, PassBuilder, Plan, Scratch, Texture, TextureDesc, View};
-//! use framegraph_wgpu::{Frame, Record, Cx, Executor, Gpu, Imports, Raster, RecordError, Shader};
+//! use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Options, Pass, PassBuilder, Plan, Scratch};
+//! use framegraph::{Texture, TextureDesc, View};
+//! use framegraph_wgpu::{Cx, Executor, Frame, Gpu, Imports, Raster, Record, RecordError, Shader};
 //!
 //! const INVERT: Shader<'static> = Shader::new("invert", "
 //!     @group(0) @binding(0) var image: texture_2d<f32>;
@@ -18,7 +35,10 @@
 //!         return 1.0 - textureLoad(image, vec2u(at.xy), 0);
 //!     }");
 //!
-//! struct Invert { image: Texture }
+//! /// Inverts an image.
+//! struct Invert {
+//!     image: Texture,
+//! }
 //!
 //! impl Pass for Invert {
 //!     type Io = (View, Texture);
@@ -43,22 +63,59 @@
 //! }
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! # let gpu = Gpu::noop()?;
-//! # let desc = TextureDesc::new(Extent::absolute(64, 64), Format::Rgba8Unorm);
-//! # let mut frame = Frame::<()>::new();
-//! # let blank = frame.graph_mut().texture("blank", desc);
-//! # let clear = Intent::Clear(framegraph::ClearValue::BLACK);
-//! # let image = frame.add_fn("blank", |p| p.color(blank, clear), |_, _, _| Ok(()))?;
+//! let gpu = Gpu::noop()?;
+//!
+//! // Declare the frame: a cleared texture, and the pass that inverts it.
+//! let mut frame = Frame::<()>::new();
+//! let black = frame.graph_mut().texture("black", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+//! let clear = Intent::Clear(ClearValue::BLACK);
+//! let image = frame.add_fn("clear", |pass| pass.color(black, clear), |_, _, _| Ok(()))?;
 //! let (_, inverted) = frame.add("invert", Invert { image })?;
 //! frame.graph_mut().export(inverted)?;
-//! let (mut plan, mut scratch, options) = (Plan::new(), Scratch::new(), Options::for_frame(64, 64));
-//! framegraph::recompile(frame.graph(), &gpu.caps(), &options, &mut scratch, &mut plan)?;
+//!
+//! // Compile and execute it.
+//! let (mut plan, mut scratch) = (Plan::new(), Scratch::new());
+//! framegraph::recompile(frame.graph(), &gpu.caps(), &Options::for_frame(64, 64), &mut scratch, &mut plan)?;
 //! let mut executor = Executor::new(&gpu);
 //! executor.execute(&plan, &frame, &(), &Imports::new())?;
 //! assert_eq!(executor.executed(), plan.counts());
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! [`FrameLoop`] combines frame, plan and executor for programs that declare the frame every time.
+//!
+//! # Overview
+//!
+//! | Type | Purpose |
+//! | --- | --- |
+//! | [`Gpu`] | a wgpu device with its queue, limits and errors |
+//! | [`Frame`] | a declared graph with a recorder for each pass |
+//! | [`Record`] | trait of executable passes |
+//! | [`Cx`] | context of a recorder: views, pipelines, bind groups, uniforms |
+//! | [`Executor`] | executes plans; owns pools, caches and histories |
+//! | [`FrameLoop`] | declares, compiles and executes one frame after the other |
+//! | [`Imports`] | textures and buffers of the application, such as the image of a [`WindowSurface`] |
+//! | [`Timing`], [`Trace`] | CPU and GPU times of frames and steps |
+//! | [`Readback`], [`read_texture`], [`read_buffer`] | readback of textures and buffers |
+//! | [`Epilogue`] | a point-wise pass that runs at the end of another pass's fragment shader |
+//!
+//! | Module | Contents |
+//! | --- | --- |
+//! | [`frame`] | declared frames |
+//! | [`inspect`] | inspection of any texture of a frame, as numbers and as an image |
+//! | [`debug`] | debug modes, and a bisection that finds the mode that changes an image |
+//! | `mock` | mock recorders and imports for graphs without recorders (feature `testing`) |
+//!
+//! # Features
+//!
+//! | Feature | Purpose | Default |
+//! | --- | --- | --- |
+//! | `vulkan`, `metal`, `dx12`, `gles` | graphics APIs, each on the systems that have it | yes |
+//! | `noop` | [`Gpu::noop`], a device that validates all calls and draws nothing, for tests without a GPU | yes |
+//! | `threads` | `Workers`, which record the steps of a frame on several threads | no |
+//! | `files` | frames from graph files, with the feature of the same name in [`framegraph`] | no |
+//! | `testing` | module `mock` | no |
 
 mod cache;
 pub mod debug;
@@ -105,6 +162,7 @@ pub use execute::executor::{Allocated, Executor, ExecutorOptions, UnusedAccess, 
 pub use execute::object_counts::ObjectCounts;
 pub use execute::part::{BoundBuffer, BoundResource, HistoryImage, ViewPart};
 pub use execute::targets::Targets;
+#[doc(inline)]
 pub use frame::Frame;
 pub use frame_loop::{FrameError, FrameLoop, FrameOutput};
 pub use frames_in_flight::FramesInFlight;

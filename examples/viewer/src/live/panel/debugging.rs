@@ -83,9 +83,9 @@ fn bisecting(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         }
     });
     match bisecting.outcomes.iter().find(|outcome| !outcome.is_same()) {
-        Some(first) => {
-            ui.add(egui::Label::new(format!("{} is the first to change it: {}", first.name(), first.likely_cause())).wrap())
-        }
+        Some(first) => ui.add(
+            egui::Label::new(format!("{} is the first to change it: {}", first.name(), first.likely_cause())).wrap(),
+        ),
         None => ui.label("no mode changes the picture"),
     };
     let Some(pictures) = bisecting.pictures(bisecting.shown) else { return };
