@@ -1,7 +1,7 @@
 //! Inspection of a frame: reads any version of any texture as numbers and as an image. Level, layer, plane and sample
 //! can be chosen.
 //!
-//! An [`Inspector`] compiles a second frame and executes it with its own executor. That frame ends with the requested
+//! An [`Inspector`] compiles a second frame and executes it with its own executor. It ends with the requested
 //! version ([`framegraph::Graph::ending_with`]) and one added pass that reads it. Memoryless attachments and inlined
 //! intermediates exist in memory in the second plan, since the added pass reads them. The original plan and its
 //! executor are not changed.

@@ -14,7 +14,8 @@
 //! - Intermediate results should be inspected, and every pass should be timed.
 //!
 //! Plain wgpu is simpler for a few passes that never change. The crate [`framegraph`] alone is enough if another API
-//! executes the plan, since it does not depend on wgpu. wgpu has a single queue, so this crate does not use async compute.
+//! executes the plan, since it does not depend on wgpu. This crate does not use async compute, because wgpu has a
+//! single queue.
 //!
 //! # Example
 //!

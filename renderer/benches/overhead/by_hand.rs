@@ -1,4 +1,4 @@
-//! The same passes as one writes them without a graph: everything made beforehand, a frame is encoding and submitting.
+//! The passes written without a graph. Everything is created in advance; a frame only encodes and submits.
 
 use crate::shared::{Case, FACTOR, FIRST, NEXT, TEXELS};
 use framegraph_wgpu::{Gpu, Shader};
@@ -10,22 +10,22 @@ use wgpu::{
     TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView, VertexState,
 };
 
-/// Two pictures in turns, and what draws them.
+/// Two textures that are drawn alternately, with pipelines and bind groups.
 pub struct ByHand {
     gpu: Gpu,
     case: Case,
     pictures: [TextureView; 2],
     first: RenderPipeline,
     next: RenderPipeline,
-    /// By the picture that is read, then by pass: each pass has constants of its own.
+    /// Indexed by the texture that is read, then by pass, since each pass has its own constants.
     groups: Vec<BindGroup>,
     constants: Buffer,
-    /// Of a frame, as they are uploaded.
+    /// Constants of a frame, as they are uploaded.
     bytes: Vec<u8>,
 }
 
 impl ByHand {
-    /// Makes everything.
+    /// Creates all objects.
     pub fn new(gpu: &Gpu, case: Case) -> Self {
         let device = &gpu.device;
         let texture = || {
@@ -67,7 +67,7 @@ impl ByHand {
         Self { gpu: gpu.clone(), case, pictures, first, next, groups, constants, bytes }
     }
 
-    /// One more frame.
+    /// Encodes and submits one frame.
     pub fn frame(&mut self) -> Result<(), Box<dyn Error>> {
         let Self { gpu, case, pictures, first, next, groups, constants, bytes } = self;
         gpu.device.poll(wgpu::PollType::Poll)?;

@@ -1,4 +1,4 @@
-//! The passes as a graph, planned once and executed frame after frame.
+//! The passes as a graph, compiled once and executed in every frame.
 
 use crate::shared::{Case, FACTOR, FIRST, NEXT, TEXELS};
 use framegraph::{
@@ -44,7 +44,7 @@ impl<W: ?Sized> Record<W> for Draw {
     }
 }
 
-/// The frame with its plan.
+/// A frame with its plan.
 pub struct Executed {
     frame: Frame<()>,
     plan: Plan,
@@ -52,7 +52,7 @@ pub struct Executed {
 }
 
 impl Executed {
-    /// Declares and plans it.
+    /// Declares and compiles the frame.
     pub fn new(gpu: &Gpu, case: Case, timing: bool) -> Result<Self, Box<dyn Error>> {
         let mut frame = Frame::<()>::new();
         let mut before = None;
@@ -67,7 +67,7 @@ impl Executed {
         Ok(Self { frame, plan, executor })
     }
 
-    /// Recorded on `threads` threads from now on: always, or where it is measured to be faster.
+    /// Records on `threads` threads from now on: always, or only where it is measured to be faster.
     pub fn on_threads(mut self, threads: usize, always: bool) -> Result<Self, Box<dyn Error>> {
         let workers = Workers::with_threads(threads)?;
         match always {
@@ -77,12 +77,12 @@ impl Executed {
         Ok(self)
     }
 
-    /// How many threads recorded the last frame.
+    /// Returns the number of threads that recorded the last frame.
     pub fn threads(&self) -> usize {
         self.executor.recording_threads()
     }
 
-    /// One more frame.
+    /// Executes one frame.
     pub fn frame(&mut self) -> Result<(), Box<dyn Error>> {
         self.executor.execute(&self.plan, &self.frame, &(), &Imports::new())?;
         Ok(())

@@ -1,8 +1,8 @@
-//! What executing a plan adds to the same calls made by hand: time side by side in one process, and instructions.
+//! Overhead of executing a plan compared to hand-written wgpu calls: time, and instruction counts.
 //!
-//! On wgpu's device that validates and draws nothing. With `--count WHO PASSES DRAWS FRAMES` it does nothing but run frames,
-//! for a profiler that counts instructions. By hand no times are taken, so that the executor takes none either; `timed` is an
-//! executor that measures its steps, as it does by default.
+//! Runs on wgpu's noop device. With `--count WHO PASSES DRAWS FRAMES` it only runs frames, for a profiler that counts
+//! instructions. The hand-written code and the executor take no time measurements; `timed` is an executor that measures
+//! its steps, as by default.
 
 mod by_hand;
 mod executed;
@@ -53,7 +53,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     threads::print()
 }
 
-/// Medians of frames in turns, in µs.
+/// Returns the median times of alternating frames, in µs.
 fn side_by_side(case: Case) -> Result<(f64, f64), Box<dyn Error>> {
     let gpu = Gpu::noop()?;
     let (mut hand, mut own) = (ByHand::new(&gpu, case), Executed::new(&gpu, case, false)?);
@@ -88,7 +88,7 @@ fn run_counted(who: &str, case: Case, frames: usize) -> Result<(), Box<dyn Error
     }
 }
 
-// Callgrind counts what happens inside of functions of these names.
+// Callgrind counts the instructions inside of functions with these names.
 
 #[inline(never)]
 fn counted_hand(hand: &mut ByHand) -> Result<(), Box<dyn Error>> {
@@ -100,7 +100,7 @@ fn counted_executor(own: &mut Executed) -> Result<(), Box<dyn Error>> {
     own.frame()
 }
 
-/// Instructions of a warm frame.
+/// Returns the number of instructions of a warm frame.
 fn instructions(who: &str, case: Case) -> Result<f64, String> {
     const FRAMES: usize = 20;
     let program = std::env::current_exe().map_err(|error| error.to_string())?;

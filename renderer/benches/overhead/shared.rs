@@ -1,18 +1,18 @@
-//! What both ways have in common: full-screen passes, each of which samples what the one before it drew.
+//! Shared parts of both variants: full-screen passes that sample the output of their predecessor.
 
 use framegraph_wgpu::Shader;
 
-/// How much is drawn.
+/// Number of passes and draws.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     pub passes: usize,
     pub draws: u32,
 }
 
-/// Side of a picture.
+/// Width and height of a texture in texels.
 pub const TEXELS: u32 = 64;
 
-/// The first pass has nothing before it.
+/// First pass, which reads no texture.
 pub const FIRST: Shader<'static> = Shader::new(
     "first",
     "@vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
@@ -34,5 +34,5 @@ pub const NEXT: Shader<'static> = Shader::new(
     }",
 );
 
-/// The constants of a pass.
+/// Constants of a pass.
 pub const FACTOR: [f32; 4] = [0.5; 4];

@@ -1,4 +1,4 @@
-//! What recording on several threads wins: frames in turns, on one thread, always on several, and as is measured to be faster.
+//! Speedup of recording on several threads. Compares one thread, always several threads, and the automatic choice.
 
 use crate::executed::Executed;
 use crate::shared::Case;
@@ -12,11 +12,12 @@ const CASES: [Case; 4] = [
     Case { passes: 50, draws: 100 },
     Case { passes: 50, draws: 1000 },
 ];
-/// Blocks of frames of each way, in turns: threads that have just worked take a while to sleep.
+/// Number of blocks of each variant. Variants alternate in blocks, since threads that have just worked stay awake for a
+/// while.
 const BLOCKS: usize = 24;
-/// More than one trial of the automatic choice is in all of them.
+/// Number of frames in a block. All blocks together contain more than one trial of the automatic choice.
 const BLOCK: usize = 100;
-/// The first frames of a block are not counted.
+/// Number of frames at the start of a block that are not counted.
 const WARM_UP: usize = 10;
 
 /// Prints the table.

@@ -35,7 +35,7 @@ pub struct Gpu {
     adapter: Adapter,
     info: AdapterInfo,
     errors: Arc<DeviceErrors>,
-    /// Whether errors outside of scopes are stored in `errors`.
+    /// True if errors outside of scopes are stored in `errors`.
     handled: bool,
     waits: Arc<atomic::AtomicU64>,
     caps: Arc<OnceLock<Caps>>,

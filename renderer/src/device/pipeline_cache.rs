@@ -48,9 +48,9 @@ pub(crate) fn open_cache(gpu: &Gpu, earlier: Option<&[u8]>) -> (Option<PipelineC
         None => (None, None),
     };
     let descriptor = PipelineCacheDescriptor { label: Some("pipelines"), data, fallback: true };
-    // SAFETY: wgpu asks for bytes that `PipelineCache::get_data` returned. `unpack` takes those alone that `pack` wrote
-    // around such bytes: the checksum tells damage, the key tells other devices and drivers, and wgpu checks its own header
-    // again. A file that somebody forges, checksum and all, is trusted as the program's own files are.
+    // SAFETY: wgpu requires data that `PipelineCache::get_data` returned. `unpack` only accepts data that `pack` wrote.
+    // The checksum detects damage, the key other devices and drivers, and wgpu checks its own header again. A forged
+    // file with a valid checksum is trusted like the program's own files.
     let cache = unsafe { gpu.device.create_pipeline_cache(&descriptor) };
     (Some(cache), refused)
 }

@@ -22,7 +22,7 @@ pub struct WindowSurface {
     gpu: Gpu,
     surface: Surface<'static>,
     config: SurfaceConfiguration,
-    /// Whether `config` has changed since the surface was configured, or its images no longer fit the window.
+    /// True if `config` changed since the surface was configured, or its images no longer fit the window.
     stale: bool,
 }
 

@@ -55,8 +55,8 @@ impl Attached {
 /// Returns the attachment with store instead of discard where wgpu would otherwise zero-fill later contents. There are
 /// two cases:
 ///
-/// - The frame has aliased memory and therefore several command buffers, and the texture is used again in this frame.
-///   wgpu processes a discard when its command buffer is submitted, after it has checked the writes of later command
+/// - The frame has aliased memory and therefore several command buffers, and the texture is used again in this frame. A
+///   discard takes effect when its command buffer is submitted, after wgpu has checked the writes of later command
 ///   buffers.
 /// - The texture is placed and next written by a shader. wgpu would zero-fill it first, which does not work for placed
 ///   textures.

@@ -17,7 +17,7 @@ pub(crate) struct CachedStep {
     pub(crate) counts: Counts,
     /// Number of planes filled by poisoning.
     pub(crate) poisoned: u32,
-    /// Whether a pass declares a resource as cleared without attaching it.
+    /// True if a pass declares a resource as cleared without attaching it.
     pub(crate) clears_stored: bool,
 }
 

@@ -10,7 +10,7 @@ use wgpu::{CommandBuffer, Queue, SubmissionIndex};
 #[derive(Debug)]
 pub struct FrameCommands {
     buffers: Vec<CommandBuffer>,
-    /// Whether each command buffer must be submitted on its own.
+    /// True if each command buffer must be submitted on its own.
     separate: bool,
 }
 

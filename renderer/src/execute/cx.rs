@@ -73,7 +73,7 @@ pub struct Cx<'a> {
     pub(crate) encoder: StepEncoder<'a>,
     /// Passes that the plan inlined into this pass's fragment shader.
     pub(crate) inlined: &'a [Inlined],
-    /// Whether the recorder requested them.
+    /// True if the recorder requested them.
     pub(crate) requested_inlined: bool,
 }
 

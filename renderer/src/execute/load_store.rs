@@ -9,10 +9,10 @@ use wgpu::{Color, Operations};
 /// Returns the load operation for undefined contents.
 fn dont_care<V>() -> wgpu::LoadOp<V> {
     #[allow(unsafe_code, reason = "the token of LoadOp::DontCare has no safe constructor")]
-    // SAFETY: wgpu asks that every texel is written before it is read or stored. The plan gives `DontCare` only to
-    // attachments whose first pass declares `Intent::Overwrite`, which is that promise, and that no pass reads before;
-    // attachments that are only blended into start from zero. A pass that breaks its promise leaves texels undefined, never memory: every
-    // driver hands out memory of this device.
+    // SAFETY: wgpu requires that every texel is written before it is read or stored. The plan uses `DontCare` only for
+    // attachments whose first pass declares `Intent::Overwrite`, which promises this, and which no pass reads before.
+    // Blended attachments start from a clear. A pass that breaks the promise leaves texels undefined, but they only
+    // contain memory of this device.
     let token = unsafe { wgpu::LoadOpDontCare::enabled() };
     wgpu::LoadOp::DontCare(token)
 }

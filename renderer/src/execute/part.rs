@@ -7,7 +7,7 @@ use wgpu::{TextureView, TextureViewDimension};
 /// State of a previous image of a history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HistoryImage {
-    /// Whether the image has valid contents; otherwise it is zero-filled.
+    /// True if the image has valid contents; otherwise it is zero-filled.
     ///
     /// False in the first frame, after a reset, and after the format, layers, samples or length of the history changed.
     /// Also false if the history was not written for more than

@@ -56,6 +56,6 @@ pub(crate) struct Prepared<'a> {
     pub(crate) timing: &'a Timing,
     /// For each access of the graph, whether a recorder looked it up.
     pub(crate) touched: &'a [AtomicBool],
-    /// Whether undefined contents are filled ([`poison`](crate::debug::poison)).
+    /// True if undefined contents are filled ([`poison`](crate::debug::poison)).
     pub(crate) poison: bool,
 }

@@ -13,9 +13,9 @@ pub(crate) struct Recording {
     pub(crate) uniforms: Uniforms,
     /// Requests of the last frame and their results.
     pub(crate) requests: RequestCache,
-    /// Whether times are measured.
+    /// True if times are measured.
     measured: bool,
-    /// Whether this frame is measured. Reading the clock costs as much as beginning a pass.
+    /// True if this frame is measured. Reading the clock costs as much as beginning a pass.
     timed: bool,
     /// Steps, passes and operations recorded so far.
     pub(crate) executed: Counts,

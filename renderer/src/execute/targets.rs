@@ -12,7 +12,7 @@ pub struct Targets {
     pub colors: [Option<Format>; MAX_COLORS as usize],
     /// Format of the depth-stencil attachment.
     pub depth: Option<Format>,
-    /// Whether the depth attachment is read-only; pipelines must not write it.
+    /// True if the depth attachment is read-only; pipelines must not write it.
     pub depth_read_only: bool,
     /// Samples per texel.
     pub samples: u32,

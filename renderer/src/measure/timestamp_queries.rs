@@ -21,7 +21,7 @@ pub(crate) struct FrameTimestamps {
     pub(crate) generation: u64,
     /// Number of queries that the frame writes.
     pub(crate) used: u32,
-    /// Whether the frame counts for statistics.
+    /// True if the frame counts for statistics.
     pub(crate) counted: bool,
     /// Frame number for the trace, if enabled.
     pub(crate) frame: Option<u64>,
@@ -117,7 +117,7 @@ impl Span {
 pub(crate) struct StepSpans {
     /// Interval of each step; `None` if it was not measured or its timestamps are invalid.
     pub(crate) steps: Vec<Option<Span>>,
-    /// Whether all measured steps have valid intervals.
+    /// True if all measured steps have valid intervals.
     complete: bool,
 }
 

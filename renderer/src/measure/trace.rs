@@ -47,7 +47,7 @@ impl Between {
 pub struct FrameTimes<'a> {
     /// Frame number, counted from the first traced frame.
     pub number: u64,
-    /// Whether this is a warm-up frame, which creates pipelines.
+    /// True if this is a warm-up frame, which creates pipelines.
     pub warm_up: bool,
     /// CPU time from resource creation until submission, in milliseconds.
     pub cpu_ms: f64,

@@ -15,7 +15,7 @@ use wgpu::naga::{
     Statement, TypeInner, front::wgsl, proc::TypeResolution,
 };
 
-/// Returns the name of the first function with an index that is not proven to be in bounds. Such shaders keep wgpu's
+/// Returns the name of the first function with an index that is not proven to be in bounds. The shader then keeps wgpu's
 /// run-time checks.
 ///
 /// Texel coordinates of loads and stores always count as unproven. Returns `None` if all indices are proven, or if the

@@ -8,7 +8,7 @@ use wgpu::naga::{BinaryOperator, Block, Expression, Function, Handle, Literal, L
 pub(super) struct CountingLoop {
     pub(super) counter: Handle<LocalVariable>,
     pub(super) bound: Handle<Expression>,
-    /// Whether the loop also runs when the counter equals the bound.
+    /// True if the loop also runs when the counter equals the bound.
     pub(super) equal: bool,
     /// Increment per iteration, at least 1.
     pub(super) step: i64,

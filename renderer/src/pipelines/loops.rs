@@ -10,7 +10,7 @@
 use super::counting_loop::{CountingLoop, number};
 use wgpu::naga::{Block, Function, Literal, Module, Statement, front::wgsl};
 
-/// Returns the name of the first function with a loop that is not proven to terminate. Such shaders keep wgpu's
+/// Returns the name of the first function with a loop that is not proven to terminate. The shader then keeps wgpu's
 /// iteration counters.
 ///
 /// Returns `None` if all loops are proven to terminate, or if the source does not compile.

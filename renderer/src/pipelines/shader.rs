@@ -178,8 +178,8 @@ fn create_module(device: &Device, descriptor: ShaderModuleDescriptor<'_>) -> Sha
         return device.create_shader_module(descriptor);
     }
     let checks = ShaderRuntimeChecks { force_loop_bounding, bounds_checks, ..ShaderRuntimeChecks::checked() };
-    // SAFETY: all checks stay but two. One asks that no loop is endless, the other that no index is out of range; each loop was proved
-    // to end, or each index to be in range, of the module that is compiled.
+    // SAFETY: all checks stay on except two, each only if its condition was proven for the compiled module: all loops
+    // terminate, or all indices are in bounds.
     unsafe { device.create_shader_module_trusted(descriptor, checks) }
 }
 

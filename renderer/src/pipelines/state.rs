@@ -87,7 +87,7 @@ pub struct VertexBuffer<'a> {
 pub struct Depth {
     /// Depth comparison with the stored value. `GreaterEqual` passes nearer fragments with reversed depth.
     pub compare: CompareFunction,
-    /// Whether passing fragments write their depth.
+    /// True if passing fragments write their depth.
     pub write: bool,
     /// Constant and slope-scaled bias.
     pub bias: DepthBiasState,

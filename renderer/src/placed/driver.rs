@@ -71,8 +71,9 @@ struct Block {
 
 impl Drop for Block {
     fn drop(&mut self) {
-        // SAFETY: only images and buffers bound to it hold it (`Image`, `Bytes`), each is destroyed before it lets go, and wgpu
-        // drops one only when the GPU is done with it. The device is open: wgpu drops textures and buffers before it.
+        // SAFETY: only images and buffers bound to the memory hold it (`Image`, `Bytes`). Each is destroyed before it
+        // releases the memory, and wgpu drops one only when the GPU has finished with it. The device is still open,
+        // since wgpu drops textures and buffers first.
         unsafe { self.device.free_memory(self.raw, None) };
     }
 }
@@ -87,8 +88,8 @@ struct Image {
 
 impl Drop for Image {
     fn drop(&mut self) {
-        // SAFETY: made by `Driver::image`, and destroyed nowhere else: wgpu leaves that to the callback that drops this, when no
-        // command uses the image any more.
+        // SAFETY: the image was created by `Driver::image` and is destroyed nowhere else. The wgpu callback that drops
+        // this value runs when no command uses the image anymore.
         unsafe { self.device.destroy_image(self.raw, None) };
     }
 }
@@ -103,7 +104,7 @@ struct Bytes {
 
 impl Drop for Bytes {
     fn drop(&mut self) {
-        // SAFETY: as for `Image`.
+        // SAFETY: see `Image`.
         unsafe { self.device.destroy_buffer(self.raw, None) };
     }
 }
@@ -119,10 +120,10 @@ impl Driver {
     /// Fails if the device uses another graphics API.
     pub(crate) fn of(gpu: &Gpu) -> Result<Self, NotPlaced> {
         let other = || NotPlaced::Backend(gpu.info().backend);
-        // SAFETY: the device of wgpu is looked at and not destroyed; `gpu` keeps it open.
+        // SAFETY: wgpu's device is read and not destroyed; `gpu` keeps it open.
         let hal = unsafe { gpu.device.as_hal::<Vulkan>() }.ok_or_else(other)?;
         let (device, physical) = (hal.raw_device().clone(), hal.raw_physical_device());
-        // SAFETY: the handle is that of the open device.
+        // SAFETY: the handle belongs to the open device.
         let memory = unsafe { hal.shared_instance().raw_instance().get_physical_device_memory_properties(physical) };
         drop(hal);
         Ok(Self { gpu: gpu.clone(), device, memory })
@@ -136,12 +137,12 @@ impl Driver {
         let required = match shape {
             Shape::Texture(shape) => {
                 let image = self.image(shape, None)?;
-                // SAFETY: the image was made above by this device.
+                // SAFETY: the image was created above by this device.
                 unsafe { self.device.get_image_memory_requirements(image.raw) }
             }
             Shape::Buffer(shape) => {
                 let buffer = self.bytes(shape, None)?;
-                // SAFETY: the buffer was made above by this device.
+                // SAFETY: the buffer was created above by this device.
                 unsafe { self.device.get_buffer_memory_requirements(buffer.raw) }
             }
         };
@@ -211,8 +212,9 @@ impl Driver {
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("hand over") };
         let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
         let all = vk::PipelineStageFlags::ALL_COMMANDS;
-        // SAFETY: nothing but this is written into the encoder, which wgpu begins and ends. Images are of this device and live as
-        // long as `textures`, and their contents are of no use: the plan hands their memory over here.
+        // SAFETY: only this barrier is recorded into the encoder, which wgpu begins and ends. The images belong to this
+        // device and live as long as `textures`. Their contents may be discarded, since the plan reuses their memory
+        // here.
         unsafe {
             encoder.as_hal_mut::<Vulkan, _, _>(|hal| {
                 if let Some(hal) = hal {
@@ -226,7 +228,7 @@ impl Driver {
 
     fn image(&self, shape: &PhysicalTextureDesc, block: Option<Arc<Block>>) -> Result<Image, NotPlaced> {
         let format = texture_format(shape.format);
-        // SAFETY: the adapter of wgpu is looked at and not destroyed.
+        // SAFETY: wgpu's adapter is read and not destroyed.
         let adapter = unsafe { self.gpu.adapter().as_hal::<Vulkan>() };
         let adapter = adapter.ok_or(NotPlaced::Backend(self.gpu.info().backend))?;
         let raw_format = |format| adapter.texture_format_as_raw(format);
@@ -256,13 +258,13 @@ impl Driver {
             .sharing_mode(vk::SharingMode::EXCLUSIVE)
             .initial_layout(vk::ImageLayout::UNDEFINED);
         let listed = c"VK_KHR_image_format_list";
-        // SAFETY: the device of wgpu is looked at and not destroyed.
+        // SAFETY: wgpu's device is read and not destroyed.
         let device = unsafe { self.gpu.device.as_hal::<Vulkan>() };
         if shape.srgb_views && device.is_some_and(|d| d.enabled_device_extensions().contains(&listed)) {
             info = info.push_next(&mut list);
         }
-        // SAFETY: the description is that of a texture that wgpu made or would make itself: `check_texture` has compared it with
-        // the device's limits and formats.
+        // SAFETY: the description is one that wgpu could use itself: `check_texture` has compared it with the limits
+        // and formats of the device.
         let raw = unsafe { self.device.create_image(&info, None) }.map_err(refused("vkCreateImage"))?;
         Ok(Image { device: self.device.clone(), raw, _block: block })
     }
@@ -272,7 +274,7 @@ impl Driver {
             .size(shape.bytes)
             .usage(conv::map_buffer_usage(buffer_uses(shape.usage)))
             .sharing_mode(vk::SharingMode::EXCLUSIVE);
-        // SAFETY: `check_buffer` has compared the size with the device's limit, and it is not 0.
+        // SAFETY: the size is not 0, and `check_buffer` has compared it with the limit of the device.
         let raw = unsafe { self.device.create_buffer(&info, None) }.map_err(refused("vkCreateBuffer"))?;
         Ok(Bytes { device: self.device.clone(), raw, _block: block })
     }
@@ -287,7 +289,7 @@ impl Driver {
         let mut fitting = known.filter(|(at, kind)| types & (1 << at) != 0 && fits(kind.property_flags));
         let (at, _) = fitting.next().ok_or(NotPlaced::MemoryType { types })?;
         let info = vk::MemoryAllocateInfo::default().allocation_size(bytes).memory_type_index(at as u32);
-        // SAFETY: the type is one of the device's, and the size is not 0.
+        // SAFETY: the memory type belongs to the device, and the size is not 0.
         let raw = unsafe { self.device.allocate_memory(&info, None) }.map_err(refused("vkAllocateMemory"))?;
         Ok(Arc::new(Block { device: self.device.clone(), raw }))
     }
@@ -301,15 +303,17 @@ impl Driver {
     ) -> Result<PlacedTexture, NotPlaced> {
         let image = self.image(shape, Some(block.clone()))?;
         let raw = image.raw;
-        // SAFETY: the image is new, the offset suits what the driver asked for it, and it ends inside of the block (`place`).
+        // SAFETY: the image is new, the offset satisfies the driver's requirements, and the image ends inside of the
+        // block (`place`).
         unsafe { self.device.bind_image_memory(raw, block.raw, offset) }.map_err(refused("vkBindImageMemory"))?;
         let format = texture_format(shape.format);
         let resting_usage = resting_usage(shape.usage, format);
         let described = described(shape, Some(name));
-        // SAFETY: the device of wgpu is looked at and not destroyed.
+        // SAFETY: wgpu's device is read and not destroyed.
         let hal = unsafe { self.gpu.device.as_hal::<Vulkan>() };
         let hal = hal.ok_or(NotPlaced::Backend(self.gpu.info().backend))?;
-        // SAFETY: the image was made as `described` says; it and its memory live until wgpu calls back, which drops `image`.
+        // SAFETY: the image was created as in `described`. The image and its memory live until wgpu runs the callback,
+        // which drops `image`.
         let texture = unsafe {
             hal.texture_from_raw(raw, &described, Some(Box::new(move || drop(image))), TextureMemory::External)
         };
@@ -324,9 +328,10 @@ impl Driver {
             usage: shape.usage,
             view_formats: &described.view_formats,
         };
-        // SAFETY: the texture is of this device and made as described. It is in its home whenever wgpu uses it: `alias_barrier` puts
-        // it there before its first step of each frame. What it holds then is memory of this device alone, and no pass reads
-        // it: the plan has every part written before it is read, which the compiler checks.
+        // SAFETY: the texture belongs to this device and was created as described. It has its resting usage whenever
+        // wgpu uses it: `alias_barrier` moves it there before its first step of each frame. Its old contents are memory
+        // of this device and are never read, since the plan writes every part before it is read, as the compiler
+        // checks.
         let texture = unsafe { self.gpu.device.create_texture_from_hal::<Vulkan>(texture, &descriptor, resting_usage) };
         let layout = conv::derive_image_layout(resting_usage, format);
         let planes = conv::map_aspects(wgpu::hal::FormatAspects::from(format));
@@ -342,9 +347,9 @@ impl Driver {
     ) -> Result<Buffer, NotPlaced> {
         let bytes = self.bytes(shape, Some(block.clone()))?;
         let raw = bytes.raw;
-        // SAFETY: as for an image.
+        // SAFETY: as for `bind_image_memory`.
         unsafe { self.device.bind_buffer_memory(raw, block.raw, offset) }.map_err(refused("vkBindBufferMemory"))?;
-        // SAFETY: the buffer and its memory live until wgpu calls back, which drops `bytes`.
+        // SAFETY: the buffer and its memory live until wgpu runs the callback, which drops `bytes`.
         let buffer = unsafe { HalBuffer::from_raw_externally_owned(raw, Box::new(move || drop(bytes))) };
         let descriptor = wgpu::BufferDescriptor {
             label: Some(name),
@@ -352,7 +357,8 @@ impl Driver {
             usage: shape.usage,
             mapped_at_creation: false,
         };
-        // SAFETY: of this device, of this size, which is not 0. What it holds is memory of this device alone, as for a texture.
+        // SAFETY: the buffer belongs to this device and has this size, which is not 0. Its old contents are never read,
+        // as for textures.
         Ok(unsafe { self.gpu.device.create_buffer_from_hal::<Vulkan>(buffer, &descriptor) })
     }
 }

@@ -40,7 +40,7 @@ struct Ring {
     missed: u64,
     declared: bool,
     written: bool,
-    /// Whether an image was created in this frame.
+    /// True if an image was created in this frame.
     fresh: bool,
     /// Frame number of the last write.
     moved: u64,
@@ -59,9 +59,9 @@ pub(crate) struct Declared {
     pub(crate) shape: PhysicalTextureDesc,
     /// Number of previous images.
     pub(crate) frames: u8,
-    /// Whether a pass writes the history.
+    /// True if a pass writes the history.
     pub(crate) written: bool,
-    /// Whether previous images are attached, which requires the current size.
+    /// True if previous images are attached, which requires the current size.
     pub(crate) attached: bool,
     /// Minimum number of mip levels that readers of previous images need; at most that of `shape`.
     pub(crate) levels: u32,

@@ -22,7 +22,7 @@ pub struct Imports {
     buffers: Vec<(Key<Buffer>, wgpu::Buffer)>,
 }
 
-/// How long views of an imported texture are cached.
+/// Cache duration of the views of an imported texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Lifetime {
     /// Until the texture is no longer imported.
@@ -46,7 +46,7 @@ pub enum ImportError {
     Missing {
         /// Imported resource.
         resource: Named<ResourceId>,
-        /// Whether the resource is a buffer.
+        /// True if the resource is a buffer.
         is_buffer: bool,
     },
     /// The bound texture or buffer does not match the declaration.

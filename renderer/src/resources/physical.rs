@@ -19,7 +19,7 @@ pub struct PhysicalTextureDesc {
     pub dimension: Dimension,
     /// Usages.
     pub usage: TextureUsages,
-    /// Whether views may use the linear or the sRGB form of the format.
+    /// True if views may use the linear or the sRGB form of the format.
     pub srgb_views: bool,
 }
 

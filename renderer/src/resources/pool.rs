@@ -80,7 +80,7 @@ pub struct Pool<S: Pooled> {
     counts: PoolCounts,
     /// Index of the entry that serves each request of the frame.
     chosen: Vec<Option<usize>>,
-    /// Whether `chosen` is complete and no entry has moved since.
+    /// True if `chosen` is complete and no entry has moved since.
     settled: bool,
 }
 

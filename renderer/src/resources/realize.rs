@@ -54,7 +54,7 @@ pub(crate) struct Sources<'a> {
     pub(crate) histories: &'a mut Histories,
     pub(crate) imports: &'a Imports,
     pub(crate) arenas: &'a mut Arenas,
-    /// Whether undefined contents will be filled, which requires additional usages.
+    /// True if undefined contents will be filled, which requires additional usages.
     pub(crate) poison: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What all tests share: a device, a frame that is declared, compiled and executed, and small passes.
+//! Shared parts of the tests: devices, a frame that is declared, compiled and executed, and small passes.
 
 use framegraph::{DeclareError, Options, Plan, Scratch, Texture, View};
 use framegraph_wgpu::Frame;
@@ -8,13 +8,13 @@ use framegraph_wgpu::{
 
 pub type TestResult = Result<(), Box<dyn std::error::Error>>;
 
-/// Runs `test` on the Noop device and on the adapter that there is; `true` says that pixels are worth looking at.
+/// Runs `test` on the noop device and on the available adapter. The argument is true if pixels are drawn.
 pub fn on_every_device(name: &str, test: impl Fn(&Gpu, bool) -> TestResult) -> TestResult {
     test(&Gpu::noop()?, false)?;
     on_adapter(name, |gpu| test(gpu, true))
 }
 
-/// Runs `test` on the adapter that there is, or says that it was skipped.
+/// Runs `test` on the available adapter, or reports that it was skipped.
 pub fn on_adapter(name: &str, test: impl FnOnce(&Gpu) -> TestResult) -> TestResult {
     match Gpu::open(&AdapterRequest::from_env()) {
         Ok(gpu) => {
@@ -26,13 +26,13 @@ pub fn on_adapter(name: &str, test: impl FnOnce(&Gpu) -> TestResult) -> TestResu
     }
 }
 
-/// Says that a test was skipped, and why.
+/// Reports that a test was skipped, and why.
 pub fn skip(name: &str, why: &str) -> TestResult {
     test_report::skip(name, why);
     Ok(())
 }
 
-/// A frame with everything that executing it takes.
+/// A frame with its plan, executor and imports.
 pub struct Bench {
     pub gpu: Gpu,
     pub executor: Executor,
@@ -44,7 +44,7 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// A frame of `width` × `height` texels.
+    /// Creates a frame of `width` × `height` texels.
     pub fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
         Self {
             gpu: gpu.clone(),
@@ -57,7 +57,7 @@ impl Bench {
         }
     }
 
-    /// Declares the frame anew and compiles it.
+    /// Declares the frame again and compiles it.
     pub fn declare<T>(
         &mut self,
         declare: impl FnOnce(&mut Frame) -> Result<T, DeclareError>,
@@ -69,14 +69,14 @@ impl Bench {
         Ok(out)
     }
 
-    /// Executes what was declared, and compares what was done with what was planned.
+    /// Executes the frame, and compares executed with planned operations.
     pub fn execute(&mut self) -> TestResult {
         self.executor.execute(&self.plan, &self.frame, &(), &self.imports)?;
         assert_eq!(self.executor.executed(), self.plan.counts(), "executed and planned counts differ");
         Ok(())
     }
 
-    /// Declares and executes.
+    /// Declares and executes the frame.
     pub fn run<T>(
         &mut self,
         declare: impl FnOnce(&mut Frame) -> Result<T, DeclareError>,
@@ -86,14 +86,14 @@ impl Bench {
         Ok(out)
     }
 
-    /// The pixels of an exported texture.
+    /// Returns the pixels of an exported texture.
     pub fn pixels(&self, texture: Texture) -> Result<Pixels, Box<dyn std::error::Error>> {
         let physical = self.executor.texture(&self.plan, texture).ok_or("the texture has no memory")?;
         Ok(read_texture(&self.gpu, physical)?)
     }
 }
 
-/// `corner` covers the lower left half of the target, `full` all of it, at depth `depth`.
+/// Fills the lower left half of the target (`corner`) or all of it (`full`), at depth `depth`.
 pub const FILL: Shader<'static> = Shader::new(
     "fill",
     "struct Fill { color: vec4f, depth: f32 }
@@ -107,7 +107,7 @@ pub const FILL: Shader<'static> = Shader::new(
      @fragment fn fs_main() -> @location(0) vec4f { return fill.color; }",
 );
 
-/// The texel of an image under the fragment, whatever its size.
+/// Shows the texel of an image at the fragment's position, for any size.
 pub const SHOW: Shader<'static> = Shader::new(
     "show",
     "@group(0) @binding(0) var image: texture_2d<f32>;
@@ -119,7 +119,7 @@ pub const SHOW: Shader<'static> = Shader::new(
      }",
 );
 
-/// The depth under the fragment, drawn at depth 0.5.
+/// Shows the depth at the fragment's position, drawn at depth 0.5.
 pub const SHOW_DEPTH: Shader<'static> = Shader::new(
     "show depth",
     "@group(0) @binding(0) var depth: texture_depth_2d;
@@ -131,7 +131,7 @@ pub const SHOW_DEPTH: Shader<'static> = Shader::new(
      }",
 );
 
-/// Draws one triangle, with what is bound to group 0 beside the numbers of bindings.
+/// Draws one triangle with bindings of group 0.
 pub fn draw(cx: &mut Cx<'_>, raster: &Raster<'_>, bindings: &[(u32, Binding)]) -> Result<(), RecordError> {
     let pipeline = cx.raster_pipeline(raster)?;
     let group = (!bindings.is_empty()).then(|| cx.bind_group(pipeline.group(0), bindings));
@@ -156,12 +156,12 @@ pub fn fill(cx: &mut Cx<'_>, raster: &Raster<'_>, color: [f32; 4], depth: f32) -
     draw(cx, raster, &[(0, constants)])
 }
 
-/// The whole target in one color.
+/// Fills the whole target with one color.
 pub fn fill_full(cx: &mut Cx<'_>, color: [f32; 4]) -> Result<(), RecordError> {
     fill(cx, &Raster { vertex: "full", ..Raster::new(FILL) }, color, 0.0)
 }
 
-/// The lower left half of the target in one color.
+/// Fills the lower left half of the target with one color.
 pub fn fill_corner(cx: &mut Cx<'_>, color: [f32; 4]) -> Result<(), RecordError> {
     fill(cx, &Raster { vertex: "corner", ..Raster::new(FILL) }, color, 0.0)
 }

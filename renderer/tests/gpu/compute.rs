@@ -118,7 +118,7 @@ fn a_storage_texture_is_cleared_to_a_color_and_written_in_part() -> TestResult {
     })
 }
 
-/// A pass that writes two levels as storage names the one that it binds; reading back need not wait for them.
+/// A pass that writes two mip levels selects the one to bind. The results are read back without waiting.
 #[test]
 fn levels_are_written_one_by_one_and_read_back_without_waiting() -> TestResult {
     const LEVEL: Shader<'static> = Shader::new(

@@ -1,9 +1,9 @@
-//! Random graphs with contents, on the driver that there is: what every pass reads and what every export and import holds
-//! afterwards equals what the declared graph comes to, pass after pass, on the CPU.
+//! Random graphs on the available adapter. Everything that passes read, and all exports and imports afterwards, must
+//! equal a CPU simulation that runs the declared passes one by one.
 //!
-//! Culling, order, merging, load and store operations, memoryless attachments and shared memory all have to be right for
-//! that: older contents show through every write that does not replace them, each frame paints other values, and memory
-//! is used again from frame to frame and from graph to graph, so nothing stale is right by chance.
+//! This tests culling, order, merging, load and store operations, memoryless attachments and memory aliasing together.
+//! Partial writes keep older contents visible, each frame draws other values, and memory is reused between frames and
+//! graphs. Stale contents are therefore detected.
 
 mod case;
 mod code;
@@ -23,16 +23,16 @@ use framegraph::testing::generate::{self, Entropy, FRAME, Profile};
 use framegraph::{Graph, Options};
 use std::collections::BTreeMap;
 
-/// Graphs that must have been executed; a share of them in ordinary runs.
+/// Number of graphs to execute; ordinary runs execute a share of them.
 const GRAPHS: u64 = 200;
 
 fn graph(seed: u64) -> Graph {
-    // What is painted and compared here has two dimensions and whole buffers; `random` executes the rest.
+    // Only 2D textures and whole buffers are simulated; `random` executes the rest.
     let profile = Profile { volumes: false, plain_accesses: true, ..Profile::default() };
     generate::graph(&mut Entropy::seeded(seed), &profile)
 }
 
-/// One combination of options. Passes here are no epilogues: they look at more than the pixel under them.
+/// Returns one combination of options. Epilogues are off, since passes read more than their own pixel.
 fn options(number: u32) -> Options {
     Options { inline: false, ..generate::options_of(number) }
 }
@@ -52,7 +52,7 @@ fn every_export_is_what_was_declared() -> TestResult {
         let mut seed = 0;
         while executed < wanted && seed < 4 * wanted {
             let mut ran = false;
-            // The default, one of all combinations in turn, and one of those in which memory is shared whatever the shape.
+            // The default, one of all combinations, and one of those with heap aliasing.
             for number in [0, seed as u32, 32 + seed as u32 % 32] {
                 let prepared = runner.prepare(graph(seed), &options(number));
                 let case = match prepared.map_err(|e| format!("seed {seed}: {e}"))? {
@@ -62,7 +62,7 @@ fn every_export_is_what_was_declared() -> TestResult {
                         break;
                     }
                 };
-                // Both runs of a graph on one executor, which then has the pipelines of the first.
+                // Both runs of a graph use one executor, which then has the pipelines of the first.
                 let poison = seed.is_multiple_of(2);
                 match runner.run(&case, poison).map_err(|e| format!("seed {seed}, options {number}: {e}"))? {
                     Ok(verdict) => {

@@ -1,4 +1,4 @@
-//! Copy passes, and textures that share memory under both transfer functions.
+//! Copy passes, and aliased textures with linear and sRGB formats.
 
 use crate::bench::{Bench, RED, SHOW, TestResult, draw_of, fill_full, on_every_device};
 use framegraph::{Aspect, ClearValue, Extent, Format, Intent, TextureDesc};
@@ -39,7 +39,8 @@ fn twins_share_memory_and_keep_their_transfer_function() -> TestResult {
         let mut bench = Bench::new(gpu, 8, 8);
         let out = bench.run(|frame| {
             let mut shown = None;
-            // Linear, sRGB, linear: the first is dead when the third is written, and each reads the one before.
+            // Formats alternate between linear and sRGB. The first texture is dead when the third is written, and each
+            // reads its predecessor.
             for format in [Format::Rgba8Unorm, Format::Rgba8UnormSrgb, Format::Rgba8Unorm, Format::Rgba16Float] {
                 let target = frame.graph_mut().texture("stage", TextureDesc::new(Extent::FRAME, format));
                 let before: Option<framegraph::Texture> = shown;
@@ -60,8 +61,8 @@ fn twins_share_memory_and_keep_their_transfer_function() -> TestResult {
             Ok(out)
         })?;
         if drawn {
-            // Each stage keeps the value; what is lost is 8-bit rounding, at most half a code in each of three stages, and
-            // up to one code where the sRGB curve is steep.
+            // Each stage keeps the value except for 8-bit rounding: at most half a step in each of three stages, and up
+            // to one step where the sRGB curve is steep.
             let rgba = bench.pixels(out)?.rgba();
             for (got, expected) in rgba[0].into_iter().zip([0.5, 0.25, 1.0, 1.0]) {
                 assert!((got - expected).abs() < 2.0 / 255.0, "{:?}", rgba[0]);
@@ -98,7 +99,7 @@ fn a_texture_that_was_storage_serves_its_srgb_twin() -> TestResult {
     on_every_device("a_texture_that_was_storage_serves_its_srgb_twin", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 8, 8);
         let linear = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
-        // `with_storage` puts a storage image first into the memory that the sRGB image takes in both frames.
+        // `with_storage` first puts a storage texture into the memory that the sRGB texture uses in both frames.
         for with_storage in [true, false] {
             let out = bench.run(|frame| {
                 if with_storage {
@@ -135,7 +136,7 @@ fn a_texture_that_was_storage_serves_its_srgb_twin() -> TestResult {
                 assert_eq!(bench.pixels(out)?.at(3, 3), Some([255, 0, 0, 255].as_slice()));
             }
         }
-        // One image for both twins where there are such views, and one copy.
+        // With view formats, one texture serves the linear and the sRGB form, and one is the copy.
         let images = if gpu.has_view_formats() { 2 } else { 3 };
         assert_eq!(bench.executor.objects().textures, images);
         Ok(())

@@ -1,4 +1,4 @@
-//! Each debug mode takes away what it names, and poison reaches everything that may hold anything.
+//! Debug modes turn off what they name, and poisoning reaches all undefined contents.
 
 use crate::bench::{Bench, RED, SHOW, SHOW_DEPTH, TestResult, draw_of, fill_corner, fill_full, on_every_device};
 use framegraph::file::{GraphFile, Registry};
@@ -11,7 +11,7 @@ use framegraph_wgpu::{
 };
 use framegraph_wgpu::{Frame, mock};
 
-/// A pass that is culled, two that merge, one that is inlined, and a chain that shares textures.
+/// A culled pass, two merged passes, an inlined pass, and a chain that shares textures.
 const FRAME: &str = r#"(version: 1,
     resources: [
         Texture(name: "screen", format: Rgba8Unorm, kind: Import(entry: Undefined, exit: Keep)),
@@ -35,7 +35,7 @@ const FRAME: &str = r#"(version: 1,
     ],
 )"#;
 
-/// What the frame comes to under a mode.
+/// Returns counts of the frame in a mode.
 fn under(gpu: &Gpu, mode: Option<Mode>) -> Result<(Counts, ObjectCounts, u32), Box<dyn std::error::Error>> {
     let mut frame = Frame::<()>::new();
     GraphFile::parse("frame.ron", FRAME)?.declare(&[], &Registry::new(), &mut frame)?;
@@ -84,7 +84,7 @@ const HALF: Shader<'static> = Shader::new(
      }",
 );
 
-/// Writes half of a storage texture and of a buffer that it promises to write all of.
+/// Writes half of a storage texture and a buffer that it declares as overwritten.
 fn halves(frame: &mut Frame) -> Result<(Texture, Buffer), framegraph::DeclareError> {
     let desc = TextureDesc::new(Extent::absolute(8, 8), Format::R32Float);
     let (image, sums) = (frame.graph_mut().texture("image", desc), frame.graph_mut().buffer("sums", 64));
@@ -108,7 +108,7 @@ fn halves(frame: &mut Frame) -> Result<(Texture, Buffer), framegraph::DeclareErr
     Ok((image, sums))
 }
 
-/// NaN by its bits.
+/// Returns whether the bits are NaN.
 fn is_nan(bits: u32) -> bool {
     bits & 0x7fff_ffff > 0x7f80_0000
 }
@@ -140,7 +140,7 @@ fn storage_and_buffers_are_poisoned() -> TestResult {
     })
 }
 
-/// The second tenant of a texture writes half of it; what the first one left shows unless it is poisoned.
+/// The second tenant of a texture writes half of it. The contents of the first tenant show unless they are poisoned.
 #[test]
 fn what_the_last_tenant_left_is_poisoned() -> TestResult {
     let declare = |frame: &mut Frame| {
@@ -176,7 +176,7 @@ fn what_the_last_tenant_left_is_poisoned() -> TestResult {
     })
 }
 
-/// A plane that is dropped beside one that is kept is filled, and the other one is left alone.
+/// A plane that is discarded next to a stored one is poisoned; the other one is not.
 #[test]
 fn a_dropped_plane_is_poisoned_alone() -> TestResult {
     let declare = |frame: &mut Frame| {
@@ -206,8 +206,8 @@ fn a_dropped_plane_is_poisoned_alone() -> TestResult {
                 assert!(bench.pixels(out)?.rgba().iter().all(|t| t[0] == 0.75), "depth is kept");
             }
         }
-        // Both textures before their first use, the stencil plane after the first step, and the target of the second,
-        // which starts with anything.
+        // Fills: both textures before their first use, the stencil plane after the first step, and the target of the
+        // second step, which starts with don't-care contents.
         assert_eq!(fills, [0, 4]);
         Ok(())
     })

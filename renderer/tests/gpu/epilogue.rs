@@ -1,4 +1,4 @@
-//! Point-wise passes at the end of another pass's shader: who is asked, what is refused, and how the device rounds.
+//! Epilogues: requests, errors, and the rounding of the device.
 
 use crate::bench::{Bench, TestResult, fill_full, on_adapter, on_every_device};
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
@@ -40,7 +40,7 @@ impl<W: ?Sized> Record<W> for Grade {
     }
 }
 
-/// A producer that does `record`, and a pass that is inlined into it.
+/// Declares a producer that runs `record`, and a pass that is inlined into it.
 fn declare(
     frame: &mut Frame,
     record: fn(&mut Cx<'_>) -> Result<(), RecordError>,
@@ -102,7 +102,7 @@ fn who_does_not_ask_or_does_not_say_is_named() -> TestResult {
         unsaid.contains("`scene`") && unsaid.contains("`grade`") && unsaid.contains("Record::epilogue"),
         "{unsaid}"
     );
-    // A producer that knows the passes by itself need not be told.
+    // A producer may use the list of passes instead of their epilogues.
     let asked = |cx: &mut Cx<'_>| {
         drop(cx.inlined());
         Ok(())
@@ -111,7 +111,7 @@ fn who_does_not_ask_or_does_not_say_is_named() -> TestResult {
     Ok(())
 }
 
-/// What the measurement says of three numbers holds for others.
+/// The measured rounding of three values also holds for others.
 #[test]
 fn the_measured_rounding_is_that_of_a_pass() -> TestResult {
     on_adapter("the_measured_rounding_is_that_of_a_pass", |gpu| {

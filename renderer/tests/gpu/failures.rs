@@ -1,4 +1,4 @@
-//! What goes wrong is an error with names, nothing of the frame is submitted, and the next frame is right.
+//! Failures: errors name the pass, nothing of the frame is submitted, and the next frame is correct.
 
 use crate::bench::{Bench, RED, TestResult, fill_corner, fill_full, on_adapter, on_every_device};
 use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
@@ -25,7 +25,7 @@ fn a_frame_after_a_failed_one_is_right() -> TestResult {
             |cx| cx.raster_pipeline(&Raster::new(Shader::new("broken", "fn ("))).map(|_| ()),
             "pass `pass`: shader `broken` does not compile",
         ),
-        // A draw without a pipeline: wgpu refuses the commands when they are finished.
+        // A draw without a pipeline: wgpu rejects the commands when they are finished.
         (
             |cx| {
                 cx.render_pass()?.draw(0..3, 0..1);
@@ -66,7 +66,7 @@ fn a_lost_device_is_told_and_nothing_panics() -> TestResult {
     on_every_device("a_lost_device_is_told_and_nothing_panics", |gpu, _| {
         let mut bench = Bench::new(gpu, 8, 8);
         bench.run(|f| declare(f, GOOD))?;
-        // wgpu tells of a destroyed device once nothing is in flight.
+        // wgpu reports a destroyed device once nothing is in flight.
         gpu.wait()?;
         gpu.device.destroy();
         for _ in 0..3 {
@@ -136,7 +136,7 @@ fn what_the_device_cannot_make_is_told_with_what_it_can() -> TestResult {
     Ok(())
 }
 
-/// Within the device's limits, and far beyond any memory: the largest image that it allows.
+/// Allocates the largest texture that the limits allow, which exceeds any memory.
 #[test]
 fn memory_that_is_not_there_is_told_with_what_was_asked() -> TestResult {
     on_adapter("memory_that_is_not_there_is_told_with_what_was_asked", |gpu| {
@@ -170,7 +170,7 @@ fn memory_that_is_not_there_is_told_with_what_was_asked() -> TestResult {
     })
 }
 
-/// A device that was lost says so wherever it is used next, and what was asked for stays an error.
+/// A lost device is reported by every later use, and errors of the request are kept.
 #[test]
 fn a_lost_device_is_told_by_readbacks_and_inspections() -> TestResult {
     on_every_device("a_lost_device_is_told_by_readbacks_and_inspections", |gpu, _| {

@@ -1,4 +1,4 @@
-//! Declare and go: what a loop keeps, what it skips, and what it does after an error.
+//! The frame loop: what it keeps, which frames it skips, and how it continues after errors.
 
 use crate::bench::{GREEN, RED, TestResult, fill_full, on_every_device};
 use framegraph::{
@@ -7,7 +7,7 @@ use framegraph::{
 use framegraph_wgpu::{Cx, Frame, FrameError, FrameLoop, FramesInFlight, Imports, Record, RecordError, read_texture};
 use std::num::NonZeroU32;
 
-/// A chain of two passes into a texture of the caller's.
+/// Declares a chain of two passes into a texture of the caller.
 fn declare(frame: &mut Frame<[f32; 4]>, imports: &mut Imports, image: &wgpu::Texture) -> Result<(), DeclareError> {
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
     let screen = frame.graph_mut().import_texture("screen", desc, Entry::Undefined, Exit::Keep);
@@ -75,7 +75,7 @@ fn a_loop_draws_skips_and_goes_on_after_errors() -> TestResult {
     })
 }
 
-/// Passes without which nothing is missing are refused, not skipped in silence; a frame without passes has nothing to do.
+/// A frame whose passes have no effect is an error; a frame without passes is not.
 #[test]
 fn a_frame_whose_export_was_forgotten_is_refused() -> TestResult {
     let gpu = framegraph_wgpu::Gpu::noop()?;
@@ -98,7 +98,7 @@ fn a_frame_whose_export_was_forgotten_is_refused() -> TestResult {
     Ok(())
 }
 
-/// A loop that asks for one block of memory and gets none says why with each frame, and only while it asks.
+/// A loop with heap aliasing reports why nothing is placed, with each frame for which it is requested.
 #[test]
 fn a_loop_says_why_nothing_is_placed() -> TestResult {
     let gpu = framegraph_wgpu::Gpu::noop()?;
@@ -116,11 +116,11 @@ fn a_loop_says_why_nothing_is_placed() -> TestResult {
     Ok(())
 }
 
-/// Layers of a picture, one above the other; how many there are is known when it is declared.
+/// Layers of an image, whose number is known at declaration.
 struct Layers(usize);
 
 impl Pass for Layers {
-    // Cloned for its recorder, and no copy.
+    // Implements `Clone` but not `Copy`.
     type Io = Vec<Texture>;
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Self::Io, DeclareError> {
@@ -160,7 +160,7 @@ fn handles_of_a_pass_need_not_be_copies() -> TestResult {
     Ok(())
 }
 
-/// However long the device takes, no more frames are queued than may be, and each frame that is done is counted once.
+/// The queue never exceeds its maximum, and each finished frame is counted once.
 #[test]
 fn a_loop_queues_no_more_frames_than_it_may() -> TestResult {
     on_every_device("a_loop_queues_no_more_frames_than_it_may", |gpu, _| {

@@ -1,4 +1,4 @@
-//! Images that one frame writes and later frames read.
+//! Histories: images that one frame writes and later frames read.
 
 use crate::bench::{Bench, RED, TestResult, draw, draw_of, fill_full, on_every_device};
 use framegraph::{DeclareError, Extent, Format, Intent, PassBuilder, Previous, Texture, TextureDesc, View};
@@ -8,7 +8,7 @@ use framegraph_wgpu::{Cx, ExecutorOptions, Raster, RecordError, Shader};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 
-/// Adds one to the sum of the two earlier images: the Fibonacci-like sequence 1, 2, 4, 7, 12 …
+/// Adds one to the sum of the two previous images: 1, 2, 4, 7, 12 …
 const ADD: Shader<'static> = Shader::new(
     "add",
     "@group(0) @binding(0) var one: texture_2d<f32>;
@@ -21,7 +21,7 @@ const ADD: Shader<'static> = Shader::new(
      }",
 );
 
-/// Adds one to the middle of the earlier image, whatever its size.
+/// Adds one to the center of the previous image, for any size.
 const ADD_LAST: Shader<'static> = Shader::new(
     "add last",
     "@group(0) @binding(0) var last: texture_2d<f32>;
@@ -121,8 +121,8 @@ fn a_failed_frame_does_not_move_the_ring() -> TestResult {
     })
 }
 
-/// The image that a frame writes is, by pointer, the one that a later frame reads and that the frame after that writes
-/// again: three images take turns, no pass copies, and nothing is made.
+/// The image that a frame writes is the texture that the next frame reads, and that is written again two frames later.
+/// Three textures alternate, without copies or allocations.
 #[test]
 fn the_ring_turns_without_copies_and_a_cut_empties_it() -> TestResult {
     on_every_device("the_ring_turns_without_copies_and_a_cut_empties_it", |gpu, drawn| {
@@ -152,8 +152,8 @@ fn the_ring_turns_without_copies_and_a_cut_empties_it() -> TestResult {
     })
 }
 
-/// A drag and dynamic resolution: every frame has a size of its own, and the sum goes on. Passes learn how large the
-/// earlier image is.
+/// Simulates window resizing and dynamic resolution: each frame has another size, and the sum continues. Passes query
+/// the size of the previous image.
 #[test]
 fn a_history_goes_on_while_sizes_change() -> TestResult {
     on_every_device("a_history_goes_on_while_sizes_change", |gpu, drawn| {
@@ -189,14 +189,14 @@ fn a_history_goes_on_while_sizes_change() -> TestResult {
     })
 }
 
-/// What a frame declares that has nothing to do with a history.
+/// Declares a frame without a history.
 fn blank(frame: &mut Frame) -> Result<(), DeclareError> {
     let out = frame.graph_mut().texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
     let out = frame.add_fn("blank", |p| p.color(out, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
     frame.graph_mut().export(out)
 }
 
-/// A frame of another graph goes between, be it another `Frame` or the same one declared otherwise.
+/// Frames of another graph run in between: of another `Frame`, or of the same one declared differently.
 #[test]
 fn a_history_survives_frames_of_another_graph() -> TestResult {
     on_every_device("a_history_survives_frames_of_another_graph", |gpu, drawn| {
@@ -234,7 +234,7 @@ fn a_history_survives_frames_of_another_graph() -> TestResult {
     })
 }
 
-/// Frames with a history of one name on one executor: neither sees the other's images, whatever their formats.
+/// Two frames use histories of equal name on one executor. Neither sees the other's images, regardless of formats.
 #[test]
 fn frames_do_not_share_a_history_of_one_name() -> TestResult {
     on_every_device("frames_do_not_share_a_history_of_one_name", |gpu, drawn| {
@@ -251,7 +251,7 @@ fn frames_do_not_share_a_history_of_one_name() -> TestResult {
         };
         for format in [Format::Rgba16Float, Format::Rgba32Float] {
             for round in 1..=3u8 {
-                // The second is executed twice in each round.
+                // The second frame is executed twice in each round.
                 for (second, step) in [(false, 1), (true, 2), (true, 2)] {
                     if second {
                         std::mem::swap(&mut bench.frame, &mut other);
@@ -284,7 +284,7 @@ fn two_histories_of_one_name_are_refused_and_scopes_tell_them_apart() -> TestRes
         let told = told.map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
         assert!(told.contains("resource `sum`: another history has this name") && told.contains("scope"), "{told}");
         for sum in [1.0, 2.0, 4.0] {
-            // The left one is reset each time, so the two have different contents.
+            // The left history is reset each time, so the two differ.
             bench.executor.reset_history("left/sum");
             let views = bench.run(|f| Ok(["left", "right"].map(|view| f.scope(view, |f| declare(f, &valid)))));
             let [left, right] = views?;
@@ -296,7 +296,7 @@ fn two_histories_of_one_name_are_refused_and_scopes_tell_them_apart() -> TestRes
     })
 }
 
-/// After a resize, an earlier image is looked at in the size that it was written in.
+/// After a resize, a previous image is inspected at its original size.
 #[test]
 fn an_earlier_image_is_inspected_in_its_own_size() -> TestResult {
     on_every_device("an_earlier_image_is_inspected_in_its_own_size", |gpu, drawn| {

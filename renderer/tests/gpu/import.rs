@@ -1,4 +1,4 @@
-//! Textures and buffers of the caller's: drawn into, read, and refused when they are not what was declared.
+//! Imports: textures and buffers of the caller, drawn into, read, and rejected if they do not match.
 
 use crate::bench::{Bench, GREEN, SHOW, TestResult, draw_of, fill_corner, on_every_device};
 use framegraph::{Entry, Exit, Extent, Format, Intent, TextureDesc};
@@ -49,7 +49,7 @@ fn an_import_keeps_what_it_held() -> TestResult {
     })
 }
 
-/// Under one plan: what a step attaches, and what it samples, is what this frame imports.
+/// With one plan, attachments and sampled textures change with the imports of each frame.
 #[test]
 fn imports_change_from_frame_to_frame() -> TestResult {
     on_every_device("imports_change_from_frame_to_frame", |gpu, drawn| {
@@ -70,7 +70,7 @@ fn imports_change_from_frame_to_frame() -> TestResult {
             Ok((source, target))
         })?;
         for frame in 0..8 {
-            // Twice each way in a row, so that some frames find all as it was.
+            // Each import is used twice in a row, so that some frames find everything unchanged.
             let from = frame / 2 % 2;
             let into = texture(gpu, 8, TextureFormat::Rgba8Unorm, both);
             bench.imports.clear();

@@ -1,4 +1,4 @@
-//! Looking into a frame shows what is there, and changes nothing of it.
+//! Inspection returns the drawn values and does not change the frame.
 
 use crate::bench::{Bench, FILL, RED, TestResult, draw_of, fill, fill_corner, fill_full, on_every_device};
 use framegraph::{
@@ -10,7 +10,7 @@ use framegraph_wgpu::inspect::{Inspection, Inspector, Texels, all_targets};
 use framegraph_wgpu::{Depth, Raster, read_texture};
 
 const SIDE: u32 = 8;
-/// Half of the target at depth 0.25 in a color that no display holds, over a clear color.
+/// Half of the target has depth 0.25 and a color outside of 0…1, over a clear color.
 const DRAWN: [f32; 4] = [2.5, 0.125, -3.0, 1.0];
 const BEHIND: [f64; 4] = [0.5, 16.0, 0.0, 0.25];
 
@@ -23,7 +23,7 @@ fn refused(bench: &Bench, inspector: &mut Inspector, request: &str) -> String {
     look(bench, inspector, request).map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default()
 }
 
-/// Depth and samples live in the tile; the picture is what a second pass makes of the average.
+/// Depth and samples are memoryless. The image is drawn by a second pass from the average.
 fn declare(frame: &mut Frame, samples: u8) -> Result<Texture, DeclareError> {
     let hdr = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
     let scene = |p: &mut framegraph::PassBuilder<'_>| {
@@ -52,13 +52,14 @@ fn declare(frame: &mut Frame, samples: u8) -> Result<Texture, DeclareError> {
     Ok(out)
 }
 
-/// Whether the lower left triangle covers the texel's center; none on the diagonal, where a rule of the driver decides.
+/// Returns whether the lower left triangle covers the texel's center; `None` on the diagonal, where the driver's fill
+/// rule decides.
 fn covered(x: u32, y: u32) -> Option<bool> {
     let below = i64::from(y) - i64::from(x);
     (below != 0).then_some(below > 0)
 }
 
-/// Compares every texel that is off the diagonal.
+/// Compares every texel outside of the diagonal.
 fn compare(texels: &Texels, inside: [f32; 4], outside: [f32; 4]) {
     let mut seen = 0;
     for (index, found) in texels.numbers().iter().enumerate() {
@@ -87,7 +88,7 @@ fn depth_and_light_are_what_was_drawn() -> TestResult {
             let mut inspector = Inspector::new(gpu);
             let depth = look(&bench, &mut inspector, "depth")?;
             let light = look(&bench, &mut inspector, "hdr@scene")?;
-            // The first sample stands for depths, which have no average.
+            // Depth is not averaged; the first sample is used.
             let titles = if samples == 1 { "depth@scene" } else { "depth@scene, sample 0" };
             assert_eq!((depth.title().as_str(), light.title().as_str()), (titles, "hdr@scene"));
             if samples > 1 {
@@ -138,7 +139,7 @@ fn samples_are_averaged_or_seen_one_by_one() -> TestResult {
         }
         if drawn {
             assert_eq!(sum, average);
-            // Sixteen bits hold these sums of quarters exactly.
+            // These sums of quarters are exact in 16-bit floats.
             assert_eq!(resolved, average);
             assert!(partial > 0, "the edge has texels that are partly covered");
         }
@@ -150,7 +151,7 @@ fn samples_are_averaged_or_seen_one_by_one() -> TestResult {
 
 #[test]
 fn levels_layers_planes_and_slices_are_seen_apart() -> TestResult {
-    // By mip and layer its own color; stencil 7 beside depth; four slices cleared at once.
+    // Each mip and layer has its own color, stencil is 7, and four slices are cleared at once.
     let tone = |mip: u8, layer: u16| [f32::from(mip) + 1.0, f32::from(layer) + 1.0, 0.5, 1.0];
     let declare = move |frame: &mut Frame| {
         let graph = frame.graph_mut();
@@ -193,7 +194,7 @@ fn levels_layers_planes_and_slices_are_seen_apart() -> TestResult {
                 }
             }
         }
-        // Neither is exported or read: culled in the frame, and there to look at all the same.
+        // Neither is exported or read, so both are culled in the frame, but they can be inspected.
         assert_eq!(bench.plan.counts().culled, 2);
         let depth = look(&bench, &mut inspector, "both")?;
         let ids = look(&bench, &mut inspector, "ids")?;
@@ -274,7 +275,7 @@ fn what_the_caller_owns_stays_as_it_is() -> TestResult {
     })
 }
 
-/// A history that counts frames: what is seen is the frame to come, and looking does not move the ring.
+/// A history that counts frames. The inspection shows the next frame, and does not advance the history.
 #[test]
 fn histories_are_seen_as_the_next_frame_finds_them() -> TestResult {
     let declare = |frame: &mut Frame| {
@@ -341,7 +342,7 @@ fn names_that_are_not_there_come_with_those_that_are() -> TestResult {
     })
 }
 
-/// A texture that is drawn into three times: what it holds after each step, and before the first.
+/// A texture that is drawn into three times: its contents before the first step and after each step.
 #[test]
 fn steps_name_what_a_texture_holds_after_them() -> TestResult {
     on_every_device("steps_name_what_a_texture_holds_after_them", |gpu, drawn| {

@@ -1,4 +1,4 @@
-//! Looking into random graphs: whatever there is can be looked at.
+//! Inspection of random graphs: every listed target can be inspected.
 
 use crate::bench::TestResult;
 use framegraph::testing::generate::{self, Entropy, Profile};
@@ -7,7 +7,7 @@ use framegraph_wgpu::inspect::{InspectError, Inspector, all_targets};
 use framegraph_wgpu::{ExecuteError, Executor, Gpu};
 use framegraph_wgpu::{Frame, mock};
 
-/// Random graphs with stand-ins, on the device that validates every call: whatever there is can be looked at.
+/// Random graphs with mock recorders, on the device that validates all calls.
 #[test]
 fn everything_in_random_graphs_is_seen() -> TestResult {
     let gpu = Gpu::noop()?;
@@ -24,7 +24,7 @@ fn everything_in_random_graphs_is_seen() -> TestResult {
             continue;
         };
         let mut executor = Executor::new(&gpu);
-        // What the device cannot make, or a plan asks for in one step that wgpu has not.
+        // The device does not support a resource, or wgpu does not support a step of the plan.
         if executor.execute(&plan, &frame, &(), &imported.bound).is_err() {
             beyond += 1;
             continue;
@@ -38,7 +38,7 @@ fn everything_in_random_graphs_is_seen() -> TestResult {
                     assert_eq!(found.texels.bits.len(), (width * height) as usize, "seed {seed}, {title}");
                     seen += 1;
                 }
-                // The texture is made to be sampled there, which its format or samples may rule out.
+                // The texture must allow sampling for the inspection, which its format or sample count may not support.
                 Err(InspectError::Execute { error, .. }) if matches!(*error, ExecuteError::Unsupported(_)) => {
                     beyond += 1;
                 }

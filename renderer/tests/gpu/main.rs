@@ -1,7 +1,7 @@
-//! Frames executed end to end: on wgpu's Noop device, which validates and draws nothing, and on the adapter that there is.
+//! End-to-end tests on wgpu's noop device, which validates and draws nothing, and on the available adapter.
 //!
-//! A test that needs an adapter and finds none says so: a line `SKIP: …` on standard output, and one in the file that
-//! `FRAMEGRAPH_SKIP_LOG` names.
+//! A test that needs an adapter and finds none prints a line `SKIP: …`, and writes it to the file in
+//! `FRAMEGRAPH_SKIP_LOG`.
 
 mod bench;
 mod compute;

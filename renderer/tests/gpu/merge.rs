@@ -1,4 +1,4 @@
-//! Passes that share a step are recorded into one render pass, and do not see each other's state.
+//! Merged passes are recorded into one render pass and do not see each other's state.
 
 use crate::bench::{Bench, GREEN, RED, TestResult, fill_corner, fill_full, on_every_device};
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Texture, TextureDesc};

@@ -1,4 +1,4 @@
-//! Multisampling: samples live in the tile, their average in memory.
+//! Multisampling: samples are memoryless, and their average is stored.
 
 use crate::bench::{Bench, FILL, RED, TestResult, fill, on_every_device};
 use framegraph::{ClearValue, Extent, Format, Intent, TextureDesc};
@@ -31,7 +31,7 @@ fn samples_are_memoryless_and_resolved() -> TestResult {
         if drawn {
             let rgba = bench.pixels(resolved)?.rgba();
             assert_eq!((rgba[63 * 64], rgba[63]), (RED, [0.0; 4]));
-            // The edge runs along the diagonal: every one of its texels is partly covered.
+            // The edge runs along the diagonal, so all of its texels are partly covered.
             let partial = rgba.iter().filter(|c| c[0] > 0.0 && c[0] < 1.0).count();
             assert!((60..=70).contains(&partial), "{partial} texels are partly covered");
         }

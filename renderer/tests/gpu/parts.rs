@@ -1,4 +1,4 @@
-//! Parts and views: bytes of a buffer by themselves, and a texture through the sRGB twin of its format.
+//! Parts of resources: byte ranges of buffers, and sRGB views of linear textures.
 
 use crate::bench::{Bench, TestResult, on_every_device};
 use framegraph::{Buffer, ClearValue, Extent, Format, Intent, PassBuilder, TextureDesc};
@@ -31,7 +31,7 @@ fn a_pass_is_bound_to_the_bytes_that_it_declares() -> TestResult {
             let values = frame.graph_mut().buffer("values", 1024);
             let all = |p: &mut PassBuilder<'_>| p.storage_write_buffer(values, Intent::Clear(ClearValue::Zero));
             let values = frame.add_fn("all", all, |v, (), cx| fill(*v, cx))?;
-            // Cleared and filled by itself: sixteen bytes in the middle.
+            // A separate access clears and fills sixteen bytes in the middle.
             let some = |p: &mut PassBuilder<'_>| {
                 p.storage_write_buffer(values.bytes(256, 16), Intent::Clear(ClearValue::Zero))
             };
@@ -42,7 +42,7 @@ fn a_pass_is_bound_to_the_bytes_that_it_declares() -> TestResult {
         if drawn {
             let bytes = read_buffer(gpu, bench.executor.buffer(&bench.plan, values).ok_or("no buffer")?, 1024)?;
             let words: Vec<u32> = bytemuck::cast_slice(&bytes).to_vec();
-            // One workgroup reaches sixteen words: of 256 in the first pass, of 4 in the second.
+            // One workgroup can write sixteen words: the first pass binds 256, the second 4.
             let expected = |at: usize| match at {
                 0..16 => 10 + 256,
                 64..68 => 10 + 4,
@@ -72,7 +72,7 @@ fn a_view_through_the_twin_changes_what_is_stored() -> TestResult {
         };
         let (srgb, linear) = (Format::Rgba8UnormSrgb, Format::Rgba8Unorm);
         let found = [codes(linear, linear)?, codes(linear, srgb)?, codes(srgb, linear)?, codes(srgb, srgb)?];
-        // 0.5 is code 188 through the transfer function, 128 without.
+        // 0.5 is stored as 188 with sRGB encoding and as 128 without.
         assert!(!drawn || found == [128, 188, 128, 188], "{found:?}");
         Ok(())
     })

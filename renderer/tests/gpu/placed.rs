@@ -1,4 +1,4 @@
-//! Textures and buffers that share one block of memory: contents, bytes, fallbacks, and what the validation layers say.
+//! Placed textures and buffers in one memory block: contents, sizes, fallbacks, and the Vulkan validation layers.
 
 use crate::bench::{GREEN, TestResult, draw, draw_of, fill_full, on_adapter, skip};
 use framegraph::{
@@ -11,7 +11,7 @@ use framegraph_wgpu::{
 };
 use std::process::Command;
 
-/// Copies a picture texel by texel.
+/// Copies an image texel by texel.
 const COPY: Shader<'static> = Shader::new(
     "copy",
     "@group(0) @binding(0) var image: texture_2d<f32>;
@@ -23,7 +23,8 @@ const COPY: Shader<'static> = Shader::new(
      }",
 );
 
-/// A chain of pictures of other sizes and formats: each lives in two steps, so the next but one can have its memory.
+/// Declares a chain of textures of different sizes and formats. Each is used by two steps, so that the one after next
+/// can reuse its memory.
 fn chain(frame: &mut Frame, length: u32) -> Result<Texture, DeclareError> {
     let formats = [Format::Rgba8Unorm, Format::Rgba16Float, Format::Rg11b10Ufloat, Format::Rgba32Float];
     let desc = |at: u32| TextureDesc::new(Extent::absolute(96 - at, 64 + at), formats[at as usize % 4]);
@@ -33,7 +34,7 @@ fn chain(frame: &mut Frame, length: u32) -> Result<Texture, DeclareError> {
         let next = frame.graph_mut().texture(&format!("link {at}"), desc(if at == length { 0 } else { at }));
         let declare = |p: &mut PassBuilder<'_>| {
             let view = p.sampled(last)?;
-            // Everything beside the copied texels is cleared.
+            // Everything outside of the copied texels is cleared.
             Ok((view, p.color(next, Intent::Clear(ClearValue::Color([1.0, 0.0, 0.0, 1.0])))?))
         };
         (_, last) = frame
@@ -43,18 +44,18 @@ fn chain(frame: &mut Frame, length: u32) -> Result<Texture, DeclareError> {
     Ok(last)
 }
 
-/// Links of the chain.
+/// Number of textures in the chain.
 const LENGTH: u32 = 12;
 
 /// An executor that has executed the chain for some frames.
-struct Ran {
+struct Run {
     executor: Executor,
     frame: Frame,
     plan: Plan,
     last: Texture,
 }
 
-impl Ran {
+impl Run {
     fn new(gpu: &Gpu, alias: Alias, broken: bool) -> Result<Self, Box<dyn std::error::Error>> {
         Self::of(gpu, alias, broken, |frame| chain(frame, LENGTH))
     }
@@ -65,7 +66,7 @@ impl Ran {
         broken: bool,
         declare: impl FnOnce(&mut Frame) -> Result<Texture, DeclareError>,
     ) -> Result<Self, Box<dyn std::error::Error>> {
-        // A timestamp between two passes makes some drivers finish the first.
+        // A timestamp between two passes makes some drivers finish the first one.
         let untimed = ExecutorOptions { timing: false, ..ExecutorOptions::default() };
         let (mut frame, mut plan, mut executor) = (Frame::new(), Plan::new(), Executor::with(gpu, untimed));
         let last = declare(&mut frame)?;
@@ -77,7 +78,7 @@ impl Ran {
         Ok(Self { executor, frame, plan, last })
     }
 
-    /// A chain of another length, for so many frames.
+    /// Executes a chain of another length for `frames` frames.
     fn longer(&mut self, length: u32, alias: Alias, frames: usize) -> TestResult {
         self.frame.reset();
         self.last = chain(&mut self.frame, length)?;
@@ -104,7 +105,7 @@ impl Ran {
     }
 }
 
-/// Why nothing is placed on this adapter, where that is as it should be.
+/// Returns why nothing is placed on this adapter, if that is expected.
 fn elsewhere(executor: &Executor) -> Option<String> {
     match executor.not_placed() {
         Some(why @ NotPlaced::Backend(_)) => Some(why.to_string()),
@@ -116,11 +117,11 @@ fn elsewhere(executor: &Executor) -> Option<String> {
 fn a_chain_in_one_block_is_the_chain_apart() -> TestResult {
     const NAME: &str = "a_chain_in_one_block_is_the_chain_apart";
     on_adapter(NAME, |gpu| {
-        let mut placed = Ran::new(gpu, Alias::Heap, false)?;
+        let mut placed = Run::new(gpu, Alias::Heap, false)?;
         if let Some(why) = elsewhere(&placed.executor) {
             return skip(NAME, &why);
         }
-        let mut apart = Ran::new(gpu, Alias::Off, false)?;
+        let mut apart = Run::new(gpu, Alias::Off, false)?;
         assert_eq!((placed.executor.not_placed(), placed.placed()), (None, LENGTH as usize));
         apart.frames(1)?;
         for _ in 0..24 {
@@ -131,7 +132,7 @@ fn a_chain_in_one_block_is_the_chain_apart() -> TestResult {
         placed.frames(3)?;
         assert_eq!(placed.executor.objects(), steady, "nothing is made in the steady state");
 
-        // The block is what the plan says, and less than half of what its tenants take apart.
+        // The block has the planned size, which is less than half of the unaliased size.
         let (memory, allocated) = (placed.plan.memory(), placed.executor.allocated());
         assert!(allocated.placed > 0 && allocated.placed <= memory.bytes, "{allocated:?} {memory:?}");
         assert!(allocated.placed * 2 < memory.unaliased_bytes, "{allocated:?} {memory:?}");
@@ -140,7 +141,7 @@ fn a_chain_in_one_block_is_the_chain_apart() -> TestResult {
     })
 }
 
-/// A picture is drawn and drawn from; then a dispatch writes into the memory of the first.
+/// Draws an image and reads it; then a dispatch writes to the memory of the first texture.
 const STORE: Shader<'static> = Shader::new(
     "store",
     "@group(0) @binding(0) var image: texture_storage_2d<rgba8unorm, write>;
@@ -149,7 +150,7 @@ const STORE: Shader<'static> = Shader::new(
      }",
 );
 
-/// Green from what was drawn, red from what was stored.
+/// Combines green from the drawn texture and red from the stored one.
 const BOTH: Shader<'static> = Shader::new(
     "both",
     "@group(0) @binding(0) var drawn: texture_2d<f32>;
@@ -196,7 +197,7 @@ fn raster_then_compute(frame: &mut Frame) -> Result<Texture, DeclareError> {
     Ok(both)
 }
 
-/// Size of these pictures in texels.
+/// Size of the textures in texels.
 const STORED: [u32; 2] = [96, 64];
 
 #[test]
@@ -204,7 +205,7 @@ fn a_dispatch_waits_for_the_drawing_that_had_its_memory() -> TestResult {
     const NAME: &str = "a_dispatch_waits_for_the_drawing_that_had_its_memory";
     on_adapter(NAME, |gpu| {
         let shown = |broken| -> Result<_, Box<dyn std::error::Error>> {
-            let mut ran = Ran::of(gpu, Alias::Heap, broken, raster_then_compute)?;
+            let mut ran = Run::of(gpu, Alias::Heap, broken, raster_then_compute)?;
             ran.frames(3)?;
             let yellow = ran.bytes(gpu)?.chunks_exact(4).all(|texel| texel == [255, 255, 0, 255]);
             Ok((ran, yellow))
@@ -220,20 +221,20 @@ fn a_dispatch_waits_for_the_drawing_that_had_its_memory() -> TestResult {
         };
         assert!(matches!(offset("drawn"), Some(Placement::Heap { .. })) && offset("drawn") == offset("stored"));
         assert!(yellow, "the picture is wrong");
-        // This driver runs a dispatch before drawing that it knows no reason to wait for.
+        // Without a barrier, this driver runs the dispatch before the draw.
         let orders_by_texture = gpu.info().driver == "llvmpipe" && gpu.info().driver_info.starts_with("Mesa 22.");
         assert!(!orders_by_texture || !shown(true)?.1, "without hand-overs the picture is as right");
         Ok(())
     })
 }
 
-/// The block of a long chain is the old one once a short chain runs: it goes when it is trimmed, or when it is beyond three times
-/// what the last eight frames used, long before it is old.
+/// After a long chain, a short chain runs. The block of the long chain is freed by a trim, or when it exceeds three
+/// times the size that the last eight frames used.
 #[test]
 fn blocks_that_nobody_uses_go_by_trim_and_by_budget() -> TestResult {
     const NAME: &str = "blocks_that_nobody_uses_go_by_trim_and_by_budget";
     on_adapter(NAME, |gpu| {
-        let mut placed = Ran::new(gpu, Alias::Heap, false)?;
+        let mut placed = Run::new(gpu, Alias::Heap, false)?;
         if let Some(why) = elsewhere(&placed.executor) {
             return skip(NAME, &why);
         }
@@ -272,11 +273,11 @@ fn blocks_that_nobody_uses_go_by_trim_and_by_budget() -> TestResult {
 fn sizes_that_the_driver_was_not_asked_for_are_refused() -> TestResult {
     const NAME: &str = "sizes_that_the_driver_was_not_asked_for_are_refused";
     on_adapter(NAME, |gpu| {
-        let mut placed = Ran::new(gpu, Alias::Heap, false)?;
+        let mut placed = Run::new(gpu, Alias::Heap, false)?;
         if let Some(why) = elsewhere(&placed.executor) {
             return skip(NAME, &why);
         }
-        // As if images had no padding and could lie anywhere.
+        // Pretends that images have no padding and no alignment.
         let caps = framegraph::Caps { padded: Vec::new(), texture_alignment_bytes: 1, ..placed.plan.caps().clone() };
         let options = *placed.plan.options();
         framegraph::compile(placed.frame.graph(), &caps, &options, &mut Scratch::new(), &mut placed.plan)?;
@@ -289,7 +290,7 @@ fn sizes_that_the_driver_was_not_asked_for_are_refused() -> TestResult {
 #[test]
 fn a_device_without_placing_shares_by_shape_and_says_why() -> TestResult {
     let gpu = Gpu::noop()?;
-    let mut ran = Ran::new(&gpu, Alias::Heap, false)?;
+    let mut ran = Run::new(&gpu, Alias::Heap, false)?;
     ran.frames(2)?;
     assert!(ran.placed() == 0 && !ran.plan.slots().is_empty(), "the pool serves");
     let why = ran.executor.not_placed().ok_or("no reason")?.to_string();
@@ -297,12 +298,12 @@ fn a_device_without_placing_shares_by_shape_and_says_why() -> TestResult {
     Ok(())
 }
 
-/// A run of its own with the layers on; see `the_layers_are_silent_about_what_is_placed`.
+/// Runs in a process of its own with the validation layers; see `the_layers_are_silent_about_what_is_placed`.
 #[test]
 #[ignore = "a part of another test, which sets its environment"]
 fn chain_under_validation() -> TestResult {
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
-    let mut ran = Ran::new(&gpu, Alias::Heap, std::env::var_os("FRAMEGRAPH_BROKEN").is_some())?;
+    let mut ran = Run::new(&gpu, Alias::Heap, std::env::var_os("FRAMEGRAPH_BROKEN").is_some())?;
     if let Some(why) = elsewhere(&ran.executor) {
         println!("ELSEWHERE {why}");
         return Ok(());
@@ -314,12 +315,13 @@ fn chain_under_validation() -> TestResult {
     Ok(())
 }
 
-/// What the validation layers say of the chain in one block, with hand-overs and without; an error where nothing is placed.
+/// Returns the messages of the validation layers for the placed chain, with or without aliasing barriers. Returns an
+/// error if nothing is placed.
 fn told(broken: bool) -> Result<Result<Vec<String>, String>, Box<dyn std::error::Error>> {
     let mut run = Command::new(std::env::current_exe()?);
     run.args(["--exact", "placed::chain_under_validation", "--ignored", "--nocapture"]);
     run.env("WGPU_VALIDATION", "1").env_remove("FRAMEGRAPH_BROKEN");
-    // Older layers compare command buffers with each other only when told to.
+    // Older layers compare command buffers only if this is enabled.
     run.env("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT");
     if broken {
         run.env("FRAMEGRAPH_BROKEN", "1");
@@ -342,7 +344,7 @@ fn the_layers_are_silent_about_what_is_placed() -> TestResult {
             Err(why) => return skip(NAME, &why),
         };
         assert!(silent.is_empty(), "{}", silent.join("\n"));
-        // Without layers nothing is said of either, and newer ones do not compare memory of different images.
+        // Without layers there are no messages, and newer layers do not compare memory of different images.
         let broken = told(true)?.unwrap_or_default();
         if broken.is_empty() {
             return skip(NAME, "there are no validation layers that find hand-overs that were left out");

@@ -1,4 +1,4 @@
-//! Contents that may be anything are made loud, and a right frame looks the same all the same.
+//! Poisoning makes undefined contents visible, and does not change a correct frame.
 
 use crate::bench::{Bench, RED, TestResult, fill_corner, fill_full, on_every_device};
 use framegraph::{Aspect, ClearValue, DeclareError, Extent, Format, Intent, Texture, TextureDesc};
@@ -10,7 +10,7 @@ fn poisoned(bench: &mut Bench) {
     bench.executor = Executor::with(&bench.gpu, options);
 }
 
-/// Declares that all texels are written; with `keep` false, half of them are not.
+/// Declares that all texels are written; if `keep` is false, half of them are not.
 fn promise(frame: &mut Frame, format: Format, keep: bool) -> Result<Texture, DeclareError> {
     let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, format));
     let draw = move |_: &Texture, (): &(), cx: &mut framegraph_wgpu::Cx<'_>| {
@@ -45,7 +45,7 @@ fn a_broken_promise_is_seen() -> TestResult {
 
 #[test]
 fn a_right_frame_looks_the_same() -> TestResult {
-    // Samples and depth are dropped after each step, one of them in memory because merging is off.
+    // Samples and depth are discarded after each step; one of them is in memory, since merging is off.
     let declare = |frame: &mut Frame| {
         let hdr = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
         let graph = frame.graph_mut();
@@ -82,7 +82,7 @@ fn a_right_frame_looks_the_same() -> TestResult {
 
 #[test]
 fn a_plane_beside_a_dropped_one_is_left_alone() -> TestResult {
-    // Depth is cleared three times, and looked at behind the last; stencil is written by the first pass alone.
+    // Depth is cleared three times and shown after the last; stencil is written by the first pass only.
     let declare = |frame: &mut Frame| {
         let graph = frame.graph_mut();
         let depth = graph.texture("depth", TextureDesc::new(Extent::FRAME, Format::Depth32FloatStencil8));

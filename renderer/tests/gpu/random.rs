@@ -1,5 +1,5 @@
-//! Random graphs executed on the Noop device, which validates every call: each pass binds everything that it declares to
-//! read or write, so that wgpu sees every hazard that a plan could leave open.
+//! Random graphs on the noop device, which validates all calls. Each pass binds everything that it declares, so that
+//! wgpu detects every conflict in a plan.
 
 use crate::bench::TestResult;
 use framegraph::testing::generate::{self, Entropy, Profile};
@@ -23,7 +23,7 @@ const NOTHING: Shader<'static> = Shader::new(
      @compute @workgroup_size(1) fn main() {}",
 );
 
-/// How a shader sees a texture of this format.
+/// Returns the sample type of a format in shaders.
 fn sample_type(format: Format, aspect: Aspect) -> TextureSampleType {
     match format.numeric() {
         Numeric::Depth if aspect == Aspect::Stencil || !format.has_depth() => TextureSampleType::Uint,
@@ -34,7 +34,7 @@ fn sample_type(format: Format, aspect: Aspect) -> TextureSampleType {
     }
 }
 
-/// The binding type of an access; none for what is not bound in a group.
+/// Returns the binding type of an access; `None` if it is not bound in a group.
 fn binding_type(plan: &Plan, access: &Access) -> Option<BindingType> {
     let buffer = |ty| BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
     let Desc::Texture(desc) = plan.graph().resources()[access.resource.index()].desc else {
@@ -77,7 +77,7 @@ fn record(cx: &mut Cx<'_>, kind: PassKind) -> Result<(), RecordError> {
         let number = entries.len() as u32;
         let storage = |ty: &BindingType| matches!(ty, BindingType::StorageTexture { .. });
         let full = entries.iter().filter(|e: &&BindGroupLayoutEntry| storage(&e.ty)).count() == 4;
-        // WebGPU guarantees four storage textures; further ones are looked up and not bound.
+        // WebGPU guarantees four storage textures; further ones are looked up but not bound.
         if let Some(ty) = binding_type(plan, access).filter(|ty| !(full && storage(ty))) {
             entries.push(BindGroupLayoutEntry { binding: number, visibility: stage, ty, count: None });
             bindings.push((
@@ -157,7 +157,7 @@ fn wgpu_accepts_every_plan() -> TestResult {
         match executor.execute(&plan, &frame, &(), &imported.bound) {
             Ok(_) => {
                 executed += 1;
-                // Planes with ops of their own, and averages that nobody needs, have no exact counterpart in wgpu.
+                // Separate operations per plane, and unused resolve targets, have no exact equivalent in wgpu.
                 let exact = |a: &Attachment| {
                     let dropped = a.role.is_resolve() && a.store == StoreOp::Discard;
                     a.store == a.stencil_store && !dropped
@@ -167,7 +167,7 @@ fn wgpu_accepts_every_plan() -> TestResult {
                     assert_eq!(executor.executed(), plan.counts(), "seed {seed}");
                 }
             }
-            // What this device cannot do although a graph may ask for it.
+            // Not supported by this device, although a graph may declare it.
             Err(ExecuteError::NoAttachment { .. }) => {
                 *beyond.entry("no attachment").or_default() += 1;
             }

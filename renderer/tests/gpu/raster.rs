@@ -1,4 +1,4 @@
-//! One pass: cleared, overwritten, depth tested, bound to other levels and layers.
+//! Single raster passes: cleared, overwritten, depth tested, attached to other levels and layers.
 
 use crate::bench::{
     Bench, FILL, GREEN, RED, SHOW_DEPTH, TestResult, draw, draw_of, fill, fill_corner, fill_full, on_every_device, skip,
@@ -120,7 +120,7 @@ fn depth_is_tested_read_only_and_sampled_in_one_step() -> TestResult {
         })?;
         bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports)?;
         let (planned, executed) = (bench.plan.counts(), bench.executor.executed());
-        // Depth that is sampled while it is tested is read only, and what is read only cannot be discarded.
+        // Depth that is sampled while it is tested is read-only, and cannot be discarded.
         assert_eq!((planned, planned.discards), (executed, 0));
         if drawn {
             let rgba = bench.pixels(color)?.rgba();
@@ -176,8 +176,8 @@ const VIEWS: Shader<'static> = Shader::new(
      }",
 );
 
-/// Clears three layers to blue and draws over their left halves at once: red, and green in all but the first. Returns the
-/// texels at the upper left and lower right of each layer.
+/// Clears three layers to blue and draws over their left halves at once, in red, and also green in all but the first.
+/// Returns the upper left and lower right texel of each layer.
 fn three_layers(gpu: &Gpu) -> Result<Vec<[Option<Vec<u8>>; 2]>, Box<dyn std::error::Error>> {
     let mut bench = Bench::new(gpu, 16, 16);
     let texture = bench.run(|frame| {

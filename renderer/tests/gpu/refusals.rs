@@ -1,4 +1,4 @@
-//! What wgpu refuses is told with the names of the pass, the bind group, the binding and the shader's variable.
+//! Errors of rejected bind groups name the pass, group, binding and variable.
 
 use crate::bench::{Bench, RED, SHOW, TestResult, draw_of, fill_full, on_every_device};
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Intent, Texture, TextureDesc};
@@ -6,7 +6,7 @@ use framegraph_wgpu::{
     Binding, BindingReason, Cx, ExecuteError, Frame, Raster, RasterPipeline, RecordError, SamplerDesc, Shader,
 };
 
-/// Two groups: constants and a texture with its sampler.
+/// Two bind groups: constants, and a texture with its sampler.
 const TWO: Shader<'static> = Shader::new(
     "two groups",
     "struct Tint { color: vec4f, strength: f32 }
@@ -21,17 +21,17 @@ const TWO: Shader<'static> = Shader::new(
      }",
 );
 
-/// What is bound wrongly; then what is told: group, binding, variable, reason.
+/// A wrong binding with the expected error: group, binding, variable and reason.
 type Refused = (Bind, usize, Option<u32>, Option<&'static str>, fn(&BindingReason) -> bool);
 
-/// What is bound to the two groups, from what fits.
+/// Creates both bind groups from correct resources.
 type Bind = fn(&mut Cx<'_>, &RasterPipeline, [Binding; 3]) -> [wgpu::BindGroup; 2];
 
 fn good(cx: &mut Cx<'_>, pipeline: &RasterPipeline, [tint, image, linear]: [Binding; 3]) -> [wgpu::BindGroup; 2] {
     [cx.bind_group(pipeline.group(0), &[(0, tint)]), cx.bind_group(pipeline.group(1), &[(2, image), (5, linear)])]
 }
 
-/// A frame whose second pass binds with `bind`; the first draws into the same target, so the two are one step.
+/// Declares a frame whose second pass uses `bind`. The first pass draws into the same target, so both are merged.
 fn declare(frame: &mut Frame, bind: Bind) -> Result<Texture, DeclareError> {
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
     let (image, target) = (frame.graph_mut().texture("image", desc), frame.graph_mut().texture("target", desc));
@@ -138,7 +138,7 @@ fn a_bind_group_is_refused_by_the_names_of_pass_group_binding_and_variable() -> 
     on_every_device("a_bind_group_is_refused_by_the_names_of_pass_group_binding_and_variable", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 8, 8);
         for (case, (bind, group, binding, variable, is)) in refused.into_iter().enumerate() {
-            // Twice: what was refused is not kept.
+            // Executed twice, since rejected bind groups are not cached.
             for _ in 0..2 {
                 bench.declare(|f| declare(f, bind))?;
                 let told = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports);
@@ -161,11 +161,11 @@ fn a_bind_group_is_refused_by_the_names_of_pass_group_binding_and_variable() -> 
     })
 }
 
-/// Three passes of one step: wgpu tells of the step alone, and the first of them is innocent.
+/// Three passes of one step. wgpu reports only the step; its first pass is valid.
 #[test]
 fn the_pass_of_a_merged_step_that_wgpu_refuses_is_named() -> TestResult {
     let wrong: [(Bind, &str); 2] = [
-        // Each group where the other belongs.
+        // Bind groups are swapped.
         (
             |cx, pipeline, fits| {
                 let [zero, one] = good(cx, pipeline, fits);
@@ -173,7 +173,7 @@ fn the_pass_of_a_merged_step_that_wgpu_refuses_is_named() -> TestResult {
             },
             "bind group",
         ),
-        // A buffer that no device has.
+        // A buffer that exceeds every limit.
         (
             |cx, pipeline, fits| {
                 let (label, usage) = (Some("huge"), wgpu::BufferUsages::VERTEX);
@@ -201,7 +201,7 @@ fn the_pass_of_a_merged_step_that_wgpu_refuses_is_named() -> TestResult {
     })
 }
 
-/// An import that is seen through its sRGB twin is made with both formats, which only wgpu knows.
+/// An import with sRGB views must be created with both formats, which only wgpu can check.
 #[test]
 fn a_view_that_an_import_cannot_have_is_named() -> TestResult {
     on_every_device("a_view_that_an_import_cannot_have_is_named", |gpu, _| {
@@ -245,7 +245,7 @@ fn a_view_that_an_import_cannot_have_is_named() -> TestResult {
     })
 }
 
-/// What is destroyed or mapped when a frame is submitted is told by name where it is an import; else that the frame is sound.
+/// Submissions with destroyed or mapped imports name the import. Otherwise the error says that the frame is valid.
 #[test]
 fn a_submission_is_refused_by_the_import_or_what_came_with_it() -> TestResult {
     on_every_device("a_submission_is_refused_by_the_import_or_what_came_with_it", |gpu, _| {
@@ -266,7 +266,7 @@ fn a_submission_is_refused_by_the_import_or_what_came_with_it() -> TestResult {
             })
         };
         let uses = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
-        // What spoils the submission, and what is told of it.
+        // The resource that breaks the submission, and the one that the error names.
         for (spoilt, told_of) in
             [("image", Some("image")), ("buffer", Some("buffer")), ("behind", None), ("none", None)]
         {

@@ -1,4 +1,4 @@
-//! Resolves by mode: what each makes of four samples that differ, of colors, of integers and of depth.
+//! Resolve modes for four different samples of colors, integers and depth.
 
 use crate::bench::{Bench, FILL, SHOW_DEPTH, TestResult, draw, draw_of, fill, on_adapter, on_every_device};
 use framegraph::{ClearValue, Extent, Format, Intent, Join, Options, Plan, ResolveMode, Scratch, TextureDesc, compile};
@@ -9,7 +9,7 @@ use wgpu::CompareFunction;
 
 const SIDE: u32 = 16;
 
-/// Sixteenths that change from sample to sample and from texel to texel, so that none of the four is always the least.
+/// Returns multiples of 1/16 that vary between samples and texels, so that no sample is always the minimum.
 fn sixteenths(x: u32, y: u32, sample: u32) -> u32 {
     (x * 7 + y * 3 + sample * (5 + x % 4) + sample * sample * y) % 13
 }
@@ -30,7 +30,7 @@ struct Out {
 }
 ";
 
-/// What a mode makes of the samples of a texel, in sixteenths.
+/// Returns the resolved value of a texel in a mode, in sixteenths.
 fn expected(mode: ResolveMode, x: u32, y: u32) -> f32 {
     let samples = [0, 1, 2, 3].map(|sample| sixteenths(x, y, sample) as f32);
     match mode {
@@ -41,8 +41,8 @@ fn expected(mode: ResolveMode, x: u32, y: u32) -> f32 {
     }
 }
 
-/// Declares a frame that paints samples and resolves color, integers and depth by one mode, the latter two by sample 0 where it
-/// is the average; returns the three targets.
+/// Declares a frame that draws samples and resolves color, integers and depth with one mode. Integers and depth use
+/// sample 0 if the mode is average. Returns the three targets.
 fn frame(frame: &mut Frame, mode: ResolveMode) -> Result<[framegraph::Texture; 3], framegraph::DeclareError> {
     let formats = [Format::Rgba16Float, Format::R8Uint, Format::Depth32Float];
     let desc = |format| TextureDesc::new(Extent::FRAME, format);
@@ -66,7 +66,8 @@ fn frame(frame: &mut Frame, mode: ResolveMode) -> Result<[framegraph::Texture; 3
     Ok(resolved)
 }
 
-/// On OpenGL, where wgpu keeps no samples that could be fetched: the names of pass, samples and mode, the reason, what to do.
+/// Checks the error on OpenGL, where wgpu has no multisampled textures in shaders: it names pass, samples, mode, reason
+/// and solution.
 fn is_refused<T>(found: Result<T, Box<dyn std::error::Error>>, mode: &str) -> TestResult {
     let told = found.map(drop).expect_err("OpenGL has no samples in memory").to_string();
     let parts = ["pass `", "`samples", &format!("by `{mode}`"), "on OpenGL", "use another back end, or one sample"];
@@ -104,7 +105,8 @@ fn each_mode_makes_of_the_samples_what_it_says() -> TestResult {
                 for other in ResolveMode::ALL {
                     let texels = (0..SIDE * SIDE).map(|at| expected(other, at % SIDE, at / SIDE));
                     let wrong = texels.zip(found).filter(|(e, f)| e != *f).count();
-                    // Sixteenths and quarters of them are exact in every format here. Another mode differs in most texels.
+                    // Sixteenths and quarters of them are exact in these formats. Any other mode differs in most
+                    // texels.
                     let told = format!("{mode:?}, target {index}: {wrong} texels are not by {other:?}");
                     assert!(if other == own { wrong == 0 } else { wrong > 100 }, "{told}");
                 }
@@ -114,7 +116,8 @@ fn each_mode_makes_of_the_samples_what_it_says() -> TestResult {
     })
 }
 
-/// What WebGPU averages in no store, a pass averages: the device is opened without what its adapter adds to formats.
+/// Formats that WebGPU cannot average in a store operation are averaged by a pass. The device is opened without the
+/// adapter's additional format features.
 #[test]
 fn samples_of_32_bits_are_averaged_by_a_pass() -> TestResult {
     const NAME: &str = "samples_of_32_bits_are_averaged_by_a_pass";
@@ -123,7 +126,7 @@ fn samples_of_32_bits_are_averaged_by_a_pass() -> TestResult {
         if gpu.info().backend == wgpu::Backend::Gl {
             return Ok(());
         }
-        // The same of a device that averages them, where this one does.
+        // Compares with a device that averages them in the store operation, if available.
         let in_store = !gpu.caps().not_averaged.contains(&Format::R32Float);
         let declare = |frame: &mut Frame| {
             let desc = TextureDesc::new(Extent::FRAME, Format::R32Float);
@@ -152,7 +155,7 @@ fn samples_of_32_bits_are_averaged_by_a_pass() -> TestResult {
         let by_pass = read_texture(gpu, texture)?;
         if drawn {
             let red: Vec<_> = by_pass.rgba().iter().map(|texel| texel[0]).collect();
-            // Along the edge some of four samples are covered.
+            // Along the edge, some of the four samples are covered.
             assert!(
                 red.contains(&1.0e9) && red.contains(&0.0) && red.iter().any(|r| *r > 0.0 && *r < 1.0e9),
                 "{red:?}"
@@ -163,7 +166,7 @@ fn samples_of_32_bits_are_averaged_by_a_pass() -> TestResult {
     })
 }
 
-/// Samples and target of one frame, planned for a device that resolves all in its store.
+/// The plan was compiled for a device that resolves everything in store operations.
 #[test]
 fn a_plan_of_another_device_is_refused_with_the_way_out() -> TestResult {
     let gpu = Gpu::noop()?;
@@ -182,7 +185,7 @@ fn a_plan_of_another_device_is_refused_with_the_way_out() -> TestResult {
     Ok(())
 }
 
-/// Depth that is only tested is resolved too, into the depth plane's format, and the frames after find it again.
+/// Read-only depth is resolved too, into a depth format, and later frames reuse the target.
 #[test]
 fn depth_beside_stencil_is_resolved_by_a_pass_that_draws_nothing() -> TestResult {
     const NAME: &str = "depth_beside_stencil_is_resolved_by_a_pass_that_draws_nothing";
@@ -216,7 +219,7 @@ fn depth_beside_stencil_is_resolved_by_a_pass_that_draws_nothing() -> TestResult
             let resolved = bench.run(declare)?;
             assert_eq!(bench.plan.counts().steps, 3, "what only resolves shares the step that cleared");
             let shown = bench.pixels(resolved)?.rgba();
-            // Depth of 24 bits or more, and a quarter is exact in half floats, which all devices draw into.
+            // Depth has 24 bits or more, and 0.25 is exact in half floats.
             assert!(shown.iter().all(|c| (c[0] - 0.25).abs() < 1e-6), "{:?}", &shown[..2]);
         }
         Ok(())

@@ -1,11 +1,11 @@
-//! From frame to frame: nothing is made anew, resizes and toggles neither leak nor show stale pictures.
+//! Steady frames create no objects; resizes and toggles neither leak nor show stale images.
 
 use crate::bench::{Bench, SHOW, TestResult, draw_of, fill_corner, fill_full, on_every_device};
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::Raster;
 
-/// A chain of `length` full-screen passes behind a drawing; `red` tells frames apart.
+/// Declares a chain of `length` full-screen passes after a draw; `red` differs between frames.
 fn chain(frame: &mut Frame, length: u32, red: f32) -> Result<Texture, DeclareError> {
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
     let first = frame.graph_mut().texture("first", desc);
@@ -74,7 +74,7 @@ fn resizes_and_toggles_show_the_right_picture() -> TestResult {
     })
 }
 
-/// Each frame of a drag has a size of its own. Without a budget, textures of the last 30 sizes were held.
+/// Each frame of a resize has another size. Without a budget, textures of the last 30 sizes would be kept.
 #[test]
 fn a_drag_holds_a_stated_multiple_of_its_plan() -> TestResult {
     on_every_device("a_drag_holds_a_stated_multiple_of_its_plan", |gpu, _| {
@@ -85,7 +85,7 @@ fn a_drag_holds_a_stated_multiple_of_its_plan() -> TestResult {
             bench.run(|f| chain(f, 3, 0.5))?;
             let pool = bench.executor.texture_pool();
             let memory = bench.plan.memory();
-            // The pools count texels, as the plan does; nothing here is memoryless.
+            // Pools and plan count the same bytes; nothing here is memoryless.
             assert_eq!(pool.used_bytes, memory.bytes + memory.own_bytes, "{width}");
             assert!(
                 pool.bytes <= budget * pool.used_bytes && pool.budget_bytes == budget * pool.used_bytes,

@@ -1,4 +1,4 @@
-//! Who submits a frame, and what is made ahead of the first one: pipelines, kept bytes, shaders that change meanwhile.
+//! Submission by the caller, warm-up, pipeline caches and shader reloading.
 
 use crate::bench::{
     Bench, GREEN, RED, SHOW, TestResult, draw, draw_of, fill_corner, fill_full, on_adapter, on_every_device,
@@ -17,7 +17,7 @@ fn filled(frame: &mut Frame, color: [f32; 4]) -> Result<Texture, DeclareError> {
     Ok(target)
 }
 
-/// The caller's commands stand behind the graph's in one submission, see what it drew, and are waited for by its index.
+/// The caller's commands follow the graph's in one submission, see its results, and are awaited by its index.
 #[test]
 fn a_frame_is_submitted_with_commands_of_the_callers() -> TestResult {
     on_every_device("a_frame_is_submitted_with_commands_of_the_callers", |gpu, drawn| {
@@ -51,8 +51,8 @@ fn a_frame_is_submitted_with_commands_of_the_callers() -> TestResult {
     })
 }
 
-/// The caller gets the frame's command buffers and submits them between its own: one clears before, one copies behind. The frame
-/// counts when the caller says so.
+/// The caller submits the frame's command buffers between its own: one clears before, one copies after. The frame
+/// counts as executed once it is reported.
 #[test]
 fn a_recorded_frame_is_submitted_among_the_callers_commands() -> TestResult {
     on_every_device("a_recorded_frame_is_submitted_among_the_callers_commands", |gpu, drawn| {
@@ -145,7 +145,7 @@ fn nothing_is_submitted_of_a_frame_that_failed() -> TestResult {
     })
 }
 
-/// Warming up makes all that the frame takes, and neither draws nor moves a history.
+/// Warm-up creates everything that the frame needs, and neither draws nor advances histories.
 #[test]
 fn pipelines_are_made_ahead_of_the_first_frame() -> TestResult {
     on_every_device("pipelines_are_made_ahead_of_the_first_frame", |gpu, drawn| {
@@ -197,7 +197,8 @@ fn tinted(frame: &mut Frame, format: Format) -> Result<Texture, DeclareError> {
     Ok(target)
 }
 
-/// A broken text leaves the old one in use and says why; a sound one changes pipelines that there are and those to come.
+/// An invalid source keeps the old one in use and returns the reason. A valid one changes existing and future
+/// pipelines.
 #[test]
 fn a_shader_is_reloaded_while_frames_go_on() -> TestResult {
     on_every_device("a_shader_is_reloaded_while_frames_go_on", |gpu, drawn| {
@@ -269,7 +270,7 @@ fn compiled_pipelines_are_kept_for_the_next_run() -> TestResult {
             executor.use_pipeline_cache(None)?;
             executor.pipeline_cache_data().ok_or("nothing was kept")?
         };
-        // Mesa's software drivers offer a cache and keep nothing in it.
+        // Mesa's software drivers have a cache, but store nothing in it.
         let grown = kept.len() > empty.len() || (gpu.is_software() && kept.len() == empty.len());
         assert!(grown, "{} bytes, {} without a pipeline", kept.len(), empty.len());
         let mut damaged = kept.clone();

@@ -1,4 +1,4 @@
-//! Frames recorded on several threads: contents, counts, what is made, and errors are those of one thread.
+//! Multithreaded recording: contents, counts, objects and errors are those of one thread.
 
 use crate::bench::{Bench, RED, TestResult, draw_of, fill_full, on_every_device};
 use framegraph::{DeclareError, Extent, Format, Intent, PassBuilder, Texture, TextureDesc, View};
@@ -6,7 +6,7 @@ use framegraph_wgpu::{Cx, ExecuteError, Executor, ExecutorOptions, Frame, Raster
 
 const LENGTH: u32 = 11;
 
-/// Adds a little to a picture, by constants of its own.
+/// Adds a small constant to an image.
 const ADD: Shader<'static> = Shader::new(
     "add",
     "@group(0) @binding(0) var image: texture_2d<f32>;
@@ -30,7 +30,7 @@ fn add(at: u32, image: View, cx: &mut Cx<'_>) -> Result<(), RecordError> {
     Ok(())
 }
 
-/// A chain of steps, in which two passes may go wrong: one is refused by its recorder, one by wgpu.
+/// Declares a chain of steps in which two passes may fail: one in its recorder, one in wgpu.
 fn chain(frame: &mut Frame, wrong: [Option<u32>; 2]) -> Result<Texture, DeclareError> {
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
     let first = frame.graph_mut().texture("link 0", desc);
@@ -96,7 +96,7 @@ fn many_threads_record_what_one_records() -> TestResult {
     })
 }
 
-/// The first thing that is wrong in the frame is told, whichever thread comes upon it first, and the next frame is right.
+/// The first error in the order of the frame is reported, independent of thread timing, and the next frame is correct.
 #[test]
 fn errors_are_those_of_one_thread() -> TestResult {
     on_every_device("errors_are_those_of_one_thread", |gpu, pixels| {
@@ -127,7 +127,7 @@ fn errors_are_those_of_one_thread() -> TestResult {
     })
 }
 
-/// With one thread there is nobody to share with.
+/// With one thread, frames are never split.
 #[test]
 fn one_thread_shares_with_nobody() -> TestResult {
     on_every_device("one_thread_shares_with_nobody", |gpu, _| {

@@ -1,4 +1,4 @@
-//! Times of steps arrive without waiting, after the warm-up, and only for the plan that is executed.
+//! Step times arrive without waiting, after the warm-up, and only for the current plan.
 
 use crate::bench::{Bench, TestResult, fill_full, on_adapter, skip};
 use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};

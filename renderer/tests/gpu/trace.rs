@@ -1,4 +1,4 @@
-//! Frames written down: valid JSON with a track for each side, events that nest, names and counts of the plan.
+//! Traces are valid JSON with tracks for CPU and GPU, nested events, and the names and counts of the plan.
 
 use crate::bench::{Bench, TestResult, fill_full, on_every_device, skip};
 use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 const FRAMES: usize = 9;
 
-/// Two steps; the name of the second has to be escaped.
+/// Declares two steps; the name of the second must be escaped.
 fn declare(frame: &mut Frame) -> Result<Texture, DeclareError> {
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
     let (first, second) = (frame.graph_mut().texture("first", desc), frame.graph_mut().texture("second", desc));
@@ -19,7 +19,7 @@ fn declare(frame: &mut Frame) -> Result<Texture, DeclareError> {
     Ok(second)
 }
 
-/// Begin and end in microseconds.
+/// Returns begin and end in microseconds.
 fn span(event: &Value) -> Option<(f64, f64)> {
     let begin = event["ts"].as_f64()?;
     Some((begin, begin + event["dur"].as_f64()?))
@@ -55,7 +55,7 @@ fn a_trace_is_json_with_nested_events_on_both_sides() -> TestResult {
                 let mut before = begin;
                 for step in &steps[2 * index..][..2] {
                     let (from, to) = span(step).ok_or("no times")?;
-                    // Times are printed to a thousandth of a microsecond.
+                    // Times are printed with three decimals.
                     assert!(before <= from + 0.002 && from <= to && to <= end + 0.002, "{step} in {frame}");
                     assert_eq!(
                         (&step["args"]["stored_bytes"], &step["args"]["frame"]),

@@ -16,8 +16,8 @@ impl Executor {
     /// ([`Executor::texture`]) if they are submitted after it.
     ///
     /// The caller must not destroy imports. It must not record, execute or inspect another frame with this executor,
-    /// which would overwrite the uniforms and textures of this one; if it does, the returned commands must be dropped.
-    /// Errors at submission are reported to the caller's error scopes.
+    /// which would overwrite uniforms and textures. If it does, the returned commands must be dropped. Errors at
+    /// submission are reported to the caller's error scopes.
     ///
     /// ```
     /// # use framegraph::{ClearValue, Extent, Format, Intent, Options, Plan, Scratch, TextureDesc, compile};

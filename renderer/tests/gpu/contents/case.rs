@@ -1,4 +1,4 @@
-//! One random graph on the device and on the CPU, frame after frame, and where the two differ.
+//! Runs one random graph on the device and on the CPU, frame after frame, and reports differences.
 
 use super::code::{Texel, coding, planes};
 use super::copy::{NOTE_BYTES, NOTES};
@@ -18,59 +18,59 @@ use framegraph_wgpu::{
 };
 use wgpu::BufferUsages;
 
-/// Passes of a graph at most.
+/// Maximum number of passes in a graph.
 const PASSES: u64 = 256;
 
 /// Runs graphs on one device.
 pub struct Runner {
     pub gpu: Gpu,
-    /// Without poison and with it.
+    /// One executor without poisoning and one with it.
     executors: [Executor; 2],
     /// Fills imports.
     prelude: Executor,
     probe: Probe,
     stage: Stage,
     scratch: Scratch,
-    /// Whether the driver draws into several layers at once.
+    /// True if the driver can draw into several layers at once.
     layered: bool,
 }
 
-/// What came of a graph.
+/// Result of running a graph.
 #[derive(Clone, Debug, Default)]
 pub struct Verdict {
-    /// Levels, layers, planes and buffers whose contents were compared, and how many of them nobody may rely on.
+    /// Number of compared levels, layers, planes and buffers, and how many of them are undefined.
     pub parts: u64,
     pub unknown: u64,
-    /// Digests of passes and notes of copies compared.
+    /// Number of compared pass digests and copy notes.
     pub digests: u64,
-    /// Digests that nobody may rely on.
+    /// Number of digests that are undefined.
     pub unknown_digests: u64,
-    /// Reads that nothing depends on, or not on all that they read.
+    /// Number of reads that influence no output, or only in part.
     pub unobserved: u64,
-    /// Where device and oracle differ, in words.
+    /// Differences between device and oracle, as text.
     pub differences: Vec<String>,
 }
 
-/// Why a graph cannot be executed here, in a word.
+/// Reason why a graph cannot be executed on this device, as one word.
 pub type Beyond = &'static str;
 
 /// A graph with its plan, ready to run.
 pub struct Case {
     pub plan: Plan,
     frame: Frame<Stage>,
-    /// Frames to run: more where histories are read.
+    /// Number of frames to run; more if histories are read.
     frames: u32,
 }
 
 impl Case {
-    /// The same frame under another plan of its graph.
+    /// Returns the frame with another plan of its graph.
     pub fn planned(self, plan: Plan) -> Self {
         Self { plan, ..self }
     }
 }
 
 impl Runner {
-    /// Why no graph can be executed with these shaders, if so.
+    /// Returns why graphs with these shaders cannot be executed on a device, if so.
     pub fn unfit(gpu: &Gpu) -> Option<&'static str> {
         let gl = gpu.info().backend == wgpu::Backend::Gl;
         gl.then_some(
@@ -87,7 +87,7 @@ impl Runner {
         let stage = Stage::new(buffer("witness", PASSES * 4), buffer("notes", PASSES * NOTES as u64 * NOTE_BYTES));
         let executor =
             |poison| Executor::with(gpu, ExecutorOptions { poison, timing: false, ..ExecutorOptions::default() });
-        // One of the two records on several threads.
+        // One of the two executors records on several threads.
         let mut threaded = executor(false);
         threaded.force_record_on(Workers::with_threads(3)?);
         Ok(Self {
@@ -101,7 +101,7 @@ impl Runner {
         })
     }
 
-    /// Compiles a graph and gives each pass its recorder.
+    /// Compiles a graph and adds a recorder to each pass.
     pub fn prepare(&mut self, graph: Graph, options: &Options) -> Result<Result<Case, Beyond>, String> {
         let mut plan = Plan::new();
         self.executors[0].compile(&graph, options, &mut self.scratch, &mut plan).map_err(|e| e.to_string())?;
@@ -120,7 +120,7 @@ impl Runner {
         Ok(Ok(Case { frame: recorded(graph), plan, frames: if history { 4 } else { 2 } }))
     }
 
-    /// Whether the device can bind everything that a pass reads, with what it writes and the witness.
+    /// Returns whether the device can bind all inputs of a pass, its output and the witness buffer.
     fn binds(&self, graph: &Graph, pass: PassId) -> bool {
         let (inputs, limits) = (spec::inputs(graph, pass), self.gpu.device.limits());
         let count = |of: fn(&Class) -> bool| inputs.iter().filter(|i| of(&i.class)).count() as u32;
@@ -173,7 +173,7 @@ impl Runner {
         Ok(Ok(verdict))
     }
 
-    /// Paints everything that is imported, with a graph of its own; returns what passes may read of it.
+    /// Fills all imports with a separate graph. Returns the contents that passes may read.
     fn fill_imports(
         &mut self,
         case: &Case,
@@ -220,7 +220,7 @@ impl Runner {
         Ok(entry)
     }
 
-    /// Compares digests, exports and imports that must survive.
+    /// Compares digests, exports, and imports that are kept.
     fn compare(
         &self,
         case: &Case,
@@ -240,7 +240,7 @@ impl Runner {
                 _ => false,
             }
         }));
-        // An export of an import that nobody touches is somebody else's altogether.
+        // An exported import that no pass uses is not compared.
         let lent = |r: &ResourceId| matches!(graph.resources()[r.index()].kind, Kind::Imported { .. });
         kept.retain(|r| !lent(r) || imports.has(*r));
         kept.sort_unstable();
@@ -331,7 +331,7 @@ impl Runner {
     }
 }
 
-/// The textures and buffers that stand for imports.
+/// Textures and buffers bound to imports.
 struct Imported {
     bound: Imports,
     textures: Vec<(ResourceId, wgpu::Texture)>,
@@ -344,7 +344,7 @@ impl Imported {
     }
 }
 
-/// A frame of a graph whose passes are recorded as `spec` says.
+/// Creates a frame whose passes are recorded according to `spec`.
 fn recorded(graph: Graph) -> Frame<Stage> {
     let mut frame = Frame::from_graph(graph);
     for pass in frame.graph().pass_ids() {
@@ -356,7 +356,7 @@ fn recorded(graph: Graph) -> Frame<Stage> {
     frame
 }
 
-/// Makes what the plan imports.
+/// Creates the textures and buffers that the plan imports.
 fn imports(gpu: &Gpu, plan: &Plan) -> Imported {
     let (graph, mut imported) =
         (plan.graph(), Imported { bound: Imports::new(), textures: Vec::new(), buffers: Vec::new() });

@@ -1,32 +1,36 @@
-//! Texels as whole numbers that every format of the generator holds exactly, and the hashes that passes make of them.
+//! Integer texel values (codes) that every tested format stores exactly, and the hashes that passes compute from them.
 //!
-//! A channel of a normalised format holds a code of 8 bits, of an sRGB format 0 or 1 (its transfer function maps both to
-//! themselves), of a half a whole number below 2¹¹, of a float one below 2²⁴, of depth a multiple of 2⁻¹⁶, of stencil one
-//! of four values that set and clear every bit. Rounding of the device then cannot matter.
+//! Codes make the device's rounding irrelevant:
+//!
+//! - Normalized formats hold 8-bit codes.
+//! - sRGB formats hold 0 or 1, which the transfer function does not change.
+//! - Half floats hold integers below 2¹¹, floats below 2²⁴.
+//! - Depth holds multiples of 2⁻¹⁶.
+//! - Stencil holds one of four values, which set and clear every bit.
 
 use framegraph::{Aspect, ClearValue, Format};
 use half::f16;
 
-/// The codes of one texel: of one channel each; depth and stencil in the first.
+/// Codes of one texel by channel; depth and stencil use the first.
 pub type Texel = [u32; 4];
 
-/// Depth codes are multiples of one over this.
+/// Depth codes are multiples of 1 divided by this.
 const DEPTH_STEPS: f32 = 65536.0;
-/// Stencil values are this times 0 to 3.
+/// Stencil values are multiples (0 to 3) of this.
 pub const STENCIL_STEP: u32 = 85;
 
-/// How one plane of a format holds codes.
+/// Encoding of codes in one plane of a format.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coding {
-    /// What shaders see of it.
+    /// Type of the plane in shaders.
     pub numeric: Numeric,
-    /// The bits of a code, by channel; 0 for a channel that is not there.
+    /// Bit mask of codes by channel; 0 for missing channels.
     pub mask: Texel,
-    /// A code is the channel's value times this.
+    /// Scale from channel values to codes.
     pub scale: [f32; 4],
 }
 
-/// What shaders see of a plane.
+/// Type of a plane in shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Numeric {
     Float,
@@ -35,7 +39,7 @@ pub enum Numeric {
     Stencil,
 }
 
-/// The planes of a format, by what tells them apart.
+/// Returns the planes of a format that are accessed separately.
 pub fn planes(format: Format) -> Vec<Aspect> {
     match (format.has_depth(), format.has_stencil()) {
         (true, true) => vec![Aspect::Depth, Aspect::Stencil],
@@ -45,10 +49,10 @@ pub fn planes(format: Format) -> Vec<Aspect> {
     }
 }
 
-/// How one plane holds codes.
+/// Returns the encoding of one plane.
 ///
 /// # Panics
-/// For a format that the generator does not use.
+/// Panics for formats that the generator does not use.
 pub fn coding(format: Format, plane: Aspect) -> Coding {
     let of = |numeric, mask, scale| Coding { numeric, mask, scale };
     match (format, plane) {
@@ -65,7 +69,7 @@ pub fn coding(format: Format, plane: Aspect) -> Coding {
 }
 
 impl Coding {
-    /// The codes that a pass paints, from the hash of the texel.
+    /// Returns the codes that a pass writes, from the hash of the texel.
     pub fn painted(&self, hash: u32) -> Texel {
         let [r, g, b, a] = self.mask;
         match self.numeric {
@@ -74,7 +78,7 @@ impl Coding {
         }
     }
 
-    /// The codes of a clear value, as an attachment of this plane takes it.
+    /// Returns the codes of a clear value for this plane.
     pub fn cleared(&self, value: ClearValue) -> Texel {
         match (self.numeric, value) {
             (Numeric::Depth, ClearValue::DepthStencil(depth, _)) => [(depth * DEPTH_STEPS).round() as u32, 0, 0, 0],
@@ -88,7 +92,7 @@ impl Coding {
     }
 }
 
-/// The bytes of one texel of a plane that can be copied into buffers.
+/// Returns the bytes of one texel of a plane that can be copied to buffers.
 pub fn bytes_of(format: Format, plane: Aspect, codes: Texel) -> Vec<u8> {
     match plane {
         Aspect::Stencil => return vec![codes[0] as u8],
@@ -107,38 +111,38 @@ pub fn bytes_of(format: Format, plane: Aspect, codes: Texel) -> Vec<u8> {
     }
 }
 
-/// A hash of two numbers: two odd multipliers and two shifts. The shaders have the same.
+/// Returns a hash of two numbers, with two multiplications and two shifts. Shaders contain the same function.
 pub fn mix(hash: u32, value: u32) -> u32 {
     let mut x = (hash ^ value).wrapping_mul(0x9E37_79B1);
     x = (x ^ (x >> 15)).wrapping_mul(0x85EB_CA77);
     x ^ (x >> 13)
 }
 
-/// One step of a digest. Its argument is used once: with [`mix`] in long chains, a shader takes Mesa's optimizer, which looks
-/// at each use anew, for ever to compile.
+/// Computes one step of a digest. Uses its argument once: long chains of [`mix`] take Mesa's shader optimizer too long,
+/// since it follows each use separately.
 pub fn fold(hash: u32, value: u32) -> u32 {
     (hash ^ value).wrapping_mul(0x9E37_79B1).wrapping_add(0x7F4A_7C15)
 }
 
-/// How many texels of a part, or words of a buffer, a digest looks at.
+/// Number of texels of a part, or words of a buffer, that a digest samples.
 pub const LOOKS: u32 = 32;
 
-/// The index of the texel or word that look number `look` of a digest falls on, of `count`.
+/// Returns the index, out of `count`, that sample `look` of a digest reads.
 pub fn look(look: u32, count: u32) -> u32 {
     (look * 61 + 7) % count
 }
 
-/// The hash that a texel (or word) of an output is painted from.
+/// Returns the hash that a texel or word of an output is derived from.
 pub fn texel_hash(digest: u32, tag: u32, x: u32, y: u32) -> u32 {
     mix(mix(digest, tag), y * 65536 + x)
 }
 
-/// Whether a pass that keeps older contents paints this texel: one in four.
+/// Returns whether a pass that keeps older contents writes this texel: one in four.
 pub fn chosen(salt: u32, tag: u32, x: u32, y: u32) -> bool {
     mix(mix(salt, tag ^ 0x5EED), y * 65536 + x) & 3 == 0
 }
 
-/// A word of a buffer that a pass writes; the first four are small, so that they can be arguments of indirect work.
+/// Returns a word that a pass writes to a buffer. The first four are small, so that they can be indirect arguments.
 pub fn word(digest: u32, tag: u32, index: u32) -> u32 {
     let hash = texel_hash(digest, tag, index, 0);
     if index < 4 { 3 + (hash & 3) } else { hash }

@@ -1,4 +1,4 @@
-//! The control: plans with one decision broken must not pass the comparison.
+//! Negative control: plans with one broken decision must fail the comparison.
 
 use super::case::{Case, Runner};
 use super::copy::{Copy, copies};
@@ -12,45 +12,45 @@ use framegraph::{
 };
 use std::collections::BTreeMap;
 
-/// One decision broken.
+/// A kind of broken decision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
-    /// What is loaded is cleared instead.
+    /// A load becomes a clear.
     LoadToClear,
-    /// What is loaded may be anything instead.
+    /// A load becomes don't-care.
     LoadToDontCare,
-    /// What is stored is dropped instead.
+    /// A store becomes a discard.
     StoreToDiscard,
-    /// Two resources that are in use at once share a place.
+    /// Two resources with overlapping lifetimes share a slot.
     SharedPlace,
 }
 
 const KINDS: [Kind; 4] = [Kind::LoadToClear, Kind::LoadToDontCare, Kind::StoreToDiscard, Kind::SharedPlace];
 
-/// A broken plan.
+/// A plan with one broken decision.
 struct Fault {
     kind: Kind,
-    /// The row of the attachment, or of the resource that was moved.
+    /// Row of the changed attachment or resource.
     row: usize,
     field: &'static str,
     plan: Plan,
 }
 
-/// What became of the faults of one kind.
+/// Results of the faults of one kind.
 #[derive(Debug, Default)]
 struct Tried {
-    /// The comparison shows them.
+    /// Number of faults that the comparison detects.
     shown: u64,
-    /// They change nothing, for the reasons that [`changes_nothing`] knows.
+    /// Number of faults without effect, according to [`changes_nothing`].
     without_effect: u64,
 }
 
-/// The mutants of a plan that this test is about.
+/// Returns the mutants of a plan that this test covers.
 fn faults(good: &Plan) -> Vec<Fault> {
     let mut faults = Vec::new();
     mutants(good, &mut |mutant| {
         let (field, row) = (mutant.field, mutant.row);
-        // A field of a plane that the format does not have means nothing.
+        // Fields of planes that the format does not have are ignored.
         if field.starts_with("attachment") {
             let format = good.format(good.attachments()[row].resource);
             let has =
@@ -88,8 +88,8 @@ fn stored(good: StoreOp, broken: StoreOp) -> Option<Kind> {
     (good == StoreOp::Store && broken == StoreOp::Discard).then_some(Kind::StoreToDiscard)
 }
 
-/// Whether a resource moves to the place of another one of its shape that is in use at the same time, and no step uses it
-/// together with any that has this place: wgpu itself refuses one texture in two uses of a step.
+/// Returns whether a resource moves to the slot of another one with overlapping lifetime. No step may use it together
+/// with a resource of that slot, which wgpu would reject.
 fn shared(plan: &Plan, row: usize, broken: Placement) -> Option<Kind> {
     let Placement::Slot(slot) = broken else { return None };
     let graph = plan.graph();
@@ -110,7 +110,7 @@ fn shared(plan: &Plan, row: usize, broken: Placement) -> Option<Kind> {
     (fits && others.iter().any(at_once) && !others.iter().any(in_one_step)).then_some(Kind::SharedPlace)
 }
 
-/// A shape with its size counted out.
+/// Returns a description with its size in texels.
 fn solid(plan: &Plan, desc: Desc) -> Desc {
     let Desc::Texture(texture) = desc else { return desc };
     let [width, height] = texture.extent.texels(plan.frame());
@@ -118,14 +118,14 @@ fn solid(plan: &Plan, desc: Desc) -> Desc {
     Desc::Texture(texture.extent(Extent::absolute(width, height)).mips(mips))
 }
 
-/// Why a fault may go unnoticed: wgpu has no operations for an attachment that is read only, and contents that passes
-/// only draw over, until somebody drops or replaces them, show nowhere.
+/// Returns whether a fault cannot be detected. Read-only attachments have no operations in wgpu. Contents that passes
+/// only draw over, until they are discarded or replaced, are never read.
 fn changes_nothing(plan: &Plan, fault: &Fault) -> bool {
     if fault.kind == Kind::SharedPlace {
         let placement = fault.plan.resources()[fault.row].placement;
         let rows: Vec<_> = plan.graph().resource_ids().zip(plan.resources()).collect();
         let others = rows.iter().filter(|(_, row)| row.placement == placement);
-        // Nothing comes any more of the earlier one when the later one begins, whoever has the place.
+        // The earlier resource is no longer read when the later one begins.
         return others.into_iter().all(|other| done_before(plan, rows[fault.row], *other));
     }
     let holds = |s: &StepId| plan.steps()[s.index()].attachments.range().contains(&fault.row);
@@ -137,13 +137,13 @@ fn changes_nothing(plan: &Plan, fault: &Fault) -> bool {
 
 type Row<'p> = (ResourceId, &'p framegraph::Planned);
 
-/// Whether nothing comes any more of what the earlier of two resources holds when the later one begins.
+/// Returns whether the earlier of two resources is no longer read when the later one begins.
 fn done_before(plan: &Plan, a: Row<'_>, b: Row<'_>) -> bool {
     let (earlier, later) = if a.1.first <= b.1.first { (a, b) } else { (b, a) };
     seen_until(plan, earlier.0).is_none_or(|last| last < later.1.first)
 }
 
-/// Whether a pass of the step draws color where depth or stencil of the resource let it.
+/// Returns whether a pass of the step draws color depending on the depth or stencil of the resource.
 fn is_tested(plan: &Plan, step: StepId, resource: ResourceId) -> bool {
     let drawn = plan.passes_of(step).iter().filter(|m| m.join != Join::Resolve);
     let passes = drawn.map(|m| plan.graph().accesses_of(m.pass));
@@ -151,7 +151,7 @@ fn is_tested(plan: &Plan, step: StepId, resource: ResourceId) -> bool {
     tested.any(|accesses| accesses.iter().any(|a| a.kind == AccessKind::Color))
 }
 
-/// The last step in which anything comes of what a resource holds.
+/// Returns the last step in which the contents of a resource have an effect.
 fn seen_until(plan: &Plan, resource: ResourceId) -> Option<StepId> {
     plan.step_ids().rev().find(|step| {
         let mut accesses = plan.passes_of(*step).iter().flat_map(|m| plan.graph().accesses_of(m.pass));
@@ -162,7 +162,7 @@ fn seen_until(plan: &Plan, resource: ResourceId) -> Option<StepId> {
     })
 }
 
-/// Whether what an attachment holds after a step is dropped or replaced before anybody but its own passes sees it.
+/// Returns whether the contents of an attachment after a step are discarded or replaced before other passes read them.
 fn dies(plan: &Plan, step: StepId, row: &Attachment) -> bool {
     if !row.stores() {
         return row.store == StoreOp::Discard;
@@ -175,7 +175,7 @@ fn dies(plan: &Plan, step: StepId, row: &Attachment) -> bool {
             .find(|a| (a.resource, a.mip, a.layer) == (row.resource, row.mip, row.layer) && !a.role.is_resolve());
         let members = plan.passes_of(later).iter().filter(|m| !matches!(m.join, Join::Inlined | Join::Resolve));
         let mut accesses = members.flat_map(|m| graph.accesses_of(m.pass));
-        // What is only written over in memory, in part, depends on nothing that was there.
+        // Partial writes do not depend on the older contents.
         let touched = accesses.any(|a| a.resource == row.resource && !a.kind.is_attachment() && a.mode == Mode::Read)
             || plan.full_screen_resolves(later).any(|(samples, _)| samples.resource == row.resource);
         match attached {
@@ -189,7 +189,7 @@ fn dies(plan: &Plan, step: StepId, row: &Attachment) -> bool {
     graph.resources()[row.resource.index()].kind == framegraph::Kind::Transient && !exported
 }
 
-/// Whether a copy goes over all that an attachment held.
+/// Returns whether a copy overwrites the whole attachment.
 fn is_copied_over(plan: &Plan, step: StepId, row: &Attachment) -> bool {
     let graph = plan.graph();
     let all = spec::texels(graph, row.resource, row.mip);
@@ -203,14 +203,14 @@ fn is_copied_over(plan: &Plan, step: StepId, row: &Attachment) -> bool {
     })
 }
 
-/// Graphs whose faults are all tried.
+/// Number of graphs whose faults are all tried.
 const GRAPHS: u64 = 100;
-/// How many faults of each kind must be shown.
+/// Minimum number of detected faults of each kind.
 const SHOWN: u64 = 5;
 
-/// The case of a seed: culled, so that everything is there for something that is compared, and half of the time with a
-/// place for every resource, so that there are places to be mixed up. Two textures that could be one and are never in one
-/// step are rare: later seeds make graphs of textures alone, where they are not.
+/// Creates the case of a seed. The graph is culled, so that everything influences a compared result. Half of the seeds
+/// give every resource its own slot, so that slots can be mixed up. Later seeds contain only textures, where two
+/// textures that could share memory are more common.
 fn prepared(runner: &mut Runner, seed: u64) -> Result<Option<Case>, String> {
     let alias = if seed.is_multiple_of(2) { Alias::Off } else { Alias::Pool };
     let options = Options { cull: true, alias, ..options(seed as u32) };
@@ -218,7 +218,7 @@ fn prepared(runner: &mut Runner, seed: u64) -> Result<Option<Case>, String> {
     Ok(runner.prepare(generate::graph(&mut Entropy::seeded(seed), &profile), &options)?.ok())
 }
 
-/// Whether the comparison shows a broken plan, with contents that may be anything made loud.
+/// Returns whether the comparison detects a broken plan, with poisoning.
 fn shows(runner: &mut Runner, seed: u64, fault: &Fault) -> Result<bool, String> {
     let Some(case) = prepared(runner, seed)? else { return Err("it was prepared before".into()) };
     let Fault { kind, row, field, .. } = fault;
@@ -247,7 +247,7 @@ fn a_broken_plan_is_seen() -> TestResult {
             }
             let Ok(verdict) = runner.run(&good, true)? else { continue };
             assert_eq!(verdict.differences, Vec::<String>::new(), "seed {seed}");
-            // What nobody may rely on, and what no pass shows, cannot tell.
+            // Graphs with undefined or unobserved contents are not conclusive.
             if verdict.unknown + verdict.unknown_digests + verdict.unobserved > 0 {
                 continue;
             }
@@ -258,7 +258,8 @@ fn a_broken_plan_is_seen() -> TestResult {
                     continue;
                 }
                 row.without_effect += 1;
-                // What was cleared to zero before is zero when it is cleared again: it is loud when it may be anything.
+                // A clear to zero of zero-filled contents has no effect; poisoning makes don't-care contents visible
+                // instead.
                 let twin = |f: &&Fault| (f.field, f.row, f.kind) == (fault.field, fault.row, Kind::LoadToDontCare);
                 let loud = match fault.kind {
                     Kind::LoadToClear => faults.iter().find(twin),

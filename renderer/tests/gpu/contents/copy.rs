@@ -1,14 +1,14 @@
-//! What a copy pass does, as a list of copies that the recorder and the oracle both follow.
+//! The work of a copy pass, as a list of copies that the recorder and the oracle both follow.
 //!
-//! A target whose older contents are dead is filled first: color and stencil with a pattern, depth (which no buffer can be
-//! copied into) with zeros. Then every source that fits the target goes over its corner, and something of each source is
-//! taken down in a buffer of the test's own.
+//! Targets without older contents are filled first: color and stencil with a pattern, depth with zeros, since buffers
+//! cannot be copied to depth. Then each source that fits is copied to the target's corner. A part of each source is
+//! also copied to a buffer of the test (a note).
 
 use super::code::planes;
 use super::spec::{layers, mips, planes_of, texels};
 use framegraph::{Access, AccessKind, Aspect, Desc, Format, Graph, Mode, PassId, ResourceId};
 
-/// A level and layer of a texture, by the row of the pass's accesses that names the texture.
+/// A level and layer of a texture. `access` is the row in the pass's accesses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Spot {
     pub access: usize,
@@ -19,34 +19,34 @@ pub struct Spot {
 /// One copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Copy {
-    /// A pattern into one plane.
+    /// Copies a pattern to one plane.
     Pattern { into: Spot, plane: Aspect },
-    /// Zeros into all planes.
+    /// Clears all planes to zero.
     Zero { into: Spot },
-    /// A corner of all planes into a corner.
+    /// Copies a corner of all planes to a corner.
     Texture { from: Spot, into: Spot, texels: [u32; 2] },
-    /// A pattern into the first bytes of a buffer.
+    /// Copies a pattern to the first bytes of a buffer.
     PatternBuffer { into: usize, bytes: u64 },
-    /// The first bytes of a buffer into those of another.
+    /// Copies the first bytes of a buffer to another.
     Buffer { from: usize, into: usize, bytes: u64 },
-    /// Rows of a color texture into a buffer, each at a multiple of `pitch` behind `offset`.
+    /// Copies rows of a color texture to a buffer at `offset`, with a distance of `pitch` bytes.
     Rows { from: Spot, into: usize, offset: u64, pitch: u32, texels: [u32; 2] },
-    /// The first rows of a plane into a note of the pass.
+    /// Copies the first rows of a plane to a note of the pass.
     Note { note: usize, from: Spot, plane: Aspect, pitch: u32, texels: [u32; 2] },
-    /// The first bytes of a buffer into a note of the pass.
+    /// Copies the first bytes of a buffer to a note of the pass.
     NoteBuffer { note: usize, from: usize, bytes: u64 },
 }
 
-/// Notes that a copy pass can leave.
+/// Maximum number of notes of a copy pass.
 pub const NOTES: usize = 2;
 
-/// Bytes of a note: all of the largest depth plane, which is copied whole or not at all.
+/// Size of a note in bytes: the largest depth plane, which can only be copied as a whole.
 pub const NOTE_BYTES: u64 = 8192;
 
-/// Bytes at the start of every buffer that are good arguments of indirect work.
+/// Number of bytes at the start of every buffer that are valid indirect arguments.
 const ARGUMENTS_BYTES: u64 = 16;
 
-/// What a copy pass does; `None` when it asks for what WebGPU cannot copy.
+/// Returns the copies of a pass; `None` if WebGPU does not support one of them.
 pub fn copies(graph: &Graph, pass: PassId) -> Option<Vec<Copy>> {
     let accesses = graph.accesses_of(pass);
     let mut copies = Vec::new();
@@ -67,13 +67,13 @@ pub fn copies(graph: &Graph, pass: PassId) -> Option<Vec<Copy>> {
     Some(copies)
 }
 
-/// What a copy pass takes down of a source, wherever its targets go.
+/// Returns the copy of a source to a note.
 fn note(graph: &Graph, note: usize, source: usize, from: &Access) -> Option<Copy> {
     let Some((format, samples)) = format_of(graph, from.resource) else {
         let bytes = graph.resources()[from.resource.index()].desc.bytes(super::FRAME).min(NOTE_BYTES);
         return Some(Copy::NoteBuffer { note, from: source, bytes });
     };
-    // Depth of 24 bits and samples cannot be copied into a buffer.
+    // 24-bit depth and multisampled textures cannot be copied to buffers.
     let copied = |p: &Aspect| *p != Aspect::Depth || format != Format::Depth24PlusStencil8;
     let plane = planes_of(format, from.range.aspect).into_iter().find(copied).filter(|_| samples == 1)?;
     let from_spot = spots(graph, source, from).first().copied()?;
@@ -83,7 +83,7 @@ fn note(graph: &Graph, note: usize, source: usize, from: &Access) -> Option<Copy
     Some(Copy::Note { note, from: from_spot, plane, pitch, texels: [width, height.min(NOTE_BYTES as u32 / pitch)] })
 }
 
-/// How many sources are not taken down, or only a level, layer or plane of them.
+/// Returns the number of sources without a note, or with a note of only one level, layer or plane.
 pub fn unobserved(graph: &Graph, pass: PassId, copies: &[Copy]) -> usize {
     let sources = graph.accesses_of(pass).iter().enumerate().filter(|(_, a)| a.kind == AccessKind::CopySource);
     let noted = |source: usize| {
@@ -102,7 +102,7 @@ fn format_of(graph: &Graph, resource: ResourceId) -> Option<(Format, u8)> {
     graph.resources()[resource.index()].desc.texture().map(|t| (t.format, t.samples))
 }
 
-/// The spots of an access, level by level.
+/// Returns the levels and layers of an access.
 fn spots(graph: &Graph, access: usize, row: &Access) -> Vec<Spot> {
     let layers = layers(graph, row);
     mips(graph, row).flat_map(|mip| layers.clone().map(move |layer| Spot { access, mip, layer })).collect()
@@ -132,7 +132,7 @@ fn fill(graph: &Graph, row: &Access, target: usize, copies: &mut Vec<Copy>) -> O
     Some(())
 }
 
-/// Rows of a buffer in a copy begin at multiples of this.
+/// Alignment of rows in buffers, in bytes.
 const PITCH: u32 = 256;
 
 fn over(graph: &Graph, (source, from): (usize, &Access), (target, into): (usize, &Access), copies: &mut Vec<Copy>) {
@@ -146,7 +146,7 @@ fn over(graph: &Graph, (source, from): (usize, &Access), (target, into): (usize,
                 let a = texels(graph, from.resource, from_spot.mip);
                 let b = texels(graph, into.resource, into_spot.mip);
                 let texels = [a[0].min(b[0]), a[1].min(b[1])];
-                // Depth and samples are copied whole or not at all.
+                // Depth and multisampled textures can only be copied as a whole.
                 if (samples == 1 && !format.is_depth_stencil()) || a == b {
                     copies.push(Copy::Texture { from: from_spot, into: into_spot, texels });
                 }

@@ -1,40 +1,39 @@
-//! The oracle: runs a graph as it was declared, pass after pass, on the CPU.
+//! The oracle: runs a graph as declared, pass by pass, on the CPU.
 //!
-//! It reads the declaration and nothing else: no plan, no culling, no merging, no memory that is shared. Every part of
-//! every resource has contents of its own. Contents that nobody may rely on are unknown, and so is all that depends on
-//! them.
+//! It reads only the declaration, not the plan: there is no culling, merging or aliasing. Every part of every resource
+//! has its own contents. Undefined contents are unknown, and so is everything derived from them.
 
 use super::code::{LOOKS, STENCIL_STEP, Texel, chosen, coding, fold, look, mix, planes, texel_hash, word};
 use super::copy::NOTES;
 use super::spec::{self, Class, Paint};
 use framegraph::{Access, AccessKind, Aspect, Desc, Graph, Kind, Mode, PassId, PassKind, ResourceId};
 
-/// One level of one layer of one plane; unknown when nobody may rely on it.
+/// Contents of one level of one layer of one plane; `None` if they are undefined.
 pub type Part = Option<Vec<Texel>>;
 
-/// What a resource holds.
+/// Contents of a resource.
 #[derive(Clone, Debug)]
 pub enum Contents {
-    /// By `(mip · layers + layer) · planes + plane`.
+    /// Parts at index `(mip · layers + layer) · planes + plane`.
     Texture(Vec<Part>),
     Buffer(Option<Vec<u8>>),
 }
 
-/// What a frame leaves behind.
+/// Results of a frame.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// By resource.
+    /// Contents by resource.
     pub contents: Vec<Contents>,
-    /// The digest of each shader pass; none for copies, and where it is unknown.
+    /// Digests of shader passes; `None` for copy passes and undefined digests.
     pub digests: Vec<Option<u32>>,
-    /// The notes of each copy pass; none where it leaves none, or where they are unknown.
+    /// Notes of copy passes; `None` if missing or undefined.
     pub notes: Vec<[Option<Vec<u8>>; NOTES]>,
 }
 
-/// The images of earlier frames, newest first, by the resource that a frame writes.
+/// History images of earlier frames, newest first, by the resource that a frame writes.
 pub type Past = Vec<Vec<Contents>>;
 
-/// Runs `frame`. `entry` is what imports hold, `past` what earlier frames left of histories.
+/// Runs a frame. `entry` has the contents of imports, `past` the history images of earlier frames.
 pub fn run(graph: &Graph, frame: u32, entry: &[Option<Contents>], past: &Past) -> Outcome {
     let ids = graph.resource_ids().zip(graph.resources());
     let contents = ids.map(|(id, row)| match row.kind {
@@ -53,7 +52,7 @@ pub fn run(graph: &Graph, frame: u32, entry: &[Option<Contents>], past: &Past) -
     Outcome { contents: machine.contents, digests, notes: machine.notes }
 }
 
-/// Unknown contents, or zeros.
+/// Returns undefined contents, or zeros.
 pub fn blank(graph: &Graph, resource: ResourceId, zero: bool) -> Contents {
     match graph.resources()[resource.index()].desc {
         Desc::Buffer(b) => Contents::Buffer(zero.then(|| vec![0; b.bytes(super::FRAME) as usize])),
@@ -69,14 +68,14 @@ pub fn blank(graph: &Graph, resource: ResourceId, zero: bool) -> Contents {
     }
 }
 
-/// The index of a part.
+/// Returns the index of a part.
 pub fn part_index(graph: &Graph, resource: ResourceId, mip: u8, layer: u16, plane: Aspect) -> usize {
     let Desc::Texture(t) = graph.resources()[resource.index()].desc else { return 0 };
     let count = planes(t.format).len();
     (usize::from(mip) * usize::from(t.layers) + usize::from(layer)) * count + spec::plane_index(t.format, plane)
 }
 
-/// The frame in the making.
+/// State of the frame that is being executed.
 pub struct Machine<'g> {
     pub graph: &'g Graph,
     pub frame: u32,
@@ -85,7 +84,7 @@ pub struct Machine<'g> {
 }
 
 impl Machine<'_> {
-    /// Runs one pass; returns its digest.
+    /// Runs one pass and returns its digest.
     fn pass(&mut self, pass: PassId) -> Option<u32> {
         if self.graph.passes()[pass.index()].kind == PassKind::Copy {
             self.copy(pass);
@@ -96,7 +95,7 @@ impl Machine<'_> {
         let digest = self.digest(pass, salt);
         let with_arguments = self.with_arguments(pass, digest, compute);
         let accesses = self.graph.accesses_of(pass);
-        // Depth is tested as it was.
+        // Color is tested against the depth before the pass.
         for (row, access) in accesses.iter().enumerate().filter(|(_, a)| a.kind == AccessKind::Color) {
             self.paint(row, access, Aspect::All, salt, with_arguments);
             self.paint_where_tested(pass, row, access, salt, digest);
@@ -120,8 +119,8 @@ impl Machine<'_> {
                 _ => {}
             }
         }
-        // Resolves are made when everything is drawn. All samples of a texel are alike, so every mode makes the same of them;
-        // `resolve` tells modes apart.
+        // Resolves run after all drawing. All samples of a texel are equal here, so that every mode gives the same
+        // result; the test `resolve` covers the modes.
         for access in accesses.iter().filter(|a| a.kind == AccessKind::Resolve) {
             let depth = access.slot == Access::DEPTH;
             let from = accesses.iter().find(|a| match a.kind {
@@ -160,7 +159,7 @@ impl Machine<'_> {
         }
     }
 
-    /// What everything that the pass reads folds into.
+    /// Returns the digest of everything that the pass reads.
     fn digest(&self, pass: PassId, salt: u32) -> Option<u32> {
         let accesses = self.graph.accesses_of(pass);
         let mut hash = salt;
@@ -182,7 +181,7 @@ impl Machine<'_> {
         Some(mix(hash, 0))
     }
 
-    /// Folds all layers of some levels; with `samples`, the one layer as often as it has samples.
+    /// Adds all layers of some levels to a digest. With `samples`, adds the one layer once per sample.
     fn fold_texture(
         &self,
         mut hash: u32,
@@ -207,8 +206,8 @@ impl Machine<'_> {
         Some(hash)
     }
 
-    /// The digest of what takes its arguments from a buffer. Each triangle covers everything, so what the last one of the
-    /// last instance draws is what stays.
+    /// Returns the digest of indirect work. Each triangle covers the whole target, so the last triangle of the last
+    /// instance remains.
     fn with_arguments(&self, pass: PassId, digest: Option<u32>, compute: bool) -> Option<u32> {
         let Some(row) = spec::indirect(self.graph, pass) else { return digest };
         let bytes = self.bytes(self.graph.accesses_of(pass)[row].resource)?;
@@ -222,7 +221,7 @@ impl Machine<'_> {
         Some(mix(mix(digest?, last_instance), first_of_last_triangle))
     }
 
-    /// Paints every part of a write.
+    /// Writes every part of an access.
     fn paint(&mut self, row: usize, access: &Access, plane: Aspect, salt: u32, digest: Option<u32>) {
         let Desc::Texture(desc) = self.graph.resources()[access.resource.index()].desc else { return };
         let coding = coding(desc.format, plane);
@@ -255,7 +254,7 @@ impl Machine<'_> {
         }
     }
 
-    /// Paints a color attachment once more where depth and stencil that are only tested let it.
+    /// Draws a color attachment again where read-only depth and stencil tests pass.
     fn paint_where_tested(&mut self, pass: PassId, row: usize, access: &Access, salt: u32, digest: Option<u32>) {
         let Some(tested) = spec::tested(self.graph, pass) else { return };
         let tested = &self.graph.accesses_of(pass)[tested];
@@ -313,12 +312,12 @@ impl Machine<'_> {
     }
 }
 
-/// Columns and rows, row by row.
+/// Iterates over columns and rows, row by row.
 pub fn places(width: u32, height: u32) -> impl Iterator<Item = (u32, u32)> {
     (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)))
 }
 
-/// Folds words of a buffer.
+/// Adds words of a buffer to a digest.
 fn fold_words(hash: u32, bytes: &[u8]) -> u32 {
     let words: Vec<u32> = bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
     (0..LOOKS).fold(hash, |hash, number| fold(hash, words[look(number, words.len() as u32) as usize]))

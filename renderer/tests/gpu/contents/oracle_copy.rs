@@ -1,4 +1,4 @@
-//! The oracle's copies.
+//! Copy passes of the oracle.
 
 use super::code::{bytes_of, coding, planes, texel_hash, word};
 use super::copy::{Copy, Spot, copies};
@@ -11,7 +11,7 @@ impl Machine<'_> {
     pub fn copy(&mut self, pass: PassId) {
         let accesses = self.graph.accesses_of(pass);
         let salt = spec::salt(pass, self.frame);
-        // What is cleared is cleared in front of all copies.
+        // Clears run before all copies.
         for access in accesses.iter().filter(|a| a.mode == Mode::Clear) {
             self.clear(access);
         }
@@ -109,7 +109,7 @@ impl Machine<'_> {
         }
     }
 
-    /// Rows of a plane as a buffer takes them, each with its first byte.
+    /// Returns the rows of a plane as they are copied to a buffer, each with its offset in bytes.
     fn rows(
         &self,
         resource: ResourceId,
@@ -128,7 +128,7 @@ impl Machine<'_> {
         Some((0..rows).map(row).collect())
     }
 
-    /// Puts pieces into a buffer; unknown pieces make it unknown.
+    /// Writes pieces to a buffer; undefined pieces make the buffer undefined.
     fn put_into_buffer(&mut self, resource: ResourceId, pieces: Option<Vec<(usize, Vec<u8>)>>) {
         let Contents::Buffer(bytes) = &mut self.contents[resource.index()] else { return };
         *bytes = bytes.take().zip(pieces).map(|(mut bytes, pieces)| {

@@ -1,5 +1,5 @@
-//! Reads what textures of any format and buffers hold, as codes: by a shader, because samples and 24-bit depth cannot be
-//! copied. Works on the device alone, beside the executor.
+//! Reads textures of any format and buffers as codes. Uses a shader, since multisampled and 24-bit depth textures
+//! cannot be copied to buffers. Works without an executor.
 
 use super::code::{Coding, Numeric};
 use framegraph::Aspect;
@@ -11,18 +11,18 @@ use wgpu::{
     TextureViewDescriptor, TextureViewDimension,
 };
 
-/// Something to be read.
+/// A texture part or buffer range to read.
 pub enum Item<'a> {
     /// One level of one layer of one plane.
     Part { texture: &'a wgpu::Texture, plane: Aspect, coding: Coding, mip: u32, layer: u32 },
-    /// Some bytes of a buffer.
+    /// A range of a buffer, in bytes.
     Buffer { buffer: &'a wgpu::Buffer, first: u64, bytes: u64 },
 }
 
-/// What a texel shows whose samples differ.
+/// Result for a texel whose samples differ.
 pub const SAMPLES_DIFFER: u32 = 0xDEAD_BEEF;
 
-/// Reads parts of textures. See the [module](self).
+/// Reads parts of textures. See the [module documentation](self).
 pub struct Probe {
     gpu: Gpu,
     pipelines: RefCell<HashMap<(Numeric, bool), ComputePipeline>>,
@@ -33,7 +33,7 @@ impl Probe {
         Self { gpu: gpu.clone(), pipelines: RefCell::default() }
     }
 
-    /// The words of each item: four for a texel, row by row.
+    /// Returns the words of each item: four per texel, row by row.
     pub fn read(&self, items: &[Item<'_>]) -> Result<Vec<Vec<u32>>, ReadbackError> {
         let mut offsets = vec![0u64];
         for item in items {

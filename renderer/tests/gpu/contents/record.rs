@@ -1,4 +1,4 @@
-//! Does on the device what `spec` says of a pass.
+//! Records the work that `spec` defines for a pass.
 
 use super::code::{Coding, Numeric, STENCIL_STEP, coding};
 use super::shader::{Out, PARAMS, Signature};
@@ -12,15 +12,15 @@ use std::num::NonZeroU64;
 use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::{ColorWrites, CompareFunction, StencilFaceState, StencilOperation, StencilState, TextureViewDimension};
 
-/// What recorders share.
+/// Shared state of all recorders.
 pub struct Stage {
-    /// The number of the frame, which salts every pass.
+    /// Frame number, which salts the digest of every pass.
     pub frame: u32,
-    /// Where each pass notes its digest, by its row.
+    /// Buffer with the digest of each pass.
     pub witness: wgpu::Buffer,
-    /// Where copy passes leave what nothing else takes, [`NOTE_BYTES`](super::copy::NOTE_BYTES) each.
+    /// Buffer with the notes of copy passes, [`NOTE_BYTES`](super::copy::NOTE_BYTES) each.
     pub notes: wgpu::Buffer,
-    /// Name and text of each shader.
+    /// Name and source of each shader.
     shaders: Mutex<HashMap<Signature, Arc<(String, String)>>>,
 }
 
@@ -45,7 +45,7 @@ pub fn record(cx: &mut Cx<'_>, pass: PassId, stage: &Stage) -> Result<(), Record
     }
 }
 
-/// One shader pass in the making.
+/// Recorder of one shader pass.
 struct Recorder<'r, 'a> {
     cx: &'r mut Cx<'a>,
     graph: &'a Graph,
@@ -63,11 +63,11 @@ struct Work {
     coding: Option<Coding>,
     tag: u32,
     paint: Paint,
-    /// What is written, where it is bound.
+    /// Output, if it is a binding.
     target: Option<Binding>,
     depth: Depth,
     z: f32,
-    /// The stencil value written or tested.
+    /// Stencil value to write or test.
     stencil: u32,
     takes_arguments: bool,
 }
@@ -112,7 +112,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
         self.graph.accesses_of(self.pass)
     }
 
-    /// What stands behind a part of an access.
+    /// Returns the resource of a part of an access.
     fn bound(&mut self, access: usize, part: ViewPart) -> Result<BoundResource, RecordError> {
         let id = self.cx.accesses().nth(access).ok_or_else(|| RecordError::custom("no such access"))?;
         self.cx.resource_part(id, part)
@@ -135,7 +135,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
         })
     }
 
-    /// Everything that the pass writes; color first, which tests depth as it was.
+    /// Records all outputs of the pass. Color comes first, since it is tested against the depth before the pass.
     fn all(mut self) -> Result<(), RecordError> {
         let mut worked = false;
         for kind in [AccessKind::Color, AccessKind::Depth, AccessKind::StorageWrite] {
@@ -231,7 +231,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
         coding(self.format(access), plane)
     }
 
-    /// One draw or dispatch.
+    /// Records one draw or dispatch.
     fn work(&mut self, work: Work) -> Result<(), RecordError> {
         let inputs = self.inputs.iter().map(|i| i.class).collect();
         let stage = match self.cx.targets().layers {
@@ -242,7 +242,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
         let signature = Signature { inputs, out: work.out, stage };
         let made = self.stage.shader(&signature);
         let shader = Shader::new(&made.0, &made.1);
-        // Storage is written by every fragment of every triangle: only attachments have a last one.
+        // All fragments of all triangles write to storage; only attachments have a last triangle.
         let stored = matches!(work.out, Out::Texture(_) | Out::Buffer);
         let indirect = self.indirect.clone().filter(|_| work.takes_arguments && (self.compute || !stored));
         let params = self.cx.uniforms(&self.params(&work, &signature, indirect.is_some()));
@@ -280,7 +280,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
         Ok(())
     }
 
-    /// The words of `Params`.
+    /// Returns the words of `Params`.
     fn params(&self, work: &Work, signature: &Signature, indirect: bool) -> Vec<u32> {
         let [width, height] = self.cx.targets().extent;
         let (mask, scale) = work.coding.map_or(([0; 4], [1.0; 4]), |c| (c.mask, c.scale));
@@ -308,7 +308,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
     }
 }
 
-/// A stencil state that compares and then does the same in all cases that pass.
+/// Returns a stencil state with one comparison, and one operation if it passes.
 fn stencil(compare: CompareFunction, pass_op: StencilOperation, write_mask: u32) -> StencilState {
     let keep = StencilOperation::Keep;
     let face = StencilFaceState { compare, fail_op: keep, depth_fail_op: keep, pass_op };

@@ -1,4 +1,4 @@
-//! Does on the device what `copy` says of a pass.
+//! Records the copies that `copy` defines for a pass.
 
 use super::code::{bytes_of, coding, texel_hash, word};
 use super::copy::{Copy, NOTE_BYTES, NOTES, Spot, copies};
@@ -80,7 +80,7 @@ pub fn record(cx: &mut Cx<'_>, pass: PassId, stage: &Stage) -> Result<(), Record
     Ok(())
 }
 
-/// The first byte of a note.
+/// Returns the offset of a note in bytes.
 pub fn note_offset(pass: PassId, note: usize) -> u64 {
     (pass.index() * NOTES + note) as u64 * NOTE_BYTES
 }
@@ -112,7 +112,7 @@ fn aspect(plane: Aspect) -> TextureAspect {
     }
 }
 
-/// The bytes of a pattern with rows of `pitch` bytes, and its size.
+/// Returns the bytes of a pattern, its row distance in bytes, and its size in texels.
 fn pattern(graph: &Graph, row: &Access, into: Spot, plane: Aspect, salt: u32) -> (Vec<u8>, u32, [u32; 2]) {
     let desc = graph.resources()[row.resource.index()].desc;
     let format = desc.texture().map_or(Format::R8Unorm, |t| t.format);
@@ -131,7 +131,7 @@ fn pattern(graph: &Graph, row: &Access, into: Spot, plane: Aspect, salt: u32) ->
     (bytes, pitch, [width, height])
 }
 
-/// A buffer of these bytes, for one frame.
+/// Creates a buffer with these bytes for one frame.
 fn upload(cx: &Cx<'_>, bytes: &[u8]) -> wgpu::Buffer {
     let buffer = cx.gpu().device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("pattern"),

@@ -1,31 +1,32 @@
-//! The shaders of random passes: one text for each list of inputs and kind of output, everything else in constants.
+//! Shaders of random passes. There is one source for each list of inputs and kind of output; everything else is in
+//! uniforms.
 //!
-//! The vertex stage of a raster pass works the digest out, and hands it down flat: it is compiled once for each list of
-//! inputs, and looking at every input from every fragment would be slow.
+//! The vertex stage of a raster pass computes the digest and passes it on with flat interpolation. Computing it in
+//! every fragment would be slow.
 
 use super::code::{LOOKS, Numeric};
 use super::spec::Class;
 use framegraph::Format;
 use std::fmt::Write;
 
-/// What one draw or dispatch writes.
+/// Output of one draw or dispatch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Out {
-    /// Nothing but the witness.
+    /// Only the witness buffer.
     Nothing,
-    /// A color attachment of that slot, of floats or of unsigned integers.
+    /// A color attachment at this slot, of floats or unsigned integers.
     Color(u8, Numeric),
-    /// The depth plane of the attachment.
+    /// Depth plane of the attachment.
     Depth,
-    /// The stencil plane of the attachment: one of its values.
+    /// One stencil value of the attachment.
     Stencil,
-    /// One level of a storage texture, all its layers.
+    /// One level of a storage texture, with all its layers.
     Texture(Format),
     /// A storage buffer.
     Buffer,
 }
 
-/// What tells shaders apart.
+/// Identity of a shader.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Signature {
     pub inputs: Vec<Class>,
@@ -33,7 +34,7 @@ pub struct Signature {
     pub stage: Stage,
 }
 
-/// Where a shader runs.
+/// Shader stages of the pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Stage {
     Compute,
@@ -42,7 +43,7 @@ pub enum Stage {
     Layered,
 }
 
-/// The words of `Params` before the lists.
+/// Number of words in `Params` before the lists.
 pub const PARAMS: usize = 20;
 
 const COMMON: &str = "
@@ -76,20 +77,20 @@ fn fold4(hash: u32, codes: vec4u) -> u32 {
 ";
 
 impl Signature {
-    /// Inputs whose values are scaled to codes, each with a row of `scales` and `masks`.
+    /// Returns the number of inputs whose values are scaled to codes. Each has a row in `scales` and `masks`.
     pub fn lists(&self) -> usize {
         self.inputs.iter().filter(|c| scaled(**c)).count()
     }
 
-    /// A name that tells the shader apart from all others.
+    /// Returns a unique name of the shader.
     pub fn name(&self) -> String {
         format!("{:?} -> {:?} {:?}", self.inputs, self.out, self.stage)
     }
 
-    /// The `@binding` of the first input.
+    /// `@binding` number of the first input.
     pub const FIRST: u32 = 2;
 
-    /// The WGSL.
+    /// Generates the WGSL source.
     pub fn text(&self) -> String {
         let lists = self.lists().max(1);
         let mut text = format!(
@@ -125,7 +126,7 @@ impl Signature {
     }
 }
 
-/// Whether an input's values are scaled to codes.
+/// Returns whether the values of an input are scaled to codes.
 fn scaled(class: Class) -> bool {
     match class {
         Class::Texture(numeric, _) => numeric == Numeric::Float,
@@ -167,7 +168,7 @@ fn storage_name(format: Format) -> &'static str {
     }
 }
 
-/// The function that folds one input into the digest.
+/// Generates the function that adds one input to the digest.
 fn function(class: Class, index: usize, list: usize) -> String {
     let looked = |count: &str, body: &str| {
         format!(
@@ -223,7 +224,7 @@ fn function(class: Class, index: usize, list: usize) -> String {
     format!("fn input{index}(start: u32) -> u32 {{\n  var hash = start;\n{body}\n  return hash;\n}}\n")
 }
 
-/// The statements that write a storage texture or buffer: `index` and `stride` are those of the invocation.
+/// Generates the statements that write a storage texture or buffer. `index` and `stride` are those of the invocation.
 fn stores(out: Out, digest: &str) -> String {
     match out {
         Out::Texture(format) => {
