@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn an_object_is_made_once_and_dropped_with_age() {
+    fn an_object_is_created_once_and_dropped_with_age() {
         let mut cache = Cache::default();
         assert_eq!([get(&cache, "a"), get(&cache, "b"), get(&cache, "a")], [0, 1, 0]);
         cache.begin_frame(2);
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn who_asks_again_needs_no_hash_until_it_asks_for_another_or_the_object_is_gone() {
+    fn repeated_requests_need_no_hash() {
         let (mut cache, mut last) = (Cache::default(), LastEntry::default());
         assert_eq!(get_repeated(&cache, &mut last, "a"), (0, true), "made");
         assert_eq!(get_repeated(&cache, &mut last, "a"), (0, false));
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_made_is_not_kept() {
+    fn failed_objects_are_not_cached() {
         let cache = Cache::<(), ()>::default();
         assert_eq!(cache.get(0, |()| true, || Err("no")), Err("no"));
         assert_eq!(cache.counts(), CacheCounts::default());
@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn threads_that_ask_at_once_get_one_object() {
+    fn concurrent_requests_get_one_object() {
         let cache = Cache::default();
         let words = ["one", "two", "six", "ten"];
         let asked = || words.map(|word| get(&cache, word));

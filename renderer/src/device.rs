@@ -7,6 +7,7 @@ pub(crate) mod draw_texel;
 pub(crate) mod error;
 pub(crate) mod format;
 pub(crate) mod gpu;
+pub(crate) mod open_error;
 pub(crate) mod pipeline_cache;
 pub(crate) mod pixels;
 pub(crate) mod readback;

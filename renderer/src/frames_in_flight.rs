@@ -169,14 +169,14 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_waits_for_the_one_that_many_before_it() {
+    fn a_frame_waits_for_the_oldest_frame_in_flight() {
         assert_eq!(waited(1, 4), [(1, 0), (2, 1), (3, 2)]);
         assert_eq!(waited(2, 5), [(2, 0), (3, 1), (4, 2)]);
         assert_eq!(waited(3, 3), []);
     }
 
     #[test]
-    fn fewer_frames_than_before_take_effect_with_the_next_one() {
+    fn a_smaller_maximum_takes_effect_in_the_next_frame() {
         let mut queued = VecDeque::from([0, 1, 2]);
         let mut done = Vec::new();
         let room = make_room(&mut queued, NonZeroU32::MIN, |_| Ok::<_, ()>(()), |frame| done.push(frame));
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_waited_for_stays_queued() {
+    fn a_failed_wait_keeps_the_frame_queued() {
         let mut queued = VecDeque::from([0, 1]);
         assert_eq!(make_room(&mut queued, FramesInFlight::DEFAULT, |_| Err("lost"), drop), Err("lost"));
         assert_eq!(queued.len(), 2);

@@ -81,7 +81,7 @@ mod tests {
     use std::hash::BuildHasher;
 
     #[test]
-    fn published_values_are_met() {
+    fn hashes_equal_published_values() {
         // From the test suite of the reference implementation.
         assert_eq!(fnv([]), 0xcbf2_9ce4_8422_2325);
         assert_eq!(fnv(*b"a"), 0xaf63_dc4c_8601_ec8c);
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbouring_keys_spread() {
+    fn similar_keys_spread() {
         let hashed = |key: (u32, u8, &str)| KeyHashBuilder::default().hash_one(key);
         let keys = (0..64u32).flat_map(|a| (0..16u8).map(move |b| (a, b, "name")));
         let hashes: Vec<u64> = keys.map(hashed).collect();

@@ -1,7 +1,7 @@
 //! Inspection of a frame: reads any version of any texture as numbers and as an image. Level, layer, plane and sample
 //! can be chosen.
 //!
-//! An [`Inspector`] compiles a second frame and executes it with its own executor. It ends with the requested
+//! An [`Inspector`] compiles a second frame and executes it with its own executor. The second frame ends with the requested
 //! version ([`framegraph::Graph::ending_with`]) and one added pass that reads it. Memoryless attachments and inlined
 //! intermediates exist in memory in the second plan, since the added pass reads them. The original plan and its
 //! executor are not changed.
@@ -90,8 +90,8 @@ impl Inspector {
 
     /// Inspects the texture that `request` names, in the frame that `executor` would execute next.
     ///
-    /// Imports that the inspected passes write are copied first, so the caller's imports stay unchanged. This does not
-    /// cover writes of copy passes and undeclared writes of recorders.
+    /// Imports that the inspected passes write are copied first, so the caller's imports stay unchanged. Undeclared
+    /// writes of recorders are not covered.
     ///
     /// # Errors
     /// Fails with [`InspectError`]. If a name does not exist, the error lists the names that do.

@@ -37,7 +37,7 @@ mod tests {
     use crate::execute::error::{ExecuteError, RecordError};
 
     #[test]
-    fn names_in_errors_stay_on_their_line_and_are_cut() {
+    fn names_in_errors_are_short_and_on_one_line() {
         let long = format!("bl\u{1b}[31mur\n{}", "x".repeat(1 << 20));
         let pass = Named { id: PassId::at(0), name: long.clone() };
         let resource = Named { id: ResourceId::at(0), name: long.clone() };
@@ -50,10 +50,10 @@ mod tests {
             },
             ExecuteError::Refused { pass, message: refused },
         ];
-        for told in errors.map(|error| error.to_string()) {
-            assert!(told.starts_with("pass `bl\\u{1b}[31mur\\nxxx"), "{}", &told[..99]);
+        for report in errors.map(|error| error.to_string()) {
+            assert!(report.starts_with("pass `bl\\u{1b}[31mur\\nxxx"), "{}", &report[..99]);
             // Two names of 120 characters, and wgpu's message of at most 4,000.
-            assert!(told.len() < 5000 && !told.contains(char::is_control), "{} bytes", told.len());
+            assert!(report.len() < 5000 && !report.contains(char::is_control), "{} bytes", report.len());
         }
     }
 }

@@ -112,7 +112,7 @@ mod tests {
     /// Checks affinities as reported by the system: a pinned thread may run on one core. The last core is not assigned.
     #[cfg(target_os = "linux")]
     #[test]
-    fn threads_are_pinned_as_long_as_there_are_cores() -> Result<(), WorkersError> {
+    fn threads_are_pinned_while_cores_last() -> Result<(), WorkersError> {
         let cores = core_affinity::get_core_ids().unwrap_or_default();
         let workers = Workers::with_threads(cores.len() + 2)?;
         let pool = workers.pool().ok_or(WorkersError { reason: "no pool".into() })?;
@@ -125,7 +125,7 @@ mod tests {
 
     /// Checks that all items are processed, the first one by the caller.
     #[test]
-    fn every_item_is_worked_on_once() -> Result<(), WorkersError> {
+    fn every_item_is_processed_once() -> Result<(), WorkersError> {
         for threads in [0, 1, 2, 5] {
             let workers = Workers::with_threads(threads)?;
             assert_eq!(workers.threads(), threads.max(1));

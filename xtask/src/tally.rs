@@ -126,11 +126,11 @@ const KNOWN: [Known; 13] = [
     Known { tests: &["one_depth_of_four_samples_is_that_asked_for"], reason: "depth of several samples" },
     Known { tests: &["inline, Rg11b10Ufloat"], reason: "cannot draw into it" },
     Known {
-        tests: &["a_trace_is_json_with_nested_events_on_both_sides", "steps_are_timed_on_both_sides"],
+        tests: &["a_trace_is_json_with_nested_events_on_both_sides", "steps_are_timed_on_cpu_and_gpu"],
         reason: "has no timestamps",
     },
     Known {
-        tests: &["the_layers_are_silent_about_what_is_placed", "the_layers_are_silent_about_whole_frames"],
+        tests: &["the_validation_layers_accept_placed_resources", "the_layers_are_silent_about_whole_frames"],
         reason: "no validation layers that find hand-overs",
     },
     // Streams are replayed where the layers are there to say whether they suffice.
@@ -146,10 +146,10 @@ const KNOWN: [Known; 13] = [
     // Textures are placed on Vulkan alone.
     Known {
         tests: &[
-            "a_chain_in_one_block_is_the_chain_apart",
+            "a_placed_chain_equals_the_unshared_chain",
             "frames_in_one_block_of_memory_are_the_frames_apart",
-            "sizes_that_the_driver_was_not_asked_for_are_refused",
-            "the_layers_are_silent_about_what_is_placed",
+            "plans_without_driver_sizes_are_rejected",
+            "the_validation_layers_accept_placed_resources",
             "the_layers_are_silent_about_whole_frames",
         ],
         reason: "places no textures; only Vulkan does",

@@ -184,7 +184,7 @@ mod tests {
     use framegraph::Order;
 
     #[test]
-    fn each_mode_takes_away_what_it_names() {
+    fn each_mode_turns_off_what_it_names() {
         let base = Options { order: Order::Optimized, ..Options::for_frame(8, 8) };
         let set = |mode: Mode| {
             let (mut plan, mut execute) = (base, ExecutorOptions::default());
@@ -200,17 +200,17 @@ mod tests {
     }
 
     #[test]
-    fn names_are_read_and_others_refused() {
+    fn debug_modes_are_parsed() {
         let all = Mode::ALL.map(Mode::name).join(",");
         assert_eq!(all.parse(), Ok(Modes(Mode::ALL.to_vec())));
         for wrong in ["", "no-merge,", "fast", "No-Merge"] {
-            let told = wrong.parse::<Modes>().map_err(|e| e.to_string());
-            assert!(told.is_err_and(|e| e.contains("is no debug mode; there are no-cull,")), "{wrong}");
+            let message = wrong.parse::<Modes>().map_err(|e| e.to_string());
+            assert!(message.is_err_and(|e| e.contains("is not a debug mode; use one of no-cull,")), "{wrong}");
         }
     }
 
     #[test]
-    fn a_difference_is_counted_by_pixels_and_codes() -> Result<(), ()> {
+    fn differences_are_counted_in_pixels_and_steps() -> Result<(), ()> {
         let outcomes = bisect(|mode| {
             Ok(match mode {
                 Some(Mode::NoMerge) => vec![1, 2, 3, 4, 5, 6, 7, 8],

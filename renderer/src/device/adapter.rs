@@ -1,4 +1,4 @@
-//! Adapter selection: prefers hardware over software and is_consequence environment variables.
+//! Adapter selection: prefers hardware over software and follows environment variables.
 
 use wgpu::{Adapter, AdapterInfo, Backend, Backends, DeviceType, Instance, Limits};
 
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn a_request_filters_by_name_and_interface() {
+    fn a_request_filters_by_name_and_graphics_api() {
         let pipe = info("llvmpipe (LLVM)", DeviceType::Cpu, Backend::Vulkan);
         let noop = info("nothing", DeviceType::Other, Backend::Noop);
         assert!(AdapterRequest::default().accepts(&pipe) && !AdapterRequest::default().accepts(&noop));
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn interfaces_are_told_from_words_that_name_none() {
+    fn unknown_graphics_apis_are_reported() {
         let both = AdapterRequest::of_backends("vulkan, GL");
         assert_eq!((both.backends, both.unknown.len()), (Backends::VULKAN | Backends::GL, 0));
         let typed = AdapterRequest::of_backends("vulcan,gl");

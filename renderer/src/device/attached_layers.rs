@@ -82,7 +82,7 @@ mod tests {
     use super::confirmed;
 
     #[test]
-    fn an_offer_is_taken_where_both_layers_show_their_number() {
+    fn multiview_is_used_if_both_layers_are_correct() {
         assert_eq!(confirmed(6, &[Some(51), Some(102)]), 6);
         for wrong in [[Some(51), Some(0)], [Some(51), Some(51)], [Some(102), Some(51)], [None, None]] {
             assert_eq!(confirmed(6, &wrong), 1, "{wrong:?}");

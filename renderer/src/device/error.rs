@@ -27,7 +27,7 @@ pub enum DeviceError {
     /// The device is lost with all its resources. Open a new device.
     #[error("the device was lost while {doing}: {reason}; open a new device and create all resources again")]
     Lost {
-        /// Operation that failed, for the text "while …" or "refused …".
+        /// Operation that failed, for the text "while …" or "rejected …".
         doing: &'static str,
         /// Reason given by the driver.
         reason: String,
@@ -35,13 +35,13 @@ pub enum DeviceError {
     /// The device is out of memory.
     #[error("the device is out of memory while {doing}; use a smaller frame, fewer samples or smaller textures")]
     OutOfMemory {
-        /// Operation that failed, for the text "while …" or "refused …".
+        /// Operation that failed, for the text "while …" or "rejected …".
         doing: &'static str,
     },
     /// wgpu rejected a call: wrong usage, or not supported by the device.
-    #[error("wgpu refused {doing}: {message}")]
+    #[error("wgpu rejected {doing}: {message}")]
     Refused {
-        /// Operation that failed, for the text "while …" or "refused …".
+        /// Operation that failed, for the text "while …" or "rejected …".
         doing: &'static str,
         /// Reason given by wgpu, on one line.
         message: String,
@@ -49,7 +49,7 @@ pub enum DeviceError {
     /// The driver failed internally.
     #[error("the driver failed while {doing}: {message}")]
     Internal {
-        /// Operation that failed, for the text "while …" or "refused …".
+        /// Operation that failed, for the text "while …" or "rejected …".
         doing: &'static str,
         /// Reason given by the driver, on one line.
         message: String,
@@ -204,14 +204,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_loss_stays_and_an_uncaught_error_is_told_once() {
+    fn the_first_loss_is_kept_and_errors_are_reported_once() {
         let errors = DeviceErrors::default();
         assert_eq!(errors.check("testing"), Ok(()));
         let refused =
             wgpu::Error::Validation { source: "x".into(), description: "Validation Error\n\nCaused by:\n  no".into() };
         errors.uncaught(&refused);
-        let told = errors.check("testing").map_err(|e| e.to_string());
-        assert_eq!(told, Err("wgpu refused something outside of a frame: no".into()));
+        let report = errors.check("testing").map_err(|e| e.to_string());
+        assert_eq!(report, Err("wgpu rejected something outside of a frame: no".into()));
         assert_eq!(errors.check("testing"), Ok(()));
         errors.report_lost("unplugged");
         errors.report_lost("again");

@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn uses_map_one_to_one() {
+    fn usages_map_one_to_one() {
         let all = Usage::ATTACHMENT.union(Usage::INPUT_ATTACHMENT).union(Usage::COPY_TARGET);
         let expected = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
         assert_eq!(texture_usages(all), expected);

@@ -3,12 +3,13 @@
 use crate::device::adapter::{AdapterRequest, adapters, describe, is_software, rank};
 use crate::device::caps::caps_of;
 use crate::device::error::{DeviceError, DeviceErrors, ErrorScopes, Watch};
-use crate::device::format::{joined, texture_format};
+use crate::device::format::texture_format;
+use crate::device::open_error::OpenError;
 use framegraph::{Caps, Format};
 use std::sync::{Arc, OnceLock, atomic};
 use wgpu::{
-    Adapter, AdapterInfo, Backend, Backends, Device, DownlevelFlags, Features, Instance, Queue,
-    TextureFormatFeatureFlags, TextureFormatFeatures, TextureUsages,
+    Adapter, AdapterInfo, Backend, Device, DownlevelFlags, Features, Instance, Queue, TextureFormatFeatureFlags,
+    TextureFormatFeatures, TextureUsages,
 };
 
 /// A wgpu device with its queue. Clones refer to the same device and are cheap.
@@ -51,65 +52,6 @@ impl PartialEq for Gpu {
     }
 }
 
-/// Error: no device could be opened.
-#[derive(Clone, PartialEq, Eq, thiserror::Error)]
-pub enum OpenError {
-    /// `WGPU_BACKEND` contains words that name no graphics API.
-    #[error("WGPU_BACKEND: {} names no graphics API; use vulkan, metal, dx12, gl or noop, separated by commas", quoted(.words))]
-    UnknownBackend {
-        /// The unknown words.
-        words: Vec<String>,
-    },
-    /// The program was built without the requested graphics APIs.
-    #[error(
-        "the program was built without the requested graphics APIs ({}), only with {}; build `framegraph-wgpu` with one of the \
-         features `vulkan`, `metal`, `dx12`, `gles`, or `noop` for a device that draws nothing",
-        joined(.requested.iter_names()), joined(.built.iter_names())
-    )]
-    NotBuilt {
-        /// Requested APIs.
-        requested: Backends,
-        /// APIs that are built in and exist on this system.
-        built: Backends,
-    },
-    /// No adapter fulfills the request.
-    #[error(
-        "no adapter for {}{}; found: {}; install a driver (Mesa's llvmpipe renders without a GPU), or change WGPU_BACKEND and \
-         WGPU_ADAPTER_NAME",
-        joined(.requested.backends.iter_names()),
-        .requested.name.as_ref().map(|n| format!(" with `{n}` in its name")).unwrap_or_default(),
-        listed(.found.iter().map(describe))
-    )]
-    NoAdapter {
-        /// The request.
-        requested: AdapterRequest,
-        /// All adapters that were found.
-        found: Vec<AdapterInfo>,
-    },
-    /// Every suitable adapter failed to open a device.
-    #[error("no adapter could open a device: {}", listed(.refusals.iter().map(|(info, why)| format!("{}: {why}", describe(info)))))]
-    Refused {
-        /// Adapters with the driver's reasons.
-        refusals: Vec<(AdapterInfo, String)>,
-    },
-}
-
-impl std::fmt::Debug for OpenError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        std::fmt::Display::fmt(self, f)
-    }
-}
-
-fn quoted(words: &[String]) -> String {
-    words.iter().map(|word| format!("{word:?}")).collect::<Vec<_>>().join(", ")
-}
-
-/// Joins strings with semicolons.
-fn listed(words: impl Iterator<Item = String>) -> String {
-    let all: Vec<_> = words.collect();
-    if all.is_empty() { "none".to_owned() } else { all.join("; ") }
-}
-
 /// Features that are enabled if the adapter has them. None of them is required.
 const WANTED: Features = Features::TIMESTAMP_QUERY
     .union(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS)
@@ -128,17 +70,6 @@ const WANTED: Features = Features::TIMESTAMP_QUERY
     .union(Features::TEXTURE_COMPRESSION_ETC2)
     .union(Features::TEXTURE_COMPRESSION_ASTC)
     .union(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
-
-impl AdapterRequest {
-    /// Fails if `WGPU_BACKEND` contained unknown words. APIs that are not built in are accepted here.
-    ///
-    /// # Errors
-    /// Fails with [`OpenError::UnknownBackend`].
-    pub fn check(&self) -> Result<(), OpenError> {
-        let words = self.unknown.clone();
-        if words.is_empty() { Ok(()) } else { Err(OpenError::UnknownBackend { words }) }
-    }
-}
 
 impl Gpu {
     /// Opens a device on the best adapter that fulfills the request, preferring hardware over software. Adapters that
@@ -179,7 +110,7 @@ impl Gpu {
     /// Fails with [`OpenError`] if wgpu cannot open the noop device, which is not known to happen.
     #[cfg(feature = "noop")]
     pub fn noop() -> Result<Self, OpenError> {
-        Self::open(&AdapterRequest { backends: Backends::NOOP, ..AdapterRequest::default() })
+        Self::open(&AdapterRequest { backends: wgpu::Backends::NOOP, ..AdapterRequest::default() })
     }
 
     /// Wraps a device that the application opened. The application keeps its error handlers.
@@ -299,7 +230,7 @@ impl Gpu {
         self.errors.clone()
     }
 
-    /// Runs `work` and returns errors that wgpu reports during it. `doing` completes the sentence "wgpu refused …".
+    /// Runs `work` and returns errors that wgpu reports during it. `doing` completes the sentence "wgpu rejected …".
     ///
     /// # Errors
     /// Fails with [`DeviceError`] if the device is lost, or wgpu rejects a call of `work`.
@@ -360,9 +291,10 @@ fn open_device(adapter: &Adapter) -> Result<(Device, Queue), wgpu::RequestDevice
 #[cfg(test)]
 mod tests {
     use super::*;
+    use wgpu::Backends;
 
     #[test]
-    fn nothing_is_opened_unless_asked_for() -> Result<(), OpenError> {
+    fn a_device_is_opened_only_if_it_matches() -> Result<(), OpenError> {
         let noop = Gpu::noop()?;
         assert_eq!(noop.info().backend, Backend::Noop);
         assert!(noop == noop.clone() && noop != Gpu::noop()?, "devices of two instances are two");
@@ -377,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refused_call_is_an_error_with_wgpus_reason() -> Result<(), OpenError> {
+    fn a_rejected_call_is_an_error_with_wgpus_reason() -> Result<(), OpenError> {
         let gpu = Gpu::noop()?;
         let size = wgpu::BufferDescriptor {
             label: Some("huge"),
@@ -389,12 +321,12 @@ mod tests {
         assert!(matches!(refused, Err(DeviceError::Refused { .. })), "{refused:?}");
         assert!(gpu.guard("nothing", || ()).is_ok(), "the error must not stay");
         drop(gpu.device.create_buffer(&size));
-        assert!(gpu.guard("nothing", || ()).is_err(), "an error outside of a scope is told at the next guard");
+        assert!(gpu.guard("nothing", || ()).is_err(), "an error outside of a scope is reported by the next guard");
         Ok(())
     }
 
     #[test]
-    fn a_lost_device_is_an_error_from_then_on() -> Result<(), OpenError> {
+    fn a_lost_device_stays_an_error() -> Result<(), OpenError> {
         let gpu = Gpu::noop()?;
         assert!(gpu.wait().is_ok());
         gpu.device.destroy();

@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_whole_bytes_of_this_device_are_taken() {
+    fn only_intact_data_of_this_device_is_accepted() {
         let kept = pack("card 1.0", b"machine code");
         assert_eq!(unpack("card 1.0", &kept), Ok(&b"machine code"[..]));
         let other = unpack("card 1.1", &kept);

@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn display_codes_keep_bytes_and_encode_light() {
+    fn normalized_bytes_are_kept_and_floats_encoded() {
         assert_eq!(pixels(Format::Bgra8UnormSrgb, &[1, 2, 3, 4]).rgba8(), [3, 2, 1, 4]);
         let floats: Vec<u8> = [0.5f32, -1.0, f32::NAN, 0.5].iter().flat_map(|f| f.to_le_bytes()).collect();
         // Linear 0.5 is 188 in 8-bit sRGB (0.735 · 255).

@@ -177,7 +177,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_window_without_texels_is_skipped_and_configured_when_it_has_some() {
+    fn a_minimized_window_is_skipped() {
         let cases = [
             ([0, 0], true, (true, false)),
             ([0, 9], false, (true, false)),
@@ -192,7 +192,7 @@ mod tests {
 
     /// Checks each result: drawn or not, configured again or not, or an error.
     #[test]
-    fn every_answer_of_a_surface_is_drawn_skipped_mended_or_told() {
+    fn every_surface_status_is_handled() {
         let cases = [
             (Answer::Fits, Ok((true, false))),
             (Answer::Suboptimal, Ok((true, true))),

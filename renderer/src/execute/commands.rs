@@ -63,7 +63,7 @@ mod tests {
     use crate::device::gpu::Gpu;
 
     #[test]
-    fn what_must_be_submitted_apart_is_not_handed_out() -> Result<(), Box<dyn std::error::Error>> {
+    fn separate_submissions_return_no_buffers() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
         let commands = |separate| {
             let buffers = [1, 2].map(|_| gpu.device.create_command_encoder(&Default::default()).finish());

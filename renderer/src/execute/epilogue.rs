@@ -156,7 +156,7 @@ mod tests {
     };
 
     #[test]
-    fn settings_of_one_name_agree_or_are_refused() -> Result<(), RecordError> {
+    fn conflicting_settings_are_an_error() -> Result<(), RecordError> {
         let (zero, map) = (SettingName::new("RGBA16FLOAT_TOWARD_ZERO"), SettingName::new("TONE_MAP"));
         let store = Epilogue { effects: vec![STORE], constants: vec![(zero, 1.0)], bindings: Vec::new() };
         let tone = |curve| Epilogue { effects: vec![TONE], constants: vec![(map, curve)], bindings: Vec::new() };
@@ -169,8 +169,8 @@ mod tests {
         }
         assert_eq!(all.effects, [STORE, TONE, STORE]);
         assert_eq!(all.constants, [(zero, 1.0), (map, 1.0)]);
-        let told = all.append(&tone(2.0)).map_err(|e| e.to_string()).err().unwrap_or_default();
-        assert!(told.contains("TONE_MAP"), "{told}");
+        let message = all.append(&tone(2.0)).map_err(|e| e.to_string()).err().unwrap_or_default();
+        assert!(message.contains("TONE_MAP"), "{message}");
         Ok(())
     }
 

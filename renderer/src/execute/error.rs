@@ -93,7 +93,7 @@ pub enum RecordError {
     )]
     EffectConflict(EffectSetting),
     /// wgpu rejected a texture view.
-    #[error("wgpu refused a view of `{resource}`: {message}")]
+    #[error("wgpu rejected a view of `{resource}`: {message}")]
     View {
         /// Resource of the view.
         resource: Named<ResourceId>,

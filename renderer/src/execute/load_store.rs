@@ -1,6 +1,6 @@
 //! Conversion of load and store operations to wgpu.
 //!
-//! Contains the only unsafe call outside of the Vulkan code: the token of wgpu's `LoadOp::DontCare`.
+//! Contains an unsafe call: wgpu's token for `LoadOp::DontCare`.
 
 use crate::execute::clear::Values;
 use framegraph::{Aspect, Attachment, ClearValue, Format, LoadOp, Role, StoreOp};
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_is_not_discarded_beside_a_stored_one() {
+    fn a_plane_is_stored_if_the_other_is() {
         let (stored, dropped) = ((LoadOp::Clear, StoreOp::Store), (LoadOp::Clear, StoreOp::Discard));
         let (depth, stencil) = depth_ops(&attachment(Role::Depth, stored, dropped), BOTH, CLEAR);
         let stores = [depth.map(|o| o.store), stencil.map(|o| o.store)];

@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_part_lies_inside_of_what_was_declared() {
+    fn a_part_must_be_inside_the_declared_range() {
         let declared = Range { mip: 1, mips: 2, layer: 0, layers: u16::MAX, ..Range::ALL };
         let of = |part: ViewPart| part.of(declared, (4, 6));
         assert_eq!(of(ViewPart::WHOLE), Some(declared));
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_is_one_of_the_declared_ones() {
+    fn a_plane_must_be_declared() {
         let part = ViewPart { aspect: Some(Aspect::Stencil), ..ViewPart::WHOLE };
         let of = |aspect| part.of(Range { aspect, ..Range::ALL }, (1, 1)).map(|r| r.aspect);
         assert_eq!(of(Aspect::All), Some(Aspect::Stencil));

@@ -105,7 +105,7 @@ mod tests {
 
     /// Checks that requests of repeated frames take no additional memory, and that steps are separate.
     #[test]
-    fn a_step_that_begins_anew_goes_through_the_same_requests() {
+    fn a_repeated_step_repeats_its_requests() {
         let mut cache = RequestCache::default();
         for _ in 0..3 {
             for (step, requests) in [(StepId::at(1), 2), (StepId::at(0), 3)] {

@@ -15,7 +15,7 @@ const WARM_UP: u32 = 3;
 const MEASURED: u32 = 5;
 /// Minimum number of frames between two trials.
 const HELD: u32 = 1000;
-/// Maximum share of the total time that trials may have lost before another one starts.
+/// Another trial starts only if earlier ones lost less than this share of the total time.
 const LOST: f64 = 0.02;
 /// Minimum recording time for splitting a frame.
 const WORTH: Duration = Duration::from_micros(60);
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_are_as_even_as_they_can_be() {
+    fn parts_are_optimally_even() {
         let steps = [5, 1, 1, 1, 8, 2, 2].map(us);
         assert_eq!(even_parts(&steps, &[true; 7], 2), [0..4, 4..7]);
         let may = [true, true, true, true, false, true, true];
@@ -273,7 +273,7 @@ mod tests {
     /// Checks that trials cost at most 3 % in addition to the first trial, however slow threads are and however often
     /// plans change.
     #[test]
-    fn trials_are_paid_off_before_there_are_more() {
+    fn lost_time_limits_the_number_of_trials() {
         let steps = [20, 200, 100, 80].map(us);
         let one: Duration = steps.iter().sum();
         for (slower, change_every) in [(2, 20_000), (10, 20_000), (100, 20_000), (2, 17), (10, 17), (10, 40)] {
@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn another_plan_is_measured_anew() {
+    fn another_plan_is_measured_again() {
         let mut balancer = ThreadBalancer::default();
         for frame in 0..30 {
             balancer.begin_frame(1, &[true; 2], 2);

@@ -87,10 +87,11 @@ impl Uniforms {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::device::gpu::{Gpu, OpenError};
+    use crate::device::gpu::Gpu;
+    use crate::device::open_error::OpenError;
 
     #[test]
-    fn parts_are_aligned_apart_and_stable_from_frame_to_frame() -> Result<(), OpenError> {
+    fn uniforms_are_aligned_and_stable_between_frames() -> Result<(), OpenError> {
         let gpu = Gpu::noop()?;
         let mut uniforms = Uniforms::new(&gpu.device);
         let mut frame = || {

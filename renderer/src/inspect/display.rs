@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_that_is_not_finite_is_loud_in_every_mode() {
+    fn non_finite_values_are_magenta_in_every_mode() {
         let modes = ["auto", "color:-2", "stretch", "plain:g", "false:r:0,1", "false"];
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             let light = of(Format::Rgba16Float, &[[0.0, bad, 0.0, 1.0], [0.0, 0.5, 0.0, 1.0]]);
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn integers_are_ranked_by_color() {
+    fn integers_are_shown_in_false_color() {
         let bits = [0u32, 5, 10].map(|n| [n, 0, 0, 1]).to_vec();
         let ids = Texels { format: Format::R32Uint, aspect: Aspect::All, size: [3, 1], bits };
         let shown = ids.display(DisplayMode::Auto, 1.0);
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn modes_are_read_and_wrong_ones_refused() {
+    fn display_modes_are_parsed() {
         let read = |text: &str| text.parse::<DisplayMode>();
         assert_eq!(read("depth:0.5"), Ok(DisplayMode::Depth { near_m: Some(0.5) }));
         assert_eq!(read("false:b:-1,2"), Ok(DisplayMode::False { channel: Channel::Blue, range: Some([-1.0, 2.0]) }));
@@ -311,8 +311,8 @@ mod tests {
         assert_eq!(read("stretch:a"), Ok(DisplayMode::Stretch { channel: Channel::Alpha }));
         for wrong in ["", "sepia", "color:x", "depth:0", "depth:-1", "plain:q", "false:2,1", "false:r:1", "false:r:g:b"]
         {
-            let told = read(wrong).map_err(|e| e.to_string());
-            assert!(told.as_ref().is_err_and(|e| e.contains(&format!("`{wrong}`"))), "{wrong}: {told:?}");
+            let message = read(wrong).map_err(|e| e.to_string());
+            assert!(message.as_ref().is_err_and(|e| e.contains(&format!("`{wrong}`"))), "{wrong}: {message:?}");
         }
     }
 }

@@ -33,7 +33,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_outside_is_clamped() {
+    fn values_outside_are_clamped() {
         assert_eq!((turbo(-1.0), turbo(f32::NAN)), (turbo(0.0), turbo(0.0)));
         assert_eq!((turbo(2.0), turbo(f32::INFINITY)), (turbo(1.0), turbo(1.0)));
     }

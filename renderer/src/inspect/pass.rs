@@ -10,7 +10,7 @@ use framegraph::{
     View,
 };
 
-/// Format of the result: four 32-bit integers per texel, version drivers do not alter.
+/// Format of the result: four 32-bit integers per texel, which drivers do not alter.
 const BITS: Format = Format::Rgba32Uint;
 
 /// Part to read, with all defaults resolved.

@@ -135,7 +135,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn texts_and_requests_correspond() -> Result<(), RequestError> {
+    fn requests_are_parsed_and_printed() -> Result<(), RequestError> {
         let newest = Request::newest;
         let cases = [
             ("hdr", newest("hdr")),
@@ -159,10 +159,10 @@ mod tests {
     }
 
     #[test]
-    fn what_names_nothing_is_refused() {
+    fn invalid_requests_are_rejected() {
         for text in ["", "@color", "hdr@", "hdr:1:2:3", "hdr:256", "hdr:0:70000", ":1"] {
-            let told = text.parse::<Request>().map_err(|e| e.to_string());
-            assert!(told.as_ref().is_err_and(|e| e.contains(&format!("`{text}`"))), "{text}: {told:?}");
+            let message = text.parse::<Request>().map_err(|e| e.to_string());
+            assert!(message.as_ref().is_err_and(|e| e.contains(&format!("`{text}`"))), "{text}: {message:?}");
         }
     }
 }

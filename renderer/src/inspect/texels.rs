@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn bits_become_numbers_by_the_kind_of_format() {
+    fn bits_are_converted_by_format() {
         let of = |format, aspect, bits| texels(format, aspect, bits).numbers()[0][0];
         assert_eq!(of(Format::Rgba16Float, Aspect::All, [0.5f32.to_bits(), 0, 0, 0]), 0.5);
         assert_eq!(of(Format::R32Uint, Aspect::All, [7, 0, 0, 0]), 7.0);
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_numbers_are_found_by_their_bits() {
+    fn non_finite_values_are_found_by_their_bits() {
         let at = |format, bits: u32| texels(format, Aspect::All, [0, bits, 0, 0]).non_finite(2);
         for bits in [0x7fc0_0000, 0xffff_ffff, 0x7f80_0000, 0xff80_0000] {
             assert_eq!(at(Format::Rg32Float, bits), 1);

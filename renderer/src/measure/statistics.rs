@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn old_measurements_make_way() {
+    fn old_measurements_are_overwritten() {
         let mut samples = Durations::default();
         for i in 0..Durations::KEPT + 10 {
             samples.push(i as f64);

@@ -165,13 +165,13 @@ mod tests {
     }
 
     #[test]
-    fn good_stamps_become_times() {
+    fn valid_timestamps_become_durations() {
         let found = ms(&[1_000_000, 3_000_000, 3_500_000, 4_000_000]);
         assert_eq!(found, (vec![Some(4.0), None, Some(1.0)], Some(6.0)));
     }
 
     #[test]
-    fn bad_stamps_are_dropped_with_their_frame() {
+    fn invalid_timestamps_invalidate_their_frame() {
         assert_eq!(ms(&[0, 3_000_000, 3_500_000, 4_000_000]), (vec![None, None, Some(1.0)], None), "not written");
         assert_eq!(ms(&[5, 5, 3_500_000, 4_000_000]), (vec![None, None, Some(1.0)], None), "no time passed");
         assert_eq!(ms(&[u64::MAX - 5, 10, 20, 500_020]), (vec![None, None, Some(1.0)], None), "wrapped within a step");

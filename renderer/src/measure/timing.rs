@@ -315,7 +315,7 @@ mod tests {
 
     /// Writes timestamps of a different duration for each step, and checks that each step gets its own duration.
     #[test]
-    fn every_step_gets_the_time_between_its_own_stamps() -> TestResult {
+    fn every_step_gets_its_own_duration() -> TestResult {
         let (gpu, plan) = (Gpu::noop()?, four_steps()?);
         let mut timing = Timing::new(true, true);
         timing.begin_frame(&gpu, &plan);
@@ -337,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn copies_take_no_queries_where_they_cannot_be_measured() -> TestResult {
+    fn copies_without_timestamps_have_no_queries() -> TestResult {
         let (plan, mut queries) = (four_steps()?, Vec::new());
         assert_eq!(assign(&plan, true, &mut queries), 8);
         assert_eq!(queries, [Some(0), Some(2), Some(4), Some(6)]);

@@ -109,7 +109,7 @@ fn fetch(text: &mut String, number: usize, shape: &TextureBinding) {
     push(text, &format!("fn read{number}(at: vec2f) -> vec4f {{\n  {body}\n}}\n"));
 }
 
-/// A function that reads the texel under `at` of a storage texture.
+/// Generates a function that loads the texel at `at` from a storage texture.
 fn load(text: &mut String, number: usize, shape: &TextureBinding) {
     let source = format!("source{number}");
     let floats = match shape.format.numeric() {

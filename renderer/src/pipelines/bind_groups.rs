@@ -138,7 +138,7 @@ mod tests {
     use wgpu::{BindGroupLayoutEntry, BindingType, BufferBindingType, BufferUsages, ShaderStages};
 
     #[test]
-    fn a_group_is_made_once_for_the_same_resources() -> Result<(), Box<dyn std::error::Error>> {
+    fn a_bind_group_is_created_once_per_set_of_resources() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
         let ty =
             BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None };

@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_in_range_is_seen_to_be() {
+    fn indices_in_bounds_are_proven() {
         for body in [
             "s = all[7] + v[3];",
             "s = all[n & 7u] + v[n % 4u];",
@@ -289,7 +289,7 @@ mod tests {
 
     /// Variations of the cases above that may be out of bounds.
     #[test]
-    fn what_may_be_out_of_range_is_told() {
+    fn unproven_indices_are_reported() {
         for body in [
             "s = all[n];",
             "s = v[n & 7u];",
@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn texels_by_their_place_and_arrays_without_a_length_are_told() {
+    fn texel_loads_and_runtime_arrays_are_unproven() {
         let load = "@group(0) @binding(0) var t: texture_2d<f32>; fn texel() -> vec4<f32> { return textureLoad(t, vec2(0), 0); }";
         assert_eq!(unproved_index(load).as_deref(), Some("texel"));
         let open = "@group(0) @binding(0) var<storage> b: array<f32>; fn item(n: u32) -> f32 { return b[n & 1u]; }";

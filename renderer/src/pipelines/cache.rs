@@ -300,14 +300,14 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_names_shader_and_entry_points() -> Result<(), Box<dyn std::error::Error>> {
+    fn a_rejected_pipeline_names_shader_and_entry_points() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
         let wrong = Raster { fragment: Some("fs_missing"), ..Raster::new(FILL) };
         let (pipelines, targets) = (Pipelines::default(), targets(Format::Rgba8Unorm));
         let refused =
             pipelines.raster(&mut LastRaster::default(), &gpu.device, &wrong, ((1, PassId::at(0)), &targets), || 1);
-        let told = refused.map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
-        assert!(told.contains("`fill`") && told.contains("fs_missing"), "{told}");
+        let report = refused.map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
+        assert!(report.contains("`fill`") && report.contains("fs_missing"), "{report}");
         Ok(())
     }
 }

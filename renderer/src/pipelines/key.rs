@@ -28,7 +28,7 @@ pub(crate) struct RasterKey {
 /// Part of the key shared by raster and compute pipelines.
 #[derive(Debug)]
 pub(crate) struct StagesKey {
-    /// [`Shader::hash`].
+    /// Hash of the shader ([`Shader::hash`]).
     pub(crate) shader: u64,
     entry: String,
     constants: Vec<(String, u64)>,
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn slots_that_the_pass_does_not_declare_are_left_alone() {
+    fn undeclared_color_slots_are_not_written() {
         let colors = [Output { blend: Some(BlendState::ALPHA_BLENDING), ..Output::REPLACE }];
         let raster = Raster { colors: &colors, alpha_to_coverage: true, ..Raster::new(SHADER) };
         let Fixed { colors, depth, samples, multiview_mask, alpha_to_coverage } = fixed(&raster, &targets(), 0b001);
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_tell_every_part_apart() {
+    fn keys_differ_in_every_part() {
         let base = Raster::new(SHADER);
         let key = RasterKey::new(&base, &targets(), 1);
         let is = |raster: &Raster<'_>| key.describes(raster);

@@ -103,7 +103,7 @@ mod tests {
 
     /// Variations of the cases above that may not terminate.
     #[test]
-    fn what_is_not_seen_to_end_is_told() {
+    fn unbounded_loops_are_reported() {
         for (head, body) in [
             ("var i = 0; i < n; i += 2", ""),
             ("var i = 0; i <= n; i++", ""),

@@ -32,7 +32,7 @@ impl Source {
     }
 }
 
-/// Returns the highest `@group` index in the source plus 1, at max `max`. Needed because wgpu returns layouts for
+/// Returns the highest `@group` index in the source plus 1, at most `max`. Needed because wgpu returns layouts for
 /// unused groups as well.
 fn named_groups(text: &str, max: u32) -> u32 {
     let index = |behind: &str| {
@@ -134,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn groups_are_counted_as_the_text_names_them() {
+    fn bind_groups_are_counted_from_the_source() {
         let counted =
             ["fn f() {}", "@group(0) @binding(1) var a", "@group( 2 ) var b; @group(0) var c", "@group(G) var d"];
         assert_eq!(counted.map(|text| named_groups(text, 4)), [0, 1, 3, 4]);

@@ -91,7 +91,8 @@ fn create(device: &Device, desc: SamplerDesc) -> Sampler {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::device::gpu::{Gpu, OpenError};
+    use crate::device::gpu::Gpu;
+    use crate::device::open_error::OpenError;
 
     #[test]
     fn one_sampler_for_one_description() -> Result<(), OpenError> {

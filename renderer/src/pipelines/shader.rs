@@ -189,7 +189,7 @@ mod tests {
     use crate::device::gpu::Gpu;
 
     #[test]
-    fn a_module_is_compiled_once_for_each_text() -> Result<(), Box<dyn std::error::Error>> {
+    fn a_module_is_compiled_once_per_source() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
         let modules = ShaderModules::default();
         let good = Shader::new("good", "@compute @workgroup_size(1) fn main() {}");
@@ -202,15 +202,15 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_text_is_an_error_with_name_and_place() -> Result<(), Box<dyn std::error::Error>> {
+    fn a_wrong_source_is_an_error_with_name_and_location() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
         // A syntax error, and two sources that parse but are invalid.
         for line in ["return nonsense;", "return array<f32, 2>()[4u32];", "if 1.0 { } return 0.0;"] {
             let text = format!("fn f() -> f32 {{\n  {line}\n}}\n@fragment fn fs() {{ _ = f(); }}");
             let refused = ShaderModules::default().get(&gpu.device, &Shader::new("effects/bad", &text));
-            let told = refused.map(|_| ()).map_err(|error| error.to_string()).err().unwrap_or_default();
-            let placed = told.contains("2:") || told.contains("2 │");
-            assert!(told.contains("effects/bad") && told.contains(line) && placed, "{told}");
+            let report = refused.map(|_| ()).map_err(|error| error.to_string()).err().unwrap_or_default();
+            let placed = report.contains("2:") || report.contains("2 │");
+            assert!(report.contains("effects/bad") && report.contains(line) && placed, "{report}");
         }
         Ok(())
     }

@@ -57,7 +57,7 @@ mod tests {
 
     /// Checks by brute force that no other resource uses the memory from acquisition to the last step.
     #[test]
-    fn memory_is_free_when_it_is_handed_over() {
+    fn memory_is_free_when_it_is_acquired() {
         let caps = Caps { placed_histories: false, separate_heaps: true, ..Caps::desktop() };
         let options = Options { alias: Alias::Heap, ..Options::for_frame(FRAME[0], FRAME[1]) };
         let (mut scratch, mut plan) = (Scratch::new(), Plan::new());

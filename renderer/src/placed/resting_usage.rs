@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_texture_rests_in_a_use_that_it_is_made_for() {
+    fn the_resting_usage_is_one_of_the_usages() {
         for format in [TextureFormat::Rgba8Unorm, TextureFormat::Depth32Float] {
             for bits in 1..32 {
                 let usage = TextureUsages::from_bits_truncate(bits);

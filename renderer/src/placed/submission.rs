@@ -20,7 +20,7 @@ mod tests {
     use wgpu::{Backend, DeviceType};
 
     #[test]
-    fn old_software_drivers_do_not() {
+    fn old_llvmpipe_does_not_order_aliases() {
         for (driver, version, keeps) in [
             ("llvmpipe", "Mesa 22.3.6 (LLVM 15.0.6)", false),
             ("llvmpipe", "Mesa 25.0.7", true),

@@ -239,7 +239,7 @@ mod tests {
     }
 
     impl Bench {
-        fn new() -> Result<Self, crate::device::gpu::OpenError> {
+        fn new() -> Result<Self, crate::device::open_error::OpenError> {
             Ok(Self { gpu: Gpu::noop()?, histories: Histories::default(), owner: FrameKey::new() })
         }
 
@@ -268,7 +268,7 @@ mod tests {
     type TestResult = Result<(), Box<dyn std::error::Error>>;
 
     #[test]
-    fn a_ring_of_three_images_remembers_two_frames() -> TestResult {
+    fn a_ring_of_three_images_keeps_two_frames() -> TestResult {
         let Bench { gpu, mut histories, owner } = Bench::new()?;
         let mut written = Vec::new();
         for frame in 0..7 {
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_without_a_history_age_it_whoever_runs_them() -> TestResult {
+    fn a_history_ages_in_frames_that_do_not_write_it() -> TestResult {
         for own in [false, true] {
             let mut bench = Bench::new()?;
             let now = declared(4, Format::R8Unorm, 1);
@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_share_no_ring_and_a_ring_goes_with_its_frame() -> TestResult {
+    fn a_ring_belongs_to_one_frame() -> TestResult {
         let mut bench = Bench::new()?;
         let mut other = FrameKey::new();
         let (now, wide) = (declared(4, Format::R8Unorm, 1), declared(4, Format::Rgba16Float, 1));
@@ -342,7 +342,7 @@ mod tests {
 
     /// A pass that samples all levels accepts a previous image with fewer levels.
     #[test]
-    fn a_resize_keeps_an_image_that_has_the_levels_that_are_read() -> TestResult {
+    fn a_resize_keeps_images_with_enough_mip_levels() -> TestResult {
         let of = |side, levels| {
             let desc = TextureDesc::new(Extent::absolute(side, side), Format::R8Unorm).mips(TextureDesc::ALL_MIPS);
             let shape = PhysicalTextureDesc::new(&desc, [1, 1], Usage::SAMPLED, false);
@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn sizes_change_and_every_image_keeps_its_own() -> TestResult {
+    fn images_keep_their_size_when_the_frame_size_changes() -> TestResult {
         let mut bench = Bench::new()?;
         let of = |side| declared(side, Format::R8Unorm, 1);
         let sizes = [4, 8, 8, 6, 4, 4].map(|side| bench.frame(of(side), true).ok());

@@ -86,7 +86,7 @@ pub struct Pool<S: Pooled> {
 
 #[derive(Debug)]
 struct Entry<S: Pooled> {
-    /// Never given twice: the older of two equal fits is taken.
+    /// Unique number. The older of two equal fits is used.
     id: u64,
     shape: S,
     bytes: u64,
@@ -229,7 +229,8 @@ impl<S: Pooled> Pool<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::device::gpu::{Gpu, OpenError};
+    use crate::device::gpu::Gpu;
+    use crate::device::open_error::OpenError;
 
     /// Test description: size in the higher digits, usages in the last digit.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -279,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn tenants_keep_their_objects_whatever_comes_before_them() -> Result<(), OpenError> {
+    fn tenants_keep_their_objects() -> Result<(), OpenError> {
         let mut bench = Bench::new(30, 9)?;
         assert_eq!(bench.frame(&[(7, 40), (8, 40)]), [0, 1]);
         assert_eq!(bench.frame(&[(8, 40), (7, 40)]), [1, 0], "the order of requests does not matter");
@@ -290,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn the_best_fit_is_taken_and_no_object_twice() -> Result<(), OpenError> {
+    fn the_best_fit_is_used_and_no_object_twice() -> Result<(), OpenError> {
         let mut bench = Bench::new(30, 9)?;
         assert_eq!(bench.frame(&[(1, 45), (2, 42)]), [0, 1]);
         assert_eq!(bench.frame(&[(3, 41)]), [1], "42 wastes less than 45");
@@ -315,7 +316,7 @@ mod tests {
 
     /// Simulates a window resize: each frame requests two objects of a new size.
     #[test]
-    fn sizes_that_a_drag_leaves_behind_go_once_the_budget_is_reached() -> Result<(), OpenError> {
+    fn old_sizes_are_dropped_beyond_the_budget() -> Result<(), OpenError> {
         let mut bench = Bench::new(30, 3)?;
         for size in 100..120 {
             let ids = bench.frame(&[(1, size * 10), (2, size * 10 + 1)]);
@@ -336,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn two_graphs_that_take_turns_keep_their_objects_whatever_the_budget() -> Result<(), OpenError> {
+    fn alternating_graphs_keep_their_objects() -> Result<(), OpenError> {
         let mut bench = Bench::new(30, 1)?;
         let (large, small) = ([(1, 9000), (2, 9000)], [(3, 50)]);
         bench.frame(&large);

@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn a_texture_serves_what_it_covers() {
+    fn a_texture_serves_requests_that_it_covers() {
         let both = Usage::ATTACHMENT.union(Usage::SAMPLED);
         let wide = shape(both, Format::Rgba8Unorm, false);
         let narrow = shape(Usage::ATTACHMENT, Format::Rgba8Unorm, false);

@@ -202,7 +202,7 @@ fn is_filterable(gpu: &Gpu, format: Format) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::device::gpu::OpenError;
+    use crate::device::open_error::OpenError;
     use framegraph::{Extent, TextureDesc};
 
     fn shape(format: Format, side: u32, samples: u8, usage: Usage) -> PhysicalTextureDesc {
@@ -215,15 +215,15 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_names_what_was_asked_and_what_there_is() -> Result<(), OpenError> {
+    fn unsupported_resources_name_request_and_limit() -> Result<(), OpenError> {
         let gpu = Gpu::noop()?;
         assert_eq!(check_texture(&gpu, &shape(Format::Rgba8Unorm, 64, 4, Usage::ATTACHMENT), "color"), Ok(()));
-        let told = |shape| check_texture(&gpu, &shape, "color").map_err(|e| e.to_string()).err().unwrap_or_default();
-        let large = told(shape(Format::Rgba8Unorm, 1 << 20, 1, Usage::ATTACHMENT));
+        let message = |shape| check_texture(&gpu, &shape, "color").map_err(|e| e.to_string()).err().unwrap_or_default();
+        let large = message(shape(Format::Rgba8Unorm, 1 << 20, 1, Usage::ATTACHMENT));
         assert!(large.contains("1048576×1048576") && large.contains("8192×8192"), "{large}");
-        let attached = told(shape(Format::Rgb9e5Ufloat, 4, 1, Usage::ATTACHMENT));
+        let attached = message(shape(Format::Rgb9e5Ufloat, 4, 1, Usage::ATTACHMENT));
         assert!(attached.contains("Rgb9e5Ufloat") && attached.contains("RENDER_ATTACHMENT"), "{attached}");
-        let samples = told(shape(Format::Rgba8Unorm, 4, 3, Usage::ATTACHMENT));
+        let samples = message(shape(Format::Rgba8Unorm, 4, 3, Usage::ATTACHMENT));
         assert!(samples.contains("3 samples") && samples.contains('4'), "{samples}");
         assert!(check_buffer(&gpu, u64::MAX, "b").is_err());
         Ok(())
@@ -276,21 +276,21 @@ mod tests {
     #[test]
     fn a_missing_feature_and_the_fallback_are_named() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = bare()?;
-        let told = |format, usage| {
+        let message = |format, usage| {
             let checked = check_texture(&gpu, &shape(format, 4, 1, usage), "hdr").map_err(|e| e.to_string());
             checked.err().unwrap_or_default()
         };
-        let both = told(Format::Depth32FloatStencil8, Usage::ATTACHMENT);
+        let both = message(Format::Depth32FloatStencil8, Usage::ATTACHMENT);
         assert!(both.contains("does not support Depth32FloatStencil8 for RENDER_ATTACHMENT"), "{both}");
         assert!(both.contains("without the feature DEPTH32FLOAT_STENCIL8"), "{both}");
         assert!(both.contains("use Depth24PlusStencil8"), "{both}");
-        let small = told(Format::Rg11b10Ufloat, Usage::ATTACHMENT);
+        let small = message(Format::Rg11b10Ufloat, Usage::ATTACHMENT);
         assert!(small.contains("use Rgba16Float"), "{small}");
         Ok(())
     }
 
     #[test]
-    fn fallbacks_are_taken_where_the_format_is_missing() -> Result<(), OpenError> {
+    fn missing_formats_have_fallbacks() -> Result<(), OpenError> {
         let gpu = Gpu::noop()?;
         let attached = |f| supported_format(&gpu, f, Usage::ATTACHMENT.union(Usage::SAMPLED), false);
         assert_eq!(attached(Format::Rgba8Unorm), Some(Format::Rgba8Unorm));

@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_view_is_made_once_until_its_texture_is_given_up() -> Result<(), Box<dyn std::error::Error>> {
+    fn a_view_is_created_once_until_its_texture_is_freed() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: None,

@@ -38,8 +38,8 @@ fn options(number: u32) -> Options {
 }
 
 #[test]
-fn every_export_is_what_was_declared() -> TestResult {
-    const NAME: &str = "every_export_is_what_was_declared";
+fn every_export_equals_the_oracle() -> TestResult {
+    const NAME: &str = "every_export_equals_the_oracle";
     on_adapter(NAME, |gpu| {
         let wanted = std::env::var("FRAMEGRAPH_CONTENT_GRAPHS").ok().and_then(|n| n.parse().ok());
         let wanted = wanted.unwrap_or_else(|| test_report::share(0..GRAPHS).len() as u64);

@@ -5,8 +5,8 @@ use framegraph::{Aspect, ClearValue, Extent, Format, Intent, TextureDesc};
 use framegraph_wgpu::{Raster, Readback, Subresource};
 
 #[test]
-fn a_copy_is_what_was_copied() -> TestResult {
-    on_every_device("a_copy_is_what_was_copied", |gpu, drawn| {
+fn a_copy_equals_its_source() -> TestResult {
+    on_every_device("a_copy_equals_its_source", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 8, 8);
         let copy = bench.run(|frame| {
             let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
@@ -34,8 +34,8 @@ fn a_copy_is_what_was_copied() -> TestResult {
 }
 
 #[test]
-fn twins_share_memory_and_keep_their_transfer_function() -> TestResult {
-    on_every_device("twins_share_memory_and_keep_their_transfer_function", |gpu, drawn| {
+fn linear_and_srgb_textures_share_memory() -> TestResult {
+    on_every_device("linear_and_srgb_textures_share_memory", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 8, 8);
         let out = bench.run(|frame| {
             let mut shown = None;
@@ -73,7 +73,7 @@ fn twins_share_memory_and_keep_their_transfer_function() -> TestResult {
 }
 
 #[test]
-fn a_texture_that_was_storage_serves_its_srgb_twin() -> TestResult {
+fn a_storage_texture_serves_its_srgb_form() -> TestResult {
     const STORE: framegraph_wgpu::Shader<'static> = framegraph_wgpu::Shader::new(
         "store",
         "@group(0) @binding(0) var image: texture_storage_2d<rgba8unorm, write>;
@@ -96,7 +96,7 @@ fn a_texture_that_was_storage_serves_its_srgb_twin() -> TestResult {
             },
         )
     };
-    on_every_device("a_texture_that_was_storage_serves_its_srgb_twin", |gpu, drawn| {
+    on_every_device("a_storage_texture_serves_its_srgb_form", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 8, 8);
         let linear = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
         // `with_storage` first puts a storage texture into the memory that the sRGB texture uses in both frames.

@@ -142,7 +142,7 @@ fn storage_and_buffers_are_poisoned() -> TestResult {
 
 /// The second tenant of a texture writes half of it. The contents of the first tenant show unless they are poisoned.
 #[test]
-fn what_the_last_tenant_left_is_poisoned() -> TestResult {
+fn contents_of_the_last_tenant_are_poisoned() -> TestResult {
     let declare = |frame: &mut Frame| {
         let desc = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
         let (a, b, c, d) = {
@@ -159,7 +159,7 @@ fn what_the_last_tenant_left_is_poisoned() -> TestResult {
         frame.graph_mut().readback(d)?;
         Ok(d)
     };
-    on_every_device("what_the_last_tenant_left_is_poisoned", |gpu, drawn| {
+    on_every_device("contents_of_the_last_tenant_are_poisoned", |gpu, drawn| {
         for poison in [false, true] {
             let mut bench = Bench::new(gpu, 8, 8);
             bench.executor = Executor::with(gpu, ExecutorOptions { poison, ..ExecutorOptions::default() });
@@ -178,7 +178,7 @@ fn what_the_last_tenant_left_is_poisoned() -> TestResult {
 
 /// A plane that is discarded next to a stored one is poisoned; the other one is not.
 #[test]
-fn a_dropped_plane_is_poisoned_alone() -> TestResult {
+fn only_the_discarded_plane_is_poisoned() -> TestResult {
     let declare = |frame: &mut Frame| {
         let both = TextureDesc::new(Extent::FRAME, Format::Depth32FloatStencil8);
         let depth = frame.graph_mut().texture("depth", both);
@@ -194,7 +194,7 @@ fn a_dropped_plane_is_poisoned_alone() -> TestResult {
         frame.graph_mut().readback(out)?;
         Ok(out)
     };
-    on_every_device("a_dropped_plane_is_poisoned_alone", |gpu, drawn| {
+    on_every_device("only_the_discarded_plane_is_poisoned", |gpu, drawn| {
         let mut fills = Vec::new();
         for poison in [false, true] {
             let mut bench = Bench::new(gpu, 4, 4);

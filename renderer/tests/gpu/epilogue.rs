@@ -66,12 +66,12 @@ fn declare(
 }
 
 #[test]
-fn a_producer_is_told_what_comes_after_it() -> TestResult {
-    on_every_device("a_producer_is_told_what_comes_after_it", |gpu, drawn| {
+fn a_producer_receives_its_epilogues() -> TestResult {
+    on_every_device("a_producer_receives_its_epilogues", |gpu, drawn| {
         let record = |cx: &mut Cx<'_>| {
-            let told = cx.epilogues()?;
-            let [(0, Epilogue { constants, .. })] = told.as_slice() else {
-                return Err(RecordError::custom(format!("{told:?}")));
+            let message = cx.epilogues()?;
+            let [(0, Epilogue { constants, .. })] = message.as_slice() else {
+                return Err(RecordError::custom(format!("{message:?}")));
             };
             let value = constants.iter().find(|(name, _)| name.text() == "VALUE").map_or(0.0, |(_, value)| *value);
             fill_full(cx, [1.0, value as f32, 0.0, 1.0])
@@ -88,16 +88,16 @@ fn a_producer_is_told_what_comes_after_it() -> TestResult {
 }
 
 #[test]
-fn who_does_not_ask_or_does_not_say_is_named() -> TestResult {
+fn missing_epilogues_name_the_pass() -> TestResult {
     let gpu = Gpu::noop()?;
-    let told = |record, graded| -> Result<String, Box<dyn std::error::Error>> {
+    let message = |record, graded| -> Result<String, Box<dyn std::error::Error>> {
         let mut bench = Bench::new(&gpu, 4, 4);
         let run = bench.run(|frame| declare(frame, record, graded));
         Ok(run.map(|_| String::new()).unwrap_or_else(|error| error.to_string()))
     };
-    let silent = told(|_| Ok(()), true)?;
+    let silent = message(|_| Ok(()), true)?;
     assert!(silent.contains("`scene`") && silent.contains("Cx::epilogues"), "{silent}");
-    let unsaid = told(|cx| cx.epilogues().map(drop), false)?;
+    let unsaid = message(|cx| cx.epilogues().map(drop), false)?;
     assert!(
         unsaid.contains("`scene`") && unsaid.contains("`grade`") && unsaid.contains("Record::epilogue"),
         "{unsaid}"
@@ -107,14 +107,14 @@ fn who_does_not_ask_or_does_not_say_is_named() -> TestResult {
         drop(cx.inlined());
         Ok(())
     };
-    assert_eq!(told(asked, false)?, "");
+    assert_eq!(message(asked, false)?, "");
     Ok(())
 }
 
 /// The measured rounding of three values also holds for others.
 #[test]
-fn the_measured_rounding_is_that_of_a_pass() -> TestResult {
-    on_adapter("the_measured_rounding_is_that_of_a_pass", |gpu| {
+fn the_measured_rounding_equals_that_of_a_pass() -> TestResult {
+    on_adapter("the_measured_rounding_equals_that_of_a_pass", |gpu| {
         let StoreRounding { rgba16float, .. } = StoreRounding::measure(gpu)?;
         let values = [0.1_f32, 0.7, 1234.567, 3.0e-5];
         let mut bench = Bench::new(gpu, 2, 2);

@@ -17,7 +17,7 @@ fn declare(frame: &mut Frame, recorder: Recorder) -> Result<Texture, DeclareErro
 const GOOD: Recorder = |cx| fill_full(cx, RED);
 
 #[test]
-fn a_frame_after_a_failed_one_is_right() -> TestResult {
+fn a_frame_after_a_failed_one_is_correct() -> TestResult {
     let failures: [(Recorder, &str); 5] = [
         (|_| Err(RecordError::custom("no camera")), "pass `pass`: no camera"),
         (|cx| cx.compute_pass().map(|_| ()), "a compute pass was requested in a raster pass"),
@@ -47,11 +47,11 @@ fn a_frame_after_a_failed_one_is_right() -> TestResult {
             "pass `pass`: wgpu rejected its commands",
         ),
     ];
-    on_every_device("a_frame_after_a_failed_one_is_right", |gpu, drawn| {
+    on_every_device("a_frame_after_a_failed_one_is_correct", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 8, 8);
         for (recorder, message) in failures {
-            let told = bench.run(|f| declare(f, recorder)).map_err(|e| e.to_string()).err().unwrap_or_default();
-            assert!(told.contains(message) && !told.contains('\n'), "{told}");
+            let report = bench.run(|f| declare(f, recorder)).map_err(|e| e.to_string()).err().unwrap_or_default();
+            assert!(report.contains(message) && !report.contains('\n'), "{report}");
             let target = bench.run(|f| declare(f, GOOD))?;
             if drawn {
                 assert!(bench.pixels(target)?.bytes.chunks_exact(4).all(|t| t == [255, 0, 0, 255]), "after {message}");
@@ -62,8 +62,8 @@ fn a_frame_after_a_failed_one_is_right() -> TestResult {
 }
 
 #[test]
-fn a_lost_device_is_told_and_nothing_panics() -> TestResult {
-    on_every_device("a_lost_device_is_told_and_nothing_panics", |gpu, _| {
+fn a_lost_device_is_an_error_and_no_panic() -> TestResult {
+    on_every_device("a_lost_device_is_an_error_and_no_panic", |gpu, _| {
         let mut bench = Bench::new(gpu, 8, 8);
         bench.run(|f| declare(f, GOOD))?;
         // wgpu reports a destroyed device once nothing is in flight.
@@ -71,8 +71,8 @@ fn a_lost_device_is_told_and_nothing_panics() -> TestResult {
         gpu.device.destroy();
         for _ in 0..3 {
             bench.declare(|f| declare(f, GOOD))?;
-            let told = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports);
-            assert!(matches!(told, Err(ExecuteError::Device(DeviceError::Lost { .. }))), "{told:?}");
+            let report = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports);
+            assert!(matches!(report, Err(ExecuteError::Device(DeviceError::Lost { .. }))), "{report:?}");
         }
         // A new device on the same machine works.
         if gpu.info().backend == wgpu::Backend::Noop {
@@ -83,23 +83,23 @@ fn a_lost_device_is_told_and_nothing_panics() -> TestResult {
 }
 
 #[test]
-fn a_plan_of_another_frame_is_refused() -> TestResult {
+fn a_plan_of_another_frame_is_rejected() -> TestResult {
     let gpu = Gpu::noop()?;
     let mut bench = Bench::new(&gpu, 8, 8);
     bench.declare(|f| declare(f, GOOD))?;
     bench.frame.reset();
-    let told = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports);
-    assert!(matches!(told, Err(ExecuteError::OtherPlan)), "{told:?}");
+    let report = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports);
+    assert!(matches!(report, Err(ExecuteError::OtherPlan)), "{report:?}");
     Ok(())
 }
 
 #[test]
-fn tokens_of_other_passes_and_frames_are_refused() -> TestResult {
+fn tokens_of_other_passes_and_frames_are_rejected() -> TestResult {
     let gpu = Gpu::noop()?;
     let mut bench = Bench::new(&gpu, 8, 8);
     let stale = bench.run(|f| declare(f, GOOD))?;
     let run = |bench: &mut Bench, look: fn(&mut Cx<'_>, Texture) -> Result<(), RecordError>, own: bool| {
-        let told = bench.run(|f| {
+        let report = bench.run(|f| {
             let written = declare(f, GOOD)?;
             let handle = if own { written } else { stale };
             let out = f.graph_mut().texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
@@ -107,7 +107,7 @@ fn tokens_of_other_passes_and_frames_are_refused() -> TestResult {
             f.graph_mut().export(out)?;
             Ok(())
         });
-        told.map_err(|e| e.to_string()).err().unwrap_or_default()
+        report.map_err(|e| e.to_string()).err().unwrap_or_default()
     };
     let view = |cx: &mut Cx<'_>, t| cx.view_of(t).map(|_| ());
     let undeclared = run(&mut bench, view, true);
@@ -116,37 +116,40 @@ fn tokens_of_other_passes_and_frames_are_refused() -> TestResult {
         "{undeclared}"
     );
     let foreign = run(&mut bench, view, false);
-    assert!(foreign.contains("pass `nosy`: a handle or token is of another graph"), "{foreign}");
+    assert!(foreign.contains("pass `nosy`: the handle or token belongs to another graph"), "{foreign}");
     Ok(())
 }
 
 #[test]
-fn what_the_device_cannot_make_is_told_with_what_it_can() -> TestResult {
+fn unsupported_textures_name_supported_formats() -> TestResult {
     let gpu = Gpu::noop()?;
     let mut bench = Bench::new(&gpu, 8, 8);
-    let told = bench.run(|frame| {
+    let report = bench.run(|frame| {
         let target = frame.graph_mut().texture("snorm", TextureDesc::new(Extent::FRAME, Format::Rgba8Snorm));
         let target = frame.add_fn("pass", |p| p.color(target, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
         frame.graph_mut().export(target)?;
         Ok(())
     });
-    let told = told.map_err(|e| e.to_string()).err().unwrap_or_default();
-    assert!(told.contains("does not support Rgba8Snorm for RENDER_ATTACHMENT") && told.contains("`snorm`"), "{told}");
+    let report = report.map_err(|e| e.to_string()).err().unwrap_or_default();
+    assert!(
+        report.contains("does not support Rgba8Snorm for RENDER_ATTACHMENT") && report.contains("`snorm`"),
+        "{report}"
+    );
     bench.run(|f| declare(f, GOOD))?;
     Ok(())
 }
 
 /// Allocates the largest texture that the limits allow, which exceeds any memory.
 #[test]
-fn memory_that_is_not_there_is_told_with_what_was_asked() -> TestResult {
-    on_adapter("memory_that_is_not_there_is_told_with_what_was_asked", |gpu| {
+fn out_of_memory_errors_name_the_request() -> TestResult {
+    on_adapter("out_of_memory_errors_name_the_request", |gpu| {
         let mut bench = Bench::new(gpu, 8, 8);
         let caps = gpu.caps();
         let side = caps.max_texture_texels;
         let huge = TextureDesc::new(Extent::absolute(side, side), Format::Rgba32Float)
             .layers(caps.max_texture_layers.min(u16::MAX.into()) as u16);
         for _ in 0..2 {
-            let told = bench.run(|frame| {
+            let report = bench.run(|frame| {
                 let target = frame.graph_mut().texture("vast", huge);
                 let clear = Intent::Clear(framegraph::ClearValue::BLACK);
                 let target = frame.add_fn("pass", |p| p.color(target.layer(0), clear), |_, (), _| Ok(()))?;
@@ -159,10 +162,10 @@ fn memory_that_is_not_there_is_told_with_what_was_asked() -> TestResult {
                 frame.graph_mut().export(out)?;
                 Ok(())
             });
-            let told = told.map_err(|e| e.to_string()).err().unwrap_or_default();
-            assert!(told.contains("the device is out of memory while") && !told.contains('\n'), "{told}");
+            let report = report.map_err(|e| e.to_string()).err().unwrap_or_default();
+            assert!(report.contains("the device is out of memory while") && !report.contains('\n'), "{report}");
             let bytes = format!("{:.1} MiB of them for `vast`", huge.bytes([8, 8]) as f64 / f64::from(1 << 20));
-            assert!(told.contains(&bytes) && told.contains(&gpu.info().name), "{told}");
+            assert!(report.contains(&bytes) && report.contains(&gpu.info().name), "{report}");
             let target = bench.run(|f| declare(f, GOOD))?;
             assert!(bench.pixels(target)?.bytes.chunks_exact(4).all(|t| t == [255, 0, 0, 255]), "the next frame");
         }
@@ -172,22 +175,22 @@ fn memory_that_is_not_there_is_told_with_what_was_asked() -> TestResult {
 
 /// A lost device is reported by every later use, and errors of the request are kept.
 #[test]
-fn a_lost_device_is_told_by_readbacks_and_inspections() -> TestResult {
-    on_every_device("a_lost_device_is_told_by_readbacks_and_inspections", |gpu, _| {
+fn readbacks_and_inspections_report_a_lost_device() -> TestResult {
+    on_every_device("readbacks_and_inspections_report_a_lost_device", |gpu, _| {
         let mut bench = Bench::new(gpu, 8, 8);
         let target = bench.run(|f| declare(f, GOOD))?;
         gpu.wait()?;
         gpu.device.destroy();
         drop(gpu.device.poll(wgpu::PollType::Poll));
-        let told = bench.pixels(target).map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
-        assert!(told.contains("the device was lost"), "{told}");
+        let report = bench.pixels(target).map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
+        assert!(report.contains("the device was lost"), "{report}");
         let Bench { executor, plan, frame, imports, .. } = &bench;
         let mut inspector = framegraph_wgpu::inspect::Inspector::new(gpu);
         let seen = inspector.inspect(executor, plan, frame, &(), imports, &"color".parse()?);
-        let told = seen.map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
-        assert!(told.contains("inspecting `color`: the device was lost"), "{told}");
-        let told = bench.executor.catch_up().map(|_| ()).map_err(|e| e.to_string());
-        assert!(told.is_err_and(|e| e.contains("the device was lost")));
+        let report = seen.map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
+        assert!(report.contains("inspecting `color`: the device was lost"), "{report}");
+        let report = bench.executor.catch_up().map(|_| ()).map_err(|e| e.to_string());
+        assert!(report.is_err_and(|e| e.contains("the device was lost")));
         Ok(())
     })
 }

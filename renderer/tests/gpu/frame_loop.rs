@@ -18,8 +18,8 @@ fn declare(frame: &mut Frame<[f32; 4]>, imports: &mut Imports, image: &wgpu::Tex
 }
 
 #[test]
-fn a_loop_draws_skips_and_goes_on_after_errors() -> TestResult {
-    on_every_device("a_loop_draws_skips_and_goes_on_after_errors", |gpu, drawn| {
+fn a_loop_continues_after_skipped_and_failed_frames() -> TestResult {
+    on_every_device("a_loop_continues_after_skipped_and_failed_frames", |gpu, drawn| {
         let image = |side| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("image"),
@@ -59,17 +59,17 @@ fn a_loop_draws_skips_and_goes_on_after_errors() -> TestResult {
         }
         shows(&mut frames, &large, GREEN)?;
 
-        let told = frames.run([4, 4], &GREEN, |_, _| Err::<(), _>("no scene"));
-        assert!(matches!(told, Err(FrameError::Declare("no scene"))));
-        let told = frames.run([4, 4], &GREEN, |frame, imports| declare(frame, imports, &large)).map(|_| ());
-        assert!(format!("{told:?}").contains("the import `screen` was declared with 4×4 texels"), "{told:?}");
-        assert!(matches!(told, Err(FrameError::Execute(_))), "{told:?}");
-        let told = frames.run([4, 4], &GREEN, |frame, _| {
+        let message = frames.run([4, 4], &GREEN, |_, _| Err::<(), _>("no scene"));
+        assert!(matches!(message, Err(FrameError::Declare("no scene"))));
+        let message = frames.run([4, 4], &GREEN, |frame, imports| declare(frame, imports, &large)).map(|_| ());
+        assert!(format!("{message:?}").contains("the import `screen` was declared with 4×4 texels"), "{message:?}");
+        assert!(matches!(message, Err(FrameError::Execute(_))), "{message:?}");
+        let message = frames.run([4, 4], &GREEN, |frame, _| {
             let texture = frame.graph_mut().texture("none", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
             frame.graph_mut().export(texture)?;
             Ok::<_, DeclareError>(())
         });
-        assert!(matches!(told, Err(FrameError::Compile(_))));
+        assert!(matches!(message, Err(FrameError::Compile(_))));
         shows(&mut frames, &small, RED)?;
         shows(&mut frames, &large, GREEN)
     })
@@ -77,7 +77,7 @@ fn a_loop_draws_skips_and_goes_on_after_errors() -> TestResult {
 
 /// A frame whose passes have no effect is an error; a frame without passes is not.
 #[test]
-fn a_frame_whose_export_was_forgotten_is_refused() -> TestResult {
+fn a_frame_without_exports_is_an_error() -> TestResult {
     let gpu = framegraph_wgpu::Gpu::noop()?;
     let mut frames = FrameLoop::<()>::new(&gpu);
     let mut run = |exported: bool| {
@@ -88,10 +88,10 @@ fn a_frame_whose_export_was_forgotten_is_refused() -> TestResult {
         })
     };
     assert!(run(true)?.is_some());
-    let told = run(false);
-    assert!(matches!(told, Err(FrameError::Idle(Warning::NothingRuns))), "{told:?}");
-    let told = format!("{told:?}");
-    assert!(told.contains("the frame does nothing: no pass runs") && told.contains("export"), "{told}");
+    let message = run(false);
+    assert!(matches!(message, Err(FrameError::Idle(Warning::NothingRuns))), "{message:?}");
+    let message = format!("{message:?}");
+    assert!(message.contains("the frame does nothing: no pass runs") && message.contains("export"), "{message}");
     assert!(run(true)?.is_some());
     let ran = frames.run([8, 8], &(), |_, _| Ok::<_, DeclareError>(()))?;
     assert!(ran.is_some() && frames.executor().executed() == Counts::default());
@@ -100,7 +100,7 @@ fn a_frame_whose_export_was_forgotten_is_refused() -> TestResult {
 
 /// A loop with heap aliasing reports why nothing is placed, with each frame for which it is requested.
 #[test]
-fn a_loop_says_why_nothing_is_placed() -> TestResult {
+fn a_loop_reports_why_nothing_is_placed() -> TestResult {
     let gpu = framegraph_wgpu::Gpu::noop()?;
     let mut frames = FrameLoop::<()>::new(&gpu);
     for alias in [Alias::Pool, Alias::Heap, Alias::Heap, Alias::Off] {
@@ -110,8 +110,8 @@ fn a_loop_says_why_nothing_is_placed() -> TestResult {
             let sky = frame.add_fn("sky", |p| p.color(sky, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
             frame.graph_mut().export(sky)
         })?;
-        let told = ran.ok_or("no frame")?.not_placed.map(|why| why.to_string());
-        assert_eq!(told.is_some_and(|why| why.contains("Vulkan")), alias == Alias::Heap, "{alias:?}");
+        let message = ran.ok_or("no frame")?.not_placed.map(|why| why.to_string());
+        assert_eq!(message.is_some_and(|why| why.contains("Vulkan")), alias == Alias::Heap, "{alias:?}");
     }
     Ok(())
 }
@@ -162,8 +162,8 @@ fn handles_of_a_pass_need_not_be_copies() -> TestResult {
 
 /// The queue never exceeds its maximum, and each finished frame is counted once.
 #[test]
-fn a_loop_queues_no_more_frames_than_it_may() -> TestResult {
-    on_every_device("a_loop_queues_no_more_frames_than_it_may", |gpu, _| {
+fn a_loop_queues_at_most_the_maximum_of_frames() -> TestResult {
+    on_every_device("a_loop_queues_at_most_the_maximum_of_frames", |gpu, _| {
         let mut frames = FrameLoop::<()>::new(gpu);
         assert_eq!(frames.frames_in_flight().max(), FramesInFlight::DEFAULT);
         assert!(frames.frames_in_flight().latency().is_none());

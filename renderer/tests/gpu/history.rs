@@ -67,8 +67,8 @@ fn declare(frame: &mut Frame, valid: &Arc<AtomicU32>) -> Result<Texture, Declare
 }
 
 #[test]
-fn earlier_images_are_read_without_copies() -> TestResult {
-    on_every_device("earlier_images_are_read_without_copies", |gpu, drawn| {
+fn previous_images_are_read_without_copies() -> TestResult {
+    on_every_device("previous_images_are_read_without_copies", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 4, 4);
         let valid = Arc::new(AtomicU32::new(9));
         for (frame, sum) in [1.0, 2.0, 4.0, 7.0, 12.0, 20.0].into_iter().enumerate() {
@@ -93,8 +93,8 @@ fn earlier_images_are_read_without_copies() -> TestResult {
 }
 
 #[test]
-fn a_failed_frame_does_not_move_the_ring() -> TestResult {
-    on_every_device("a_failed_frame_does_not_move_the_ring", |gpu, drawn| {
+fn a_failed_frame_does_not_advance_histories() -> TestResult {
+    on_every_device("a_failed_frame_does_not_advance_histories", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 4, 4);
         let valid = Arc::new(AtomicU32::new(0));
         for _ in 0..2 {
@@ -124,8 +124,8 @@ fn a_failed_frame_does_not_move_the_ring() -> TestResult {
 /// The image that a frame writes is the texture that the next frame reads, and that is written again two frames later.
 /// Three textures alternate, without copies or allocations.
 #[test]
-fn the_ring_turns_without_copies_and_a_cut_empties_it() -> TestResult {
-    on_every_device("the_ring_turns_without_copies_and_a_cut_empties_it", |gpu, drawn| {
+fn a_ring_rotates_without_copies_and_is_reset() -> TestResult {
+    on_every_device("a_ring_rotates_without_copies_and_is_reset", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 4, 4);
         let valid = Arc::new(AtomicU32::new(9));
         let mut images = Vec::new();
@@ -155,8 +155,8 @@ fn the_ring_turns_without_copies_and_a_cut_empties_it() -> TestResult {
 /// Simulates window resizing and dynamic resolution: each frame has another size, and the sum continues. Passes query
 /// the size of the previous image.
 #[test]
-fn a_history_goes_on_while_sizes_change() -> TestResult {
-    on_every_device("a_history_goes_on_while_sizes_change", |gpu, drawn| {
+fn a_history_continues_while_sizes_change() -> TestResult {
+    on_every_device("a_history_continues_while_sizes_change", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 4, 4);
         let mut before = None;
         for (size, sum) in [[40, 20], [41, 20], [38, 23], [38, 23], [1, 1], [64, 64]].into_iter().zip(1u8..) {
@@ -170,8 +170,8 @@ fn a_history_goes_on_while_sizes_change() -> TestResult {
                     |p: &mut PassBuilder<'_>| Ok((p.sampled(previous)?, p.color(history, Intent::Overwrite)?));
                 let (_, current) = frame.add_fn("add", declare, move |(view, _), (), cx| {
                     let image = cx.history(previous)?;
-                    let told = image.valid.then_some(image.texels);
-                    *note.lock().map_err(|_| RecordError::custom("poisoned"))? = Some((told, cx.texels(*view)?));
+                    let message = image.valid.then_some(image.texels);
+                    *note.lock().map_err(|_| RecordError::custom("poisoned"))? = Some((message, cx.texels(*view)?));
                     draw_of(cx, &Raster::new(ADD_LAST), *view)
                 })?;
                 frame.graph_mut().readback(current)?;
@@ -276,13 +276,16 @@ fn frames_do_not_share_a_history_of_one_name() -> TestResult {
 }
 
 #[test]
-fn two_histories_of_one_name_are_refused_and_scopes_tell_them_apart() -> TestResult {
-    on_every_device("two_histories_of_one_name_are_refused_and_scopes_tell_them_apart", |gpu, drawn| {
+fn scopes_separate_histories_of_one_name() -> TestResult {
+    on_every_device("scopes_separate_histories_of_one_name", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 4, 4);
         let valid = Arc::new(AtomicU32::new(0));
-        let told = bench.run(|f| declare(f, &valid).and_then(|_| declare(f, &valid)));
-        let told = told.map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
-        assert!(told.contains("resource `sum`: another history has this name") && told.contains("scope"), "{told}");
+        let message = bench.run(|f| declare(f, &valid).and_then(|_| declare(f, &valid)));
+        let message = message.map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
+        assert!(
+            message.contains("resource `sum`: another history has this name") && message.contains("scope"),
+            "{message}"
+        );
         for sum in [1.0, 2.0, 4.0] {
             // The left history is reset each time, so the two differ.
             bench.executor.reset_history("left/sum");
@@ -298,8 +301,8 @@ fn two_histories_of_one_name_are_refused_and_scopes_tell_them_apart() -> TestRes
 
 /// After a resize, a previous image is inspected at its original size.
 #[test]
-fn an_earlier_image_is_inspected_in_its_own_size() -> TestResult {
-    on_every_device("an_earlier_image_is_inspected_in_its_own_size", |gpu, drawn| {
+fn a_previous_image_is_inspected_at_its_own_size() -> TestResult {
+    on_every_device("a_previous_image_is_inspected_at_its_own_size", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 4, 4);
         let valid = Arc::new(AtomicU32::new(0));
         for size in [[4, 4], [6, 2], [8, 8]] {

@@ -28,8 +28,8 @@ const USES: TextureUsages =
     TextureUsages::RENDER_ATTACHMENT.union(TextureUsages::COPY_SRC).union(TextureUsages::COPY_DST);
 
 #[test]
-fn an_import_keeps_what_it_held() -> TestResult {
-    on_every_device("an_import_keeps_what_it_held", |gpu, drawn| {
+fn an_import_keeps_its_contents() -> TestResult {
+    on_every_device("an_import_keeps_its_contents", |gpu, drawn| {
         let mine = texture(gpu, 8, TextureFormat::Rgba8Unorm, USES);
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(32), rows_per_image: None };
         gpu.queue.write_texture(mine.as_image_copy(), &[77; 256], layout, mine.size());
@@ -90,7 +90,7 @@ fn imports_change_from_frame_to_frame() -> TestResult {
 }
 
 #[test]
-fn what_is_lent_for_a_frame_is_not_kept() -> TestResult {
+fn surface_textures_are_not_cached() -> TestResult {
     let gpu = Gpu::noop()?;
     let mut bench = Bench::new(&gpu, 8, 8);
     for frame in 1..=3 {
@@ -106,12 +106,12 @@ fn what_is_lent_for_a_frame_is_not_kept() -> TestResult {
 }
 
 #[test]
-fn a_wrong_import_is_refused_with_both_sides() -> TestResult {
+fn a_mismatched_import_is_an_error() -> TestResult {
     let gpu = Gpu::noop()?;
     let mut bench = Bench::new(&gpu, 8, 8);
     let handle = bench.declare(declare)?;
-    let told = |bench: &mut Bench| bench.execute().map_err(|e| e.to_string()).err().unwrap_or_default();
-    let missing = told(&mut bench);
+    let message = |bench: &mut Bench| bench.execute().map_err(|e| e.to_string()).err().unwrap_or_default();
+    let missing = message(&mut bench);
     assert!(missing.contains("`mine`") && missing.contains("Imports::texture"), "{missing}");
     let wrong = [
         (texture(&gpu, 9, TextureFormat::Rgba8Unorm, USES), ["8×8", "9×9"]),
@@ -121,8 +121,8 @@ fn a_wrong_import_is_refused_with_both_sides() -> TestResult {
     for (texture, words) in wrong {
         bench.imports.clear();
         bench.imports.texture(handle, &texture);
-        let told = told(&mut bench);
-        assert!(told.contains("`mine`") && words.iter().all(|w| told.contains(w)), "{told}");
+        let message = message(&mut bench);
+        assert!(message.contains("`mine`") && words.iter().all(|w| message.contains(w)), "{message}");
     }
     bench.imports.clear();
     bench.imports.texture_named("mine", &texture(&gpu, 8, TextureFormat::Rgba8Unorm, USES));

@@ -73,9 +73,9 @@ fn compare(texels: &Texels, inside: [f32; 4], outside: [f32; 4]) {
 }
 
 #[test]
-fn depth_and_light_are_what_was_drawn() -> TestResult {
+fn depth_and_color_equal_the_drawn_values() -> TestResult {
     let behind = BEHIND.map(|c| c as f32);
-    on_every_device("depth_and_light_are_what_was_drawn", |gpu, drawn| {
+    on_every_device("depth_and_color_equal_the_drawn_values", |gpu, drawn| {
         for samples in [1, 4] {
             let mut bench = Bench::new(gpu, SIDE, SIDE);
             let out = bench.run(|f| declare(f, samples))?;
@@ -116,8 +116,8 @@ fn depth_and_light_are_what_was_drawn() -> TestResult {
 }
 
 #[test]
-fn samples_are_averaged_or_seen_one_by_one() -> TestResult {
-    on_every_device("samples_are_averaged_or_seen_one_by_one", |gpu, drawn| {
+fn samples_are_averaged_or_inspected_separately() -> TestResult {
+    on_every_device("samples_are_averaged_or_inspected_separately", |gpu, drawn| {
         let mut bench = Bench::new(gpu, SIDE, SIDE);
         bench.run(|f| declare(f, 4))?;
         let mut inspector = Inspector::new(gpu);
@@ -143,14 +143,14 @@ fn samples_are_averaged_or_seen_one_by_one() -> TestResult {
             assert_eq!(resolved, average);
             assert!(partial > 0, "the edge has texels that are partly covered");
         }
-        let told = refused(&bench, &mut inspector, "depth@nobody");
-        assert!(told.contains("no version of a pass `nobody`; it has v1 (`scene`)"), "{told}");
+        let message = refused(&bench, &mut inspector, "depth@nobody");
+        assert!(message.contains("no version of a pass `nobody`; it has v1 (`scene`)"), "{message}");
         Ok(())
     })
 }
 
 #[test]
-fn levels_layers_planes_and_slices_are_seen_apart() -> TestResult {
+fn levels_layers_planes_and_slices_are_inspected_separately() -> TestResult {
     // Each mip and layer has its own color, stencil is 7, and four slices are cleared at once.
     let tone = |mip: u8, layer: u16| [f32::from(mip) + 1.0, f32::from(layer) + 1.0, 0.5, 1.0];
     let declare = move |frame: &mut Frame| {
@@ -181,7 +181,7 @@ fn levels_layers_planes_and_slices_are_seen_apart() -> TestResult {
         frame.graph_mut().export(pyramid)?;
         Ok(())
     };
-    on_every_device("levels_layers_planes_and_slices_are_seen_apart", |gpu, drawn| {
+    on_every_device("levels_layers_planes_and_slices_are_inspected_separately", |gpu, drawn| {
         let mut bench = Bench::new(gpu, SIDE, SIDE);
         bench.run(declare)?;
         let mut inspector = Inspector::new(gpu);
@@ -211,19 +211,19 @@ fn levels_layers_planes_and_slices_are_seen_apart() -> TestResult {
             assert!(ids.texels.bits.iter().all(|n| n[0] == 4_000_000_000));
         }
         // Levels of version 1 that only later passes write.
-        let told = refused(&bench, &mut inspector, "pyramid@v1:1");
-        assert!(told.contains("cannot be inspected there"), "{told}");
+        let message = refused(&bench, &mut inspector, "pyramid@v1:1");
+        assert!(message.contains("cannot be inspected there"), "{message}");
         for (request, part) in [("pyramid:2", "no level 2; it has levels 0 to 1"), ("pyramid:0:3", "layers 0 to 2")] {
-            let told = refused(&bench, &mut inspector, request);
-            assert!(told.contains(part), "{told}");
+            let message = refused(&bench, &mut inspector, request);
+            assert!(message.contains(part), "{message}");
         }
         Ok(())
     })
 }
 
 #[test]
-fn what_the_caller_owns_stays_as_it_is() -> TestResult {
-    on_every_device("what_the_caller_owns_stays_as_it_is", |gpu, drawn| {
+fn inspection_does_not_change_imports() -> TestResult {
+    on_every_device("inspection_does_not_change_imports", |gpu, drawn| {
         let mut bench = Bench::new(gpu, SIDE, SIDE);
         let mine = bench.declare(|frame| {
             let desc = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
@@ -269,15 +269,18 @@ fn what_the_caller_owns_stays_as_it_is() -> TestResult {
         }
         bench.imports.clear();
         bench.imports.texture(mine, &texture(uses));
-        let told = refused(&bench, &mut inspector, "mine");
-        assert!(told.contains("writes the import `mine`") || told.contains("write the import `mine`"), "{told}");
+        let message = refused(&bench, &mut inspector, "mine");
+        assert!(
+            message.contains("writes the import `mine`") || message.contains("write the import `mine`"),
+            "{message}"
+        );
         Ok(())
     })
 }
 
 /// A history that counts frames. The inspection shows the next frame, and does not advance the history.
 #[test]
-fn histories_are_seen_as_the_next_frame_finds_them() -> TestResult {
+fn inspection_shows_histories_of_the_next_frame() -> TestResult {
     let declare = |frame: &mut Frame| {
         let desc = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
         let history = frame.graph_mut().history("count", desc, 1);
@@ -296,7 +299,7 @@ fn histories_are_seen_as_the_next_frame_finds_them() -> TestResult {
         frame.graph_mut().export(current)?;
         Ok(current)
     };
-    on_every_device("histories_are_seen_as_the_next_frame_finds_them", |gpu, drawn| {
+    on_every_device("inspection_shows_histories_of_the_next_frame", |gpu, drawn| {
         let mut bench = Bench::new(gpu, SIDE, SIDE);
         let mut inspector = Inspector::new(gpu);
         for frame in 1..5u8 {
@@ -314,8 +317,8 @@ fn histories_are_seen_as_the_next_frame_finds_them() -> TestResult {
 }
 
 #[test]
-fn names_that_are_not_there_come_with_those_that_are() -> TestResult {
-    on_every_device("names_that_are_not_there_come_with_those_that_are", |gpu, _| {
+fn missing_names_list_existing_ones() -> TestResult {
+    on_every_device("missing_names_list_existing_ones", |gpu, _| {
         let mut bench = Bench::new(gpu, SIDE, SIDE);
         bench.run(|f| {
             let buffer = f.graph_mut().buffer("sums", 64);
@@ -333,8 +336,8 @@ fn names_that_are_not_there_come_with_those_that_are() -> TestResult {
             ("sums", "`sums` is a buffer"),
         ];
         for (request, expected) in cases {
-            let told = refused(&bench, &mut inspector, request);
-            assert!(told.contains(expected), "{told}");
+            let message = refused(&bench, &mut inspector, request);
+            assert!(message.contains(expected), "{message}");
         }
         let all: Vec<_> = all_targets(&bench.plan).iter().map(|s| s.title()).collect();
         assert_eq!(all, ["depth@scene", "hdr@scene", "out@grade"]);
@@ -344,8 +347,8 @@ fn names_that_are_not_there_come_with_those_that_are() -> TestResult {
 
 /// A texture that is drawn into three times: its contents before the first step and after each step.
 #[test]
-fn steps_name_what_a_texture_holds_after_them() -> TestResult {
-    on_every_device("steps_name_what_a_texture_holds_after_them", |gpu, drawn| {
+fn steps_select_the_contents_after_them() -> TestResult {
+    on_every_device("steps_select_the_contents_after_them", |gpu, drawn| {
         let mut bench = Bench::new(gpu, SIDE, SIDE);
         bench.options.merge = false;
         bench.run(|frame| {
@@ -365,10 +368,10 @@ fn steps_name_what_a_texture_holds_after_them() -> TestResult {
         })?;
         assert_eq!(bench.plan.steps().len(), 4);
         let mut inspector = Inspector::new(gpu);
-        let told = refused(&bench, &mut inspector, "sum@s0");
+        let message = refused(&bench, &mut inspector, "sum@s0");
         assert!(
-            told.contains("`sum` has no version at step 0 of 4; it has v1 (`s9`), v2 (`over`), v3 (`over`)"),
-            "{told}"
+            message.contains("`sum` has no version at step 0 of 4; it has v1 (`s9`), v2 (`over`), v3 (`over`)"),
+            "{message}"
         );
         for (request, number) in
             [("sum@s1", 1), ("sum@s2", 2), ("sum@s3", 3), ("sum@s9", 1), ("sum@over", 3), ("sum@v2", 2)]

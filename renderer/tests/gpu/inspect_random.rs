@@ -9,7 +9,7 @@ use framegraph_wgpu::{Frame, mock};
 
 /// Random graphs with mock recorders, on the device that validates all calls.
 #[test]
-fn everything_in_random_graphs_is_seen() -> TestResult {
+fn every_target_of_random_graphs_can_be_inspected() -> TestResult {
     let gpu = Gpu::noop()?;
     let (mut inspector, mut seen, mut beyond) = (Inspector::new(&gpu), 0, 0);
     for seed in 0..100 {

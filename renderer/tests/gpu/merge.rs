@@ -24,8 +24,8 @@ fn declare(frame: &mut Frame) -> Result<Texture, DeclareError> {
 }
 
 #[test]
-fn merged_or_not_the_picture_is_the_same() -> TestResult {
-    on_every_device("merged_or_not_the_picture_is_the_same", |gpu, drawn| {
+fn merging_does_not_change_the_image() -> TestResult {
+    on_every_device("merging_does_not_change_the_image", |gpu, drawn| {
         let mut pictures = Vec::new();
         for (merge, steps, unresolves) in [(true, 1, 0), (false, 2, 1)] {
             let mut bench = Bench::new(gpu, 8, 8);

@@ -24,8 +24,8 @@ fn fill(buffer: Buffer, cx: &mut Cx<'_>) -> Result<(), RecordError> {
 }
 
 #[test]
-fn a_pass_is_bound_to_the_bytes_that_it_declares() -> TestResult {
-    on_every_device("a_pass_is_bound_to_the_bytes_that_it_declares", |gpu, drawn| {
+fn a_pass_binds_the_declared_bytes() -> TestResult {
+    on_every_device("a_pass_binds_the_declared_bytes", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 1, 1);
         let values = bench.run(|frame| {
             let values = frame.graph_mut().buffer("values", 1024);
@@ -55,8 +55,8 @@ fn a_pass_is_bound_to_the_bytes_that_it_declares() -> TestResult {
 }
 
 #[test]
-fn a_view_through_the_twin_changes_what_is_stored() -> TestResult {
-    on_every_device("a_view_through_the_twin_changes_what_is_stored", |gpu, drawn| {
+fn an_srgb_view_changes_the_stored_values() -> TestResult {
+    on_every_device("an_srgb_view_changes_the_stored_values", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 1, 1);
         let gray = Intent::Clear(ClearValue::Color([0.5, 0.5, 0.5, 1.0]));
         let mut codes = |own: Format, view: Format| -> Result<u8, Box<dyn std::error::Error>> {

@@ -114,8 +114,8 @@ fn elsewhere(executor: &Executor) -> Option<String> {
 }
 
 #[test]
-fn a_chain_in_one_block_is_the_chain_apart() -> TestResult {
-    const NAME: &str = "a_chain_in_one_block_is_the_chain_apart";
+fn a_placed_chain_equals_the_unshared_chain() -> TestResult {
+    const NAME: &str = "a_placed_chain_equals_the_unshared_chain";
     on_adapter(NAME, |gpu| {
         let mut placed = Run::new(gpu, Alias::Heap, false)?;
         if let Some(why) = elsewhere(&placed.executor) {
@@ -201,8 +201,8 @@ fn raster_then_compute(frame: &mut Frame) -> Result<Texture, DeclareError> {
 const STORED: [u32; 2] = [96, 64];
 
 #[test]
-fn a_dispatch_waits_for_the_drawing_that_had_its_memory() -> TestResult {
-    const NAME: &str = "a_dispatch_waits_for_the_drawing_that_had_its_memory";
+fn a_dispatch_waits_for_the_draw_that_used_its_memory() -> TestResult {
+    const NAME: &str = "a_dispatch_waits_for_the_draw_that_used_its_memory";
     on_adapter(NAME, |gpu| {
         let shown = |broken| -> Result<_, Box<dyn std::error::Error>> {
             let mut ran = Run::of(gpu, Alias::Heap, broken, raster_then_compute)?;
@@ -231,8 +231,8 @@ fn a_dispatch_waits_for_the_drawing_that_had_its_memory() -> TestResult {
 /// After a long chain, a short chain runs. The block of the long chain is freed by a trim, or when it exceeds three
 /// times the size that the last eight frames used.
 #[test]
-fn blocks_that_nobody_uses_go_by_trim_and_by_budget() -> TestResult {
-    const NAME: &str = "blocks_that_nobody_uses_go_by_trim_and_by_budget";
+fn unused_blocks_are_freed_by_trim_and_budget() -> TestResult {
+    const NAME: &str = "unused_blocks_are_freed_by_trim_and_budget";
     on_adapter(NAME, |gpu| {
         let mut placed = Run::new(gpu, Alias::Heap, false)?;
         if let Some(why) = elsewhere(&placed.executor) {
@@ -270,8 +270,8 @@ fn blocks_that_nobody_uses_go_by_trim_and_by_budget() -> TestResult {
 }
 
 #[test]
-fn sizes_that_the_driver_was_not_asked_for_are_refused() -> TestResult {
-    const NAME: &str = "sizes_that_the_driver_was_not_asked_for_are_refused";
+fn plans_without_driver_sizes_are_rejected() -> TestResult {
+    const NAME: &str = "plans_without_driver_sizes_are_rejected";
     on_adapter(NAME, |gpu| {
         let mut placed = Run::new(gpu, Alias::Heap, false)?;
         if let Some(why) = elsewhere(&placed.executor) {
@@ -281,14 +281,14 @@ fn sizes_that_the_driver_was_not_asked_for_are_refused() -> TestResult {
         let caps = framegraph::Caps { padded: Vec::new(), texture_alignment_bytes: 1, ..placed.plan.caps().clone() };
         let options = *placed.plan.options();
         framegraph::compile(placed.frame.graph(), &caps, &options, &mut Scratch::new(), &mut placed.plan)?;
-        let told = placed.frames(1);
-        assert!(matches!(told, Err(ExecuteError::Heap { .. })), "{told:?}");
+        let report = placed.frames(1);
+        assert!(matches!(report, Err(ExecuteError::Heap { .. })), "{report:?}");
         Ok(())
     })
 }
 
 #[test]
-fn a_device_without_placing_shares_by_shape_and_says_why() -> TestResult {
+fn without_placing_textures_share_by_shape() -> TestResult {
     let gpu = Gpu::noop()?;
     let mut ran = Run::new(&gpu, Alias::Heap, false)?;
     ran.frames(2)?;
@@ -298,7 +298,7 @@ fn a_device_without_placing_shares_by_shape_and_says_why() -> TestResult {
     Ok(())
 }
 
-/// Runs in a process of its own with the validation layers; see `the_layers_are_silent_about_what_is_placed`.
+/// Runs in a process of its own with the validation layers; see `the_validation_layers_accept_placed_resources`.
 #[test]
 #[ignore = "a part of another test, which sets its environment"]
 fn chain_under_validation() -> TestResult {
@@ -317,7 +317,7 @@ fn chain_under_validation() -> TestResult {
 
 /// Returns the messages of the validation layers for the placed chain, with or without aliasing barriers. Returns an
 /// error if nothing is placed.
-fn told(broken: bool) -> Result<Result<Vec<String>, String>, Box<dyn std::error::Error>> {
+fn report(broken: bool) -> Result<Result<Vec<String>, String>, Box<dyn std::error::Error>> {
     let mut run = Command::new(std::env::current_exe()?);
     run.args(["--exact", "placed::chain_under_validation", "--ignored", "--nocapture"]);
     run.env("WGPU_VALIDATION", "1").env_remove("FRAMEGRAPH_BROKEN");
@@ -336,16 +336,16 @@ fn told(broken: bool) -> Result<Result<Vec<String>, String>, Box<dyn std::error:
 }
 
 #[test]
-fn the_layers_are_silent_about_what_is_placed() -> TestResult {
-    const NAME: &str = "the_layers_are_silent_about_what_is_placed";
+fn the_validation_layers_accept_placed_resources() -> TestResult {
+    const NAME: &str = "the_validation_layers_accept_placed_resources";
     on_adapter(NAME, |_| {
-        let silent = match told(false)? {
+        let silent = match report(false)? {
             Ok(messages) => messages,
             Err(why) => return skip(NAME, &why),
         };
         assert!(silent.is_empty(), "{}", silent.join("\n"));
         // Without layers there are no messages, and newer layers do not compare memory of different images.
-        let broken = told(true)?.unwrap_or_default();
+        let broken = report(true)?.unwrap_or_default();
         if broken.is_empty() {
             return skip(NAME, "there are no validation layers that find hand-overs that were left out");
         }

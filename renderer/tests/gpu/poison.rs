@@ -22,8 +22,8 @@ fn promise(frame: &mut Frame, format: Format, keep: bool) -> Result<Texture, Dec
 }
 
 #[test]
-fn a_broken_promise_is_seen() -> TestResult {
-    on_every_device("a_broken_promise_is_seen", |gpu, drawn| {
+fn a_broken_overwrite_is_visible() -> TestResult {
+    on_every_device("a_broken_overwrite_is_visible", |gpu, drawn| {
         for (format, keep) in [(Format::Rgba16Float, false), (Format::Rgba16Float, true), (Format::Rgba8Unorm, false)] {
             let mut bench = Bench::new(gpu, 8, 8);
             poisoned(&mut bench);
@@ -44,7 +44,7 @@ fn a_broken_promise_is_seen() -> TestResult {
 }
 
 #[test]
-fn a_right_frame_looks_the_same() -> TestResult {
+fn a_correct_frame_looks_the_same() -> TestResult {
     // Samples and depth are discarded after each step; one of them is in memory, since merging is off.
     let declare = |frame: &mut Frame| {
         let hdr = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
@@ -60,7 +60,7 @@ fn a_right_frame_looks_the_same() -> TestResult {
         frame.graph_mut().readback(out)?;
         Ok(out)
     };
-    on_every_device("a_right_frame_looks_the_same", |gpu, drawn| {
+    on_every_device("a_correct_frame_looks_the_same", |gpu, drawn| {
         let mut pictures = Vec::new();
         for poison in [false, true] {
             let mut bench = Bench::new(gpu, 16, 16);
@@ -81,7 +81,7 @@ fn a_right_frame_looks_the_same() -> TestResult {
 }
 
 #[test]
-fn a_plane_beside_a_dropped_one_is_left_alone() -> TestResult {
+fn a_stored_plane_is_not_poisoned() -> TestResult {
     // Depth is cleared three times and shown after the last; stencil is written by the first pass only.
     let declare = |frame: &mut Frame| {
         let graph = frame.graph_mut();
@@ -101,7 +101,7 @@ fn a_plane_beside_a_dropped_one_is_left_alone() -> TestResult {
         frame.graph_mut().readback(depth)?;
         Ok(depth)
     };
-    on_every_device("a_plane_beside_a_dropped_one_is_left_alone", |gpu, drawn| {
+    on_every_device("a_stored_plane_is_not_poisoned", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 8, 8);
         poisoned(&mut bench);
         let depth = bench.declare(declare)?;

@@ -58,8 +58,8 @@ fn an_overwritten_target_is_not_loaded() -> TestResult {
 }
 
 #[test]
-fn reversed_depth_decides_and_is_discarded() -> TestResult {
-    on_every_device("reversed_depth_decides_and_is_discarded", |gpu, drawn| {
+fn reversed_depth_is_tested_and_discarded() -> TestResult {
+    on_every_device("reversed_depth_is_tested_and_discarded", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 16, 16);
         let color = bench.run(|frame| {
             let color = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba16Float));

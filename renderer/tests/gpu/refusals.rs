@@ -55,7 +55,7 @@ fn declare(frame: &mut Frame, bind: Bind) -> Result<Texture, DeclareError> {
 }
 
 #[test]
-fn a_bind_group_is_refused_by_the_names_of_pass_group_binding_and_variable() -> TestResult {
+fn rejected_bind_groups_name_pass_group_binding_and_variable() -> TestResult {
     let refused: [Refused; 8] = [
         (
             |cx, pipeline, [_, image, linear]| {
@@ -135,15 +135,15 @@ fn a_bind_group_is_refused_by_the_names_of_pass_group_binding_and_variable() -> 
             |reason| *reason == BindingReason::NoGroup { groups: 2 },
         ),
     ];
-    on_every_device("a_bind_group_is_refused_by_the_names_of_pass_group_binding_and_variable", |gpu, drawn| {
+    on_every_device("rejected_bind_groups_name_pass_group_binding_and_variable", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 8, 8);
         for (case, (bind, group, binding, variable, is)) in refused.into_iter().enumerate() {
             // Executed twice, since rejected bind groups are not cached.
             for _ in 0..2 {
                 bench.declare(|f| declare(f, bind))?;
-                let told = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports);
-                let Err(ExecuteError::Record { pass, error: RecordError::Binding(error) }) = &told else {
-                    return Err(format!("case {case}: {told:?}").into());
+                let report = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports);
+                let Err(ExecuteError::Record { pass, error: RecordError::Binding(error) }) = &report else {
+                    return Err(format!("case {case}: {report:?}").into());
                 };
                 assert_eq!((pass.name.as_str(), error.shader.as_str()), ("second", "two groups"), "case {case}");
                 let found = (error.group, error.binding, error.variable.as_deref());
@@ -163,7 +163,7 @@ fn a_bind_group_is_refused_by_the_names_of_pass_group_binding_and_variable() -> 
 
 /// Three passes of one step. wgpu reports only the step; its first pass is valid.
 #[test]
-fn the_pass_of_a_merged_step_that_wgpu_refuses_is_named() -> TestResult {
+fn the_rejected_pass_of_a_merged_step_is_named() -> TestResult {
     let wrong: [(Bind, &str); 2] = [
         // Bind groups are swapped.
         (
@@ -184,14 +184,16 @@ fn the_pass_of_a_merged_step_that_wgpu_refuses_is_named() -> TestResult {
             "huge",
         ),
     ];
-    on_every_device("the_pass_of_a_merged_step_that_wgpu_refuses_is_named", |gpu, drawn| {
+    on_every_device("the_rejected_pass_of_a_merged_step_is_named", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 8, 8);
         for (bind, reason) in wrong {
             bench.declare(|f| declare(f, bind))?;
             assert_eq!(bench.plan.counts().steps, 2, "the three passes are one step");
-            let told = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports);
-            let Err(ExecuteError::Refused { pass, message }) = &told else { return Err(format!("{told:?}").into()) };
-            assert!(pass.name == "second" && message.contains(reason), "{told:?}");
+            let report = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports);
+            let Err(ExecuteError::Refused { pass, message }) = &report else {
+                return Err(format!("{report:?}").into());
+            };
+            assert!(pass.name == "second" && message.contains(reason), "{report:?}");
             let target = bench.run(|f| declare(f, good))?;
             if drawn {
                 assert!(bench.pixels(target)?.bytes.chunks_exact(4).all(|t| t == [255, 0, 0, 255]));
@@ -203,8 +205,8 @@ fn the_pass_of_a_merged_step_that_wgpu_refuses_is_named() -> TestResult {
 
 /// An import with sRGB views must be created with both formats, which only wgpu can check.
 #[test]
-fn a_view_that_an_import_cannot_have_is_named() -> TestResult {
-    on_every_device("a_view_that_an_import_cannot_have_is_named", |gpu, _| {
+fn an_unsupported_view_of_an_import_is_named() -> TestResult {
+    on_every_device("an_unsupported_view_of_an_import_is_named", |gpu, _| {
         let mut bench = Bench::new(gpu, 8, 8);
         for (formats, refused) in [(&[][..], true), (&[wgpu::TextureFormat::Rgba8UnormSrgb][..], false)] {
             let image = gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -232,14 +234,14 @@ fn a_view_that_an_import_cannot_have_is_named() -> TestResult {
             })?;
             bench.imports.clear();
             bench.imports.texture_named("image", &image);
-            let told = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports).map(|_| ());
-            let named = match &told {
+            let report = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports).map(|_| ());
+            let named = match &report {
                 Err(ExecuteError::Record { pass, error: RecordError::View { resource, message } }) => {
                     pass.name == "look" && resource.name == "image" && message.contains("Rgba8UnormSrgb")
                 }
                 _ => false,
             };
-            assert!(if refused { named } else { told.is_ok() }, "{told:?}");
+            assert!(if refused { named } else { report.is_ok() }, "{report:?}");
         }
         Ok(())
     })
@@ -247,8 +249,8 @@ fn a_view_that_an_import_cannot_have_is_named() -> TestResult {
 
 /// Submissions with destroyed or mapped imports name the import. Otherwise the error says that the frame is valid.
 #[test]
-fn a_submission_is_refused_by_the_import_or_what_came_with_it() -> TestResult {
-    on_every_device("a_submission_is_refused_by_the_import_or_what_came_with_it", |gpu, _| {
+fn a_rejected_submission_names_the_import() -> TestResult {
+    on_every_device("a_rejected_submission_names_the_import", |gpu, _| {
         let buffer = |usage| {
             let size = wgpu::BufferDescriptor { label: Some("theirs"), size: 64, usage, mapped_at_creation: false };
             gpu.device.create_buffer(&size)
@@ -267,8 +269,7 @@ fn a_submission_is_refused_by_the_import_or_what_came_with_it() -> TestResult {
         };
         let uses = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
         // The resource that breaks the submission, and the one that the error names.
-        for (spoilt, told_of) in
-            [("image", Some("image")), ("buffer", Some("buffer")), ("behind", None), ("none", None)]
+        for (spoilt, named) in [("image", Some("image")), ("buffer", Some("buffer")), ("behind", None), ("none", None)]
         {
             let mut bench = Bench::new(gpu, 4, 4);
             let (shown, filled) = (image(), buffer(uses));
@@ -292,7 +293,7 @@ fn a_submission_is_refused_by_the_import_or_what_came_with_it() -> TestResult {
             })?;
             bench.imports.texture(from, &shown).buffer(into, &filled);
             let queue = gpu.queue.clone();
-            let told = bench.executor.execute_with(&bench.plan, &bench.frame, &(), &bench.imports, |commands| {
+            let report = bench.executor.execute_with(&bench.plan, &bench.frame, &(), &bench.imports, |commands| {
                 let mut behind =
                     gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("mine") });
                 match spoilt {
@@ -307,12 +308,12 @@ fn a_submission_is_refused_by_the_import_or_what_came_with_it() -> TestResult {
                 }
                 commands.submit(&queue, [], [behind.finish()])
             });
-            match (told, told_of) {
+            match (report, named) {
                 (Ok(_), None) if spoilt == "none" => {}
                 (Err(ExecuteError::Submission { import, .. }), of) => {
                     assert_eq!(import.as_ref().map(|import| import.name.as_str()), of, "{spoilt}");
                 }
-                (told, _) => panic!("{spoilt}: {told:?}"),
+                (report, _) => panic!("{spoilt}: {report:?}"),
             }
             assert_eq!(bench.executor.texture(&bench.plan, target).is_some(), spoilt == "none");
         }

@@ -69,15 +69,16 @@ fn frame(frame: &mut Frame, mode: ResolveMode) -> Result<[framegraph::Texture; 3
 /// Checks the error on OpenGL, where wgpu has no multisampled textures in shaders: it names pass, samples, mode, reason
 /// and solution.
 fn is_refused<T>(found: Result<T, Box<dyn std::error::Error>>, mode: &str) -> TestResult {
-    let told = found.map(drop).expect_err("OpenGL has no samples in memory").to_string();
-    let parts = ["pass `", "`samples", &format!("by `{mode}`"), "on OpenGL", "use another back end, or one sample"];
-    assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+    let message = found.map(drop).expect_err("OpenGL has no samples in memory").to_string();
+    let parts =
+        ["pass `", "`samples", &format!("with mode `{mode}`"), "on OpenGL", "use another backend, or one sample"];
+    assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     Ok(())
 }
 
 #[test]
-fn each_mode_makes_of_the_samples_what_it_says() -> TestResult {
-    const NAME: &str = "each_mode_makes_of_the_samples_what_it_says";
+fn each_resolve_mode_gives_its_value() -> TestResult {
+    const NAME: &str = "each_resolve_mode_gives_its_value";
     on_every_device(NAME, |gpu, drawn| {
         let mut bench = Bench::new(gpu, SIDE, SIDE);
         if gpu.info().backend == wgpu::Backend::Gl {
@@ -107,8 +108,8 @@ fn each_mode_makes_of_the_samples_what_it_says() -> TestResult {
                     let wrong = texels.zip(found).filter(|(e, f)| e != *f).count();
                     // Sixteenths and quarters of them are exact in these formats. Any other mode differs in most
                     // texels.
-                    let told = format!("{mode:?}, target {index}: {wrong} texels are not by {other:?}");
-                    assert!(if other == own { wrong == 0 } else { wrong > 100 }, "{told}");
+                    let message = format!("{mode:?}, target {index}: {wrong} texels are not by {other:?}");
+                    assert!(if other == own { wrong == 0 } else { wrong > 100 }, "{message}");
                 }
             }
         }
@@ -168,7 +169,7 @@ fn samples_of_32_bits_are_averaged_by_a_pass() -> TestResult {
 
 /// The plan was compiled for a device that resolves everything in store operations.
 #[test]
-fn a_plan_of_another_device_is_refused_with_the_way_out() -> TestResult {
+fn a_plan_of_another_device_is_rejected() -> TestResult {
     let gpu = Gpu::noop()?;
     let mut declared = Frame::new();
     frame(&mut declared, ResolveMode::Min)?;
@@ -177,11 +178,11 @@ fn a_plan_of_another_device_is_refused_with_the_way_out() -> TestResult {
     let mut plan = Plan::new();
     compile(declared.graph(), &caps, &Options::for_frame(SIDE, SIDE), &mut Scratch::new(), &mut plan)?;
     let refused = Executor::new(&gpu).execute(&plan, &declared, &(), &Imports::new());
-    let told = match refused {
+    let message = match refused {
         Err(error @ ExecuteError::StoreResolve { mode: ResolveMode::Min, .. }) => error.to_string(),
         other => panic!("{:?}", other.map(drop)),
     };
-    assert!(told.contains("`target`") && told.contains("`Caps`"), "{told}");
+    assert!(message.contains("`target`") && message.contains("`Caps`"), "{message}");
     Ok(())
 }
 

@@ -25,8 +25,8 @@ fn chain(frame: &mut Frame, length: u32, red: f32) -> Result<Texture, DeclareErr
 }
 
 #[test]
-fn a_steady_frame_makes_no_object() -> TestResult {
-    on_every_device("a_steady_frame_makes_no_object", |gpu, _| {
+fn a_steady_frame_creates_no_objects() -> TestResult {
+    on_every_device("a_steady_frame_creates_no_objects", |gpu, _| {
         let mut bench = Bench::new(gpu, 32, 32);
         bench.run(|f| chain(f, 6, 0.5))?;
         let made = bench.executor.objects();
@@ -41,8 +41,8 @@ fn a_steady_frame_makes_no_object() -> TestResult {
 }
 
 #[test]
-fn resizes_and_toggles_show_the_right_picture() -> TestResult {
-    on_every_device("resizes_and_toggles_show_the_right_picture", |gpu, drawn| {
+fn resizes_and_toggles_show_the_correct_image() -> TestResult {
+    on_every_device("resizes_and_toggles_show_the_correct_image", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 32, 32);
         let frames =
             [([32, 32], 3), ([33, 17], 3), ([1, 1], 3), ([32, 32], 0), ([32, 32], 3), ([31, 32], 1), ([32, 32], 3)];
@@ -76,8 +76,8 @@ fn resizes_and_toggles_show_the_right_picture() -> TestResult {
 
 /// Each frame of a resize has another size. Without a budget, textures of the last 30 sizes would be kept.
 #[test]
-fn a_drag_holds_a_stated_multiple_of_its_plan() -> TestResult {
-    on_every_device("a_drag_holds_a_stated_multiple_of_its_plan", |gpu, _| {
+fn a_resize_stays_within_the_pool_budget() -> TestResult {
+    on_every_device("a_resize_stays_within_the_pool_budget", |gpu, _| {
         let mut bench = Bench::new(gpu, 64, 64);
         let budget = u64::from(framegraph_wgpu::ExecutorOptions::default().pool_budget);
         for width in 64..104 {
@@ -107,8 +107,8 @@ fn a_drag_holds_a_stated_multiple_of_its_plan() -> TestResult {
 }
 
 #[test]
-fn pooled_or_not_ten_frames_are_the_same() -> TestResult {
-    on_every_device("pooled_or_not_ten_frames_are_the_same", |gpu, drawn| {
+fn pooling_does_not_change_the_image() -> TestResult {
+    on_every_device("pooling_does_not_change_the_image", |gpu, drawn| {
         let mut pooled = Bench::new(gpu, 16, 16);
         let mut apart = Bench::new(gpu, 16, 16);
         apart.options = apart.options.immediate();
@@ -129,8 +129,8 @@ fn pooled_or_not_ten_frames_are_the_same() -> TestResult {
 }
 
 #[test]
-fn what_was_declared_and_not_used_is_told() -> TestResult {
-    on_every_device("what_was_declared_and_not_used_is_told", |gpu, _| {
+fn unused_accesses_are_reported() -> TestResult {
+    on_every_device("unused_accesses_are_reported", |gpu, _| {
         let mut bench = Bench::new(gpu, 8, 8);
         bench.run(|frame| {
             let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);

@@ -19,8 +19,8 @@ fn filled(frame: &mut Frame, color: [f32; 4]) -> Result<Texture, DeclareError> {
 
 /// The caller's commands follow the graph's in one submission, see its results, and are awaited by its index.
 #[test]
-fn a_frame_is_submitted_with_commands_of_the_callers() -> TestResult {
-    on_every_device("a_frame_is_submitted_with_commands_of_the_callers", |gpu, drawn| {
+fn a_frame_is_submitted_with_commands_of_the_caller() -> TestResult {
+    on_every_device("a_frame_is_submitted_with_commands_of_the_caller", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 64, 4);
         bench.run(|f| filled(f, GREEN))?;
         let target = bench.declare(|f| filled(f, RED))?;
@@ -54,8 +54,8 @@ fn a_frame_is_submitted_with_commands_of_the_callers() -> TestResult {
 /// The caller submits the frame's command buffers between its own: one clears before, one copies after. The frame
 /// counts as executed once it is reported.
 #[test]
-fn a_recorded_frame_is_submitted_among_the_callers_commands() -> TestResult {
-    on_every_device("a_recorded_frame_is_submitted_among_the_callers_commands", |gpu, drawn| {
+fn a_recorded_frame_is_submitted_between_other_commands() -> TestResult {
+    on_every_device("a_recorded_frame_is_submitted_between_other_commands", |gpu, drawn| {
         let mut frames = FrameLoop::<()>::new(gpu);
         let image = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("image"),
@@ -138,8 +138,8 @@ fn nothing_is_submitted_of_a_frame_that_failed() -> TestResult {
                 called.set(true);
                 commands.submit(&gpu.queue, [], [])
             };
-            let told = bench.executor.execute_with(&bench.plan, &bench.frame, &(), &bench.imports, submit);
-            assert!(told.is_err() && !called.get(), "{told:?}");
+            let report = bench.executor.execute_with(&bench.plan, &bench.frame, &(), &bench.imports, submit);
+            assert!(report.is_err() && !called.get(), "{report:?}");
         }
         Ok(())
     })
@@ -147,8 +147,8 @@ fn nothing_is_submitted_of_a_frame_that_failed() -> TestResult {
 
 /// Warm-up creates everything that the frame needs, and neither draws nor advances histories.
 #[test]
-fn pipelines_are_made_ahead_of_the_first_frame() -> TestResult {
-    on_every_device("pipelines_are_made_ahead_of_the_first_frame", |gpu, drawn| {
+fn warm_up_creates_pipelines() -> TestResult {
+    on_every_device("warm_up_creates_pipelines", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 4, 4);
         let declare = |frame: &mut Frame| {
             let history = frame.graph_mut().history("sum", TextureDesc::new(Extent::FRAME, Format::Rgba16Float), 1);
@@ -164,11 +164,11 @@ fn pipelines_are_made_ahead_of_the_first_frame() -> TestResult {
             Ok([sum, color])
         };
         let [sum, color] = bench.declare(declare)?;
-        let mut told = Vec::new();
+        let mut report = Vec::new();
         bench.executor.warm_up(&bench.plan, &bench.frame, &(), &bench.imports, &mut |at| {
-            told.push((at.done, at.total, at.pass.to_owned(), at.pipelines));
+            report.push((at.done, at.total, at.pass.to_owned(), at.pipelines));
         })?;
-        assert_eq!(told, [(1, 2, "add".to_owned(), 1), (2, 2, "fill".to_owned(), 2)]);
+        assert_eq!(report, [(1, 2, "add".to_owned(), 1), (2, 2, "fill".to_owned(), 2)]);
         let made = bench.executor.objects();
         assert_eq!((made.pipelines, made.shader_modules, made.textures, made.histories), (2, 1, 1, 2));
         bench.execute()?;
@@ -200,8 +200,8 @@ fn tinted(frame: &mut Frame, format: Format) -> Result<Texture, DeclareError> {
 /// An invalid source keeps the old one in use and returns the reason. A valid one changes existing and future
 /// pipelines.
 #[test]
-fn a_shader_is_reloaded_while_frames_go_on() -> TestResult {
-    on_every_device("a_shader_is_reloaded_while_frames_go_on", |gpu, drawn| {
+fn a_shader_is_reloaded_between_frames() -> TestResult {
+    on_every_device("a_shader_is_reloaded_between_frames", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 4, 4);
         let shows = |bench: &mut Bench, format, expected: [f32; 4]| -> TestResult {
             let target = bench.run(|f| tinted(f, format))?;
@@ -214,14 +214,17 @@ fn a_shader_is_reloaded_while_frames_go_on() -> TestResult {
         shows(&mut bench, Format::Rgba8Unorm, GREEN)?;
 
         let broken = TINT.text().replace("return tint;", "return tnit;");
-        let told = bench.executor.reload_shader(&TINT, &broken);
+        let report = bench.executor.reload_shader(&TINT, &broken);
         assert!(
-            matches!(&told, Err(ShaderError::Module { name, message }) if name == "tint" && message.contains("tnit"))
+            matches!(&report, Err(ShaderError::Module { name, message }) if name == "tint" && message.contains("tnit"))
         );
         shows(&mut bench, Format::Rgba8Unorm, GREEN)?;
         let other = TINT.text().replace("fs_main", "fs_other");
-        let told = bench.executor.reload_shader(&TINT, &other);
-        assert!(matches!(&told, Err(ShaderError::Pipeline { message, .. }) if message.contains("fs_main")), "{told:?}");
+        let report = bench.executor.reload_shader(&TINT, &other);
+        assert!(
+            matches!(&report, Err(ShaderError::Pipeline { message, .. }) if message.contains("fs_main")),
+            "{report:?}"
+        );
         shows(&mut bench, Format::Rgba8Unorm, GREEN)?;
 
         let made = bench.executor.objects();
@@ -235,8 +238,8 @@ fn a_shader_is_reloaded_while_frames_go_on() -> TestResult {
 }
 
 #[test]
-fn pipelines_that_nobody_asks_for_are_dropped() -> TestResult {
-    on_every_device("pipelines_that_nobody_asks_for_are_dropped", |gpu, drawn| {
+fn unused_pipelines_are_dropped() -> TestResult {
+    on_every_device("unused_pipelines_are_dropped", |gpu, drawn| {
         let mut bench = Bench::new(gpu, 4, 4);
         bench.executor = Executor::with(gpu, ExecutorOptions { max_pipeline_age: 5, ..ExecutorOptions::default() });
         let pipelines = |bench: &mut Bench, format, frames| -> Result<u64, Box<dyn std::error::Error>> {
@@ -278,8 +281,8 @@ fn compiled_pipelines_are_kept_for_the_next_run() -> TestResult {
         damaged[middle] ^= 1;
         for (bytes, sound) in [(&kept, true), (&damaged, false)] {
             let mut second = Bench::new(gpu, 4, 4);
-            let told = second.executor.use_pipeline_cache(Some(bytes));
-            assert!(if sound { told == Ok(true) } else { matches!(told, Err(PipelineCacheError::Damaged { .. })) });
+            let report = second.executor.use_pipeline_cache(Some(bytes));
+            assert!(if sound { report == Ok(true) } else { matches!(report, Err(PipelineCacheError::Damaged { .. })) });
             let target = second.run(|f| tinted(f, Format::Rgba8Unorm))?;
             assert!(second.pixels(target)?.rgba().iter().all(|texel| *texel == RED));
             assert!(second.executor.pipeline_cache_data().is_some_and(|bytes| bytes.len() >= kept.len()));

@@ -65,8 +65,8 @@ fn bench(gpu: &framegraph_wgpu::Gpu, threads: usize) -> Result<Bench, Box<dyn st
 }
 
 #[test]
-fn many_threads_record_what_one_records() -> TestResult {
-    on_every_device("many_threads_record_what_one_records", |gpu, pixels| {
+fn threads_record_the_same_commands() -> TestResult {
+    on_every_device("threads_record_the_same_commands", |gpu, pixels| {
         let mut alone = Bench::new(gpu, 16, 16);
         let expected = alone.run(|frame| chain(frame, [None; 2]))?;
         for threads in [1, 2, 3, 40] {
@@ -108,15 +108,15 @@ fn errors_are_those_of_one_thread() -> TestResult {
             [Some(10), Some(2)],
             [Some(2), Some(10)],
         ] {
-            let told = |bench: &mut Bench| -> Result<String, Box<dyn std::error::Error>> {
+            let message = |bench: &mut Bench| -> Result<String, Box<dyn std::error::Error>> {
                 bench.declare(|frame| chain(frame, wrong))?;
                 let error = bench.execute().err().ok_or("the frame is wrong")?;
                 Ok(error.downcast::<ExecuteError>()?.to_string())
             };
             let (mut alone, mut many) = (Bench::new(gpu, 16, 16), bench(gpu, 3)?);
-            let expected = told(&mut alone)?;
-            assert_eq!(told(&mut many)?, expected);
-            assert_eq!(told(&mut many)?, expected, "the second time");
+            let expected = message(&mut alone)?;
+            assert_eq!(message(&mut many)?, expected);
+            assert_eq!(message(&mut many)?, expected, "the second time");
             let drawn = [&mut alone, &mut many].map(|bench| bench.run(|frame| chain(frame, [None; 2])));
             let [one, two] = drawn;
             if pixels {
@@ -129,8 +129,8 @@ fn errors_are_those_of_one_thread() -> TestResult {
 
 /// With one thread, frames are never split.
 #[test]
-fn one_thread_shares_with_nobody() -> TestResult {
-    on_every_device("one_thread_shares_with_nobody", |gpu, _| {
+fn one_thread_never_splits_frames() -> TestResult {
+    on_every_device("one_thread_never_splits_frames", |gpu, _| {
         let mut bench = Bench::new(gpu, 16, 16);
         bench.executor.record_on(Some(Workers::with_threads(1)?));
         for _ in 0..40 {

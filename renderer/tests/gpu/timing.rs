@@ -12,8 +12,8 @@ fn declare(frame: &mut Frame, name: &str) -> Result<Texture, DeclareError> {
 }
 
 #[test]
-fn steps_are_timed_on_both_sides() -> TestResult {
-    on_adapter("steps_are_timed_on_both_sides", |gpu| {
+fn steps_are_timed_on_cpu_and_gpu() -> TestResult {
+    on_adapter("steps_are_timed_on_cpu_and_gpu", |gpu| {
         let mut bench = Bench::new(gpu, 256, 256);
         for _ in 0..20 {
             bench.run(|f| declare(f, "fill"))?;
@@ -25,7 +25,7 @@ fn steps_are_timed_on_both_sides() -> TestResult {
         assert_eq!(cpu.count, 16, "the first four frames are left out");
         assert!(cpu.min_ms > 0.0 && cpu.min_ms <= cpu.p25_ms && cpu.p25_ms <= cpu.median_ms, "{cpu:?}");
         if !gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
-            return skip("steps_are_timed_on_both_sides", &format!("{} has no timestamps", gpu.describe()));
+            return skip("steps_are_timed_on_cpu_and_gpu", &format!("{} has no timestamps", gpu.describe()));
         }
         let on_gpu = times.gpu.ok_or("no GPU time")?;
         assert!(on_gpu.count > 0 && on_gpu.min_ms > 0.0 && on_gpu.median_ms < 10_000.0, "{on_gpu:?}");

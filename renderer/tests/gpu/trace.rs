@@ -83,7 +83,7 @@ fn a_trace_is_json_with_nested_events_on_both_sides() -> TestResult {
 }
 
 #[test]
-fn nothing_is_written_down_unless_asked_for() -> TestResult {
+fn no_trace_is_recorded_by_default() -> TestResult {
     let gpu = framegraph_wgpu::Gpu::noop()?;
     let mut bench = Bench::new(&gpu, 8, 8);
     bench.run(declare)?;

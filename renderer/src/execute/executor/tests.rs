@@ -18,7 +18,7 @@ fn contexts_of_one_frame_may_live_on_several_threads() {
 /// Checks that views of attached and sampled textures are cached for the next frame, except surface textures. They are
 /// released every `max_age` frames, and when an object is dropped.
 #[test]
-fn views_are_remembered_until_they_may_be_gone() -> Result<(), Box<dyn std::error::Error>> {
+fn views_are_cached_until_they_may_be_invalid() -> Result<(), Box<dyn std::error::Error>> {
     use framegraph::{ClearValue, Entry, Exit, Extent, Format, Intent, Options, Scratch, TextureDesc, compile};
     let gpu = Gpu::noop()?;
     let options = ExecutorOptions { max_age: 4, ..ExecutorOptions::default() };
@@ -60,7 +60,7 @@ fn views_are_remembered_until_they_may_be_gone() -> Result<(), Box<dyn std::erro
 /// Checks that rejected commands are errors of their frame: with this crate's error handler, within error scopes of the
 /// caller, and on a wrapped device. Earlier errors are reported separately.
 #[test]
-fn a_frame_finds_its_errors_whoever_else_catches_some() -> Result<(), Box<dyn std::error::Error>> {
+fn a_frame_reports_only_its_own_errors() -> Result<(), Box<dyn std::error::Error>> {
     use framegraph::{ClearValue, Extent, Format, Intent, Options, Scratch, TextureDesc, compile};
     let owned = Gpu::noop()?;
     let wrapped = Gpu::wrap(owned.adapter(), &owned.device, &owned.queue);
@@ -90,6 +90,6 @@ fn a_frame_finds_its_errors_whoever_else_catches_some() -> Result<(), Box<dyn st
         wgpu::BufferDescriptor { label: None, size: 8, usage: wgpu::BufferUsages::MAP_READ, mapped_at_creation: false };
     owned.queue.write_buffer(&owned.device.create_buffer(&size), 0, &[0; 4]);
     let ran = Executor::new(&owned).execute(&plan, &frame, &(), &Imports::new()).map_err(|error| error.to_string());
-    assert!(ran.as_ref().is_err_and(|told| told.contains("something outside of a frame")), "{ran:?}");
+    assert!(ran.as_ref().is_err_and(|message| message.contains("something outside of a frame")), "{ran:?}");
     Ok(())
 }

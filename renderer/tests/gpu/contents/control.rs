@@ -227,8 +227,8 @@ fn shows(runner: &mut Runner, seed: u64, fault: &Fault) -> Result<bool, String> 
 }
 
 #[test]
-fn a_broken_plan_is_seen() -> TestResult {
-    const NAME: &str = "a_broken_plan_is_seen";
+fn a_broken_plan_is_detected() -> TestResult {
+    const NAME: &str = "a_broken_plan_is_detected";
     on_adapter(NAME, |gpu| {
         if let Some(why) = Runner::unfit(gpu) {
             return skip(NAME, why);
