@@ -1,7 +1,7 @@
 //! Mock recorders for passes that have none, and mock imports.
 //!
-//! A graph without recorders, for example one read from a file, can be executed with its real attachments, bindings and
-//! copies before any of its shaders is written.
+//! They execute a graph before any of its shaders is written, for example one read from a file. Attachments, bindings
+//! and copies are the real ones.
 //!
 //! A mock recorder fulfills the declaration of its pass: it reads every input, writes every texel that is overwritten,
 //! and modifies what is modified. Outputs are arithmetic over the inputs, between 0 and 1. The final image therefore

@@ -52,8 +52,8 @@ pub trait Record<W: ?Sized = ()>: Pass {
     /// returned.
     ///
     /// # Errors
-    /// Returns an error of `cx` (for example for a handle of another graph, or a shader that does not compile), or the
-    /// pass's own error ([`RecordError::custom`]). The frame is then abandoned, and nothing of it is submitted.
+    /// Returns an error of `cx`, for example if a shader does not compile, or the pass's own error
+    /// ([`RecordError::custom`]). The frame is then abandoned, and nothing of it is submitted.
     fn record(&self, io: &Self::Io, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError>;
 
     /// Returns the pass as an epilogue: code that runs at the end of the fragment shader that produces its input color.

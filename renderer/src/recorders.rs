@@ -108,7 +108,7 @@ impl<W: ?Sized + 'static> Recorders<W> {
             self.columns.len() - 1
         });
         let Some(rows) = self.columns[column].1.as_any().downcast_mut::<Vec<T>>() else {
-            unreachable!("a column holds what its type id says");
+            unreachable!("a column has the type of its type ID");
         };
         rows.push(recorder);
         let row = rows.len() - 1;

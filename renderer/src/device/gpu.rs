@@ -297,7 +297,7 @@ mod tests {
     fn a_device_is_opened_only_if_it_matches() -> Result<(), OpenError> {
         let noop = Gpu::noop()?;
         assert_eq!(noop.info().backend, Backend::Noop);
-        assert!(noop == noop.clone() && noop != Gpu::noop()?, "devices of two instances are two");
+        assert!(noop == noop.clone() && noop != Gpu::noop()?, "devices of two instances differ");
         let named = AdapterRequest {
             backends: Backends::NOOP,
             name: Some("no such adapter".into()),

@@ -37,7 +37,7 @@ const HEAD_BYTES: usize = 8 + 8 + 4;
 
 /// Creates a pipeline cache filled with `earlier` data. `None` if the device has no pipeline caches. The second value
 /// says why `earlier` was not used.
-#[allow(unsafe_code, reason = "wgpu cannot tell bytes of its own from others'")]
+#[allow(unsafe_code, reason = "wgpu cannot verify the data")]
 pub(crate) fn open_cache(gpu: &Gpu, earlier: Option<&[u8]>) -> (Option<PipelineCache>, Option<PipelineCacheError>) {
     if !gpu.device.features().contains(Features::PIPELINE_CACHE) {
         return (None, None);

@@ -230,7 +230,7 @@ mod tests {
         assert_eq!(pixels(Format::Rgba32Float, &floats).rgba8(), [188, 0, 0, 128]);
         for code in 0..=255u8 {
             let light = linear_from_srgb(f32::from(code) / 255.0);
-            assert_eq!((srgb_from_linear(light) * 255.0).round() as u8, code, "both directions agree");
+            assert_eq!((srgb_from_linear(light) * 255.0).round() as u8, code, "encoding and decoding are inverse");
         }
     }
 

@@ -87,7 +87,7 @@ fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView
     let range = Range { mip, mips: 1, layer, layers, ..Range::ALL };
     let view = ViewDesc::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
     let memoryless = shape.usage & TextureUsages::TRANSIENT_ATTACHMENT;
-    debug_assert_eq!(shape.format.without_srgb(), format.without_srgb(), "views differ in the transfer function alone");
+    debug_assert_eq!(shape.format.without_srgb(), format.without_srgb(), "views may only differ in the sRGB suffix");
     let view = if texture.format() == texture_format(format) {
         view
     } else {

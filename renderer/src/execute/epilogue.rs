@@ -207,7 +207,7 @@ mod tests {
         let names: Vec<_> = found.iter().map(|(pass, slot)| (graph.pass_name(*pass), *slot)).collect();
         assert_eq!(names, [("b0", 1), ("a0", 0), ("a1", 0)]);
         let other = graph.find_pass("a0").ok_or("a0")?;
-        assert_eq!(inlined_after(&plan, step, other).len(), 1, "only what is_consequence");
+        assert_eq!(inlined_after(&plan, step, other).len(), 1, "only later passes are inlined");
         Ok(())
     }
 }

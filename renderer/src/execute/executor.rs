@@ -372,8 +372,8 @@ fn check<W: ?Sized + 'static>(plan: &Plan, frame: &Frame<W>) -> Result<(), Execu
     if frame.graph().same_as(plan.graph()) { Ok(()) } else { Err(ExecuteError::OtherPlan) }
 }
 
-/// Returns whether the error `said` of recording is a consequence of the device's `error`, such as a view of a texture
-/// that could not be allocated. Otherwise the recorder's error is closer to the cause.
+/// Returns whether the error `said` of recording is a consequence of the device's `error`. An example is a view of a
+/// texture that could not be allocated. Otherwise the recorder's error is closer to the cause.
 fn is_consequence(said: &ExecuteError, error: &DeviceError) -> bool {
     let of_a_view =
         matches!(said, ExecuteError::Device(_) | ExecuteError::Record { error: RecordError::View { .. }, .. });

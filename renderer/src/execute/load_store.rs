@@ -131,6 +131,6 @@ mod tests {
         let dropped = depth_ops(&attachment(Role::DepthReadOnly, last, last), BOTH, CLEAR);
         assert_eq!(dropped.0.map(|o| o.store), Some(wgpu::StoreOp::Discard));
         let one = depth_ops(&attachment(Role::DepthReadOnly, last, kept), BOTH, CLEAR);
-        assert_eq!(one, (None, None), "a plane is not dropped beside one that is kept");
+        assert_eq!(one, (None, None), "a plane is stored if the other one is");
     }
 }

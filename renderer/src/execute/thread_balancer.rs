@@ -217,8 +217,12 @@ mod tests {
         let steps = [5, 1, 1, 1, 8, 2, 2].map(us);
         assert_eq!(even_parts(&steps, &[true; 7], 2), [0..4, 4..7]);
         let may = [true, true, true, true, false, true, true];
-        assert_eq!(even_parts(&steps, &may, 2), [0..3, 3..7], "step 4 stays with step 3");
-        assert_eq!(longest(&even_parts(&steps, &may, 9), &steps), us(9), "nor than what stays together");
+        assert_eq!(even_parts(&steps, &may, 2), [0..3, 3..7], "step 4 is not separated from step 3");
+        assert_eq!(
+            longest(&even_parts(&steps, &may, 9), &steps),
+            us(9),
+            "no part is shorter than an unsplittable block"
+        );
         assert_eq!(even_parts(&steps, &[true; 7], 3), [0..4, 4..5, 5..7]);
         assert_eq!(even_parts(&steps, &[true; 7], 1).len(), 1);
         assert_eq!(
@@ -264,10 +268,10 @@ mod tests {
             let best = 20_000 * us(shared.min(400));
             let allowed = if shared < 380 { 1.03 } else { 1.06 };
             assert!(spent.as_secs_f64() <= allowed * best.as_secs_f64(), "{spent:?} for {best:?} at {shared} µs");
-            assert_eq!(in_parts > 15_000, shared < 380, "{in_parts} frames were shared out at {shared} µs");
+            assert_eq!(in_parts > 15_000, shared < 380, "{in_parts} frames were split at {shared} µs");
         }
         let (_, in_parts) = simulated([5, 5, 5, 5].map(us), us(1));
-        assert_eq!(in_parts, 0, "what takes 20 µs is not tried");
+        assert_eq!(in_parts, 0, "frames of 20 µs are never split");
     }
 
     /// Checks that trials cost at most 3 % in addition to the first trial, however slow threads are and however often

@@ -51,7 +51,7 @@ pub enum DisplayMode {
 
 /// A channel of a texel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs, reason = "each name says it")]
+#[allow(missing_docs, reason = "the names are self-explanatory")]
 pub enum Channel {
     #[default]
     Red,
@@ -264,7 +264,7 @@ mod tests {
         assert_eq!(light.display(DisplayMode::Auto, 1.0).rgba8, [137, 255, 0, 255]);
         assert_eq!(light.display(DisplayMode::Color { stops: 1.0 }, 1.0).rgba8, [188, 255, 0, 255]);
         let codes = of(Format::Rgba8Unorm, &[[0.25, 1.0, 0.0, 1.0]]);
-        assert_eq!(codes.display(DisplayMode::Auto, 1.0).rgba8, [64, 255, 0, 255], "codes stay as they are");
+        assert_eq!(codes.display(DisplayMode::Auto, 1.0).rgba8, [64, 255, 0, 255], "normalized values are unchanged");
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! The pass that an inspection adds. It reads a texture of any format, plane or sample count in a shader, and writes
-//! the bits to a texture that can be read back.
+//! The pass that an inspection adds. It reads a texture of any format, plane or sample count. The bits are written to a
+//! texture that can be read back.
 
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;

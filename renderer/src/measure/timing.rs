@@ -332,7 +332,7 @@ mod tests {
         let found: Vec<_> = plan.step_ids().map(|step| timing.step(step).gpu.map(|s| s.median_ms)).collect();
         assert_eq!(found, [1.0, 20.0, 300.0, 4000.0].map(Some));
         let whole = timing.frame().gpu.ok_or("no time of the frame")?.median_ms;
-        assert!((whole - 4321.0015).abs() < 1e-9, "{whole} is the sum, and three pauses");
+        assert!((whole - 4321.0015).abs() < 1e-9, "{whole} is not the sum with three pauses");
         Ok(())
     }
 

@@ -53,7 +53,7 @@ pub fn imports(gpu: &Gpu, plan: &Plan) -> Result<MockImports, DeviceError> {
 
 fn texture(gpu: &Gpu, plan: &Plan, resource: ResourceId) -> Texture {
     let Desc::Texture(desc) = plan.graph().resources()[resource.index()].desc else {
-        unreachable!("only textures are asked for");
+        unreachable!("only called for textures");
     };
     let [width, height] = desc.extent.texels(plan.frame());
     let allowed = gpu.format_features(desc.format).allowed_usages;

@@ -290,7 +290,7 @@ mod tests {
         let again = get(Format::Rgba8Unorm)?;
         assert_eq!(*first, *again);
         let layout = |pipeline: &RasterPipeline| pipeline.group(0).layout().ok().cloned();
-        assert_eq!(layout(&first), layout(&again), "one layout, so that bind groups made with it are found again");
+        assert_eq!(layout(&first), layout(&again), "one layout, so that cached bind groups are found");
         assert_ne!(*get(Format::Rgba16Float)?, *first);
         let compute = || pipelines.compute(&mut LastCompute::default(), &gpu.device, &Compute::new(FILL));
         assert_eq!(*compute()?, *compute()?);

@@ -238,7 +238,10 @@ mod tests {
         let blended = [Output { blend: Some(BlendState::ALPHA_BLENDING), ..Output::REPLACE }];
         assert!(!is(&Raster { depth: Depth::NEARER, ..base.clone() }));
         let without_depth = RasterKey::new(&base, &Targets { depth: None, ..targets() }, 1);
-        assert!(without_depth.describes(&Raster { depth: Depth::NEARER, ..base.clone() }), "there is none to test");
+        assert!(
+            without_depth.describes(&Raster { depth: Depth::NEARER, ..base.clone() }),
+            "depth state is ignored without a depth target"
+        );
         assert!(!is(&Raster { colors: &blended, ..base.clone() }));
         assert!(!is(&Raster { alpha_to_coverage: true, ..base.clone() }));
         let mut fewer = targets();

@@ -4,7 +4,7 @@
 //! if all loops are counting loops that are proven to terminate.
 //!
 //! A counting loop increments a local variable that nothing else writes, and runs while it is less than a bound. With
-//! step 1 it terminates for any bound, even one that changes: a value less than another cannot be the maximum, so the
+//! step 1 it terminates for any bound, even one that changes. A value less than another is not the maximum, so the
 //! increment cannot overflow. Other steps, and "less or equal", require a constant bound below the maximum.
 
 use super::counting_loop::{CountingLoop, number};

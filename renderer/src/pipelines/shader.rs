@@ -168,9 +168,9 @@ impl ShaderModules {
     }
 }
 
-/// Creates a module without loop counters if all loops are proven to terminate, and without index checks if all indices
-/// are proven to be in bounds.
-#[allow(unsafe_code, reason = "wgpu takes the promise that loops end, and indices are in range, by a call of its own")]
+/// Creates a shader module. Loop counters are omitted if all loops are proven to terminate, and index checks if all
+/// indices are proven to be in bounds.
+#[allow(unsafe_code, reason = "the promise that loops end and indices are in bounds needs an unsafe call")]
 fn create_module(device: &Device, descriptor: ShaderModuleDescriptor<'_>) -> ShaderModule {
     let ShaderSource::Naga(module) = &descriptor.source else { return device.create_shader_module(descriptor) };
     let (force_loop_bounding, bounds_checks) = (first_endless(module).is_some(), first_unproved(module).is_some());

@@ -12,9 +12,9 @@ pub(crate) struct AliasBarrier {
 /// Returns the smallest set of points, in order, at which every placed resource accepted by `is_placed` acquires its
 /// memory.
 ///
-/// A resource acquires its memory after the last step of every resource that used the memory before in this frame, and
-/// no later than its own first step. Resources whose memory was not used before in this frame are included, since the
-/// previous frame may have used it.
+/// A resource acquires its memory no later than its own first step, and after all resources that used the memory before
+/// it in this frame. Resources whose memory was not used before in this frame are included, since the previous frame
+/// may have used it.
 pub(crate) fn alias_barriers(plan: &Plan, is_placed: impl Fn(ResourceId) -> bool) -> Vec<AliasBarrier> {
     let heap = |r: &ResourceId| matches!(plan.resources()[r.index()].placement, Placement::Heap { .. });
     let mut earliest = vec![0; plan.resources().len()];

@@ -1,9 +1,6 @@
 //! Vulkan calls that wgpu does not make: images and buffers in shared memory blocks, and aliasing barriers.
 
-#![allow(
-    unsafe_code,
-    reason = "wgpu has no safe call that binds an image to memory of the caller's, or that writes a barrier"
-)]
+#![allow(unsafe_code, reason = "wgpu has no safe call to bind external memory or record a barrier")]
 
 use crate::device::format::{both_forms, texture_format};
 use crate::device::gpu::Gpu;
@@ -185,8 +182,8 @@ impl Driver {
         Ok((made.collect::<Result<_, _>>()?, allocated))
     }
 
-    /// Records a barrier that waits for all earlier submissions, makes the memory available to these textures (and all
-    /// buffers), and moves the images to their resting layouts.
+    /// Records a barrier that waits for all earlier submissions and makes the memory available to these textures (and
+    /// all buffers). Moves the images to their resting layouts.
     pub(crate) fn alias_barrier(&self, textures: &[&PlacedTexture]) -> CommandBuffer {
         let images: Vec<_> = textures
             .iter()
@@ -330,8 +327,7 @@ impl Driver {
         };
         // SAFETY: the texture belongs to this device and was created as described. It has its resting usage whenever
         // wgpu uses it: `alias_barrier` moves it there before its first step of each frame. Its old contents are memory
-        // of this device and are never read, since the plan writes every part before it is read, as the compiler
-        // checks.
+        // of this device and are never read. The plan writes every part before it is read, as the compiler checks.
         let texture = unsafe { self.gpu.device.create_texture_from_hal::<Vulkan>(texture, &descriptor, resting_usage) };
         let layout = conv::derive_image_layout(resting_usage, format);
         let planes = conv::map_aspects(wgpu::hal::FormatAspects::from(format));

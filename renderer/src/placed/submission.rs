@@ -4,8 +4,8 @@ use wgpu::AdapterInfo;
 
 /// Returns whether the driver orders accesses to memory that several textures share.
 ///
-/// Mesa's llvmpipe before version 25 orders commands by texture within a submission, regardless of barriers: a dispatch
-/// into one alias may run before the draw that reads another. Newer versions wait at barriers.
+/// Mesa's llvmpipe before version 25 orders commands by texture within a submission, regardless of barriers. A dispatch
+/// into one alias may then run before the draw that reads another. Newer versions wait at barriers.
 pub(crate) fn keeps_order_of_aliases(info: &AdapterInfo) -> bool {
     if info.driver != "llvmpipe" {
         return true;

@@ -67,7 +67,7 @@ impl std::fmt::Debug for ImportError {
 
 /// Mismatch between the declaration of an import (or the usages of its passes) and the bound texture or buffer.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[allow(missing_docs, reason = "the fields of each are what was declared or needed, and what there is")]
+#[allow(missing_docs, reason = "the fields are the declared or needed value, and the actual value")]
 pub enum ImportMismatch {
     /// Width and height in texels.
     #[error("{}×{} texels, but the bound texture has {}×{}; declare its actual size, or compile for the new frame size", .declared[0], .declared[1], .actual[0], .actual[1])]

@@ -273,7 +273,7 @@ mod tests {
             let made = std::cell::Cell::new(self.pool.counts.created as usize);
             let label = |_: usize| &labels[..made.replace(made.get() + 1)];
             let served = self.pool.acquire(&self.gpu, &requests, label, &mut out);
-            assert!(served.is_ok(), "a toy is always made");
+            assert!(served.is_ok(), "creating a test object cannot fail");
             self.pool.evict(|_| ());
             out
         }
@@ -284,7 +284,7 @@ mod tests {
         let mut bench = Bench::new(30, 9)?;
         assert_eq!(bench.frame(&[(7, 40), (8, 40)]), [0, 1]);
         assert_eq!(bench.frame(&[(8, 40), (7, 40)]), [1, 0], "the order of requests does not matter");
-        assert_eq!(bench.frame(&[(9, 40), (8, 40)]), [0, 1], "a newcomer takes what nobody keeps");
+        assert_eq!(bench.frame(&[(9, 40), (8, 40)]), [0, 1], "a new tenant gets the unused object");
         let PoolCounts { hits, created, evicted, objects, bytes, .. } = bench.pool.counts();
         assert_eq!((hits, created, evicted, objects, bytes), (4, 2, 0, 2, 8));
         Ok(())
@@ -310,7 +310,7 @@ mod tests {
         }
         let PoolCounts { hits, created, evicted, objects, bytes, .. } = bench.pool.counts();
         assert_eq!((hits, created, evicted, objects, bytes), (4, 2, 1, 1, 4));
-        assert_eq!(bench.frame(&[(1, 90)]), [2], "ids are never given twice");
+        assert_eq!(bench.frame(&[(1, 90)]), [2], "ids are unique");
         Ok(())
     }
 
@@ -330,9 +330,9 @@ mod tests {
                 assert_eq!(ids[0], u64::from(size - 100) * 2);
             }
         }
-        assert_eq!(bench.frame(&[(1, 1180), (2, 1181)]), [36, 37], "the size before is still there");
+        assert_eq!(bench.frame(&[(1, 1180), (2, 1181)]), [36, 37], "the previous size is still pooled");
         bench.pool.trim(|_| ());
-        assert_eq!(bench.pool.counts().bytes, 236, "what the last frame used");
+        assert_eq!(bench.pool.counts().bytes, 236, "only objects of the last frame remain");
         Ok(())
     }
 

@@ -61,7 +61,7 @@ fn linear_and_srgb_textures_share_memory() -> TestResult {
             Ok(out)
         })?;
         if drawn {
-            // Each stage keeps the value except for 8-bit rounding: at most half a step in each of three stages, and up
+            // Each stage keeps the value except for 8-bit rounding. The error is at most half a step per stage, and up
             // to one step where the sRGB curve is steep.
             let rgba = bench.pixels(out)?.rgba();
             for (got, expected) in rgba[0].into_iter().zip([0.5, 0.25, 1.0, 1.0]) {

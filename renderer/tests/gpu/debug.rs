@@ -206,8 +206,8 @@ fn only_the_discarded_plane_is_poisoned() -> TestResult {
                 assert!(bench.pixels(out)?.rgba().iter().all(|t| t[0] == 0.75), "depth is kept");
             }
         }
-        // Fills: both textures before their first use, the stencil plane after the first step, and the target of the
-        // second step, which starts with don't-care contents.
+        // Filled are both textures before their first use, the stencil plane after the first step, and the don't-care
+        // target of the second step.
         assert_eq!(fills, [0, 4]);
         Ok(())
     })

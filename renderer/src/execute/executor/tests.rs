@@ -51,9 +51,9 @@ fn views_are_cached_until_they_may_be_invalid() -> Result<(), Box<dyn std::error
     let found = (0..9).map(|_| execute(&mut executor, false)).collect::<Result<Vec<_>, _>>()?;
     assert_eq!(found, [0, 3, 3, 3, 0, 3, 3, 3, 0]);
     assert_eq!(execute(&mut executor, true)?, 2);
-    assert_eq!(execute(&mut executor, true)?, 2, "what is lent is looked up in each frame");
+    assert_eq!(execute(&mut executor, true)?, 2, "surface textures are looked up in each frame");
     executor.trim();
-    assert_eq!(execute(&mut executor, false)?, 0, "nothing is kept of what may be gone");
+    assert_eq!(execute(&mut executor, false)?, 0, "no references to freed objects remain");
     Ok(())
 }
 
