@@ -34,7 +34,8 @@ impl Subresource {
 pub enum ReadbackError {
     /// The format cannot be copied, or is not known to this crate.
     #[error(
-        "a texture of format {format:?} cannot be read back ({aspect:?} plane); copy it to a color or 32-bit depth texture first"
+        "a texture of format {format:?} cannot be read back{}; copy it to a color or 32-bit depth texture first",
+        match .aspect { Aspect::All => "", Aspect::Depth => " (depth plane)", Aspect::Stencil => " (stencil plane)" }
     )]
     Format {
         /// Format of the texture.

@@ -320,7 +320,7 @@ mod tests {
                 balancer.end_frame(us(400), [(0, us(200)), (1, us(200))].into_iter());
                 !balancer.parts().is_empty()
             }),
-            "one thread shares with nobody"
+            "one thread never splits"
         );
     }
 }

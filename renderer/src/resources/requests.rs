@@ -138,7 +138,7 @@ impl Requests {
                         }
                         Desc::Buffer(b) => Shape::Buffer(PhysicalBufferDesc::new(b.bytes(plan.frame()), usage)),
                     };
-                    if takes_wgpus_clear(plan, resource, &shape) {
+                    if needs_wgpu_clear(plan, resource, &shape) {
                         let request = self.push(plan, resource, shaped(plan, resource), usage, row.srgb_views);
                         self.served_by[resource.index()] = request;
                     } else {
@@ -253,7 +253,7 @@ impl Requests {
 /// Returns whether wgpu's clear may be used on a texture, which does not work for placed textures. Copy passes may call
 /// it, since they access the encoder. The executor calls it for cleared storage textures that cannot be cleared by
 /// rendering.
-fn takes_wgpus_clear(plan: &Plan, resource: ResourceId, shape: &Shape) -> bool {
+fn needs_wgpu_clear(plan: &Plan, resource: ResourceId, shape: &Shape) -> bool {
     let Shape::Texture(shape) = shape else { return false };
     let drawn = shape.usage.contains(TextureUsages::RENDER_ATTACHMENT) && shape.dimension == Dimension::D2;
     let passes = plan.running().flat_map(|m| plan.graph().accesses_of(m.pass));

@@ -90,9 +90,10 @@ impl UnsupportedReason {
                  smaller frame or texture"
             ),
             Self::Usage { format, missing, offered, features, fallback } => {
-                let needs = match features.is_empty() {
-                    true => format!("only for {}", joined(offered.iter_names())),
-                    false => format!("without the feature {}", joined(features.iter_names())),
+                let needs = match (features.is_empty(), offered.is_empty()) {
+                    (false, _) => format!("without the feature {}", joined(features.iter_names())),
+                    (true, false) => format!("only for {}", joined(offered.iter_names())),
+                    (true, true) => "the format has no usages".to_owned(),
                 };
                 let instead = fallback.map_or("another format".to_owned(), |format| format!("{format:?}"));
                 format!(

@@ -227,7 +227,7 @@ fn a_history_survives_frames_of_another_graph() -> TestResult {
         }
         assert!(bench.executor.history_bytes() > 0);
         bench.run(blank)?;
-        assert_eq!(bench.executor.history_bytes(), 0, "nobody wrote it for so long");
+        assert_eq!(bench.executor.history_bytes(), 0, "it was not written for too long");
         bench.run(|f| declare(f, &valid))?;
         assert_eq!(valid.load(Ordering::Relaxed), 0);
         Ok(())

@@ -347,7 +347,7 @@ fn the_validation_layers_accept_placed_resources() -> TestResult {
         // Without layers there are no messages, and newer layers do not compare memory of different images.
         let broken = report(true)?.unwrap_or_default();
         if broken.is_empty() {
-            return skip(NAME, "there are no validation layers that find hand-overs that were left out");
+            return skip(NAME, "the validation layers do not detect missing aliasing barriers");
         }
         assert!(broken.iter().all(|message| message.contains("SYNC-HAZARD")), "{}", broken.join("\n"));
         Ok(())

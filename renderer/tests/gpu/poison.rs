@@ -107,10 +107,7 @@ fn a_stored_plane_is_not_poisoned() -> TestResult {
         let depth = bench.declare(declare)?;
         bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports)?;
         let dropped = bench.plan.attachments().iter().filter(|a| a.store == framegraph::StoreOp::Discard).count();
-        assert_eq!(
-            dropped, 2,
-            "the depths that nobody looks at, beside stencil that is stored and stencil that is left"
-        );
+        assert_eq!(dropped, 2, "unread depth planes, with stored and with untouched stencil");
         if drawn {
             let physical = bench.executor.texture(&bench.plan, depth).ok_or("no texture")?;
             let plane = |aspect| Readback::start(gpu, physical, Subresource { aspect, ..Subresource::FIRST });

@@ -69,7 +69,7 @@ fn resizes_and_toggles_show_the_correct_image() -> TestResult {
             bench.options.frame = [8, 8];
             bench.run(|f| chain(f, 3, 0.0))?;
         }
-        assert_eq!(bench.executor.texture_pool().objects, 3, "what nobody uses is given up");
+        assert_eq!(bench.executor.texture_pool().objects, 3, "unused textures are dropped");
         Ok(())
     })
 }
