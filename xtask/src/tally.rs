@@ -131,7 +131,7 @@ const KNOWN: [Known; 13] = [
     },
     Known {
         tests: &["the_validation_layers_accept_placed_resources", "the_layers_are_silent_about_whole_frames"],
-        reason: "no validation layers that find hand-overs",
+        reason: "do not detect missing aliasing barriers",
     },
     // Streams are replayed where the layers are there to say whether they suffice.
     Known {
@@ -152,7 +152,7 @@ const KNOWN: [Known; 13] = [
             "the_validation_layers_accept_placed_resources",
             "the_layers_are_silent_about_whole_frames",
         ],
-        reason: "places no textures; only Vulkan does",
+        reason: "does not support placed textures; use Vulkan",
     },
     Known {
         tests: &[

@@ -245,7 +245,7 @@ fn the_layers_are_silent_about_whole_frames() -> TestResult {
     let broken = told(Way::Broken)?.unwrap_or_default();
     let more: Vec<_> = broken.difference(&apart).filter(|(_, kind)| kind.contains("HAZARD")).collect();
     if more.is_empty() {
-        test_report::skip(NAME, "there are no validation layers that find hand-overs that were left out");
+        test_report::skip(NAME, "the validation layers do not detect missing aliasing barriers");
         return Ok(());
     }
     let of_standard = more.iter().filter(|(frame, _)| frame == "standard").count();
