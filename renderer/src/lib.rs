@@ -188,3 +188,8 @@ pub use resources::pool::PoolCounts;
 pub use resources::support::{Unsupported, UnsupportedReason, supported_format};
 #[cfg(feature = "threads")]
 pub use workers::{Workers, WorkersError};
+
+/// The README's example.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
