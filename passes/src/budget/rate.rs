@@ -1,22 +1,22 @@
-//! Holding a frame rate while an application runs: which of several sets the next frame is drawn with.
+//! Frame rate control: chooses the set for the next frame of a running application.
 
-/// Frames in a row above the target after which a faster set is taken: one frame alone may be a hiccup.
+/// Consecutive frames above the target after which a faster set is chosen. A single frame may be an outlier.
 const OVER_FRAMES: u32 = 3;
-/// Frames in a row that a finer set must be expected to fit for, until it is taken.
+/// Consecutive frames for which a finer set must be predicted to fit before it is chosen.
 const UNDER_FRAMES: u32 = 60;
-/// The share of the target that a finer set must fit into.
+/// Fraction of the target that a finer set must fit.
 const ROOM: f64 = 0.9;
-/// How much of what one frame took goes into what its set, and every set, is believed to take.
+/// Weight of one measured frame in the estimates.
 const OWN: f64 = 0.25;
 const ALL: f64 = 0.1;
 
-/// Chooses among sets by what frames take, with hysteresis: down after three frames above the target, up once a finer set
-/// has been expected to leave a tenth of the target free for 60 frames. It keeps no clock: the caller tells what each frame
-/// took, on whichever device limits it.
+/// Chooses among sets by measured frame times, with hysteresis. Three frames above the target choose a faster set. A
+/// finer set is chosen after 60 frames in which it was predicted to leave a tenth of the target free. The caller
+/// measures the frame times; the controller has no clock.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameRate {
     target_ms: f64,
-    /// What a frame with each set is believed to take, in ms.
+    /// Estimated frame time of each set in milliseconds.
     believed_ms: Vec<f64>,
     at: usize,
     over: u32,
@@ -24,9 +24,9 @@ pub struct FrameRate {
 }
 
 impl FrameRate {
-    /// Of sets from the fastest to the finest, each with what its frame is predicted to take in ms, such as those of
-    /// [`Offers::front`](super::Offers::front); begins with the finest that fits `target_ms`, else with the first. None
-    /// without sets, or where a time is no positive number.
+    /// Creates a controller for sets from the fastest to the finest, each with its predicted frame time in
+    /// milliseconds, such as those of [`Offers::front`](super::Offers::front). Starts with the finest set that fits
+    /// `target_ms`, else with the first. Returns `None` without sets, or if a time is not a positive number.
     pub fn new(target_ms: f64, predicted_ms: &[f64]) -> Option<Self> {
         let sound = |ms: &f64| *ms > 0.0 && ms.is_finite();
         if predicted_ms.is_empty() || !predicted_ms.iter().chain([&target_ms]).all(sound) {
@@ -37,18 +37,18 @@ impl FrameRate {
         Some(rate)
     }
 
-    /// The set that the next frame is drawn with.
+    /// Returns the set for the next frame.
     pub fn set(&self) -> usize {
         self.at
     }
 
-    /// Told what a frame with [`FrameRate::set`] took in ms; says the set of the next frame. What is no positive number is
-    /// no measurement and changes nothing.
+    /// Takes the measured time in milliseconds of a frame drawn with [`FrameRate::set`], and returns the set for the
+    /// next frame. Ignores times that are not positive numbers.
     pub fn frame(&mut self, took_ms: f64) -> usize {
         if !(took_ms > 0.0 && took_ms.is_finite()) {
             return self.at;
         }
-        // A hiccup is not believed beyond twice the time.
+        // Limits outliers to twice the estimate.
         let ratio = (took_ms / self.believed_ms[self.at]).clamp(0.5, 2.0);
         let [own, all] = [OWN, ALL].map(|share| 1.0 + share * (ratio - 1.0));
         for (index, believed) in self.believed_ms.iter_mut().enumerate() {
@@ -81,7 +81,7 @@ mod tests {
     const SETS_MS: [f64; 4] = [4.0, 7.0, 11.0, 20.0];
     const TARGET_MS: f64 = 16.0;
 
-    /// Frames of a device, so many times as slow as was predicted; the sets they were drawn with.
+    /// Simulates frames of a device slower than predicted by a factor; returns the sets used.
     fn run(rate: &mut FrameRate, frames: u32, slow: impl Fn(u32) -> f64) -> Vec<usize> {
         let draw = |frame: u32| {
             let set = rate.set();
@@ -119,7 +119,7 @@ mod tests {
         assert_eq!(sets.last(), Some(&3), "everything fits: {sets:?}");
         assert!(sets[..60].iter().all(|set| *set == 0), "not before a second has passed: {sets:?}");
         assert!(switches(&sets) <= 3, "{sets:?}");
-        // Just above the target: it goes down once, and does not come back for as long as nothing changes.
+        // Just above the target, it steps down once and stays while nothing changes.
         let sets = run(&mut rate, 2000, |_| 0.85);
         assert!(switches(&sets) <= 1 && sets.last() == Some(&2), "{sets:?}");
     }
