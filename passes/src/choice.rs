@@ -1,72 +1,72 @@
-//! Settings chosen by name, as `key=value`, and why a choice was refused.
+//! Option parsing: settings given as `key=value`, and errors.
 
-/// A setting cannot be chosen by name.
+/// Error of parsing an option.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ChoiceError {
-    /// There is nothing of that name.
+    /// The key is unknown.
     #[error("{key}: unknown choice; there are {}", .known.join(", "))]
     Key {
-        /// The name.
+        /// The key.
         key: String,
-        /// The names that there are.
+        /// The accepted keys.
         known: &'static [&'static str],
     },
-    /// The choice takes other values.
+    /// The value is invalid.
     #[error("{key}={value}: {takes} is needed")]
     Value {
-        /// The name.
+        /// The key.
         key: String,
         /// The value.
         value: String,
-        /// What the choice takes.
+        /// Description of accepted values.
         takes: &'static str,
     },
-    /// The choice takes a number from a range.
+    /// The value is not a number in the accepted range.
     #[error("{key}={value}: a number from {low} to {high} is needed")]
     Number {
-        /// The name.
+        /// The key.
         key: String,
         /// The value.
         value: String,
-        /// The least number.
+        /// The minimum.
         low: f32,
-        /// The greatest number.
+        /// The maximum.
         high: f32,
     },
-    /// The choice takes several numbers from a range.
+    /// The value is not a list of numbers in the accepted range.
     #[error("{key}={value}: {needed} numbers separated by `:`, from {low} to {high}, are needed")]
     Numbers {
-        /// The name.
+        /// The key.
         key: String,
         /// The value.
         value: String,
-        /// How many.
+        /// The required number of numbers.
         needed: usize,
-        /// The least number.
+        /// The minimum.
         low: f32,
-        /// The greatest number.
+        /// The maximum.
         high: f32,
     },
-    /// Only another method has that choice.
+    /// The key belongs to another method.
     #[error("{key}: only `{method}` has it")]
     Other {
-        /// The name.
+        /// The key.
         key: String,
-        /// The method that has it.
+        /// The method with this key.
         method: &'static str,
     },
 }
 
 impl std::fmt::Debug for ChoiceError {
-    /// The sentence, since that is what an `unwrap` shows.
+    /// Prints the message, as `unwrap` shows it.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         std::fmt::Display::fmt(self, f)
     }
 }
 
-/// What is asked for as `off`, or as `on` with changes of `usual` that `set` makes: `on:thickness=0.2,distance=5`. None is
-/// `off`.
+/// Parses `off`, or `on` with changes to `usual` made by `set`, such as `on:thickness=0.2,distance=5`. Returns `None`
+/// for `off`.
 pub(crate) fn switched<T>(
     text: &str,
     usual: T,
@@ -84,7 +84,7 @@ pub(crate) fn switched<T>(
     Ok(Some(settings))
 }
 
-/// The choices of `key=value,key=value`, in order; a key alone has the value "".
+/// Returns the pairs of `key=value,key=value` in order; a key without a value has the value "".
 pub(crate) fn choices(text: &str) -> impl Iterator<Item = Choice<'_>> {
     text.split(',').filter(|choice| !choice.is_empty()).map(|choice| {
         let (key, value) = choice.split_once('=').unwrap_or((choice, ""));
@@ -92,7 +92,7 @@ pub(crate) fn choices(text: &str) -> impl Iterator<Item = Choice<'_>> {
     })
 }
 
-/// One choice, as it was asked for.
+/// A key with its value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Choice<'t> {
     pub(crate) key: &'t str,
@@ -100,22 +100,22 @@ pub(crate) struct Choice<'t> {
 }
 
 impl Choice<'_> {
-    /// There is no such name among the `known`.
+    /// Returns the error for an unknown key.
     pub(crate) fn unknown(self, known: &'static [&'static str]) -> ChoiceError {
         ChoiceError::Key { key: self.key.to_owned(), known }
     }
 
-    /// The value is none of what the choice `takes`.
+    /// Returns the error for an invalid value.
     pub(crate) fn wrong(self, takes: &'static str) -> ChoiceError {
         ChoiceError::Value { key: self.key.to_owned(), value: self.value.to_owned(), takes }
     }
 
-    /// Only that method has the choice.
+    /// Returns the error for a key of another method.
     pub(crate) fn only(self, method: &'static str) -> ChoiceError {
         ChoiceError::Other { key: self.key.to_owned(), method }
     }
 
-    /// `on` or `off`.
+    /// Parses `on` or `off`.
     pub(crate) fn switch(self) -> Result<bool, ChoiceError> {
         match self.value {
             "on" => Ok(true),
@@ -124,7 +124,7 @@ impl Choice<'_> {
         }
     }
 
-    /// A number from `low` to `high`, both included.
+    /// Parses a number from `low` to `high`, inclusive.
     pub(crate) fn number(self, low: f32, high: f32) -> Result<f32, ChoiceError> {
         match self.value.parse::<f32>() {
             Ok(value) if (low..=high).contains(&value) => Ok(value),
@@ -135,7 +135,7 @@ impl Choice<'_> {
         }
     }
 
-    /// So many numbers separated by `:`, each from `low` to `high`, both included.
+    /// Parses `N` numbers separated by `:`, each from `low` to `high`, inclusive.
     pub(crate) fn numbers<const N: usize>(self, low: f32, high: f32) -> Result<[f32; N], ChoiceError> {
         let words: Vec<&str> = self.value.split(':').collect();
         let number = |word: &&str| word.parse().ok().filter(|x| (low..=high).contains(x));
@@ -145,7 +145,7 @@ impl Choice<'_> {
         numbers.and_then(|numbers| numbers.try_into().ok()).ok_or(wrong)
     }
 
-    /// A whole number from `low` to `high`, both included.
+    /// Parses an integer from `low` to `high`, inclusive.
     pub(crate) fn whole(self, low: u32, high: u32) -> Result<u32, ChoiceError> {
         let value = self.number(low as f32, high as f32)?;
         if value.fract() == 0.0 { Ok(value as u32) } else { Err(self.wrong("a whole number")) }

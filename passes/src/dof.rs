@@ -1,13 +1,13 @@
-//! Depth of field: what is nearer or farther than what is in focus is blurred as a lens does.
+//! Depth of field: blurs everything nearer or farther than the focus distance, as a lens does.
 //!
 //! ```text
 //! hdr ─┬─> coc ─┬─> level 1 ─> … ──────────┐
 //! depth┘        └─> tiles ─> dilate ───────┼─> gather ─> median ─> combine ─> hdr
 //! ```
 //!
-//! The radius of each texel's circle of confusion goes beside its radiance, in alpha; tiles know the radii that reach into them,
-//! so that what is in focus is skipped. Filament's gather, in fewer passes; `docs/lens.md` has what it costs and how far off it
-//! is from rays through a thin lens.
+//! Alpha holds the radius of each texel's circle of confusion. Tiles know the radii that reach into them, so parts in
+//! focus are skipped. The gather is Filament's, in fewer passes. `docs/lens.md` has its cost, and its error against
+//! rays through a thin lens.
 
 mod keys;
 mod pass;
@@ -23,19 +23,19 @@ use crate::view::Views;
 use framegraph::Texture;
 use framegraph_wgpu::Frame;
 
-/// The most levels that taps read.
+/// Maximum number of levels that taps read.
 const MOST_LEVELS: u32 = 4;
 
-/// How many levels the gather of a picture of this size reads.
+/// Returns the number of levels for a picture of this size.
 fn levels(settings: &DofSettings, size_texels: [u32; 2]) -> u8 {
     let least = size_texels[0].min(size_texels[1]) / settings.resolution.texel_px();
     (least.max(1).ilog2() + 1).min(MOST_LEVELS) as u8
 }
 
-/// Declares depth of field of a picture of `size_texels`; hands on [`Slot::HDR`] anew.
+/// Declares depth of field for a picture of `size_texels`; replaces [`Slot::HDR`].
 ///
 /// # Errors
-/// What a pass refuses.
+/// Returns the error of a refused pass.
 pub fn depth_of_field<W>(
     frame: &mut Frame<W>,
     handles: &mut Handles,

@@ -1,32 +1,32 @@
-//! The built-in point-wise effects, in the order in which a frame applies them.
+//! Built-in point-wise effects, in the order of a frame.
 
 use framegraph_shaders::library;
 use framegraph_wgpu::Effect;
 
-/// What storing as Rgba16Float leaves. Override `RGBA16FLOAT_TOWARD_ZERO`.
+/// Rounds as a store to Rgba16Float. Override `RGBA16FLOAT_TOWARD_ZERO`.
 pub const STORE_RGBA16FLOAT: Effect =
     Effect { name: "store_rgba16float", wgsl: library::text("effect/store_rgba16float.wgsl").unwrap() };
-/// What storing as Rg11b10Ufloat leaves. Override `RG11B10UFLOAT_TOWARD_ZERO`.
+/// Rounds as a store to Rg11b10Ufloat. Override `RG11B10UFLOAT_TOWARD_ZERO`.
 pub const STORE_RG11B10UFLOAT: Effect =
     Effect { name: "store_rg11b10ufloat", wgsl: library::text("effect/store_rg11b10ufloat.wgsl").unwrap() };
-/// What glows over the picture. Binds `blooming`, `bloom_glow`, `bloom_sampler`, `bloom_flare` and `bloom_dirt`; overrides
+/// Adds bloom. Binds `blooming`, `bloom_glow`, `bloom_sampler`, `bloom_flare` and `bloom_dirt`; overrides
 /// `LENS_FLARE`, `LENS_DIRT`.
 pub const BLOOM: Effect = Effect { name: "bloom", wgsl: library::text("effect/bloom.wgsl").unwrap() };
 /// Exposure compensation. Binds `exposing`.
 pub const EXPOSE: Effect = Effect { name: "expose", wgsl: library::text("effect/expose.wgsl").unwrap() };
-/// Darker corners. Binds `vignetting`.
+/// Vignette. Binds `vignetting`.
 pub const VIGNETTE: Effect = Effect { name: "vignette", wgsl: library::text("effect/vignette.wgsl").unwrap() };
-/// Fades into a color toward the edges. Binds `fading`.
+/// Fades to a color toward the edges. Binds `fading`.
 pub const EDGE_FADE: Effect = Effect { name: "edge_fade", wgsl: library::text("effect/edge_fade.wgsl").unwrap() };
 /// Color grading. Binds `grading`. Override `NIGHT`.
 pub const GRADE: Effect = Effect { name: "grade", wgsl: library::text("effect/grade.wgsl").unwrap() };
 /// The tone curve. Overrides `TONE_MAP`, `GENERIC_CONTRAST`, `GENERIC_INPUT`, `GENERIC_OUTPUT`, `BY_LUMINANCE`, `INTO_GAMUT`.
 pub const TONE: Effect = Effect { name: "tone", wgsl: library::text("effect/tone.wgsl").unwrap() };
-/// Grading, tone curve and encoding from a table of three axes. Binds `grading_table` and `grading_sampler`.
+/// Color grading, tone curve and encoding from a 3D table. Binds `grading_table` and `grading_sampler`.
 pub const LOOK_UP: Effect = Effect { name: "look_up", wgsl: library::text("effect/look_up.wgsl").unwrap() };
-/// The same from a table of one axis. Binds `grading_curves` and `curves_sampler`.
+/// Color grading, tone curve and encoding from a 1D table. Binds `grading_curves` and `curves_sampler`.
 pub const LOOK_UP_CURVES: Effect =
     Effect { name: "look_up_curves", wgsl: library::text("effect/look_up_curves.wgsl").unwrap() };
-/// Codes of the target, with dither. Binds `encoding`; overrides `OUTPUT_ENCODED`,
-/// `INPUT_ENCODED`, `LUMA_IN_ALPHA`.
+/// Encodes for the target, with dither. Binds `encoding`; overrides `OUTPUT_ENCODED`, `INPUT_ENCODED`,
+/// `LUMA_IN_ALPHA`.
 pub const ENCODE: Effect = Effect { name: "encode", wgsl: library::text("effect/encode.wgsl").unwrap() };

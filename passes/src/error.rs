@@ -1,4 +1,4 @@
-//! Why a pass could not be recorded.
+//! Errors of recording a pass.
 
 use crate::grading::GradingError;
 use crate::precision::PrecisionError;
@@ -7,14 +7,14 @@ use framegraph_shaders::ShaderError;
 use framegraph_shaders::reference::dfg::Visibility;
 use framegraph_wgpu::RecordError;
 
-/// A pass of this crate refuses to be recorded.
+/// Error of recording a pass of this crate.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PassError {
-    /// A shader or an effect is wrong.
+    /// A shader or an effect is invalid.
     #[error(transparent)]
     Shader(#[from] ShaderError),
-    /// A shader binds a variable that its pass knows nothing of.
+    /// A shader uses a variable that its pass does not provide.
     #[error(
         "shader `{shader}` binds `{variable}` in group {group}, which its pass does not provide; add it to the pass's `Interface`"
     )]
@@ -26,7 +26,7 @@ pub enum PassError {
         /// Its `@group`.
         group: u32,
     },
-    /// The pass provides the variable, but has nothing to bind to it in this frame.
+    /// The pass provides the variable, but has nothing to bind in this frame.
     #[error(
         "shader `{shader}` binds `{variable}`, for which the pass has nothing in this frame; declare the pass with its input"
     )]
@@ -36,17 +36,17 @@ pub enum PassError {
         /// Name of the variable in WGSL.
         variable: String,
     },
-    /// The pass names a view that its world does not have.
+    /// The world lacks the view of the pass.
     #[error(
         "the pass draws view {view}, but there are {count} views; give the world that view, or declare the pass for another"
     )]
     NoView {
-        /// The view asked for.
+        /// The requested view.
         view: u32,
-        /// How many there are.
+        /// Number of views.
         count: usize,
     },
-    /// The frame's shadow maps are not those of the view.
+    /// The frame's shadow maps do not match the view.
     #[error(
         "the frame declares {declared} layers of shadow maps, and view {view} has {layers}; give `ViewSettings` the \
          `ShadowSettings` that the frame's `Settings` have"
@@ -56,32 +56,32 @@ pub enum PassError {
         declared: u16,
         /// The view.
         view: u32,
-        /// Layers that the view's maps are made for.
+        /// Layers of the view's maps.
         layers: u16,
     },
-    /// A surface transmits where the frame has no pass for it.
+    /// A surface is refractive, but the frame has no pass for it.
     #[error(
         "a surface of the scene transmits light, but the frame keeps no picture of what is behind it; declare the frame with \
          `Settings::for_scene`, or set `Settings::scene_levels`"
     )]
     TransmissionUndeclared,
-    /// A surface blends where colors are graded as they are shaded.
+    /// A surface blends, but post-processing is inlined.
     #[error(
         "a surface of the scene blends, but colors are graded before they are blended; declare the frame with \
          `Settings::blended`"
     )]
     BlendingUndeclared,
-    /// The table was made for another visibility term than shading expects.
+    /// The DFG table was made for another visibility term than shading uses.
     #[error(
         "`Shading::table` is {wanted:?}, but the DFG table was made for {made:?}; make the `Lighting` with `Shading::light`"
     )]
     OtherTable {
-        /// The term that shading expects.
+        /// The term that shading uses.
         wanted: Visibility,
-        /// The term that the table was made for.
+        /// The term of the table.
         made: Visibility,
     },
-    /// A material needs more textures or samplers at once than the device binds.
+    /// A material needs more textures or samplers than the device binds.
     #[error(
         "material {material:?} combines {}: its shader binds {count} {what}, and the device allows {most}; leave a lobe out",
         .lobes.join(", ")
@@ -93,18 +93,18 @@ pub enum PassError {
         lobes: Vec<&'static str>,
         /// Textures or samplers.
         what: &'static str,
-        /// How many the shader binds.
+        /// Number that the shader binds.
         count: u32,
-        /// How many the device allows.
+        /// Limit of the device.
         most: u32,
     },
-    /// A look cannot be brought to the picture as it is asked for.
+    /// A look cannot be applied by the requested method.
     #[error(transparent)]
     Grading(#[from] GradingError),
-    /// The device does not compute in the numbers that shading asks for.
+    /// The device lacks the requested precision.
     #[error(transparent)]
     Precision(#[from] PrecisionError),
-    /// Depth of several samples cannot be read.
+    /// Multisampled depth cannot be read.
     #[error(
         "depth of several samples needs to be read, which wgpu cannot do through OpenGL; use one sample per texel \
          (`--msaa 1`), or another back end"
@@ -116,7 +116,7 @@ pub enum PassError {
          `Settings::stored` out"
     )]
     UnknownRounding {
-        /// Format of the texture that inlining leaves out.
+        /// Format of the texture that inlining removes.
         format: Format,
     },
 }

@@ -1,24 +1,24 @@
-//! A draw that covers the whole target: what passes over pictures record.
+//! Draw of a full-screen triangle.
 
 use crate::program::{Program, ProgramDesc, Programs};
 use framegraph_wgpu::{Binding, Constants, Cx, Depth, Raster, RecordError};
 
-/// One triangle over the whole target.
+/// One triangle that covers the target.
 #[derive(Clone, Debug)]
 pub struct FullScreen<'a> {
     /// The program; its vertex entry point makes the triangle from three vertex indices.
     pub program: ProgramDesc<'a>,
     /// Values of its constants, in the order of [`Program::constants`](crate::program::Program::constants).
     pub constants: &'a [f64],
-    /// By bind group: what the pass provides, in the order of the interface's group; in group 0 followed by the bindings of
-    /// the program's epilogue. None is for what this draw's shader does not reach.
+    /// Bindings by group, in the order of the interface's group; in group 0 followed by the bindings of the epilogue.
+    /// `None` for variables that the shader does not use.
     pub groups: &'a [&'a [Option<Binding>]],
-    /// Depth test; by default none.
+    /// Depth test; off by default.
     pub depth: Depth,
 }
 
 impl<'a> FullScreen<'a> {
-    /// Without constants or a depth test.
+    /// Creates a draw without constants and depth test.
     pub const fn new(program: ProgramDesc<'a>, groups: &'a [&'a [Option<Binding>]]) -> Self {
         Self { program, constants: &[], groups, depth: Depth::NONE }
     }
@@ -26,16 +26,16 @@ impl<'a> FullScreen<'a> {
     /// Records the draw into the open render pass.
     ///
     /// # Errors
-    /// What the shader or the device refuses.
+    /// Returns an error of the shader or the device.
     pub fn draw(self, programs: &Programs, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         draw(&*programs.get(&self.program)?, self.constants, self.groups, self.depth, cx)
     }
 }
 
-/// Records one triangle over the whole target with `program`; the other arguments are as in [`FullScreen`].
+/// Records one full-screen triangle with `program`; the other arguments are as in [`FullScreen`].
 ///
 /// # Errors
-/// What the shader or the device refuses.
+/// Returns an error of the shader or the device.
 pub fn draw(
     program: &Program,
     constants: &[f64],

@@ -1,4 +1,4 @@
-//! FXAA: softens the edges of a finished picture.
+//! FXAA: fast approximate anti-aliasing of a finished picture.
 
 use crate::full_screen::FullScreen;
 use crate::program::{Interface, ProgramDesc, Programs};
@@ -11,18 +11,18 @@ static SHADER: Module<'static> = library::pass("pass/fxaa.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface { groups: &[&["fxaa", "ldr", "ldr_sampler"]], constants: &["OUTPUT_ENCODED"] };
 
-/// Filters a picture whose alpha is its luma. Needs no more of the world than [`Programs`].
+/// Filters a picture with luma in its alpha channel. Uses [`Programs`] of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct Fxaa {
     /// The picture, sRGB encoded in a linear format, luma in alpha.
     pub ldr: Texture,
-    /// Where the result goes; a new one has the picture's size and eight bits a channel, sRGB.
+    /// Target; a new texture has the picture's size and format Rgba8UnormSrgb.
     pub into: Target,
     /// Thresholds and sharpness.
     pub settings: FxaaUniforms,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct FxaaIo {
     ldr: View,

@@ -4,10 +4,10 @@
 //! structure ─> occlusion ─> occlusion_blur (across) ─> occlusion_blur (down) ─> color
 //! ```
 //!
-//! What of the light from all around reaches a place is estimated from the depth that the picture shows about it, within
-//! [`OcclusionSettings::radius_m`]. Two ways are built: scalable ambient obscurance as Filament has it ([`Method::Sao`]), and
-//! horizons in slices ([`Method::Gtao`]). The color pass takes the lesser of it and the material's own occlusion, and occludes
-//! reflections by it too. `docs/occlusion.md` has what each costs and how far off it is.
+//! Estimates the visible fraction of the environment from the depth around a pixel, within
+//! [`OcclusionSettings::radius_m`]. Two methods are available: scalable ambient obscurance as in Filament
+//! ([`Method::Sao`]), and horizons in slices ([`Method::Gtao`]). The color pass takes the lesser of it and the
+//! material's own occlusion, and occludes reflections with it. `docs/occlusion.md` has cost and error of each.
 
 mod blur;
 mod keys;
@@ -26,10 +26,10 @@ use crate::upload::GpuScene;
 use crate::view::Views;
 use framegraph_wgpu::Frame;
 
-/// Declares ambient occlusion of a view, and the structure that it needs with so many levels; hands on [`Slot::OCCLUSION`].
+/// Declares ambient occlusion of a view, with the structure of this number of levels; sets [`Slot::OCCLUSION`].
 ///
 /// # Errors
-/// What a pass refuses.
+/// Returns the error of a refused pass.
 pub fn occlusion<W>(
     frame: &mut Frame<W>,
     handles: &mut Handles,

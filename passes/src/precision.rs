@@ -1,8 +1,8 @@
-//! The numbers that shading computes in.
+//! Precision of shading arithmetic.
 
 use framegraph_wgpu::Gpu;
 
-/// A device does not compute in half floats.
+/// Error for a device without half floats in shaders.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "precision {}: {adapter} has no half floats in shaders (the feature SHADER_F16); choose {}, or another adapter",
@@ -10,9 +10,9 @@ use framegraph_wgpu::Gpu;
     Precision::Full.name()
 )]
 pub struct PrecisionError {
-    /// What was asked for.
+    /// The requested precision.
     pub precision: Precision,
-    /// The adapter in words.
+    /// Description of the adapter.
     pub adapter: String,
 }
 
@@ -22,24 +22,24 @@ impl std::fmt::Debug for PrecisionError {
     }
 }
 
-/// Numbers of the color pass: what a surface is made of and what it reflects of one light. Light itself, positions, depth
-/// and shadows are in 32 bits either way (`shaders/wgsl/lib/real.wgsl`).
+/// Precision of surface parameters and reflected light in the color pass. Radiance, positions, depth and shadows
+/// always use 32 bits (`shaders/wgsl/lib/real.wgsl`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Precision {
     /// 32 bits.
     #[default]
     Full,
-    /// 16 bits, where the device has them in shaders. Perceptual roughness is held above 0.089, below which highlights are
-    /// more than a half float can hold. `docs/half-floats.md` has the errors.
+    /// 16 bits, if shaders support them. Perceptual roughness is at least 0.089; below it highlights exceed the range
+    /// of half floats. `docs/half-floats.md` has the errors.
     Half,
 }
 
 impl Precision {
-    /// Both of them.
+    /// Both precisions.
     pub const ALL: [Self; 2] = [Self::Full, Self::Half];
 
-    /// As it is asked for: `f32` or `f16`.
+    /// Returns the name used in options: `f32` or `f16`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Full => "f32",
@@ -47,12 +47,12 @@ impl Precision {
         }
     }
 
-    /// The precision of that name.
+    /// Returns the precision with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|precision| precision.name() == name)
     }
 
-    /// Least perceptual roughness that these numbers can shade.
+    /// Returns the minimum perceptual roughness at this precision.
     pub const fn roughness_floor(self) -> f32 {
         match self {
             Self::Full => 0.045,
@@ -60,10 +60,10 @@ impl Precision {
         }
     }
 
-    /// Whether the device computes in these numbers.
+    /// Checks that the device supports this precision.
     ///
     /// # Errors
-    /// When it does not: one line that names the adapter, and what to do.
+    /// Fails with a message that names the adapter and an alternative.
     pub fn check(self, gpu: &Gpu) -> Result<(), PrecisionError> {
         if self == Self::Full || gpu.device.features().contains(wgpu::Features::SHADER_F16) {
             return Ok(());

@@ -1,9 +1,9 @@
-//! Presets: the frames that a record of measurements chooses within four shares of the finest frame's time.
+//! Presets: frames chosen from a record of measurements, for four fractions of the finest frame's time.
 //!
-//! Each is the most accurate set of options of [`GROUPS`](crate::budget::GROUPS) that takes no more than its share
-//! ([`Preset::share`]) of what the finest frame takes beyond the fastest: [`Preset::choose`] finds it in any record, and
-//! [`Preset::frame`] has what it found in the record of this repository, `docs/accuracy.json`. Lamps have no part in that
-//! record, nor have levels of detail; how many cast shadows, and how far a mesh may be drawn from where it is, is set by hand.
+//! Each preset is the most accurate set of options of [`GROUPS`](crate::budget::GROUPS) within its fraction
+//! ([`Preset::share`]) of the time that the finest frame takes beyond the fastest. [`Preset::choose`] finds it in any
+//! record. [`Preset::frame`] has the choice for `docs/accuracy.json`. The record lacks punctual lights and levels of
+//! detail: the number of their shadow maps and the LOD error are set by hand.
 
 mod chosen;
 
@@ -12,24 +12,24 @@ use crate::facts::Facts;
 use crate::frame_settings::FrameSettings;
 use crate::shadow::ShadowSettings;
 
-/// Frames that go from the cheapest to the finest.
+/// Presets from the cheapest frame to the finest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Preset {
     /// For phones.
     Low,
-    /// One sample, and ambient occlusion at half the size.
+    /// One sample, and ambient occlusion at half resolution.
     Medium,
     /// Four samples, three cascades, ambient occlusion.
     High,
-    /// Everything, for still pictures.
+    /// All effects, for still pictures.
     Ultra,
 }
 
 impl Preset {
-    /// All of them.
+    /// All presets.
     pub const ALL: [Self; 4] = [Self::Low, Self::Medium, Self::High, Self::Ultra];
 
-    /// As it is asked for.
+    /// Returns the name used in options.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Low => "low",
@@ -39,12 +39,12 @@ impl Preset {
         }
     }
 
-    /// The preset of that name.
+    /// Returns the preset with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|preset| preset.name() == name)
     }
 
-    /// The part that it may take, 0 to 1, of the time that the finest frame takes beyond the fastest.
+    /// Returns the allowed fraction, 0 to 1, of the time that the finest frame takes beyond the fastest.
     pub const fn share(self) -> f64 {
         match self {
             Self::Low => 1.0 / 7.0,
@@ -54,10 +54,11 @@ impl Preset {
         }
     }
 
-    /// What a record chooses: of each group that it has, the option; of those that `has` says the device can draw.
+    /// Returns the option that a record chooses for each of its groups, among options for which `has` returns true
+    /// (the device supports them).
     ///
     /// # Errors
-    /// [`MeasuredError`].
+    /// Fails as [`MeasuredError`] describes.
     pub fn choose(
         self,
         measured: &Measured,
@@ -67,15 +68,15 @@ impl Preset {
         let offers = measured.offers(&choices, measured.fastest_ms, measured.reference_ms);
         let [fastest, finest] = [offers.fastest(), offers.finest()].map(|set| offers.predicted(&set).ms);
         let most_ms = fastest + self.share() * (finest - fastest);
-        // A rounding is no reason to leave out the finest.
+        // Rounding must not exclude the finest set.
         let set = offers.within_ms(most_ms * (1.0 + 1e-9)).map_or_else(|| offers.fastest(), |set| set.options);
         Ok(choices.into_iter().zip(set).map(|((group, options), index)| (group, options[index])).collect())
     }
 
-    /// Its frame, as a record chooses it.
+    /// Returns the frame that a record chooses.
     ///
     /// # Errors
-    /// [`MeasuredError`].
+    /// Fails as [`MeasuredError`] describes.
     pub fn measured(
         self,
         measured: &Measured,
@@ -86,7 +87,7 @@ impl Preset {
         Ok(frame)
     }
 
-    /// Its frame.
+    /// Returns the frame of the preset.
     pub fn frame(self) -> FrameSettings {
         let (local_maps, lod_error_px) = match self {
             Self::Low => (0, 1.0),
@@ -105,10 +106,10 @@ impl Preset {
     }
 }
 
-/// The source text of the table that [`Preset::frame`] has, as a record chooses it.
+/// Returns the source text of the table of [`Preset::frame`] for a record.
 ///
 /// # Errors
-/// [`MeasuredError`].
+/// Fails as [`MeasuredError`] describes.
 pub fn source(measured: &Measured) -> Result<String, MeasuredError> {
     let mut chosen = Vec::new();
     for preset in Preset::ALL {

@@ -1,9 +1,9 @@
-//! Shaders made ready for recorders: resolved once, with every variable and constant found by name once.
+//! Shader programs for recorders: resolved once, with every variable and constant found by name.
 //!
-//! What a pipeline binds is read from the shader, never written down a second time. A pass says by name what it provides
-//! ([`Interface`]). When a [`Program`] is made, each variable that its entry points reach gets the index of its name in
-//! that list; recording then fills bind groups and constants by index. [`Programs`] keeps programs by what they were made
-//! from, so a pass of another crate gets its own like the ones of this crate.
+//! The bindings of a pipeline are read from its shader. A pass lists by name what it provides ([`Interface`]). When a
+//! [`Program`] is made, each variable that its entry points use gets the index of its name in that list. Recording
+//! then fills bind groups and constants by index. [`Programs`] caches programs by their description, also for passes
+//! of other crates.
 //!
 //! ```
 //! use framegraph_passes::program::{Interface, ProgramDesc, Programs};
@@ -39,53 +39,53 @@ mod cache;
 
 pub use cache::Programs;
 
-/// What a pass provides to its shaders, by the names of their variables and `override` constants. A shader may reach less
-/// of it, and nothing else.
+/// Bindings and constants that a pass provides, by the names of shader variables and `override` constants. A shader
+/// may use fewer, and no others.
 ///
-/// A `static`, since programs are told apart by its address.
+/// Must be a `static`, since programs are identified by its address.
 #[derive(Debug)]
 pub struct Interface {
-    /// For each bind group, in order, the names of the variables that the pass has bindings for.
+    /// Names of the provided variables, for each bind group in order.
     pub groups: &'static [&'static [&'static str]],
-    /// Names of the constants that the pass has values for.
+    /// Names of the provided constants.
     pub constants: &'static [&'static str],
 }
 
-/// The bind group that effects add their variables to.
+/// Bind group to which effects add their variables.
 const GROUP_EFFECTS: usize = 0;
 
-/// An epilogue without effects: for shaders that end as they are written.
+/// Empty epilogue, for shaders without effects.
 static NO_EPILOGUE: Epilogue = Epilogue { effects: Vec::new(), constants: Vec::new(), bindings: Vec::new() };
 
 static NO_FEATURES: Features = Features::NONE;
 
-/// Which program a pass asks for: a pair of entry points of a shader with features, and what the pass provides to it.
+/// Description of a program: entry points of a shader with features, and the interface of its pass.
 #[derive(Clone, Copy, Debug)]
 pub struct ProgramDesc<'a> {
-    /// The shader: an embedded pass ([`library::pass`](framegraph_shaders::library::pass)), or one of an application's own,
-    /// which may import the library. A `static`, since programs are told apart by its address.
+    /// The shader: an embedded pass ([`library::pass`](framegraph_shaders::library::pass)), or one of the
+    /// application, which may import the library. Must be a `static`, since programs are identified by its address.
     pub shader: &'static Module<'static>,
-    /// What is compiled into it.
+    /// Features compiled into the shader.
     pub features: &'a Features,
-    /// The vertex entry point.
+    /// Vertex entry point.
     pub vertex: &'static str,
-    /// The fragment entry point; none draws depth alone.
+    /// Fragment entry point; `None` draws depth alone.
     pub fragment: Option<&'static str>,
-    /// What the pass provides.
+    /// Bindings and constants that the pass provides.
     pub interface: &'static Interface,
-    /// Effects that the fragment stage ends with, where the shader ends with `package::interface::epilogue`. Their constants
-    /// and bindings count as provided after those of the interface, in the epilogue's order.
+    /// Effects at the end of the fragment stage, for shaders that call `package::interface::epilogue`. Their
+    /// constants and bindings follow those of the interface, in the epilogue's order.
     pub epilogue: &'a Epilogue,
 }
 
 impl ProgramDesc<'_> {
-    /// Entry points `vs_main` and `fs_main`, no features, no effects.
+    /// Describes the entry points `vs_main` and `fs_main`, without features and effects.
     pub fn new(shader: &'static Module<'static>, interface: &'static Interface) -> Self {
         let (vertex, fragment) = ("vs_main", Some("fs_main"));
         Self { shader, features: &NO_FEATURES, vertex, fragment, interface, epilogue: &NO_EPILOGUE }
     }
 
-    /// Name for messages: the shader, its features and its effects.
+    /// Returns the name for messages: the shader, its features and its effects.
     fn name(&self) -> String {
         let variants = self.features.iter().map(Feature::name).chain(self.epilogue.effects.iter().map(|e| e.name));
         [self.shader.name()].into_iter().chain(variants).collect::<Vec<_>>().join("+")
@@ -97,8 +97,8 @@ impl ProgramDesc<'_> {
         framegraph_shaders::resolve(self.shader, self.features, &effects)
     }
 
-    /// What tells programs apart, without comparing texts: shaders, interfaces, names and texts are static, so their addresses
-    /// do. Equal ones at two addresses give two programs that do the same.
+    /// Key of a program. Shaders, interfaces, names and texts are static, so their addresses identify them. Equal
+    /// descriptions at two addresses give two equivalent programs.
     fn addresses(&self) -> impl Iterator<Item = (usize, usize)> {
         let Epilogue { effects, constants, bindings } = self.epilogue;
         let entries = [self.vertex, self.fragment.unwrap_or_default()];
@@ -119,39 +119,40 @@ impl ProgramDesc<'_> {
     }
 }
 
-/// A variable of a bind group, and what fills it.
+/// Variable of a bind group, and the source of its binding.
 #[derive(Clone, Debug)]
 struct Slot {
     /// Its `@binding`.
     number: u32,
-    /// Index of its name in the pass's interface, or behind it in the epilogue's bindings.
+    /// Index of its name in the pass's interface, followed by the epilogue's bindings.
     provided: usize,
     name: String,
 }
 
-/// One pair of entry points of one resolved shader, with what a pass provides to it.
+/// Entry points of a resolved shader, matched with the interface of a pass.
 #[derive(Clone, Debug)]
 pub struct Program {
     name: String,
     text: String,
-    /// Of name and text, so that pipelines are found without reading the text ([`Shader::hash`]).
+    /// Hash of name and text, so that finding pipelines does not read the text ([`Shader::hash`]).
     hash: u64,
-    /// The vertex entry point.
+    /// Vertex entry point.
     pub vertex: &'static str,
-    /// The fragment entry point; none draws depth alone.
+    /// Fragment entry point; `None` draws depth alone.
     pub fragment: Option<&'static str>,
-    /// By bind group.
+    /// Variables by bind group.
     groups: Vec<Vec<Slot>>,
-    /// The constants that the shader has, each with the index of its value among those provided.
+    /// Constants of the shader, each with the index of its value among the provided ones.
     constants: Vec<(usize, &'static str)>,
     sampled: [u32; 2],
 }
 
 impl Program {
-    /// Resolves the shader and finds each of its variables among what the pass provides.
+    /// Resolves the shader and finds each of its variables among those that the pass provides.
     ///
     /// # Errors
-    /// When the shader or an effect is wrong, with file and line; when it binds what is not provided.
+    /// Fails with file and line if the shader or an effect is invalid, and if the shader uses a variable that is not
+    /// provided.
     pub fn new(desc: &ProgramDesc<'_>) -> Result<Self, PassError> {
         let ProgramDesc { vertex, fragment, interface, epilogue, .. } = *desc;
         let name = desc.name();
@@ -191,27 +192,27 @@ impl Program {
         Ok(Self { name, text, hash, vertex, fragment, groups, constants, sampled })
     }
 
-    /// Its shader's name, the features and the effects that it was resolved with, joined by `+`: for messages.
+    /// Returns the name for messages: the shader with its features and effects, joined by `+`.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The shader as pipelines take it.
+    /// Returns the shader for pipelines.
     pub fn shader(&self) -> Shader<'_> {
         Shader::hashed(&self.name, &self.text, self.hash)
     }
 
-    /// The constants that the shader has, with their `values`: those of the interface in its order, then those of the
+    /// Returns the constants of the shader with their `values`: those of the interface in order, then those of the
     /// epilogue.
     pub fn constants<'a>(&'a self, values: &'a [f64]) -> Vec<(&'a str, f64)> {
         self.constants.iter().filter_map(|(index, name)| Some((*name, *values.get(*index)?))).collect()
     }
 
-    /// The bind group `group` of a pipeline of this program. `binding` is asked by index in the interface's group, and
-    /// behind its end by index in the epilogue's bindings.
+    /// Fills the bind group `group` of a pipeline of this program. `binding` gets an index into the interface's
+    /// group, followed by the epilogue's bindings.
     ///
     /// # Errors
-    /// When `binding` has none for a variable that the shader reaches.
+    /// Fails if `binding` returns nothing for a variable that the shader uses.
     pub fn bind(
         &self,
         cx: &mut Cx<'_>,
@@ -230,17 +231,17 @@ impl Program {
         Ok(cx.bind_group(pipeline.group(group), &bindings?))
     }
 
-    /// How many textures and how many samplers the fragment stage binds.
+    /// Returns the number of textures and samplers that the fragment stage binds.
     pub const fn sampled(&self) -> [u32; 2] {
         self.sampled
     }
 
-    /// Whether the entry points reach the variable of index `provided` in the interface's group.
+    /// Returns true if the entry points use the variable with index `provided` of the interface's group.
     pub fn binds(&self, group: usize, provided: usize) -> bool {
         self.groups.get(group).is_some_and(|slots| slots.iter().any(|slot| slot.provided == provided))
     }
 
-    /// Whether the entry points reach anything in bind group `group`.
+    /// Returns true if the entry points use bind group `group`.
     pub fn has_group(&self, group: usize) -> bool {
         self.groups.get(group).is_some_and(|g| !g.is_empty())
     }
@@ -260,7 +261,7 @@ mod tests {
 
     static POST: Interface = Interface { groups: &[&["hdr"]], constants: &[] };
 
-    /// In another order than the shader has, with names that it does not have.
+    /// In another order than the shader's, with names that the shader lacks.
     static COLOR: Interface = Interface {
         groups: &[
             &[

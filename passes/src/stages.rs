@@ -1,8 +1,8 @@
-//! A frame as a list of named stages, each of which declares passes and hands textures on to those after it.
+//! A frame as a list of named stages that declare passes and exchange textures.
 //!
-//! A stage is inserted before or after another one by name, and one replaces another of its name; nothing is copied. What
-//! stages hand on stands in [`Slot`]s: a few that the standard frame knows, and any that an application adds. A slot that
-//! holds something else than it should, or nothing where a stage needs it, is an error that names stage and slot.
+//! Stages are inserted before or after a stage, and replaced, by name. Textures are exchanged through [`Slot`]s:
+//! those of the standard frame, and any that an application adds. A missing or unsuitable texture is an error that
+//! names stage and slot.
 //!
 //! ```
 //! use framegraph::{Extent, Format, Intent, Target, TextureDesc};
@@ -47,7 +47,7 @@ use std::fmt;
 
 type Declare<W> = dyn Fn(&mut Frame<W>, &mut Handles) -> Result<(), StageError> + Send + Sync;
 
-/// Passes that are declared together, under a name.
+/// Named group of passes that are declared together.
 pub struct Stage<W: ?Sized + 'static> {
     name: &'static str,
     picture: bool,
@@ -55,7 +55,7 @@ pub struct Stage<W: ?Sized + 'static> {
 }
 
 impl<W: ?Sized + 'static> Stage<W> {
-    /// A stage that declares what `declare` adds to the frame. It takes textures from the handles and hands on what it
+    /// Creates a stage. `declare` takes textures from the handles, adds passes to the frame, and sets the textures it
     /// wrote.
     pub fn new(
         name: &'static str,
@@ -64,7 +64,7 @@ impl<W: ?Sized + 'static> Stage<W> {
         Self { name, picture: false, declare: Box::new(declare) }
     }
 
-    /// A stage that makes the picture for the display, [`Slot::PICTURE`], and puts it into [`Handles::target`].
+    /// Creates a stage that makes the picture for the display, [`Slot::PICTURE`], in [`Handles::target`].
     pub fn picture(
         name: &'static str,
         declare: impl Fn(&mut Frame<W>, &mut Handles) -> Result<(), StageError> + Send + Sync + 'static,
@@ -80,69 +80,69 @@ impl<W: ?Sized + 'static> fmt::Debug for Stage<W> {
     }
 }
 
-/// The stages of a frame, in order. May be declared again and again, in several frames, for several views.
+/// Stages of a frame, in order. Can be declared repeatedly, in several frames and for several views.
 #[derive(Debug)]
 pub struct Stages<W: ?Sized + 'static>(Vec<Stage<W>>);
 
 impl<W: ?Sized + 'static> Default for Stages<W> {
-    /// No stage.
+    /// Creates an empty list.
     fn default() -> Self {
         Self(Vec::new())
     }
 }
 
 impl<W: ?Sized + 'static> Stages<W> {
-    /// Stages of names that differ.
+    /// Creates a list of stages with distinct names.
     pub(crate) fn of(stages: impl IntoIterator<Item = Stage<W>>) -> Self {
         Self(stages.into_iter().collect())
     }
 
-    /// Names of the stages, in order.
+    /// Returns the names of the stages, in order.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
         self.0.iter().map(|stage| stage.name)
     }
 
-    /// Adds a stage at the end.
+    /// Appends a stage.
     ///
     /// # Errors
-    /// When there is one of its name.
+    /// Fails if a stage has the same name.
     pub fn push(&mut self, stage: Stage<W>) -> Result<&mut Self, StageError> {
         self.insert(self.0.len(), stage)
     }
 
-    /// Inserts a stage directly before the one of name `before`.
+    /// Inserts a stage directly before the stage named `before`.
     ///
     /// # Errors
-    /// When there is no stage of that name, or one of the new stage's name.
+    /// Fails if no stage has that name, or another has the name of the new stage.
     pub fn insert_before(&mut self, before: &str, stage: Stage<W>) -> Result<&mut Self, StageError> {
         let at = self.position(before)?;
         self.insert(at, stage)
     }
 
-    /// Inserts a stage directly after the one of name `after`.
+    /// Inserts a stage directly after the stage named `after`.
     ///
     /// # Errors
-    /// As [`Stages::insert_before`].
+    /// Fails as [`Stages::insert_before`] does.
     pub fn insert_after(&mut self, after: &str, stage: Stage<W>) -> Result<&mut Self, StageError> {
         let at = self.position(after)?;
         self.insert(at + 1, stage)
     }
 
-    /// Puts a stage in the place of the one of its name.
+    /// Replaces the stage with the same name.
     ///
     /// # Errors
-    /// When there is none.
+    /// Fails if there is none.
     pub fn replace(&mut self, stage: Stage<W>) -> Result<&mut Self, StageError> {
         let at = self.position(stage.name)?;
         self.0[at] = stage;
         Ok(self)
     }
 
-    /// Declares all stages in order, starting from `handles`, the picture going into `target`. Returns what the stages
-    /// handed on.
+    /// Declares all stages in order, starting from `handles`, with the picture in `target`. Returns the handles after
+    /// the last stage.
     ///
     /// # Errors
-    /// What a stage refuses or hands on wrongly. The frame then holds the passes before; reset it.
+    /// Returns the error of a stage. The frame then holds the passes declared so far; reset it.
     pub fn declare(&self, frame: &mut Frame<W>, handles: Handles, target: Target) -> Result<Handles, StageError> {
         let mut handles = handles;
         handles.check(frame.graph())?;

@@ -1,4 +1,4 @@
-//! Temporal anti-aliasing: what frames see through different places of their pixels is added up.
+//! Temporal anti-aliasing: accumulates frames with different sub-pixel offsets.
 //!
 //! ```text
 //! hdr ─────────────────────┬─> taa ─> what frames come to ─> sharpen (where asked for) ─> post
@@ -6,10 +6,10 @@
 //! that of the frame before ┘ <───────────┘
 //! ```
 //!
-//! Each frame moves its picture by a part of a pixel ([`CameraView::jitter`](crate::CameraView::jitter), by
-//! [`TaaSettings::jitter_px`]). The pass finds each pixel in the sum of the frames before by its depth and both cameras, holds
-//! what it finds there to the colors about the pixel now, and adds a share of this frame. The sum is a history: no copy.
-//! `docs/taa.md` has how far off it is.
+//! Each frame is offset by a fraction of a pixel ([`CameraView::jitter`](crate::CameraView::jitter), by
+//! [`TaaSettings::jitter_px`]). The pass reprojects each pixel into the history with its depth and both cameras. It
+//! clamps the history to the colors around the pixel and blends in this frame. The history is not copied.
+//! `docs/taa.md` has the errors.
 
 mod jitter;
 mod pass;
@@ -27,10 +27,11 @@ use crate::view::Views;
 use framegraph::{Target, TextureDesc};
 use framegraph_wgpu::Frame;
 
-/// Declares anti-aliasing of a view's radiance over time; hands on [`Slot::HDR`].
+/// Declares temporal anti-aliasing of a view; replaces [`Slot::HDR`].
 ///
 /// # Errors
-/// What a pass refuses; the history's name, `taa`, when another view of the graph has it, which a scope of its own prevents.
+/// Returns the error of a refused pass. The history is named `taa`; a second view of the graph needs a scope of its
+/// own.
 pub fn temporal<W>(frame: &mut Frame<W>, handles: &mut Handles, settings: &TaaSettings) -> Result<(), StageError>
 where
     W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static,

@@ -1,8 +1,8 @@
-//! Velocity: where surfaces of what moves were in the frame before, for passes that read that frame's picture.
+//! Motion vectors: previous positions of moving surfaces, for passes that read the previous frame.
 //!
-//! What stands still is found by its depth and both cameras, so nothing of it is drawn, and a frame in which nothing moves does not
-//! declare the pass ([`Settings::moving`](crate::Settings::moving)). Between prepass and color pass it shares their step: it
-//! costs one attachment, cleared and stored, and the draws of what moves.
+//! Positions of static surfaces follow from their depth and both cameras, so they are not drawn. A frame without
+//! motion does not declare the pass ([`Settings::moving`](crate::Settings::moving)). It shares the step of prepass
+//! and color pass. Its cost is one cleared and stored attachment, and the draws of moving instances.
 
 use crate::draw::SurfaceDraw;
 use crate::program::{Interface, ProgramDesc, Programs};
@@ -13,10 +13,10 @@ use framegraph_scene::Batch;
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Record, RecordError};
 
-/// Format of velocity: a half float has eleven bits of the way, whatever that is.
+/// Format of motion vectors: half floats keep eleven significant bits.
 const VELOCITY_FORMAT: Format = Format::Rgba16Float;
 
-/// The slot that it is drawn in; the color pass of the same step draws in slot 0.
+/// Color slot of the motion vectors; the color pass of the same step uses slot 0.
 const SLOT: u8 = 1;
 
 static SHADER: Module<'static> = library::pass("pass/velocity.wgsl").unwrap();
@@ -26,12 +26,13 @@ static INTERFACE: Interface = Interface {
     constants: &[SurfaceDraw::TRAITS],
 };
 
-/// Draws velocity of opaque and masked surfaces that moved since the frame before ([`CameraView::after`](crate::CameraView::after)).
+/// Draws motion vectors of opaque and masked surfaces that moved since the previous frame
+/// ([`CameraView::after`](crate::CameraView::after)).
 #[derive(Clone, Copy, Debug)]
 pub struct Velocity {
-    /// The view that is drawn.
+    /// The view.
     pub view: ViewId,
-    /// Reversed depth of the visible surfaces, of one sample per texel or more.
+    /// Reversed depth of the visible surfaces, with any number of samples.
     pub depth: Texture,
 }
 

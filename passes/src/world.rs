@@ -1,6 +1,6 @@
-//! Everything that the standard frame is recorded with, in one place.
+//! All data that recorders of the standard frame read.
 //!
-//! Passes ask for parts, not for this: an application that has the parts elsewhere gives its own type the same `AsRef`s.
+//! Passes ask for parts. An application that keeps the parts elsewhere implements the same `AsRef`s for its own type.
 
 use crate::error::PassError;
 use crate::frame_index::FrameIndex;
@@ -12,24 +12,24 @@ use crate::view::{CameraView, ViewId, Views};
 use framegraph_scene::{ProgressFn, Scene};
 use framegraph_wgpu::{DeviceError, Gpu};
 
-/// A scene with its light and its views, on one device. Kept from frame to frame; [`World::set_view`] replaces a view.
+/// A scene with its light and its views on one device. Lives across frames; [`World::set_view`] replaces a view.
 #[derive(Debug)]
 pub struct World {
     /// Shaders with their bindings.
     pub programs: Programs,
     /// Meshes, materials and textures on the GPU.
     pub scene: GpuScene,
-    /// What lights it from all around. May be replaced between frames, with views that were made of it.
+    /// Image-based light. Can be replaced between frames, together with views made for it.
     pub lighting: Lighting,
     /// Cameras, suns and draw lists.
     pub views: Views,
-    /// Tables of looks, with what they have beside settings. May be changed between frames.
+    /// Color grading tables. Can be changed between frames.
     pub grading: GradingTables,
-    /// Which frame it is.
+    /// Index of the frame.
     pub frame_index: FrameIndex,
 }
 
-/// The world cannot be set up.
+/// Error of creating a world.
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum WorldError {
@@ -48,11 +48,11 @@ impl std::fmt::Debug for WorldError {
 }
 
 impl World {
-    /// Uploads a scene with one view or several, of which the first is [`ViewId::MAIN`]. Views must be of the same scene
-    /// and the same light.
+    /// Uploads a scene with one or several views, the first of which is [`ViewId::MAIN`]. Views must belong to the
+    /// same scene and light.
     ///
     /// # Errors
-    /// [`WorldError`].
+    /// Fails as [`WorldError`] describes.
     pub fn new(
         gpu: &Gpu,
         scene: &Scene,
@@ -63,10 +63,10 @@ impl World {
         Ok(Self::of(gpu, GpuScene::upload(gpu, scene, progress)?, lighting, views)?)
     }
 
-    /// The same of a scene that was uploaded.
+    /// Creates a world for an uploaded scene.
     ///
     /// # Errors
-    /// When the device fails.
+    /// Fails if the device fails.
     pub fn of(
         gpu: &Gpu,
         scene: GpuScene,
@@ -84,10 +84,10 @@ impl World {
         })
     }
 
-    /// Replaces a view. Buffers are reused while they are large enough.
+    /// Replaces a view. Reuses buffers that are large enough.
     ///
     /// # Errors
-    /// When there is no such view.
+    /// Fails if the view does not exist.
     pub fn set_view(&mut self, gpu: &Gpu, id: ViewId, view: CameraView) -> Result<(), PassError> {
         self.views.set(gpu, id, view)
     }

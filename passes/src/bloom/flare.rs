@@ -1,4 +1,4 @@
-//! The passes that make lens flare.
+//! Passes that make lens flare.
 
 use super::settings::{FlareSettings, FlareSpan};
 use crate::full_screen::FullScreen;
@@ -16,24 +16,24 @@ static SHADER: Module<'static> = library::pass("pass/flare.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface { groups: &[&["flare", "glow", "glow_sampler"]], constants: &[] };
 
-/// Ghosts and a halo of what glows, of half its size. Of the world it needs [`Programs`].
+/// Makes ghosts and a halo from the glow, at half its size. Uses [`Programs`] of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct Flare {
-    /// What glows; its first level is read.
+    /// The glow; its first level is read.
     pub glow: Texture,
-    /// Size of that level in texels.
+    /// Size of the first level in texels.
     pub size: [u32; 2],
-    /// How.
+    /// Settings.
     pub settings: FlareSettings,
-    /// Coordinates that the flare is centered in.
+    /// Transform to the coordinates in which the flare is centered.
     pub span: FlareSpan,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct FlareIo {
     glow: View,
-    /// The flare, not blurred.
+    /// The flare before the blur.
     pub flare: Texture,
 }
 
@@ -69,26 +69,26 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for Flare {
     }
 }
 
-/// Blurs flare along an axis. Of the world it needs [`Programs`] and the camera of its view.
+/// Blurs the flare along an axis. Uses [`Programs`] and the camera of the view of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct FlareBlur {
-    /// The view whose picture it is.
+    /// View of the picture.
     pub view: ViewId,
     /// The flare.
     pub flare: Texture,
-    /// Along which axis.
+    /// Axis of the blur.
     pub axis: Axis,
-    /// Only rays about the middle are left of it.
+    /// Starburst: keeps only rays around the center.
     pub rays: bool,
-    /// Coordinates that the flare is centered in.
+    /// Transform to the coordinates in which the flare is centered.
     pub span: FlareSpan,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct FlareBlurIo {
     flare: View,
-    /// The flare, blurred.
+    /// The blurred flare.
     pub blurred: Texture,
 }
 
@@ -107,7 +107,7 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for FlareBlur {
     fn record(&self, io: &FlareBlurIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let views: &Views = world.as_ref();
         let world_from_view = views.get(self.view)?.view.frame.world_from_view;
-        // How far the camera's axes point along z: it changes smoothly as the camera turns.
+        // Components of the camera's axes along z; they change smoothly as the camera turns.
         let turn = world_from_view.transpose().col(2).truncate().dot(Vec3::ONE);
         let uniforms = FlareUniforms {
             axis: match self.axis {

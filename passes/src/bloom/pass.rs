@@ -1,4 +1,4 @@
-//! The passes that make levels of what glows.
+//! Passes that make the levels of bloom.
 
 use super::settings::{Blend, BloomSettings, Threshold};
 use crate::full_screen::FullScreen;
@@ -14,26 +14,26 @@ static SHADER: Module<'static> = library::pass("pass/bloom.wgsl").unwrap();
 static INTERFACE: Interface =
     Interface { groups: &[&["bloom", "glow", "glow_sampler", "level"]], constants: &["NARROW"] };
 
-/// What glows of a picture, smaller. Of the world it needs [`Programs`].
+/// Reduces a picture, or a level of bloom, to a smaller level. Uses [`Programs`] of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct BloomFirst {
-    /// Pre-exposed radiance, single-sampled; or what glows of it.
+    /// Pre-exposed radiance with one sample, or a level of bloom.
     pub source: Texture,
     /// Size of the result in texels.
     pub size: [u32; 2],
-    /// How many levels the result is to have.
+    /// Number of levels of the result.
     pub levels: u8,
-    /// What glows.
+    /// Part of the picture that glows.
     pub settings: BloomSettings,
-    /// The source is the picture: what does not glow is left out, and what is not finite.
+    /// True if the source is the picture: applies the threshold and discards NaN and infinity.
     pub sifts: bool,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct BloomIo {
     source: View,
-    /// What glows; a level of it is written.
+    /// The glow, with one level written.
     pub glow: Texture,
 }
 
@@ -70,14 +70,14 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for BloomFirst {
     }
 }
 
-/// A level of what glows, from the one above. Of the world it needs [`Programs`].
+/// Makes a level of bloom from the one above. Uses [`Programs`] of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct BloomDown {
-    /// All levels above are written.
+    /// The glow, with all levels above written.
     pub glow: Texture,
-    /// Which one, at least 1.
+    /// Index of the level, at least 1.
     pub level: u8,
-    /// A side of the level above is odd.
+    /// True if a side of the level above is odd.
     pub odd: bool,
 }
 
@@ -99,30 +99,30 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for BloomDown {
     }
 }
 
-/// The sum of a level and of all that are smaller. The levels are read, not blended into: nothing is loaded. Of the world it
-/// needs [`Programs`].
+/// Sums a level and all smaller levels. Levels are read instead of blended into, so nothing is loaded. Uses
+/// [`Programs`] of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct BloomUp {
-    /// What glows, all levels written.
+    /// The glow, with all levels written.
     pub glow: Texture,
-    /// The sums of smaller levels; none where the next is the smallest.
+    /// Sums of smaller levels; `None` if the next level is the smallest.
     pub sum: Option<Texture>,
-    /// Which level.
+    /// Index of the level.
     pub level: u8,
-    /// How many levels the sums have.
+    /// Number of levels of the sums.
     pub levels: u8,
-    /// Size of the largest, in texels.
+    /// Size of the largest level in texels.
     pub size: [u32; 2],
     /// See [`BloomSettings::narrow`].
     pub narrow: bool,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct BloomUpIo {
     below: View,
     own: View,
-    /// The sums, this level written too.
+    /// The sums, including this level.
     pub sum: Texture,
 }
 
@@ -158,23 +158,23 @@ fn draw(
     FullScreen { constants: &[f64::from(narrow)], ..FullScreen::new(program, &[provided]) }.draw(programs, cx)
 }
 
-/// What [`Post`](crate::post::Post) lays over the picture.
+/// Input of the bloom effect in [`Post`](crate::post::Post).
 #[derive(Clone, Copy, Debug)]
 pub struct BloomMix {
-    /// All levels of what glows, added up: its first level is read.
+    /// The summed levels; the first level is read.
     pub glow: Texture,
-    /// How many levels were added up.
+    /// Number of levels in the sum.
     pub levels: u8,
     /// Lens flare.
     pub flare: Option<Texture>,
-    /// What dirt on the lens lets light up, over the whole picture.
+    /// Lens dirt, over the whole picture.
     pub dirt: Option<Texture>,
-    /// How.
+    /// Settings.
     pub settings: BloomSettings,
 }
 
 impl BloomMix {
-    /// As the effect reads it, for a picture of `size_px`.
+    /// Returns the uniforms of the effect for a picture of `size_px`.
     pub(crate) fn uniforms(&self, size_px: [u32; 2]) -> BloomMixUniforms {
         let BloomSettings { strength, blend, dirt, multiple_px, .. } = self.settings;
         let (span, begin_px) = BloomSettings::span(size_px, multiple_px);

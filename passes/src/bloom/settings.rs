@@ -1,110 +1,112 @@
-//! What bloom is made of. Defaults are Filament's.
+//! Settings of bloom. Defaults are Filament's.
 
-/// What of a picture glows, how far, and how it is laid over the picture.
+/// Source, extent and blending of bloom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct BloomSettings {
-    /// How much of the glow is added, 0 to 1; 0 leaves bloom out.
+    /// Strength of the glow, 0 to 1; 0 disables bloom.
     pub strength: f32,
-    /// Height of the largest level in texels, 16 to 2048; the width follows the picture's.
+    /// Height of the largest level in texels, 16 to 2048; the width follows the aspect ratio of the picture.
     pub height_texels: u32,
-    /// How many levels, each half as large as the one before, up to [`BloomSettings::MOST_LEVELS`] and as many as the size
-    /// has: more glow farther. 0 leaves bloom out.
+    /// Number of levels, each half as large as the one before, at most [`BloomSettings::MOST_LEVELS`] and limited by
+    /// the size. More levels glow farther. 0 disables bloom.
     pub levels: u8,
-    /// How a picture of more than twice the height is made smaller.
+    /// Reduction of pictures more than twice as high as the largest level.
     pub quality: BloomQuality,
-    /// How the glow is laid over the picture.
+    /// Blending of the glow with the picture.
     pub blend: Blend,
-    /// What glows.
+    /// Part of the picture that glows.
     pub threshold: Threshold,
-    /// Pre-exposed radiance from which on something glows, 0 or more, where there is a threshold.
+    /// Threshold in pre-exposed radiance, 0 or more, for modes with a threshold.
     pub threshold_at: f32,
-    /// Pre-exposed radiance that bright glow nears, above 0; infinite for none. Where there is a threshold.
+    /// Limit that bright glow approaches, in pre-exposed radiance above 0; infinite for none. For modes with a
+    /// threshold.
     pub highlight: f32,
-    /// Single bright texels count less, where there is a threshold. Anti-aliasing over time does that already, so a frame with it
-    /// leaves it out.
+    /// Reduces the weight of single bright texels, for modes with a threshold. Ignored with temporal anti-aliasing,
+    /// which does that already.
     pub fireflies: bool,
-    /// Levels are added up by a box of a texel instead of a tent of three, as Filament does on phones.
+    /// Sums levels with a box of one texel instead of a tent of three, as Filament does on phones.
     pub narrow: bool,
-    /// Factor on the dirt of the lens, where [`Slot::LENS_DIRT`](crate::Slot::LENS_DIRT) holds some, 0 or more.
+    /// Strength of lens dirt, 0 or more, if [`Slot::LENS_DIRT`](crate::Slot::LENS_DIRT) holds a texture.
     pub dirt: f32,
-    /// Lens flare of what glows; none for nothing.
+    /// Lens flare; `None` for none.
     pub flare: Option<FlareSettings>,
-    /// The glow spans a picture whose sides are rounded up to a multiple of this, with the own one at its bottom left; 1 for
-    /// the picture's own. Filament renders into multiples of 16.
+    /// The glow covers a picture whose sides are rounded up to a multiple of this number of pixels, with the own
+    /// picture at its bottom left. 1 for the picture's own sides; Filament renders into multiples of 16.
     pub multiple_px: u32,
 }
 
-/// How a picture of more than twice the height of the largest level is made smaller.
+/// Reduction of pictures more than twice as high as the largest level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum BloomQuality {
-    /// By halves; sides of levels are multiples of 16, so that the four next ones are halves of them.
+    /// By halves. Sides of levels are multiples of 16, so the next four levels are exact halves.
     Low,
     /// By halves.
     Medium,
-    /// Not at all: the largest level is twice as large instead, and there is one more.
+    /// None: the largest level is twice as large, and there is one more level.
     High,
 }
 
-/// How the glow is laid over the picture.
+/// Blending of the glow with the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Blend {
-    /// Added: the picture gets brighter.
+    /// Adds the glow; the picture gets brighter.
     Add,
-    /// In the place of as much of the picture.
+    /// Interpolates between picture and glow.
     Interpolate,
 }
 
-/// What glows.
+/// Part of the picture that glows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Threshold {
     /// Everything.
     None,
-    /// What is above the threshold, channel by channel; single bright texels count less.
+    /// Radiance above the threshold, per channel, with less weight for single bright texels.
     Soft,
-    /// All of a color whose brightest channel reaches the threshold; single bright texels count less.
+    /// Whole colors whose brightest channel reaches the threshold, with less weight for single bright texels.
     Hard,
 }
 
-/// Ghosts and a halo of what glows.
+/// Lens flare: ghosts and a halo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct FlareSettings {
-    /// Only rays about the middle are left of it, which turn with the camera.
+    /// Starburst: keeps only rays around the center, which turn with the camera.
     pub starburst: bool,
-    /// How far apart red and blue are, in shares of the picture, 0 to 1.
+    /// Chromatic aberration: distance between red and blue as a fraction of the picture, 0 to 1.
     pub aberration: f32,
-    /// How many ghosts, 0 to 16.
+    /// Number of ghosts, 0 to 16.
     pub ghosts: u8,
-    /// Between ghosts, in shares of the way through the middle, 0 to 1.
+    /// Distance between ghosts as a fraction of the way through the center, 0 to 1.
     pub ghost_spacing: f32,
-    /// Glow from which on there are ghosts, 0 or more.
+    /// Glow above which ghosts appear, 0 or more.
     pub ghost_threshold: f32,
-    /// Radius of the halo in shares of the height, 0 to 0.5.
+    /// Radius of the halo as a fraction of the height, 0 to 0.5.
     pub halo_radius: f32,
-    /// Thickness of the halo in shares of the height, 0 to 1; 0 for no halo.
+    /// Thickness of the halo as a fraction of the height, 0 to 1; 0 for no halo.
     pub halo_thickness: f32,
-    /// Glow from which on there is a halo, 0 or more.
+    /// Glow above which the halo appears, 0 or more.
     pub halo_threshold: f32,
-    /// Sides of the picture that ghosts, halo and rays are centered in are rounded up to a multiple of this, in pixels. The
-    /// own picture is at its bottom left. 1 centers them in the own picture; Filament renders into multiples of 16.
+    /// Ghosts, halo and rays are centered in a picture whose sides are rounded up to a multiple of this number of
+    /// pixels, with the own picture at its bottom left. 1 centers them in the own picture; Filament renders into
+    /// multiples of 16.
     pub multiple_px: u32,
 }
 
-/// From coordinates of what glows to coordinates of the span that a flare is centered in.
+/// Transform from texture coordinates of the glow to those of the area that a flare is centered in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlareSpan {
-    /// Factor.
+    /// Scale.
     pub scale: [f32; 2],
-    /// Summand after the factor.
+    /// Offset, added after scaling.
     pub offset: [f32; 2],
 }
 
 impl FlareSpan {
-    /// The span of `flare` in a picture of `size_px`, whose glow spans multiples of `glow_multiple_px`.
+    /// Returns the transform of `flare` for a picture of `size_px` whose glow covers multiples of `glow_multiple_px`.
     pub fn new(flare: &FlareSettings, size_px: [u32; 2], glow_multiple_px: u32) -> Self {
         let (glow, glow_begin) = BloomSettings::span(size_px, glow_multiple_px);
         let (span, begin) = BloomSettings::span(size_px, flare.multiple_px);
@@ -113,17 +115,17 @@ impl FlareSpan {
 }
 
 impl Default for BloomSettings {
-    /// [`BloomSettings::DEFAULT`].
+    /// Returns [`BloomSettings::DEFAULT`].
     fn default() -> Self {
         Self::DEFAULT
     }
 }
 
 impl BloomSettings {
-    /// The most levels that there may be.
+    /// Maximum number of levels.
     pub const MOST_LEVELS: u8 = 12;
 
-    /// Filament's.
+    /// Filament's defaults.
     pub const DEFAULT: Self = Self {
         strength: 0.1,
         height_texels: 384,
@@ -140,12 +142,12 @@ impl BloomSettings {
         multiple_px: 1,
     };
 
-    /// Whether anything of it is seen.
+    /// Returns true if the settings have a visible effect.
     pub fn is_seen(&self) -> bool {
         self.strength > 0.0 && self.levels > 0
     }
 
-    /// The size that the glow of such a picture spans, and where in it the picture begins, in pixels.
+    /// Returns the size that the glow of a picture covers, and the position of the picture in it, in pixels.
     pub(crate) fn span([width, height]: [u32; 2], multiple_px: u32) -> ([f32; 2], [f32; 2]) {
         let multiple = multiple_px.clamp(1, 1 << 16);
         let span = [width, height].map(|side| side.max(1).next_multiple_of(multiple) as f32);
@@ -154,14 +156,14 @@ impl BloomSettings {
 }
 
 impl Default for FlareSettings {
-    /// [`FlareSettings::DEFAULT`].
+    /// Returns [`FlareSettings::DEFAULT`].
     fn default() -> Self {
         Self::DEFAULT
     }
 }
 
 impl FlareSettings {
-    /// Filament's.
+    /// Filament's defaults.
     pub const DEFAULT: Self = Self {
         starburst: true,
         aberration: 0.005,
@@ -174,7 +176,7 @@ impl FlareSettings {
         multiple_px: 16,
     };
 
-    /// Whether anything of it is seen.
+    /// Returns true if the settings have a visible effect.
     pub fn is_seen(&self) -> bool {
         self.ghosts > 0 || self.halo_thickness > 0.0
     }

@@ -1,4 +1,4 @@
-//! Choices of the frame that cost time, with their options.
+//! Groups of options that trade time for quality.
 
 use crate::facts::{Decision, Effect, Facts};
 use crate::frame_settings::FrameSettings;
@@ -10,23 +10,24 @@ use crate::shadow::{ContactShadows, ShadowFilter, ShadowSettings, Splits};
 use crate::structure::Resolution;
 use framegraph::Format;
 
-/// One way of doing it.
+/// An option of a group.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameOption {
-    /// For tables and files.
+    /// Name for tables and files.
     pub name: &'static str,
-    /// Makes a frame do it so, whatever it did.
+    /// Changes a frame to use this option.
     pub apply: fn(&mut FrameSettings),
 }
 
-/// A choice of the frame. Choices that only make sense together, such as the visibility term and its table, are one group.
+/// A group of mutually exclusive options. Options that only make sense together, such as the visibility term and its
+/// table, form one group.
 #[derive(Clone, Copy, Debug)]
 pub struct Group {
-    /// For tables and files: lower case, words joined by `-`.
+    /// Name for tables and files: lower case, words joined by `-`.
     pub name: &'static str,
-    /// Effects that it is about: where the facts of a scene leave out all that are asked for, nothing is left to choose.
+    /// Effects of the group. If feature culling drops all requested ones, the group leaves no choice.
     pub effects: &'static [Effect],
-    /// From the cheapest to the finest, which is the reference's.
+    /// Options from the cheapest to the finest, which is the reference's.
     pub options: &'static [FrameOption],
 }
 
@@ -34,7 +35,7 @@ const fn option(name: &'static str, apply: fn(&mut FrameSettings)) -> FrameOptio
     FrameOption { name, apply }
 }
 
-/// All of them.
+/// All groups.
 pub const GROUPS: [Group; 8] = [
     Group {
         name: "edges",
@@ -120,7 +121,7 @@ pub const GROUPS: [Group; 8] = [
     },
 ];
 
-/// How surfaces are shaded and what light is made with; the precision stays.
+/// Sets shading and environment quality; the precision is unchanged.
 fn shading(frame: &mut FrameSettings, quality: Quality) {
     let precision = frame.settings.shading.precision;
     frame.quality = quality;
@@ -128,7 +129,7 @@ fn shading(frame: &mut FrameSettings, quality: Quality) {
     frame.settings.shading.precision = precision;
 }
 
-/// Maps of the sun; those of lamps stay.
+/// Sets the shadow maps of the sun; those of punctual lights are unchanged.
 fn sun_maps(
     frame: &mut FrameSettings,
     cascades: u8,
@@ -143,26 +144,25 @@ fn sun_maps(
 }
 
 impl Group {
-    /// The group of that name.
+    /// Returns the group with this name.
     pub fn of(name: &str) -> Option<&'static Self> {
         GROUPS.iter().find(|group| group.name == name)
     }
 
-    /// The option of that name.
+    /// Returns the option with this name.
     pub fn option(&self, name: &str) -> Option<&'static FrameOption> {
         self.options.iter().find(|option| option.name == name)
     }
 
-    /// Whether nothing that it is about is left of the reference: each effect was not asked for, so that facts have no row of it,
-    /// or the scene has no use for it. Then every option is the same frame, which costs and errs nothing. Facts without any row
-    /// decide nothing.
+    /// Returns true if the frame has none of the group's effects: each was not requested, or the scene does not need
+    /// it. All options then give the same frame. Returns false for empty facts.
     pub fn is_dropped(&self, of_reference: &Facts) -> bool {
         let gone = |effect: &Effect| of_reference.of(*effect).is_none_or(|fact| fact.decision == Decision::Dropped);
         !of_reference.rows.is_empty() && !self.effects.is_empty() && self.effects.iter().all(gone)
     }
 }
 
-/// The frame with the finest option of each group; what no group is about stays.
+/// Returns the frame with the finest option of each group; everything else is unchanged.
 #[must_use]
 pub fn reference(frame: &FrameSettings) -> FrameSettings {
     let mut finest = *frame;

@@ -1,32 +1,32 @@
-//! What options were measured to take and to err by, as data that a file holds.
+//! Measured time and error of options, as data of a file.
 
 use super::groups::{FrameOption, Group};
 use super::select::{Offer, Offers, Pair};
 use crate::facts::Facts;
 
-/// What the options of the groups took and erred by on one adapter: each changed alone, of the reference.
+/// Times and errors of all options on one adapter; each option is changed alone in the reference.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Measured {
-    /// Time in ms of the frame with the first option of each group.
+    /// Time of the frame with the first option of each group, in milliseconds.
     pub fastest_ms: f64,
-    /// Time in ms of the reference.
+    /// Time of the reference in milliseconds.
     pub reference_ms: f64,
     /// The groups.
     pub groups: Vec<MeasuredGroup>,
-    /// Options whose errors do not add up.
+    /// Pairs of options whose errors are not additive.
     pub pairs: Vec<MeasuredPair>,
 }
 
-/// A group.
+/// A group of options.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MeasuredGroup {
     /// [`Group::name`].
     pub name: String,
-    /// The built-in scene that its options were measured on: one that calls for its effects.
+    /// Built-in scene on which the options were measured; it needs their effects.
     pub scene: String,
-    /// The options that the adapter has, in the group's order.
+    /// Options that the adapter supports, in the order of the group.
     pub options: Vec<MeasuredOption>,
 }
 
@@ -36,9 +36,9 @@ pub struct MeasuredGroup {
 pub struct MeasuredOption {
     /// [`FrameOption::name`].
     pub name: String,
-    /// Time in ms of the reference with this option.
+    /// Time of the reference with this option, in milliseconds.
     pub ms: f64,
-    /// Root mean square difference from the reference's picture, in codes of 255.
+    /// RMS difference from the reference picture, in 8-bit steps.
     pub codes: f64,
 }
 
@@ -48,24 +48,24 @@ pub struct MeasuredOption {
 pub struct MeasuredPair {
     /// Group and option of both.
     pub options: [[String; 2]; 2],
-    /// Mean square difference beyond the sum of both, in codes squared.
+    /// Mean square difference beyond the sum of both, in squared 8-bit steps.
     pub squares: f64,
 }
 
-/// Groups that are chosen from, each with its options.
+/// Groups to choose from, each with its options.
 pub type Choices = Vec<(&'static Group, Vec<&'static FrameOption>)>;
 
-/// A record names what there is not.
+/// Error of reading a record.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeasuredError {
-    /// A group or an option.
+    /// The record names an unknown group or option.
     #[error("it has `{name}`, which this version of the frame has not; measure anew")]
     Unknown {
-        /// Its name.
+        /// The unknown name.
         name: String,
     },
-    /// A group without an option that the device has.
+    /// The device supports no option of a group.
     #[error("`{name}` has no option that this device has; measure anew")]
     Empty {
         /// The group.
@@ -74,18 +74,18 @@ pub enum MeasuredError {
 }
 
 impl std::fmt::Debug for MeasuredError {
-    /// The sentence, since that is what an `unwrap` shows.
+    /// Prints the message, as `unwrap` shows it.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         std::fmt::Display::fmt(self, f)
     }
 }
 
 impl Measured {
-    /// The groups that facts leave something to choose of, each with those options that were measured and that the device
-    /// has.
+    /// Returns the groups that feature culling leaves a choice in, each with the options that were measured and that
+    /// the device supports.
     ///
     /// # Errors
-    /// [`MeasuredError`].
+    /// Fails if the record names an unknown group or option, or leaves a group without options.
     pub fn choices(&self, facts: &Facts, has: impl Fn(&FrameOption) -> bool) -> Result<Choices, MeasuredError> {
         let unknown = |name: &String| MeasuredError::Unknown { name: name.clone() };
         let mut choices = Vec::new();
@@ -104,14 +104,14 @@ impl Measured {
         Ok(choices)
     }
 
-    /// An option as it was measured.
+    /// Returns the measured option.
     pub fn of(&self, group: &Group, option: &FrameOption) -> Option<&MeasuredOption> {
         let own = self.groups.iter().find(|own| own.name == group.name)?;
         own.options.iter().find(|own| own.name == option.name)
     }
 
-    /// What options take and err by, where the fastest frame and the reference take so many ms: differences between options
-    /// are in proportion.
+    /// Returns times and errors of the options, scaled to the times in milliseconds of the fastest frame and of the
+    /// reference. Differences between options scale in proportion.
     pub fn offers(&self, choices: &Choices, fastest_ms: f64, reference_ms: f64) -> Offers {
         let place = |[group, option]: &[String; 2]| {
             let at = choices.iter().position(|(own, _)| own.name == *group)?;
@@ -139,12 +139,12 @@ mod tests {
     use crate::budget::GROUPS;
     use crate::facts::{Decision, Effect, Fact, Proof};
 
-    /// What the finest options take beyond the fastest, all together, where each takes a millisecond more than the last.
+    /// The finest options take this much longer than the fastest, with one millisecond between neighbors.
     fn more_ms() -> f64 {
         GROUPS.iter().map(|group| group.options.len() - 1).sum::<usize>() as f64
     }
 
-    /// Every group, its options a millisecond and a code apart.
+    /// Every group, with options one millisecond and one 8-bit step apart.
     fn measured() -> Measured {
         let group = |group: &Group| {
             let last = group.options.len() - 1;

@@ -1,55 +1,54 @@
-//! Choosing: an option of each group, so that their times fit a bound and their errors are the least, or the other way about.
+//! Selection of one option per group: the smallest error within a time, or the smallest time within an error.
 
-/// What an option takes and errs by.
+/// Time and error of an option.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Offer {
-    /// Time in ms beyond that of the group's fastest option.
+    /// Time beyond that of the group's fastest option, in milliseconds.
     pub ms: f64,
-    /// Mean square of what the picture differs from the reference's, in codes of 255 squared: the squares of errors that
-    /// have nothing to do with each other add up.
+    /// Mean square difference from the reference, in squared 8-bit steps. Squares of independent errors add up.
     pub squares: f64,
 }
 
-/// What two options of different groups take and err by together, beyond what each does alone.
+/// Joint time and error of two options of different groups, beyond their sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
     /// Group and option of both.
     pub at: [[usize; 2]; 2],
-    /// Beyond the sum, which may be less than nothing.
+    /// Difference from the sum; may be negative.
     pub beyond: Offer,
 }
 
-/// A chosen set: an option of each group, with what they take and err by together.
+/// A chosen set: one option of each group, with the total time and error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chosen {
     /// Index of the option in each group.
     pub options: Vec<usize>,
-    /// Time of a whole frame in ms.
+    /// Time of a whole frame in milliseconds.
     pub ms: f64,
-    /// Mean square difference from the reference, in codes squared.
+    /// Mean square difference from the reference, in squared 8-bit steps.
     pub squares: f64,
 }
 
 impl Chosen {
-    /// Root mean square difference from the reference, in codes of 255.
+    /// Returns the RMS difference from the reference, in 8-bit steps.
     pub fn codes(&self) -> f64 {
         self.squares.max(0.0).sqrt()
     }
 }
 
-/// What there is to choose from.
+/// Options to choose from.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Offers {
     /// Options of each group.
     pub groups: Vec<Vec<Offer>>,
-    /// Where times and errors do not add up.
+    /// Pairs whose times or errors are not additive.
     pub pairs: Vec<Pair>,
-    /// Time in ms of the frame with the fastest option of each group.
+    /// Time of the frame with the fastest option of each group, in milliseconds.
     pub fastest_ms: f64,
 }
 
 impl Offers {
-    /// What a set takes and errs by.
+    /// Returns the time and error of a set.
     pub fn predicted(&self, options: &[usize]) -> Chosen {
         let mut sum = Offer { ms: self.fastest_ms, squares: 0.0 };
         for (group, index) in self.groups.iter().zip(options) {
@@ -60,8 +59,8 @@ impl Offers {
         Chosen { options: options.to_vec(), ms: sum.ms, squares: sum.squares }
     }
 
-    /// Scales what options take beyond the fastest frame, so that a set takes what it did, by a factor of four at most: one
-    /// measurement is not believed beyond. Of the fastest frame it is that frame's time.
+    /// Scales all option times so that `set` takes the measured time. The factor is limited to 4, since a single
+    /// measurement may be wrong. If `set` is the fastest frame, sets the time of that frame.
     pub fn scale_to(&mut self, options: &[usize], took_ms: f64) {
         let (predicted, found) = (self.predicted(options).ms - self.fastest_ms, took_ms - self.fastest_ms);
         if predicted <= 0.0 {
@@ -73,19 +72,19 @@ impl Offers {
         self.pairs.iter_mut().for_each(|pair| pair.beyond.ms *= scale);
     }
 
-    /// The option of each group that errs least: the reference.
+    /// Returns the option with the smallest error of each group: the reference.
     pub fn finest(&self) -> Vec<usize> {
         self.groups.iter().map(|group| least(group, |offer| offer.squares)).collect()
     }
 
-    /// The fastest option of each group.
+    /// Returns the fastest option of each group.
     pub fn fastest(&self) -> Vec<usize> {
         self.groups.iter().map(|group| least(group, |offer| offer.ms)).collect()
     }
 
-    /// The sets that no other beats, from the fastest to the most accurate: the multiple-choice knapsack, exactly. Groups of
-    /// pairs are taken in every combination; each of the others is added to the sets that are left, of which those that
-    /// another beats in both go.
+    /// Returns the Pareto front, from the fastest set to the most accurate. Solves the multiple-choice knapsack
+    /// exactly: groups with pairs are enumerated in every combination. Each other group is then added to the
+    /// remaining sets, and dominated sets are removed.
     pub fn front(&self) -> Vec<Chosen> {
         let paired = |index: usize| self.pairs.iter().any(|pair| pair.at.iter().any(|[group, _]| *group == index));
         let order: Vec<usize> = (0..self.groups.len())
@@ -113,7 +112,7 @@ impl Offers {
                     longer.push((options, sum));
                 }
             }
-            // While pairs may still change sums, no set is out of the running.
+            // Sets stay in the running while pairs can still change sums.
             let settled = !order[rank + 1..].iter().any(|index| paired(*index));
             sets = if settled { unbeaten(longer) } else { longer };
         }
@@ -121,12 +120,12 @@ impl Offers {
         sets.into_iter().map(chosen).collect()
     }
 
-    /// The most accurate set that takes no more; none if no set does.
+    /// Returns the most accurate set within a time in milliseconds, if any.
     pub fn within_ms(&self, most_ms: f64) -> Option<Chosen> {
         self.front().into_iter().take_while(|set| set.ms <= most_ms).last()
     }
 
-    /// The fastest set that errs no more, in codes of 255; none if no set does.
+    /// Returns the fastest set within an error in 8-bit steps, if any.
     pub fn within_codes(&self, most_codes: f64) -> Option<Chosen> {
         self.front().into_iter().find(|set| set.codes() <= most_codes)
     }
@@ -137,11 +136,11 @@ fn add(sum: &mut Offer, more: Offer) {
 }
 
 fn least(group: &[Offer], of: impl Fn(&Offer) -> f64) -> usize {
-    // The last of equals, which is the finer option.
+    // The last of equal options is the finer one.
     (0..group.len()).rev().min_by(|a, b| of(&group[*a]).total_cmp(&of(&group[*b]))).unwrap_or(0)
 }
 
-/// Those that no other beats in both, from the fastest on.
+/// Returns the sets that no other dominates, from the fastest on.
 fn unbeaten(mut sets: Vec<(Vec<usize>, Offer)>) -> Vec<(Vec<usize>, Offer)> {
     sets.sort_by(|(_, a), (_, b)| a.ms.total_cmp(&b.ms).then(a.squares.total_cmp(&b.squares)));
     let mut best = f64::INFINITY;
@@ -157,7 +156,7 @@ fn unbeaten(mut sets: Vec<(Vec<usize>, Offer)>) -> Vec<(Vec<usize>, Offer)> {
 mod tests {
     use super::*;
 
-    /// Four groups of four options, and pairs that make sums larger and smaller.
+    /// Four groups of four options, with pairs that increase and decrease sums.
     pub(crate) fn random_offers(seed: u64) -> Offers {
         let mut state = seed;
         let mut uniform = || {
@@ -174,7 +173,7 @@ mod tests {
         Offers { groups, pairs, fastest_ms: 0.3 }
     }
 
-    /// Every set there is.
+    /// Returns every set.
     fn all(offers: &Offers) -> Vec<Chosen> {
         (0..256).map(|i| offers.predicted(&[i & 3, i >> 2 & 3, i >> 4 & 3, i >> 6])).collect()
     }

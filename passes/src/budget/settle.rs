@@ -1,56 +1,56 @@
-//! Trying what was chosen, and choosing again with what the trial has taught.
+//! Trials: measures a chosen set and chooses again with what was measured.
 
 use super::select::{Chosen, Offer, Offers, Pair};
 
-/// What a frame is held to.
+/// Bound on a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
-    /// Time of a frame in ms.
+    /// Greatest time of a frame in milliseconds.
     Ms(f64),
-    /// Root mean square difference from the reference, in codes of 255.
+    /// Greatest RMS difference from the reference, in 8-bit steps.
     Codes(f64),
 }
 
-/// How a set turned out.
+/// Measured result of a set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
-    /// Time of a frame in ms.
+    /// Time of a frame in milliseconds.
     pub ms: f64,
-    /// Mean square difference from the reference, in codes squared.
+    /// Mean square difference from the reference, in squared 8-bit steps.
     pub squares: f64,
 }
 
-/// What was settled on.
+/// Final choice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
-    /// The set, with what it was predicted to take and to err by when it was chosen.
+    /// The set, with the predicted time and error.
     pub chosen: Chosen,
-    /// How it turned out.
+    /// Measured result of the set.
     pub trial: Trial,
-    /// Whether it is within the bound; no set was found that is, if this one is not.
+    /// True if the set keeps the bound; otherwise no set that keeps it was found.
     pub holds: bool,
 }
 
-/// The share of a time that is aimed at: a frame that takes exactly the budget is above it every other time.
+/// Fraction of the time that is aimed at. A frame aimed at exactly the budget exceeds it half of the time.
 const AIM: f64 = 0.95;
-/// Errors that are this share off what was predicted do not add up.
+/// Relative deviation from the predicted error above which errors count as not additive.
 const OFF: f64 = 0.2;
-/// Sets that are tried at most.
+/// Maximum number of trials.
 const ROUNDS: usize = 8;
 
-/// Chooses a set, has it tried, and learns: times are scaled to what the trial took, and where the error is more than a fifth
-/// off, the two options of the set that err most are tried by themselves and become a [`Pair`]. Then it chooses again,
-/// until the choice was tried before. The offers keep what was learnt.
+/// Chooses a set, measures it, and learns from the result. Times are scaled to the measured time. If the error is
+/// more than a fifth off, the two options with the largest errors are measured together and become a [`Pair`]. The
+/// choice is repeated until it was measured before. `offers` keeps what was learned.
 ///
 /// # Errors
-/// Those of `attempt`, which is given an option of each group.
+/// Returns errors of `attempt`, which is called with an option for each group.
 pub fn settle<E>(
     offers: &mut Offers,
     bound: Bound,
     mut attempt: impl FnMut(&[usize]) -> Result<Trial, E>,
 ) -> Result<Settled, E> {
     let mut tried: Vec<Settled> = Vec::new();
-    // How much stricter than the bound the aim is, after errors that no pair explains.
+    // Factor on the bound, after errors that no pair explains.
     let mut strict = 1.0;
     for _ in 0..ROUNDS {
         let fallback = |options: Vec<usize>| offers.predicted(&options);
@@ -89,7 +89,7 @@ pub fn settle<E>(
     Ok(best(true).or_else(|| best(false)).expect("the first round tries a set"))
 }
 
-/// The two options of a set that err most, where no pair of them is known.
+/// Returns the two options of a set with the largest errors, if no pair of them is known.
 fn pair_of(offers: &Offers, options: &[usize]) -> Option<[[usize; 2]; 2]> {
     let mut heavy: Vec<[usize; 2]> = options.iter().enumerate().map(|(group, option)| [group, *option]).collect();
     let squares = |[group, option]: &[usize; 2]| offers.groups[*group][*option].squares;
@@ -100,7 +100,7 @@ fn pair_of(offers: &Offers, options: &[usize]) -> Option<[[usize; 2]; 2]> {
     pairs.take(3).find(|at| !known(at))
 }
 
-/// The reference with two options changed.
+/// Returns the reference with two options changed.
 fn set_of(offers: &Offers, at: [[usize; 2]; 2]) -> Vec<usize> {
     let mut options = offers.finest();
     at.into_iter().for_each(|[group, option]| options[group] = option);
@@ -127,7 +127,7 @@ mod tests {
         Offers { groups, pairs: Vec::new(), fastest_ms: 2.0 }
     }
 
-    /// A device on which everything takes twice as long as was measured, and errors of two options double each other.
+    /// A device that takes twice the measured time, on which the errors of two options amplify each other.
     fn device(options: &[usize]) -> Trial {
         let told = offers().predicted(options);
         let doubled = if options[0] == 0 && options[1] == 0 { 2.0 } else { 1.0 };
@@ -140,7 +140,7 @@ mod tests {
             let bound = f64::from(budget);
             let settled = settle(&mut offers(), Bound::Ms(bound), |set| Ok::<_, ()>(device(set))).expect("no error");
             assert!(settled.holds && settled.trial.ms <= bound, "{bound} ms: {settled:?}");
-            // No swap of one option within what is aimed at is more accurate.
+            // No swap of one option within the target is more accurate.
             for (group, options) in offers().groups.iter().enumerate() {
                 for option in 0..options.len() {
                     let mut swapped = settled.chosen.options.clone();
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn errors_that_do_not_add_up_are_learnt() {
         let mut learnt = offers();
-        // Alone they would be the root of 14.
+        // Their separate errors sum to the root of 14.
         let settled = settle(&mut learnt, Bound::Codes(3.8), |set| Ok::<_, ()>(device(set))).expect("no error");
         assert!(settled.holds && settled.trial.squares <= 3.8 * 3.8, "{settled:?}");
         assert_eq!(learnt.pairs.len(), 1, "{:?}", learnt.pairs);

@@ -1,11 +1,11 @@
-//! Depth of field by name.
+//! Option parsing of depth of field.
 
 use super::settings::DofSettings;
 use crate::choice::{Choice, ChoiceError, switched};
 use crate::structure::Resolution;
 
 impl DofSettings {
-    /// The names that [`DofSettings::set`] takes.
+    /// Names accepted by [`DofSettings::set`].
     pub const KEYS: [&str; 11] = [
         "focus",
         "aperture",
@@ -20,18 +20,18 @@ impl DofSettings {
         "median",
     ];
 
-    /// What is asked for as `off`, or as `on` with changes: `on:focus=3,aperture=1.4`. None is `off`.
+    /// Parses `off`, or `on` with changes such as `on:focus=3,aperture=1.4`. Returns `None` for `off`.
     ///
     /// # Errors
-    /// When it is neither, or a choice is unknown or does not take the value: one line that names it and what it takes.
+    /// Fails for another word, an unknown name or an invalid value; the message names it and the accepted values.
     pub fn from_text(text: &str) -> Result<Option<Self>, ChoiceError> {
         switched(text, Self::DEFAULT, Self::set)
     }
 
-    /// Changes one choice by name.
+    /// Changes one setting by name.
     ///
     /// # Errors
-    /// As [`DofSettings::from_text`].
+    /// Fails as [`DofSettings::from_text`] does.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), ChoiceError> {
         let choice = Choice { key, value };
         let rings = || choice.whole(3, 17).map(|rings| rings as u8);

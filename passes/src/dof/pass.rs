@@ -1,4 +1,4 @@
-//! The passes of depth of field: full-screen steps of one shader.
+//! Passes of depth of field: full-screen steps that share a shader.
 
 use super::settings::DofSettings;
 use crate::full_screen::FullScreen;
@@ -13,7 +13,7 @@ use framegraph_wgpu::{Cx, Record, RecordError, SamplerDesc};
 
 static SHADER: Module<'static> = library::pass("pass/dof.wgsl").unwrap();
 
-/// What a step reads, by the names of the shader, after the settings and the sampler.
+/// Names of the shader's inputs, after the settings and the sampler.
 const READ: [&str; 5] = ["hdr", "scene_depth", "field", "tiles", "gathered"];
 
 static INTERFACE: Interface = Interface {
@@ -21,61 +21,61 @@ static INTERFACE: Interface = Interface {
     constants: &["TEXEL_PX", "RINGS_BEFORE", "RINGS_BEHIND", "RINGS_EVEN"],
 };
 
-/// Pixels of the picture to a tile; the shader dilates by two of them, which is the largest radius.
+/// Pixels per tile. The shader dilates by two tiles, the largest radius.
 const TILE_PX: u16 = 16;
 
-/// A step, with what it reads.
+/// A step with its inputs.
 #[derive(Clone, Copy, Debug)]
 pub enum DofStep {
-    /// The radius beside the radiance.
+    /// Writes the circle of confusion beside the radiance.
     Coc {
-        /// Pre-exposed radiance, single-sampled.
+        /// Pre-exposed radiance with one sample.
         hdr: Texture,
-        /// Its depth, reversed, single-sampled.
+        /// Reversed depth with one sample.
         depth: Texture,
     },
-    /// A level of both, from the one above.
+    /// Makes a level of both from the level above.
     Level {
-        /// Radiance, and radius in alpha.
+        /// Radiance, with the radius in alpha.
         field: Texture,
-        /// Which level, at least 1.
+        /// Index of the level, at least 1.
         level: u8,
     },
-    /// The least and the largest radius of each tile.
+    /// Finds the least and greatest radius of each tile.
     Tiles {
-        /// Radiance, and radius in alpha; its first level is read.
+        /// Radiance, with the radius in alpha; its first level is read.
         field: Texture,
     },
-    /// Those that may reach into each tile.
+    /// Finds the radii that may reach into each tile.
     Dilate {
         /// Radii of tiles.
         tiles: Texture,
     },
-    /// What is out of focus, times its opacity, and that in alpha.
+    /// Gathers out-of-focus radiance, premultiplied by its opacity in alpha.
     Gather {
-        /// Radiance, and radius in alpha; all levels are read.
+        /// Radiance, with the radius in alpha; all levels are read.
         field: Texture,
         /// Radii that may reach into tiles.
         tiles: Texture,
     },
-    /// The same without what taps left over.
+    /// Removes noise of the taps with a median.
     Median {
-        /// What was gathered.
+        /// Gathered radiance.
         gathered: Texture,
         /// Radii that may reach into tiles.
         tiles: Texture,
     },
-    /// What was gathered over what is in focus.
+    /// Composites the gathered radiance over the parts in focus.
     Combine {
-        /// Pre-exposed radiance, single-sampled.
+        /// Pre-exposed radiance with one sample.
         hdr: Texture,
-        /// What was gathered.
+        /// Gathered radiance.
         gathered: Texture,
     },
 }
 
 impl DofStep {
-    /// Name of its pass.
+    /// Returns the name of the pass.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Coc { .. } => "coc",
@@ -101,27 +101,27 @@ impl DofStep {
     }
 }
 
-/// A step of depth of field. Of the world it needs [`Programs`] and the camera of its view.
+/// A step of depth of field. Uses [`Programs`] and the camera of the view of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct DofPass {
-    /// The view that is seen.
+    /// The view.
     pub view: ViewId,
-    /// Which step.
+    /// The step.
     pub step: DofStep,
     /// Size of the picture.
     pub extent: Extent,
-    /// How many levels are gathered from, at least one.
+    /// Number of levels to gather from, at least one.
     pub levels: u8,
-    /// The lens.
+    /// Settings of the lens.
     pub settings: DofSettings,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct DofIo {
-    /// In the order of [`READ`].
+    /// Inputs in the order of [`READ`].
     read: [Option<View>; 5],
-    /// What the step makes.
+    /// Result of the step.
     pub result: Texture,
 }
 
@@ -168,7 +168,7 @@ impl Pass for DofPass {
     }
 }
 
-/// Size of a texture with a texel a tile.
+/// Returns the size of a texture with one texel per tile.
 const fn tiles_of(extent: Extent) -> Extent {
     match extent {
         Extent::Relative { num, den, align } => Extent::Relative { num, den: den * TILE_PX, align },
@@ -209,7 +209,7 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for DofPass {
 }
 
 impl Resolution {
-    /// Pixels to a texel.
+    /// Pixels per texel.
     pub(super) const fn texel_px(self) -> u32 {
         match self {
             Self::Full => 1,

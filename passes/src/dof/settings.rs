@@ -1,50 +1,50 @@
-//! What depth of field is made of.
+//! Settings of depth of field.
 
 use crate::structure::Resolution;
 use framegraph_shaders::layout::Projection;
 
-/// Height of the film in m: that of a frame of 35 mm, as in Filament.
+/// Height of the film in meters: a 35 mm frame, as in Filament.
 pub const FILM_HEIGHT_M: f32 = 0.024;
-/// What is in focus is at least so many focal lengths away: a lens has nothing nearer in focus.
+/// Minimum focus distance in focal lengths.
 const NEAREST_FOCUS: f32 = 1.01;
 
-/// The lens, and how it is gathered. Defaults are Filament's, but for the aperture.
+/// The lens and the quality of the gather. Defaults are Filament's, except for the aperture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct DofSettings {
-    /// Distance of what is in focus, in m from the eye's plane, above 0.
+    /// Focus distance from the eye plane in meters, above 0.
     pub focus_m: f32,
-    /// The f-number: focal length over diameter of the aperture, above 0; more is sharper.
+    /// F-number: focal length over aperture diameter, above 0; more is sharper.
     pub f_number: f32,
-    /// Focal length in m, above 0; none is that of the view's angle on film of 24 mm.
+    /// Focal length in meters, above 0; `None` derives it from the view's angle on 24 mm film.
     pub focal_length_m: Option<f32>,
-    /// Factor on circles of confusion, 0 or more; 0 leaves depth of field out.
+    /// Factor on circles of confusion, 0 or more; 0 disables depth of field.
     pub scale: f32,
-    /// Size of what is gathered.
+    /// Resolution of the gather.
     pub resolution: Resolution,
-    /// The largest radius of a circle before what is in focus, in pixels, 0 to 32.
+    /// Maximum radius of foreground circles in pixels, 0 to 32.
     pub most_before_px: f32,
-    /// The largest radius of a circle behind it, in pixels, 0 to 32.
+    /// Maximum radius of background circles in pixels, 0 to 32.
     pub most_behind_px: f32,
-    /// Rings of taps before what is in focus, 3 to 17: one in the middle, and eight more a ring.
+    /// Rings of foreground taps, 3 to 17: one tap in the center, and eight more per ring.
     pub rings_before: u8,
-    /// Rings behind it, 3 to 17.
+    /// Rings of background taps, 3 to 17.
     pub rings_behind: u8,
-    /// Rings where all circles of a tile are alike, 3 to 17.
+    /// Rings in tiles with a single radius, 3 to 17.
     pub rings_even: u8,
-    /// A median of three by three texels takes out what taps leave over.
+    /// Removes noise of the taps with a 3×3 median.
     pub median: bool,
 }
 
 impl Default for DofSettings {
-    /// [`DofSettings::DEFAULT`].
+    /// Returns [`DofSettings::DEFAULT`].
     fn default() -> Self {
         Self::DEFAULT
     }
 }
 
 impl DofSettings {
-    /// Filament's on desktops, at an aperture of f/2.8 and 5 m.
+    /// Filament's desktop defaults, with an aperture of f/2.8 and a focus distance of 5 m.
     pub const DEFAULT: Self = Self {
         focus_m: 5.0,
         f_number: 2.8,
@@ -59,14 +59,15 @@ impl DofSettings {
         median: true,
     };
 
-    /// Whether anything is out of focus.
+    /// Returns true if anything can be out of focus.
     pub fn is_seen(&self) -> bool {
         self.scale > 0.0 && (self.most_before_px > 0.0 || self.most_behind_px > 0.0)
     }
 
-    /// Distance in focus in m, and the diameter in pixels that what is infinitely far away has, in a picture of that height.
+    /// Returns the focus distance in meters, and the circle diameter at infinity in pixels, for a picture of this
+    /// height.
     pub fn lens(&self, projection: &Projection, height_px: u32) -> (f32, f32) {
-        // tan of half the view's angle is half of the film over the focal length.
+        // The tangent of half the view angle is half the film height over the focal length.
         let seen = 0.5 * FILM_HEIGHT_M * projection.scale.y.abs();
         let focal = self.focal_length_m.unwrap_or(seen).clamp(1e-4, 10.0);
         let focus = self.focus_m.clamp(NEAREST_FOCUS * focal, 1e9);
@@ -92,7 +93,7 @@ mod tests {
         let settings = DofSettings { focus_m: 2.0, f_number: 2.0, focal_length_m: Some(0.05), ..DofSettings::DEFAULT };
         let (focus, diameter) = settings.lens(&seen(1.0), 1000);
         assert!(focus == 2.0 && (diameter - 26.709).abs() < 0.01, "{diameter}");
-        // The angle of 50 mm on 24 mm of film.
+        // The view angle of 50 mm on 24 mm film.
         let fov = 2.0 * (0.012_f64 / 0.05).atan();
         let of_view = DofSettings { focal_length_m: None, ..settings }.lens(&seen(fov), 1000);
         assert!((of_view.1 - diameter).abs() < 0.01, "{of_view:?}");

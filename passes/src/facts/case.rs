@@ -1,4 +1,4 @@
-//! What rules look at.
+//! Input of the rules.
 
 use super::effect::EffectSet;
 use super::fact::Proof;
@@ -16,7 +16,7 @@ use framegraph_scene::environment::ShBands;
 use framegraph_scene::{Light, Scene};
 use glam::Vec4;
 
-/// Light from all around, as far as facts look at it.
+/// Summary of an environment, as far as rules need it.
 #[derive(Clone, Copy, Debug)]
 pub struct Around<'a> {
     /// [`ImageLight::irradiance`].
@@ -36,48 +36,48 @@ impl<'a> From<&'a ImageLight> for Around<'a> {
     }
 }
 
-/// What is decided about.
+/// Input of [`decide`](super::decide).
 #[derive(Clone, Copy, Debug)]
 pub struct FactInput<'a> {
     /// The scene.
     pub scene: &'a Scene,
-    /// What is known of its surfaces, of the same scene.
+    /// Summary of the surfaces of the same scene.
     pub survey: &'a Survey,
-    /// Light from all around.
+    /// The environment.
     pub around: Around<'a>,
-    /// What stands behind everything.
+    /// The background.
     pub background: &'a Background,
-    /// Cameras with sizes and exposures: of one view, or of all that share a frame's settings. Their shadows are not looked
-    /// at: those of `settings` count.
+    /// Cameras with sizes and exposures, of one view or of all views that share the settings. Their shadow settings
+    /// are ignored; those of `settings` apply.
     pub views: &'a [ViewSettings],
-    /// The frame as it is asked for.
+    /// Requested settings.
     pub settings: &'a Settings,
-    /// What is known by measuring frames before; [`Measurement::Off`] where they are not measured.
+    /// Measurements of earlier frames; [`Measurement::Off`] if frames are not measured.
     pub measured: Measurement,
-    /// Effects that stay whatever the facts are.
+    /// Effects that are always kept.
     pub forced: EffectSet,
-    /// Drops that may change a pixel by more codes of 255 than this are not made.
+    /// Greatest allowed change of a pixel by one drop, in 8-bit steps.
     pub most_codes: f32,
 }
 
 impl FactInput<'_> {
-    /// The usual tolerance: what a drop may change, in codes of 255.
+    /// Default limit on the change of a pixel by one drop, in 8-bit steps.
     pub const MOST_CODES: f32 = 2.0;
 }
 
-/// What rules look at.
+/// Input of one rule.
 pub(super) struct Case<'a> {
     pub(super) input: &'a FactInput<'a>,
     pub(super) settings: &'a Settings,
     pub(super) memory: &'a FactMemory,
     pub(super) seen: Seen<'a>,
     pub(super) surfaces: Surfaces,
-    /// The sun, if it is on and something in view may turn toward it.
+    /// The sun, if it is on and a visible surface may face it.
     pub(super) sun: Option<&'a Light>,
     /// The sun, if it is on.
     pub(super) risen: Option<&'a Light>,
     pub(super) need: ShadowNeed,
-    /// Lights of the scene but the sun: how many count, and why the others do not.
+    /// Number of punctual lights that contribute, and the reasons why others do not.
     pub(super) lights: (usize, Vec<(usize, DropReason)>),
 }
 
@@ -97,7 +97,7 @@ impl<'a> Case<'a> {
         Self { input, settings, memory, surfaces: seen.surfaces(), seen, sun, risen, need, lights }
     }
 
-    /// What the frame leaves out by its structure.
+    /// Returns everything that the frame leaves out structurally.
     pub(super) fn always(&self) -> Vec<(Proof, String)> {
         let mut told = Vec::new();
         let (kept, dropped) = &self.lights;
@@ -129,7 +129,7 @@ impl<'a> Case<'a> {
         told
     }
 
-    /// Whether no light comes from all around.
+    /// Returns whether there is no image-based light.
     pub(super) fn is_dark(&self) -> bool {
         let Around { irradiance, luminance_nits, .. } = self.input.around;
         let none = luminance_nits == 0.0 && irradiance.iter().all(|c| *c == Vec4::ZERO);

@@ -1,25 +1,25 @@
-//! What was decided about a frame.
+//! All decisions about a frame.
 
 use super::effect::{Effect, EffectSet};
 use super::fact::{Decision, Fact, Proof};
 use crate::measure::Measure;
 use framegraph_scene::environment::ShBands;
 
-/// What was decided about a frame.
+/// All decisions about a frame.
 #[derive(Clone, Debug, Default)]
 pub struct Facts {
-    /// A row for each effect that the settings ask for, in the order of [`Effect::ALL`].
+    /// A row for each requested effect, in the order of [`Effect::ALL`].
     pub rows: Vec<Fact>,
-    /// What the frame leaves out by its structure, whatever is forced: lights that reach nothing, variants of shaders that
-    /// nothing in view needs. The class of the proof, and a sentence.
+    /// Proof and description of everything that the frame leaves out structurally, even if all effects are forced:
+    /// lights that reach nothing, shader variants that nothing visible needs.
     pub always: Vec<(Proof, String)>,
-    /// What is to be measured of the frame, since the frames after it are decided by that.
+    /// Measurements that later decisions need from this frame.
     pub measure: Measure,
-    /// Of what is not left out altogether, how much is made.
+    /// Amounts of effects that are reduced instead of dropped.
     pub(super) amounts: Amounts,
 }
 
-/// How much is made of an effect that is dropped in part.
+/// Amount of each effect that is dropped in part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Amounts {
     pub(super) lamp_maps: u8,
@@ -29,12 +29,12 @@ pub(super) struct Amounts {
 }
 
 impl Facts {
-    /// What is dropped.
+    /// Returns the dropped effects.
     pub fn dropped(&self) -> EffectSet {
         self.rows.iter().filter(|row| row.decision == Decision::Dropped).map(|row| row.effect).collect()
     }
 
-    /// The row of an effect; none where the settings do not ask for it.
+    /// Returns the row of an effect; `None` if the settings do not request it.
     pub fn of(&self, effect: Effect) -> Option<&Fact> {
         self.rows.iter().find(|row| row.effect == effect)
     }

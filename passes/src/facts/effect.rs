@@ -1,6 +1,6 @@
-//! The effects of the frame that a scene may not call for, and sets of them.
+//! Effects that a scene may not need, and sets of them.
 
-/// An effect, or a liberty that the frame takes, that facts about a scene can leave out.
+/// An effect, or an approximation of the frame, that feature culling can drop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum Effect {
@@ -8,60 +8,60 @@ pub enum Effect {
     SunShadows,
     /// Shadow maps of spot and point lights.
     LampShadows,
-    /// More than one map of the sun.
+    /// Shadow cascades beyond the first.
     Cascades,
-    /// Rays through the picture's depth that complete the sun's maps.
+    /// Contact shadows: screen-space rays that complete the shadow maps of the sun.
     ContactShadows,
-    /// Ambient occlusion from what the picture shows.
+    /// Screen-space ambient occlusion.
     Occlusion,
-    /// Reflections of what the picture shows.
+    /// Screen-space reflections.
     Reflections,
-    /// The picture of what is behind glass, and the pass that draws glass over it.
+    /// The picture behind refractive surfaces, and the pass that draws them over it.
     Transmission,
-    /// Glass that is seen through glass.
+    /// Refractive surfaces seen through other refractive surfaces.
     GlassLayers,
-    /// Surfaces that blend; they keep post-processing out of the color pass.
+    /// Blended surfaces; they prevent inlining post-processing into the color pass.
     Blending,
-    /// Light that is scattered more than once within a rough surface.
+    /// Energy compensation for multiple scattering in rough surfaces.
     EnergyCompensation,
-    /// Roughness widened by how much normals turn within a pixel.
+    /// Specular anti-aliasing: roughness is widened by the variation of normals within a pixel.
     SpecularAa,
-    /// Bands of irradiance beyond the second.
+    /// Irradiance harmonics beyond the second band.
     ShBands,
-    /// What ambient occlusion does to bounces and reflections.
+    /// Multi-bounce and specular ambient occlusion.
     OcclusionShading,
-    /// The sun occluded by the material's ambient occlusion.
+    /// Occlusion of the sun by the material's ambient occlusion.
     MicroShadows,
-    /// What stands behind everything.
+    /// The background.
     Sky,
-    /// Darker corners.
+    /// Vignette.
     Vignette,
-    /// A color toward the edges.
+    /// Fade to a color toward the edges.
     EdgeFade,
-    /// White balance, contrast and what else changes colors.
+    /// Color grading.
     Grading,
-    /// Noise that hides the steps of eight bits.
+    /// Dither, which hides the steps of eight bits.
     Dither,
-    /// A target of half floats between shading and post-processing.
+    /// Half-float target between shading and post-processing.
     HdrTarget,
-    /// Edges of the finished picture softened.
+    /// FXAA.
     Fxaa,
-    /// More than one sample a texel.
+    /// Multisampling.
     Msaa,
-    /// Frames added up over time.
+    /// Temporal anti-aliasing.
     Taa,
-    /// Air that hides what is far away.
+    /// Fog.
     Fog,
-    /// What is out of focus is blurred.
+    /// Depth of field.
     DepthOfField,
-    /// What is bright glows.
+    /// Bloom.
     Bloom,
-    /// Depth drawn before surfaces are shaded.
+    /// Depth prepass.
     Prepass,
 }
 
 impl Effect {
-    /// All of them, in their order.
+    /// All effects, in order.
     pub const ALL: [Self; 27] = [
         Self::SunShadows,
         Self::LampShadows,
@@ -92,7 +92,7 @@ impl Effect {
         Self::Prepass,
     ];
 
-    /// As it is asked for.
+    /// Returns the name used in options.
     pub const fn name(self) -> &'static str {
         match self {
             Self::SunShadows => "sun-shadows",
@@ -125,7 +125,7 @@ impl Effect {
         }
     }
 
-    /// The effect of that name.
+    /// Returns the effect with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|effect| effect.name() == name)
     }
@@ -136,35 +136,35 @@ impl Effect {
 pub struct EffectSet(u32);
 
 impl EffectSet {
-    /// None of them.
+    /// The empty set.
     pub const NONE: Self = Self(0);
-    /// All of them.
+    /// The set of all effects.
     pub const ALL: Self = Self((1 << Effect::ALL.len()) - 1);
 
-    /// The set with one more.
+    /// Returns the set with `effect` added.
     #[must_use]
     pub const fn with(self, effect: Effect) -> Self {
         Self(self.0 | 1 << effect as u8)
     }
 
-    /// The set with one less.
+    /// Returns the set with `effect` removed.
     #[must_use]
     pub const fn without(self, effect: Effect) -> Self {
         Self(self.0 & !(1 << effect as u8))
     }
 
-    /// What is in both.
+    /// Returns the intersection of both sets.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
 
-    /// Whether it has the effect.
+    /// Returns whether the set contains `effect`.
     pub const fn contains(self, effect: Effect) -> bool {
         self.0 & 1 << effect as u8 != 0
     }
 
-    /// Its effects, in their order.
+    /// Returns the effects of the set, in order.
     pub fn iter(self) -> impl Iterator<Item = Effect> {
         Effect::ALL.into_iter().filter(move |effect| self.contains(*effect))
     }

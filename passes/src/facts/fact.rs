@@ -1,32 +1,33 @@
-//! One row of what was decided: an effect, why it is in the frame or not, and how far the picture may change for it.
+//! Decision about one effect: kept or dropped, its reason, and the bound on the change of the picture.
 
 use super::effect::Effect;
 use std::fmt;
 
-/// How far a picture without the effect may be from the one with it.
+/// Bound on the difference between the pictures with and without the effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Proof {
-    /// Not by a bit.
+    /// Equal bit for bit.
     Exact,
-    /// Another variant of a shader computes the same: compilers may contract arithmetic otherwise, so by one code of 255 at
-    /// most.
+    /// At most one 8-bit step: another shader variant computes the same, and compilers may contract its arithmetic
+    /// differently.
     Variant,
-    /// By so many codes of 255 at most.
+    /// At most this number of 8-bit steps.
     Codes(f32),
-    /// Edges of shadows by so many texels of the picture at most.
+    /// Shadow edges move by at most this number of pixels.
     Texels(f32),
-    /// Not by more than a code but at edges of several samples: post-processing may then be inlined, which grades samples
-    /// before they are averaged and not their average.
+    /// At most one 8-bit step, except at multisampled edges. Post-processing may be inlined then, and grades samples
+    /// before they are averaged.
     Edges,
-    /// By what the effect errs: the picture without it is nearer to the truth that it estimates.
+    /// At most the error of the effect itself: the picture without it is closer to the truth that the effect
+    /// estimates.
     Truer,
-    /// As an edge of several samples ([`Proof::Edges`]), as long as what was measured some frames ago is not more than twice as
-    /// much by now: what comes suddenly has the effect some frames late.
+    /// As [`Proof::Edges`], unless a measured value more than doubled since it was measured. The effect then appears
+    /// some frames late.
     Late,
 }
 
 impl Proof {
-    /// The class of the proof: `X`, `V` or `B`.
+    /// Returns the class of the proof: `X`, `V` or `B`.
     pub const fn class(self) -> &'static str {
         match self {
             Self::Exact => "X",
@@ -35,7 +36,7 @@ impl Proof {
         }
     }
 
-    /// The bound in words; empty where the class says it.
+    /// Returns the bound as text; empty if the class states it.
     pub fn bound(self) -> String {
         match self {
             Self::Exact | Self::Variant => String::new(),
@@ -58,17 +59,17 @@ impl fmt::Display for Proof {
     }
 }
 
-/// What becomes of an effect.
+/// Decision about an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decision {
-    /// It stays.
+    /// The effect stays.
     Kept,
-    /// It is left out, or less of it is made.
+    /// The effect is left out, or reduced.
     Dropped,
 }
 
 impl Decision {
-    /// In a word.
+    /// Returns the decision as a word.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Kept => "kept",
@@ -77,26 +78,27 @@ impl Decision {
     }
 }
 
-/// What was decided of one effect that the settings ask for.
+/// Decision about one requested effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fact {
-    /// Which.
+    /// The effect.
     pub effect: Effect,
-    /// Whether it stays.
+    /// Whether the effect stays.
     pub decision: Decision,
-    /// How far the picture may change where it is dropped; where it is kept, how far it would have.
+    /// Bound on the change of the picture if the effect is dropped; for kept effects, the bound a drop would have
+    /// had.
     pub proof: Proof,
-    /// Why, with the numbers that were compared.
+    /// Reason, with the compared numbers.
     pub reason: String,
 }
 
 impl Fact {
-    /// It stays.
+    /// Keeps the effect.
     pub(super) fn kept(effect: Effect, proof: Proof, reason: impl Into<String>) -> Self {
         Self { effect, decision: Decision::Kept, proof, reason: reason.into() }
     }
 
-    /// It goes if `unneeded`, for the first reason, and stays for the second.
+    /// Drops the effect if `unneeded`, for the first reason; keeps it otherwise, for the second.
     pub(super) fn decide(
         effect: Effect,
         proof: Proof,

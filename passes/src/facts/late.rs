@@ -1,4 +1,4 @@
-//! Rules by what frames before were measured to have: what no bound on the CPU proves, some frames late.
+//! Rules based on measurements of earlier frames, for properties that no bound on the CPU proves.
 
 use super::case::Case;
 use super::decided::Facts;
@@ -12,12 +12,13 @@ use crate::view::ViewSettings;
 use framegraph_scene::camera::exposure_from_ev100;
 use framegraph_shaders::layout::Projection;
 
-/// Frames are some frames older when their measures have come: what was measured counts so many times.
+/// Factor on measured values, since they are some frames old.
 const SAFETY: f64 = 2.0;
-/// Circles of confusion of a smaller radius in pixels leave every pixel what it is: they are rounded to nothing below 1.
+/// Largest circle of confusion without effect, as a radius in pixels: radii below 1 are rounded to 0.
 pub(super) const LEAST_RADIUS_PX: f64 = 0.5;
 
-/// Radius of the circle of confusion at a distance from the eye's plane in m, in pixels; infinite without a perspective.
+/// Returns the radius of the circle of confusion in pixels, at a distance from the eye plane in meters; infinite
+/// without perspective.
 pub(super) fn radius_px(view: &ViewSettings, dof: &DofSettings, distance_m: f64) -> f64 {
     let camera = fit_camera(view);
     if !camera.is_perspective() {
@@ -28,7 +29,7 @@ pub(super) fn radius_px(view: &ViewSettings, dof: &DofSettings, distance_m: f64)
     0.5 * f64::from(endless_px) * (1.0 - f64::from(focus) / distance_m).abs()
 }
 
-/// Decides anew of bloom what bounds keep, and has the light measured for the next frame.
+/// Decides bloom by measurements if bounds keep it, and requests the next measurement.
 pub(super) fn glowing(case: &Case<'_>, bloom: &BloomSettings, row: Fact, facts: &mut Facts) -> Fact {
     let thresholds = bloom.threshold != Threshold::None && bloom.blend == Blend::Add;
     if !measures(case, &row) || !thresholds || case.input.views.len() != 1 {
@@ -38,14 +39,14 @@ pub(super) fn glowing(case: &Case<'_>, bloom: &BloomSettings, row: Fact, facts: 
     let Measurement::Known(measured) = case.input.measured else { return unknown(row) };
     let Some(nits) = measured.most_nits else { return unknown(row) };
     let light = f64::from(nits) * f64::from(exposure_from_ev100(case.input.views[0].ev100));
-    // What is as bright as the threshold glows where that is hard.
+    // With a hard threshold, texels exactly at the threshold glow.
     let at = f64::from(bloom.threshold_at);
     let dark = SAFETY * light < at && case.memory.within(Effect::Bloom, SAFETY * light, at);
     let why = format!("light was {light:.2} at most {}, and what glows begins at {at:.2}", ago(measured.frames_ago));
     Fact::decide(Effect::Bloom, Proof::Late, dark, why.clone(), why)
 }
 
-/// Decides anew of depth of field what bounds keep, and has the depth measured for the next frame.
+/// Decides depth of field by measurements if bounds keep it, and requests the next measurement.
 pub(super) fn focused(case: &Case<'_>, dof: &DofSettings, row: Fact, facts: &mut Facts) -> Fact {
     if !measures(case, &row) || case.input.views.len() != 1 {
         return row;
@@ -61,7 +62,7 @@ pub(super) fn focused(case: &Case<'_>, dof: &DofSettings, row: Fact, facts: &mut
     Fact::decide(Effect::DepthOfField, Proof::Late, few, why.clone(), why)
 }
 
-/// Whether frames are measured, and what bounds say leaves something open.
+/// Returns whether frames are measured and bounds leave a decision open.
 fn measures(case: &Case<'_>, row: &Fact) -> bool {
     let forced = case.input.forced.contains(row.effect);
     row.decision == Decision::Kept && !forced && case.input.measured != Measurement::Off

@@ -1,4 +1,4 @@
-//! Rules for what air and lens do to light: fog, depth of field, bloom.
+//! Rules for fog, depth of field and bloom.
 
 use super::case::Case;
 use super::decided::Facts;
@@ -11,7 +11,7 @@ use crate::dof::DofSettings;
 use crate::fog::FogSettings;
 use crate::view::ViewSettings;
 
-/// Fog that hides less of anything is half a code at most, where its own light is no brighter than white.
+/// Greatest opacity of fog that changes the picture by at most half an 8-bit step, for fog no brighter than white.
 const LEAST_OPACITY: f64 = 1.0 / 512.0;
 
 pub(super) fn rules(case: &Case<'_>, facts: &mut Facts) {
@@ -28,7 +28,8 @@ pub(super) fn rules(case: &Case<'_>, facts: &mut Facts) {
     }
 }
 
-/// Least and greatest distance of what is seen, straight ahead and in a line, in m; the sky's is endless.
+/// Returns the least and greatest distance of visible surfaces along the view axis and along rays, in meters;
+/// infinite for the sky.
 fn distances(case: &Case<'_>, view: &ViewSettings) -> [f64; 3] {
     let camera = fit_camera(view);
     let (mut near, mut far, mut straight) = (f64::INFINITY, camera.range_m().0, 0.0_f64);
@@ -52,11 +53,11 @@ fn fogged(case: &Case<'_>, fog: &FogSettings) -> Fact {
     let opacity = |view: &ViewSettings| {
         let [_, _, far] = distances(case, view);
         let boxes = case.seen.instances.iter().map(|i| case.seen.scene.instances[*i].bounds.min.y);
-        // Fog is densest at the lowest place that a way may lead through.
+        // Fog is densest at the lowest point that a ray can pass.
         let lowest = boxes.fold(view.camera.eye.y, f64::min) - f64::from(fog.height_m);
         let densest = f64::from(fog.density) * (-f64::from(fog.falloff) * lowest).exp();
         let way = (far.min(fog.cut_off_m.into()) - f64::from(fog.start_m)).max(0.0);
-        // The mean density of the whole way counts for what is not clear of it, so the clear start is no help.
+        // The mean density of the whole ray applies beyond the clear start, so the start does not help.
         let way = if fog.exact || way == 0.0 { way } else { far.min(fog.cut_off_m.into()) };
         (-(-densest * way).exp_m1()).min(fog.most_opacity.into())
     };

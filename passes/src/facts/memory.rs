@@ -1,30 +1,31 @@
-//! What the frames before decided: effects do not come and go with every frame at a threshold.
+//! Decisions of earlier frames. They prevent effects from flickering at a threshold.
 
 use super::effect::{Effect, EffectSet};
 
-/// An effect goes once so many frames in a row did without.
+/// Number of consecutive frames without need after which an effect is dropped.
 const PATIENCE: u8 = 8;
-/// By so much of a threshold a measure must be under it before an effect goes; it comes back at the threshold itself.
+/// Margin below a threshold, as a fraction, that a measure needs before its effect is dropped. The effect returns at
+/// the threshold.
 const MARGIN: f64 = 0.1;
 
-/// Kept by the caller from frame to frame, one for each view or group of views that is decided together. A new one decides
-/// its first frame at once; what is needed comes back at once in any frame, so that no picture lacks it.
+/// Hysteresis of decisions, kept by the caller for each view, or group of views decided together. A new memory
+/// decides its first frame at once. A needed effect returns at once in any frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FactMemory {
-    /// Frames in a row that did without each effect, at most [`PATIENCE`].
+    /// Consecutive frames that did not need each effect, at most [`PATIENCE`].
     calm: [u8; Effect::ALL.len()],
-    /// A frame was decided.
+    /// Whether a frame was decided before.
     begun: bool,
 }
 
 impl FactMemory {
-    /// Whether a measure is under its threshold, by a margin where the frame before had the effect.
+    /// Returns whether a measure is below its threshold, with a margin if the previous frame had the effect.
     pub(super) fn within(&self, effect: Effect, measure: f64, limit: f64) -> bool {
         let had = self.begun && self.calm[effect as usize] < PATIENCE;
         measure <= if had { limit * (1.0 - MARGIN) } else { limit }
     }
 
-    /// Of the effects that this frame could do without, those that go.
+    /// Returns the effects to drop among those that this frame does not need.
     pub(super) fn settle(&mut self, unneeded: EffectSet) -> EffectSet {
         for (effect, calm) in Effect::ALL.into_iter().zip(&mut self.calm) {
             *calm = match (unneeded.contains(effect), self.begun) {
@@ -37,7 +38,7 @@ impl FactMemory {
         Effect::ALL.into_iter().filter(|effect| self.calm[*effect as usize] == PATIENCE).collect()
     }
 
-    /// Frames that an effect waits for until it goes.
+    /// Number of frames after which an unneeded effect is dropped.
     pub(super) fn waits(&self, effect: Effect) -> u8 {
         PATIENCE - self.calm[effect as usize]
     }

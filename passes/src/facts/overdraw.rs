@@ -1,7 +1,8 @@
-//! Whether drawing depth before shading pays: triangles that are drawn once more against pixels that are shaded once less.
+//! Decides whether a depth prepass pays: triangles drawn twice against pixels shaded once.
 //!
-//! What is shaded without it is estimated at points of the picture: boxes in the order of their draws, each shaded where it is nearer
-//! than those before it. A box is fuller than what is in it, so that less is shaded behind it and more in front.
+//! Overdraw is estimated at sample points of the picture: boxes are visited in draw order, and each box nearer than
+//! those before it counts as shaded. A box is larger than its mesh. The estimate has too little shading behind boxes
+//! and too much in front.
 
 use super::case::Case;
 use super::decided::Facts;
@@ -11,11 +12,11 @@ use super::seen::fit_camera;
 use framegraph_scene::levels::level_of;
 use framegraph_scene::{BatchOrder, SHADED_POINTS, shaded_at_points};
 
-/// What drawing a triangle into depth takes, in times of shading a pixel: as measured (`docs/facts.md`).
+/// Cost of drawing a triangle into depth, in shaded pixels (`docs/facts.md`).
 const TRIANGLE: f64 = 1.0;
-/// What drawing a pixel into depth takes, in times of shading it.
+/// Cost of drawing a pixel into depth, in shaded pixels.
 const DEPTH_PIXEL: f64 = 0.02;
-/// Of more instances it is not known what they cover.
+/// Greatest number of instances for which coverage is estimated.
 const MOST_INSTANCES: usize = 2048;
 
 pub(super) fn rules(case: &Case<'_>, facts: &mut Facts) {
@@ -42,13 +43,13 @@ pub(super) fn rules(case: &Case<'_>, facts: &mut Facts) {
         for list in [&lists.opaque, &lists.mask] {
             _ = renderables.surfaces().batches(list, &levels, BatchOrder::FirstFirst, &mut numbers);
         }
-        // Shadow maps may ask for more.
+        // Shadow maps may need the prepass.
         let in_level = |number: &u32| {
             let mesh = &scene.meshes[scene.instances[*number as usize].mesh.index()];
             if mesh.has_area() { mesh.indices_in(level_of(&levels, *number)).len() / 3 } else { 0 }
         };
         triangles += numbers.iter().map(in_level).sum::<usize>();
-        // Lines and points fill next to nothing of their boxes.
+        // Lines and points cover almost nothing of their boxes.
         let has_area = |i: &&framegraph_scene::Instance| scene.meshes[i.mesh.index()].has_area();
         let instances = numbers.iter().map(|number| &scene.instances[*number as usize]);
         let bounds = instances.filter(has_area).map(|instance| &instance.bounds);

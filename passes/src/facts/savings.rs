@@ -1,4 +1,4 @@
-//! What drops save: the plan of the frame with each against the plan without it.
+//! Savings of drops: the plan of the frame with each effect compared with the plan without it.
 
 use super::decided::Facts;
 use super::effect::{Effect, EffectSet};
@@ -7,23 +7,23 @@ use crate::stages::StageError;
 use framegraph::{Caps, CompileErrors, Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
 use framegraph_wgpu::Frame;
 
-/// What a frame costs by its plan.
+/// Cost of a frame according to its plan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// Passes that run.
+    /// Number of passes that run.
     pub passes: u32,
-    /// Attachments that are loaded from memory into the tile.
+    /// Number of attachments loaded into the tile.
     pub loads: u32,
-    /// Attachments that are stored.
+    /// Number of attachments stored.
     pub stores: u32,
-    /// Bytes that both move.
+    /// Bytes moved by loads and stores.
     pub moved_bytes: u64,
-    /// Bytes of memory that the frame's own textures take: shared ones, and those that outlive the frame.
+    /// Bytes of memory of the frame's own textures, shared ones and histories.
     pub memory_bytes: u64,
 }
 
 impl Cost {
-    /// That of a plan.
+    /// Returns the cost of a plan.
     pub fn of(plan: &Plan) -> Self {
         let (counts, traffic, memory) = (plan.counts(), plan.traffic(plan.frame()), plan.memory());
         Self {
@@ -36,42 +36,42 @@ impl Cost {
     }
 }
 
-/// What leaving one effect out saves, all other drops being made.
+/// Savings of dropping one effect, with all other drops made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Saved {
-    /// Which.
+    /// The effect.
     pub effect: Effect,
-    /// The frame with it.
+    /// Cost of the frame with the effect.
     pub with: Cost,
-    /// The frame without.
+    /// Cost of the frame without the effect.
     pub without: Cost,
-    /// What both take in ms, if that was measured.
+    /// Measured times of both frames in milliseconds.
     pub ms: Option<[f64; 2]>,
 }
 
-/// A frame cannot be planned.
+/// Error of planning a frame.
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum CostError {
-    /// A stage refuses what the settings ask for.
+    /// A stage refused the settings.
     #[error(transparent)]
     Stage(#[from] StageError),
-    /// The plan is refused.
+    /// The graph did not compile.
     #[error(transparent)]
     Compile(#[from] CompileErrors),
 }
 
 impl std::fmt::Debug for CostError {
-    /// The sentence, since that is what an `unwrap` shows.
+    /// Prints the message, as `unwrap` shows it.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         std::fmt::Display::fmt(self, f)
     }
 }
 
-/// What the standard frame of these settings costs, its picture of eight bits a channel read back.
+/// Returns the cost of the standard frame with these settings, for a read-back picture with 8 bits per channel.
 ///
 /// # Errors
-/// When the device cannot hold the frame, or the settings do not go together.
+/// Fails if the device cannot hold the frame, or the settings contradict each other.
 pub fn costs<W: StandardWorld + ?Sized>(
     settings: &Settings,
     caps: &Caps,
@@ -87,10 +87,10 @@ pub fn costs<W: StandardWorld + ?Sized>(
     Ok(Cost::of(&plan))
 }
 
-/// What each drop saves on a device.
+/// Returns the savings of each drop on a device.
 ///
 /// # Errors
-/// As [`costs`].
+/// Fails as [`costs`] does.
 pub fn savings<W: StandardWorld + ?Sized>(
     facts: &Facts,
     asked: &Settings,

@@ -15,32 +15,32 @@ static SHADER: Module<'static> = library::pass("pass/bilateral.wgsl").unwrap();
 static INTERFACE: Interface =
     Interface { groups: &[&["bilateral", "occlusion_in", "structure"]], constants: &["REACH"] };
 
-/// A direction of the blur.
+/// Direction of the blur.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
-    /// From left to right.
+    /// Horizontal.
     Across,
-    /// From top to bottom.
+    /// Vertical.
     Down,
 }
 
-/// Blurs ambient occlusion along one axis, on each surface by itself. Of the world it needs [`Programs`] and the camera of its
-/// view.
+/// Blurs ambient occlusion along one axis without crossing surfaces. Uses [`Programs`] and the camera of the view of
+/// the world.
 #[derive(Clone, Copy, Debug)]
 pub struct OcclusionBlur {
-    /// The view whose structure it is.
+    /// View of the structure.
     pub view: ViewId,
     /// Reversed depth; its first level is read.
     pub structure: Texture,
     /// Visibility in red, of the size of that level.
     pub occlusion: Texture,
-    /// How far and how.
+    /// Settings.
     pub blur: Blur,
-    /// Along which axis.
+    /// Axis of the blur.
     pub axis: Axis,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct OcclusionBlurIo {
     structure: View,
@@ -84,7 +84,7 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for OcclusionBlur {
     }
 }
 
-/// The normal distribution, up to a factor: the shader divides by what it has added up.
+/// Returns the normal distribution up to a factor; the shader normalizes the weights.
 fn weights(blur: &Blur) -> [Vec4; 4] {
     let weight = |i: usize| (-0.5 * (i as f32 / blur.sigma).powi(2)).exp();
     std::array::from_fn(|row| Vec4::from_array(std::array::from_fn(|column| weight(4 * row + column))))
@@ -98,7 +98,7 @@ mod tests {
     fn weights_fall_from_the_middle_as_a_normal_distribution() {
         let rows = weights(&Blur::high(4.0));
         assert_eq!(rows[0].x, 1.0);
-        // One and two standard deviations away.
+        // At one and two standard deviations.
         assert!((rows[1].x - (-0.5_f32).exp()).abs() < 1e-6 && (rows[2].x - (-2.0_f32).exp()).abs() < 1e-6);
     }
 }

@@ -1,11 +1,11 @@
-//! Ambient occlusion by name: `off`, `sao`, `sao:quality=high,radius=0.5`, `gtao:occluders=0.5`.
+//! Option parsing of ambient occlusion: `off`, `sao`, `sao:quality=high,radius=0.5`, `gtao:occluders=0.5`.
 
 use super::settings::{Blur, ConeTrace, Gtao, Method, Occluders, OcclusionSettings, SaoQuality};
 use crate::choice::{Choice, ChoiceError, choices};
 use crate::structure::Resolution;
 
 impl OcclusionSettings {
-    /// The names that [`OcclusionSettings::set`] takes.
+    /// Names accepted by [`OcclusionSettings::set`].
     pub const KEYS: [&str; 19] = [
         "quality",
         "resolution",
@@ -28,10 +28,10 @@ impl OcclusionSettings {
         "occluders",
     ];
 
-    /// What is asked for as `off`, or as a method with changes: `sao:resolution=half,radius=0.5`. None is `off`.
+    /// Parses `off`, or a method with changes such as `sao:resolution=half,radius=0.5`. Returns `None` for `off`.
     ///
     /// # Errors
-    /// When there is no such method or choice, or it does not take the value: one line that names it and what it takes.
+    /// Fails for an unknown method or name or an invalid value; the message names it and the accepted values.
     pub fn from_text(text: &str) -> Result<Option<Self>, ChoiceError> {
         let (method, changes) = text.split_once(':').unwrap_or((text, ""));
         let mut settings = match method {
@@ -46,10 +46,10 @@ impl OcclusionSettings {
         Ok(Some(settings))
     }
 
-    /// Changes one choice by name. `quality` is a preset and brings its blur; what is to differ comes after it.
+    /// Changes one setting by name. `quality` is a preset that includes the blur; later names override parts of it.
     ///
     /// # Errors
-    /// As [`OcclusionSettings::from_text`].
+    /// Fails as [`OcclusionSettings::from_text`] does.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), ChoiceError> {
         let choice = Choice { key, value };
         let (wrong, switch) = (|takes| choice.wrong(takes), || choice.switch());

@@ -12,10 +12,10 @@ use framegraph_wgpu::{Cx, Record, RecordError};
 use glam::{Vec2, Vec3};
 use std::f32::consts::TAU;
 
-/// Format of visibility: half floats, since steps of 1/255 show where the dark is brightened.
+/// Format of visibility: half floats, since 8-bit steps show where dark areas are brightened.
 const VISIBILITY: Format = Format::R16Float;
 
-/// Format of visibility with the mean open direction.
+/// Format of visibility with bent normals.
 const WITH_BENT_NORMALS: Format = Format::Rgba16Float;
 
 static SHADER: Module<'static> = library::pass("pass/occlusion.wgsl").unwrap();
@@ -25,25 +25,25 @@ static INTERFACE: Interface = Interface {
     constants: &["FINE_NORMALS", "EXACT_TAPS", "BITMASK", "SMOOTH_FALLOFF", "BENT_NORMALS", "CONE"],
 };
 
-/// Estimates ambient occlusion from the structure of a view. Of the world it needs [`Programs`] and the view's camera.
+/// Estimates ambient occlusion from the structure of a view. Uses [`Programs`] and the view's camera of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct AmbientOcclusion {
-    /// The view whose structure it is.
+    /// View of the structure.
     pub view: ViewId,
-    /// Reversed depth as a pyramid, all levels written; the result gets the size of its first.
+    /// Reversed depth as a pyramid, with all levels written; the result has the size of its first level.
     pub structure: Texture,
-    /// How.
+    /// Settings.
     pub settings: OcclusionSettings,
-    /// The numbers that taps are weighted in; positions are f32 in either.
+    /// Precision of tap weights; positions are always `f32`.
     pub precision: Precision,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct AmbientOcclusionIo {
     structure: View,
     levels: u8,
-    /// Visibility, 0 to 1, in red, and with bent normals the mean open direction in world space in the other channels.
+    /// Visibility, 0 to 1, in red; the other channels hold the bent normal in world space, if computed.
     pub occlusion: Texture,
 }
 
@@ -89,11 +89,11 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for AmbientOcclusion 
 }
 
 impl AmbientOcclusion {
-    /// The settings as the shader reads them, for a structure of so many texels and levels.
+    /// Returns the uniforms for a structure of this size and number of levels.
     fn uniforms(&self, view: &CameraView, [width, height]: [u32; 2], levels: u8) -> OcclusionUniforms {
         let settings = &self.settings;
         let projection = view.stand().projection();
-        // Along the axis that shows more of the world, as Filament has it.
+        // Along the axis that shows more of the world, as in Filament.
         let texels_per_m = 0.5 * (projection.scale.x * width as f32).min(projection.scale.y * height as f32);
         let [mut taps, mut turns] = [1.0, 0.0];
         let mut gtao = Gtao::DEFAULT;
@@ -109,7 +109,7 @@ impl AmbientOcclusion {
             most_texels: 0.25 * height as f32,
             bias: settings.bias,
             intensity: settings.intensity,
-            // What SAO leaves is squared, a look that Filament has given it.
+            // SAO squares the visibility, as in Filament.
             power: settings.power * if matches!(settings.method, Method::Sao { .. }) { 2.0 } else { 1.0 },
             min_sin2: settings.min_horizon_rad.sin().powi(2),
             last_level: i32::from(levels) - 1,

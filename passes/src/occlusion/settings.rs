@@ -1,51 +1,52 @@
-//! What ambient occlusion is made of. Defaults and presets are Filament's, but for what is said.
+//! Settings of ambient occlusion. Defaults and presets are Filament's unless stated.
 
 use crate::structure::Resolution;
 
-/// How ambient occlusion is estimated and smoothed.
+/// Method and filter of ambient occlusion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct OcclusionSettings {
-    /// How.
+    /// Method.
     pub method: Method,
-    /// Of the structure and of what is made of it; at half, the color pass picks among four texels by depth.
+    /// Resolution of the structure and the occlusion; at half, the color pass weights four texels by depth.
     pub resolution: Resolution,
-    /// How far occluders count, in m, above 0.
+    /// Maximum distance of occluders in meters, above 0.
     pub radius_m: f32,
-    /// Rise over the tangent plane that occludes nothing, as a share of the distance from the eye.
+    /// Height above the tangent plane that does not occlude, relative to the distance from the eye.
     pub bias: f32,
-    /// Factor on what is obscured.
+    /// Strength of occlusion.
     pub intensity: f32,
     /// Exponent of visibility.
     pub power: f32,
-    /// Least angle over the tangent plane that occludes, in radians: coarse meshes occlude themselves below it.
+    /// Minimum angle above the tangent plane that occludes, in radians; hides self-occlusion of coarse meshes.
     pub min_horizon_rad: f32,
-    /// How it is smoothed.
+    /// Blur; `None` for none.
     pub blur: Option<Blur>,
-    /// Normals from the nearer of two texels each side; else from the next texel of each axis, which is wrong along edges.
+    /// Derives normals from the nearer of two texels on each side; otherwise from the next texel of each axis, which
+    /// is wrong along edges.
     pub fine_normals: bool,
-    /// A tap counts where its depth was found; else where the method points, as Filament has it, which tilts surfaces and
-    /// takes some 15 % from open ones.
+    /// Evaluates a tap at the position of its depth. Otherwise at the position of the method, as Filament does, which
+    /// darkens open surfaces by about 15 %.
     pub exact_taps: bool,
-    /// The mean open direction is kept beside visibility, and reflections are occluded by the cone about it; costs three
-    /// channels. Not with [`Occluders::Thick`], whose openings have no one direction.
+    /// Computes bent normals for specular occlusion; costs three channels. Not with [`Occluders::Thick`], whose
+    /// openings have no single direction.
     pub bent_normals: bool,
-    /// The dominant light is traced for contact, too.
+    /// Contact shadows of the dominant light by cone tracing; `None` for none.
     pub cone: Option<ConeTrace>,
 }
 
-/// How ambient occlusion is estimated.
+/// Method of ambient occlusion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Method {
-    /// Scalable ambient obscurance: taps on a spiral, each of which obscures by how far it rises over the tangent plane.
+    /// Scalable ambient obscurance: taps on a spiral, each occluding by its height above the tangent plane.
     Sao {
-        /// How many taps, 1 to 64.
+        /// Number of taps, 1 to 64.
         taps: u32,
         /// Turns of the spiral.
         turns: u32,
     },
-    /// Horizons in slices of the hemisphere (ground-truth ambient occlusion).
+    /// Ground-truth ambient occlusion: horizons in slices of the hemisphere.
     Gtao(Gtao),
 }
 
@@ -53,63 +54,64 @@ pub enum Method {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Gtao {
-    /// Slices, 1 to 16.
+    /// Number of slices, 1 to 16.
     pub slices: u32,
-    /// Steps on either side of each, 1 to 32.
+    /// Steps on each side of a slice, 1 to 32.
     pub steps: u32,
-    /// Exponent of the share of the way from step to step: 1 is even, more is denser near the middle.
+    /// Exponent of the step distribution: 1 is even, more is denser near the center.
     pub step_power: f32,
-    /// How what occludes ends.
+    /// Falloff of occluders.
     pub occluders: Occluders,
 }
 
-/// How what occludes ends, behind and away from the point.
+/// Falloff of occluders with distance, and their thickness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Occluders {
-    /// It counts fully within the radius and has no back: what rays of the radius's length would find, were the picture all
-    /// that there is.
+    /// Occluders within the radius count fully and are infinitely thick: the result of rays of that length through
+    /// the visible surfaces.
     Solid,
-    /// It counts less the farther it is, and what lies below a horizon lowers it a little: Filament's way.
+    /// Occluders count less with distance, and a lower sample reduces the horizon slightly, as in Filament.
     Fading,
-    /// It ends so far behind its front, in m: what is open is kept in 32 bits a slice, not as one horizon on either side.
+    /// Occluders have this thickness in meters. Openings are kept as 32 bits per slice instead of one horizon per
+    /// side.
     Thick(f32),
 }
 
 impl Gtao {
-    /// Two slices of six steps: as many taps as Filament's, and nearer the truth, since texels share slices by the blur, and
-    /// no blur finds what steps have missed.
+    /// Two slices of six steps: as many taps as Filament's, and closer to the truth, since the blur shares slices
+    /// between texels but cannot recover missed steps.
     pub const DEFAULT: Self = Self { slices: 2, steps: 6, step_power: 1.0, occluders: Occluders::Solid };
 
-    /// Filament's: four slices of three steps, occluders that fade.
+    /// Filament's defaults: four slices of three steps, with fading occluders.
     pub const FILAMENT: Self = Self { slices: 4, steps: 3, step_power: 1.0, occluders: Occluders::Fading };
 }
 
-/// Cones toward the dominant light, the sun: contact shadows that are part of ambient occlusion, Filament's
+/// Cone tracing toward the sun: contact shadows as part of ambient occlusion, Filament's
 /// `AmbientOcclusionOptions::ssct`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ConeTrace {
-    /// Length, in m.
+    /// Length of a cone in meters.
     pub reach_m: f32,
-    /// Angle at the tip, in radians, below π.
+    /// Apex angle in radians, below π.
     pub angle_rad: f32,
-    /// How far in front of a cone something may be and still touch it, in m.
+    /// Maximum distance of an occluder in front of a cone, in meters.
     pub contact_m: f32,
-    /// What fills less of a slice than this, in m, fills nothing.
+    /// Minimum size of an occluder within a slice, in meters.
     pub bias_m: f32,
-    /// What a surface edge-on to the light has in addition, in m.
+    /// Additional bias of surfaces edge-on to the light, in meters.
     pub slope_bias_m: f32,
-    /// Factor on what is shadowed, 0 to 1.
+    /// Strength of the shadow, 0 to 1.
     pub intensity: f32,
-    /// Slices of a cone.
+    /// Slices per cone.
     pub steps: u32,
-    /// Cones.
+    /// Number of cones.
     pub rays: u32,
 }
 
 impl ConeTrace {
-    /// Filament's.
+    /// Filament's defaults.
     pub const FILAMENT: Self = Self {
         reach_m: 0.3,
         angle_rad: 1.0,
@@ -128,19 +130,19 @@ pub enum SaoQuality {
     /// Seven taps.
     #[default]
     Low,
-    /// Eleven.
+    /// Eleven taps.
     Medium,
-    /// Sixteen.
+    /// Sixteen taps.
     High,
-    /// Thirty-two.
+    /// Thirty-two taps.
     Ultra,
 }
 
 impl SaoQuality {
-    /// All of them.
+    /// All presets.
     pub const ALL: [Self; 4] = [Self::Low, Self::Medium, Self::High, Self::Ultra];
 
-    /// As it is asked for.
+    /// Returns the name used in options.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Low => "low",
@@ -150,7 +152,7 @@ impl SaoQuality {
         }
     }
 
-    /// The taps.
+    /// Returns the method with its taps.
     pub const fn method(self) -> Method {
         let (taps, turns) = match self {
             Self::Low => (7, 3),
@@ -161,7 +163,7 @@ impl SaoQuality {
         Method::Sao { taps, turns }
     }
 
-    /// Standard deviation of the blur that goes with it, in texels.
+    /// Returns the standard deviation of the preset's blur in texels.
     pub const fn sigma(self) -> f32 {
         match self {
             Self::Low | Self::Medium => 8.0,
@@ -171,42 +173,42 @@ impl SaoQuality {
     }
 }
 
-/// A bilateral blur, across and then down.
+/// Separable bilateral blur.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Blur {
-    /// Samples on either side, 1 to 12.
+    /// Samples on each side, 1 to 12.
     pub reach: u32,
-    /// Texels from sample to sample.
+    /// Distance between samples in texels.
     pub stride: u32,
     /// Standard deviation in samples.
     pub sigma: f32,
-    /// Distance between surfaces, in m, from which on one does not count for the other.
+    /// Distance in meters from which on surfaces do not blur into each other.
     pub threshold_m: f32,
 }
 
 impl Blur {
-    /// Filament's medium filter, of every second of 21 texels.
+    /// Filament's medium filter: every second of 21 texels.
     pub const fn medium(sigma: f32) -> Self {
         Self { reach: 5, stride: 2, sigma: 0.5 * sigma, threshold_m: 0.05 }
     }
 
-    /// Filament's high filter, of 23 texels.
+    /// Filament's high filter: 23 texels.
     pub const fn high(sigma: f32) -> Self {
         Self { reach: 11, stride: 1, sigma, threshold_m: 0.05 }
     }
 }
 
 impl Default for OcclusionSettings {
-    /// [`OcclusionSettings::SAO`].
+    /// Returns [`OcclusionSettings::SAO`].
     fn default() -> Self {
         Self::SAO
     }
 }
 
 impl OcclusionSettings {
-    /// Filament's default quality in its terms: seven taps within 0.3 m and the medium blur. The resolution is the picture's,
-    /// where Filament's default is half.
+    /// Filament's default quality: seven taps within 0.3 m and the medium blur. At full resolution, where Filament's
+    /// default is half.
     pub const SAO: Self = Self {
         method: SaoQuality::Low.method(),
         resolution: Resolution::Full,
@@ -222,7 +224,7 @@ impl OcclusionSettings {
         cone: None,
     };
 
-    /// Horizons in slices. The bias is smaller: it only has to exceed rounding.
+    /// GTAO. The bias is smaller than SAO's, since it only has to exceed rounding.
     pub const GTAO: Self = Self {
         method: Method::Gtao(Gtao::DEFAULT),
         bias: 0.0001,
@@ -230,7 +232,7 @@ impl OcclusionSettings {
         ..Self::SAO
     };
 
-    /// A preset of SAO with the blur that goes with it.
+    /// Returns a preset of SAO with its blur.
     pub const fn sao(quality: SaoQuality) -> Self {
         let blur = match quality {
             SaoQuality::Low | SaoQuality::Medium => Blur::medium(quality.sigma()),
@@ -239,13 +241,13 @@ impl OcclusionSettings {
         Self { method: quality.method(), blur: Some(blur), ..Self::SAO }
     }
 
-    /// Whether it can occlude anything: without a radius or an intensity it cannot, and is left out of a frame (hard case
-    /// 32).
+    /// Returns true if the settings can occlude anything. Without radius or intensity they cannot, and the effect is
+    /// left out (hard case 32).
     pub fn occludes(&self) -> bool {
         self.radius_m > 0.0 && self.intensity > 0.0 && self.power > 0.0
     }
 
-    /// Whether the mean open direction is kept.
+    /// Returns true if bent normals are computed.
     pub const fn has_bent_normals(&self) -> bool {
         self.bent_normals && !matches!(self.method, Method::Gtao(Gtao { occluders: Occluders::Thick(_), .. }))
     }

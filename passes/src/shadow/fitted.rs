@@ -1,4 +1,4 @@
-//! One shadow map's view: where it looks from, how large its texels are, what it draws.
+//! View of one shadow map: projection, texel size and casters.
 
 use super::atlas::Place;
 use super::settings::ShadowSettings;
@@ -6,30 +6,31 @@ use framegraph_scene::{Aabb, DrawLists, Renderables};
 use framegraph_shaders::layout::{ShadowMapUniforms, ShadowViewUniforms};
 use glam::{DMat4, DVec3, DVec4};
 
-/// A fitted view of a light, in world coordinates and double precision.
+/// Fitted view of a light, in world coordinates and double precision.
 #[derive(Clone, Debug)]
 pub(super) struct Fitted {
-    /// World to clip space; depth is reversed: 1 nearest the light, 0 farthest.
+    /// Transform from world to clip space; depth is reversed: 1 nearest to the light, 0 farthest.
     pub clip_from_world: DMat4,
-    /// World to distance from the light: 0 at the near end of the map, 1 at the far end.
+    /// Plane that maps a world position to its distance from the light: 0 at the near end of the map, 1 at the far
+    /// end.
     pub linear_depth: DVec4,
-    /// Unit axes across the map, and toward the light (for a face, against its direction).
+    /// Unit axes: two across the map, one toward the light (for a cube face, against its direction).
     pub axes: [DVec3; 3],
-    /// World size of a texel along the first two axes, in meters, for w = 1: the first grows with w, the second too or, of a
-    /// warped map, with its square.
+    /// World size of a texel along the first two axes in meters, for w = 1. The first grows with w; the second too,
+    /// or with its square for a warped map.
     pub texel_m: [f64; 2],
-    /// Meters that depth 1 spans where w = 1; of a parallel light.
+    /// Depth range in meters where w = 1; for directional lights.
     pub depth_m: f64,
-    /// near / (far - near) of a perspective map; 0 of a parallel light.
+    /// near / (far - near) of a perspective map; 0 for directional lights.
     pub near_over_range: f64,
-    /// What is drawn.
+    /// Casters.
     pub casters: DrawLists,
-    /// Where it is drawn.
+    /// Rectangle of the map.
     pub place: Place,
 }
 
 impl Fitted {
-    /// A map that shadows nothing: every point lies outside of it, before its near end.
+    /// Creates a map without shadows: every point is outside of it, in front of its near end.
     pub fn empty() -> Self {
         Self {
             clip_from_world: DMat4::from_cols(DVec4::ZERO, DVec4::ZERO, DVec4::ZERO, DVec4::new(0.0, 0.0, 2.0, 1.0)),
@@ -45,16 +46,16 @@ impl Fitted {
 }
 
 impl Fitted {
-    /// Whether texels grow with the square of w along the second axis.
+    /// Returns true if texels grow with the square of w along the second axis.
     fn is_warped(&self) -> bool {
         self.clip_from_world.transpose().w_axis.truncate() != DVec3::ZERO && self.near_over_range == 0.0
     }
 
-    /// Limits levels of detail to what is so many texels from the meshes at most.
+    /// Limits levels of detail to a displacement of this many texels.
     pub fn limit_levels(&self, scene: &Renderables, error_texels: f64, levels: &mut [u8]) {
         let row = self.clip_from_world.transpose().w_axis;
         let (warped, along) = (self.is_warped(), row.truncate());
-        // What is drawn of a meter, in texels: along both axes, and where it changes w, at the edge of the map.
+        // Texels per meter: along both axes, and through the change of w, at the edge of the map.
         let most_texels = |bounds: &Aabb| {
             let w = (along.dot(bounds.center()) + row.w - along.abs().dot(bounds.half_extent())).max(1e-9);
             let [first, second] = [w, if warped { w * w } else { w }];
@@ -66,7 +67,7 @@ impl Fitted {
     }
 }
 
-/// How wide penumbrae of a light are.
+/// Source of the penumbra width.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Penumbra {
     /// Radius of a bulb in meters.
@@ -75,31 +76,31 @@ pub(super) enum Penumbra {
     Disc(f32),
 }
 
-/// A shadow map of a view, as it is drawn and as shaders read it.
+/// A shadow map of a view, as drawn and as read by shaders.
 #[derive(Clone, Debug)]
 pub struct ShadowMap {
-    /// What shaders read of it, relative to the view's eye.
+    /// Uniforms for shading, relative to the eye.
     pub uniforms: ShadowMapUniforms,
-    /// What casters are drawn with, relative to the view's eye.
+    /// Uniforms for drawing casters, relative to the eye.
     pub view: ShadowViewUniforms,
-    /// What casts.
+    /// Casters.
     pub casters: DrawLists,
-    /// The part of a layer that it takes.
+    /// Rectangle of the map in its layer.
     pub place: Place,
 }
 
 impl ShadowMap {
-    /// The map as a view at `eye` sees it. The eye is subtracted in double precision.
+    /// Returns the map relative to `eye`, which is subtracted in double precision.
     pub(super) fn new(fitted: Fitted, eye: DVec3, settings: &ShadowSettings, penumbra: Penumbra) -> Self {
         let ShadowSettings { map_texels, filter, bias, .. } = *settings;
-        // The variance of moments takes the place of a bias. That along normals counts half texels, as Filament's does.
+        // With moments, the variance replaces the bias. The normal bias counts half texels, as Filament's does.
         let biases = if settings.has_moments() { [0.0; 2] } else { [bias.constant_m, 0.5 * bias.normal] };
         let [back_m, offset_texels] = biases.map(f64::from);
         let Fitted { axes: [right, up, toward], linear_depth, place, .. } = fitted;
         let share = |texels: u32| texels as f32 / map_texels.max(1) as f32;
         let clip_from_relative = fitted.clip_from_world * DMat4::from_translation(eye);
         let linear = linear_depth.truncate().extend(linear_depth.truncate().dot(eye) + linear_depth.w);
-        // Casters step back from the light.
+        // Casters move away from the light.
         let drawn = clip_from_relative * DMat4::from_translation(-toward * back_m);
         let (bulb_m, tan_radius) = match penumbra {
             Penumbra::Bulb(radius_m) => (radius_m, 0.0),
@@ -137,13 +138,13 @@ impl ShadowMap {
     }
 }
 
-/// What a map is made of: equal keys make equal maps.
+/// Inputs of a map: equal keys make equal maps.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MapKey {
-    /// World to the light's clip space.
+    /// Transform from world to the light's clip space.
     pub clip_from_world: DMat4,
-    /// Where it is drawn.
+    /// Rectangle of the map.
     pub place: Place,
-    /// What casts, by the number of the instance, the stamp of where it stands, and its level of detail.
+    /// Casters: instance number, generation of the transform, and level of detail.
     pub casters: Vec<(u32, u64, u8)>,
 }

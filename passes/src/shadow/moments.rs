@@ -1,4 +1,4 @@
-//! Moments of a layer, averaged over samples, blurred along one axis at a time, and halved level by level.
+//! Moments of a layer: averages over samples, separable blur, and mip levels.
 
 use super::draw::{ShadowLayer, confine};
 use super::settings::ShadowSettings;
@@ -15,35 +15,35 @@ static SHADER: Module<'static> = library::pass("pass/shadow_blur.wgsl").unwrap()
 
 static INTERFACE: Interface = Interface { groups: &[&["shadow_blur", "moments"]], constants: &["REACH"] };
 
-/// Which step of making a layer of moments.
+/// Step of making a layer of moments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MomentStep {
-    /// One half of a Gaussian blur, across, into a texture of its own.
+    /// Horizontal half of a Gaussian blur, into a texture of its own.
     Across,
-    /// The other half, up, into the layer.
+    /// Vertical half of a Gaussian blur, into the layer.
     Up,
-    /// Averages over samples go into the layer as they are.
+    /// Copies averages over samples into the layer.
     Average,
 }
 
-/// Moments of the maps of a layer, each within its place, brought a step further.
+/// One step for the moments of the maps of a layer. Each map stays within its rectangle.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowBlur {
-    /// The view whose maps they are.
+    /// View of the maps.
     pub view: ViewId,
-    /// How shadows are made.
+    /// Shadow settings.
     pub settings: ShadowSettings,
-    /// Which maps.
+    /// The maps.
     pub layer: ShadowLayer,
-    /// All maps.
+    /// Texture of all maps.
     pub maps: Texture,
-    /// What the step before made, of a layer's size; none: the layer.
+    /// Result of the previous step, of a layer's size; `None` reads the layer.
     pub source: Option<Texture>,
-    /// Which step.
+    /// The step.
     pub step: MomentStep,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowBlurIo {
     source: View,
@@ -57,7 +57,7 @@ impl Pass for ShadowBlur {
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<ShadowBlurIo, DeclareError> {
         let Self { settings, layer: ShadowLayer { layer, only }, maps, .. } = *self;
         let own = maps.mip(0).layer(layer);
-        // A cascade is all of its layer. What is beside other maps is not read.
+        // A cascade fills its layer. Texels beside other maps are not read.
         let is_whole = layer < u16::from(settings.cascades);
         let anew = if is_whole { Intent::Overwrite } else { Intent::Clear(ClearValue::BLACK) };
         let source = match self.source {
@@ -79,7 +79,7 @@ impl Pass for ShadowBlur {
 impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for ShadowBlur {
     fn record(&self, io: &ShadowBlurIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let width = self.settings.moments.blur_texels.clamp(1.0, 125.0);
-        // Filament's: a sixth of the width, the taps as far as the width reaches.
+        // As Filament: a sigma of a sixth of the width, with taps over the whole width.
         let sigma = (width + 1.0) / 6.0;
         let reach = (0.5 * width).ceil() as i32;
         let (step, reach) = match self.step {
@@ -102,22 +102,22 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for ShadowBlur {
     }
 }
 
-/// One further level of a layer's moments, made of the one above.
+/// Makes one mip level of a layer's moments from the level above.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowLevel {
-    /// Which layer.
+    /// Index of the layer.
     pub layer: u16,
-    /// Which level, 1 or more.
+    /// Index of the level, at least 1.
     pub level: u8,
-    /// The maps, the levels above written.
+    /// Texture of all maps, with the levels above written.
     pub maps: Texture,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowLevelIo {
     above: View,
-    /// The maps, this level written too.
+    /// Texture of all maps, including this level.
     pub maps: Texture,
 }
 

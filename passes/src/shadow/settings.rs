@@ -1,63 +1,65 @@
-//! How lights cast shadows: fit, cascades, filter and bias, in Filament's terms and with its numbers.
+//! Shadow settings in Filament's terms and with its defaults: fit, cascades, filter and bias.
 
 use framegraph::Format;
 
-/// How shadows are made. Lengths in meters.
+/// Settings of shadow maps. Lengths are in meters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ShadowSettings {
-    /// Width and height of a layer in texels: of a cascade's map, and of the largest of a local light.
+    /// Width and height of a layer in texels: of a cascade, and of the largest map of a punctual light.
     pub map_texels: u32,
-    /// How a map is read.
+    /// Filter of the maps.
     pub filter: ShadowFilter,
-    /// Maps of the sun, each for a range of distances from the eye, 0…4; 0: the sun casts none.
+    /// Number of cascades of the sun, 0 to 4; with 0 the sun casts no shadows.
     pub cascades: u8,
-    /// Where one cascade ends and the next begins.
+    /// Split distances between cascades.
     pub splits: Splits,
-    /// What the sun's maps are fitted to.
+    /// Fit of the sun's maps.
     pub fit: Fit,
-    /// The sun casts shadows no farther than this from the eye, and fades toward it; none: as far as something receives them.
+    /// Greatest distance of the sun's shadows from the eye, toward which they fade; `None` for all receivers.
     pub far_m: Option<f64>,
-    /// What keeps surfaces from shadowing themselves.
+    /// Bias against self-shadowing.
     pub bias: ShadowBias,
-    /// Radius of the light's bulb, as Filament has it: penumbrae of DPCF and PCSS are this wide where a blocker is half-way
-    /// between the receiver and the near end of the map. None: as wide as the light's angular radius makes them.
+    /// Radius of the light's bulb, as in Filament: the width of DPCF and PCSS penumbrae for a blocker half-way
+    /// between the receiver and the near end of the map. `None` derives it from the light's angular radius.
     pub bulb_m: Option<f32>,
-    /// How moments are made and read.
+    /// Settings of moments.
     pub moments: MomentSettings,
-    /// Shadows of the sun that a map is too coarse for, by a short ray through the picture's depth; none as in Filament.
+    /// Contact shadows of the sun: short rays through the depth of the picture, for detail that maps miss. `None` as
+    /// in Filament.
     pub contact: Option<ContactShadows>,
-    /// Most maps of spot lights (one each) and point lights (six each); with the cascades at most [`MOST_MAPS`].
+    /// Maximum number of maps of spot lights (one each) and point lights (six each). With the cascades at most
+    /// [`MOST_MAPS`].
     pub local_maps: u8,
-    /// Most layers that those maps share, which are of one size with a cascade's. A map is smaller the less of the view its
-    /// light reaches, and all are where they would take more layers; [`local_layers`](super::local_layers) says how many they
-    /// take.
+    /// Maximum number of layers that maps of punctual lights share, of the size of a cascade. A map is smaller the
+    /// less of the view its light reaches. All maps are halved if they need more layers.
+    /// [`local_layers`](super::local_layers) returns the number needed.
     pub local_layers: u8,
-    /// Tints what is lit by the number of its cascade: red, green, blue, yellow.
+    /// Tints lit surfaces by their cascade: red, green, blue, yellow.
     pub show_cascades: bool,
 }
 
-/// How a shadow map is read.
+/// Filter of a shadow map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum ShadowFilter {
-    /// A tent of 3×3 texels in four hardware comparisons.
+    /// PCF: a tent of 3×3 texels in four hardware comparisons.
     Pcf,
-    /// Twelve taps, of which the share in shadow is hardened where the blocker is near.
+    /// DPCF: twelve taps; the shadowed fraction is sharpened near the blocker.
     Dpcf,
-    /// Sixteen taps for blockers, then sixteen over a disc as wide as the penumbra.
+    /// PCSS: sixteen taps for blockers, then sixteen over a disc as wide as the penumbra.
     Pcss,
-    /// Moments of exponentially warped depth in half floats (exponent 5.54).
+    /// VSM: moments of exponentially warped depth in half floats (exponent 5.54).
     Vsm,
-    /// The same in 32-bit floats (exponent 42); the device must filter them.
+    /// EVSM: moments of exponentially warped depth in 32-bit floats (exponent 42); the device must filter them.
     Evsm,
 }
 
 impl ShadowFilter {
-    /// All of them.
+    /// All filters.
     pub const ALL: [Self; 5] = [Self::Pcf, Self::Dpcf, Self::Pcss, Self::Vsm, Self::Evsm];
 
-    /// As it is asked for.
+    /// Returns the name used in options.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Pcf => "pcf",
@@ -68,12 +70,12 @@ impl ShadowFilter {
         }
     }
 
-    /// The filter of that name.
+    /// Returns the filter with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|filter| filter.name() == name)
     }
 
-    /// Format of the moments; none where depth itself is read.
+    /// Returns the format of the moments; `None` for filters that read depth.
     pub const fn moments(self) -> Option<Format> {
         match self {
             Self::Pcf | Self::Dpcf | Self::Pcss => None,
@@ -82,7 +84,7 @@ impl ShadowFilter {
         }
     }
 
-    /// Exponent of the warp: the largest whose square the format holds (hard case 44).
+    /// Returns the exponent of the warp: the largest whose square the format holds (hard case 44).
     pub const fn exponent(self) -> f32 {
         match self {
             Self::Evsm => 42.0,
@@ -90,7 +92,7 @@ impl ShadowFilter {
         }
     }
 
-    /// The value of the shader's `filter_kind`.
+    /// Returns the value of the shader's `filter_kind`.
     pub(super) const fn code(self) -> u32 {
         match self {
             Self::Pcf | Self::Vsm | Self::Evsm => 0,
@@ -100,82 +102,82 @@ impl ShadowFilter {
     }
 }
 
-/// Where one cascade ends and the next begins.
+/// Split distances between cascades.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Splits {
-    /// Shares of the range, each above the one before, below 1.
+    /// Fractions of the range, ascending, below 1.
     At([f64; 3]),
     /// Equal parts.
     Uniform,
     /// Equal ratios.
     Logarithmic,
-    /// A blend: 0 is uniform, 1 logarithmic.
+    /// A blend: 0 is uniform, 1 is logarithmic.
     Practical(f64),
 }
 
-/// What the sun's maps are fitted to.
+/// Fit of the sun's maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Fit {
-    /// What the camera sees and something casts upon: as many texels as possible, and edges that crawl as the camera moves.
+    /// Fits visible receivers: the most texels, but edges crawl as the camera moves.
     Tight {
-        /// The map's perspective follows the camera's (Wimmer et al., "Light Space Perspective Shadow Maps", 2004).
+        /// Warps the map along the camera's perspective (Wimmer et al., "Light Space Perspective Shadow Maps", 2004).
         lispsm: bool,
     },
-    /// A sphere about the cascade, moved in whole texels: edges stand still.
+    /// Fits a sphere around the cascade and moves it in whole texels: edges stand still.
     Stable,
 }
 
-/// What keeps surfaces from shadowing themselves.
+/// Bias against self-shadowing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ShadowBias {
-    /// Casters are moved away from the light by this, in meters.
+    /// Offset of casters away from the light, in meters.
     pub constant_m: f32,
-    /// Receivers are moved along their normals by half of so many texels where light grazes them.
+    /// Offset of receivers along their normals at grazing light, in half texels.
     pub normal: f32,
-    /// Polygon offset of casters: depth a texel times this.
+    /// Slope-scaled polygon offset of casters.
     pub slope: f32,
-    /// Polygon offset of casters in steps of depth.
+    /// Constant polygon offset of casters, in steps of depth.
     pub steps: i32,
 }
 
-/// A short ray toward the sun through the depth that the picture shows.
+/// Contact shadows: a short ray toward the sun through the depth of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ContactShadows {
-    /// Places on the ray that are looked at, at least 1.
+    /// Number of steps along the ray, at least 1.
     pub steps: u32,
     /// Length of the ray in meters.
     pub distance_m: f32,
 }
 
 impl ContactShadows {
-    /// Filament's: eight steps over 30 cm.
+    /// Filament's defaults: eight steps over 30 cm.
     pub const FILAMENT: Self = Self { steps: 8, distance_m: 0.3 };
 }
 
-/// How moments are made and read.
+/// Settings of moments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MomentSettings {
-    /// Width of the Gaussian blur in texels, 0…125; 0: none.
+    /// Width of the Gaussian blur in texels, 0 to 125; 0 for none.
     pub blur_texels: f32,
-    /// Levels of the map, each half the one before; 1: none beside the map itself.
+    /// Number of mip levels of the map, at least 1.
     pub levels: u8,
-    /// Samples a texel, of which each has moments of its own, which are averaged: 1 or 4. Not every device has several samples
-    /// of the 32 bits of [`ShadowFilter::Evsm`]; one that has not says so.
+    /// Samples per texel, 1 or 4, whose moments are averaged. Some devices do not support four samples of the 32-bit
+    /// format of [`ShadowFilter::Evsm`] and report an error.
     pub samples: u8,
-    /// Least variance, as Filament scales it.
+    /// Minimum variance, scaled as in Filament.
     pub min_variance_scale: f32,
-    /// Shadows lighter than this share are black, which hides light that bleeds, 0…1.
+    /// Light bleeding reduction, 0 to 1: lighter shadows than this fraction become black.
     pub bleed: f32,
 }
 
 impl ShadowSettings {
-    /// One cascade of 2048² texels read by PCF, warped toward the camera; the sun alone. Numbers are Filament's, but for the
-    /// normal bias, which covers the whole width of the tent.
+    /// One cascade of 2048² texels with PCF, warped toward the camera; the sun alone. Values are Filament's, except
+    /// for the normal bias, which covers the whole width of the tent.
     pub const DEFAULT: Self = Self {
         map_texels: 2048,
         filter: ShadowFilter::Pcf,
@@ -192,27 +194,27 @@ impl ShadowSettings {
         show_cascades: false,
     };
 
-    /// The default with maps of this size.
+    /// Returns the default with maps of this size.
     pub const fn texels(map_texels: u32) -> Self {
         Self { map_texels, ..Self::DEFAULT }
     }
 
-    /// Whether moments are read, instead of depth.
+    /// Returns true if the filter reads moments instead of depth.
     pub const fn has_moments(&self) -> bool {
         self.filter.moments().is_some()
     }
 
-    /// Local maps that there may be.
+    /// Returns the maximum number of maps of punctual lights.
     pub fn local_maps(&self) -> u16 {
         u16::from(self.local_maps).min(MOST_MAPS.saturating_sub(self.cascades.into()))
     }
 
-    /// Layers that local maps share: no more than maps.
+    /// Returns the maximum number of layers for maps of punctual lights.
     pub fn local_layers(&self) -> u16 {
         u16::from(self.local_layers).min(self.local_maps())
     }
 
-    /// Layers of the texture that holds all maps: one a cascade, and those that local maps share.
+    /// Returns the number of layers of the texture of all maps: cascades, then shared layers.
     pub fn layers(&self) -> u16 {
         u16::from(self.cascades) + self.local_layers()
     }
@@ -224,7 +226,7 @@ impl Default for ShadowSettings {
     }
 }
 
-/// Most cascades of the sun.
+/// Maximum number of cascades of the sun.
 pub const MOST_CASCADES: usize = 4;
-/// Most maps in all.
+/// Maximum number of maps in total.
 pub const MOST_MAPS: u16 = 64;

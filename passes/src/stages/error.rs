@@ -1,27 +1,27 @@
-//! Why stages were refused.
+//! Errors of stages.
 
 use super::slot::SlotFault;
 use framegraph::DeclareError;
 
-/// A list of stages cannot be changed or declared as asked.
+/// Error of changing or declaring a list of stages.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StageError {
-    /// No stage has that name.
+    /// No stage has this name.
     #[error("there is no stage `{name}`; the stages are {}", .known.join(", "))]
     Unknown {
-        /// The name asked for.
+        /// The requested name.
         name: String,
-        /// The names that there are, in order.
+        /// Existing names, in order.
         known: Vec<&'static str>,
     },
-    /// Another stage has that name.
+    /// Another stage has this name.
     #[error("there is a stage `{name}` already; choose another name, or replace it")]
     Twice {
         /// The name.
         name: &'static str,
     },
-    /// A stage needs what no stage has handed on.
+    /// A stage needs a texture that no earlier stage set.
     #[error("stage `{stage}` needs `{slot}`, which no stage before it handed on (`Handles::set`)")]
     Missing {
         /// The stage; `the caller` outside of stages.
@@ -29,7 +29,7 @@ pub enum StageError {
         /// Name of the slot.
         slot: &'static str,
     },
-    /// A stage handed on a handle of another frame.
+    /// A stage set a handle of another frame.
     #[error("stage `{stage}` handed on a `{slot}` of another frame, or of before this one was reset")]
     Foreign {
         /// The stage.
@@ -37,7 +37,7 @@ pub enum StageError {
         /// Name of the slot.
         slot: &'static str,
     },
-    /// A stage handed on a texture that the slot cannot hold.
+    /// A stage set a texture that does not fit the slot.
     #[error("stage `{stage}` handed on `{texture}` as `{slot}`: {fault}")]
     Wrong {
         /// The stage.
@@ -46,10 +46,10 @@ pub enum StageError {
         slot: &'static str,
         /// Full name of the texture.
         texture: String,
-        /// Why not.
+        /// Reason.
         fault: SlotFault,
     },
-    /// A stage would write over what an earlier one wrote.
+    /// A stage would overwrite the result of an earlier one.
     #[error(
         "stage `{stage}` draws into `{samples}` and averages that into `{slot}`, which would lose what stage `{by}` wrote; \
          insert that stage after `{stage}`, or hand on `{samples}` with the same in it, and `{slot}` as its average"
@@ -57,20 +57,20 @@ pub enum StageError {
     Lost {
         /// The stage that would write.
         stage: &'static str,
-        /// Name of the slot whose texture would be written over.
+        /// Name of the slot that would be overwritten.
         slot: &'static str,
         /// Name of the slot of its samples.
         samples: &'static str,
-        /// The stage that handed the texture on.
+        /// The stage that set the texture.
         by: &'static str,
     },
-    /// The picture did not end where the frame's picture is to go.
+    /// The last picture is not in the frame's target.
     #[error(
         "stage `{stage}` left the picture in `{texture}`, which is not the frame's target; make the stage with \
          `Stage::picture`, and draw into `Handles::target`"
     )]
     OtherTarget {
-        /// The stage that handed the picture on last.
+        /// The last stage that set the picture.
         stage: &'static str,
         /// Full name of the texture.
         texture: String,

@@ -1,89 +1,89 @@
-//! What stages take and hand on.
+//! Textures that stages exchange.
 
 use super::error::StageError;
 use super::slot::Slot;
 use crate::view::ViewId;
 use framegraph::{Extent, Graph, Target, Texture};
 
-/// Stands for the stage in errors outside of stages.
+/// Name of the caller in errors outside of stages.
 pub(super) const CALLER: &str = "the caller";
 
-/// The textures that stages hand on, and what is declared: which view, of which size.
+/// Textures that stages exchange, with the view and its size.
 #[derive(Clone, Debug)]
 pub struct Handles {
     view: ViewId,
     extent: Extent,
     slots: Vec<Held>,
-    /// The stage that is being declared.
+    /// Stage that is being declared.
     stage: &'static str,
     target: Target,
 }
 
-/// A slot's texture.
+/// Texture of a slot.
 #[derive(Clone, Copy, Debug)]
 struct Held {
     slot: Slot,
     texture: Texture,
-    /// The stage that handed it on.
+    /// Stage that set the texture.
     by: &'static str,
     checked: bool,
 }
 
 impl Default for Handles {
-    /// The main view in the frame's size.
+    /// Returns empty handles for the main view at the frame's size.
     fn default() -> Self {
         Self::for_view(ViewId::MAIN, Extent::FRAME)
     }
 }
 
 impl Handles {
-    /// A view with pictures of that size, and no textures yet.
+    /// Returns empty handles for a view with pictures of this size.
     pub fn for_view(view: ViewId, extent: Extent) -> Self {
         Self { view, extent, slots: Vec::with_capacity(8), stage: CALLER, target: Target::New }
     }
 
-    /// The same with a texture from the start; a shadow map that several views share, say.
+    /// Returns the handles with a texture set, such as a shadow map that several views share.
     #[must_use]
     pub fn with(mut self, slot: Slot, texture: Texture) -> Self {
         self.set(slot, texture);
         self
     }
 
-    /// The view that is declared.
+    /// Returns the view.
     pub const fn view(&self) -> ViewId {
         self.view
     }
 
-    /// The size of the view's pictures.
+    /// Returns the size of the view's pictures.
     pub const fn extent(&self) -> Extent {
         self.extent
     }
 
-    /// Where a stage that makes the picture ([`Stage::picture`](super::Stage::picture)) is to put it: the frame's target for
-    /// the last such stage, a new texture for those before.
+    /// Returns the target for a stage that makes the picture ([`Stage::picture`](super::Stage::picture)): the frame's
+    /// target for the last such stage, a new texture for earlier ones.
     pub const fn target(&self) -> Target {
         self.target
     }
 
-    /// What a slot holds, if anything.
+    /// Returns the texture of a slot, if any.
     pub fn find(&self, slot: Slot) -> Option<Texture> {
         self.held(slot).map(|held| held.texture)
     }
 
-    /// Slots of one name are one slot.
+    /// Slots with the same name are the same slot.
     fn held(&self, slot: Slot) -> Option<&Held> {
         self.slots.iter().find(|held| held.slot.name == slot.name)
     }
 
-    /// What a slot holds.
+    /// Returns the texture of a slot.
     ///
     /// # Errors
-    /// When no stage has handed it on.
+    /// Fails if no stage set it.
     pub fn get(&self, slot: Slot) -> Result<Texture, StageError> {
         self.find(slot).ok_or(StageError::Missing { stage: self.stage, slot: slot.name })
     }
 
-    /// Hands a texture on to later stages, instead of what the slot held. Every write makes a new handle; hand that on.
+    /// Sets the texture of a slot for later stages. Every write makes a new handle; set that one.
     pub fn set(&mut self, slot: Slot, texture: Texture) {
         let held = Held { slot, texture, by: self.stage, checked: false };
         match self.slots.iter_mut().find(|held| held.slot.name == slot.name) {
@@ -92,19 +92,19 @@ impl Handles {
         }
     }
 
-    /// The error of a stage that would average `samples` over what another stage handed on in `slot`.
+    /// Returns the error of a stage that would resolve `samples` over the texture that another stage set in `slot`.
     pub(crate) fn lost(&self, slot: Slot, samples: Slot) -> StageError {
         let by = self.held(slot).map_or("", |held| held.by);
         StageError::Lost { stage: self.stage, slot: slot.name, samples: samples.name, by }
     }
 
-    /// Begins a stage: it is named in errors, and makes its picture in `target`.
+    /// Begins a stage, which errors then name, and which makes its picture in `target`.
     pub(super) fn begin(&mut self, stage: &'static str, target: Target) {
         self.stage = stage;
         self.target = target;
     }
 
-    /// Refuses what was handed on since the last check and is not what its slot holds.
+    /// Checks textures set since the last check against their slots.
     pub(super) fn check(&mut self, graph: &Graph) -> Result<(), StageError> {
         for held in self.slots.iter_mut().filter(|held| !held.checked) {
             let Held { slot, texture, by: stage, .. } = *held;
@@ -119,7 +119,7 @@ impl Handles {
         Ok(())
     }
 
-    /// Refuses a picture that is elsewhere than in `target`.
+    /// Fails if the picture is not in `target`.
     pub(super) fn check_target(&self, graph: &Graph, target: Target) -> Result<(), StageError> {
         let (Target::Into(part), Some(picture)) = (target, self.held(Slot::PICTURE)) else {
             return Ok(());

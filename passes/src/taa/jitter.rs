@@ -1,32 +1,32 @@
-//! Through which places of its pixels each frame is seen, and how its samples are filtered to the middles.
+//! Sub-pixel offsets of frames, and the filter of their samples to pixel centers.
 
 use glam::{DVec2, Vec4};
 
-/// Places within a pixel, one a frame, over and over.
+/// Sequence of sub-pixel offsets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum JitterPattern {
-    /// Four on a rotated grid.
+    /// Four positions on a rotated grid.
     Rgss4,
-    /// Four on an even grid, opposite ones in turn.
+    /// Four positions on a regular grid, alternating between opposite ones.
     Helix4,
-    /// Eight of Halton's sequence of bases 2 and 3.
+    /// Eight positions of the Halton sequence with bases 2 and 3.
     Halton8,
-    /// Sixteen of them.
+    /// Sixteen positions of the Halton sequence.
     #[default]
     Halton16,
-    /// Thirty-two of them.
+    /// Thirty-two positions of the Halton sequence.
     Halton32,
 }
 
-/// Numbers of Halton's sequence that are skipped: the mean of those after is nearer to the middle, as in Filament.
+/// Skipped numbers of the Halton sequence: the mean of the following ones is closer to the center, as in Filament.
 const SKIPPED: u32 = 409;
 
 impl JitterPattern {
-    /// All of them.
+    /// All sequences.
     pub const ALL: [Self; 5] = [Self::Rgss4, Self::Helix4, Self::Halton8, Self::Halton16, Self::Halton32];
 
-    /// As it is asked for.
+    /// Returns the name used in options.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rgss4 => "rgss4",
@@ -37,7 +37,7 @@ impl JitterPattern {
         }
     }
 
-    /// After how many frames it begins anew.
+    /// Returns the length of the sequence in frames.
     pub const fn length(self) -> u32 {
         match self {
             Self::Rgss4 | Self::Helix4 => 4,
@@ -47,7 +47,7 @@ impl JitterPattern {
         }
     }
 
-    /// By how much a frame moves its picture to the right and up, in pixels, -0.5 to 0.5.
+    /// Returns the offset of a frame to the right and up, in pixels, -0.5 to 0.5.
     pub fn at(self, frame: u32) -> DVec2 {
         let index = frame % self.length();
         let eighths = |places: [[f64; 2]; 4]| DVec2::from_array(places[index as usize]) / 8.0;
@@ -60,7 +60,7 @@ impl JitterPattern {
     }
 }
 
-/// The digits of a number, mirrored at the point.
+/// Returns the radical inverse of a number.
 fn halton(mut index: u32, base: u32) -> f64 {
     let (mut sum, mut share) = (0.0, 1.0);
     while index > 0 {
@@ -71,9 +71,9 @@ fn halton(mut index: u32, base: u32) -> f64 {
     sum
 }
 
-/// Weights of a texel and its neighbors, row by row from the top left, for the color at the texel's middle when the picture
-/// was moved by `jitter_px` to the right and up: a bell as wide as a Blackman-Harris window of 3.3 pixels (Karis), times
-/// `width`. Their sum is 1.
+/// Returns the weights of a texel and its neighbors, row by row from the top left, for the color at the pixel center
+/// of a picture offset by `jitter_px` to the right and up. The filter is a Gaussian as wide as a Blackman-Harris
+/// window of 3.3 pixels (Karis), scaled by `width`. The weights sum to 1.
 pub(super) fn weights(jitter_px: DVec2, width: f64) -> [Vec4; 3] {
     let bell = |index: usize| {
         let neighbor = DVec2::new((index % 3) as f64 - 1.0, 1.0 - (index / 3) as f64);
@@ -91,7 +91,7 @@ pub(super) fn weights(jitter_px: DVec2, width: f64) -> [Vec4; 3] {
 mod tests {
     use super::*;
 
-    /// Each pattern goes about the whole pixel: no two places alike, their mean in the middle.
+    /// Each pattern covers the pixel: distinct positions with their mean at the center.
     #[test]
     fn patterns_go_about_the_pixel() {
         assert_eq!([1, 2, 3].map(|index| halton(index, 2)), [0.5, 0.25, 0.75]);
@@ -114,7 +114,7 @@ mod tests {
         let even = of(DVec2::ZERO);
         assert!((even.iter().sum::<f32>() - 1.0).abs() < 1e-6 && even[9..] == [0.0; 3]);
         assert_eq!((even[1], even[3], even[0]), (even[7], even[5], even[8]));
-        // The picture went to the right and up: so did the middle.
+        // The picture moved to the right and up, and so did the pixel center.
         let moved = of(DVec2::new(0.3, 0.2));
         assert!(moved[5] > moved[3] && moved[1] > moved[7] && moved[2] > moved[0].max(moved[8]), "{moved:?}");
         let wide = weights(DVec2::ZERO, 2.0);

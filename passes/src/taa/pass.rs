@@ -1,4 +1,4 @@
-//! The pass that adds frames up.
+//! The pass that accumulates frames.
 
 use super::jitter::weights;
 use super::settings::{Clipping, ColorBox, TaaSettings};
@@ -10,7 +10,7 @@ use framegraph_shaders::layout::TaaUniforms;
 use framegraph_shaders::{Feature, Features, Module, library};
 use framegraph_wgpu::{Cx, Record, RecordError, SamplerDesc};
 
-/// Format of the sum: half floats, whatever the frame's radiance has, since sums in fewer bits stop short of what is added.
+/// Format of the history: half floats for any radiance format, since fewer bits stop accumulating early.
 pub(super) const SUM_FORMAT: Format = Format::Rgba16Float;
 
 static SHADER: Module<'static> = library::pass("pass/taa.wgsl").unwrap();
@@ -29,34 +29,34 @@ static INTERFACE: Interface = Interface {
     ],
 };
 
-/// Adds a frame of a view to the sum of those before. Of the world it needs [`Programs`] and the view's camera, which says how
-/// the frame is jittered and from where the one before was seen ([`CameraView::after`], [`Views::again`]).
+/// Accumulates a frame of a view into its history. Uses [`Programs`] and the view's camera of the world: its jitter
+/// and previous camera ([`CameraView::after`], [`Views::again`]).
 #[derive(Clone, Copy, Debug)]
 pub struct Taa {
     /// The view.
     pub view: ViewId,
-    /// Radiance times exposure.
+    /// Pre-exposed radiance.
     pub hdr: Texture,
-    /// Reversed depth of one sample per texel, of the same size.
+    /// Reversed depth with one sample per pixel, of the same size.
     pub depth: Texture,
-    /// Where what moves was, from the pass [`Velocity`](crate::velocity::Velocity); none where nothing moves.
+    /// Motion vectors of the pass [`Velocity`](crate::velocity::Velocity); `None` if nothing moves.
     pub velocity: Option<Texture>,
-    /// The sum of the frames before.
+    /// History of the previous frames.
     pub earlier: Previous,
-    /// Where the sum goes.
+    /// Target of the new history.
     pub into: Texture,
-    /// How.
+    /// Settings.
     pub settings: TaaSettings,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct TaaIo {
     hdr: View,
     depth: View,
     velocity: Option<View>,
     earlier: View,
-    /// The sum. In a frame without an earlier one it is this frame alone.
+    /// The accumulated radiance. Without an earlier frame it is this frame alone.
     pub sum: Texture,
 }
 
@@ -108,7 +108,7 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for Taa {
 }
 
 impl Taa {
-    /// Whether the sum is the mean of frames of which nothing differs but the jitter.
+    /// True if only the jitter differs between the accumulated frames, so the history is their mean.
     fn rests(&self, view: &CameraView) -> bool {
         self.settings.converge && view.still_frames > 1
     }

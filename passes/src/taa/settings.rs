@@ -1,77 +1,77 @@
-//! What temporal anti-aliasing is made of, and the same by name. Defaults are Filament's.
+//! Settings of temporal anti-aliasing, and option parsing. Defaults are Filament's.
 
 use super::jitter::JitterPattern;
 use crate::choice::{Choice, ChoiceError, switched};
 use glam::DVec2;
 
-/// How frames are added up.
+/// Settings of temporal anti-aliasing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct TaaSettings {
-    /// Share of each new frame in the sum, 0 to 1: 1 is no sum.
+    /// Weight of each new frame in the history, 0 to 1; 1 disables the history.
     pub feedback: f32,
-    /// Width of the filter of a frame's own samples, 0.5 to 4; 1 is sharper, 2 smoother.
+    /// Width of the filter over a frame's own samples, 0.5 to 4; 1 is sharper, 2 smoother.
     pub filter_width: f32,
-    /// How much is sharpened afterwards, 0 to 1; 0 is not at all.
+    /// Strength of sharpening after accumulation, 0 to 1; 0 is off.
     pub sharpness: f32,
-    /// Through which places of its pixels each frame is seen.
+    /// Sequence of sub-pixel offsets.
     pub jitter: JitterPattern,
-    /// The box that the sum is held to.
+    /// Color box to which the history is clamped.
     pub color_box: ColorBox,
-    /// How it is held to it.
+    /// Clamping method.
     pub clipping: Clipping,
-    /// Deviations that a box by variance is wide to either side, 0 to 4: more leaves ghosts, less lets edges tremble.
+    /// Half width of the variance box, in standard deviations, 0 to 4. More leaves ghosts; less lets edges tremble.
     pub variance_gamma: f32,
-    /// The sum is read by a spline, which keeps it sharp where it moves.
+    /// Reads the history with a Catmull-Rom spline, which keeps moving detail sharp.
     pub filter_history: bool,
-    /// A frame's samples are filtered to the middles of pixels.
+    /// Filters a frame's samples to pixel centers.
     pub filter_input: bool,
-    /// The box is one of luma and chroma, which is tighter.
+    /// Uses a box in luma and chroma, which is tighter.
     pub ycocg: bool,
-    /// The share of a frame is less where brightness changes.
+    /// Reduces the weight of a frame where brightness changes.
     pub prevent_flickering: bool,
-    /// The sum is read where a pixel was, else at the same pixel.
+    /// Reads the history at the pixel's previous position; otherwise at the same pixel.
     pub reproject: bool,
-    /// While a view stands still in a scene that does ([`Views::again`](crate::view::Views::again)), the sum is the mean of the
-    /// light of all its frames, and is held to nothing; not so in Filament, whose sum never comes to rest.
+    /// While view and scene stand still ([`Views::again`](crate::view::Views::again)), accumulates the mean of all
+    /// frames without clamping. Filament's history never settles.
     pub converge: bool,
 }
 
-/// What the box about a pixel's colors is made of.
+/// Definition of the color box around a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum ColorBox {
-    /// The least and the most of each channel, with corners counted half.
+    /// Minimum and maximum of each channel, with half weight for corners.
     #[default]
     Bounds,
-    /// Mean and deviation.
+    /// Mean and standard deviation.
     Variance,
-    /// What both have in common.
+    /// Intersection of both.
     Both,
 }
 
-/// How the sum is held to the box.
+/// Clamping of the history to the color box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Clipping {
-    /// On the way to this frame's color, where that enters the box.
+    /// Clips along the line to this frame's color.
     #[default]
     Accurate,
-    /// Each channel for itself.
+    /// Clamps each channel.
     Clamp,
-    /// Not at all: what moves leaves ghosts, and what stands still comes nearest to the truth.
+    /// No clamping: moving objects leave ghosts, and still pictures come closest to the truth.
     None,
 }
 
 impl Default for TaaSettings {
-    /// [`TaaSettings::DEFAULT`].
+    /// Returns [`TaaSettings::DEFAULT`].
     fn default() -> Self {
         Self::DEFAULT
     }
 }
 
 impl TaaSettings {
-    /// Filament's.
+    /// Filament's defaults.
     pub const DEFAULT: Self = Self {
         feedback: 0.12,
         filter_width: 1.0,
@@ -88,7 +88,7 @@ impl TaaSettings {
         converge: false,
     };
 
-    /// The names that [`TaaSettings::set`] takes.
+    /// Names accepted by [`TaaSettings::set`].
     pub const KEYS: [&str; 13] = [
         "feedback",
         "width",
@@ -105,23 +105,23 @@ impl TaaSettings {
         "converge",
     ];
 
-    /// By how much a frame moves its picture to the right and up, in pixels.
+    /// Returns the offset of a frame to the right and up, in pixels.
     pub fn jitter_px(&self, frame: u32) -> DVec2 {
         self.jitter.at(frame)
     }
 
-    /// What is asked for as `off`, or as `on` with changes: `on:feedback=0.1,box=both`. None is `off`.
+    /// Parses `off`, or `on` with changes such as `on:feedback=0.1,box=both`. Returns `None` for `off`.
     ///
     /// # Errors
-    /// When it is neither, or a choice is unknown or does not take the value: one line that names it and what it takes.
+    /// Fails for another word, an unknown name or an invalid value; the message names it and the accepted values.
     pub fn from_text(text: &str) -> Result<Option<Self>, ChoiceError> {
         switched(text, Self::DEFAULT, Self::set)
     }
 
-    /// Changes one choice by name.
+    /// Changes one setting by name.
     ///
     /// # Errors
-    /// As [`TaaSettings::from_text`].
+    /// Fails as [`TaaSettings::from_text`] does.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), ChoiceError> {
         let choice = Choice { key, value };
         match key {
