@@ -28,6 +28,8 @@ impl Feature {
     pub const REFLECTIONS: Self = Self("REFLECTIONS");
     /// What is seen through fog.
     pub const FOG: Self = Self("FOG");
+    /// The sun's disc and its halo are drawn over the background.
+    pub const SUN_HALO: Self = Self("SUN_HALO");
     /// Where what moves was in the frame before is read.
     pub const VELOCITY: Self = Self("VELOCITY");
     /// The environment's prefiltered specular cube is read; without it lobes see three bands of spherical harmonics.
@@ -81,6 +83,7 @@ impl Feature {
         Self::FROXELS,
         Self::REFLECTIONS,
         Self::FOG,
+        Self::SUN_HALO,
         Self::VELOCITY,
         Self::ENVIRONMENT_MAP,
         Self::TEXTURED,

@@ -4,8 +4,8 @@ use framegraph_scene::material::{AlphaMode, EmissiveUnit, Lobe, Lobes, Material,
 use framegraph_scene::texture::{TextureSlot, UvTransform};
 use framegraph_shaders::layout::{
     AnisotropyUniforms, ClearCoatUniforms, DiffuseTransmissionUniforms, IridescenceUniforms, MATERIAL_SLOTS,
-    MaterialUniforms, SheenUniforms, SpecularUniforms, TRAIT_DOUBLE_SIDED, TRAIT_EMITS, TRAIT_PACKED_OCCLUSION,
-    TRAIT_PLAIN_UV, TRAIT_UNLIT, TextureMap, TransmissionUniforms,
+    MaterialUniforms, SheenUniforms, SpecularUniforms, TRAIT_COAT_KEEPS_F0, TRAIT_DOUBLE_SIDED, TRAIT_EMITS,
+    TRAIT_PACKED_OCCLUSION, TRAIT_PLAIN_UV, TRAIT_UNLIT, TextureMap, TransmissionUniforms,
 };
 use framegraph_shaders::{Feature, Features};
 use glam::{Vec2, Vec3};
@@ -99,6 +99,7 @@ pub fn material_traits(material: &Material) -> u32 {
         (material.unlit, TRAIT_UNLIT),
         (slots.iter().any(Option::is_some) && slots.iter().flatten().all(plain), TRAIT_PLAIN_UV),
         (packed, TRAIT_PACKED_OCCLUSION),
+        (material.clear_coat.is_some_and(|coat| coat.keeps_base_f0), TRAIT_COAT_KEEPS_F0),
     ];
     textures.chain(others).filter(|(is, _)| *is).map(|(_, bit)| 1 << bit).sum()
 }
@@ -282,6 +283,7 @@ mod tests {
                 texture: slot(1.0),
                 roughness_texture: slot(2.0),
                 normal_texture: slot(3.0),
+                keeps_base_f0: true,
             }),
             sheen: Some(Sheen {
                 color: Vec3::new(0.5, 0.25, 0.125),
@@ -324,6 +326,7 @@ mod tests {
             }),
             ..Material::default()
         };
+        assert_eq!(material_traits(&material) >> SLOT_COUNT, 1 << (TRAIT_COAT_KEEPS_F0 - MATERIAL_SLOTS));
         let MaterialUniforms {
             clear_coat,
             sheen,

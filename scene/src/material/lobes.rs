@@ -23,6 +23,9 @@ pub struct ClearCoat {
     pub roughness_texture: Option<TextureSlot>,
     /// Texture of the coat's tangent-space normal; without it the coat has the mesh's normals. Role `Normal`.
     pub normal_texture: Option<TextureSlot>,
+    /// Keeps the base's reflectance at normal incidence, as in air. By default, the base meets the coat's index of 1.5, which
+    /// lowers it. Filament: material property `clearCoatIorChange` set to false.
+    pub keeps_base_f0: bool,
 }
 
 /// Fibers that stand up from the surface (KHR_materials_sheen): brightest at the silhouette.

@@ -18,6 +18,8 @@ pub const TRAIT_PLAIN_UV: u32 = MATERIAL_SLOTS + 3;
 pub const TRAIT_PACKED_OCCLUSION: u32 = MATERIAL_SLOTS + 4;
 /// Number of the bit of lines and points, which have no plane to take a normal from. It is of meshes, not of materials.
 pub const TRAIT_NO_AREA: u32 = MATERIAL_SLOTS + 5;
+/// Bit of `MATERIAL_TRAITS`: the base under the clear coat keeps its reflectance in air.
+pub const TRAIT_COAT_KEEPS_F0: u32 = MATERIAL_SLOTS + 6;
 
 /// How texture coordinates of the mesh lead to a texture (KHR_texture_transform); that of no texture is not read.
 #[repr(C)]

@@ -74,7 +74,7 @@ import package::shading::quality::{
     SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD,
 };
 import package::shading::punctual::add_punctual;
-import package::shading::shadow::{sun_visibility, cascade_tint};
+import package::shading::shadow::{sun_share, sun_visibility, cascade_tint};
 import package::shading::shadow_map::Receiver;
 import package::shading::surface::{Surface, layer_transmittance};
 @if(CLEAR_COAT)
@@ -296,7 +296,7 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
                 let lit = far_side(surface, receiver);
                 let sun = frame.sun_illuminance
                     * reflect_surface(surface, real3(frame.sun_direction));
-                radiance += sun * sun_visibility(lit);
+                radiance += sun * sun_share(sun_visibility(lit));
             }
         }
         let sun = frame.sun_illuminance * reflect_surface(surface, real3(frame.sun_direction))
@@ -306,7 +306,8 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
         @else
         let is_lit = any(sun > vec3<f32>(0.0));
         if is_lit {
-            radiance += sun * sun_visibility(receiver) * contact_visibility(receiver);
+            let visible = sun_visibility(receiver) * contact_visibility(receiver);
+            radiance += sun * sun_share(visible);
         }
     }
     radiance = add_punctual(radiance, surface, receiver);

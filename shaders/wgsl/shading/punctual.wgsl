@@ -14,7 +14,7 @@ import package::lib::punctual::{
 import package::lib::real::real3;
 import package::shading::direct::reflect_surface;
 import package::shading::quality::{LIGHT_FADE_INV_FAR2, SQUARED_LIGHT_WINDOW};
-import package::shading::shadow::light_visibility;
+import package::shading::shadow::{light_share, light_visibility};
 import package::shading::shadow_map::Receiver;
 import package::shading::surface::Surface;
 @if(DIFFUSE_TRANSMISSION)
@@ -59,10 +59,12 @@ fn reflect_punctual(s: Surface, light: LightUniforms, receiver: Receiver) -> vec
         if is_behind(s, l) {
             let lit = far_side(s, receiver);
             let from_light = lit.world - light.position;
-            return reflected * light_visibility(light.shadow_map, is_point, from_light, lit);
+            let visible = light_visibility(light.shadow_map, is_point, from_light, lit);
+            return reflected * light_share(visible, light.shadow_strength);
         }
     }
-    return reflected * light_visibility(light.shadow_map, is_point, -to_light, receiver);
+    let visible = light_visibility(light.shadow_map, is_point, -to_light, receiver);
+    return reflected * light_share(visible, light.shadow_strength);
 }
 
 /// `radiance` with what punctual lights add to it.

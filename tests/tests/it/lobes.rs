@@ -103,7 +103,12 @@ fn a_base_under_a_coat_keeps_its_reflectance_on_demand() -> TestResult {
     let Some(gpu) = gpu("a_base_under_a_coat_keeps_its_reflectance_on_demand") else { return Ok(()) };
     let gold = Material::metal("gold", Vec3::new(0.3, 0.6, 0.9), 0.4);
     let coated = |base: &Material| Material { clear_coat: coat(1.0, 0.1), ..base.clone() };
-    let materials = [gold.clone(), coated(&gold), black(0.5), coated(&black(0.5))];
+    let keeping = |base: &Material| Material {
+        clear_coat: coat(1.0, 0.1).map(|coat| ClearCoat { keeps_base_f0: true, ..coat }),
+        ..base.clone()
+    };
+    let [dark, gold_keeps] = [black(0.5), keeping(&gold)];
+    let materials = [gold.clone(), coated(&gold), dark.clone(), coated(&dark), gold_keeps, keeping(&dark)];
     let kept = Shading { coat_ior_change: false, ..Shading::default() };
     let [kept, changed] = [kept, Shading::default()].map(|shading| in_even_light(&gpu, &wall(&materials), &shading));
     let (kept, changed) = (kept?, changed?);
@@ -118,6 +123,9 @@ fn a_base_under_a_coat_keeps_its_reflectance_on_demand() -> TestResult {
         }
     }
     assert_eq!(kept[0], changed[0], "without a coat nothing changes");
+    // A material's own switch is that of the frame for it alone, to the bit.
+    assert_eq!((&changed[4], &changed[5]), (&kept[1], &kept[3]));
+    assert_eq!((&kept[4], &kept[5]), (&kept[1], &kept[3]), "both switches are one");
     Ok(())
 }
 

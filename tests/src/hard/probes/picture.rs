@@ -81,6 +81,23 @@ pub(super) const PROBES: &[Probe] = &[
         ],
         is_share,
     ),
+    // Toward the sun and away from it; a disc of no size, a halo of no size.
+    both(
+        20,
+        "sun_halo",
+        &[
+            Values(&[0.0]),
+            Values(&[0.0, 1e-4]),
+            Values(&[1.0]),
+            Values(&[0.0]),
+            Values(&[0.0]),
+            Values(&[1.0, -1.0]),
+            Values(&[0.0, 1e-5]),
+            Values(&[0.0, 1e3, 1e12]),
+            Values(&[0.01, 80.0, 1e4]),
+        ],
+        is_share,
+    ),
     both(
         20,
         "sun_disc",
