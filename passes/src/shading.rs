@@ -64,7 +64,7 @@ pub struct Shading {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum TransmissionBlur {
-    /// By the light's spread at the rough face, over the distance from the body to the thing behind it.
+    /// By the light's spread at the rough face, over the way within the body and the distance from it to the thing behind it.
     #[default]
     Distance,
     /// By an angle from the eye that the roughness alone decides, as Filament has it. Things that touch the body are blurred
