@@ -8,7 +8,8 @@ use super::id::Id;
 use super::texture::{TextureRole, TextureSlot};
 
 pub use lobes::{
-    Anisotropy, ClearCoat, DiffuseTransmission, Iridescence, Lobe, Lobes, Sheen, Specular, Transmission, Volume,
+    Anisotropy, ClearCoat, DiffuseTransmission, Iridescence, Lobe, Lobes, Sheen, Specular, Subsurface, Transmission,
+    Volume,
 };
 
 /// A material of a scene.
@@ -100,6 +101,11 @@ pub struct Material {
     pub iridescence: Option<Iridescence>,
     /// Light that is scattered through the surface, as through a leaf.
     pub diffuse_transmission: Option<DiffuseTransmission>,
+    /// Light that is scattered below the surface, Filament's shading model `subsurface`.
+    pub subsurface: Option<Subsurface>,
+    /// Color of light that is scattered in cloth, linear Rec.709, 0…1: the diffuse light is wrapped about the terminator and
+    /// tinted there. Filament: `subsurfaceColor` of the shading model `cloth`, whose specular lobe is the sheen.
+    pub cloth_subsurface: Option<Vec3>,
 }
 
 /// How many textures a material can have.
@@ -149,6 +155,8 @@ impl Default for Material {
             specular: None,
             iridescence: None,
             diffuse_transmission: None,
+            subsurface: None,
+            cloth_subsurface: None,
         }
     }
 }
@@ -213,6 +221,8 @@ impl Material {
             Lobe::Iridescence => self.iridescence.is_some(),
             Lobe::Dispersion => self.dispersion.is_some() && self.transmission.is_some_and(|t| t.volume.is_some()),
             Lobe::DiffuseTransmission => self.diffuse_transmission.is_some(),
+            Lobe::Subsurface => self.subsurface.is_some(),
+            Lobe::ClothSubsurface => self.cloth_subsurface.is_some(),
         };
         Lobe::ALL.into_iter().filter(|lobe| !self.unlit && has(lobe)).collect()
     }

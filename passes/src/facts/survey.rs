@@ -109,7 +109,8 @@ impl Surface {
 
     /// Returns true if light from behind is scattered through the surface.
     pub fn is_translucent(&self) -> bool {
-        self.lobes.contains(Lobe::DiffuseTransmission)
+        let scatters = [Lobe::DiffuseTransmission, Lobe::Subsurface, Lobe::ClothSubsurface];
+        scatters.into_iter().any(|lobe| self.lobes.contains(lobe))
     }
 
     /// Whether it leaves depth for what looks around in the picture.

@@ -1,11 +1,11 @@
 //! A material in the terms of the shaders: the names of what it binds, the features that it calls for, its factors.
 
-use framegraph_scene::material::{AlphaMode, EmissiveUnit, Lobe, Lobes, Material, SLOT_COUNT};
+use framegraph_scene::material::{AlphaMode, EmissiveUnit, Lobe, Lobes, Material, SLOT_COUNT, Subsurface};
 use framegraph_scene::texture::{TextureSlot, UvTransform};
 use framegraph_shaders::layout::{
     AnisotropyUniforms, ClearCoatUniforms, DiffuseTransmissionUniforms, IridescenceUniforms, MATERIAL_SLOTS,
-    MaterialUniforms, SheenUniforms, SpecularUniforms, TRAIT_COAT_KEEPS_F0, TRAIT_DOUBLE_SIDED, TRAIT_EMITS,
-    TRAIT_PACKED_OCCLUSION, TRAIT_PLAIN_UV, TRAIT_UNLIT, TextureMap, TransmissionUniforms,
+    MaterialUniforms, SheenUniforms, SpecularUniforms, SubsurfaceUniforms, TRAIT_COAT_KEEPS_F0, TRAIT_DOUBLE_SIDED,
+    TRAIT_EMITS, TRAIT_PACKED_OCCLUSION, TRAIT_PLAIN_UV, TRAIT_UNLIT, TextureMap, TransmissionUniforms,
 };
 use framegraph_shaders::{Feature, Features};
 use glam::{Vec2, Vec3};
@@ -71,6 +71,8 @@ pub fn features_of(lobes: Lobes) -> Features {
         Lobe::Iridescence => Feature::IRIDESCENCE,
         Lobe::Dispersion => Feature::DISPERSION,
         Lobe::DiffuseTransmission => Feature::DIFFUSE_TRANSMISSION,
+        Lobe::Subsurface => Feature::SUBSURFACE,
+        Lobe::ClothSubsurface => Feature::CLOTH_SUBSURFACE,
     };
     lobes.iter().map(feature).collect()
 }
@@ -178,7 +180,20 @@ pub fn material_uniforms(material: &Material) -> MaterialUniforms {
                 color_map: map(scattered.color_texture),
             }
         }),
+        subsurface: subsurface_uniforms(material),
         ..MaterialUniforms::default()
+    }
+}
+
+/// Returns what is scattered below the surface, held within the ranges that shaders expect.
+fn subsurface_uniforms(material: &Material) -> SubsurfaceUniforms {
+    let share = |color: Vec3| color.clamp(Vec3::ZERO, Vec3::ONE);
+    let given = material.subsurface.unwrap_or(Subsurface { thickness: 1.0, ..Subsurface::default() });
+    SubsurfaceUniforms {
+        color: share(given.color),
+        power: given.power.clamp(0.0, Subsurface::MAX_POWER),
+        cloth_color: share(material.cloth_subsurface.unwrap_or(Vec3::ONE)),
+        thickness: given.thickness.clamp(0.0, 1.0),
     }
 }
 
@@ -324,8 +339,13 @@ mod tests {
                 color_texture: slot(14.0),
                 volume: None,
             }),
+            subsurface: Some(Subsurface { color: Vec3::splat(2.0), power: 3.0, thickness: 0.25 }),
+            cloth_subsurface: Some(Vec3::new(0.5, 0.25, 0.125)),
             ..Material::default()
         };
+        let scattered = material_uniforms(&material).subsurface;
+        assert_eq!((scattered.color, scattered.power, scattered.thickness), (Vec3::ONE, 3.0, 0.25));
+        assert_eq!(scattered.cloth_color, Vec3::new(0.5, 0.25, 0.125));
         assert_eq!(material_traits(&material) >> SLOT_COUNT, 1 << (TRAIT_COAT_KEEPS_F0 - MATERIAL_SLOTS));
         let MaterialUniforms {
             clear_coat,

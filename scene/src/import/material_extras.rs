@@ -2,7 +2,7 @@
 
 use super::extras::Extras;
 use super::source::Warnings;
-use crate::material::Material;
+use crate::material::{Material, Subsurface};
 
 /// Reads the extras of a material into it.
 pub(super) fn read(extras: &Extras<'_>, warnings: &mut Warnings, material: &mut Material) {
@@ -10,4 +10,13 @@ pub(super) fn read(extras: &Extras<'_>, warnings: &mut Warnings, material: &mut 
     if let (Some(coat), Some(changes)) = (&mut material.clear_coat, changes) {
         coat.keeps_base_f0 = !changes;
     }
+    if let Some(given) = extras.child("subsurface", warnings) {
+        let usual = Subsurface::default();
+        material.subsurface = Some(Subsurface {
+            color: given.color("color", warnings).unwrap_or(usual.color),
+            power: given.number("power", [0.0, Subsurface::MAX_POWER], warnings).unwrap_or(usual.power),
+            thickness: given.number("thickness", [0.0, 1.0], warnings).unwrap_or(usual.thickness),
+        });
+    }
+    material.cloth_subsurface = extras.color("clothSubsurface", warnings);
 }

@@ -103,6 +103,22 @@ pub struct MaterialUniforms {
     pub iridescence: IridescenceUniforms,
     /// Diffuse transmission; read with the feature `DIFFUSE_TRANSMISSION`.
     pub diffuse_transmission: DiffuseTransmissionUniforms,
+    /// Light scattered below the surface; read with the features `SUBSURFACE` and `CLOTH_SUBSURFACE`.
+    pub subsurface: SubsurfaceUniforms,
+}
+
+/// Light scattered below the surface (Filament's shading models `subsurface` and `cloth`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct SubsurfaceUniforms {
+    /// Color of the scattered light, linear Rec.709, 0…1.
+    pub color: Vec3,
+    /// Exponent of the lobe toward lights behind the surface, 0 or more.
+    pub power: f32,
+    /// Color of light that is scattered in cloth, linear Rec.709, 0…1.
+    pub cloth_color: Vec3,
+    /// Thickness, from 0 for none to 1, through which nothing passes.
+    pub thickness: f32,
 }
 
 /// Clear coat, a dielectric layer over the other lobes (KHR_materials_clearcoat).
@@ -249,6 +265,7 @@ impl Default for MaterialUniforms {
             specular: SpecularUniforms::default(),
             iridescence: IridescenceUniforms::default(),
             diffuse_transmission: DiffuseTransmissionUniforms::default(),
+            subsurface: SubsurfaceUniforms::default(),
         }
     }
 }
@@ -280,7 +297,9 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             specular,
             iridescence,
             diffuse_transmission,
+            subsurface,
         }),
+        layout_of!(SubsurfaceUniforms { color, power, cloth_color, thickness }),
         layout_of!(ClearCoatUniforms { factor, roughness, normal_scale, _pad, map, roughness_map, normal_map }),
         layout_of!(SheenUniforms { color, roughness, color_map, roughness_map }),
         layout_of!(AnisotropyUniforms { rotation, strength, _pad, map }),

@@ -16,10 +16,11 @@
 // MATERIAL_TABLE (materials lie in an array), INSTANCE_STREAM (interface/object.wgsl),
 // ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands of
 // spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
-// TRANSMISSION with DISPERSION, SPECULAR, IRIDESCENCE, DIFFUSE_TRANSMISSION. They change what is
-// bound or comes from the vertices, so they are compiled in or out; what only changes arithmetic is
-// an `override`. HALF shades in half floats: what a surface is made of and what it reflects of one
-// light (lib/real.wgsl). Light itself, and everything that has a place, stays in f32.
+// TRANSMISSION with DISPERSION, SPECULAR, IRIDESCENCE, DIFFUSE_TRANSMISSION, SUBSURFACE,
+// CLOTH_SUBSURFACE. They change what is bound or comes from the vertices, so they are compiled in
+// or out; what only changes arithmetic is an `override`. HALF shades in half floats: what a surface
+// is made of and what it reflects of one light (lib/real.wgsl). Light itself, and everything that
+// has a place, stays in f32.
 
 import package::interface::epilogue::epilogue;
 @if(FOG)
@@ -66,8 +67,10 @@ import package::shading::ambient::directional_albedo;
 import package::shading::contact_shadow::contact_visibility;
 import package::shading::direct::reflect_surface;
 import package::shading::indirect::{ambient_visibility, reflect_environment, add_layers};
+@if(DIFFUSE_TRANSMISSION || SUBSURFACE || CLOTH_SUBSURFACE)
+import package::shading::through::is_behind;
 @if(DIFFUSE_TRANSMISSION)
-import package::shading::through::{translucency_of, is_behind, far_side};
+import package::shading::through::{translucency_of, far_side};
 import package::shading::micro_shadow::micro_visibility;
 import package::shading::quality::{
     ROUGHNESS_FLOOR, F90_FADES, PUNCTUAL_COMPENSATION,
@@ -289,8 +292,16 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     var radiance = add_layers(surface, normal, view, below, visibility);
     let receiver = Receiver(vertex.world, geometric, vertex.position.xy, slope);
     if SUN {
-        @if(DIFFUSE_TRANSMISSION)
+        @if(DIFFUSE_TRANSMISSION || SUBSURFACE || CLOTH_SUBSURFACE)
         let comes_through = is_behind(surface, frame.sun_direction);
+        // A body shadows the side of it that faces away from the sun: of light that is scattered
+        // below the surface, no shadow falls there, as in Filament.
+        @if(!DIFFUSE_TRANSMISSION && (SUBSURFACE || CLOTH_SUBSURFACE)) {
+            if comes_through {
+                radiance += frame.sun_illuminance
+                    * reflect_surface(surface, real3(frame.sun_direction));
+            }
+        }
         @if(DIFFUSE_TRANSMISSION) {
             if comes_through {
                 let lit = far_side(surface, receiver);
@@ -301,7 +312,7 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
         }
         let sun = frame.sun_illuminance * reflect_surface(surface, real3(frame.sun_direction))
             * micro_visibility(uv, dot(normal, frame.sun_direction));
-        @if(DIFFUSE_TRANSMISSION)
+        @if(DIFFUSE_TRANSMISSION || SUBSURFACE || CLOTH_SUBSURFACE)
         let is_lit = !comes_through && any(sun > vec3<f32>(0.0));
         @else
         let is_lit = any(sun > vec3<f32>(0.0));
