@@ -106,6 +106,9 @@ pub struct Material {
     /// Color of light that is scattered in cloth, linear Rec.709, 0…1: the diffuse light is wrapped about the terminator and
     /// tinted there. Filament: `subsurfaceColor` of the shading model `cloth`, whose specular lobe is the sheen.
     pub cloth_subsurface: Option<Vec3>,
+    /// Makes the surface a shadow catcher: it is seen where the sun is in shadow alone, by this strength from 0 to 1, times its
+    /// alpha. It takes effect where the surface is unlit and blended. Filament: `shadowMultiplier` and `shadowStrength`.
+    pub shadow_catcher: Option<f32>,
 }
 
 /// How many textures a material can have.
@@ -157,6 +160,7 @@ impl Default for Material {
             diffuse_transmission: None,
             subsurface: None,
             cloth_subsurface: None,
+            shadow_catcher: None,
         }
     }
 }
@@ -225,6 +229,12 @@ impl Material {
             Lobe::ClothSubsurface => self.cloth_subsurface.is_some(),
         };
         Lobe::ALL.into_iter().filter(|lobe| !self.unlit && has(lobe)).collect()
+    }
+
+    /// Returns true for a shadow catcher that takes effect.
+    #[must_use]
+    pub fn catches_shadows(&self) -> bool {
+        self.shadow_catcher.is_some() && self.unlit && self.alpha == AlphaMode::Blend
     }
 
     /// The texture coordinates that tangents must follow: those of the normal map, else of the coat's, else of the

@@ -93,7 +93,8 @@ impl Surface {
         let dielectric = (material.dielectric_f0() * specular).min(1.0);
         let textured = material.metallic_roughness_texture.is_some();
         Self {
-            unlit: material.unlit,
+            // A shadow catcher shows no light, but where there is none.
+            unlit: material.unlit && !material.catches_shadows(),
             lobes: material.lobes(),
             // A film may reflect all of a color.
             most_f0: if material.metallic > 0.0 || material.iridescence.is_some() { 1.0 } else { dielectric },

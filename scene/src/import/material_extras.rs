@@ -2,7 +2,7 @@
 
 use super::extras::Extras;
 use super::source::Warnings;
-use crate::material::{Material, Subsurface};
+use crate::material::{AlphaMode, Material, Subsurface};
 
 /// Reads the extras of a material into it.
 pub(super) fn read(extras: &Extras<'_>, warnings: &mut Warnings, material: &mut Material) {
@@ -17,6 +17,9 @@ pub(super) fn read(extras: &Extras<'_>, warnings: &mut Warnings, material: &mut 
             power: given.number("power", [0.0, Subsurface::MAX_POWER], warnings).unwrap_or(usual.power),
             thickness: given.number("thickness", [0.0, 1.0], warnings).unwrap_or(usual.thickness),
         });
+    }
+    if let Some(strength) = extras.number("shadowCatcher", [0.0, 1.0], warnings) {
+        (material.shadow_catcher, material.unlit, material.alpha) = (Some(strength), true, AlphaMode::Blend);
     }
     material.cloth_subsurface = extras.color("clothSubsurface", warnings);
 }

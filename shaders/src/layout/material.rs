@@ -20,6 +20,8 @@ pub const TRAIT_PACKED_OCCLUSION: u32 = MATERIAL_SLOTS + 4;
 pub const TRAIT_NO_AREA: u32 = MATERIAL_SLOTS + 5;
 /// Bit of `MATERIAL_TRAITS`: the base under the clear coat keeps its reflectance in air.
 pub const TRAIT_COAT_KEEPS_F0: u32 = MATERIAL_SLOTS + 6;
+/// Bit of `MATERIAL_TRAITS`: the surface is seen where the sun is in shadow alone.
+pub const TRAIT_SHADOW_CATCHER: u32 = MATERIAL_SLOTS + 7;
 
 /// How texture coordinates of the mesh lead to a texture (KHR_texture_transform); that of no texture is not read.
 #[repr(C)]
@@ -77,8 +79,10 @@ pub struct MaterialUniforms {
     pub alpha_cutoff: f32,
     /// Reflectance of the dielectric part at normal incidence; 0.04 for an index of refraction of 1.5.
     pub dielectric_f0: f32,
+    /// Strength of the shadow that a shadow catcher shows, 0…1.
+    pub catcher_strength: f32,
     /// Padding to 16 bytes; zero.
-    pub _pad: [u32; 2],
+    pub _pad: u32,
     /// Texture of the base color.
     pub base_color_map: TextureMap,
     /// Texture of roughness and metalness.
@@ -252,7 +256,8 @@ impl Default for MaterialUniforms {
             occlusion_strength: 1.0,
             alpha_cutoff: 0.5,
             dielectric_f0: 0.04,
-            _pad: [0; 2],
+            catcher_strength: 1.0,
+            _pad: 0,
             base_color_map: TextureMap::IDENTITY,
             metallic_roughness_map: TextureMap::IDENTITY,
             normal_map: TextureMap::IDENTITY,
@@ -284,6 +289,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             occlusion_strength,
             alpha_cutoff,
             dielectric_f0,
+            catcher_strength,
             _pad,
             base_color_map,
             metallic_roughness_map,

@@ -7,7 +7,7 @@ use super::math::{PI, mix, saturate};
 /// BSDF times cosine, in 1/sr, of the light that is scattered below a surface of color one.
 pub fn subsurface_scatter(vol: f64, nol: f64, power: f64, thickness: f64) -> f64 {
     let forward = ((saturate(-vol) - 1.0) * power).exp2();
-    let back = 0.5 * saturate(saturate(nol) * thickness + (1.0 - thickness));
+    let back = 0.5 * (saturate(nol) * thickness + (1.0 - thickness));
     mix(back, 1.0, forward) * (1.0 - thickness) / PI
 }
 

@@ -129,7 +129,9 @@ struct MaterialUniforms {
     /// Alpha mode MASK: fragments with less alpha are discarded.
     alpha_cutoff: f32,
     /// Reflectance of the dielectric part at normal incidence; 0.04 for an index of 1.5.
-    @size(12) dielectric_f0: f32,
+    dielectric_f0: f32,
+    /// Strength of the shadow that a shadow catcher shows, 0…1.
+    @size(8) catcher_strength: f32,
     base_color_map: TextureMap,
     metallic_roughness_map: TextureMap,
     normal_map: TextureMap,

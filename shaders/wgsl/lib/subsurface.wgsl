@@ -10,7 +10,7 @@ import package::lib::real::{real, real3};
 /// in f32: half floats hold neither its exponent nor what is left of it.
 fn subsurface_scatter(vol: real, nol: real, power: f32, thickness: f32) -> f32 {
     let forward = exp2((saturate(-f32(vol)) - 1.0) * power);
-    let back = 0.5 * saturate(saturate(f32(nol)) * thickness + (1.0 - thickness));
+    let back = 0.5 * (saturate(f32(nol)) * thickness + (1.0 - thickness));
     return mix(back, 1.0, forward) * (1.0 - thickness) * (1.0 / PI);
 }
 

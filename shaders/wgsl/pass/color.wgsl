@@ -27,8 +27,8 @@ import package::interface::epilogue::epilogue;
 import package::interface::fog::in_fog;
 import package::interface::frame::frame;
 import package::interface::material::{
-    material, TRAIT_EMITS, TRAIT_NO_AREA, TRAIT_UNLIT, material_has, base_color,
-    metallic_roughness, emission, specular_factors,
+    material, TRAIT_EMITS, TRAIT_NO_AREA, TRAIT_SHADOW_CATCHER, TRAIT_UNLIT, material_has,
+    base_color, metallic_roughness, emission, specular_factors,
 };
 @if(MATERIAL_TABLE)
 import package::interface::material::materials;
@@ -329,6 +329,17 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     return radiance;
 }
 
+/// Share of a shadow catcher that is seen: what its place lacks of the sun.
+fn caught_shadow(vertex: SurfaceVertex, geometric: vec3<f32>) -> f32 {
+    if !SUN {
+        return 0.0;
+    }
+    let slope = vec2<f32>(dpdx(vertex.position.z), dpdy(vertex.position.z));
+    let receiver = Receiver(vertex.world, geometric, vertex.position.xy, slope);
+    let visible = sun_share(sun_visibility(receiver) * contact_visibility(receiver));
+    return (1.0 - visible) * material.catcher_strength;
+}
+
 @fragment
 fn fs_main(
     vertex: SurfaceVertex,
@@ -346,11 +357,18 @@ fn fs_main(
         // Lines and points without normals (glTF 2.0, section 3.9.7).
         color += emitted(texture_uv(vertex));
     }
+    var caught = 1.0;
+    if material_has(TRAIT_SHADOW_CATCHER) {
+        caught = caught_shadow(vertex, geometric);
+    }
     if ALPHA_MODE == 1u && base.a < material.alpha_cutoff {
         discard;
     }
     let alpha = select(1.0, saturate(base.a), ALPHA_MODE == 2u);
     var seen = vec4<f32>(saturate_half3(color * alpha), alpha);
+    if material_has(TRAIT_SHADOW_CATCHER) {
+        seen *= caught;
+    }
     @if(FOG) seen = in_fog(
         seen, normalize_or(vertex.world, vec3<f32>(0.0, 0.0, 1.0)), length(vertex.world),
     );

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use glam::Vec3;
 
 use super::fixture::Fixture;
-use crate::material::{Lobe, Lobes, Subsurface};
+use crate::material::{AlphaMode, Lobe, Lobes, Material, Subsurface};
 use crate::{Scene, SunHalo};
 
 /// A triangle whose material has these extensions and extras.
@@ -44,6 +44,13 @@ fn materials_may_scatter_light_as_filaments_do() {
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     let usual = load(json!({}), json!({"framegraph": {"subsurface": {}}}));
     assert_eq!(usual.materials[0].subsurface, Some(Subsurface::default()));
+}
+
+#[test]
+fn a_shadow_catcher_is_unlit_and_blended() {
+    let scene = load(json!({}), json!({"framegraph": {"shadowCatcher": 0.5}}));
+    let Material { shadow_catcher, unlit, alpha, .. } = scene.materials[0];
+    assert_eq!((shadow_catcher, unlit, alpha), (Some(0.5), true, AlphaMode::Blend));
 }
 
 #[test]

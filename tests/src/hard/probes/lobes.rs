@@ -79,9 +79,12 @@ pub(super) const PROBES: &[Probe] = &[
         y.iter().all(|ior| (1.0..=1e4).contains(ior))
     }),
     // Exponents of none and of all, and a light right behind.
-    both(2, "subsurface_scatter", &[COSINE, COSINE, Values(&[0.0, 12.234, 1e4]), SHARE], |_, y| {
-        (0.0..0.3185).contains(&y[0])
-    }),
+    both(
+        2,
+        "subsurface_scatter",
+        &[Values(&[-1.002, -1.0, -0.5, 0.0, 1.002]), COSINE, Values(&[0.0, 12.234, 1e4]), SHARE],
+        |_, y| (0.0..0.3185).contains(&y[0]),
+    ),
     both(2, "subsurface_ambient", &[SHARE], is_share),
     both(2, "subsurface_roughness", &[SHARE, SHARE], is_share),
     both(2, "wrapped_cosine", &[Values(&[-1.002, -0.5, 0.0, 1.0, 1.002])], is_share),

@@ -96,7 +96,8 @@ pub(super) const PROBES: &[Probe] = &[
             Values(&[0.0, 1e3, 1e12]),
             Values(&[0.01, 80.0, 1e4]),
         ],
-        is_share,
+        // Nothing away from the sun, where the halo ends at all.
+        |x, y| is_share(x, y) && (x[5] > 0.0 || x[7] == 0.0 || y[0] == 0.0),
     ),
     both(
         20,

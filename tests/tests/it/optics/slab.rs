@@ -49,7 +49,7 @@ fn the_default_blur_of_rough_bodies_is_nearest_to_the_truth() {
         let [a, b, c, d] = figures.map(|rms| format!("{rms:.4}"));
         format!("| {name} | {a} | {b} | {c} | {d} |")
     };
-    let mut check = |line: String| {
+    let check = |line: String| {
         println!("{line}");
         assert!(document.contains(&line), "docs/optics.md lacks the line\n{line}");
     };
