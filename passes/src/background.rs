@@ -4,6 +4,7 @@ use crate::full_screen::FullScreen;
 use crate::program::ProgramDesc;
 use crate::surface::{SKY, SKY_SHADER, SurfaceBindings, SurfaceWorld};
 use crate::view::BackgroundUniforms;
+use framegraph_shaders::Feature;
 use framegraph_wgpu::{Cx, Depth, RecordError};
 
 /// Draws the background of the world's view.
@@ -16,14 +17,22 @@ pub(crate) fn draw_background(
     cx: &mut Cx<'_>,
 ) -> Result<(), RecordError> {
     let SurfaceBindings { frame, epilogue, .. } = bindings;
-    let features = &bindings.background_features();
-    let (fragment, uniforms) = match &world.view.view.background {
+    let view = &world.view.view;
+    let features = bindings.background_features();
+    let (fragment, sky) = match &view.background {
         BackgroundUniforms::Environment => ("fs_environment", None),
-        BackgroundUniforms::ClearSky(sky) => ("fs_procedural", Some(cx.uniform(sky))),
-        BackgroundUniforms::Constant(radiance) => ("fs_constant", Some(cx.uniform(radiance))),
+        BackgroundUniforms::ClearSky(sky) => ("fs_procedural", Some(*sky)),
+        BackgroundUniforms::Constant(radiance) => ("fs_constant", Some(*radiance)),
         BackgroundUniforms::None if epilogue.effects.is_empty() && features.is_empty() => return Ok(()),
         BackgroundUniforms::None => ("fs_black", None),
     };
+    let halo = view.sun_halo.filter(|_| !matches!(view.background, BackgroundUniforms::None));
+    let sky = match halo {
+        None => sky,
+        Some((radius_rad, halo)) => Some(sky.unwrap_or_default().with_halo(radius_rad, halo.size, halo.falloff)),
+    };
+    let features = &features.with_if(Feature::SUN_HALO, halo.is_some());
+    let uniforms = sky.map(|sky| cx.uniform(&sky));
     let program = ProgramDesc { fragment: Some(fragment), features, epilogue, ..ProgramDesc::new(&SKY_SHADER, &SKY) };
     let constants: Vec<f64> = epilogue.constants.iter().map(|(_, value)| *value).collect();
     let groups: [&[_]; 2] = [frame, &[uniforms]];

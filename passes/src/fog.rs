@@ -46,8 +46,12 @@ pub enum FogColor {
     Environment {
         /// Factor on it, linear Rec.709.
         tint: [f32; 3],
-        /// Distance in m from which on it is blurred by a level less, above 0.
+        /// Distance in m from which on it is sharper by `sharp_levels`, above 0. Before, it gets sharper in proportion.
         sharp_m: f32,
+        /// Levels of blur that the distance removes, 0 or more. One is Filament's `fogColorFromIbl`. With as many as the
+        /// environment has, fog at `sharp_m` is the sky itself, as of a `skyColor` in Filament.
+        #[cfg_attr(feature = "files", serde(default = "one_level"))]
+        sharp_levels: f32,
     },
 }
 
@@ -59,6 +63,12 @@ pub struct FogGlow {
     pub start_m: f32,
     /// Exponent of the cosine between the ray and the sun, above 0: more is a smaller glow.
     pub size: f32,
+}
+
+/// The levels that files leave out.
+#[cfg(feature = "files")]
+fn one_level() -> f32 {
+    1.0
 }
 
 impl Default for FogSettings {
@@ -77,7 +87,7 @@ impl FogSettings {
         start_m: 0.0,
         cut_off_m: f32::INFINITY,
         most_opacity: 1.0,
-        color: FogColor::Environment { tint: [1.0; 3], sharp_m: 100.0 },
+        color: FogColor::Environment { tint: [1.0; 3], sharp_m: 100.0, sharp_levels: 1.0 },
         glow: None,
         exact: true,
     };
@@ -91,9 +101,11 @@ impl FogSettings {
     pub(crate) fn uniforms(&self, view: &CameraView) -> FogUniforms {
         let exponent = -f64::from(self.falloff) * (view.eye.y - f64::from(self.height_m));
         let here = f64::from(self.density) * exponent.clamp(-MOST_EXPONENT, MOST_EXPONENT).exp();
-        let (color, sharp_m) = match self.color {
+        let (color, sharp) = match self.color {
             FogColor::Radiance(nits) => (Vec3::from_array(nits) * view.frame.exposure, None),
-            FogColor::Environment { tint, sharp_m } => (Vec3::from_array(tint), Some(sharp_m)),
+            FogColor::Environment { tint, sharp_m, sharp_levels } => {
+                (Vec3::from_array(tint), Some((sharp_m, sharp_levels)))
+            }
         };
         let flag = |on: bool| f32::from(u8::from(on));
         FogUniforms {
@@ -108,8 +120,9 @@ impl FogSettings {
             glow_size: self.glow.map_or(1.0, |glow| glow.size),
             glows: flag(self.glow.is_some()),
             exact: flag(self.exact),
-            of_environment: flag(sharp_m.is_some()),
-            per_sharp_m: sharp_m.map_or(0.0, |sharp_m| sharp_m.max(1e-3).recip()),
+            of_environment: flag(sharp.is_some()),
+            per_sharp_m: sharp.map_or(0.0, |(sharp_m, _)| sharp_m.max(1e-3).recip()),
+            sharp_levels: sharp.map_or(0.0, |(_, levels)| levels.max(0.0)),
             ..FogUniforms::default()
         }
     }

@@ -47,8 +47,9 @@ pub struct Shading {
     pub micro_shadows: bool,
     /// Reflectance under a clear coat by Filament's cubic, which errs by up to 0.022 and knows no square root.
     pub fast_coat: bool,
-    /// The base under a clear coat meets the coat instead of air, which lowers its reflectance at normal incidence.
-    /// Filament's material property `clearCoatIorChange`, which gltfio turns off.
+    /// The base under a clear coat meets the coat instead of air, which lowers its reflectance at normal incidence, unless
+    /// the material says otherwise ([`ClearCoat::keeps_base_f0`](framegraph_scene::material::ClearCoat::keeps_base_f0)).
+    /// False turns it off for all materials. Filament's material property `clearCoatIorChange`, which gltfio turns off.
     pub coat_ior_change: bool,
     /// Blur of things behind rough bodies.
     pub transmission_blur: TransmissionBlur,
@@ -63,7 +64,7 @@ pub struct Shading {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum TransmissionBlur {
-    /// By the light's spread at the rough face, over the distance from the body to the thing behind it.
+    /// By the light's spread at the rough face, over the way within the body and the distance from it to the thing behind it.
     #[default]
     Distance,
     /// By an angle from the eye that the roughness alone decides, as Filament has it. Things that touch the body are blurred

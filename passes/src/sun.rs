@@ -1,6 +1,6 @@
 //! Which light of a scene is the sun: the one that casts shadows by cascades.
 
-use framegraph_scene::{Light, LightKind, Scene};
+use framegraph_scene::{Light, LightKind, Scene, SunHalo};
 
 /// The light that casts the shadow by cascades: `own`, the sun that came with the environment, if that is on; else the
 /// scene's brightest directional light.
@@ -23,6 +23,12 @@ pub(crate) fn illuminance_lux(light: &Light) -> f32 {
         LightKind::Directional { illuminance_lux, .. } => illuminance_lux,
         _ => 0.0,
     }
+}
+
+/// Angular radius in radians of a directional light's disc as it is drawn with a halo, and the halo; none where it has none.
+pub(crate) fn halo_of(light: &Light) -> Option<(f32, SunHalo)> {
+    let radius_rad = angular_radius_rad(light);
+    light.halo.map(|halo| (if radius_rad > 0.0 { radius_rad } else { SunHalo::RADIUS_RAD }, halo))
 }
 
 /// Angular radius of a directional light's disc in radians; 0 for others.

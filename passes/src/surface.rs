@@ -307,8 +307,8 @@ mod tests {
         let all = Lobe::ALL.into_iter().collect();
         let guaranteed = wgpu::Limits::default();
         let error = outcome(all, &guaranteed)?.err().unwrap_or_default();
-        let words = "material \"opal\" combines ANISOTROPY, CLEAR_COAT, DIFFUSE_TRANSMISSION, DISPERSION, IRIDESCENCE, SHEEN, \
-                     SPECULAR, TRANSMISSION: its shader binds ";
+        let words = "material \"opal\" combines ANISOTROPY, CLEAR_COAT, CLOTH_SUBSURFACE, DIFFUSE_TRANSMISSION, DISPERSION, IRIDESCENCE, SHEEN, \
+                     SPECULAR, SUBSURFACE, TRANSMISSION: its shader binds ";
         assert!(error.contains(words) && error.contains("textures, and the device allows 16"), "{error}");
         assert_eq!(outcome(Lobes::NONE.with(Lobe::ClearCoat), &guaranteed)?, Ok(()));
         let ample = wgpu::Limits { max_sampled_textures_per_shader_stage: 64, ..guaranteed };

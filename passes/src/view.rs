@@ -18,12 +18,12 @@ use crate::prepared::{Placements, PreparedScene};
 use crate::punctual::{self, LightLists, LightReport, LightSearch};
 use crate::shadow::{FitCamera, ShadowSettings, ViewShadows};
 use crate::stand::Stand;
-use crate::sun::{angular_radius_rad, illuminance_lux, sun_of};
+use crate::sun::{angular_radius_rad, halo_of, illuminance_lux, sun_of};
 use crate::upload::pack::light_uniforms;
 use crate::view::motion::Moment;
 use framegraph_scene::camera::exposure_from_ev100;
 use framegraph_scene::environment::{Sky, sun_light};
-use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene};
+use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene, SunHalo};
 use framegraph_shaders::layout::{FrameUniforms, LightUniforms, MotionUniforms, SkyUniforms};
 use framegraph_shaders::reference::sky::Preetham;
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec2, Vec3, Vec4};
@@ -106,6 +106,8 @@ pub struct CameraView {
     pub visible: DrawLists,
     /// What stands behind everything.
     pub background: BackgroundUniforms,
+    /// Angular radius in radians of the sun's disc, and its halo, where they are drawn.
+    pub sun_halo: Option<(f32, SunHalo)>,
     /// Punctual lights; at least one, so that there is something to bind. `frame.light_count` says how many count.
     pub lights: Vec<LightUniforms>,
     /// Which of them reach what part of the view; none where all are looked at everywhere.
@@ -270,7 +272,8 @@ impl CameraView {
             ..empty.frame
         };
         let background = BackgroundUniforms::new(background, exposure, environment_scale);
-        (Self { frame, background, lights, light_lists, light_report, shadows, ..empty }, levels)
+        let sun_halo = sun.and_then(halo_of);
+        (Self { frame, background, sun_halo, lights, light_lists, light_report, shadows, ..empty }, levels)
     }
 
     /// The same view in a frame that follows one with the view `before`: passes that read the earlier picture find places in
@@ -332,6 +335,7 @@ impl CameraView {
         let clip_from_world =
             camera.clip_from_view(aspect(settings)) * DMat4::from_quat(camera.world_from_view.inverse());
         Self {
+            sun_halo: None,
             frame: FrameUniforms {
                 clip_from_world: clip_from_world.as_mat4(),
                 world_from_clip: inverse(clip_from_world).as_mat4(),

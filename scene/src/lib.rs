@@ -76,7 +76,7 @@ pub use frustum::Frustum;
 pub use id::Id;
 pub use instance::Instance;
 pub use levels::InstanceLevels;
-pub use light::{Light, LightKind};
+pub use light::{Light, LightKind, SunHalo};
 pub use material::{
     AlphaMode, Anisotropy, ClearCoat, DiffuseTransmission, EmissiveUnit, Iridescence, Lobe, Lobes, Material,
     MaterialId, Sheen, Specular, Transmission, Volume,

@@ -32,6 +32,30 @@ pub enum LightKind {
     },
 }
 
+/// Disc of a directional light with a halo about it, drawn in the background where the light is the sun.
+///
+/// Filament draws both with `Skybox::Builder::showSun`. The disc has the light's angular radius, or 0.545° where that is 0,
+/// and a radiance of 4π times the illuminance per steradian, which is far below the real sun's and fits half floats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SunHalo {
+    /// Radius of the halo over that of the disc, above 1. Filament: `setSunHaloSize`.
+    pub size: f32,
+    /// Exponent of the halo's falloff, above 0; larger values make it fade faster. Filament: `setSunHaloFalloff`.
+    pub falloff: f32,
+}
+
+impl SunHalo {
+    /// Filament's defaults.
+    pub const FILAMENT: Self = Self { size: 10.0, falloff: 80.0 };
+    /// Sizes that are accepted.
+    pub const SIZES: [f32; 2] = [1.001, 1000.0];
+    /// Falloffs that are accepted.
+    pub const FALLOFFS: [f32; 2] = [0.01, 10_000.0];
+
+    /// Radius of the disc in radians where the light has none: 0.545°, Filament's `sunAngularRadius`.
+    pub const RADIUS_RAD: f32 = 0.009_51;
+}
+
 /// A light of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
@@ -49,6 +73,10 @@ pub struct Light {
     /// Place in [`Rest::lights`](crate::motion::Rest::lights) of a light that hangs on a node; `None` for others, which
     /// [`Scene::pose`](crate::Scene::pose) leaves alone.
     pub rest: Option<usize>,
+    /// Darkness of the shadows that the light casts, from 0 (none) to 1 (no light of it is left). Unity: `shadowStrength`.
+    pub shadow_strength: f32,
+    /// Disc and halo of the light in the background; `None` draws neither. Only the sun's is drawn.
+    pub halo: Option<SunHalo>,
 }
 
 impl Light {
@@ -62,7 +90,15 @@ impl Light {
             position: DVec3::ZERO,
             direction: direction.normalize_or(Vec3::NEG_Y),
             rest: None,
+            shadow_strength: 1.0,
+            halo: None,
         }
+    }
+
+    /// The shadow strength, held within 0…1; one that is no number counts as 1.
+    #[must_use]
+    pub fn held_shadow_strength(&self) -> f32 {
+        if self.shadow_strength.is_nan() { 1.0 } else { self.shadow_strength.clamp(0.0, 1.0) }
     }
 
     /// The direction in which light attached to a node travels: the node's −Z, whatever its scale.

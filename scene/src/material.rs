@@ -8,7 +8,8 @@ use super::id::Id;
 use super::texture::{TextureRole, TextureSlot};
 
 pub use lobes::{
-    Anisotropy, ClearCoat, DiffuseTransmission, Iridescence, Lobe, Lobes, Sheen, Specular, Transmission, Volume,
+    Anisotropy, ClearCoat, DiffuseTransmission, Iridescence, Lobe, Lobes, Sheen, Specular, Subsurface, Transmission,
+    Volume,
 };
 
 /// A material of a scene.
@@ -100,6 +101,14 @@ pub struct Material {
     pub iridescence: Option<Iridescence>,
     /// Light that is scattered through the surface, as through a leaf.
     pub diffuse_transmission: Option<DiffuseTransmission>,
+    /// Light that is scattered below the surface, Filament's shading model `subsurface`.
+    pub subsurface: Option<Subsurface>,
+    /// Color of light that is scattered in cloth, linear Rec.709, 0…1: the diffuse light is wrapped about the terminator and
+    /// tinted there. Filament: `subsurfaceColor` of the shading model `cloth`, whose specular lobe is the sheen.
+    pub cloth_subsurface: Option<Vec3>,
+    /// Makes the surface a shadow catcher: it is seen where the sun is in shadow alone, by this strength from 0 to 1, times its
+    /// alpha. It takes effect where the surface is unlit and blended. Filament: `shadowMultiplier` and `shadowStrength`.
+    pub shadow_catcher: Option<f32>,
 }
 
 /// How many textures a material can have.
@@ -149,6 +158,9 @@ impl Default for Material {
             specular: None,
             iridescence: None,
             diffuse_transmission: None,
+            subsurface: None,
+            cloth_subsurface: None,
+            shadow_catcher: None,
         }
     }
 }
@@ -213,8 +225,16 @@ impl Material {
             Lobe::Iridescence => self.iridescence.is_some(),
             Lobe::Dispersion => self.dispersion.is_some() && self.transmission.is_some_and(|t| t.volume.is_some()),
             Lobe::DiffuseTransmission => self.diffuse_transmission.is_some(),
+            Lobe::Subsurface => self.subsurface.is_some(),
+            Lobe::ClothSubsurface => self.cloth_subsurface.is_some(),
         };
         Lobe::ALL.into_iter().filter(|lobe| !self.unlit && has(lobe)).collect()
+    }
+
+    /// Returns true for a shadow catcher that takes effect.
+    #[must_use]
+    pub fn catches_shadows(&self) -> bool {
+        self.shadow_catcher.is_some() && self.unlit && self.alpha == AlphaMode::Blend
     }
 
     /// The texture coordinates that tangents must follow: those of the normal map, else of the coat's, else of the

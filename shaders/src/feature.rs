@@ -28,6 +28,8 @@ impl Feature {
     pub const REFLECTIONS: Self = Self("REFLECTIONS");
     /// What is seen through fog.
     pub const FOG: Self = Self("FOG");
+    /// The sun's disc and its halo are drawn over the background.
+    pub const SUN_HALO: Self = Self("SUN_HALO");
     /// Where what moves was in the frame before is read.
     pub const VELOCITY: Self = Self("VELOCITY");
     /// The environment's prefiltered specular cube is read; without it lobes see three bands of spherical harmonics.
@@ -48,6 +50,10 @@ impl Feature {
     pub const DISPERSION: Self = Self("DISPERSION");
     /// Diffuse transmission (KHR_materials_diffuse_transmission and KHR_materials_volume).
     pub const DIFFUSE_TRANSMISSION: Self = Self("DIFFUSE_TRANSMISSION");
+    /// Light that is scattered below the surface, as Filament's shading model `subsurface` has it.
+    pub const SUBSURFACE: Self = Self("SUBSURFACE");
+    /// Diffuse light that is wrapped and tinted, as Filament's shading model `cloth` has it.
+    pub const CLOTH_SUBSURFACE: Self = Self("CLOTH_SUBSURFACE");
     /// The material has a texture: its coordinates come with the vertices.
     pub const TEXTURED: Self = Self("TEXTURED");
     /// The mesh has colors at its vertices.
@@ -59,7 +65,8 @@ impl Feature {
     /// Shading computes in f16 where that is safe; the device must have `SHADER_F16`.
     pub const HALF: Self = Self("HALF");
 
-    /// The features that materials call for. Each binds textures of its own, but for `DISPERSION`.
+    /// The features that materials call for. Each binds textures of its own, but for
+    /// `DISPERSION`, `SUBSURFACE` and `CLOTH_SUBSURFACE`.
     pub const LOBES: &[Self] = &[
         Self::CLEAR_COAT,
         Self::SHEEN,
@@ -69,6 +76,8 @@ impl Feature {
         Self::IRIDESCENCE,
         Self::DISPERSION,
         Self::DIFFUSE_TRANSMISSION,
+        Self::SUBSURFACE,
+        Self::CLOTH_SUBSURFACE,
     ];
     /// The features that the embedded files test and materials do not call for.
     pub const OTHERS: &[Self] = &[
@@ -81,6 +90,7 @@ impl Feature {
         Self::FROXELS,
         Self::REFLECTIONS,
         Self::FOG,
+        Self::SUN_HALO,
         Self::VELOCITY,
         Self::ENVIRONMENT_MAP,
         Self::TEXTURED,

@@ -67,6 +67,7 @@ pub mod sky;
 pub mod specular_aa;
 pub mod srgb;
 pub mod standard_surface;
+pub mod subsurface;
 pub mod taa;
 pub mod table;
 pub mod thin_film;

@@ -93,7 +93,8 @@ impl Surface {
         let dielectric = (material.dielectric_f0() * specular).min(1.0);
         let textured = material.metallic_roughness_texture.is_some();
         Self {
-            unlit: material.unlit,
+            // A shadow catcher shows no light, but where there is none.
+            unlit: material.unlit && !material.catches_shadows(),
             lobes: material.lobes(),
             // A film may reflect all of a color.
             most_f0: if material.metallic > 0.0 || material.iridescence.is_some() { 1.0 } else { dielectric },
@@ -109,7 +110,8 @@ impl Surface {
 
     /// Returns true if light from behind is scattered through the surface.
     pub fn is_translucent(&self) -> bool {
-        self.lobes.contains(Lobe::DiffuseTransmission)
+        let scatters = [Lobe::DiffuseTransmission, Lobe::Subsurface, Lobe::ClothSubsurface];
+        scatters.into_iter().any(|lobe| self.lobes.contains(lobe))
     }
 
     /// Whether it leaves depth for what looks around in the picture.

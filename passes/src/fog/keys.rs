@@ -5,7 +5,7 @@ use crate::choice::{Choice, ChoiceError, switched};
 
 impl FogSettings {
     /// The names that [`FogSettings::set`] takes.
-    pub const KEYS: [&str; 12] = [
+    pub const KEYS: [&str; 13] = [
         "density",
         "height",
         "falloff",
@@ -15,6 +15,7 @@ impl FogSettings {
         "color",
         "tint",
         "sharp",
+        "sharp-levels",
         "glow",
         "glow-start",
         "mean",
@@ -43,8 +44,11 @@ impl FogSettings {
             "opacity" => self.most_opacity = choice.number(0.0, 1.0)?,
             "color" if value == "environment" => self.color = Self::DEFAULT.color,
             "color" => self.color = FogColor::Radiance(choice.numbers(0.0, 1e6)?),
-            "tint" | "sharp" => match &mut self.color {
+            "tint" | "sharp" | "sharp-levels" => match &mut self.color {
                 FogColor::Environment { tint, .. } if key == "tint" => *tint = choice.numbers(0.0, 1e3)?,
+                FogColor::Environment { sharp_levels, .. } if key == "sharp-levels" => {
+                    *sharp_levels = choice.number(0.0, 16.0)?;
+                }
                 FogColor::Environment { sharp_m, .. } => *sharp_m = choice.number(1e-3, 1e9)?,
                 FogColor::Radiance(_) => return Err(choice.only("color=environment")),
             },
@@ -78,11 +82,10 @@ mod tests {
     fn choices_are_made_by_name() -> Result<(), ChoiceError> {
         assert_eq!(FogSettings::from_text("off")?, None);
         assert_eq!(FogSettings::from_text("on")?, Some(FogSettings::DEFAULT));
-        let air =
-            "on:density=0.2,height=3,falloff=0.5,start=1,cut-off=inf,opacity=0.9,mean=filament,tint=1:0.5:1,sharp=7";
+        let air = "on:density=0.2,height=3,falloff=0.5,start=1,cut-off=inf,opacity=0.9,mean=filament,tint=1:0.5:1,sharp=7,sharp-levels=3";
         let sun = "on:glow=8,glow-start=2,color=1:2:3";
         let found = FogSettings::from_text(air)?.expect("it is on");
-        assert_eq!(found.color, FogColor::Environment { tint: [1.0, 0.5, 1.0], sharp_m: 7.0 });
+        assert_eq!(found.color, FogColor::Environment { tint: [1.0, 0.5, 1.0], sharp_m: 7.0, sharp_levels: 3.0 });
         assert_eq!((found.density, found.height_m, found.falloff, found.start_m), (0.2, 3.0, 0.5, 1.0));
         assert_eq!((found.cut_off_m, found.most_opacity, found.exact), (f32::INFINITY, 0.9, false));
         let found = FogSettings::from_text(sun)?.expect("it is on");

@@ -8,9 +8,9 @@ pub(super) fn ranges(s: &Settings) -> Vec<(&'static str, f64, f64, f64)> {
     let mut all = Vec::new();
     let finite = f64::from(f32::MAX);
     if let Some(fog) = &s.fog {
-        let (color, sharp_m) = match fog.color {
-            FogColor::Radiance(color) => (color, 1.0),
-            FogColor::Environment { tint, sharp_m } => (tint, sharp_m),
+        let (color, sharp_m, sharp_levels) = match fog.color {
+            FogColor::Radiance(color) => (color, 1.0, 1.0),
+            FogColor::Environment { tint, sharp_m, sharp_levels } => (tint, sharp_m, sharp_levels),
         };
         all.extend([
             ("settings.fog.density", fog.density.into(), 0.0, 1e3),
@@ -20,6 +20,7 @@ pub(super) fn ranges(s: &Settings) -> Vec<(&'static str, f64, f64, f64)> {
             ("settings.fog.cut_off_m", fog.cut_off_m.into(), 0.0, f64::INFINITY),
             ("settings.fog.most_opacity", fog.most_opacity.into(), 0.0, 1.0),
             ("settings.fog.color.sharp_m", sharp_m.into(), 1e-3, 1e9),
+            ("settings.fog.color.sharp_levels", sharp_levels.into(), 0.0, 16.0),
             ("settings.fog.glow.start_m", fog.glow.map_or(0.0, |glow| glow.start_m.into()), 0.0, 1e9),
             ("settings.fog.glow.size", fog.glow.map_or(1.0, |glow| glow.size.into()), 1e-2, 1e4),
         ]);

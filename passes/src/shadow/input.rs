@@ -38,10 +38,10 @@ impl ShadowBindings {
     pub const NAMES: [&'static str; 6] =
         ["shadow", "local_maps", "shadow_map", "shadow_sampler", "shadow_depth", "shadow_moments"];
 
-    /// Names of the `override` constants: steps of the ray of contact shadows, what there are maps of, and whether shadows of
-    /// the sun have an end.
-    pub const CONSTANTS: [&'static str; 5] =
-        ["CONTACT_STEPS", "CASCADES", "SHADOWS_END", "LAMP_SHADOWS", "SHOW_CASCADES"];
+    /// Names of the `override` constants: steps of the ray of contact shadows, what there are maps of, whether shadows of the
+    /// sun have an end, and whether any are weaker than 1.
+    pub const CONSTANTS: [&'static str; 6] =
+        ["CONTACT_STEPS", "CASCADES", "SHADOWS_END", "LAMP_SHADOWS", "WEAK_SHADOWS", "SHOW_CASCADES"];
 
     /// The bindings for a view: none where it has no maps.
     pub fn new(input: Option<ShadowInput>, view: &GpuView, cx: &mut Cx<'_>) -> Result<Self, RecordError> {
@@ -67,6 +67,7 @@ impl ShadowBindings {
             shadows.cascades as u32,
             u32::from(shadows.settings.far_m.is_some()),
             u32::from(shadows.maps.len() > shadows.cascades),
+            u32::from(shadows.are_weak),
             u32::from(shadows.settings.show_cascades),
         ];
         let features = Features::NONE.with(feature);

@@ -21,9 +21,11 @@ const FACES: [[DVec3; 2]; 6] = [
     [DVec3::NEG_Z, DVec3::X],
 ];
 
-/// Maps that a light takes: one for a spot, six for a point; a parallel light that is not the sun has none.
+/// Maps that a light takes: one for a spot, six for a point; a parallel light that is not the sun has none, and neither has a
+/// light whose shadows have no strength.
 pub(super) fn maps_of(light: &Light) -> usize {
     match light.kind {
+        _ if light.held_shadow_strength() == 0.0 => 0,
         LightKind::Directional { .. } => 0,
         LightKind::Spot { .. } => 1,
         LightKind::Point { .. } => 6,

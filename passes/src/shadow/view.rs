@@ -27,6 +27,8 @@ pub struct ViewShadows {
     pub(crate) keys: Vec<MapKey>,
     /// Of each punctual light of the view, the number of its first map among those of local lights.
     pub(crate) of_lights: Vec<Option<u32>>,
+    /// Whether the shadows of a light are weaker than 1.
+    pub are_weak: bool,
     /// As asked for.
     pub settings: ShadowSettings,
 }
@@ -86,14 +88,15 @@ impl ViewShadows {
             variance_floor: (moments.min_variance_scale * 0.01 * exponent).powi(2),
             bleed: moments.bleed,
             contact_m: settings.contact.map_or(0.0, |contact| contact.distance_m),
-            _pad: 0.0,
+            sun_strength: sun.map_or(1.0, Light::held_shadow_strength),
             cascades: Default::default(),
         };
         let maps: Vec<ShadowMap> = fitted.into_iter().enumerate().map(map).collect();
         for (own, map) in uniforms.cascades.iter_mut().zip(&maps[..cascades]) {
             *own = map.uniforms;
         }
-        (Self { uniforms, cascades, maps, keys, of_lights, settings: *settings }, levels)
+        let are_weak = lights.iter().copied().chain(sun).any(|light| light.held_shadow_strength() < 1.0);
+        (Self { uniforms, cascades, maps, keys, of_lights, are_weak, settings: *settings }, levels)
     }
 
     /// Notes in which level of detail each instance is drawn, by its number.

@@ -1,11 +1,12 @@
 //! A material in the terms of the shaders: the names of what it binds, the features that it calls for, its factors.
 
-use framegraph_scene::material::{AlphaMode, EmissiveUnit, Lobe, Lobes, Material, SLOT_COUNT};
+use framegraph_scene::material::{AlphaMode, EmissiveUnit, Lobe, Lobes, Material, SLOT_COUNT, Subsurface};
 use framegraph_scene::texture::{TextureSlot, UvTransform};
 use framegraph_shaders::layout::{
     AnisotropyUniforms, ClearCoatUniforms, DiffuseTransmissionUniforms, IridescenceUniforms, MATERIAL_SLOTS,
-    MaterialUniforms, SheenUniforms, SpecularUniforms, TRAIT_DOUBLE_SIDED, TRAIT_EMITS, TRAIT_PACKED_OCCLUSION,
-    TRAIT_PLAIN_UV, TRAIT_UNLIT, TextureMap, TransmissionUniforms,
+    MaterialUniforms, SheenUniforms, SpecularUniforms, SubsurfaceUniforms, TRAIT_COAT_KEEPS_F0, TRAIT_DOUBLE_SIDED,
+    TRAIT_EMITS, TRAIT_PACKED_OCCLUSION, TRAIT_PLAIN_UV, TRAIT_SHADOW_CATCHER, TRAIT_UNLIT, TextureMap,
+    TransmissionUniforms,
 };
 use framegraph_shaders::{Feature, Features};
 use glam::{Vec2, Vec3};
@@ -71,6 +72,8 @@ pub fn features_of(lobes: Lobes) -> Features {
         Lobe::Iridescence => Feature::IRIDESCENCE,
         Lobe::Dispersion => Feature::DISPERSION,
         Lobe::DiffuseTransmission => Feature::DIFFUSE_TRANSMISSION,
+        Lobe::Subsurface => Feature::SUBSURFACE,
+        Lobe::ClothSubsurface => Feature::CLOTH_SUBSURFACE,
     };
     lobes.iter().map(feature).collect()
 }
@@ -99,6 +102,8 @@ pub fn material_traits(material: &Material) -> u32 {
         (material.unlit, TRAIT_UNLIT),
         (slots.iter().any(Option::is_some) && slots.iter().flatten().all(plain), TRAIT_PLAIN_UV),
         (packed, TRAIT_PACKED_OCCLUSION),
+        (material.clear_coat.is_some_and(|coat| coat.keeps_base_f0), TRAIT_COAT_KEEPS_F0),
+        (material.catches_shadows(), TRAIT_SHADOW_CATCHER),
     ];
     textures.chain(others).filter(|(is, _)| *is).map(|(_, bit)| 1 << bit).sum()
 }
@@ -128,6 +133,7 @@ pub fn material_uniforms(material: &Material) -> MaterialUniforms {
             AlphaMode::Opaque | AlphaMode::Blend => 0.0,
         },
         dielectric_f0: material.dielectric_f0(),
+        catcher_strength: material.shadow_catcher.map_or(1.0, |strength| strength.clamp(0.0, 1.0)),
         base_color_map: map(material.base_color_texture),
         metallic_roughness_map: map(material.metallic_roughness_texture),
         normal_map: map(material.normal_texture),
@@ -177,7 +183,19 @@ pub fn material_uniforms(material: &Material) -> MaterialUniforms {
                 color_map: map(scattered.color_texture),
             }
         }),
+        subsurface: subsurface_uniforms(material),
         ..MaterialUniforms::default()
+    }
+}
+
+/// Returns what is scattered below the surface, held within the ranges that shaders expect.
+fn subsurface_uniforms(material: &Material) -> SubsurfaceUniforms {
+    let Subsurface { color, power, thickness } = material.subsurface.unwrap_or_default();
+    SubsurfaceUniforms {
+        color: color.clamp(Vec3::ZERO, Vec3::ONE),
+        power: power.clamp(0.0, Subsurface::MAX_POWER),
+        cloth_color: material.cloth_subsurface.unwrap_or(Vec3::ONE).clamp(Vec3::ZERO, Vec3::ONE),
+        thickness: thickness.clamp(0.0, 1.0),
     }
 }
 
@@ -227,8 +245,7 @@ mod tests {
         assert!(columns.abs_diff_eq(transform.matrix(), 1e-6));
         assert_eq!(packed.base_color_map, TextureMap::IDENTITY);
         assert_eq!(material_traits(&material), 1 << 2 | 1 << TRAIT_EMITS | 1 << TRAIT_UNLIT);
-        assert_eq!((packed.alpha_cutoff, packed.metallic), (0.3, 1.0));
-        assert_eq!(packed.emissive_exposure_weight, 1.0);
+        assert_eq!((packed.alpha_cutoff, packed.metallic, packed.emissive_exposure_weight), (0.3, 1.0, 1.0));
         assert!((packed.dielectric_f0 - 0.04).abs() < 1e-7);
     }
 
@@ -282,6 +299,7 @@ mod tests {
                 texture: slot(1.0),
                 roughness_texture: slot(2.0),
                 normal_texture: slot(3.0),
+                keeps_base_f0: true,
             }),
             sheen: Some(Sheen {
                 color: Vec3::new(0.5, 0.25, 0.125),
@@ -322,8 +340,13 @@ mod tests {
                 color_texture: slot(14.0),
                 volume: None,
             }),
+            subsurface: Some(Subsurface { color: Vec3::splat(2.0), power: 3.0, thickness: 0.25 }),
+            cloth_subsurface: Some(Vec3::new(0.5, 0.25, 0.125)),
             ..Material::default()
         };
+        let SubsurfaceUniforms { color, power, cloth_color, thickness } = material_uniforms(&material).subsurface;
+        assert_eq!((color, power, thickness, cloth_color.y), (Vec3::ONE, 3.0, 0.25, 0.25));
+        assert_eq!(material_traits(&material) >> SLOT_COUNT, 1 << (TRAIT_COAT_KEEPS_F0 - MATERIAL_SLOTS));
         let MaterialUniforms {
             clear_coat,
             sheen,

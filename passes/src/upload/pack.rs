@@ -63,7 +63,8 @@ pub fn light_uniforms(light: &Light, origin: DVec3, exposure: f32) -> Result<Lig
             (Punctual::Spot { position, direction, range_m, inner_cone_rad, outer_cone_rad }, intensity_candela)
         }
     };
-    LightUniforms::punctual(shape, light.color, strength, exposure)
+    let packed = LightUniforms::punctual(shape, light.color, strength, exposure)?;
+    Ok(LightUniforms { shadow_strength: light.held_shadow_strength(), ..packed })
 }
 
 #[cfg(test)]

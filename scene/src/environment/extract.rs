@@ -183,12 +183,9 @@ impl Removed {
         let solid_angle = self.luminous * self.luminous / self.luminous2;
         let radius = (1.0 - solid_angle / std::f64::consts::TAU).clamp(-1.0, 1.0).acos();
         Some(Light {
-            name: "sun".into(),
             kind: LightKind::Directional { illuminance_lux: lux as f32, angular_radius_rad: radius as f32 },
             color: (illuminance / lux).as_vec3(),
-            position: DVec3::ZERO,
-            direction: (-toward).as_vec3(),
-            rest: None,
+            ..Light::directional("sun", (-toward).as_vec3(), lux as f32)
         })
     }
 }

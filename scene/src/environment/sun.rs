@@ -54,14 +54,11 @@ pub fn sun_light(toward_sun: DVec3, turbidity: f64) -> Option<Light> {
     let color = DVec3::new(transmittance(0.68), transmittance(0.55), transmittance(0.44));
     let color = color / luminance_from_rec709(color);
     Some(Light {
-        name: "sun".into(),
         kind: LightKind::Directional {
             illuminance_lux: illuminance_lux as f32,
             angular_radius_rad: SOLAR_ANGULAR_RADIUS_RAD as f32,
         },
         color: color.as_vec3(),
-        position: DVec3::ZERO,
-        direction: (-toward_sun).as_vec3(),
-        rest: None,
+        ..Light::directional("sun", (-toward_sun).as_vec3(), illuminance_lux as f32)
     })
 }

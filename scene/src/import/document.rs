@@ -21,6 +21,9 @@ pub(super) struct Document {
 /// Node index of an animation channel without a node.
 pub(super) const NO_NODE: u32 = u32::MAX;
 
+/// Member of `extras` that states what glTF has no words for.
+pub(super) const EXTRAS: &str = "framegraph";
+
 /// Parses the JSON of a file.
 ///
 /// # Errors
@@ -62,7 +65,15 @@ fn old_version(json: &Value) -> Option<String> {
     is_old.then(|| stated.unwrap_or_else(|| "1.0".into()))
 }
 
-/// Writes whole numbers as integers and removes `extras`.
+/// Removes `extras` of an object, except the member of it that this importer reads.
+fn keep_own_extras(members: &mut Map<String, Value>) {
+    let Some(mut extras) = members.remove("extras") else { return };
+    if let Some(own) = extras.get_mut(EXTRAS).map(Value::take) {
+        members.insert("extras".into(), Map::from_iter([(EXTRAS.to_owned(), own)]).into());
+    }
+}
+
+/// Writes whole numbers as integers and removes `extras` that are not read.
 ///
 /// JSON Schema counts 24.0 as an integer; the schema types do not.
 fn tidy(json: &mut Value) {
@@ -79,7 +90,7 @@ fn tidy(json: &mut Value) {
             }
             Value::Array(values) => stack.extend(values),
             Value::Object(members) => {
-                members.remove("extras");
+                keep_own_extras(members);
                 stack.extend(members.values_mut());
             }
             Value::Null | Value::Bool(_) | Value::String(_) => {}

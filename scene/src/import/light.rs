@@ -7,10 +7,11 @@ use gltf_json::extensions::scene::khr_lights_punctual::Light as JsonLight;
 use gltf_json::extensions::scene::khr_lights_punctual::Type;
 use gltf_json::validation::Checked;
 
+use super::extras::Extras;
 use super::node::{Attached, FlatNode};
 use super::source::{Source, Warnings, beyond};
 use crate::error::{SceneError, one_line};
-use crate::light::{Light, LightKind};
+use crate::light::{Light, LightKind, SunHalo};
 
 /// Appends the lights of all nodes. Returns the node of each, by its place, and its index in the file.
 pub(super) fn import(
@@ -52,10 +53,34 @@ pub(super) fn import(
         };
         let name = json.name.as_deref().filter(|name| !name.is_empty());
         let name = one_line(name.unwrap_or(&node.name));
-        lights.push(Light { name, kind, color, position, direction, rest: Some(attached.len()) });
+        let mut light = Light {
+            name,
+            kind,
+            color,
+            position,
+            direction,
+            rest: Some(attached.len()),
+            shadow_strength: 1.0,
+            halo: None,
+        };
+        let pointer = format!("/extensions/KHR_lights_punctual/lights/{index}");
+        if let Some(extras) = Extras::find(source, &at, &pointer, warnings) {
+            read_extras(&extras, warnings, &mut light);
+        }
+        lights.push(light);
         attached.push(Attached { node: place, index });
     }
     Ok(attached)
+}
+
+/// Reads the extras of a light into it.
+fn read_extras(extras: &Extras<'_>, warnings: &mut Warnings, light: &mut Light) {
+    light.shadow_strength = extras.number("shadowStrength", [0.0, 1.0], warnings).unwrap_or(1.0);
+    if let Some(halo) = extras.child("sunHalo", warnings) {
+        let size = halo.number("size", SunHalo::SIZES, warnings).unwrap_or(SunHalo::FILAMENT.size);
+        let falloff = halo.number("falloff", SunHalo::FALLOFFS, warnings).unwrap_or(SunHalo::FILAMENT.falloff);
+        light.halo = Some(SunHalo { size, falloff });
+    }
 }
 
 /// The shape and strength, every number in range.

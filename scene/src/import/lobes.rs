@@ -91,6 +91,7 @@ impl Reading<'_, '_> {
             texture: self.slot(json, "clearcoatTexture", TextureRole::Linear)?,
             roughness_texture: self.slot(json, "clearcoatRoughnessTexture", TextureRole::Linear)?,
             normal_texture: self.slot(json, "clearcoatNormalTexture", TextureRole::Normal)?,
+            keeps_base_f0: false,
         }))
     }
 

@@ -7,8 +7,10 @@ use gltf_json as json;
 use gltf_json::validation::Checked;
 use gltf_json::{Index, material};
 
+use super::extras::Extras;
 use super::line_material::{LineStreams, for_lines};
 use super::lobes;
+use super::material_extras;
 use super::object::Object;
 use super::source::{Source, Warnings, beyond};
 use super::spec_gloss;
@@ -165,6 +167,9 @@ impl<'a> Materials<'a> {
         };
         lobes::read(source, &at, json, &mut self.textures, warnings, &mut material)?;
         spec_gloss::read(source, &at, json, &mut self.textures, warnings, &mut material)?;
+        if let Some(extras) = Extras::find(source, &at, &format!("/materials/{index}"), warnings) {
+            material_extras::read(&extras, warnings, &mut material);
+        }
         Ok(material)
     }
 }

@@ -6,6 +6,7 @@ mod character;
 #[cfg(all(feature = "draco", feature = "meshopt"))]
 mod compressed;
 mod document;
+mod extras;
 mod fixture;
 mod fuzz;
 mod geometry;

@@ -23,6 +23,9 @@ pub struct ClearCoat {
     pub roughness_texture: Option<TextureSlot>,
     /// Texture of the coat's tangent-space normal; without it the coat has the mesh's normals. Role `Normal`.
     pub normal_texture: Option<TextureSlot>,
+    /// Keeps the base's reflectance at normal incidence, as in air. By default, the base meets the coat's index of 1.5, which
+    /// lowers it. Filament: material property `clearCoatIorChange` set to false.
+    pub keeps_base_f0: bool,
 }
 
 /// Fibers that stand up from the surface (KHR_materials_sheen): brightest at the silhouette.
@@ -120,6 +123,31 @@ pub struct Specular {
     pub color_texture: Option<TextureSlot>,
 }
 
+/// Light scattered below the surface, as in skin, wax or leaves. It is Filament's shading model `subsurface`: an approximation
+/// in the style of films, which conserves no energy. In glTF files it is `{"subsurface": {...}}` of the material's extras.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Subsurface {
+    /// Color of the scattered light, linear Rec.709, 0…1. Filament: `subsurfaceColor`.
+    pub color: Vec3,
+    /// Exponent of the lobe toward lights behind the surface, 0 to [`Subsurface::MAX_POWER`]; larger values make it smaller.
+    /// Filament: `subsurfacePower`.
+    pub power: f32,
+    /// Thickness, from 0 (light passes unhindered) to 1 (none passes); without a unit. Filament: `thickness`.
+    pub thickness: f32,
+}
+
+impl Subsurface {
+    /// Largest exponent.
+    pub const MAX_POWER: f32 = 10_000.0;
+}
+
+impl Default for Subsurface {
+    /// Filament's defaults: white, power 12.234, thickness 0.5.
+    fn default() -> Self {
+        Self { color: Vec3::ONE, power: 12.234, thickness: 0.5 }
+    }
+}
+
 impl Default for Iridescence {
     /// The defaults of the extension, with the film everywhere: index 1.3, 100 to 400 nm.
     fn default() -> Self {
@@ -191,11 +219,15 @@ pub enum Lobe {
     Dispersion,
     /// Light that is scattered through: [`DiffuseTransmission`].
     DiffuseTransmission,
+    /// Light that is scattered below the surface: [`Subsurface`].
+    Subsurface,
+    /// Light that is scattered in cloth ([`Material::cloth_subsurface`](super::Material::cloth_subsurface)).
+    ClothSubsurface,
 }
 
 impl Lobe {
     /// All lobes, in declaration order.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::ClearCoat,
         Self::Sheen,
         Self::Anisotropy,
@@ -204,12 +236,14 @@ impl Lobe {
         Self::Iridescence,
         Self::Dispersion,
         Self::DiffuseTransmission,
+        Self::Subsurface,
+        Self::ClothSubsurface,
     ];
 }
 
 /// A set of lobes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Lobes(u8);
+pub struct Lobes(u16);
 
 impl Lobes {
     /// The metal-rough base alone.

@@ -29,10 +29,12 @@ pub struct FogUniforms {
     pub exact: f32,
     /// 1: the color is the environment's. 0: it is not.
     pub of_environment: f32,
-    /// One over the distance at which the environment is blurred less by a level, in 1/m.
+    /// One over the distance from which on the environment is blurred less by `sharp_levels`, in 1/m.
     pub per_sharp_m: f32,
+    /// Levels by which it is blurred less from that distance on.
+    pub sharp_levels: f32,
     /// Padding to 16 bytes; zero.
-    pub _pad: [f32; 2],
+    pub _pad: f32,
 }
 
 #[cfg(test)]
@@ -50,6 +52,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
         exact,
         of_environment,
         per_sharp_m,
+        sharp_levels,
         _pad,
     })]
 }

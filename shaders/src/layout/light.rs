@@ -24,8 +24,10 @@ pub struct LightUniforms {
     /// Number of the light's first shadow map among those of local lights, counted from 1; 0: it
     /// casts none.
     pub shadow_map: u32,
+    /// Darkness of the light's shadows, 0…1; 1 as [`LightUniforms::punctual`] makes it.
+    pub shadow_strength: f32,
     /// Padding to 16 bytes; zero.
-    pub _pad: [f32; 2],
+    pub _pad: f32,
 }
 
 /// Shape of a punctual light, as KHR_lights_punctual has it.
@@ -100,7 +102,7 @@ impl LightUniforms {
             finite_positive(what, value, 0.0)?;
         }
         finite_positive("color", color.max_element(), 0.0)?;
-        let base = Self { intensity: color * (intensity * exposure), ..Self::zeroed() };
+        let base = Self { intensity: color * (intensity * exposure), shadow_strength: 1.0, ..Self::zeroed() };
         match shape {
             Punctual::Directional { direction } => Ok(Self { kind: 0, direction: unit(direction)?, ..base }),
             Punctual::Point { position, range_m } => {
@@ -163,6 +165,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
         spot_scale,
         spot_offset,
         shadow_map,
+        shadow_strength,
         _pad
     })]
 }

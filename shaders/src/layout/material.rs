@@ -18,6 +18,10 @@ pub const TRAIT_PLAIN_UV: u32 = MATERIAL_SLOTS + 3;
 pub const TRAIT_PACKED_OCCLUSION: u32 = MATERIAL_SLOTS + 4;
 /// Number of the bit of lines and points, which have no plane to take a normal from. It is of meshes, not of materials.
 pub const TRAIT_NO_AREA: u32 = MATERIAL_SLOTS + 5;
+/// Bit of `MATERIAL_TRAITS`: the base under the clear coat keeps its reflectance in air.
+pub const TRAIT_COAT_KEEPS_F0: u32 = MATERIAL_SLOTS + 6;
+/// Bit of `MATERIAL_TRAITS`: the surface is seen where the sun is in shadow alone.
+pub const TRAIT_SHADOW_CATCHER: u32 = MATERIAL_SLOTS + 7;
 
 /// How texture coordinates of the mesh lead to a texture (KHR_texture_transform); that of no texture is not read.
 #[repr(C)]
@@ -75,8 +79,10 @@ pub struct MaterialUniforms {
     pub alpha_cutoff: f32,
     /// Reflectance of the dielectric part at normal incidence; 0.04 for an index of refraction of 1.5.
     pub dielectric_f0: f32,
+    /// Strength of the shadow that a shadow catcher shows, 0…1.
+    pub catcher_strength: f32,
     /// Padding to 16 bytes; zero.
-    pub _pad: [u32; 2],
+    pub _pad: u32,
     /// Texture of the base color.
     pub base_color_map: TextureMap,
     /// Texture of roughness and metalness.
@@ -101,6 +107,22 @@ pub struct MaterialUniforms {
     pub iridescence: IridescenceUniforms,
     /// Diffuse transmission; read with the feature `DIFFUSE_TRANSMISSION`.
     pub diffuse_transmission: DiffuseTransmissionUniforms,
+    /// Light scattered below the surface; read with the features `SUBSURFACE` and `CLOTH_SUBSURFACE`.
+    pub subsurface: SubsurfaceUniforms,
+}
+
+/// Light scattered below the surface (Filament's shading models `subsurface` and `cloth`).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct SubsurfaceUniforms {
+    /// Color of the scattered light, linear Rec.709, 0…1.
+    pub color: Vec3,
+    /// Exponent of the lobe toward lights behind the surface, 0 or more.
+    pub power: f32,
+    /// Color of light that is scattered in cloth, linear Rec.709, 0…1.
+    pub cloth_color: Vec3,
+    /// Thickness, from 0 for none to 1, through which nothing passes.
+    pub thickness: f32,
 }
 
 /// Clear coat, a dielectric layer over the other lobes (KHR_materials_clearcoat).
@@ -234,7 +256,8 @@ impl Default for MaterialUniforms {
             occlusion_strength: 1.0,
             alpha_cutoff: 0.5,
             dielectric_f0: 0.04,
-            _pad: [0; 2],
+            catcher_strength: 1.0,
+            _pad: 0,
             base_color_map: TextureMap::IDENTITY,
             metallic_roughness_map: TextureMap::IDENTITY,
             normal_map: TextureMap::IDENTITY,
@@ -247,6 +270,7 @@ impl Default for MaterialUniforms {
             specular: SpecularUniforms::default(),
             iridescence: IridescenceUniforms::default(),
             diffuse_transmission: DiffuseTransmissionUniforms::default(),
+            subsurface: SubsurfaceUniforms::default(),
         }
     }
 }
@@ -265,6 +289,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             occlusion_strength,
             alpha_cutoff,
             dielectric_f0,
+            catcher_strength,
             _pad,
             base_color_map,
             metallic_roughness_map,
@@ -278,7 +303,9 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             specular,
             iridescence,
             diffuse_transmission,
+            subsurface,
         }),
+        layout_of!(SubsurfaceUniforms { color, power, cloth_color, thickness }),
         layout_of!(ClearCoatUniforms { factor, roughness, normal_scale, _pad, map, roughness_map, normal_map }),
         layout_of!(SheenUniforms { color, roughness, color_map, roughness_map }),
         layout_of!(AnisotropyUniforms { rotation, strength, _pad, map }),

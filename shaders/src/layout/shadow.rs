@@ -23,8 +23,8 @@ pub struct ShadowUniforms {
     pub bleed: f32,
     /// Length of a contact shadow's ray in m.
     pub contact_m: f32,
-    /// Padding to 16 bytes; zero.
-    pub _pad: f32,
+    /// Darkness of the sun's shadows, 0…1.
+    pub sun_strength: f32,
     /// Maps of the sun; zero beyond the last.
     pub cascades: [ShadowMapUniforms; 4],
 }
@@ -109,7 +109,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
             variance_floor,
             bleed,
             contact_m,
-            _pad,
+            sun_strength,
             cascades,
         }),
         layout_of!(ShadowMapUniforms {

@@ -13,16 +13,16 @@ pub struct SkyUniforms {
     pub perez: [Vec4; 5],
     /// (x, y, Y) at the zenith over Perez' function there; Y in pre-exposed nits.
     pub zenith: Vec3,
-    /// Padding to 16 bytes; zero.
-    pub _pad0: f32,
+    /// 1 - cos of the angular radius of the sun's disc, where it has a halo.
+    pub disc_versine: f32,
     /// Pre-exposed radiance below the horizon, or everywhere where it is constant.
     pub ground: Vec3,
-    /// Padding to 16 bytes; zero.
-    pub _pad1: f32,
+    /// One over the difference between the halo's versine and the disc's.
+    pub per_halo: f32,
     /// Unit vector toward the sun that the sky was made for.
     pub toward_sun: Vec3,
-    /// Padding to 16 bytes; zero.
-    pub _pad2: f32,
+    /// Exponent of the halo's falloff.
+    pub halo_falloff: f32,
 }
 
 impl SkyUniforms {
@@ -34,11 +34,9 @@ impl SkyUniforms {
         Self {
             perez: sky.perez.map(|coefficient| coefficient.extend(0.0).as_vec4()),
             zenith: zenith.as_vec3(),
-            _pad0: 0.0,
             ground: (sky.ground * exposure).as_vec3(),
-            _pad1: 0.0,
             toward_sun: sky.to_sun.as_vec3(),
-            _pad2: 0.0,
+            ..Self::default()
         }
     }
 
@@ -46,11 +44,24 @@ impl SkyUniforms {
     pub fn constant(radiance: Vec3) -> Self {
         Self { ground: radiance, ..Self::default() }
     }
+
+    /// Adds a disc of that angular radius in radians and a halo of `size` times the radius, above 1, with an exponent of
+    /// falloff above 0; for the feature `SUN_HALO`.
+    #[must_use]
+    pub fn with_halo(self, radius_rad: f32, size: f32, falloff: f32) -> Self {
+        // 1 - cos, by the half angle.
+        let versine = |angle: f64| 2.0 * (0.5 * angle).sin().powi(2);
+        let radius = f64::from(radius_rad);
+        let disc = versine(radius);
+        let halo = versine((radius * f64::from(size)).min(std::f64::consts::PI));
+        let per_halo = 1.0 / (halo - disc).max(1e-12);
+        Self { disc_versine: disc as f32, per_halo: per_halo as f32, halo_falloff: falloff, ..self }
+    }
 }
 
 #[cfg(test)]
 pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
-    vec![layout_of!(SkyUniforms { perez, zenith, _pad0, ground, _pad1, toward_sun, _pad2 })]
+    vec![layout_of!(SkyUniforms { perez, zenith, disc_versine, ground, per_halo, toward_sun, halo_falloff })]
 }
 
 #[cfg(test)]

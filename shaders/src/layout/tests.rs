@@ -107,6 +107,8 @@ fn constants_have_the_same_values_on_both_sides() {
     assert_eq!(material("TRAIT_PLAIN_UV"), layout::TRAIT_PLAIN_UV);
     assert_eq!(material("TRAIT_PACKED_OCCLUSION"), layout::TRAIT_PACKED_OCCLUSION);
     assert_eq!(material("TRAIT_NO_AREA"), layout::TRAIT_NO_AREA);
+    assert_eq!(material("TRAIT_COAT_KEEPS_F0"), layout::TRAIT_COAT_KEEPS_F0);
+    assert_eq!(material("TRAIT_SHADOW_CATCHER"), layout::TRAIT_SHADOW_CATCHER);
 
     use glam::Vec3;
     let kind = |shape| LightUniforms::punctual(shape, Vec3::ONE, 1.0, 1.0).unwrap().kind;

@@ -87,6 +87,11 @@ pub fn faded_visibility(visibility: f64, ahead_m: f64, inv_far2: f64) -> f64 {
     1.0 - (1.0 - visibility) * saturate(5.0 - 5.0 * ahead_m * ahead_m * inv_far2)
 }
 
+/// Visibility of a light whose shadows have that strength.
+pub fn weakened_visibility(visibility: f64, strength: f64) -> f64 {
+    visibility * strength + (1.0 - strength)
+}
+
 /// Number of the face that a direction goes through.
 pub fn cube_face_of(direction: DVec3) -> u32 {
     let a = direction.abs();

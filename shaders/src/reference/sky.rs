@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::math::{PI, mix, smoothstep};
+use super::math::{PI, mix, saturate, smoothstep};
 
 /// Perez' sky function for three quantities at once.
 pub fn perez(coefficients: &[DVec3; 5], cos_theta: f64, cos_gamma: f64) -> DVec3 {
@@ -38,6 +38,12 @@ pub fn sun_disc(d: DVec3, to_sun: DVec3, sin_radius: f64) -> f64 {
         return 0.0;
     }
     1.0 - smoothstep(0.9 * sin_radius, sin_radius, d.cross(to_sun).length())
+}
+
+/// Share of the sun's brightness that its disc with a halo shows in the unit direction d.
+pub fn sun_halo(d: DVec3, to_sun: DVec3, versine: f64, per_halo: f64, falloff: f64) -> f64 {
+    let left = 1.0 - saturate((0.5 * (d - to_sun).length_squared() - versine) * per_halo);
+    if left > 0.0 { left.max(1e-6).powf(falloff) } else { 0.0 }
 }
 
 /// Radiance of a disc that lights a surface facing it with `illuminance`.

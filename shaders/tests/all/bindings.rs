@@ -127,8 +127,9 @@ fn features_add_what_they_bind_and_lobes_add_to_the_material() {
     assert_eq!(added(Feature::HALF), []);
     for lobe in Feature::LOBES {
         let (frame, material): (Vec<_>, Vec<_>) = added(*lobe).into_iter().partition(|(group, _)| *group == 0);
-        // Dispersion is a number of the transmission's.
-        assert_eq!(material.is_empty(), *lobe == Feature::DISPERSION, "{}", lobe.name());
+        // These are numbers alone.
+        let numbers = [Feature::DISPERSION, Feature::SUBSURFACE, Feature::CLOTH_SUBSURFACE];
+        assert_eq!(material.is_empty(), numbers.contains(lobe), "{}", lobe.name());
         assert!(material.iter().all(|(group, _)| *group == GROUP_MATERIAL), "{}", lobe.name());
         let behind: &[&str] = if *lobe == Feature::TRANSMISSION { &["scene_levels", "scene_sampler"] } else { &[] };
         assert_eq!(frame, of_frame(behind), "{}", lobe.name());

@@ -90,11 +90,11 @@ fn every_feature_makes_a_difference_and_only_to_what_shades() {
         let expected: Vec<Feature> = match pass.name() {
             // Dispersion is part of transmission, and makes no difference alone.
             "color" => {
-                let not = [Feature::VELOCITY, Feature::DISPERSION];
+                let not = [Feature::VELOCITY, Feature::DISPERSION, Feature::SUN_HALO];
                 Feature::all().filter(|feature| !not.contains(feature)).collect()
             }
             "taa" => vec![Feature::VELOCITY],
-            "sky" => vec![Feature::FOG],
+            "sky" => vec![Feature::FOG, Feature::SUN_HALO],
             // Made of functions that shade, too, and made in f32.
             "dfg" => vec![Feature::HALF],
             "occlusion" => vec![Feature::HALF],
@@ -124,6 +124,8 @@ fn lobes_are_in_the_shaders_that_call_for_them() {
     for (words, features) in [
         (["fn thin_film_reflectance", "iridescence_texture"], Features::NONE.with(Feature::IRIDESCENCE)),
         (["fn dispersed_ior", "refracted_path"], Features::NONE.with(Feature::TRANSMISSION).with(Feature::DISPERSION)),
+        (["fn subsurface_scatter", "fn subsurface_roughness"], Features::NONE.with(Feature::SUBSURFACE)),
+        (["fn wrapped_cosine", "fn cloth_tint"], Features::NONE.with(Feature::CLOTH_SUBSURFACE)),
         (["fn fd_transmitted", "diffuse_transmission_texture"], Features::NONE.with(Feature::DIFFUSE_TRANSMISSION)),
     ] {
         let lobe = text(features);

@@ -32,8 +32,11 @@ struct FogUniforms {
     exact: f32,
     /// 1: the color is the environment's. 0: it is not.
     of_environment: f32,
-    /// One over the distance at which the environment is blurred less by a level, in 1/m.
+    /// One over the distance from which on the environment is blurred less by `sharp_levels`, in
+    /// 1/m.
     per_sharp_m: f32,
+    /// Levels by which it is blurred less from that distance on.
+    sharp_levels: f32,
 }
 
 /// Bound after the other uniform buffers of the frame: no branch depends on it. Mesa's software
@@ -49,7 +52,8 @@ fn in_fog(color: vec4<f32>, direction: vec3<f32>, way_m: f32) -> vec4<f32> {
     let inside = step(fog.start_m, way_m) * step(way_m, fog.cut_off_m);
     let opacity = inside * fog_opacity(depth, fog.most_opacity);
     let around = rotate_about_y(direction, frame.environment_rotation);
-    let lod = max(frame.roughness_one_lod - saturate(way_m * fog.per_sharp_m), 0.0);
+    let sharper = saturate(way_m * fog.per_sharp_m) * fog.sharp_levels;
+    let lod = max(frame.roughness_one_lod - sharper, 0.0);
     let image = textureSampleLevel(specular_map, light_sampler, around, lod).rgb;
     let tint = mix(vec3<f32>(1.0), image * frame.specular_scale, fog.of_environment);
     let glow = fog_glow(dot(direction, frame.sun_direction), fog.glow_size) * fog.glows * inside;

@@ -121,6 +121,10 @@ const TRAIT_PLAIN_UV: u32 = SLOT_COUNT + 3u;
 const TRAIT_PACKED_OCCLUSION: u32 = SLOT_COUNT + 4u;
 /// The mesh is of lines or points.
 const TRAIT_NO_AREA: u32 = SLOT_COUNT + 5u;
+/// The base under the clear coat keeps its reflectance in air.
+const TRAIT_COAT_KEEPS_F0: u32 = SLOT_COUNT + 6u;
+/// The surface is seen where the sun is in shadow alone.
+const TRAIT_SHADOW_CATCHER: u32 = SLOT_COUNT + 7u;
 
 /// Whether the material has the texture of a slot, or a trait.
 fn material_has(what: u32) -> bool {

@@ -96,6 +96,19 @@ struct DiffuseTransmissionUniforms {
     color_map: TextureMap,
 }
 
+/// Light scattered below the surface (Filament's shading models `subsurface` and `cloth`).
+/// Mirrored by `layout::SubsurfaceUniforms`.
+struct SubsurfaceUniforms {
+    /// Color of the scattered light, linear Rec.709, 0…1.
+    color: vec3<f32>,
+    /// Exponent of the lobe toward lights behind the surface, 0 or more.
+    power: f32,
+    /// Color of light that is scattered in cloth, linear Rec.709, 0…1.
+    cloth_color: vec3<f32>,
+    /// Thickness, from 0 for none to 1, through which nothing passes.
+    thickness: f32,
+}
+
 /// Factors of a material. Mirrored by `layout::MaterialUniforms`.
 struct MaterialUniforms {
     /// Linear Rec.709 and alpha (straight, not premultiplied).
@@ -116,7 +129,9 @@ struct MaterialUniforms {
     /// Alpha mode MASK: fragments with less alpha are discarded.
     alpha_cutoff: f32,
     /// Reflectance of the dielectric part at normal incidence; 0.04 for an index of 1.5.
-    @size(12) dielectric_f0: f32,
+    dielectric_f0: f32,
+    /// Strength of the shadow that a shadow catcher shows, 0…1.
+    @size(8) catcher_strength: f32,
     base_color_map: TextureMap,
     metallic_roughness_map: TextureMap,
     normal_map: TextureMap,
@@ -129,4 +144,5 @@ struct MaterialUniforms {
     specular: SpecularUniforms,
     iridescence: IridescenceUniforms,
     diffuse_transmission: DiffuseTransmissionUniforms,
+    subsurface: SubsurfaceUniforms,
 }

@@ -31,10 +31,16 @@ fn pixels_per_m(distance_m: f32) -> f32 {
 }
 
 /// Pre-exposed radiance of the scene behind a body, where the ray that entered at `world` leaves
-/// the body after `path`. It is blurred by the light's spread in radians: over the way from there
-/// to the thing seen (x), and from the eye (y). The picture has no other side: where it shows
-/// something in front of the surface, the ray is taken to go straight on.
-fn radiance_behind(world: vec3<f32>, path: vec3<f32>, spread_rad: vec2<f32>) -> vec3<f32> {
+/// the body of index `ior` after `path`. It is blurred by the light's spread in radians: over the
+/// way from there to the thing seen (x), and from the eye (y). Within the body the spread is that
+/// in air over the index. The picture has no other side: where it shows something in front of the
+/// surface, the ray is taken to go straight on.
+fn radiance_behind(
+    world: vec3<f32>,
+    path: vec3<f32>,
+    ior: f32,
+    spread_rad: vec2<f32>,
+) -> vec3<f32> {
     let exit = world + path;
     var uv = screen_uv(exit);
     var behind_m = textureSampleLevel(scene_levels, scene_sampler, uv, 0.0).a;
@@ -43,7 +49,8 @@ fn radiance_behind(world: vec3<f32>, path: vec3<f32>, spread_rad: vec2<f32>) -> 
         behind_m = textureSampleLevel(scene_levels, scene_sampler, uv, 0.0).a;
     }
     let way_m = max(behind_m - distance_ahead(exit), 0.0);
-    let sigma_px = spread_rad.x * way_m * pixels_per_m(behind_m) + spread_rad.y * pixels_per_m(1.0);
+    let spread_m = spread_rad.x * (way_m + length(path) / ior);
+    let sigma_px = spread_m * pixels_per_m(behind_m) + spread_rad.y * pixels_per_m(1.0);
     let lod = pyramid_lod(sigma_px);
     return textureSampleLevel(scene_levels, scene_sampler, uv, lod).rgb;
 }

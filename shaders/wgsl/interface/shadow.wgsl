@@ -57,6 +57,8 @@ struct ShadowUniforms {
     bleed: f32,
     /// Length of a contact shadow's ray in m.
     contact_m: f32,
+    /// Darkness of the sun's shadows, 0…1.
+    sun_strength: f32,
     /// Maps of the sun, CASCADES of them, each of which takes the whole layer of its number. Not
     /// with the others: Mesa's software driver loads from storage fragment by fragment.
     cascades: array<ShadowMapUniforms, 4>,
@@ -72,6 +74,8 @@ override CASCADES: u32 = 4u;
 override SHADOWS_END: bool = true;
 /// Whether there are maps of local lights.
 override LAMP_SHADOWS: bool = true;
+/// Whether the shadows of a light are weaker than 1.
+override WEAK_SHADOWS: bool = true;
 /// Tint what is lit by the number of its cascade.
 override SHOW_CASCADES: bool = false;
 

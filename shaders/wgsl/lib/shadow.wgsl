@@ -104,6 +104,12 @@ fn faded_visibility(visibility: f32, ahead_m: f32, inv_far2: f32) -> f32 {
     return 1.0 - (1.0 - visibility) * share;
 }
 
+/// Visibility of a light whose shadows have that strength, 0…1: one at strength zero. Strength one
+/// changes no bit.
+fn weakened_visibility(visibility: f32, strength: f32) -> f32 {
+    return visibility * strength + (1.0 - strength);
+}
+
 /// Number of the face about a point that a direction goes through: +x, -x, +y, -y, +z, -z. Ties go
 /// to the first, so that all fragments of an edge agree (hard case 46).
 fn cube_face_of(direction: vec3<f32>) -> u32 {

@@ -66,6 +66,17 @@ fn sun_disc(d: vec3<f32>, to_sun: vec3<f32>, sin_radius: f32) -> f32 {
     return 1.0 - smoothstep(0.9 * sin_radius, sin_radius, s);
 }
 
+/// Share of the sun's brightness that its disc with a halo shows in the unit direction d, 0…1:
+/// one in the disc, falling to zero at the end of the halo (Filament's skybox). `versine` is
+/// 1 - cos of the disc's angular radius, `per_halo` one over how much larger the halo's is. The
+/// versine of the angle between d and the sun comes from the chord, since a cosine near one has
+/// no digits left for it.
+fn sun_halo(d: vec3<f32>, to_sun: vec3<f32>, versine: f32, per_halo: f32, falloff: f32) -> f32 {
+    let chord = d - to_sun;
+    let left = 1.0 - saturate((0.5 * dot(chord, chord) - versine) * per_halo);
+    return select(0.0, pow(max(left, 1e-6), falloff), left > 0.0);
+}
+
 /// Radiance of a disc of angular radius asin(sin_radius) that lights a surface facing it with
 /// `illuminance`: E = π·sin²·L. At noon 1.6e9 nits, so callers clamp it to what their target
 /// holds; the energy is carried by the light, not by the picture of it (hard case 20).

@@ -16,18 +16,19 @@
 // MATERIAL_TABLE (materials lie in an array), INSTANCE_STREAM (interface/object.wgsl),
 // ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands of
 // spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
-// TRANSMISSION with DISPERSION, SPECULAR, IRIDESCENCE, DIFFUSE_TRANSMISSION. They change what is
-// bound or comes from the vertices, so they are compiled in or out; what only changes arithmetic is
-// an `override`. HALF shades in half floats: what a surface is made of and what it reflects of one
-// light (lib/real.wgsl). Light itself, and everything that has a place, stays in f32.
+// TRANSMISSION with DISPERSION, SPECULAR, IRIDESCENCE, DIFFUSE_TRANSMISSION, SUBSURFACE,
+// CLOTH_SUBSURFACE. They change what is bound or comes from the vertices, so they are compiled in
+// or out; what only changes arithmetic is an `override`. HALF shades in half floats: what a surface
+// is made of and what it reflects of one light (lib/real.wgsl). Light itself, and everything that
+// has a place, stays in f32.
 
 import package::interface::epilogue::epilogue;
 @if(FOG)
 import package::interface::fog::in_fog;
 import package::interface::frame::frame;
 import package::interface::material::{
-    material, TRAIT_EMITS, TRAIT_NO_AREA, TRAIT_UNLIT, material_has, base_color,
-    metallic_roughness, emission, specular_factors,
+    material, TRAIT_EMITS, TRAIT_NO_AREA, TRAIT_SHADOW_CATCHER, TRAIT_UNLIT, material_has,
+    base_color, metallic_roughness, emission, specular_factors,
 };
 @if(MATERIAL_TABLE)
 import package::interface::material::materials;
@@ -66,15 +67,17 @@ import package::shading::ambient::directional_albedo;
 import package::shading::contact_shadow::contact_visibility;
 import package::shading::direct::reflect_surface;
 import package::shading::indirect::{ambient_visibility, reflect_environment, add_layers};
+@if(DIFFUSE_TRANSMISSION || SUBSURFACE || CLOTH_SUBSURFACE)
+import package::shading::through::is_behind;
 @if(DIFFUSE_TRANSMISSION)
-import package::shading::through::{translucency_of, is_behind, far_side};
+import package::shading::through::{translucency_of, far_side};
 import package::shading::micro_shadow::micro_visibility;
 import package::shading::quality::{
     ROUGHNESS_FLOOR, F90_FADES, PUNCTUAL_COMPENSATION,
     SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD,
 };
 import package::shading::punctual::add_punctual;
-import package::shading::shadow::{sun_visibility, cascade_tint};
+import package::shading::shadow::{sun_share, sun_visibility, cascade_tint};
 import package::shading::shadow_map::Receiver;
 import package::shading::surface::{Surface, layer_transmittance};
 @if(CLEAR_COAT)
@@ -289,24 +292,33 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     var radiance = add_layers(surface, normal, view, below, visibility);
     let receiver = Receiver(vertex.world, geometric, vertex.position.xy, slope);
     if SUN {
-        @if(DIFFUSE_TRANSMISSION)
+        @if(DIFFUSE_TRANSMISSION || SUBSURFACE || CLOTH_SUBSURFACE)
         let comes_through = is_behind(surface, frame.sun_direction);
+        // A body shadows the side of it that faces away from the sun: of light that is scattered
+        // below the surface, no shadow falls there, as in Filament.
+        @if(!DIFFUSE_TRANSMISSION && (SUBSURFACE || CLOTH_SUBSURFACE)) {
+            if comes_through {
+                radiance += frame.sun_illuminance
+                    * reflect_surface(surface, real3(frame.sun_direction));
+            }
+        }
         @if(DIFFUSE_TRANSMISSION) {
             if comes_through {
                 let lit = far_side(surface, receiver);
                 let sun = frame.sun_illuminance
                     * reflect_surface(surface, real3(frame.sun_direction));
-                radiance += sun * sun_visibility(lit);
+                radiance += sun * sun_share(sun_visibility(lit));
             }
         }
         let sun = frame.sun_illuminance * reflect_surface(surface, real3(frame.sun_direction))
             * micro_visibility(uv, dot(normal, frame.sun_direction));
-        @if(DIFFUSE_TRANSMISSION)
+        @if(DIFFUSE_TRANSMISSION || SUBSURFACE || CLOTH_SUBSURFACE)
         let is_lit = !comes_through && any(sun > vec3<f32>(0.0));
         @else
         let is_lit = any(sun > vec3<f32>(0.0));
         if is_lit {
-            radiance += sun * sun_visibility(receiver) * contact_visibility(receiver);
+            let visible = sun_visibility(receiver) * contact_visibility(receiver);
+            radiance += sun * sun_share(visible);
         }
     }
     radiance = add_punctual(radiance, surface, receiver);
@@ -315,6 +327,17 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
         radiance += emitted(uv) * layer_transmittance(surface);
     }
     return radiance;
+}
+
+/// Share of a shadow catcher that is seen: what its place lacks of the sun.
+fn caught_shadow(vertex: SurfaceVertex, geometric: vec3<f32>) -> f32 {
+    if !SUN {
+        return 0.0;
+    }
+    let slope = vec2<f32>(dpdx(vertex.position.z), dpdy(vertex.position.z));
+    let receiver = Receiver(vertex.world, geometric, vertex.position.xy, slope);
+    let visible = sun_share(sun_visibility(receiver) * contact_visibility(receiver));
+    return (1.0 - visible) * material.catcher_strength;
 }
 
 @fragment
@@ -334,11 +357,18 @@ fn fs_main(
         // Lines and points without normals (glTF 2.0, section 3.9.7).
         color += emitted(texture_uv(vertex));
     }
+    var caught = 1.0;
+    if material_has(TRAIT_SHADOW_CATCHER) {
+        caught = caught_shadow(vertex, geometric);
+    }
     if ALPHA_MODE == 1u && base.a < material.alpha_cutoff {
         discard;
     }
     let alpha = select(1.0, saturate(base.a), ALPHA_MODE == 2u);
     var seen = vec4<f32>(saturate_half3(color * alpha), alpha);
+    if material_has(TRAIT_SHADOW_CATCHER) {
+        seen *= caught;
+    }
     @if(FOG) seen = in_fog(
         seen, normalize_or(vertex.world, vec3<f32>(0.0, 0.0, 1.0)), length(vertex.world),
     );

@@ -1,5 +1,7 @@
 // Light of one source reflected by a surface with all its lobes, or let through: BSDF times cosine.
 
+@if(SUBSURFACE || CLOTH_SUBSURFACE)
+import package::interface::material::material;
 @if(CLEAR_COAT || ANISOTROPY || IRIDESCENCE)
 import package::lib::fresnel::{f_schlick, f_schlick_scalar};
 @if(ANISOTROPY)
@@ -8,7 +10,7 @@ import package::lib::anisotropy::{d_ggx_anisotropic, v_smith_ggx_correlated_anis
 import package::lib::clear_coat::v_kelemen;
 @if(SHEEN)
 import package::lib::cloth::{d_charlie, v_neubelt};
-@if(ANISOTROPY || IRIDESCENCE)
+@if(ANISOTROPY || IRIDESCENCE || CLOTH_SUBSURFACE)
 import package::lib::diffuse::fd_lambert;
 @if(DIFFUSE_TRANSMISSION)
 import package::lib::diffuse::fd_transmitted;
@@ -18,17 +20,28 @@ import package::lib::ggx::{
 };
 import package::lib::real::{real, real3};
 import package::lib::standard_surface::{half_vector, reflect_light};
+@if(SUBSURFACE)
+import package::lib::subsurface::subsurface_scatter;
+@if(CLOTH_SUBSURFACE)
+import package::lib::subsurface::{cloth_tint, wrapped_cosine};
 import package::shading::quality::FAST_VISIBILITY;
 import package::shading::surface::Surface;
 @if(IRIDESCENCE)
 import package::shading::surface::{film_reflectance, largest_channel};
-@if(DIFFUSE_TRANSMISSION)
+@if(DIFFUSE_TRANSMISSION || SUBSURFACE)
 import package::shading::surface::layer_transmittance;
 
-/// The isotropic base.
+/// The isotropic base; of cloth its specular layer.
 @if(!ANISOTROPY && !IRIDESCENCE)
 fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
-    return reflect_light(s.base, to_light, FAST_VISIBILITY);
+    @if(CLOTH_SUBSURFACE) {
+        var specular = s.base;
+        specular.diffuse = real3(0.0);
+        return reflect_light(specular, to_light, FAST_VISIBILITY);
+    }
+    @else {
+        return reflect_light(s.base, to_light, FAST_VISIBILITY);
+    }
 }
 
 /// D · V of the isotropic base.
@@ -75,6 +88,7 @@ fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
     let h = half_vector(to_light, s.base.view);
     let loh = dot(to_light, h);
     var diffuse = vec3<f32>(s.base.diffuse * fd_lambert());
+    @if(CLOTH_SUBSURFACE) diffuse = vec3<f32>(0.0);
     @if(IRIDESCENCE)
     let bare = vec3<f32>(f_schlick(s.film.bare_f0, s.base.f90, loh));
     @if(IRIDESCENCE)
@@ -97,6 +111,24 @@ fn transmit_light(s: Surface, to_light: real3) -> vec3<f32> {
     @if(IRIDESCENCE)
     share *= 1.0 - s.film.toward_view;
     return vec3<f32>(s.translucency.color) * (scattered * share);
+}
+
+/// Light that is scattered below the surface and leaves through its layers.
+@if(SUBSURFACE)
+fn scatter_light(s: Surface, to_light: real3) -> vec3<f32> {
+    let given = material.subsurface;
+    let vol = dot(s.base.view, to_light);
+    let nol = dot(s.base.normal, to_light);
+    let scattered = subsurface_scatter(vol, nol, given.power, given.thickness);
+    return given.color * (scattered * layer_transmittance(s));
+}
+
+/// The Lambert layer of cloth, wrapped about the terminator and tinted there.
+@if(CLOTH_SUBSURFACE)
+fn reflect_cloth(s: Surface, to_light: real3) -> vec3<f32> {
+    let nol = dot(s.base.normal, to_light);
+    let tint = cloth_tint(real3(material.subsurface.cloth_color), nol);
+    return vec3<f32>(s.base.diffuse * tint * (wrapped_cosine(nol) * fd_lambert()));
 }
 
 /// The sheen lobe alone.
@@ -134,6 +166,7 @@ fn reflect_coat(s: Surface, to_light: real3) -> vec2<f32> {
 /// BSDF times cosine of the whole surface toward the unit vector `to_light`.
 fn reflect_surface(s: Surface, to_light: real3) -> vec3<f32> {
     var reflected = reflect_base(s, to_light);
+    @if(CLOTH_SUBSURFACE) reflected += reflect_cloth(s, to_light);
     @if(SHEEN)
     reflected = reflected * f32(s.sheen.attenuation) + reflect_sheen(s, to_light);
     @if(CLEAR_COAT) {
@@ -141,5 +174,6 @@ fn reflect_surface(s: Surface, to_light: real3) -> vec3<f32> {
         reflected = reflected * (1.0 - coat.y) + vec3<f32>(coat.x);
     }
     @if(DIFFUSE_TRANSMISSION) reflected += transmit_light(s, to_light);
+    @if(SUBSURFACE) reflected += scatter_light(s, to_light);
     return reflected;
 }

@@ -4,6 +4,8 @@
 import package::interface::ambient_occlusion::screen_occlusion;
 import package::interface::ambient_occlusion::BENT_NORMALS;
 import package::interface::material::{SLOT_OCCLUSION, material_has, occlusion};
+@if(SUBSURFACE || CLOTH_SUBSURFACE)
+import package::interface::material::material;
 @if(REFLECTIONS)
 import package::interface::reflection::found_reflection;
 @if(ANISOTROPY)
@@ -17,7 +19,13 @@ import package::lib::occlusion::{
     gtao_multi_bounce, specular_occlusion, specular_occlusion_cones,
 };
 import package::lib::real::{real, real2};
+@if(CLOTH_SUBSURFACE)
+import package::lib::real::real3;
 import package::lib::standard_surface::StandardSurface;
+@if(SUBSURFACE)
+import package::lib::subsurface::{subsurface_ambient, subsurface_roughness};
+@if(CLOTH_SUBSURFACE)
+import package::lib::subsurface::{cloth_tint, wrapped_cosine};
 import package::shading::ambient::{ambient_irradiance, ambient_radiance};
 import package::shading::quality::{
     ENERGY_COMPENSATION, MULTI_BOUNCE_OCCLUSION, SPECULAR_OCCLUSION,
@@ -143,7 +151,19 @@ fn reflect_environment(
     let below = share_below(s, albedo);
     @else
     let below = 1.0 - albedo;
-    let diffuse = vec3<f32>(s.base.diffuse * below) * ambient_irradiance(normal);
+    @if(CLOTH_SUBSURFACE)
+    let scattered = vec3<f32>(s.base.diffuse * below * wrapped_cosine(s.base.nov)
+        * cloth_tint(real3(material.subsurface.cloth_color), s.base.nov));
+    @else
+    let scattered = vec3<f32>(s.base.diffuse * below);
+    let diffuse = scattered * ambient_irradiance(normal);
+    // Not occluded, as in Filament.
+    @if(SUBSURFACE) {
+        let given = material.subsurface;
+        let through = subsurface_roughness(f32(s.base.alpha), given.thickness);
+        let light = ambient_irradiance(normal) + ambient_radiance(-view, through);
+        specular += given.color * light * subsurface_ambient(given.thickness);
+    }
     // Occlusion of the front is applied to light from behind as well.
     @if(DIFFUSE_TRANSMISSION)
     specular += vec3<f32>(s.translucency.color * below) * ambient_irradiance(-normal)

@@ -14,11 +14,13 @@ import package::lib::punctual::{
 import package::lib::real::real3;
 import package::shading::direct::reflect_surface;
 import package::shading::quality::{LIGHT_FADE_INV_FAR2, SQUARED_LIGHT_WINDOW};
-import package::shading::shadow::light_visibility;
+import package::shading::shadow::{light_share, light_visibility};
 import package::shading::shadow_map::Receiver;
 import package::shading::surface::Surface;
+@if(DIFFUSE_TRANSMISSION || SUBSURFACE || CLOTH_SUBSURFACE)
+import package::shading::through::is_behind;
 @if(DIFFUSE_TRANSMISSION)
-import package::shading::through::{is_behind, far_side};
+import package::shading::through::far_side;
 
 /// Whether there are punctual lights: without them, what they reflect is no part of the shader.
 override LAMPS: bool = true;
@@ -59,10 +61,19 @@ fn reflect_punctual(s: Surface, light: LightUniforms, receiver: Receiver) -> vec
         if is_behind(s, l) {
             let lit = far_side(s, receiver);
             let from_light = lit.world - light.position;
-            return reflected * light_visibility(light.shadow_map, is_point, from_light, lit);
+            let visible = light_visibility(light.shadow_map, is_point, from_light, lit);
+            return reflected * light_share(visible, light.shadow_strength);
         }
     }
-    return reflected * light_visibility(light.shadow_map, is_point, -to_light, receiver);
+    // A body shadows the side of it that faces away from the light: no shadow falls there, as in
+    // Filament.
+    @if(SUBSURFACE || CLOTH_SUBSURFACE) {
+        if is_behind(s, l) {
+            return reflected;
+        }
+    }
+    let visible = light_visibility(light.shadow_map, is_point, -to_light, receiver);
+    return reflected * light_share(visible, light.shadow_strength);
 }
 
 /// `radiance` with what punctual lights add to it.

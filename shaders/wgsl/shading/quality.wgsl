@@ -30,7 +30,8 @@ override MICRO_SHADOWS: bool = true;
 /// f0 under a clear coat by a cubic instead of a square root.
 override FAST_COAT: bool = false;
 /// The base under a clear coat meets the coat instead of air, which lowers its f0; else its f0
-/// stays, as in Filament's materials whose `clearCoatIorChange` is off.
+/// stays, as in Filament's materials whose `clearCoatIorChange` is off. While this is on, the trait
+/// TRAIT_COAT_KEEPS_F0 switches it off for one material.
 override COAT_IOR_CHANGE: bool = true;
 /// Blurs things behind rough bodies by an angle from the eye, as in Filament, instead of by their
 /// distance from the body.

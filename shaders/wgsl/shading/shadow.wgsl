@@ -4,10 +4,12 @@
 // moments. Without any every light reaches everything.
 
 import package::interface::shadow::{
-    shadow, local_maps, ShadowMapUniforms, CASCADES, SHADOWS_END, LAMP_SHADOWS, SHOW_CASCADES,
+    shadow, local_maps, ShadowMapUniforms, CASCADES, SHADOWS_END, LAMP_SHADOWS, WEAK_SHADOWS,
+    SHOW_CASCADES,
 };
 import package::lib::shadow::{
-    normal_offset, shadow_uvz_from_clip, cascade_at, faded_visibility, cube_face_of,
+    normal_offset, shadow_uvz_from_clip, cascade_at, faded_visibility, weakened_visibility,
+    cube_face_of,
 };
 @if(SHADOWS && !SHADOW_SOFT && !SHADOW_MOMENTS)
 import package::shading::shadow_depth::tent_visibility;
@@ -37,6 +39,35 @@ fn sun_visibility(receiver: Receiver) -> f32 {
 @else
 fn sun_visibility(receiver: Receiver) -> f32 {
     return 1.0;
+}
+
+/// Share of the sun's light that arrives where that share of it is visible: its shadows have a
+/// strength.
+@if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
+fn sun_share(visibility: f32) -> f32 {
+    if !WEAK_SHADOWS {
+        return visibility;
+    }
+    return weakened_visibility(visibility, shadow.sun_strength);
+}
+
+@else
+fn sun_share(visibility: f32) -> f32 {
+    return visibility;
+}
+
+/// Share of a local light that arrives where that share of it is visible.
+@if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
+fn light_share(visibility: f32, strength: f32) -> f32 {
+    if !WEAK_SHADOWS {
+        return visibility;
+    }
+    return weakened_visibility(visibility, strength);
+}
+
+@else
+fn light_share(visibility: f32, strength: f32) -> f32 {
+    return visibility;
 }
 
 /// Visibility of a local light whose first map is `local_maps[first - 1]`, 0 being none;

@@ -5,6 +5,8 @@
 // film changes. Light from behind is scattered through the Lambert layer.
 
 @if(CLEAR_COAT)
+import package::interface::material::{TRAIT_COAT_KEEPS_F0, material_has};
+@if(CLEAR_COAT)
 import package::lib::clear_coat::{
     f0_under_clear_coat, f0_under_clear_coat_fast, roughness_under_clear_coat,
 };
@@ -142,7 +144,7 @@ fn layer_transmittance(s: Surface) -> f32 {
 /// says that nothing is reflected, and not that the base has the index of air.
 @if(CLEAR_COAT)
 fn coated_f0(f0: real3, strength: real) -> real3 {
-    if !COAT_IOR_CHANGE {
+    if !COAT_IOR_CHANGE || material_has(TRAIT_COAT_KEEPS_F0) {
         return f0;
     }
     var under = real3(0.0);

@@ -17,8 +17,10 @@ import package::lib::refraction::transmittance;
 import package::shading::quality::TRANSMISSION_BY_ANGLE;
 @if(DIFFUSE_TRANSMISSION)
 import package::shading::shadow_map::Receiver;
+@if(DIFFUSE_TRANSMISSION || SUBSURFACE || CLOTH_SUBSURFACE)
+import package::shading::surface::Surface;
 @if(DIFFUSE_TRANSMISSION)
-import package::shading::surface::{Surface, Translucency};
+import package::shading::surface::Translucency;
 
 /// Pre-exposed radiance that arrives through a body of one index of refraction from what is behind
 /// it; `thickness_m` is 0 for a thin wall, `roughness` is the material's, which nothing widened.
@@ -37,7 +39,7 @@ fn refract_by(
     if TRANSMISSION_BY_ANGLE {
         spread_rad = vec2<f32>(0.0, seen_transmission_spread(roughness, ior));
     }
-    return radiance_behind(world, path, spread_rad)
+    return radiance_behind(world, path, ior, spread_rad)
         * transmittance(material.transmission.absorption, length(path));
 }
 
@@ -73,7 +75,7 @@ fn translucency_of(albedo: vec3<f32>, lambert: f32, thickness_m: f32) -> Translu
 }
 
 /// True if a light in that direction is behind the surface.
-@if(DIFFUSE_TRANSMISSION)
+@if(DIFFUSE_TRANSMISSION || SUBSURFACE || CLOTH_SUBSURFACE)
 fn is_behind(s: Surface, to_light: vec3<f32>) -> bool {
     return dot(vec3<f32>(s.base.normal), to_light) < 0.0;
 }

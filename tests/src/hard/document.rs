@@ -65,6 +65,7 @@ pub const UNNOTICED: &[(&str, &str, &str)] = &[
     ("sampling::sample_visible_normal", "max(h.z, 0.0)", ROUNDING),
     ("sao::sao_term", "min(uu, 1.0)", ROUNDING),
     ("screen_ray::ray_length_m", "max(way_z, 1e-9)", TWICE),
+    ("sky::sun_halo", "max(left, 1e-6)", UNCHOSEN),
     ("table::table_coordinates", "min(color, vec3<f32>(65504.0))", TWICE),
     ("tone_map::tone_map_neutral", "max(peak, 0.76)", UNCHOSEN),
     ("tone_map::tone_map_neutral", "saturate(mix(shifted * (new_peak / high), vec3<f32>(new_peak), white))", ROUNDING),

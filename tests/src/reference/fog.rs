@@ -21,7 +21,7 @@ pub fn settings(stated: &Fog, scene: &Scene) -> Option<FogSettings> {
         cut_off_m: number(stated.cut_off_distance, 1e9).min(1e9),
         most_opacity: number(stated.maximum_opacity, usual.most_opacity),
         color: if stated.fog_color_from_ibl == Some(true) && scene.ibl.is_some() {
-            FogColor::Environment { tint: color.map(|x| x as f32), sharp_m: scene.camera.far as f32 }
+            FogColor::Environment { tint: color.map(|x| x as f32), sharp_m: scene.camera.far as f32, sharp_levels: 1.0 }
         } else {
             FogColor::Radiance(color.map(|x| (x * intensity) as f32))
         },

@@ -171,7 +171,7 @@ fn fog_hides_what_its_density_along_the_ray_does() -> TestResult {
 fn fog_takes_the_environments_color() -> TestResult {
     let Some(gpu) = gpu("fog_takes_the_environments_color") else { return Ok(()) };
     let (tint, around) = (DVec3::new(1.0, 0.5, 2.0), DVec3::new(0.5, 1.0, 0.75));
-    let color = FogColor::Environment { tint: tint.as_vec3().to_array(), sharp_m: 20.0 };
+    let color = FogColor::Environment { tint: tint.as_vec3().to_array(), sharp_m: 20.0, sharp_levels: 1.0 };
     let fog = FogSettings { color, ..FogSettings::DEFAULT };
     let (clear, shot) = (shoot(&gpu, None, &Background::None)?, shoot(&gpu, Some(fog), &Background::None)?);
     let worst = off(&clear, &shot, |ray, way_m, clear| {
@@ -192,17 +192,19 @@ fn far_fog_takes_a_sharper_image() -> TestResult {
     // What is seen at the left and at the right of the sky, and the rays there.
     let ends = [8, SIZE[0] as usize - 8];
     let rays = ends.map(|at| rays()[at].map_or(DVec3::ZERO, |(ray, _)| ray));
-    let slope = |sharp_m: f32| -> Result<f64, Box<dyn Error>> {
-        let color = FogColor::Environment { tint: [1.0; 3], sharp_m };
+    let slope = |sharp_m: f32, sharp_levels: f32| -> Result<f64, Box<dyn Error>> {
+        let color = FogColor::Environment { tint: [1.0; 3], sharp_m, sharp_levels };
         let fog = FogSettings { color, density: 50.0, falloff: 0.0, ..FogSettings::DEFAULT };
         let shot = shoot_under(&gpu, Some(fog), &Background::None, &sky)?;
         Ok(f64::from(shot[ends[1]][0] - shot[ends[0]][0]) / (1.9 * (rays[1].x - rays[0].x)))
     };
-    let [near, far] = [slope(1e20)?, slope(1e-3)?];
+    let [near, far, sky_itself] = [slope(1e20, 16.0)?, slope(1e-3, 1.0)?, slope(1e-3, 16.0)?];
     let blurred = |roughness: f64| gathered(DVec3::Z, roughness, |l| DVec3::splat(l.z)).z;
     // Between the four texels across a face of that level the slope is not straight.
     assert!((near / blurred(1.0) - 1.0).abs() < 0.08, "{near} for {}", blurred(1.0));
     assert!(far > 1.05 * near && far < 1.0, "{far} beyond, {near} before");
+    // All levels leave no blur: Filament's `skyColor`.
+    assert!((sky_itself - 1.0).abs() < 0.01 && sky_itself > far, "{sky_itself} beyond, without blur");
     Ok(())
 }
 

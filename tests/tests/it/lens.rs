@@ -8,8 +8,8 @@ use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, LightSearch, PostSettings, Settings, Shading, World};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::light::LightKind;
-use framegraph_scene::{Camera, Environment, Light, Projection, Scene, progress};
-use framegraph_shaders::layout::{EdgeFade, Grading, ToneMap};
+use framegraph_scene::{Camera, Environment, Light, Projection, Scene, SunHalo, progress};
+use framegraph_shaders::layout::{EdgeFade, Grading, SkyUniforms, ToneMap};
 use framegraph_shaders::reference::sky;
 use framegraph_shaders::reference::sky::Preetham;
 use framegraph_wgpu::{Gpu, Imports, read_texture};
@@ -264,6 +264,44 @@ fn each_pixel_sees_the_environment_in_its_direction() -> TestResult {
     }
     let nothing = shoot(&gpu, &slope, &Background::None, Settings { post: plain(), ..Settings::default() })?;
     assert!(nothing.linear.iter().all(|t| t[..3] == [0.0; 3]), "nothing is black");
+    Ok(())
+}
+
+/// The sun's disc with its halo, over an even background: each pixel is what the formula's mirror says of its direction, and what
+/// is brighter than a half float holds is held. Without a halo the background is even.
+#[test]
+fn the_sun_has_a_disc_and_a_halo_on_demand() -> TestResult {
+    let Some(gpu) = gpu("the_sun_has_a_disc_and_a_halo_on_demand") else { return Ok(()) };
+    let toward = DVec3::new(0.5, 0.35, -0.75).normalize();
+    let (radius_rad, halo) = (0.06_f32, SunHalo { size: 6.0, falloff: 8.0 });
+    let illuminance = DVec3::new(6000.0, 300.0, 20.0);
+    let kind = LightKind::Directional { illuminance_lux: 1.0, angular_radius_rad: radius_rad };
+    let sun = Light { kind, color: illuminance.as_vec3(), ..Light::directional("sun", -toward.as_vec3(), 0.0) };
+    let packed = SkyUniforms::default().with_halo(radius_rad, halo.size, halo.falloff);
+    let settings = Settings { fxaa: false, post: plain(), ..Settings::default() };
+    let even = Background::Constant(Vec3::splat(2.0));
+    let shown = |halo| -> Result<Picture, Box<dyn Error>> {
+        let sun = Some(Light { halo, ..sun.clone() });
+        shoot(&gpu, &Environment { sun, ..Environment::uniform(DVec3::ZERO)? }, &even, settings)
+    };
+    let (forward, right) = (LOOK.normalize(), LOOK.cross(DVec3::Y).normalize());
+    let up = right.cross(forward);
+    let per_px = (FOV / 2.0).tan() / (f64::from(SIZE[1]) / 2.0);
+    let (mut inside, mut about, mut beyond) = (0, 0, 0);
+    for (texel, at) in shown(Some(halo))?.linear.iter().zip(from_middle()) {
+        let d = (forward + right * (at.x * per_px) - up * (at.y * per_px)).normalize();
+        let [versine, per_halo] = [packed.disc_versine, packed.per_halo].map(f64::from);
+        let share = sky::sun_halo(d, toward, versine, per_halo, f64::from(halo.falloff));
+        let expected = (2.0 + 4.0 * std::f64::consts::PI * illuminance * share).min(DVec3::splat(65504.0));
+        let texel = Vec3::new(texel[0], texel[1], texel[2]).as_dvec3();
+        let apart = ((texel - expected).abs() - 5e-3 * expected).max_element();
+        assert!(apart < 1e-2, "{at}, {d}: {texel} for {expected}");
+        inside += usize::from(expected.x == 65504.0);
+        about += usize::from(share > 0.01 && share < 0.5);
+        beyond += usize::from(share == 0.0);
+    }
+    assert!(inside > 10 && about > 40 && beyond > 500, "{inside} in the disc, {about} in the halo, {beyond} beyond");
+    assert!(shown(None)?.linear.iter().all(|texel| texel[..3] == [2.0; 3]));
     Ok(())
 }
 

@@ -1,9 +1,9 @@
 //! Lobes and choices of shading through the standard frame, against what they say on paper.
 
-use crate::stage::{Set, Shot, gpu};
+use crate::stage::{Set, Shot, gpu, precisions};
 use framegraph_passes::view::Background;
 use framegraph_passes::{PostSettings, Quality, Settings, Shading};
-use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular};
+use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular, Subsurface};
 use framegraph_scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
 use framegraph_scene::{Environment, Light, Material};
 use framegraph_wgpu::Gpu;
@@ -103,7 +103,12 @@ fn a_base_under_a_coat_keeps_its_reflectance_on_demand() -> TestResult {
     let Some(gpu) = gpu("a_base_under_a_coat_keeps_its_reflectance_on_demand") else { return Ok(()) };
     let gold = Material::metal("gold", Vec3::new(0.3, 0.6, 0.9), 0.4);
     let coated = |base: &Material| Material { clear_coat: coat(1.0, 0.1), ..base.clone() };
-    let materials = [gold.clone(), coated(&gold), black(0.5), coated(&black(0.5))];
+    let keeping = |base: &Material| Material {
+        clear_coat: coat(1.0, 0.1).map(|coat| ClearCoat { keeps_base_f0: true, ..coat }),
+        ..base.clone()
+    };
+    let [dark, gold_keeps] = [black(0.5), keeping(&gold)];
+    let materials = [gold.clone(), coated(&gold), dark.clone(), coated(&dark), gold_keeps, keeping(&dark)];
     let kept = Shading { coat_ior_change: false, ..Shading::default() };
     let [kept, changed] = [kept, Shading::default()].map(|shading| in_even_light(&gpu, &wall(&materials), &shading));
     let (kept, changed) = (kept?, changed?);
@@ -118,6 +123,9 @@ fn a_base_under_a_coat_keeps_its_reflectance_on_demand() -> TestResult {
         }
     }
     assert_eq!(kept[0], changed[0], "without a coat nothing changes");
+    // A material's own switch is that of the frame for it alone, to the bit.
+    assert_eq!((&changed[4], &changed[5]), (&kept[1], &kept[3]));
+    assert_eq!((&kept[4], &kept[5]), (&kept[1], &kept[3]), "both switches are one");
     Ok(())
 }
 
@@ -187,6 +195,48 @@ fn lobes_in_one_light_are_their_formulas() -> TestResult {
     }
     // The control: turned and straight grooves differ by more than what is let pass.
     assert!(seen[2].iter().zip(&seen[3]).any(|(a, b)| (a / b - 1.0).abs() > 0.05));
+    Ok(())
+}
+
+/// Filament's subsurface and cloth models, written out again: under a light before the surface, one behind it and even light, in
+/// both precisions.
+#[test]
+fn light_is_scattered_below_surfaces_as_in_filament() -> TestResult {
+    let name = "light_is_scattered_below_surfaces_as_in_filament";
+    let Some(gpu) = gpu(name) else { return Ok(()) };
+    let none = Some(Specular { factor: 0.0, ..Specular::default() });
+    let (color, power, thickness, tint) = (0.75, 3.0, 0.25, 0.3);
+    let below = Subsurface { color: Vec3::splat(color as f32), power: power as f32, thickness: thickness as f32 };
+    let chalk = Material { specular: none, ..Material::dielectric("chalk", Vec3::splat(0.5), 0.5) };
+    let materials = [
+        Material { subsurface: Some(below), specular: none, ..black(0.5) },
+        Material { cloth_subsurface: Some(Vec3::splat(tint as f32)), ..chalk.clone() },
+        chalk,
+    ];
+    let unit = |x: f64| x.clamp(0.0, 1.0);
+    let wrapped = |cos: f64| unit((cos + 0.5) / 2.25) * unit(tint + unit(cos));
+    for precision in precisions(name, &gpu) {
+        let shading = Shading { precision, ..Shading::default() };
+        for toward in [TOWARD, TOWARD * DVec3::new(1.0, 1.0, -1.0)] {
+            let light = Some(Light::directional("lamp", -toward.as_vec3(), PI as f32));
+            let wall = Wall { light, ..wall(&materials) };
+            let seen = wall.render(&gpu, &Environment::uniform(DVec3::ZERO)?, &shading)?;
+            let seen: Vec<f64> = seen.iter().map(|seen| seen.nits.x).collect();
+            let nol = |nov: f64| frame(nov)[0].dot(toward);
+            let scattered = |nov: f64| {
+                let forward = ((unit(-toward.z) - 1.0) * power).exp2();
+                let back = 0.5 * unit(unit(nol(nov)) * thickness + 1.0 - thickness);
+                color * (back + (1.0 - back) * forward) * (1.0 - thickness)
+            };
+            // Half floats round normals near the terminator.
+            close("subsurface", &seen[..4], scattered, 4e-3, 5e-4);
+            close("cloth", &seen[4..8], |nov| 0.5 * wrapped(nol(nov)), 4e-3, 5e-4);
+            close("chalk", &seen[8..12], |nov| 0.5 * unit(nol(nov)), 4e-3, 5e-4);
+        }
+        let even = in_even_light(&gpu, &wall(&materials), &shading)?;
+        close("subsurface", &even[0], |_| color * (1.0 - thickness) / PI, 4e-3, 0.0);
+        close("cloth", &even[1], |nov| 0.5 * wrapped(nov), 4e-3, 0.0);
+    }
     Ok(())
 }
 

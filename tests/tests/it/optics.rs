@@ -1,6 +1,7 @@
-//! Thin films, dispersion and diffuse transmission, against light summed up by brute force.
+//! Thin films, dispersion, diffuse and rough transmission, against light summed up by brute force.
 
 mod film;
+mod slab;
 mod through;
 
 use framegraph_scene::environment::EquirectMap;

@@ -4,6 +4,7 @@ mod hard;
 mod penumbrae;
 mod set;
 mod shimmer;
+mod strength;
 
 use crate::stage::{gpu, precisions};
 use framegraph_passes::occlusion::OcclusionSettings;

@@ -190,44 +190,48 @@ pub fn below(x: f64) -> f64 {
 fn rough_glass_blurs_by_its_distance_from_what_is_behind() -> TestResult {
     let Some(gpu) = gpu("rough_glass_blurs_by_its_distance_from_what_is_behind") else { return Ok(()) };
     // The whole stage is turned, eye and all, so that no axis of the world is one of the view's.
-    let blurred =
-        |blur: TransmissionBlur, roughness: f32, height_m: f64, turn: DQuat| -> Result<Vec<f64>, Box<dyn Error>> {
-            let mut scene = stage(Some(Material { roughness, ..pane(Vec3::ONE, None) }));
-            // Two halves instead of one floor, and the pane at another height.
-            scene.materials[0].base_color = Vec3::splat(0.05).extend(1.0);
-            let bright = scene.add_material(Material::dielectric("bright", Vec3::splat(0.8), 0.9));
-            let floor = scene.instances[0].mesh;
-            scene.instances.remove(0);
-            scene.add_instance("dark", floor, MaterialId::new(0), DMat4::from_translation(DVec3::NEG_X * 20.0));
-            scene.add_instance("bright", floor, bright, DMat4::from_translation(DVec3::X * 20.0));
-            let pane = scene.instances.remove(0);
-            scene.add_instance("pane", pane.mesh, pane.material, DMat4::from_translation(DVec3::Y * height_m));
-            for instance in std::mem::take(&mut scene.instances) {
-                let turned = DMat4::from_quat(turn) * instance.world_from_model;
-                scene.add_instance(&instance.name, instance.mesh, instance.material, turned);
-            }
-            for camera in &mut scene.cameras {
-                (camera.eye, camera.world_from_view) = (turn * camera.eye, turn * camera.world_from_view);
-            }
-            let size_px = Shot::small(Settings::default()).size_px;
-            let shading = Shading { transmission_blur: blur, ..Shading::default() };
-            let settings = Settings { shading, ..Settings::default() };
-            let row = middle_row(&gpu, &scene, settings.for_scene(&scene, size_px))?;
-            // What the pane covers: more than 40 pixels about the middle.
-            let covered: Vec<f64> =
-                row[row.len() / 2 - 20..row.len() / 2 + 20].iter().map(|c| f64::from(c.x)).collect();
-            let (dark, bright) = (covered[0], covered[39]);
-            assert!(bright > 4.0 * dark, "both floors are seen: {dark} {bright}");
-            Ok(covered.iter().map(|c| (c - dark) / (bright - dark)).collect())
-        };
+    let blurred = |blur: TransmissionBlur,
+                   roughness: f32,
+                   height_m: f64,
+                   turn: DQuat,
+                   body: Option<Volume>|
+     -> Result<Vec<f64>, Box<dyn Error>> {
+        let mut scene = stage(Some(Material { roughness, ..pane(Vec3::ONE, body) }));
+        // Two halves instead of one floor, and the pane at another height.
+        scene.materials[0].base_color = Vec3::splat(0.05).extend(1.0);
+        let bright = scene.add_material(Material::dielectric("bright", Vec3::splat(0.8), 0.9));
+        let floor = scene.instances[0].mesh;
+        scene.instances.remove(0);
+        scene.add_instance("dark", floor, MaterialId::new(0), DMat4::from_translation(DVec3::NEG_X * 20.0));
+        scene.add_instance("bright", floor, bright, DMat4::from_translation(DVec3::X * 20.0));
+        let pane = scene.instances.remove(0);
+        scene.add_instance("pane", pane.mesh, pane.material, DMat4::from_translation(DVec3::Y * height_m));
+        for instance in std::mem::take(&mut scene.instances) {
+            let turned = DMat4::from_quat(turn) * instance.world_from_model;
+            scene.add_instance(&instance.name, instance.mesh, instance.material, turned);
+        }
+        for camera in &mut scene.cameras {
+            (camera.eye, camera.world_from_view) = (turn * camera.eye, turn * camera.world_from_view);
+        }
+        let size_px = Shot::small(Settings::default()).size_px;
+        let shading = Shading { transmission_blur: blur, ..Shading::default() };
+        let settings = Settings { shading, ..Settings::default() };
+        let row = middle_row(&gpu, &scene, settings.for_scene(&scene, size_px))?;
+        // What the pane covers: more than 40 pixels about the middle.
+        let covered: Vec<f64> = row[row.len() / 2 - 20..row.len() / 2 + 20].iter().map(|c| f64::from(c.x)).collect();
+        let (dark, bright) = (covered[0], covered[39]);
+        assert!(bright > 4.0 * dark, "both floors are seen: {dark} {bright}");
+        Ok(covered.iter().map(|c| (c - dark) / (bright - dark)).collect())
+    };
     let pixels_per_m = f64::from(Shot::small(Settings::default()).size_px[1]) / (2.0 * EYE_M * (FOV_Y_RAD / 2.0).tan());
     let worst = |row: &[f64], sigma_m: f64| {
         let sigma_px = sigma_m * pixels_per_m;
         let off = |(i, found): (usize, &f64)| (found - below((i as f64 - 19.5) / sigma_px)).abs();
         row.iter().enumerate().map(off).fold(0.0, f64::max)
     };
-    let over_an_edge =
-        |roughness: f32, height_m: f64, turn: DQuat| blurred(TransmissionBlur::Distance, roughness, height_m, turn);
+    let over_an_edge = |roughness: f32, height_m: f64, turn: DQuat| {
+        blurred(TransmissionBlur::Distance, roughness, height_m, turn, None)
+    };
     let (still, aslant) = (DQuat::IDENTITY, DQuat::from_axis_angle(DVec3::new(2.0, 3.0, 6.0) / 7.0, 0.6));
     for (roughness, turn) in [(0.4_f32, still), (0.55, still), (0.55, aslant)] {
         let sigma_m = 0.849 * f64::from(roughness * roughness) * 0.5;
@@ -239,12 +243,18 @@ fn rough_glass_blurs_by_its_distance_from_what_is_behind() -> TestResult {
         let (half, twice) = (worst(&row, sigma_m / 2.0), worst(&row, sigma_m * 2.0));
         assert!(half > 0.09 && twice > 0.09, "roughness {roughness}: {half:.3}, {twice:.3}");
     }
+    // A body half a meter thick: over the way within it the spread is that in air over the index.
+    let body = Volume { thickness: 0.5, ..Volume::default() };
+    let row = blurred(TransmissionBlur::Distance, 0.55, 1.0, still, Some(body))?;
+    let sigma_m = 0.849 * 0.55_f64.powi(2) * 0.5 * (0.5 + 0.5 / 1.5);
+    let (off, without) = (worst(&row, sigma_m), worst(&row, sigma_m * 0.6));
+    assert!(off < 0.06 && without > 0.07, "within the body: {off:.3}, {without:.3}; {row:.2?}");
     let near = over_an_edge(0.55, 0.02, still)?;
     assert!(worst(&near, 1e-3) < 0.06, "{near:.2?}");
     // Filament's blur is an angle from the eye: r² / √10 radians, however near the floor is.
     for height_m in [0.02, 1.0] {
         let sigma_m = 0.35_f64.powi(2) / 10.0_f64.sqrt() * EYE_M;
-        let row = blurred(TransmissionBlur::Angle, 0.35, height_m, still)?;
+        let row = blurred(TransmissionBlur::Angle, 0.35, height_m, still, None)?;
         let [off, half, twice] = [1.0, 0.5, 2.0].map(|factor| worst(&row, sigma_m * factor));
         assert!(off < 0.06 && half > 0.09 && twice > 0.09, "{height_m} m: {off:.3} {half:.3} {twice:.3}; {row:.2?}");
     }

@@ -12,6 +12,7 @@ pub mod microsurface;
 pub mod occlusion;
 pub mod rays;
 pub mod reflection;
+pub mod slab;
 pub mod sphere;
 pub mod surface;
 pub mod translucent;

@@ -25,8 +25,8 @@ pub const HELP: &str = "
   --fog off|on[:KEY=X,...]  fog that lies about a height (off). density=X (there, in 1/m, 0.1), height=M (0), falloff=X (of density
                        with height, in 1/m, 1), start=M (clear from the eye, 0), cut-off=M (none farther away, inf),
                        opacity=X (the most, 1), color=environment|R:G:B (nits; environment), tint=R:G:B (of the environment,
-                       1:1:1), sharp=M (where that is blurred less, 100), glow=off|SIZE (about the sun, off), glow-start=M
-                       (0), mean=exact|filament (density where the start is clear)
+                       1:1:1), sharp=M (where that is blurred less, 100), sharp-levels=N (by how much, 1; all: 16),
+                       glow=off|SIZE (about the sun, off), glow-start=M (0), mean=exact|filament (density where the start is clear)
   --bloom off|on[:KEY=X,...]  what is bright glows (off). strength=X (0.1), height=N (of the largest level in texels, 384), levels=N
                        (6), quality=low|medium|high (low), blend=add|interpolate (add), threshold=off|soft|hard (soft), at=X
                        (pre-exposed, 1), highlight=X (what it nears, 1000), fireflies=on|off (count less, on), kernel=wide|narrow (wide), dirt=X (0.2),

@@ -1,6 +1,7 @@
 //! Options that say what lights the scene, what stands behind it, and how long the camera exposes.
 
 use framegraph_passes::LightSearch;
+use framegraph_scene::SunHalo;
 use framegraph_scene::camera::{EV100_RANGE, ev100_from_settings};
 use glam::DVec3;
 use lexopt::Parser;
@@ -18,6 +19,9 @@ pub const HELP: &str = "
   --sun X,Y,Z:LUX[:ANGLE]  a white sun instead of the environment's own: X,Y,Z is the direction from the scene toward it, of
                        any length, LUX the illuminance on a surface that faces it, ANGLE the diameter of its disc in
                        degrees (0.533), seen in a clear sky, which follows a sun that stands above the horizon
+  --sun-disk on|off    draws the sun's disk with a halo behind the scene, as Filament's skybox does with showSun; or
+                       SIZE:FALLOFF, the halo's radius over the disk's and the exponent of its falloff (10:80); default:
+                       as the scene's lights say
   --sun off            no sun: neither the environment's, be it apart or in the map, nor a directional light of the scene
   --sun in-map         a sun in the picture of the environment stays there, as bright texels
   --background WHAT    what is seen behind the scene, while the environment lights it: R,G,B is one radiance in nits,
@@ -69,6 +73,29 @@ pub enum Sun {
     },
 }
 
+/// Whether the sun's disk and halo are drawn behind the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Disk {
+    /// As the light says.
+    #[default]
+    Own,
+    /// They are not.
+    Off,
+    /// With this halo.
+    On(SunHalo),
+}
+
+impl Disk {
+    /// The halo of a light that has `own`.
+    pub fn halo(self, own: Option<SunHalo>) -> Option<SunHalo> {
+        match self {
+            Self::Own => own,
+            Self::Off => None,
+            Self::On(halo) => Some(halo),
+        }
+    }
+}
+
 /// What is seen behind the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Behind {
@@ -90,6 +117,8 @@ pub struct Lighting {
     pub intensity: f32,
     /// The sun.
     pub sun: Sun,
+    /// The disk and halo of the sun.
+    pub disk: Disk,
     /// The background.
     pub behind: Behind,
     /// Exposure value; none meters it.
@@ -101,7 +130,7 @@ pub struct Lighting {
 impl Default for Lighting {
     fn default() -> Self {
         let (around, behind, lights) = (Around::Sky, Behind::Environment, LightSearch::default());
-        Self { around, intensity: 1.0, sun: Sun::Own, behind, ev100: None, lights }
+        Self { around, intensity: 1.0, sun: Sun::Own, disk: Disk::Own, behind, ev100: None, lights }
     }
 }
 
@@ -123,6 +152,7 @@ impl Lighting {
                 self.intensity = crate::look::number(&option, &text(parser)?, 0.0..=1e6)?;
             }
             "sun" => self.sun = sun(&text(parser)?)?,
+            "sun-disk" => self.disk = disk(&text(parser)?)?,
             "lights" => {
                 self.lights = LightSearch::from_text(&text(parser)?).map_err(|told| format!("{option} {told}"))?;
             }
@@ -172,6 +202,21 @@ fn sun(text: &str) -> Result<Sun, String> {
         None => SOLAR_DIAMETER_DEG,
     };
     Ok(Sun::Given { toward, illuminance_lux, diameter_deg })
+}
+
+fn disk(text: &str) -> Result<Disk, String> {
+    let within = |text: &str, [least, most]: [f32; 2]| {
+        finite(text).map(|number| number as f32).filter(|number| (least..=most).contains(number))
+    };
+    match (text, text.split_once(':')) {
+        ("on", _) => Ok(Disk::On(SunHalo::FILAMENT)),
+        ("off", _) => Ok(Disk::Off),
+        (_, Some((size, falloff))) => match (within(size, SunHalo::SIZES), within(falloff, SunHalo::FALLOFFS)) {
+            (Some(size), Some(falloff)) => Ok(Disk::On(SunHalo { size, falloff })),
+            _ => Err(format!("--sun-disk {text}: SIZE goes from 1.001 to 1000, FALLOFF from 0.01 to 10000")),
+        },
+        _ => Err(format!("--sun-disk {text}: on, off or SIZE:FALLOFF is needed")),
+    }
 }
 
 fn behind(text: &str) -> Result<Behind, String> {
@@ -277,6 +322,16 @@ mod tests {
     }
 
     #[test]
+    fn the_sun_has_a_disk_on_demand() {
+        let own = SunHalo { size: 3.0, falloff: 7.0 };
+        for (text, expected) in [("on", Some(SunHalo::FILAMENT)), ("off", None), ("3:7", Some(own))] {
+            let found = taken(&["--sun-disk", text]).expect(text);
+            assert_eq!(found.disk.halo(Some(SunHalo { size: 2.0, falloff: 2.0 })), expected, "{text}");
+        }
+        assert_eq!(Disk::default().halo(Some(own)), Some(own));
+    }
+
+    #[test]
     fn camera_settings_make_an_exposure_value() {
         // Sunny sixteen: EV 15 at 1/128 s.
         assert_eq!(exposure("16,1/128,100"), Ok(15.0));
@@ -286,7 +341,9 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named() {
-        let cases: [(&[&str], &str); 24] = [
+        let cases: [(&[&str], &str); 26] = [
+            (&["--sun-disk", "yes"], "--sun-disk yes: on, off or SIZE:FALLOFF"),
+            (&["--sun-disk", "0.5:80"], "--sun-disk 0.5:80: SIZE goes from"),
             (&["--environment"], "--environment: a file is missing"),
             (&["--environment", "uniform:1,2"], "--environment uniform 1,2"),
             (&["--environment", "uniform:1,2,-3"], "--environment uniform 1,2,-3"),

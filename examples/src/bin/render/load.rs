@@ -82,6 +82,9 @@ pub fn load(args: &Args, options: &LoadOptions) -> Result<Loaded, SceneError> {
             });
         }
     }
+    for sun in scene.lights.iter_mut().chain(&mut environment.sun) {
+        sun.halo = asked.disk.halo(sun.halo);
+    }
     let metered_ev100 = environment.metered_ev100(&scene);
     shown.clear();
     if own {

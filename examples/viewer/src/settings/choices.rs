@@ -57,7 +57,10 @@ const VARIANTS: [(&str, &[&str]); 29] = [
     ),
     ("settings.occlusion.method.occluders", &["Solid", "Fading", "Thick(0.2)"]),
     ("settings.occlusion.resolution", &["Full", "Half"]),
-    ("settings.fog.color", &["Radiance(2000.0, 2500.0, 3000.0)", "Environment(tint: (1.0, 1.0, 1.0), sharp_m: 100.0)"]),
+    (
+        "settings.fog.color",
+        &["Radiance(2000.0, 2500.0, 3000.0)", "Environment(tint: (1.0, 1.0, 1.0), sharp_m: 100.0, sharp_levels: 1.0)"],
+    ),
     ("settings.dof.resolution", &["Full", "Half"]),
     ("settings.bloom.quality", &["Low", "Medium", "High"]),
     ("settings.bloom.blend", &["Add", "Interpolate"]),

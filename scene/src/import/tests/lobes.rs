@@ -67,6 +67,7 @@ fn clear_coat() {
         texture: slot(&scene, 1.0, TextureRole::Linear),
         roughness_texture: slot(&scene, 2.0, TextureRole::Linear),
         normal_texture: slot(&scene, 3.0, TextureRole::Normal),
+        keeps_base_f0: false,
     };
     assert_eq!(material.clear_coat, Some(expected));
     assert_eq!(material.lobes(), one(Lobe::ClearCoat));

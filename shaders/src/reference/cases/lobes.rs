@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::super::{anisotropy, clear_coat, cloth, diffuse, fresnel, ggx, specular_aa, thin_film};
+use super::super::{anisotropy, clear_coat, cloth, diffuse, fresnel, ggx, specular_aa, subsurface, thin_film};
 use super::case::{Case, Domain};
 use super::table::*;
 use Domain::{Direction, Directions, Linear, Log, Values, Vector};
@@ -173,6 +173,51 @@ pub(super) const CASES: &[Case] = &[
         "fd_transmitted(real(x[0]))",
         SCALAR,
         |x| vec![diffuse::fd_transmitted(x[0])],
+        ARITHMETIC,
+    )
+    .half(HALF_ARITHMETIC),
+    case(
+        ["subsurface", "subsurface_scatter"],
+        &[Linear(-1.0, 1.0), Linear(-1.0, 1.0), Linear(0.0, 40.0), COSINE],
+        "subsurface_scatter(real(x[0]), real(x[1]), x[2], x[3])",
+        SCALAR,
+        |x| vec![subsurface::subsurface_scatter(x[0], x[1], x[2], x[3])],
+        // WGSL promises 3 + 2·|x| units of 2^x, over exponents down to -40, of which little is left.
+        bound(1e-6, 1e-5),
+    )
+    .half(bound(2e-3, 2e-3)),
+    case(
+        ["subsurface", "subsurface_ambient"],
+        &[COSINE],
+        "subsurface_ambient(x[0])",
+        SCALAR,
+        |x| vec![subsurface::subsurface_ambient(x[0])],
+        ARITHMETIC,
+    ),
+    case(
+        ["subsurface", "subsurface_roughness"],
+        &[COSINE, COSINE],
+        "subsurface_roughness(x[0], x[1])",
+        SCALAR,
+        |x| vec![subsurface::subsurface_roughness(x[0], x[1])],
+        // The root of what rounding leaves next to one.
+        bound(1e-3, 0.0),
+    ),
+    case(
+        ["subsurface", "wrapped_cosine"],
+        &[Linear(-1.0, 1.0)],
+        "wrapped_cosine(real(x[0]))",
+        SCALAR,
+        |x| vec![subsurface::wrapped_cosine(x[0])],
+        ARITHMETIC,
+    )
+    .half(HALF_ARITHMETIC),
+    case(
+        ["subsurface", "cloth_tint"],
+        &[COLOR, Linear(-1.0, 1.0)],
+        "cloth_tint(real3(v3(0u)), real(x[3]))",
+        VEC3,
+        |x| out3(subsurface::cloth_tint(v3(x, 0), x[3])),
         ARITHMETIC,
     )
     .half(HALF_ARITHMETIC),

@@ -189,6 +189,15 @@ pub(super) const CASES: &[Case] = &[
         bound(1e-3, 0.0),
     ),
     case(
+        ["sky", "sun_halo"],
+        &[Direction, Direction, Log(1e-5, 0.1), Log(0.5, 300.0), Log(0.1, 100.0)],
+        "sun_halo(v3(0u), v3(3u), x[6], x[7], x[8])",
+        SCALAR,
+        |x| vec![sky::sun_halo(v3(x, 0), v3(x, 3), x[6], x[7], x[8])],
+        // Near the end of the halo its rest is a difference of numbers up to one.
+        bound(1e-3, 0.0),
+    ),
+    case(
         ["sky", "sun_disc_radiance"],
         &[Vector(3, 0.0, 5.0), Log(0.001, 0.5)],
         "sun_disc_radiance(v3(0u), x[3])",

@@ -139,6 +139,14 @@ pub(super) const CASES: &[Case] = &[
         bound(5e-6, 0.0),
     ),
     case(
+        ["shadow", "weakened_visibility"],
+        &[Linear(0.0, 1.0), Linear(0.0, 1.0)],
+        "weakened_visibility(x[0], x[1])",
+        SCALAR,
+        |x| vec![shadow::weakened_visibility(x[0], x[1])],
+        ARITHMETIC,
+    ),
+    case(
         // Meters from a lamp: within its bulb, too.
         ["shadow", "cube_face_of"],
         &[Linear(-0.2, 0.2), Linear(-0.2, 0.2), Linear(-0.2, 0.2)],

@@ -78,6 +78,17 @@ pub(super) const PROBES: &[Probe] = &[
     both(15, "dispersed_ior", &[Values(&[0.5, 1.0, 1.5, 1e30]), Values(&[0.0, 1.0, 1e3, 1e38])], |_, y| {
         y.iter().all(|ior| (1.0..=1e4).contains(ior))
     }),
+    // Exponents of none and of all, and a light right behind.
+    both(
+        2,
+        "subsurface_scatter",
+        &[Values(&[-1.002, -1.0, -0.5, 0.0, 1.002]), COSINE, Values(&[0.0, 12.234, 1e4]), SHARE],
+        |_, y| (0.0..0.3185).contains(&y[0]),
+    ),
+    both(2, "subsurface_ambient", &[SHARE], is_share),
+    both(2, "subsurface_roughness", &[SHARE, SHARE], is_share),
+    both(2, "wrapped_cosine", &[Values(&[-1.002, -0.5, 0.0, 1.0, 1.002])], is_share),
+    both(2, "cloth_tint", &[Vector(3, -0.1, 1.1), Values(&[-1.002, 0.0, 1.002])], is_share),
     // Light from the front does not come through.
     both(2, "fd_transmitted", &[Values(&[0.0, -0.0, 0.1, 1.0, 1.002, -1.002])], |x, y| {
         y.iter().all(|through| (0.0..0.3185).contains(through) && (x[0] < 0.0 || *through == 0.0))

@@ -81,6 +81,24 @@ pub(super) const PROBES: &[Probe] = &[
         ],
         is_share,
     ),
+    // Toward the sun and away from it; a disc of no size, a halo of no size.
+    both(
+        20,
+        "sun_halo",
+        &[
+            Values(&[0.0]),
+            Values(&[0.0, 1e-4]),
+            Values(&[1.0]),
+            Values(&[0.0]),
+            Values(&[0.0]),
+            Values(&[1.0, -1.0]),
+            Values(&[0.0, 1e-5]),
+            Values(&[0.0, 1e3, 1e12]),
+            Values(&[0.01, 80.0, 1e4]),
+        ],
+        // Nothing away from the sun, where the halo ends at all.
+        |x, y| is_share(x, y) && (x[5] > 0.0 || x[7] == 0.0 || y[0] == 0.0),
+    ),
     both(
         20,
         "sun_disc",

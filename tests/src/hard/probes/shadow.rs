@@ -22,6 +22,8 @@ pub(super) const PROBES: &[Probe] = &[
     both(43, "faded_visibility", &[SHARE, Values(&[0.0, 1e6]), Values(&[0.0, 1e-4, 1.0])], |_, y| {
         (-1e-6..=1.000_001).contains(&y[0])
     }),
+    // Strengths of none and all.
+    both(43, "weakened_visibility", &[SHARE, SHARE], |x, y| is_share(x, y) && (x[1] != 1.0 || y[0] == x[0])),
     both(44, "warp_depth", &[DEPTH], |_, y| (0.003..=255.0).contains(&y[0])),
     both(44, "depth_moments", &[DEPTH, Values(&[-1e6, 0.0, 1e6]), Values(&[0.0, 1e6])], in_half),
     both(45, "moment_visibility", &[SHARE, SHARE, SHARE, Values(&[1e-6, 1e-3]), Values(&[0.0, 0.2, 0.9])], is_share),
