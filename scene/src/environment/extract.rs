@@ -12,6 +12,7 @@ use glam::DVec3;
 use super::definition::Environment;
 use super::equirect::EquirectMap;
 use crate::color::luminance_from_rec709;
+use crate::draw_options::DEFAULT_MASK;
 use crate::light::{Light, LightKind};
 
 /// What belongs to the sun lies this close to the brightest texel, in radians (2.5°): its disc and the
@@ -188,6 +189,7 @@ impl Removed {
             color: (illuminance / lux).as_vec3(),
             position: DVec3::ZERO,
             direction: (-toward).as_vec3(),
+            channels: DEFAULT_MASK,
             rest: None,
         })
     }

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use crate::color::luminance_from_rec709;
+use crate::draw_options::DEFAULT_MASK;
 use crate::light::{Light, LightKind};
 
 /// Half the angle the sun subtends at its mean distance, in radians (0.2666°).
@@ -62,6 +63,7 @@ pub fn sun_light(toward_sun: DVec3, turbidity: f64) -> Option<Light> {
         color: color.as_vec3(),
         position: DVec3::ZERO,
         direction: (-toward_sun).as_vec3(),
+        channels: DEFAULT_MASK,
         rest: None,
     })
 }

@@ -3,19 +3,23 @@
 //! `gltf-json` is stricter than the specification in a few places, and exporters are looser. Both are settled here, on
 //! plain JSON, before the schema types see it.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use gltf_json::Root;
 use serde_json::{Map, Value};
 
+use super::switches;
 use crate::error::{SceneError, Unsupported};
 
 /// A parsed glTF document.
 pub(super) struct Document {
     /// The document as schema types. Indices in it are unchecked.
     pub root: Root,
-    /// The document as JSON, for extensions that the schema types leave out.
+    /// The document as JSON without `extras`, for extensions that the schema types leave out.
     pub json: Value,
+    /// The member [`switches::KEY`] of `extras`, by the pointer to the object that has them (RFC 6901).
+    pub switches: BTreeMap<String, Value>,
 }
 
 /// Node index of an animation channel without a node.
@@ -33,6 +37,7 @@ pub(super) fn parse(file: &Path, text: &[u8]) -> Result<Document, SceneError> {
     if let Some(version) = old_version(&json) {
         return Err(SceneError::Unsupported { file: file.into(), feature: Unsupported::GltfVersion(version) });
     }
+    let switches = switches_of(&json);
     tidy(&mut json);
     fill_in(&mut json);
     // The schema types would read a list as the fields of an object.
@@ -43,7 +48,7 @@ pub(super) fn parse(file: &Path, text: &[u8]) -> Result<Document, SceneError> {
         let path = error.path().to_string();
         malformed(if path == "." { error.inner().to_string() } else { format!("{path}: {}", error.inner()) })
     })?;
-    Ok(Document { root, json })
+    Ok(Document { root, json, switches })
 }
 
 /// The version of a document of glTF 1, which stores dictionaries where glTF 2 stores arrays.
@@ -60,6 +65,21 @@ fn old_version(json: &Value) -> Option<String> {
     let dictionaries = ["accessors", "buffers", "bufferViews", "materials", "meshes", "nodes", "scenes"];
     let is_old = stated.is_some() || dictionaries.iter().any(|key| json.get(key).is_some_and(Value::is_object));
     is_old.then(|| stated.unwrap_or_else(|| "1.0".into()))
+}
+
+/// Returns the member [`switches::KEY`] in `extras` of nodes, materials and lights.
+fn switches_of(json: &Value) -> BTreeMap<String, Value> {
+    let mut found = BTreeMap::new();
+    for array in ["/nodes", "/materials", "/extensions/KHR_lights_punctual/lights"] {
+        for (number, object) in json.pointer(array).and_then(Value::as_array).into_iter().flatten().enumerate() {
+            if let Some(stated) = object.get("extras").and_then(|extras| extras.get(switches::KEY)) {
+                let mut stated = stated.clone();
+                tidy(&mut stated);
+                found.insert(format!("{array}/{number}"), stated);
+            }
+        }
+    }
+    found
 }
 
 /// Writes whole numbers as integers and removes `extras`.

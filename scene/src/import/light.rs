@@ -9,6 +9,7 @@ use gltf_json::validation::Checked;
 
 use super::node::{Attached, FlatNode};
 use super::source::{Source, Warnings, beyond};
+use super::switches::Switches;
 use crate::error::{SceneError, one_line};
 use crate::light::{Light, LightKind};
 
@@ -52,7 +53,9 @@ pub(super) fn import(
         };
         let name = json.name.as_deref().filter(|name| !name.is_empty());
         let name = one_line(name.unwrap_or(&node.name));
-        lights.push(Light { name, kind, color, position, direction, rest: Some(attached.len()) });
+        let pointer = format!("/extensions/KHR_lights_punctual/lights/{index}");
+        let channels = Switches::of(source.document, &pointer, &at, warnings).light_channels();
+        lights.push(Light { name, kind, color, position, direction, channels, rest: Some(attached.len()) });
         attached.push(Attached { node: place, index });
     }
     Ok(attached)
