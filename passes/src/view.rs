@@ -46,6 +46,10 @@ pub struct ViewSettings {
     /// How far a mesh that has [levels of detail](framegraph_scene::MeshLevel) may be drawn from where it is, in pixels and in texels of
     /// shadow maps; 0 draws all meshes whole.
     pub lod_error_px: f32,
+    /// Layers that are shown, a bit each: instances that are in none of them neither show nor cast shadows
+    /// ([`DrawOptions::layers`](framegraph_scene::DrawOptions::layers)). Filament's `View::setVisibleLayers`, whose default is
+    /// the first layer.
+    pub visible_layers: u8,
 }
 
 /// What stands behind everything.
@@ -110,6 +114,10 @@ pub struct CameraView {
     pub lights: Vec<LightUniforms>,
     /// Which of them reach what part of the view; none where all are looked at everywhere.
     pub light_lists: Option<LightLists>,
+    /// Light channels of the sun.
+    pub sun_channels: u8,
+    /// Whether some punctual light and some instance share no light channel.
+    pub channels_differ: bool,
     /// What became of the scene's lights.
     pub light_report: LightReport,
     /// What is drawn of it, in which draws.
@@ -172,12 +180,8 @@ impl CameraView {
 
     /// The surfaces of a scene that was prepared, without any light.
     pub fn unlit(prepared: &PreparedScene, settings: &ViewSettings) -> Self {
-        Self::empty(settings).with_surfaces(
-            prepared,
-            seen(prepared, settings),
-            settings,
-            settings.unlimited_levels(prepared.renderables()),
-        )
+        let levels = settings.unlimited_levels(prepared.renderables());
+        Self::empty(settings).with_surfaces(prepared, seen(prepared, settings), settings, levels)
     }
 
     /// Puts what is seen into a view that has its shadows, in `levels` of detail at the most.
@@ -232,7 +236,8 @@ impl CameraView {
         settings: &ViewSettings,
         sharing: &[ViewSettings],
     ) -> (Self, Vec<u8>) {
-        let renderables = prepared.renderables();
+        let layers = sharing.first().unwrap_or(settings).visible_layers;
+        let renderables = &*prepared.shown(layers);
         let ViewSettings { camera, environment_intensity, .. } = settings;
         let empty = Self::empty(settings);
         let exposure = empty.frame.exposure;
@@ -252,6 +257,8 @@ impl CameraView {
         for (light, first) in lights.iter_mut().zip(first_maps) {
             light.shadow_map = first.map_or(0, |first| first + 1);
         }
+        let channels = renderables.common_light_channels();
+        let common = selection.kept.iter().fold(channels, |common, light| common & light.channels);
         let environment_scale = environment_intensity * exposure;
         let light_count = lights.len() as u32;
         lights.resize(lights.len().max(1), LightUniforms::default());
@@ -270,7 +277,10 @@ impl CameraView {
             ..empty.frame
         };
         let background = BackgroundUniforms::new(background, exposure, environment_scale);
-        (Self { frame, background, lights, light_lists, light_report, shadows, ..empty }, levels)
+        let sun_channels = sun.map_or(u8::MAX, |sun| sun.channels);
+        let (lists, report) = (light_lists, light_report);
+        let lit = Self { frame, background, lights, light_lists: lists, light_report: report, shadows, ..empty };
+        (Self { sun_channels, channels_differ: common == 0 && light_count > 0, ..lit }, levels)
     }
 
     /// The same view in a frame that follows one with the view `before`: passes that read the earlier picture find places in
@@ -346,6 +356,8 @@ impl CameraView {
             background: BackgroundUniforms::None,
             lights: vec![LightUniforms::default()],
             light_lists: None,
+            sun_channels: u8::MAX,
+            channels_differ: false,
             light_report: LightReport::default(),
             draws: ViewDraws::default(),
             origins: Vec::new(),
@@ -364,7 +376,7 @@ impl CameraView {
 
 /// What its camera may see.
 fn seen(prepared: &PreparedScene, settings: &ViewSettings) -> DrawLists {
-    DrawLists::seen(prepared.renderables(), &settings.camera, aspect(settings), prepared.pool())
+    DrawLists::seen(&prepared.shown(settings.visible_layers), &settings.camera, aspect(settings), prepared.pool())
 }
 
 fn aspect(settings: &ViewSettings) -> f64 {

@@ -156,6 +156,7 @@ mod tests {
             shadows: None,
             lights: LightSearch::All,
             lod_error_px: 0.0,
+            visible_layers: 1,
         }
     }
 

@@ -23,8 +23,11 @@ pub(super) struct Seen<'a> {
 impl<'a> Seen<'a> {
     pub fn new(scene: &'a Scene, survey: &'a Survey, views: &'a [ViewSettings]) -> Self {
         let aspect = |view: &ViewSettings| fit_camera(view).width_over_height;
-        let renderables = Renderables::new(scene);
-        let seen_by = |v: &ViewSettings| DrawLists::seen(&renderables, &v.camera, aspect(v), None);
+        // What no view shows is as if it were not there.
+        let layers = views.iter().fold(0, |all, view| all | view.visible_layers);
+        let renderables = Renderables::new(scene).shown(layers).into_owned();
+        let seen_by =
+            |v: &ViewSettings| DrawLists::seen(&renderables.shown(v.visible_layers), &v.camera, aspect(v), None);
         let lists: Vec<DrawLists> = views.iter().map(seen_by).collect();
         let all = lists.iter().flat_map(|l| [&l.opaque, &l.mask, &l.transmit, &l.blend]).flatten();
         let mut instances: Vec<usize> = all.map(|number| *number as usize).collect();

@@ -63,7 +63,8 @@ pub fn light_uniforms(light: &Light, origin: DVec3, exposure: f32) -> Result<Lig
             (Punctual::Spot { position, direction, range_m, inner_cone_rad, outer_cone_rad }, intensity_candela)
         }
     };
-    LightUniforms::punctual(shape, light.color, strength, exposure)
+    let channels = light.channels.into();
+    LightUniforms::punctual(shape, light.color, strength, exposure).map(|own| LightUniforms { channels, ..own })
 }
 
 #[cfg(test)]

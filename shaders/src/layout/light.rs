@@ -24,8 +24,10 @@ pub struct LightUniforms {
     /// Number of the light's first shadow map among those of local lights, counted from 1; 0: it
     /// casts none.
     pub shadow_map: u32,
+    /// Light channels in bits 0 to 7.
+    pub channels: u32,
     /// Padding to 16 bytes; zero.
-    pub _pad: [f32; 2],
+    pub _pad: f32,
 }
 
 /// Shape of a punctual light, as KHR_lights_punctual has it.
@@ -163,6 +165,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
         spot_scale,
         spot_offset,
         shadow_map,
+        channels,
         _pad
     })]
 }

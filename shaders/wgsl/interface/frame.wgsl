@@ -64,6 +64,8 @@ struct LightUniforms {
     /// Number of the light's first shadow map among those of local lights, counted from 1; 0: it
     /// casts none.
     shadow_map: u32,
+    /// Light channels in bits 0 to 7.
+    channels: u32,
 }
 
 /// Values of `LightUniforms::kind`.

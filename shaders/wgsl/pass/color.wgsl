@@ -69,6 +69,7 @@ import package::shading::indirect::{ambient_visibility, reflect_environment, add
 @if(DIFFUSE_TRANSMISSION)
 import package::shading::through::{translucency_of, is_behind, far_side};
 import package::shading::micro_shadow::micro_visibility;
+import package::shading::object_light::takes_sun;
 import package::shading::quality::{
     ROUGHNESS_FLOOR, F90_FADES, PUNCTUAL_COMPENSATION,
     SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD,
@@ -288,7 +289,7 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     }
     var radiance = add_layers(surface, normal, view, below, visibility);
     let receiver = Receiver(vertex.world, geometric, vertex.position.xy, slope);
-    if SUN {
+    if SUN && takes_sun() {
         @if(DIFFUSE_TRANSMISSION)
         let comes_through = is_behind(surface, frame.sun_direction);
         @if(DIFFUSE_TRANSMISSION) {
