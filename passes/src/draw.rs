@@ -55,6 +55,16 @@ pub struct InstanceSource<'a> {
     pub instances: Instances<'a>,
     /// Arguments of long lists of draws.
     pub arguments: &'a Buffer,
+    /// Materials test and write stencil, which the pass then has.
+    pub stencil: bool,
+}
+
+impl InstanceSource<'_> {
+    /// The same with the stencil states of materials, where the pass draws into depth with stencil.
+    #[must_use]
+    pub const fn with_stencil(self, stencil: bool) -> Self {
+        Self { stencil, ..self }
+    }
 }
 
 /// How batches of instances are drawn.
@@ -113,6 +123,8 @@ struct PipelineKey {
     topology: Topology,
     /// What light instances take ([`InstanceDraw::light_bits`]); 0 where nothing is shaded.
     light_bits: u16,
+    /// The material, if its stencil state counts.
+    stencil: Option<MaterialId>,
 }
 
 impl PipelineKey {
@@ -129,7 +141,8 @@ impl PipelineKey {
             material_table: indirect && scene.is_in_table(material),
             instance_stream: matches!(from.instances, Instances::Stream(_)),
         };
-        Self { surface, mirrored, topology, light_bits: if shades { light_bits } else { 0 } }
+        let stencil = Some(material).filter(|material| from.stencil && scene.stencil(*material).is_some());
+        Self { surface, mirrored, topology, light_bits: if shades { light_bits } else { 0 }, stencil }
     }
 }
 
@@ -209,7 +222,7 @@ impl SurfaceDraw<'_> {
     /// # Errors
     /// What the shader or the device refuses.
     pub fn draw(&self, list: &DrawList, from: InstanceSource<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let InstanceSource { scene, instances, arguments } = from;
+        let InstanceSource { scene, instances, arguments, .. } = from;
         if list.is_empty() {
             return Ok(());
         }
@@ -243,6 +256,9 @@ impl SurfaceDraw<'_> {
                     let pass = cx.render_pass()?;
                     pass.set_pipeline(pipeline);
                     pass.set_bind_group(0, frame, &[]);
+                    if let Some((_, reference)) = key.stencil.and_then(|material| scene.stencil(material)) {
+                        pass.set_stencil_reference(*reference);
+                    }
                     if let Some(objects) = objects {
                         pass.set_bind_group(2, objects, &[]);
                     }
@@ -302,7 +318,10 @@ impl SurfaceDraw<'_> {
         from: InstanceSource<'_>,
         cx: &mut Cx<'_>,
     ) -> Result<SharedState, RecordError> {
-        let Self { program, frame, constants, depth, colors, .. } = self;
+        let Self { program, frame, constants, colors, .. } = self;
+        let stencil = key.stencil.and_then(|material| from.scene.stencil(material));
+        let depth =
+            stencil.map_or(self.depth.clone(), |(stencil, _)| Depth { stencil: stencil.clone(), ..self.depth.clone() });
         let program = program(key.surface)?;
         fits(&program, key.surface.lobes, from.scene.material_name(material), &cx.gpu().device.limits())?;
         let attributes = stream_attributes(key.surface.instance_stream);
@@ -324,7 +343,7 @@ impl SurfaceDraw<'_> {
                 },
                 ..PrimitiveState::default()
             },
-            depth: depth.clone(),
+            depth,
             colors,
             ..Raster::new(program.shader())
         })?;

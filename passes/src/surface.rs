@@ -123,6 +123,8 @@ pub(crate) struct SurfaceInputs {
     pub reflections: Option<[View; 2]>,
     /// Fog.
     pub fog: Option<FogSettings>,
+    /// The pass draws into depth with stencil.
+    pub stencil: bool,
 }
 
 /// Ambient occlusion as shading reads it.
@@ -152,6 +154,8 @@ pub(crate) struct SurfaceBindings {
     shading: Shading,
     /// Bands of irradiance that the light has.
     bands: ShBands,
+    /// Depth has stencil, which materials test and write.
+    pub stencil: bool,
     /// There is a picture of what is behind transmissive surfaces.
     transmits: bool,
     /// In the order of [`LIGHT_CONSTANTS`].
@@ -217,6 +221,7 @@ impl SurfaceBindings {
                 .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,
             bands: lighting.image.bands,
+            stencil: inputs.stencil,
             transmits: inputs.scene.is_some(),
             light: [
                 f64::from(inputs.occlusion.is_some_and(|input| input.bent_normals)),
@@ -268,7 +273,7 @@ pub(crate) fn draw_blended(
         depth: Depth { write: false, ..Depth::NEARER },
         colors: &[Output { blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING), ..Output::REPLACE }],
     };
-    blended.draw(&world.view.view.draws.blend, world.instances(), cx)
+    blended.draw(&world.view.view.draws.blend, world.instances().with_stencil(bindings.stencil), cx)
 }
 
 #[cfg(test)]

@@ -131,7 +131,7 @@ mod tests {
         let ordered = |blend_order| DrawOptions { blend_order, ..default };
         let global = |blend_order| DrawOptions { blend_order, global_blend_order: true, ..default };
         // Opaque: 0 to 3. The camera at z = 10 looks along −z.
-        [(5.0, of(7)), (0.0, of(0)), (1.0, of(0)), (4.0, default)].map(|(z, draw)| place(z, 0, draw));
+        [(5.0, of(7)), (0.0, of(0)), (1.0, of(0)), (4.0, default)].into_iter().for_each(|(z, draw)| place(z, 0, draw));
         // Blended: 4 and up.
         place(0.0, 1, default);
         place(1.0, 1, ordered(3));

@@ -1,6 +1,7 @@
 //! Metal-rough materials, as glTF 2.0 states them.
 
 mod lobes;
+mod stencil;
 
 use glam::{Vec3, Vec4};
 
@@ -10,6 +11,7 @@ use super::texture::{TextureRole, TextureSlot};
 pub use lobes::{
     Anisotropy, ClearCoat, DiffuseTransmission, Iridescence, Lobe, Lobes, Sheen, Specular, Transmission, Volume,
 };
+pub use stencil::{Stencil, StencilCompare, StencilFace, StencilOp};
 
 /// A material of a scene.
 pub type MaterialId = Id<Material>;
@@ -100,6 +102,8 @@ pub struct Material {
     pub iridescence: Option<Iridescence>,
     /// Light that is scattered through the surface, as through a leaf.
     pub diffuse_transmission: Option<DiffuseTransmission>,
+    /// Stencil test and operations; a scene in which no material has any is drawn without a stencil buffer.
+    pub stencil: Option<Box<Stencil>>,
 }
 
 /// How many textures a material can have.
@@ -149,6 +153,7 @@ impl Default for Material {
             specular: None,
             iridescence: None,
             diffuse_transmission: None,
+            stencil: None,
         }
     }
 }

@@ -99,10 +99,11 @@ impl Renderables {
         let instances = &scene.instances;
         let keys: Vec<SurfaceKey> = instances.iter().map(|instance| surface_key(scene, instance)).collect();
         let kinds: Vec<DrawKind> = instances.iter().map(|instance| kind_of(scene, instance)).collect();
-        // Depth of opaque surfaces asks for no material.
+        // Depth of opaque surfaces asks for no material but for its stencil.
         let depth_key = |(key, kind): (&SurfaceKey, &DrawKind)| {
             let (topology, _, double_sided, mirrored, _, material, mesh, priority) = *key;
-            (topology, double_sided, mirrored, material.filter(|_| *kind != DrawKind::Opaque), mesh, priority)
+            let counts = |material: &usize| *kind != DrawKind::Opaque || scene.materials[*material].stencil.is_some();
+            (topology, double_sided, mirrored, material.filter(counts), mesh, priority)
         };
         let depth_keys: Vec<_> = keys.iter().zip(&kinds).map(depth_key).collect();
         let bounds: Vec<Aabb> = instances.iter().map(|instance| instance.bounds).collect();

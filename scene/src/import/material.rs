@@ -12,6 +12,7 @@ use super::lobes;
 use super::object::Object;
 use super::source::{Source, Warnings, beyond};
 use super::spec_gloss;
+use super::switches::Switches;
 use super::texture::{Reference, Roughness, Textures, TransformSource};
 use crate::error::{SceneError, one_line};
 use crate::material::MaterialId;
@@ -161,6 +162,7 @@ impl<'a> Materials<'a> {
             normal_texture,
             occlusion_texture,
             emissive_texture,
+            stencil: Switches::of(source.document, &format!("/materials/{index}"), &at, warnings).stencil(),
             ..Material::default()
         };
         lobes::read(source, &at, json, &mut self.textures, warnings, &mut material)?;

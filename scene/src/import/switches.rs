@@ -9,6 +9,7 @@ use serde_json::{Map, Value};
 use super::document::Document;
 use super::source::{Repair, Warnings};
 use crate::draw_options::{DEFAULT_MASK, DrawOptions, MAX_PRIORITY};
+use crate::material::{Stencil, StencilCompare, StencilFace, StencilOp};
 
 /// The member of `extras` that is read.
 pub(super) const KEY: &str = "framegraph";
@@ -16,24 +17,27 @@ pub(super) const KEY: &str = "framegraph";
 /// The switches of one object of the file.
 pub(super) struct Switches<'a> {
     members: Option<&'a Map<String, Value>>,
-    /// `node 3 "name"`, for messages.
-    at: &'a str,
+    /// `node 3 "name": extras.framegraph`, for messages.
+    at: String,
     warnings: &'a mut Warnings,
     read: Vec<&'static str>,
 }
 
 impl<'a> Switches<'a> {
-    /// Those in `extras` of the object that `pointer` leads to (RFC 6901).
-    pub fn of(document: &'a Document, pointer: &str, at: &'a str, warnings: &'a mut Warnings) -> Self {
-        let stated = document.switches.get(pointer);
+    /// Those in `extras` of the object that `pointer` leads to (RFC 6901), which is named `at`.
+    pub fn of(document: &'a Document, pointer: &str, at: &str, warnings: &'a mut Warnings) -> Self {
+        Self::new(document.switches.get(pointer), format!("{at}: extras.{KEY}"), warnings)
+    }
+
+    fn new(stated: Option<&'a Value>, at: String, warnings: &'a mut Warnings) -> Self {
         if stated.is_some_and(|stated| !stated.is_object()) {
-            warnings.count(Repair::Switches, &format!("{at}: extras.{KEY}"), 1);
+            warnings.count(Repair::Switches, &at, 1);
         }
         Self { members: stated.and_then(Value::as_object), at, warnings, read: Vec::new() }
     }
 
     fn wrong(&mut self, member: &str) {
-        self.warnings.count(Repair::Switches, &format!("{}: extras.{KEY}.{member}", self.at), 1);
+        self.warnings.count(Repair::Switches, &format!("{}.{member}", self.at), 1);
     }
 
     /// A member, if it is stated and `parse` makes something of it.
@@ -54,6 +58,18 @@ impl<'a> Switches<'a> {
     /// `true` or `false`.
     fn flag(&mut self, name: &'static str) -> Option<bool> {
         self.member(name, Value::as_bool)
+    }
+
+    /// One of some words.
+    fn word<T: Copy>(&mut self, name: &'static str, words: &[(&str, T)]) -> Option<T> {
+        self.member(name, |value| words.iter().find(|(word, _)| value.as_str() == Some(word)).map(|(_, own)| *own))
+    }
+
+    /// The switches in a member, if it is stated.
+    fn nested(&mut self, name: &'static str) -> Option<Switches<'_>> {
+        self.read.push(name);
+        let stated = self.members?.get(name)?;
+        Some(Switches::new(Some(stated), format!("{}.{name}", self.at), self.warnings))
     }
 
     /// Warns of members that were not read.
@@ -84,5 +100,40 @@ impl<'a> Switches<'a> {
         let channels = self.whole("lightChannels", 0..=u8::MAX).unwrap_or(DEFAULT_MASK);
         self.finish();
         channels
+    }
+
+    /// The stencil state of a material, if it states any.
+    pub fn stencil(mut self) -> Option<Box<Stencil>> {
+        let stencil = self.nested("stencil").map(|mut stated| {
+            let default = Stencil::default();
+            let front = stated.stencil_face(default.front);
+            let back = stated.nested("back").map(|mut back| {
+                let face = back.stencil_face(front);
+                back.finish();
+                face
+            });
+            let stencil = Stencil {
+                write: stated.flag("write").unwrap_or(default.write),
+                reference: stated.whole("reference", 0..=u8::MAX).unwrap_or(default.reference),
+                read_mask: stated.whole("readMask", 0..=u8::MAX).unwrap_or(default.read_mask),
+                write_mask: stated.whole("writeMask", 0..=u8::MAX).unwrap_or(default.write_mask),
+                front,
+                back: back.unwrap_or(front),
+            };
+            stated.finish();
+            Box::new(stencil)
+        });
+        self.finish();
+        stencil
+    }
+
+    /// Test and operations of a face; members that are not stated are those of `default`.
+    fn stencil_face(&mut self, default: StencilFace) -> StencilFace {
+        StencilFace {
+            compare: self.word("compare", &StencilCompare::NAMES).unwrap_or(default.compare),
+            stencil_fail: self.word("stencilFail", &StencilOp::NAMES).unwrap_or(default.stencil_fail),
+            depth_fail: self.word("depthFail", &StencilOp::NAMES).unwrap_or(default.depth_fail),
+            pass: self.word("pass", &StencilOp::NAMES).unwrap_or(default.pass),
+        }
     }
 }

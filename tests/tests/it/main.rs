@@ -62,6 +62,7 @@ mod shadows;
 mod skies;
 mod soak;
 mod stage;
+mod stencil;
 mod supply;
 mod taa;
 mod textures;

@@ -4,6 +4,7 @@ use serde_json::json;
 
 use super::fixture::Fixture;
 use crate::draw_options::DrawOptions;
+use crate::material::{Stencil, StencilCompare, StencilFace, StencilOp};
 
 /// A triangle with a light on its node.
 fn lit_triangle() -> Fixture {
@@ -39,6 +40,37 @@ fn switches_are_read() {
     };
     assert_eq!((scene.instances[0].draw, scene.lights[0].channels), (expected, 128));
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+#[test]
+fn stencil_states_are_read() {
+    let mut fixture = Fixture::triangle();
+    fixture.push("materials", json!({}));
+    fixture.set("/meshes/0/primitives/0/material", json!(0));
+    assert_eq!(fixture.load().expect("it is plain").materials[0].stencil, None);
+    let stated = json!({
+        "write": true, "compare": "not-equal", "reference": 1, "readMask": 3, "writeMask": 2, "stencilFail": "zero",
+        "depthFail": "increment-wrap", "pass": "replace", "back": {"compare": "less", "pass": "invert"},
+    });
+    fixture.set("/materials/0/extras", json!({"framegraph": {"stencil": stated}}));
+    let scene = fixture.load().expect("the state is sound");
+    let front = StencilFace {
+        compare: StencilCompare::NotEqual,
+        stencil_fail: StencilOp::Zero,
+        depth_fail: StencilOp::IncrementWrap,
+        pass: StencilOp::Replace,
+    };
+    let back = StencilFace { compare: StencilCompare::Less, pass: StencilOp::Invert, ..front };
+    let expected = Stencil { write: true, reference: 1, read_mask: 3, write_mask: 2, front, back };
+    assert_eq!((scene.materials[0].stencil.as_deref(), scene.uses_stencil()), (Some(&expected), true));
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    let wrong = json!({"compare": "sometimes", "back": {"reference": 1}, "readMask": 256});
+    fixture.set("/materials/0/extras", json!({"framegraph": {"stencil": wrong}}));
+    let scene = fixture.load().expect("wrong switches are no error");
+    assert_eq!(scene.materials[0].stencil.as_deref(), Some(&Stencil::default()));
+    let warning = "material 0: extras.framegraph.stencil.compare and 2 other places: 3 switches are unknown or out of range; \
+                   they are ignored";
+    assert!(matches!(&scene.warnings[..], [one] if one.ends_with(warning)), "{:?}", scene.warnings);
 }
 
 /// All wrong values of a file are one warning with their number, which names the first by node and member.
