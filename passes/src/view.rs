@@ -46,9 +46,8 @@ pub struct ViewSettings {
     /// How far a mesh that has [levels of detail](framegraph_scene::MeshLevel) may be drawn from where it is, in pixels and in texels of
     /// shadow maps; 0 draws all meshes whole.
     pub lod_error_px: f32,
-    /// Layers that are shown, a bit each: instances that are in none of them neither show nor cast shadows
-    /// ([`DrawOptions::layers`](framegraph_scene::DrawOptions::layers)). Filament's `View::setVisibleLayers`, whose default is
-    /// the first layer.
+    /// Layers that are shown, a bit each ([`DrawOptions::layers`](framegraph_scene::DrawOptions::layers)); 1 by default, as
+    /// Filament's `View::setVisibleLayers`.
     pub visible_layers: u8,
 }
 
@@ -236,15 +235,15 @@ impl CameraView {
         settings: &ViewSettings,
         sharing: &[ViewSettings],
     ) -> (Self, Vec<u8>) {
-        let layers = sharing.first().unwrap_or(settings).visible_layers;
-        let renderables = &*prepared.shown(layers);
+        let renderables = &*prepared.shown(sharing.first().unwrap_or(settings).visible_layers);
         let ViewSettings { camera, environment_intensity, .. } = settings;
-        let empty = Self::empty(settings);
-        let exposure = empty.frame.exposure;
         let sun = sun_of(scene, light.sun.as_ref());
-        let toward_sun = sun.map_or(Vec3::Y, |sun| -sun.direction);
+        let sun_channels = sun.map_or(u8::MAX, |sun| sun.channels);
+        let empty = Self { sun_channels, ..Self::empty(settings) };
+        let exposure = empty.frame.exposure;
         let cameras: Vec<_> = sharing.iter().map(fitted_camera).collect();
         let selection = punctual::select(scene, renderables, sun, &cameras);
+        let empty = Self { channels_differ: selection.differs_in_channels(renderables), ..empty };
         let packed = selection.kept.iter().filter_map(|own| light_uniforms(own, camera.eye, exposure).ok());
         let mut lights: Vec<LightUniforms> = packed.collect();
         let (mut shadows, mut levels) = (None, settings.unlimited_levels(renderables));
@@ -257,8 +256,6 @@ impl CameraView {
         for (light, first) in lights.iter_mut().zip(first_maps) {
             light.shadow_map = first.map_or(0, |first| first + 1);
         }
-        let channels = renderables.common_light_channels();
-        let common = selection.kept.iter().fold(channels, |common, light| common & light.channels);
         let environment_scale = environment_intensity * exposure;
         let light_count = lights.len() as u32;
         lights.resize(lights.len().max(1), LightUniforms::default());
@@ -266,7 +263,7 @@ impl CameraView {
             punctual::lists(renderables, selection, &fitted_camera(settings), settings.size_px, settings.lights);
 
         let frame = FrameUniforms {
-            sun_direction: toward_sun,
+            sun_direction: sun.map_or(Vec3::Y, |sun| -sun.direction),
             sun_angular_radius: sun.map_or(0.0, angular_radius_rad),
             sun_illuminance: sun.map_or(Vec3::ZERO, |sun: &Light| sun.color * illuminance_lux(sun) * exposure),
             environment_scale,
@@ -277,10 +274,7 @@ impl CameraView {
             ..empty.frame
         };
         let background = BackgroundUniforms::new(background, exposure, environment_scale);
-        let sun_channels = sun.map_or(u8::MAX, |sun| sun.channels);
-        let (lists, report) = (light_lists, light_report);
-        let lit = Self { frame, background, lights, light_lists: lists, light_report: report, shadows, ..empty };
-        (Self { sun_channels, channels_differ: common == 0 && light_count > 0, ..lit }, levels)
+        (Self { frame, background, lights, light_lists, light_report, shadows, ..empty }, levels)
     }
 
     /// The same view in a frame that follows one with the view `before`: passes that read the earlier picture find places in

@@ -1,5 +1,5 @@
-// Which light an object takes: its channels, and whether shadows fall on it. Constants of pipelines,
-// so that a scene whose objects take all light has nothing of it in its shaders.
+// Which light an object takes: its channels, and whether shadows fall on it. Constants of
+// pipelines, so that a scene whose objects take all light has nothing of it in its shaders.
 
 /// Light channels of the object in bits 0 to 7. Bit 8: it receives no shadows.
 override OBJECT_LIGHT: u32 = 1u;
