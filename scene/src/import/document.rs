@@ -9,7 +9,6 @@ use std::path::Path;
 use gltf_json::Root;
 use serde_json::{Map, Value};
 
-use super::switches;
 use crate::error::{SceneError, Unsupported};
 
 /// A parsed glTF document.
@@ -18,9 +17,12 @@ pub(super) struct Document {
     pub root: Root,
     /// The document as JSON without `extras`, for extensions that the schema types leave out.
     pub json: Value,
-    /// The member [`switches::KEY`] of `extras`, by the pointer to the object that has them (RFC 6901).
+    /// The member [`SWITCHES`] of `extras`, by the pointer to the object that has them (RFC 6901).
     pub switches: BTreeMap<String, Value>,
 }
+
+/// The member of `extras` that holds [switches](super::switches).
+pub(super) const SWITCHES: &str = "framegraph";
 
 /// Node index of an animation channel without a node.
 pub(super) const NO_NODE: u32 = u32::MAX;
@@ -67,12 +69,12 @@ fn old_version(json: &Value) -> Option<String> {
     is_old.then(|| stated.unwrap_or_else(|| "1.0".into()))
 }
 
-/// Returns the member [`switches::KEY`] in `extras` of nodes, materials and lights.
+/// Returns the member [`SWITCHES`] in `extras` of nodes, materials and lights.
 fn switches_of(json: &Value) -> BTreeMap<String, Value> {
     let mut found = BTreeMap::new();
     for array in ["/nodes", "/materials", "/extensions/KHR_lights_punctual/lights"] {
         for (number, object) in json.pointer(array).and_then(Value::as_array).into_iter().flatten().enumerate() {
-            if let Some(stated) = object.get("extras").and_then(|extras| extras.get(switches::KEY)) {
+            if let Some(stated) = object.get("extras").and_then(|extras| extras.get(SWITCHES)) {
                 let mut stated = stated.clone();
                 tidy(&mut stated);
                 found.insert(format!("{array}/{number}"), stated);

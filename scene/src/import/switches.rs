@@ -6,13 +6,10 @@ use std::ops::RangeInclusive;
 
 use serde_json::{Map, Value};
 
-use super::document::Document;
+use super::document::{Document, SWITCHES};
 use super::source::{Repair, Warnings};
 use crate::draw_options::{DEFAULT_MASK, DrawOptions, MAX_PRIORITY};
 use crate::material::{Stencil, StencilCompare, StencilFace, StencilOp};
-
-/// The member of `extras` that is read.
-pub(super) const KEY: &str = "framegraph";
 
 /// The switches of one object of the file.
 pub(super) struct Switches<'a> {
@@ -26,7 +23,7 @@ pub(super) struct Switches<'a> {
 impl<'a> Switches<'a> {
     /// Those in `extras` of the object that `pointer` leads to (RFC 6901), which is named `at`.
     pub fn of(document: &'a Document, pointer: &str, at: &str, warnings: &'a mut Warnings) -> Self {
-        Self::new(document.switches.get(pointer), format!("{at}: extras.{KEY}"), warnings)
+        Self::new(document.switches.get(pointer), format!("{at}: extras.{SWITCHES}"), warnings)
     }
 
     fn new(stated: Option<&'a Value>, at: String, warnings: &'a mut Warnings) -> Self {
