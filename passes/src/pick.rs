@@ -1,7 +1,8 @@
 //! Picking: which instance of a scene is seen at a pixel, how deep and where.
 //!
 //! A graph of its own draws the view's surfaces into one texel whose clip space is that of the picked pixel. So a pick costs
-//! the vertices of a depth prepass and nothing for pixels, and the frame itself has no part in it. Filament's `View::pick`.
+//! the vertices of a depth prepass and nothing for pixels, and the frame itself has no part in it. Stencil is ignored.
+//! Filament's `View::pick`.
 
 use crate::draw::{SurfaceDraw, SurfaceVariant};
 use crate::error::PassError;

@@ -34,8 +34,8 @@ pub const HELP: &str = "
                        and latency, with one to three frames queued
   --debug MODE,...     no-cull, no-merge, no-inline, no-alias, immediate (all of these, in declared order, nothing
                        memoryless), poison (what nobody wrote is NaN or magenta)
-  --pick X,Y           print what opaque object the picture shows at a pixel from the left and the top, with its number, depth
-                       and position; as often as pixels are asked for
+  --pick X,Y[:X,Y...]  print what opaque object the picture shows at a pixel from the left and the top, with its number, depth
+                       and position
   --bisect             render under each debug mode, and say which changes the picture
 ";
 
@@ -98,7 +98,7 @@ impl Debugging {
             "timing" => self.timing = true,
             "debug" => self.modes = text()?.parse().map_err(|e| told(&e))?,
             "bisect" => self.bisect = true,
-            "pick" => self.picks.push(pick::pixel(&text()?)?),
+            "pick" => self.picks = pick::pixels(&text()?)?,
             _ => return Ok(false),
         }
         Ok(true)

@@ -4,12 +4,13 @@ use crate::args::Args;
 use crate::run::{Failure, Prepared, device};
 use framegraph_passes::{Pick, Pickable, Picker, ViewId};
 
-/// The column and row of a pixel, from the left and the top: `X,Y`.
+/// Columns and rows of pixels, from the left and the top: `X,Y:…`.
 ///
 /// # Errors
 /// One line that says what is needed.
-pub fn pixel(text: &str) -> Result<[u32; 2], String> {
-    let parsed = text.split_once(',').and_then(|(x, y)| Some([x.parse().ok()?, y.parse().ok()?]));
+pub fn pixels(text: &str) -> Result<Vec<[u32; 2]>, String> {
+    let pixel = |own: &str| own.split_once(',').and_then(|(x, y)| Some([x.parse().ok()?, y.parse().ok()?]));
+    let parsed: Option<_> = text.split(':').map(pixel).collect();
     parsed.ok_or_else(|| format!("--pick {text}: X,Y in pixels from the left and the top are needed"))
 }
 
@@ -54,13 +55,14 @@ pub fn lines(args: &Args, prepared: &Prepared) -> Result<Vec<String>, Failure> {
 
 #[cfg(test)]
 mod tests {
-    use super::pixel;
+    use super::pixels;
 
     #[test]
     fn pixels_are_two_numbers() {
-        assert_eq!(pixel("12,0"), Ok([12, 0]));
-        for wrong in ["", "1", "1,2,3", "-1,2", "1.5,2", "x,y"] {
-            assert!(pixel(wrong).is_err_and(|told| told.starts_with(&format!("--pick {wrong}: "))), "{wrong}");
+        assert_eq!(pixels("12,0"), Ok(vec![[12, 0]]));
+        assert_eq!(pixels("12,0:3,4"), Ok(vec![[12, 0], [3, 4]]));
+        for wrong in ["", "1", "1,2,3", "-1,2", "1.5,2", "x,y", "1,2:"] {
+            assert!(pixels(wrong).is_err_and(|told| told.starts_with(&format!("--pick {wrong}: "))), "{wrong}");
         }
     }
 }
