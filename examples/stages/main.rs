@@ -97,6 +97,7 @@ fn draw(out: &Path, density: f32) -> Result<(), Box<dyn Error>> {
         shadows: settings.shadows,
         lights: LightSearch::default(),
         lod_error_px: 0.0,
+        visible_layers: 1,
     };
     let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &seen);
     let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;

@@ -45,6 +45,8 @@ pub struct Color {
     pub contact_shadows: bool,
     /// Samples per texel, those of the depth; above 1 the result is averaged.
     pub samples: u8,
+    /// Materials test and write stencil: depth of this pass's own then has it. That of a prepass says itself whether it has.
+    pub stencil: bool,
     /// Some surface blends.
     pub blended: bool,
     /// A later pass draws what transmits and blends ([`Transparent`](crate::transmission::Transparent)): this one leaves it
@@ -84,6 +86,7 @@ impl Color {
             reflections: None,
             contact_shadows: false,
             samples: 1,
+            stencil: false,
             blended: false,
             opaque_only: false,
             sky: true,
@@ -102,6 +105,8 @@ pub struct ColorIo {
     contact: Option<View>,
     occlusion: Option<OcclusionInput>,
     reflections: Option<[View; 2]>,
+    /// The depth has stencil.
+    stencil: bool,
     /// Depth of the nearest surfaces, reversed.
     pub depth: Texture,
     /// Scene-referred radiance times exposure, linear Rec.709, single-sampled.
@@ -117,11 +122,17 @@ impl Pass for Color {
         pass.takes_epilogue();
         let (extent, depth) = match self.depth {
             ColorDepth::Prepass(depth) => {
-                pass.depth_read_only(depth)?;
-                (pass.desc(depth)?.extent, depth)
+                let TextureDesc { extent, format, .. } = pass.desc(depth)?;
+                // Blended surfaces may write stencil.
+                let depth = match format.has_stencil() {
+                    true => pass.depth(depth, Intent::Modify)?,
+                    false => pass.depth_read_only(depth).map(|_| depth)?,
+                };
+                (extent, depth)
             }
-            ColorDepth::Own(extent) => (extent, new_depth(pass, extent, self.samples)?),
+            ColorDepth::Own(extent) => (extent, new_depth(pass, extent, self.samples, self.stencil)?),
         };
+        let stencil = pass.desc(depth)?.format.has_stencil();
         let shadow = ShadowInput::declare(self.shadow, pass)?;
         let shown = self.structure.filter(|_| self.contact_shadows);
         let contact = shown.map(|structure| pass.sampled(structure.mip(0))).transpose()?;
@@ -140,12 +151,12 @@ impl Pass for Color {
         let black = Intent::Clear(ClearValue::BLACK);
         if self.samples == 1 {
             let hdr = pass.color(hdr, black)?;
-            return Ok(ColorIo { shadow, contact, occlusion, reflections, depth, hdr, samples: hdr });
+            return Ok(ColorIo { shadow, contact, occlusion, reflections, stencil, depth, hdr, samples: hdr });
         }
         let samples = pass.texture("hdr_samples", desc.samples(self.samples));
         let samples = pass.color(samples, black)?;
         let hdr = pass.resolve(samples, hdr.texture())?;
-        Ok(ColorIo { shadow, contact, occlusion, reflections, depth, hdr, samples })
+        Ok(ColorIo { shadow, contact, occlusion, reflections, stencil, depth, hdr, samples })
     }
 }
 
@@ -187,10 +198,18 @@ impl Color {
         if !epilogue.effects.is_empty() && !visible.blend.is_empty() {
             return Err(PassError::BlendingUndeclared.into());
         }
-        let ColorIo { shadow, contact, occlusion, reflections, .. } = *io;
-        let inputs =
-            SurfaceInputs { contact, occlusion, reflections, fog: self.fog, ..SurfaceInputs::shadowed(shadow) };
+        let ColorIo { shadow, contact, occlusion, reflections, stencil, .. } = *io;
+        let inputs = SurfaceInputs {
+            contact,
+            occlusion,
+            reflections,
+            fog: self.fog,
+            stencil,
+            ..SurfaceInputs::shadowed(shadow)
+        };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, epilogue, cx)?;
+        // A prepass has tested and written the stencil of what it drew.
+        let own_stencil = stencil && matches!(self.depth, ColorDepth::Own(_));
         let program = |variant| bindings.program(world.programs, variant);
         // A prepass has cut the holes of masked surfaces, but something else may be as near there.
         let depth = match self.depth {
@@ -205,7 +224,7 @@ impl Color {
                 depth: depth.clone(),
                 colors: &[],
             };
-            surfaces.draw(batches, world.instances(), cx)?;
+            surfaces.draw(batches, world.instances().with_stencil(own_stencil), cx)?;
         }
         if self.sky {
             draw_background(world, &bindings, cx)?;

@@ -55,6 +55,16 @@ pub struct InstanceSource<'a> {
     pub instances: Instances<'a>,
     /// Arguments of long lists of draws.
     pub arguments: &'a Buffer,
+    /// Materials test and write stencil, which the pass then has.
+    pub stencil: bool,
+}
+
+impl InstanceSource<'_> {
+    /// The same with the stencil states of materials, where the pass draws into depth with stencil.
+    #[must_use]
+    pub const fn with_stencil(self, stencil: bool) -> Self {
+        Self { stencil, ..self }
+    }
 }
 
 /// How batches of instances are drawn.
@@ -63,8 +73,8 @@ pub struct SurfaceDraw<'a> {
     pub program: &'a ProgramOf<'a>,
     /// What the pass binds in group 0, in the order of its interface.
     pub frame: &'a [Option<Binding>],
-    /// Values of the constants of the pass's interface behind the first, [`Self::TRAITS`]; those that a shader lacks are left
-    /// out.
+    /// Values of the constants of the pass's interface behind the first ones, [`Self::TRAITS`] and [`Self::OBJECT_LIGHT`];
+    /// those that a shader lacks are left out. A pass without any shades nothing.
     pub constants: &'a [f64],
     /// Depth test.
     pub depth: Depth,
@@ -111,12 +121,16 @@ struct PipelineKey {
     surface: SurfaceVariant,
     mirrored: bool,
     topology: Topology,
+    /// What light instances take ([`InstanceDraw::light_bits`]); 0 where nothing is shaded.
+    light_bits: u16,
+    /// The material, if its stencil state counts.
+    stencil: Option<MaterialId>,
 }
 
 impl PipelineKey {
-    /// That of an instance, `indirect` where many are drawn by one call.
-    fn of(instance: &InstanceDraw, indirect: bool, from: InstanceSource<'_>) -> Self {
-        let InstanceDraw { mesh, material, mirrored } = *instance;
+    /// That of an instance, `indirect` where many are drawn by one call, in a pass that `shades` or draws depth alone.
+    fn of(instance: &InstanceDraw, (indirect, shades): (bool, bool), from: InstanceSource<'_>) -> Self {
+        let InstanceDraw { mesh, material, mirrored, light_bits } = *instance;
         let scene = from.scene;
         let MeshRange { colored, topology, .. } = scene.mesh(mesh, 0);
         let no_area = u32::from(topology != Topology::Triangles) << TRAIT_NO_AREA;
@@ -127,7 +141,8 @@ impl PipelineKey {
             material_table: indirect && scene.is_in_table(material),
             instance_stream: matches!(from.instances, Instances::Stream(_)),
         };
-        Self { surface, mirrored, topology }
+        let stencil = Some(material).filter(|material| from.stencil && scene.stencil(*material).is_some());
+        Self { surface, mirrored, topology, light_bits: if shades { light_bits } else { 0 }, stencil }
     }
 }
 
@@ -198,6 +213,8 @@ impl SharedState {
 impl SurfaceDraw<'_> {
     /// The first constant of a pass that draws surfaces: what the material has.
     pub const TRAITS: &'static str = "MATERIAL_TRAITS";
+    /// The second constant of a pass that shades surfaces: what light an instance takes.
+    pub const OBJECT_LIGHT: &'static str = "OBJECT_LIGHT";
 
     /// Draws a list of the scene's instances, in order. What a draw has in common with the one before it is not set again, and
     /// batches in a row that differ in their arguments alone are one call.
@@ -205,7 +222,7 @@ impl SurfaceDraw<'_> {
     /// # Errors
     /// What the shader or the device refuses.
     pub fn draw(&self, list: &DrawList, from: InstanceSource<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let InstanceSource { scene, instances, arguments } = from;
+        let InstanceSource { scene, instances, arguments, .. } = from;
         if list.is_empty() {
             return Ok(());
         }
@@ -215,7 +232,7 @@ impl SurfaceDraw<'_> {
         pass.set_vertex_buffer(STREAM_INSTANCE, instances.buffer().slice(..));
         pass.set_vertex_buffer(STREAM_EARLIER, scene.earlier_positions().slice(..));
         let first_arguments = list.first_arguments().filter(|_| draws_indirectly(cx.gpu()));
-        let indirect = first_arguments.is_some();
+        let kind = (first_arguments.is_some(), !self.constants.is_empty());
         let mut states: Vec<SharedState> = Vec::new();
         // Index of the state that is set, and the group of its materials.
         let (mut set, mut bound): (Option<usize>, Option<usize>) = (None, None);
@@ -224,7 +241,7 @@ impl SurfaceDraw<'_> {
         let mut at = 0;
         while at < list.len() {
             let instance = &scene.instances[list[at].instance as usize];
-            let key = PipelineKey::of(instance, indirect, from);
+            let key = PipelineKey::of(instance, kind, from);
             let state = match set {
                 Some(state) if states[state].key == key => state,
                 _ => {
@@ -239,6 +256,9 @@ impl SurfaceDraw<'_> {
                     let pass = cx.render_pass()?;
                     pass.set_pipeline(pipeline);
                     pass.set_bind_group(0, frame, &[]);
+                    if let Some((_, reference)) = key.stencil.and_then(|material| scene.stencil(material)) {
+                        pass.set_stencil_reference(*reference);
+                    }
                     if let Some(objects) = objects {
                         pass.set_bind_group(2, objects, &[]);
                     }
@@ -265,7 +285,7 @@ impl SurfaceDraw<'_> {
             }
             let goes_on = |batch: &&Batch| {
                 let other = &scene.instances[batch.instance as usize];
-                PipelineKey::of(other, indirect, from) == key
+                PipelineKey::of(other, kind, from) == key
                     && materials.group(other.material) == group
                     && scene.mesh(other.mesh, 0).short == short
             };
@@ -298,12 +318,16 @@ impl SurfaceDraw<'_> {
         from: InstanceSource<'_>,
         cx: &mut Cx<'_>,
     ) -> Result<SharedState, RecordError> {
-        let Self { program, frame, constants, depth, colors, .. } = self;
+        let Self { program, frame, constants, colors, .. } = self;
+        let stencil = key.stencil.and_then(|material| from.scene.stencil(material));
+        let depth =
+            stencil.map_or(self.depth.clone(), |(stencil, _)| Depth { stencil: stencil.clone(), ..self.depth.clone() });
         let program = program(key.surface)?;
         fits(&program, key.surface.lobes, from.scene.material_name(material), &cx.gpu().device.limits())?;
         let attributes = stream_attributes(key.surface.instance_stream);
         let buffers = vertex_buffers(&attributes, key.surface.instance_stream);
-        let constants: Vec<f64> = std::iter::once(key.surface.traits.into()).chain(constants.iter().copied()).collect();
+        let own = [key.surface.traits.into(), key.light_bits.into()];
+        let constants: Vec<f64> = own.into_iter().chain(constants.iter().copied()).collect();
         let pipeline = cx.raster_pipeline(&Raster {
             vertex: program.vertex,
             fragment: program.fragment,
@@ -319,7 +343,7 @@ impl SurfaceDraw<'_> {
                 },
                 ..PrimitiveState::default()
             },
-            depth: depth.clone(),
+            depth,
             colors,
             ..Raster::new(program.shader())
         })?;

@@ -118,6 +118,9 @@ pub struct Settings {
     /// Some surface blends: the color pass then says so, and cannot be graded in place.
     #[cfg_attr(feature = "files", serde(skip))]
     pub blended: bool,
+    /// Some material tests or writes stencil: depth then has it. Filament's `View::setStencilBufferEnabled`.
+    #[cfg_attr(feature = "files", serde(skip))]
+    pub stencil: bool,
     /// Levels of the picture that transmissive surfaces show what is behind them with, at most as many as
     /// [`scene_levels`] of the frame's size; 0: no surface transmits.
     #[cfg_attr(feature = "files", serde(skip))]
@@ -179,6 +182,7 @@ impl Settings {
         bloom: None,
         size_texels: [1280, 720],
         blended: false,
+        stencil: false,
         scene_levels: 0,
         glass_layers: 1,
         moving: false,
@@ -200,6 +204,7 @@ impl Settings {
         let transmits = scene.lobes().contains(Lobe::Transmission);
         Self {
             blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
+            stencil: scene.uses_stencil(),
             scene_levels: if transmits { scene_levels(size_texels) } else { 0 },
             glass_layers: self.glass_layers.min(glass_instances(scene)),
             size_texels,
@@ -299,7 +304,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
             reflection(frame, handles, s.reflections, s.structure(), (s.reflection_levels, s.hdr_format))
         }),
         Stage::new("prepass", move |frame, handles| {
-            prepass(frame, handles, s.samples, [s.draws_prepass(), s.draws_velocity()])
+            prepass(frame, handles, s.samples, [s.draws_prepass(), s.draws_velocity(), s.stencil])
         }),
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, s.scene_levels)),
@@ -318,7 +323,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
 type Declared = Result<(), StageError>;
 
 fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
-    let Settings { samples, shading, fog, blended, scene_levels, sky, hdr_format, .. } = *settings;
+    let Settings { samples, shading, fog, blended, stencil, scene_levels, sky, hdr_format, .. } = *settings;
     let contact_shadows = settings.shadows.is_some_and(|shadows| shadows.contact.is_some());
     let pass = Color {
         view: handles.view(),
@@ -335,6 +340,7 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         },
         contact_shadows,
         samples,
+        stencil,
         blended,
         opaque_only: scene_levels > 0,
         sky,

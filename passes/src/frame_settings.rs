@@ -15,6 +15,8 @@ pub struct FrameSettings {
     /// How far a mesh that has [levels of detail](framegraph_scene::MeshLevel) may be drawn from where it is, in pixels and in texels of
     /// shadow maps; 0 draws all meshes whole.
     pub lod_error_px: f32,
+    /// Layers of the scene that are shown, a bit each ([`ViewSettings::visible_layers`](crate::view::ViewSettings::visible_layers)).
+    pub visible_layers: u8,
     /// Post-processing goes into the color pass's shader where that is sound.
     pub inline: bool,
     /// The frame.
@@ -34,6 +36,7 @@ impl FrameSettings {
         quality: Quality::High,
         lights: LightSearch::Auto(FroxelSettings::DEFAULT),
         lod_error_px: 0.0,
+        visible_layers: framegraph_scene::draw_options::DEFAULT_MASK,
         inline: true,
         settings: Settings::DEFAULT,
     };

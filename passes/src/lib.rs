@@ -49,6 +49,7 @@ pub mod indirect;
 pub mod lighting;
 pub mod measure;
 pub mod occlusion;
+pub mod pick;
 #[cfg(feature = "files")]
 pub mod plugins;
 pub mod post;
@@ -89,6 +90,7 @@ pub use frame_index::FrameIndex;
 pub use frame_settings::FrameSettings;
 pub use lighting::Lighting;
 pub use occlusion::OcclusionSettings;
+pub use pick::{Pick, Pickable, Picker};
 pub use post::PostSettings;
 pub use precision::Precision;
 pub use prepared::PreparedScene;

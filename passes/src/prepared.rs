@@ -7,7 +7,8 @@ use framegraph_scene::{Instance, MeshId, Renderables, Scene};
 use framegraph_shaders::layout::ObjectUniforms;
 use framegraph_wgpu::Workers;
 use glam::DMat4;
-use std::sync::Arc;
+use std::borrow::Cow;
+use std::sync::{Arc, OnceLock};
 
 /// Instances whose placement is uploaded together: a hundred kilobytes.
 pub(crate) const CHUNK: usize = 1024;
@@ -39,6 +40,8 @@ const WORTH_A_THREAD: usize = 4096;
 #[derive(Clone, Debug, Default)]
 pub struct PreparedScene {
     renderables: Renderables,
+    /// Those that a view shows which hides some, with its visible layers: of the first such view.
+    shown: OnceLock<(u8, Renderables)>,
     placements: Placements,
     /// The mesh of each instance, and where meshes lie.
     meshes: Vec<MeshId>,
@@ -53,6 +56,7 @@ impl PreparedScene {
     pub fn new(scene: &Scene) -> Self {
         Self {
             renderables: Renderables::new(scene),
+            shown: OnceLock::new(),
             placements: Placements::new(scene),
             meshes: scene.instances.iter().map(|instance| instance.mesh).collect(),
             ranges: MeshRanges::new(&scene.meshes),
@@ -67,6 +71,7 @@ impl PreparedScene {
     /// When there is no such instance.
     pub fn update(&mut self, scene: &Scene, moved: &[usize]) {
         self.renderables.update(scene, moved);
+        self.shown = OnceLock::new();
         for &number in moved {
             let chunk = Arc::make_mut(&mut self.placements.0[number / CHUNK]);
             chunk.objects[number % CHUNK] = object_uniforms(&scene.instances[number]);
@@ -104,6 +109,23 @@ impl PreparedScene {
     #[must_use]
     pub fn renderables(&self) -> &Renderables {
         &self.renderables
+    }
+
+    /// Returns what culling and sorting read in a view of these visible layers ([`Renderables::shown`]). What the first view
+    /// with hidden instances reads is kept until something moves.
+    #[must_use]
+    pub fn shown(&self, visible_layers: u8) -> Cow<'_, Renderables> {
+        match self.shown.get() {
+            Some((layers, shown)) if *layers == visible_layers => return Cow::Borrowed(shown),
+            _ => {}
+        }
+        match self.renderables.shown(visible_layers) {
+            Cow::Borrowed(all) => Cow::Borrowed(all),
+            Cow::Owned(shown) => match self.shown.set((visible_layers, shown)) {
+                Err((_, shown)) => Cow::Owned(shown),
+                Ok(()) => self.shown(visible_layers),
+            },
+        }
     }
 
     /// What shaders read of instances, whatever the eye.

@@ -10,6 +10,8 @@ use framegraph_wgpu::{Cx, Depth, Record, RecordError};
 
 /// Format of the depth attachment: 32-bit float, in which reversed Z spreads precision evenly over distance.
 pub const DEPTH_FORMAT: Format = Format::Depth32Float;
+/// Format of the depth attachment where a material uses stencil.
+pub const DEPTH_STENCIL_FORMAT: Format = Format::Depth32FloatStencil8;
 
 static SHADER: Module<'static> = library::pass("pass/prepass.wgsl").unwrap();
 
@@ -25,12 +27,14 @@ pub struct Prepass {
     pub extent: Extent,
     /// Samples per texel.
     pub samples: u8,
+    /// Materials test and write stencil, which the depth then has.
+    pub stencil: bool,
 }
 
 impl Default for Prepass {
     /// The main view in the frame's size, one sample per texel.
     fn default() -> Self {
-        Self { view: ViewId::MAIN, extent: Extent::FRAME, samples: 1 }
+        Self { view: ViewId::MAIN, extent: Extent::FRAME, samples: 1, stencil: false }
     }
 }
 
@@ -38,24 +42,30 @@ impl Pass for Prepass {
     type Io = Texture;
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Texture, DeclareError> {
-        new_depth(pass, self.extent, self.samples)
+        new_depth(pass, self.extent, self.samples, self.stencil)
     }
 }
 
-/// A new depth texture that the pass draws into, cleared to the far plane.
-pub(crate) fn new_depth(pass: &mut PassBuilder<'_>, extent: Extent, samples: u8) -> Result<Texture, DeclareError> {
-    let depth = pass.texture("depth", TextureDesc::new(extent, DEPTH_FORMAT).samples(samples));
+/// A new depth texture that the pass draws into, cleared to the far plane; with a `stencil` of 0, or without.
+pub(crate) fn new_depth(
+    pass: &mut PassBuilder<'_>,
+    extent: Extent,
+    samples: u8,
+    stencil: bool,
+) -> Result<Texture, DeclareError> {
+    let format = if stencil { DEPTH_STENCIL_FORMAT } else { DEPTH_FORMAT };
+    let depth = pass.texture("depth", TextureDesc::new(extent, format).samples(samples));
     pass.depth(depth, Intent::Clear(ClearValue::FAR_REVERSED))
 }
 
 impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for Prepass {
     fn record(&self, _: &Texture, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        draw_depth(self.view, world, cx)
+        draw_depth(self.view, self.stencil, world, cx)
     }
 }
 
-/// Draws the depth of what a view sees, opaque and masked.
-pub(crate) fn draw_depth<W>(view: ViewId, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError>
+/// Draws the depth of what a view sees, opaque and masked, with the stencil states of materials or without.
+pub(crate) fn draw_depth<W>(view: ViewId, stencil: bool, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError>
 where
     W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized,
 {
@@ -68,5 +78,5 @@ where
         depth: Depth::NEARER,
         batches: &view.view.draws.depth,
     };
-    draw.draw(view.instances(world.as_ref()), world.as_ref(), cx)
+    draw.draw(view.instances(world.as_ref()).with_stencil(stencil), world.as_ref(), cx)
 }

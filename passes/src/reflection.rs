@@ -53,7 +53,7 @@ where
     let structure = structure(frame, handles, resolution, structure_levels)?;
     let hdr = frame.graph_mut().history("hdr", TextureDesc::new(extent, format), 1);
     let earlier = frame.graph_mut().previous(hdr, 1)?;
-    let depth = frame.add("reflection_depth", Prepass { view, extent, samples: 1 })?;
+    let depth = frame.add("reflection_depth", Prepass { view, extent, samples: 1, stencil: false })?;
     let pass = Reflection { view, structure, depth, earlier, levels, settings: *settings };
     let ReflectionIo { mut reflections, ways, .. } = frame.add("reflection", pass)?;
     for level in 1..levels {

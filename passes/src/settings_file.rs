@@ -105,6 +105,7 @@ impl FrameSettings {
         let s = &self.settings;
         let mut all = vec![
             ("lod_error_px", self.lod_error_px.into(), 0.0, 16.0),
+            ("visible_layers", self.visible_layers.into(), 0.0, 255.0),
             (
                 "settings.glass_layers",
                 f64::from(s.glass_layers),

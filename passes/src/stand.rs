@@ -66,6 +66,7 @@ mod tests {
                     shadows: None,
                     lights,
                     lod_error_px: 0.0,
+                    visible_layers: 1,
                 };
                 Ok::<_, Box<dyn std::error::Error>>(CameraView::empty(&settings))
             };

@@ -78,7 +78,7 @@ impl Pass for Structure {
 
 impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for Structure {
     fn record(&self, _: &Texture, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        draw_depth(self.view, world, cx)
+        draw_depth(self.view, false, world, cx)
     }
 }
 

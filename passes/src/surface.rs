@@ -34,14 +34,15 @@ pub static SURFACE: Interface =
     Interface { groups: &[FRAME_BINDINGS, &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &CONSTANTS };
 
 /// What is known of light, beside shading and shadows: whether ambient occlusion has bent normals, there is a sun, and there
-/// are lamps.
-const LIGHT_CONSTANTS: [&str; 3] = ["BENT_NORMALS", "SUN", "LAMPS"];
+/// are lamps; the sun's channels, and whether instances and lamps have different ones.
+const LIGHT_CONSTANTS: [&str; 5] = ["BENT_NORMALS", "SUN", "LAMPS", "SUN_CHANNELS", "CHANNELS_DIFFER"];
 
-/// The material's, those of shading, of light and of shadows.
-const CONSTANTS: [&str; 1 + Shading::CONSTANTS.len() + LIGHT_CONSTANTS.len() + ShadowBindings::CONSTANTS.len()] = {
+/// The material's, the instance's, those of shading, of light and of shadows.
+const CONSTANTS: [&str; 2 + Shading::CONSTANTS.len() + LIGHT_CONSTANTS.len() + ShadowBindings::CONSTANTS.len()] = {
     let parts: [&[&str]; 3] = [&Shading::CONSTANTS, &LIGHT_CONSTANTS, &ShadowBindings::CONSTANTS];
     let mut names = [SurfaceDraw::TRAITS; _];
-    let (mut at, mut part) = (1, 0);
+    names[1] = SurfaceDraw::OBJECT_LIGHT;
+    let (mut at, mut part) = (2, 0);
     while part < parts.len() {
         let mut index = 0;
         while index < parts[part].len() {
@@ -122,6 +123,8 @@ pub(crate) struct SurfaceInputs {
     pub reflections: Option<[View; 2]>,
     /// Fog.
     pub fog: Option<FogSettings>,
+    /// The pass draws into depth with stencil.
+    pub stencil: bool,
 }
 
 /// Ambient occlusion as shading reads it.
@@ -151,10 +154,12 @@ pub(crate) struct SurfaceBindings {
     shading: Shading,
     /// Bands of irradiance that the light has.
     bands: ShBands,
+    /// Depth has stencil, which materials test and write.
+    pub stencil: bool,
     /// There is a picture of what is behind transmissive surfaces.
     transmits: bool,
     /// In the order of [`LIGHT_CONSTANTS`].
-    light: [bool; LIGHT_CONSTANTS.len()],
+    light: [f64; LIGHT_CONSTANTS.len()],
     /// In the order of [`ShadowBindings::CONSTANTS`].
     shadows: [f64; ShadowBindings::CONSTANTS.len()],
     /// What the plan inlined into the pass.
@@ -216,11 +221,14 @@ impl SurfaceBindings {
                 .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,
             bands: lighting.image.bands,
+            stencil: inputs.stencil,
             transmits: inputs.scene.is_some(),
             light: [
-                inputs.occlusion.is_some_and(|input| input.bent_normals),
-                view.view.frame.sun_illuminance != Vec3::ZERO,
-                view.view.frame.light_count > 0,
+                f64::from(inputs.occlusion.is_some_and(|input| input.bent_normals)),
+                f64::from(view.view.frame.sun_illuminance != Vec3::ZERO),
+                f64::from(view.view.frame.light_count > 0),
+                f64::from(view.view.sun_channels),
+                f64::from(view.view.channels_differ),
             ],
             shadows: shadows.constants,
             epilogue,
@@ -248,7 +256,7 @@ impl SurfaceBindings {
     pub fn constants(&self, alpha: AlphaUse) -> Vec<f64> {
         let effects = self.epilogue.constants.iter().map(|(_, value)| *value);
         let shading = self.shading.constants(alpha, self.bands).into_iter();
-        shading.chain(self.light.map(f64::from)).chain(self.shadows).chain(effects).collect()
+        shading.chain(self.light).chain(self.shadows).chain(effects).collect()
     }
 }
 
@@ -265,7 +273,7 @@ pub(crate) fn draw_blended(
         depth: Depth { write: false, ..Depth::NEARER },
         colors: &[Output { blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING), ..Output::REPLACE }],
     };
-    blended.draw(&world.view.view.draws.blend, world.instances(), cx)
+    blended.draw(&world.view.view.draws.blend, world.instances().with_stencil(bindings.stencil), cx)
 }
 
 #[cfg(test)]

@@ -186,6 +186,8 @@ pub struct Transparent {
 pub struct TransparentIo {
     scene: View,
     shadow: Option<ShadowInput>,
+    /// The depth has stencil.
+    stencil: bool,
     /// Depth of opaque and transmissive surfaces.
     pub depth: Texture,
     /// Radiance with everything in it, of each sample; `hdr` itself at one sample per texel.
@@ -201,10 +203,11 @@ impl Pass for Transparent {
         pass.blends();
         let scene = pass.sampled(self.scene)?;
         let shadow = ShadowInput::declare(self.shadow, pass)?;
+        let stencil = pass.desc(self.depth)?.format.has_stencil();
         let depth = pass.depth(self.depth, Intent::Modify)?;
         let samples = pass.color(self.samples, Intent::Modify)?;
         let hdr = if self.samples == self.hdr { samples } else { pass.resolve(samples, self.hdr)? };
-        Ok(TransparentIo { scene, shadow, depth, samples, hdr })
+        Ok(TransparentIo { scene, shadow, stencil, depth, samples, hdr })
     }
 }
 
@@ -219,7 +222,12 @@ where
 
 impl Transparent {
     fn draw(&self, io: &TransparentIo, world: &SurfaceWorld<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let inputs = SurfaceInputs { scene: Some(io.scene), fog: self.fog, ..SurfaceInputs::shadowed(io.shadow) };
+        let inputs = SurfaceInputs {
+            scene: Some(io.scene),
+            fog: self.fog,
+            stencil: io.stencil,
+            ..SurfaceInputs::shadowed(io.shadow)
+        };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, Epilogue::default(), cx)?;
         let program = |variant| bindings.program(world.programs, variant);
         // The prepass has not drawn these: masked ones are cut here, and the cutoff of opaque ones cuts nothing.
@@ -230,7 +238,8 @@ impl Transparent {
             depth: Depth::NEARER,
             colors: &[],
         };
-        transmissive.draw(&self.layer.of(&world.view.view), world.instances(), cx)?;
+        let instances = world.instances().with_stencil(io.stencil);
+        transmissive.draw(&self.layer.of(&world.view.view), instances, cx)?;
         if self.layer.before > 0 { Ok(()) } else { draw_blended(world, &bindings, cx) }
     }
 }

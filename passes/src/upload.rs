@@ -14,6 +14,7 @@ mod material;
 pub(crate) mod mesh_range;
 pub mod pack;
 mod scene;
+mod stencil;
 mod textures;
 
 pub use environment::GpuEnvironment;

@@ -46,6 +46,9 @@ pub struct ViewSettings {
     /// How far a mesh that has [levels of detail](framegraph_scene::MeshLevel) may be drawn from where it is, in pixels and in texels of
     /// shadow maps; 0 draws all meshes whole.
     pub lod_error_px: f32,
+    /// Layers that are shown, a bit each ([`DrawOptions::layers`](framegraph_scene::DrawOptions::layers)); 1 by default, as
+    /// Filament's `View::setVisibleLayers`.
+    pub visible_layers: u8,
 }
 
 /// What stands behind everything.
@@ -112,6 +115,10 @@ pub struct CameraView {
     pub lights: Vec<LightUniforms>,
     /// Which of them reach what part of the view; none where all are looked at everywhere.
     pub light_lists: Option<LightLists>,
+    /// Light channels of the sun.
+    pub sun_channels: u8,
+    /// Whether some punctual light and some instance share no light channel.
+    pub channels_differ: bool,
     /// What became of the scene's lights.
     pub light_report: LightReport,
     /// What is drawn of it, in which draws.
@@ -174,12 +181,8 @@ impl CameraView {
 
     /// The surfaces of a scene that was prepared, without any light.
     pub fn unlit(prepared: &PreparedScene, settings: &ViewSettings) -> Self {
-        Self::empty(settings).with_surfaces(
-            prepared,
-            seen(prepared, settings),
-            settings,
-            settings.unlimited_levels(prepared.renderables()),
-        )
+        let levels = settings.unlimited_levels(prepared.renderables());
+        Self::empty(settings).with_surfaces(prepared, seen(prepared, settings), settings, levels)
     }
 
     /// Puts what is seen into a view that has its shadows, in `levels` of detail at the most.
@@ -234,14 +237,15 @@ impl CameraView {
         settings: &ViewSettings,
         sharing: &[ViewSettings],
     ) -> (Self, Vec<u8>) {
-        let renderables = prepared.renderables();
+        let renderables = &*prepared.shown(sharing.first().unwrap_or(settings).visible_layers);
         let ViewSettings { camera, environment_intensity, .. } = settings;
-        let empty = Self::empty(settings);
-        let exposure = empty.frame.exposure;
         let sun = sun_of(scene, light.sun.as_ref());
-        let toward_sun = sun.map_or(Vec3::Y, |sun| -sun.direction);
+        let sun_channels = sun.map_or(u8::MAX, |sun| sun.channels);
+        let empty = Self { sun_channels, ..Self::empty(settings) };
+        let exposure = empty.frame.exposure;
         let cameras: Vec<_> = sharing.iter().map(fitted_camera).collect();
         let selection = punctual::select(scene, renderables, sun, &cameras);
+        let empty = Self { channels_differ: selection.differs_in_channels(renderables), ..empty };
         let packed = selection.kept.iter().filter_map(|own| light_uniforms(own, camera.eye, exposure).ok());
         let mut lights: Vec<LightUniforms> = packed.collect();
         let (mut shadows, mut levels) = (None, settings.unlimited_levels(renderables));
@@ -261,7 +265,7 @@ impl CameraView {
             punctual::lists(renderables, selection, &fitted_camera(settings), settings.size_px, settings.lights);
 
         let frame = FrameUniforms {
-            sun_direction: toward_sun,
+            sun_direction: sun.map_or(Vec3::Y, |sun| -sun.direction),
             sun_angular_radius: sun.map_or(0.0, angular_radius_rad),
             sun_illuminance: sun.map_or(Vec3::ZERO, |sun: &Light| sun.color * illuminance_lux(sun) * exposure),
             environment_scale,
@@ -350,6 +354,8 @@ impl CameraView {
             background: BackgroundUniforms::None,
             lights: vec![LightUniforms::default()],
             light_lists: None,
+            sun_channels: u8::MAX,
+            channels_differ: false,
             light_report: LightReport::default(),
             draws: ViewDraws::default(),
             origins: Vec::new(),
@@ -368,7 +374,7 @@ impl CameraView {
 
 /// What its camera may see.
 fn seen(prepared: &PreparedScene, settings: &ViewSettings) -> DrawLists {
-    DrawLists::seen(prepared.renderables(), &settings.camera, aspect(settings), prepared.pool())
+    DrawLists::seen(&prepared.shown(settings.visible_layers), &settings.camera, aspect(settings), prepared.pool())
 }
 
 fn aspect(settings: &ViewSettings) -> f64 {

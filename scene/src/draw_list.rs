@@ -4,23 +4,24 @@ use super::camera::Camera;
 use super::frustum::Frustum;
 use super::overlap::layers_from_front;
 use super::radix::{sort_key, sort_upper_halves};
-use super::renderables::{DrawKind, Renderables};
+use super::renderables::{DrawKind, DrawOrder, Renderables};
 use super::scene::Scene;
 
 /// Instance numbers of a scene by how they must be drawn. Order is a function of scene and camera:
 /// ties keep the scene's order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DrawLists {
-    /// Opaque, nearest first, so that depth rejects what is behind.
+    /// Opaque, of each priority nearest first, so that depth rejects what is behind.
     pub opaque: Vec<u32>,
-    /// Alpha-tested, nearest first.
+    /// Alpha-tested, of each priority nearest first.
     pub mask: Vec<u32>,
     /// Transmissive and not blended, nearest first: drawn after all opaque ones, and casting no shadow.
     pub transmit: Vec<u32>,
     /// Of each of these, how many layers of them lie over one another before it: those of layer 0 have nothing before them.
     /// Glass of one layer is not seen through glass of the same layer.
     pub transmit_layers: Vec<u8>,
-    /// Blended, farthest first, so that each covers what is behind it.
+    /// Blended, of each priority farthest first, so that each covers what is behind it. Those with
+    /// [`global_blend_order`](crate::DrawOptions::global_blend_order) come before others of their priority.
     pub blend: Vec<u32>,
     /// How many instances are outside of the view frustum.
     pub culled: usize,
@@ -58,9 +59,27 @@ impl DrawLists {
             sort(nearest_first, 1.0);
         }
         sort(&mut lists.blend, -1.0);
+        lists.by_priority(of, distance);
         let bounds: Vec<_> = lists.transmit.iter().map(|i| of.bounds()[*i as usize]).collect();
         lists.transmit_layers = layers_from_front(&bounds, camera, width_over_height);
         lists
+    }
+
+    /// Sorts by priority and blend order what is sorted by distance, where instances state them.
+    fn by_priority(&mut self, of: &Renderables, distance: impl Fn(u32) -> f32) {
+        let orders = of.orders();
+        if orders.is_empty() {
+            return;
+        }
+        let order = |i: u32| orders[i as usize];
+        for list in [&mut self.opaque, &mut self.mask] {
+            list.sort_by_key(|i| order(*i).priority);
+        }
+        self.blend.sort_by_cached_key(|i| {
+            let DrawOrder { priority, by_distance, blend_order } = order(*i);
+            let nearness = if by_distance { sort_key(-distance(*i), 0) } else { 0 };
+            (priority, by_distance, nearness, blend_order, *i)
+        });
     }
 
     /// The instances of `list` by how they are drawn, in its order; all others count as culled.
@@ -92,7 +111,44 @@ mod tests {
     use crate::bounds::Aabb;
     use crate::camera::Projection;
     use crate::material::{AlphaMode, Material};
-    use crate::{Instance, MaterialId, MeshId};
+    use crate::{DrawOptions, Instance, MaterialId, MeshId};
+
+    /// The order of Filament's `RenderPass::Command` keys: priority, then the order of what is blended globally, then distance,
+    /// then the order among equally far ones.
+    #[test]
+    fn priorities_and_blend_orders_come_before_distance() {
+        let mut scene = Scene::default();
+        scene.materials.push(Material::default());
+        scene.materials.push(Material { alpha: AlphaMode::Blend, ..Material::default() });
+        let cube = Aabb { min: DVec3::splat(-0.1), max: DVec3::splat(0.1) };
+        let mut place = |z: f64, material: usize, draw: DrawOptions| {
+            let (mesh, material) = (MeshId::new(0), MaterialId::new(material));
+            let placed = DMat4::from_translation(DVec3::new(0.0, 0.0, z));
+            scene.instances.push(Instance { draw, ..Instance::new("", mesh, material, placed, &cube) });
+        };
+        let default = DrawOptions::default();
+        let of = |priority| DrawOptions { priority, ..default };
+        let ordered = |blend_order| DrawOptions { blend_order, ..default };
+        let global = |blend_order| DrawOptions { blend_order, global_blend_order: true, ..default };
+        // Opaque: 0 to 3. The camera at z = 10 looks along −z.
+        [(5.0, of(7)), (0.0, of(0)), (1.0, of(0)), (4.0, default)].into_iter().for_each(|(z, draw)| place(z, 0, draw));
+        // Blended: 4 and up.
+        place(0.0, 1, default);
+        place(1.0, 1, ordered(3));
+        place(1.0, 1, ordered(2));
+        place(5.0, 1, global(9));
+        place(6.0, 1, global(8));
+        place(6.0, 1, of(0));
+        place(-9.0, 1, DrawOptions { priority: 200, ..default });
+        let projection = Projection::perspective(1.0, 0.1);
+        let camera = Camera::look_at(DVec3::Z * 10.0, DVec3::ZERO, DVec3::Y, projection).expect("a camera");
+        let lists = DrawLists::for_camera(&scene, &camera, 1.0);
+        assert_eq!(lists.opaque, [2, 1, 3, 0]);
+        assert_eq!(lists.blend, [9, 8, 7, 4, 6, 5, 10]);
+        scene.instances.iter_mut().for_each(|instance| instance.draw = default);
+        let lists = DrawLists::for_camera(&scene, &camera, 1.0);
+        assert_eq!((lists.opaque, lists.blend), (vec![0, 3, 2, 1], vec![10, 4, 5, 6, 7, 8, 9]));
+    }
 
     #[test]
     fn lists_split_by_alpha_and_sort_by_distance() {

@@ -24,7 +24,6 @@ mod document;
 mod draco;
 mod encoding;
 mod extension;
-mod extras;
 mod images;
 mod instancing;
 mod letter_case;
@@ -33,7 +32,6 @@ mod limits;
 mod line_material;
 mod lobes;
 mod material;
-mod material_extras;
 mod motion;
 mod moves;
 mod node;
@@ -45,6 +43,7 @@ mod primitive;
 mod source;
 mod spec_gloss;
 mod stream;
+mod switches;
 mod texture;
 mod topology;
 mod uri;
@@ -62,7 +61,9 @@ use self::motion::Placed;
 use self::node::FlatNode;
 use self::primitive::GeometryKey;
 use self::source::{Repair, Source, Warnings};
+use self::switches::Switches;
 use self::variants::Variants;
+use super::draw_options::DrawOptions;
 use super::error::{Quantity, SceneError, one_line};
 use super::instance::Instance;
 use super::material::MaterialId;
@@ -206,6 +207,8 @@ fn import_meshes(
             places = None;
         }
         let places = places.unwrap_or_else(|| vec![DMat4::IDENTITY]);
+        let pointer = format!("/nodes/{}", node.index);
+        let draw = Switches::of(source.document, &pointer, &node.at, warnings).draw_options();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let at = format!("mesh {mesh_index} primitive {i}");
             let material = materials.import(variants.material(source, &at, primitive)?, &at, warnings)?;
@@ -228,7 +231,7 @@ fn import_meshes(
             if let Some(mesh_id) = mesh_id {
                 warn_of_missing_uv(scene, mesh_id, surface, &at, warnings);
                 for node_from_model in &places {
-                    place(source, node, mesh_id, material, *node_from_model, scene)?;
+                    place(source, (node, draw), mesh_id, material, *node_from_model, scene)?;
                     placed.nodes.push(*place_of_node);
                     placed.node_from_model.push(*node_from_model);
                 }
@@ -245,14 +248,15 @@ fn import_meshes(
 
 fn place(
     source: &Source<'_>,
-    node: &FlatNode,
+    (node, draw): (&FlatNode, DrawOptions),
     mesh: MeshId,
     material: MaterialId,
     node_from_model: DMat4,
     scene: &mut Scene,
 ) -> Result<(), SceneError> {
     let bounds = &scene.meshes[mesh.index()].bounds;
-    let instance = Instance::new(&node.name, mesh, material, node.world_from_node * node_from_model, bounds);
+    let world_from_model = node.world_from_node * node_from_model;
+    let instance = Instance { draw, ..Instance::new(&node.name, mesh, material, world_from_model, bounds) };
     let reach = instance.bounds.min.abs().max(instance.bounds.max.abs());
     let reach = reach.max_element();
     if reach > MAX_COORDINATE_M || reach.is_nan() {

@@ -3,6 +3,7 @@
 use glam::{DMat3, DMat4, DVec3, Mat4};
 
 use super::bounds::Aabb;
+use super::draw_options::DrawOptions;
 use super::material::MaterialId;
 use super::mesh::MeshId;
 
@@ -20,10 +21,12 @@ pub struct Instance {
     pub world_from_model: DMat4,
     /// The mesh's bounds in the world, conservative.
     pub bounds: Aabb,
+    /// Layers, light channels, priority and shadows.
+    pub draw: DrawOptions,
 }
 
 impl Instance {
-    /// Places `mesh`, whose own bounds are `model_bounds`.
+    /// Places `mesh`, whose own bounds are `model_bounds`, with the default [`DrawOptions`].
     #[must_use]
     pub fn new(name: &str, mesh: MeshId, material: MaterialId, world_from_model: DMat4, model_bounds: &Aabb) -> Self {
         Self {
@@ -32,6 +35,7 @@ impl Instance {
             material,
             world_from_model,
             bounds: model_bounds.transformed(&world_from_model),
+            draw: DrawOptions::default(),
         }
     }
 

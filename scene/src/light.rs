@@ -2,6 +2,8 @@
 
 use glam::{DMat4, DVec3, Vec3};
 
+use super::draw_options::DEFAULT_MASK;
+
 /// The shape of a light's emission, with its strength in the unit that shape has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
@@ -70,6 +72,9 @@ pub struct Light {
     pub position: DVec3,
     /// The unit direction in which the light *travels*. Without meaning for a point light.
     pub direction: Vec3,
+    /// Channels, a bit each: the light lights instances that share one ([`DrawOptions`](crate::DrawOptions)). Filament's
+    /// `LightManager::setLightChannel`.
+    pub channels: u8,
     /// Place in [`Rest::lights`](crate::motion::Rest::lights) of a light that hangs on a node; `None` for others, which
     /// [`Scene::pose`](crate::Scene::pose) leaves alone.
     pub rest: Option<usize>,
@@ -89,6 +94,7 @@ impl Light {
             color: Vec3::ONE,
             position: DVec3::ZERO,
             direction: direction.normalize_or(Vec3::NEG_Y),
+            channels: DEFAULT_MASK,
             rest: None,
             shadow_strength: 1.0,
             halo: None,

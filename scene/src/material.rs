@@ -1,6 +1,7 @@
 //! Metal-rough materials, as glTF 2.0 states them.
 
 mod lobes;
+mod stencil;
 
 use glam::{Vec3, Vec4};
 
@@ -11,6 +12,7 @@ pub use lobes::{
     Anisotropy, ClearCoat, DiffuseTransmission, Iridescence, Lobe, Lobes, Sheen, Specular, Subsurface, Transmission,
     Volume,
 };
+pub use stencil::{Stencil, StencilCompare, StencilFace, StencilOp};
 
 /// A material of a scene.
 pub type MaterialId = Id<Material>;
@@ -109,6 +111,8 @@ pub struct Material {
     /// Makes the surface a shadow catcher: it is seen where the sun is in shadow alone, by this strength from 0 to 1, times its
     /// alpha. It takes effect where the surface is unlit and blended. Filament: `shadowMultiplier` and `shadowStrength`.
     pub shadow_catcher: Option<f32>,
+    /// Stencil test and operations; a scene in which no material has any is drawn without a stencil buffer.
+    pub stencil: Option<Box<Stencil>>,
 }
 
 /// How many textures a material can have.
@@ -161,6 +165,7 @@ impl Default for Material {
             subsurface: None,
             cloth_subsurface: None,
             shadow_catcher: None,
+            stencil: None,
         }
     }
 }

@@ -1,10 +1,13 @@
 //! What drawing a scene asks of its instances, view after view: arrays by instance number, made once.
 
+use std::borrow::Cow;
+
 use glam::{DMat4, DVec3};
 
 use super::batch::Groups;
 use super::bounds::Aabb;
 use super::boxes::BoxArrays;
+use super::draw_options::DrawOptions;
 use super::instance::Instance;
 use super::levels::InstanceLevels;
 use super::material::{AlphaMode, Lobe, Lobes};
@@ -50,6 +53,12 @@ pub struct Renderables {
     stamps: Vec<u64>,
     kinds: Vec<DrawKind>,
     casts: Vec<bool>,
+    layers: Vec<u8>,
+    /// Layers that all instances are in, and light channels that all have.
+    common_layers: u8,
+    common_channels: u8,
+    /// By instance when it is drawn; empty where all are drawn by distance alone.
+    orders: Vec<DrawOrder>,
     mirrored: Vec<bool>,
     flat: Vec<(u32, usize)>,
     solid_casters: Aabb,
@@ -58,9 +67,30 @@ pub struct Renderables {
     levels: InstanceLevels,
 }
 
-/// What instances that are drawn together share, in the order in which changing it is dear: shaders, culling, textures,
-/// geometry.
-type SurfaceKey = (Topology, Lobes, bool, bool, Option<usize>, usize);
+/// When an instance is drawn among those of its kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct DrawOrder {
+    /// The instance's priority, 0 to 7.
+    pub priority: u8,
+    /// True for blended instances that are drawn by distance.
+    pub by_distance: bool,
+    /// The instance's order among blended ones.
+    pub blend_order: u16,
+}
+
+impl DrawOrder {
+    fn of(options: &DrawOptions) -> Self {
+        Self {
+            priority: options.priority(),
+            by_distance: !options.global_blend_order,
+            blend_order: options.blend_order,
+        }
+    }
+}
+
+/// What instances that are drawn together share, in the order in which changing it is dear: shaders, culling, what light
+/// they receive, textures, geometry; and the priority.
+type SurfaceKey = (Topology, Lobes, bool, bool, u16, Option<usize>, usize, u8);
 
 impl Renderables {
     /// Those of `scene`.
@@ -69,9 +99,11 @@ impl Renderables {
         let instances = &scene.instances;
         let keys: Vec<SurfaceKey> = instances.iter().map(|instance| surface_key(scene, instance)).collect();
         let kinds: Vec<DrawKind> = instances.iter().map(|instance| kind_of(scene, instance)).collect();
-        // Depth of opaque surfaces asks for no material.
-        let depth_key = |((topology, _, double_sided, mirrored, material, mesh), kind): (&SurfaceKey, &DrawKind)| {
-            (*topology, *double_sided, *mirrored, material.filter(|_| *kind != DrawKind::Opaque), *mesh)
+        // Depth of opaque surfaces asks for no material but for its stencil.
+        let depth_key = |(key, kind): (&SurfaceKey, &DrawKind)| {
+            let (topology, _, double_sided, mirrored, _, material, mesh, priority) = *key;
+            let counts = |material: &usize| *kind != DrawKind::Opaque || scene.materials[*material].stencil.is_some();
+            (topology, double_sided, mirrored, material.filter(counts), mesh, priority)
         };
         let depth_keys: Vec<_> = keys.iter().zip(&kinds).map(depth_key).collect();
         let bounds: Vec<Aabb> = instances.iter().map(|instance| instance.bounds).collect();
@@ -82,8 +114,15 @@ impl Renderables {
             casts: keys
                 .iter()
                 .zip(&kinds)
-                .map(|(key, kind)| key.0 == Topology::Triangles && kind.leaves_depth())
+                .zip(instances)
+                .map(|((key, kind), instance)| {
+                    key.0 == Topology::Triangles && kind.leaves_depth() && instance.draw.casts_shadows
+                })
                 .collect(),
+            layers: instances.iter().map(|instance| instance.draw.layers).collect(),
+            common_layers: instances.iter().fold(u8::MAX, |common, instance| common & instance.draw.layers),
+            common_channels: instances.iter().fold(u8::MAX, |common, instance| common & instance.draw.light_channels),
+            orders: orders(instances),
             mirrored: keys.iter().map(|key| key.3).collect(),
             surfaces: Groups::new(&keys),
             depths: Groups::new(&depth_keys),
@@ -96,8 +135,8 @@ impl Renderables {
         own
     }
 
-    /// Takes over where the instances `moved` stand and what surrounds them. Number, meshes and materials of instances are
-    /// what they were.
+    /// Takes over where the instances `moved` stand and what surrounds them. Number, meshes, materials and draw
+    /// options of instances are what they were.
     ///
     /// # Panics
     /// When there is no such instance.
@@ -116,6 +155,23 @@ impl Renderables {
         }
         self.boxes.replace(moved.iter().map(|number| (*number, &scene.instances[*number].bounds)));
         self.sum_up();
+    }
+
+    /// Returns the instances as a view shows them whose visible layers are these: others have no bounds and cast no shadow.
+    /// It copies the arrays where an instance is in none of the layers.
+    #[must_use]
+    pub fn shown(&self, visible_layers: u8) -> Cow<'_, Self> {
+        let hides = |layers: &u8| layers & visible_layers == 0;
+        if self.common_layers & visible_layers != 0 || !self.layers.iter().any(hides) {
+            return Cow::Borrowed(self);
+        }
+        let mut own = self.clone();
+        for (number, _) in self.layers.iter().enumerate().filter(|(_, layers)| hides(layers)) {
+            (own.bounds[number], own.casts[number]) = (Aabb::EMPTY, false);
+        }
+        own.boxes = BoxArrays::new(&own.bounds);
+        own.sum_up();
+        Cow::Owned(own)
     }
 
     /// What is known of all boxes together.
@@ -188,10 +244,22 @@ impl Renderables {
         &self.kinds
     }
 
-    /// By instance, true if it is drawn into shadow maps: opaque and masked triangles are, lines and points are not.
+    /// By instance, true if it is drawn into shadow maps: opaque and masked triangles that
+    /// [cast](DrawOptions::casts_shadows) are, lines and points are not.
     #[must_use]
     pub fn casts(&self) -> &[bool] {
         &self.casts
+    }
+
+    /// Light channels that all instances have.
+    #[must_use]
+    pub fn common_light_channels(&self) -> u8 {
+        self.common_channels
+    }
+
+    /// By instance when it is drawn; empty where all are drawn by distance alone.
+    pub(crate) fn orders(&self) -> &[DrawOrder] {
+        &self.orders
     }
 
     /// A number for the placement of each: equal ones have equal numbers, and of different ones one pair in 2⁶⁴ has.
@@ -239,7 +307,25 @@ fn surface_key(scene: &Scene, instance: &Instance) -> SurfaceKey {
     let material = &scene.materials[instance.material.index()];
     let (mesh, mirrored) = (instance.mesh.index(), instance.is_mirrored());
     let topology = scene.meshes.get(mesh).map_or_else(Topology::default, |mesh| mesh.topology);
-    (topology, material.lobes(), material.double_sided, mirrored, Some(instance.material.index()), mesh)
+    (
+        topology,
+        material.lobes(),
+        material.double_sided,
+        mirrored,
+        instance.draw.light_bits(),
+        Some(instance.material.index()),
+        mesh,
+        instance.draw.priority(),
+    )
+}
+
+/// When instances are drawn; nothing where all are drawn by distance alone.
+fn orders(instances: &[Instance]) -> Vec<DrawOrder> {
+    let default = DrawOrder::of(&DrawOptions::default());
+    match instances.iter().any(|instance| DrawOrder::of(&instance.draw) != default) {
+        true => instances.iter().map(|instance| DrawOrder::of(&instance.draw)).collect(),
+        false => Vec::new(),
+    }
 }
 
 fn kind_of(scene: &Scene, instance: &Instance) -> DrawKind {
@@ -262,93 +348,4 @@ fn stamp(matrix: &DMat4) -> u64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::material::Material;
-    use crate::{MaterialId, MeshId};
-
-    fn placed(mesh: usize, material: usize, world_from_model: DMat4) -> Instance {
-        let cube = Aabb { min: DVec3::NEG_ONE, max: DVec3::ONE };
-        Instance::new("", MeshId::new(mesh), MaterialId::new(material), world_from_model, &cube)
-    }
-
-    fn scene() -> Scene {
-        let mut scene = Scene { materials: vec![Material::default(); 2], ..Scene::default() };
-        scene.materials.push(Material { alpha: AlphaMode::Mask { cutoff: 0.5 }, ..Material::default() });
-        let at = |x: f64| DMat4::from_translation(DVec3::X * x);
-        let mirrored = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
-        let flat = DMat4::from_scale(DVec3::new(5.0, 0.0, 5.0));
-        let of = [(0, 0, at(0.0)), (0, 1, at(3.0)), (0, 0, at(6.0)), (1, 0, at(9.0)), (0, 0, mirrored), (0, 2, flat)];
-        scene.instances.extend(of.map(|(mesh, material, at)| placed(mesh, material, at)));
-        scene
-    }
-
-    /// Together is drawn what has mesh, material and side in common; for depth the material of opaque ones does not count.
-    #[test]
-    fn groups_have_in_common_what_draws_set() {
-        let own = Renderables::new(&scene());
-        let same = |groups: &Groups, a: usize, b: usize| groups.of[a] == groups.of[b];
-        for (a, b, surface, depth) in
-            [(0, 2, true, true), (0, 1, false, true), (0, 3, false, false), (0, 4, false, false), (0, 5, false, false)]
-        {
-            assert_eq!((same(own.surfaces(), a, b), same(own.depths(), a, b)), (surface, depth), "{a} {b}");
-        }
-        assert_eq!(own.kinds()[4..], [DrawKind::Opaque, DrawKind::Mask]);
-        assert_eq!((own.flat(), own.solid_casters().max.x), (&[(5, 1)][..], 10.0));
-    }
-
-    /// Lines and points leave depth and cast nothing, and are drawn apart from triangles.
-    #[test]
-    fn lines_and_points_do_not_cast() {
-        let topologies = [Topology::Triangles, Topology::Lines, Topology::Points];
-        let mesh = |topology| crate::Mesh { topology, ..crate::Mesh::default() };
-        let mut scene = Scene { materials: vec![Material::default()], ..Scene::default() };
-        scene.meshes.extend(topologies.map(mesh));
-        let at = |mesh: usize| placed(mesh, 0, DMat4::from_translation(DVec3::X * (10.0 * mesh as f64)));
-        scene.instances.extend([2, 1, 0].map(at));
-        let own = Renderables::new(&scene);
-        assert_eq!((own.casts(), own.kinds()), (&[false, false, true][..], &[DrawKind::Opaque; 3][..]));
-        assert_eq!((own.solid_casters().max.x, own.whole().max.x), (1.0, 21.0));
-        // Groups are in the order of topologies, so that each is drawn in a row.
-        assert_eq!((own.surfaces().of.as_slice(), own.depths().of.as_slice()), (&[2, 1, 0][..], &[2, 1, 0][..]));
-    }
-
-    /// Whether rows are taken whole, in part or not at all.
-    #[test]
-    fn the_box_around_some_is_that_of_each() {
-        let at = |i: usize| DMat4::from_translation(DVec3::new((i * 37 % 200) as f64, (i * 91 % 300) as f64, i as f64));
-        let instances = (0..3 * BLOCK + 7).map(|i| placed(0, 0, at(i))).collect();
-        let mut scene = Scene { materials: vec![Material::default()], instances, ..Scene::default() };
-        let mut own = Renderables::new(&scene);
-        for _ in 0..2 {
-            let lists = [0..0, 0..3 * BLOCK + 7, 5..2 * BLOCK, BLOCK..2 * BLOCK, BLOCK + 1..2 * BLOCK];
-            let lists = lists.map(|range| range.map(|i| i as u32).collect::<Vec<_>>());
-            for list in lists.into_iter().chain([(0..150).filter(|i| i % 3 > 0).collect()]) {
-                let each: Vec<Aabb> = list.iter().map(|i| own.bounds()[*i as usize]).collect();
-                assert_eq!(own.around(&list), around(&each), "{list:?}");
-            }
-            assert!(own.rows().all(|(first, row, own)| *own == around(row) && first.is_multiple_of(BLOCK as u32)));
-            assert_eq!(own.rows().map(|(_, row, _)| row.len()).collect::<Vec<_>>(), [BLOCK, BLOCK, BLOCK, 7]);
-            scene.instances[BLOCK + 9] = placed(0, 0, at(5000));
-            own.update(&scene, &[BLOCK + 9]);
-        }
-    }
-
-    /// What moved is where it would be had all been made anew, and nothing else changes its stamp.
-    #[test]
-    fn an_update_is_as_making_anew() {
-        let mut scene = scene();
-        let mut own = Renderables::new(&scene);
-        let before = own.clone();
-        for to in [DMat4::from_translation(DVec3::Y * 40.0), DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0))] {
-            scene.instances[1] = placed(0, 1, to);
-            own.update(&scene, &[1]);
-            let anew = Renderables::new(&scene);
-            assert_eq!((own.bounds(), own.origins(), own.flat()), (anew.bounds(), anew.origins(), anew.flat()));
-            assert_eq!((own.stamps(), own.surfaces(), own.depths()), (anew.stamps(), anew.surfaces(), anew.depths()));
-            let changed = (0..6).filter(|i| own.stamps()[*i] != before.stamps()[*i]).collect::<Vec<_>>();
-            assert_eq!(changed, [1]);
-        }
-        assert_eq!(own.whole(), scene.bounds());
-    }
-}
+mod tests;

@@ -102,6 +102,12 @@ impl Scene {
         lobes.fold(Lobes::NONE, Lobes::union)
     }
 
+    /// True if the material of an instance tests or writes the stencil buffer.
+    #[must_use]
+    pub fn uses_stencil(&self) -> bool {
+        self.instances.iter().any(|instance| self.materials[instance.material.index()].stencil.is_some())
+    }
+
     /// Appends a mesh.
     pub fn add_mesh(&mut self, mesh: Mesh) -> MeshId {
         self.meshes.push(mesh);

@@ -63,6 +63,7 @@ fn row(gpu: &Gpu, workload: &Workload) -> Result<(), Box<dyn Error>> {
         shadows: settings.shadows,
         lights: LightSearch::default(),
         lod_error_px: 0.0,
+        visible_layers: 1,
     };
     let background = Background::Constant(glam::Vec3::ONE);
     let view = |frame, lighting: &Lighting| {

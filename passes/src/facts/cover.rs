@@ -25,6 +25,7 @@ pub(super) fn covers<'a>(seen: &Seen<'a>, views: &[ViewSettings]) -> Option<&'a 
         let found = lists.opaque.iter().map(|i| &seen.scene.instances[*i as usize]).find(|instance| {
             let material = &seen.scene.materials[instance.material.index()];
             material.alpha == AlphaMode::Opaque
+                && material.stencil.is_none()
                 && instance_covers(instance, &seen.scene.meshes[instance.mesh.index()], material.double_sided, view)
         });
         name = Some(found?.name.as_str());
@@ -156,6 +157,7 @@ mod tests {
             shadows: None,
             lights: LightSearch::All,
             lod_error_px: 0.0,
+            visible_layers: 1,
         }
     }
 

@@ -5,6 +5,7 @@ use crate::shadow::FitCamera;
 use crate::view::ViewSettings;
 use framegraph_scene::{Aabb, DrawLists, Lobes, Renderables, Scene};
 use glam::{DMat3, DVec3};
+use std::borrow::Cow;
 
 /// Instances that are opaque or masked are compared with each other up to this many; of more, some are taken to be near.
 const MOST_NEIGHBOURS: usize = 64;
@@ -23,8 +24,16 @@ pub(super) struct Seen<'a> {
 impl<'a> Seen<'a> {
     pub fn new(scene: &'a Scene, survey: &'a Survey, views: &'a [ViewSettings]) -> Self {
         let aspect = |view: &ViewSettings| fit_camera(view).width_over_height;
-        let renderables = Renderables::new(scene);
-        let seen_by = |v: &ViewSettings| DrawLists::seen(&renderables, &v.camera, aspect(v), None);
+        // What no view shows is as if it were not there.
+        let layers = views.iter().fold(0, |all, view| all | view.visible_layers);
+        let all = Renderables::new(scene);
+        let shown = match all.shown(layers) {
+            Cow::Owned(shown) => Some(shown),
+            Cow::Borrowed(_) => None,
+        };
+        let renderables = shown.unwrap_or(all);
+        let seen_by =
+            |v: &ViewSettings| DrawLists::seen(&renderables.shown(v.visible_layers), &v.camera, aspect(v), None);
         let lists: Vec<DrawLists> = views.iter().map(seen_by).collect();
         let all = lists.iter().flat_map(|l| [&l.opaque, &l.mask, &l.transmit, &l.blend]).flatten();
         let mut instances: Vec<usize> = all.map(|number| *number as usize).collect();

@@ -18,12 +18,12 @@ pub(super) fn prepass<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Siz
     frame: &mut Frame<W>,
     handles: &mut Handles,
     samples: u8,
-    [drawn, moving]: [bool; 2],
+    [drawn, moving, stencil]: [bool; 3],
 ) -> Result<(), StageError> {
     if !drawn {
         return Ok(());
     }
-    let depth = frame.add("prepass", Prepass { view: handles.view(), extent: handles.extent(), samples })?;
+    let depth = frame.add("prepass", Prepass { view: handles.view(), extent: handles.extent(), samples, stencil })?;
     handles.set(Slot::DEPTH, depth);
     if moving {
         handles.set(Slot::VELOCITY, frame.add("velocity", Velocity { view: handles.view(), depth })?);

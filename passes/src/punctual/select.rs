@@ -51,6 +51,14 @@ pub(crate) struct Selection<'a> {
     pub dropped: Vec<(usize, DropReason)>,
 }
 
+impl Selection<'_> {
+    /// Returns true if some light and some instance may share no light channel.
+    pub fn differs_in_channels(&self, instances: &Renderables) -> bool {
+        let common = self.kept.iter().fold(instances.common_light_channels(), |common, light| common & light.channels);
+        common == 0 && !self.kept.is_empty()
+    }
+}
+
 /// Sorts the lights of a scene but the sun. A light is kept if any of the cameras may see what it lights.
 pub(crate) fn select<'a>(
     scene: &'a Scene,

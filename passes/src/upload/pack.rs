@@ -64,7 +64,8 @@ pub fn light_uniforms(light: &Light, origin: DVec3, exposure: f32) -> Result<Lig
         }
     };
     let packed = LightUniforms::punctual(shape, light.color, strength, exposure)?;
-    Ok(LightUniforms { shadow_strength: light.held_shadow_strength(), ..packed })
+    let (shadow_strength, channels) = (light.held_shadow_strength(), light.channels.into());
+    Ok(LightUniforms { shadow_strength, channels, ..packed })
 }
 
 #[cfg(test)]

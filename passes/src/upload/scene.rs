@@ -7,12 +7,14 @@ use framegraph_scene::material::SLOT_COUNT;
 use framegraph_scene::{Image, Lobes, Material, MaterialId, Memory, MeshId, ProgressFn, Scene};
 use framegraph_shaders::layout::MaterialUniforms;
 use framegraph_wgpu::{Binding, Gpu};
+use wgpu::StencilState;
 
 use super::buffers;
 use super::error::UploadError;
 use super::instances::InstanceDraw;
 use super::material::{TEXTURE_TRAITS, material_traits, material_uniforms, traits_with_textures_of};
 use super::mesh_range::{MeshRange, MeshRanges};
+use super::stencil::stencil_state;
 use super::textures::{Images, MaterialTextures};
 
 /// A scene's resources on one device. Dropping it frees them once no submitted work needs them.
@@ -51,11 +53,13 @@ struct Surface {
     name: String,
     lobes: Lobes,
     traits: u32,
+    stencil: Option<(StencilState, u32)>,
 }
 
 impl Surface {
     fn of(material: &Material) -> Self {
-        Self { name: material.name.clone(), lobes: material.lobes(), traits: material_traits(material) }
+        let stencil = material.stencil.as_deref().map(|own| (stencil_state(own), own.reference.into()));
+        Self { name: material.name.clone(), lobes: material.lobes(), traits: material_traits(material), stencil }
     }
 }
 
@@ -153,6 +157,16 @@ impl GpuScene {
         self.surfaces[material.index()].traits
     }
 
+    /// The stencil state of pipelines that draw a material, and its reference; `None` for one that has none.
+    ///
+    /// # Panics
+    ///
+    /// For a material of another, larger scene.
+    #[must_use]
+    pub(crate) fn stencil(&self, material: MaterialId) -> Option<&(StencilState, u32)> {
+        self.surfaces[material.index()].stencil.as_ref()
+    }
+
     /// Whether a material can be taken from the [table](Self::material_table): there is one, and it has no textures.
     ///
     /// # Panics
@@ -187,6 +201,7 @@ impl GpuScene {
             return Err(UploadError::OtherMaterial { name, number });
         };
         surface.traits = traits_with_textures_of(surface.traits, material);
+        surface.stencil = Surface::of(material).stencil;
         let (number, packed) = (id.index() as u64, material_uniforms(material));
         gpu.queue.write_buffer(&self.materials, number * self.material_stride_bytes, bytemuck::bytes_of(&packed));
         if let Some(table) = &self.material_table {

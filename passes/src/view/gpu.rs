@@ -118,7 +118,7 @@ impl GpuView {
             true => Instances::Stream(instances),
             false => Instances::Numbers { numbers: instances, objects, origins },
         };
-        InstanceSource { scene, instances, arguments }
+        InstanceSource { scene, instances, arguments, stencil: false }
     }
 
     /// The view's shadow maps for a frame that declares so many layers of them.

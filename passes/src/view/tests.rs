@@ -23,6 +23,7 @@ fn ambient_light_is_scaled_and_padded() -> Result<(), Box<dyn std::error::Error>
         shadows: None,
         lights: LightSearch::All,
         lod_error_px: 0.0,
+        visible_layers: 1,
     };
     let exposure = CameraView::empty(&settings).frame.exposure;
     for bands in [ShBands::Two, ShBands::Three, ShBands::Five] {
@@ -71,6 +72,7 @@ fn views_made_on_several_threads_are_the_same() -> Result<(), Box<dyn std::error
         shadows: Some(ShadowSettings::texels(64)),
         lights: LightSearch::default(),
         lod_error_px: 0.0,
+        visible_layers: 1,
     };
     let mut prepared = PreparedScene::new(&scene);
     let view = |prepared: &_| CameraView::prepared(&scene, prepared, &light, &Background::None, &settings);
@@ -118,6 +120,7 @@ fn an_instance_has_one_level_of_detail_in_all_that_is_drawn() -> Result<(), Box<
         }),
         lights: LightSearch::All,
         lod_error_px,
+        visible_layers: 1,
     };
     let view = |settings: &ViewSettings| CameraView::new(&scene, &light, &Background::None, settings);
     // The level of the ball, which every draw of it has.

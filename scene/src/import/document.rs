@@ -3,6 +3,7 @@
 //! `gltf-json` is stricter than the specification in a few places, and exporters are looser. Both are settled here, on
 //! plain JSON, before the schema types see it.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use gltf_json::Root;
@@ -14,15 +15,17 @@ use crate::error::{SceneError, Unsupported};
 pub(super) struct Document {
     /// The document as schema types. Indices in it are unchecked.
     pub root: Root,
-    /// The document as JSON, for extensions that the schema types leave out.
+    /// The document as JSON without `extras`, for extensions that the schema types leave out.
     pub json: Value,
+    /// The member [`SWITCHES`] of `extras`, by the pointer to the object that has them (RFC 6901).
+    pub switches: BTreeMap<String, Value>,
 }
+
+/// The member of `extras` that holds [switches](super::switches).
+pub(super) const SWITCHES: &str = "framegraph";
 
 /// Node index of an animation channel without a node.
 pub(super) const NO_NODE: u32 = u32::MAX;
-
-/// Member of `extras` that states what glTF has no words for.
-pub(super) const EXTRAS: &str = "framegraph";
 
 /// Parses the JSON of a file.
 ///
@@ -36,6 +39,7 @@ pub(super) fn parse(file: &Path, text: &[u8]) -> Result<Document, SceneError> {
     if let Some(version) = old_version(&json) {
         return Err(SceneError::Unsupported { file: file.into(), feature: Unsupported::GltfVersion(version) });
     }
+    let switches = switches_of(&json);
     tidy(&mut json);
     fill_in(&mut json);
     // The schema types would read a list as the fields of an object.
@@ -46,7 +50,7 @@ pub(super) fn parse(file: &Path, text: &[u8]) -> Result<Document, SceneError> {
         let path = error.path().to_string();
         malformed(if path == "." { error.inner().to_string() } else { format!("{path}: {}", error.inner()) })
     })?;
-    Ok(Document { root, json })
+    Ok(Document { root, json, switches })
 }
 
 /// The version of a document of glTF 1, which stores dictionaries where glTF 2 stores arrays.
@@ -65,15 +69,22 @@ fn old_version(json: &Value) -> Option<String> {
     is_old.then(|| stated.unwrap_or_else(|| "1.0".into()))
 }
 
-/// Removes `extras` of an object, except the member of it that this importer reads.
-fn keep_own_extras(members: &mut Map<String, Value>) {
-    let Some(mut extras) = members.remove("extras") else { return };
-    if let Some(own) = extras.get_mut(EXTRAS).map(Value::take) {
-        members.insert("extras".into(), Map::from_iter([(EXTRAS.to_owned(), own)]).into());
+/// Returns the member [`SWITCHES`] in `extras` of nodes, materials and lights.
+fn switches_of(json: &Value) -> BTreeMap<String, Value> {
+    let mut found = BTreeMap::new();
+    for array in ["/nodes", "/materials", "/extensions/KHR_lights_punctual/lights"] {
+        for (number, object) in json.pointer(array).and_then(Value::as_array).into_iter().flatten().enumerate() {
+            if let Some(stated) = object.get("extras").and_then(|extras| extras.get(SWITCHES)) {
+                let mut stated = stated.clone();
+                tidy(&mut stated);
+                found.insert(format!("{array}/{number}"), stated);
+            }
+        }
     }
+    found
 }
 
-/// Writes whole numbers as integers and removes `extras` that are not read.
+/// Writes whole numbers as integers and removes `extras`.
 ///
 /// JSON Schema counts 24.0 as an integer; the schema types do not.
 fn tidy(json: &mut Value) {
@@ -90,7 +101,7 @@ fn tidy(json: &mut Value) {
             }
             Value::Array(values) => stack.extend(values),
             Value::Object(members) => {
-                keep_own_extras(members);
+                members.remove("extras");
                 stack.extend(members.values_mut());
             }
             Value::Null | Value::Bool(_) | Value::String(_) => {}

@@ -7,11 +7,12 @@ use gltf_json::extensions::scene::khr_lights_punctual::Light as JsonLight;
 use gltf_json::extensions::scene::khr_lights_punctual::Type;
 use gltf_json::validation::Checked;
 
-use super::extras::Extras;
 use super::node::{Attached, FlatNode};
 use super::source::{Source, Warnings, beyond};
+use super::switches::Switches;
+use crate::draw_options::DEFAULT_MASK;
 use crate::error::{SceneError, one_line};
-use crate::light::{Light, LightKind, SunHalo};
+use crate::light::{Light, LightKind};
 
 /// Appends the lights of all nodes. Returns the node of each, by its place, and its index in the file.
 pub(super) fn import(
@@ -62,25 +63,14 @@ pub(super) fn import(
             rest: Some(attached.len()),
             shadow_strength: 1.0,
             halo: None,
+            channels: DEFAULT_MASK,
         };
         let pointer = format!("/extensions/KHR_lights_punctual/lights/{index}");
-        if let Some(extras) = Extras::find(source, &at, &pointer, warnings) {
-            read_extras(&extras, warnings, &mut light);
-        }
+        Switches::of(source.document, &pointer, &at, warnings).light(&mut light);
         lights.push(light);
         attached.push(Attached { node: place, index });
     }
     Ok(attached)
-}
-
-/// Reads the extras of a light into it.
-fn read_extras(extras: &Extras<'_>, warnings: &mut Warnings, light: &mut Light) {
-    light.shadow_strength = extras.number("shadowStrength", [0.0, 1.0], warnings).unwrap_or(1.0);
-    if let Some(halo) = extras.child("sunHalo", warnings) {
-        let size = halo.number("size", SunHalo::SIZES, warnings).unwrap_or(SunHalo::FILAMENT.size);
-        let falloff = halo.number("falloff", SunHalo::FALLOFFS, warnings).unwrap_or(SunHalo::FILAMENT.falloff);
-        light.halo = Some(SunHalo { size, falloff });
-    }
 }
 
 /// The shape and strength, every number in range.

@@ -7,13 +7,12 @@ use gltf_json as json;
 use gltf_json::validation::Checked;
 use gltf_json::{Index, material};
 
-use super::extras::Extras;
 use super::line_material::{LineStreams, for_lines};
 use super::lobes;
-use super::material_extras;
 use super::object::Object;
 use super::source::{Source, Warnings, beyond};
 use super::spec_gloss;
+use super::switches::Switches;
 use super::texture::{Reference, Roughness, Textures, TransformSource};
 use crate::error::{SceneError, one_line};
 use crate::material::MaterialId;
@@ -167,9 +166,7 @@ impl<'a> Materials<'a> {
         };
         lobes::read(source, &at, json, &mut self.textures, warnings, &mut material)?;
         spec_gloss::read(source, &at, json, &mut self.textures, warnings, &mut material)?;
-        if let Some(extras) = Extras::find(source, &at, &format!("/materials/{index}"), warnings) {
-            material_extras::read(&extras, warnings, &mut material);
-        }
+        Switches::of(source.document, &format!("/materials/{index}"), &at, warnings).material(&mut material);
         Ok(material)
     }
 }

@@ -26,6 +26,8 @@ pub(super) struct Source<'a> {
     pub root: &'a Root,
     /// The JSON as it is, for extensions that the schema types leave out.
     pub json: &'a Value,
+    /// The document that both are parts of.
+    pub document: &'a Document,
     /// The bytes of each buffer, at least as long as the JSON says.
     pub buffers: Vec<Buffer<'a>>,
     /// The bytes of each compressed buffer view, by its index, which replace those in its buffer.
@@ -68,11 +70,12 @@ impl Buffer<'_> {
 
 impl<'a> Source<'a> {
     pub fn new(file: &'a Path, document: &'a Document, options: &'a LoadOptions) -> Self {
-        let Document { root, json } = document;
+        let Document { root, json, .. } = document;
         Self {
             file,
             root,
             json,
+            document,
             buffers: Vec::new(),
             views: BTreeMap::new(),
             meshes: BTreeMap::new(),
@@ -274,6 +277,8 @@ pub(super) enum Repair {
     Corners,
     /// Absent buffers that are read.
     Absent,
+    /// Unusable or unknown members of `extras.framegraph`.
+    Switches,
 }
 
 impl Repair {
@@ -288,6 +293,7 @@ impl Repair {
             Self::Triangles => format!("{count} triangles without area were dropped"),
             Self::Corners => format!("{count} indices at the end make no whole triangle or line; they are left out"),
             Self::Absent => "the buffer has neither a URI nor a binary chunk; zeros are read from it".into(),
+            Self::Switches => format!("{count} switches are unknown or out of range; they are ignored"),
         }
     }
 }

@@ -23,6 +23,7 @@ mod real_files;
 mod repairs;
 mod shading;
 mod spec_gloss;
+mod switches;
 #[cfg(all(feature = "webp", feature = "basisu"))]
 mod textures;
 mod variants;

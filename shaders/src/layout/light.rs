@@ -26,6 +26,8 @@ pub struct LightUniforms {
     pub shadow_map: u32,
     /// Darkness of the light's shadows, 0…1; 1 as [`LightUniforms::punctual`] makes it.
     pub shadow_strength: f32,
+    /// Light channels in bits 0 to 7.
+    pub channels: u32,
     /// Padding to 16 bytes; zero.
     pub _pad: f32,
 }
@@ -166,6 +168,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
         spot_offset,
         shadow_map,
         shadow_strength,
+        channels,
         _pad
     })]
 }

@@ -27,6 +27,7 @@ const ENTRY_POINTS: &[(&str, &[&str])] = &[
     ("tone_resolve", &["vs_main", "fs_main"]),
     ("measure", &["vs_main", "fs_light", "fs_depth", "fs_smaller"]),
     ("velocity", &["vs_main", "fs_opaque", "fs_mask"]),
+    ("pick", &["vs_opaque", "vs_mask", "fs_opaque", "fs_mask"]),
     ("sky", &["vs_main", "fs_environment", "fs_procedural", "fs_constant", "fs_black"]),
     ("post", &["vs_main", "fs_main"]),
     ("fxaa", &["vs_main", "fs_main"]),
@@ -109,7 +110,7 @@ fn every_feature_makes_a_difference_and_only_to_what_shades() {
                 Feature::DIFFUSE_TRANSMISSION,
             ],
             // They read materials too, but are never asked to take them from an array.
-            "prepass" | "shadow" | "velocity" => vec![Feature::MATERIAL_TABLE, Feature::INSTANCE_STREAM],
+            "prepass" | "pick" | "shadow" | "velocity" => vec![Feature::MATERIAL_TABLE, Feature::INSTANCE_STREAM],
             _ => Vec::new(),
         };
         assert_eq!(variants::features_of(&pass), expected, "{}", pass.path);

@@ -66,6 +66,8 @@ struct LightUniforms {
     shadow_map: u32,
     /// Darkness of the light's shadows, 0…1.
     shadow_strength: f32,
+    /// Light channels in bits 0 to 7.
+    channels: u32,
 }
 
 /// Values of `LightUniforms::kind`.

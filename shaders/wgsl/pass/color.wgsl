@@ -72,6 +72,7 @@ import package::shading::through::is_behind;
 @if(DIFFUSE_TRANSMISSION)
 import package::shading::through::{translucency_of, far_side};
 import package::shading::micro_shadow::micro_visibility;
+import package::shading::object_light::takes_sun;
 import package::shading::quality::{
     ROUGHNESS_FLOOR, F90_FADES, PUNCTUAL_COMPENSATION,
     SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD,
@@ -291,7 +292,7 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     }
     var radiance = add_layers(surface, normal, view, below, visibility);
     let receiver = Receiver(vertex.world, geometric, vertex.position.xy, slope);
-    if SUN {
+    if SUN && takes_sun() {
         @if(DIFFUSE_TRANSMISSION || SUBSURFACE || CLOTH_SUBSURFACE)
         let comes_through = is_behind(surface, frame.sun_direction);
         // A body shadows the side of it that faces away from the sun: of light that is scattered

@@ -8,6 +8,7 @@ import package::interface::structure::structure;
 import package::lib::contact_shadow::{contact_hides, contact_fade};
 import package::lib::dither::interleaved_gradient_noise;
 import package::lib::fullscreen::uv_from_clip;
+import package::shading::object_light::receives_shadows;
 import package::shading::shadow_map::Receiver;
 
 /// Steps of the ray.
@@ -24,6 +25,9 @@ fn screen_uvz(clip: vec4<f32>) -> vec3<f32> {
 /// its own surface hides nothing, however large texels are. Nor does what else is in its texel.
 @if(CONTACT_SHADOWS)
 fn contact_visibility(receiver: Receiver) -> f32 {
+    if !receives_shadows() {
+        return 1.0;
+    }
     let way = frame.sun_direction * shadow.contact_m;
     let ahead = frame.world_from_view[2].xyz * shadow.contact_m;
     let start_clip = frame.clip_from_world * vec4<f32>(receiver.world, 1.0);

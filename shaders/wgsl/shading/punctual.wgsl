@@ -13,6 +13,7 @@ import package::lib::punctual::{
 };
 import package::lib::real::real3;
 import package::shading::direct::reflect_surface;
+import package::shading::object_light::takes_light;
 import package::shading::quality::{LIGHT_FADE_INV_FAR2, SQUARED_LIGHT_WINDOW};
 import package::shading::shadow::{light_share, light_visibility};
 import package::shading::shadow_map::Receiver;
@@ -27,6 +28,9 @@ override LAMPS: bool = true;
 
 /// Radiance reflected from one punctual light, and let through.
 fn reflect_punctual(s: Surface, light: LightUniforms, receiver: Receiver) -> vec3<f32> {
+    if !takes_light(light.channels) {
+        return vec3<f32>(0.0);
+    }
     if light.kind == LIGHT_DIRECTIONAL {
         return reflect_surface(s, real3(-light.direction)) * light.intensity;
     }

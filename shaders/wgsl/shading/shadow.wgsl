@@ -15,6 +15,7 @@ import package::lib::shadow::{
 import package::shading::shadow_depth::tent_visibility;
 @if(SHADOW_SOFT && !SHADOW_MOMENTS)
 import package::shading::shadow_depth::soft_visibility;
+import package::shading::object_light::receives_shadows;
 import package::shading::shadow_map::{Receiver, ahead_m, texel_scale};
 @if(SHADOW_MOMENTS)
 import package::shading::shadow_moments::moments_visibility;
@@ -22,6 +23,9 @@ import package::shading::shadow_moments::moments_visibility;
 /// Visibility of the sun, 0…1.
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn sun_visibility(receiver: Receiver) -> f32 {
+    if !receives_shadows() {
+        return 1.0;
+    }
     let ahead = ahead_m(receiver.world);
     // Of a single map the compiler knows the number; where it has an end, shadows have faded there.
     let cascade = select(cascade_at(ahead, shadow.far_ends), 0u, CASCADES == 1u);
@@ -74,7 +78,7 @@ fn light_share(visibility: f32, strength: f32) -> f32 {
 /// `from_light` leads from the light to the receiver. A point light has six maps, a spot one.
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn light_visibility(first: u32, is_point: bool, from_light: vec3<f32>, receiver: Receiver) -> f32 {
-    if !LAMP_SHADOWS || first == 0u {
+    if !LAMP_SHADOWS || first == 0u || !receives_shadows() {
         return 1.0;
     }
     let face = select(0u, cube_face_of(from_light), is_point);

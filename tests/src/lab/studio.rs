@@ -109,6 +109,7 @@ impl<'a> Studio<'a> {
             shadows: setup.settings.shadows,
             lights: setup.lights,
             lod_error_px: 0.0,
+            visible_layers: 1,
         };
         let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
         let world = World::new(self.gpu, &scene, lighting, [view], &mut progress::silent)?;

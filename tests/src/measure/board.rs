@@ -191,6 +191,7 @@ impl Board {
             shadows: self.shadows,
             lights: LightSearch::default(),
             lod_error_px: 0.0,
+            visible_layers: 1,
         };
         Ok(CameraView::new(&self.placed(), &lighting.image, &Background::Environment, &moment))
     }

@@ -201,6 +201,7 @@ impl Case {
             shadows: settings.shadows,
             lights: LightSearch::All,
             lod_error_px: 0.0,
+            visible_layers: 1,
         }
     }
 }

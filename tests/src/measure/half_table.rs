@@ -102,6 +102,7 @@ impl Studio {
             shadows: settings.shadows,
             lights: LightSearch::default(),
             lod_error_px: 0.0,
+            visible_layers: 1,
         };
         let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
         let settings = settings.for_scene(&scene, size_px);

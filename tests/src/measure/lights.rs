@@ -64,6 +64,7 @@ impl Night {
             shadows: settings.shadows,
             lights: LightSearch::default(),
             lod_error_px: 0.0,
+            visible_layers: 1,
         };
         let view = CameraView::new(&scene, &lighting.image, &Background::None, &seen);
         let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;

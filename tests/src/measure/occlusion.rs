@@ -143,6 +143,7 @@ impl Stage {
             shadows: None,
             lights: LightSearch::default(),
             lod_error_px: 0.0,
+            visible_layers: 1,
         };
         let mut view = CameraView::empty(&seen);
         if let Some(toward) = self.toward_sun {

@@ -138,6 +138,7 @@ impl Stage {
             shadows: None,
             lights: LightSearch::default(),
             lod_error_px: 0.0,
+            visible_layers: 1,
         };
         Ok(CameraView::unlit(&PreparedScene::new(&self.scene), &seen))
     }

@@ -95,6 +95,7 @@ impl<'g> Stage<'g> {
             shadows: None,
             lights,
             lod_error_px: 0.0,
+            visible_layers: 1,
         };
         let views = Views::new(gpu, [CameraView::empty(&seen)])?;
         let painted = Painted { disc: [0.0; 4], ground: [0.0; 2] };

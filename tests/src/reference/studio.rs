@@ -232,6 +232,7 @@ fn view_settings(document: &Document) -> Result<ViewSettings, Box<dyn Error>> {
         shadows: shadows(document),
         lights: LightSearch::default(),
         lod_error_px: 0.0,
+        visible_layers: 1,
     })
 }
 

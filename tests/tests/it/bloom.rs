@@ -37,6 +37,7 @@ fn parts(gpu: &Gpu) -> Result<Parts, Box<dyn Error>> {
         shadows: None,
         lights: LightSearch::default(),
         lod_error_px: 0.0,
+        visible_layers: 1,
     };
     Ok(Parts { views: Views::new(gpu, [CameraView::empty(&moment)])?, ..Parts::default() })
 }

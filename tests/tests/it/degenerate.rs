@@ -51,6 +51,7 @@ fn radiance(
         shadows: shot.settings.shadows,
         lights: LightSearch::default(),
         lod_error_px: 0.0,
+        visible_layers: 1,
     };
     let view = CameraView::new(scene, &lighting.image, &Background::Environment, &moment);
     let world = World::new(gpu, scene, lighting, [view], &mut progress::silent)?;

@@ -51,6 +51,7 @@ fn shoot_under(
         shadows: None,
         lights: LightSearch::default(),
         lod_error_px: 0.0,
+        visible_layers: 1,
     };
     let view = CameraView::new(&scene, &lighting.image, background, &moment);
     let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;

@@ -162,6 +162,7 @@ fn instanced_draws_are_the_same_picture() -> TestResult {
         shadows: settings.shadows,
         lights: framegraph_passes::LightSearch::default(),
         lod_error_px: 2.0,
+        visible_layers: 1,
     };
     let coarse = CameraView::new(&scene, &world.lighting.image, &background, &seen);
     let levels =

@@ -68,6 +68,7 @@ fn a_pixel_off_is_hardly_seen_and_surfaces_shadow_nothing_of_their_own() -> Resu
             shadows: settings.shadows,
             lights: LightSearch::All,
             lod_error_px,
+            visible_layers: 1,
         };
         Ok(CameraView::new(&scene, &lighting.image, &Background::Environment, &seen))
     };

@@ -200,6 +200,7 @@ fn a_scene_copy_takes_a_camera_and_no_scene() -> TestResult {
         shadows: None,
         lights: LightSearch::default(),
         lod_error_px: 0.0,
+        visible_layers: 1,
     };
     let parts = Parts { views: Views::new(&gpu, [CameraView::empty(&seen)])?, ..Parts::default() };
     let picture = uploaded(&gpu, TextureFormat::Rgba16Float, &ramp());

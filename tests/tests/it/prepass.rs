@@ -62,6 +62,7 @@ fn decided(scene: &Scene, asked: Settings) -> (bool, String) {
         shadows: None,
         lights: LightSearch::All,
         lod_error_px: 3.0,
+        visible_layers: 1,
     };
     let irradiance = &[Vec4::ONE; 18];
     let input = FactInput {

@@ -150,6 +150,7 @@ pub fn view_of(scene: &Scene, light: &ImageLight, background: &Background, shot:
         shadows: settings.shadows,
         lights: LightSearch::default(),
         lod_error_px: 0.0,
+        visible_layers: 1,
     };
     CameraView::new(scene, light, background, &moment)
 }

@@ -133,6 +133,7 @@ impl<'g> Film<'g> {
             shadows: None,
             lights: LightSearch::default(),
             lod_error_px: 0.0,
+            visible_layers: 1,
         };
         let light = lighting(self.gpu, &Environment::uniform(DVec3::ONE)?, &settings.shading)?;
         let background = Background::Constant(Vec3::splat(0.02));

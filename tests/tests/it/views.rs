@@ -68,6 +68,7 @@ fn views(scene: &Scene, light: &ImageLight, settings: &Settings) -> Vec<CameraVi
             shadows: settings.shadows,
             lights: LightSearch::default(),
             lod_error_px: 0.0,
+            visible_layers: 1,
         }
     });
     CameraView::together(scene, light, &Background::Environment, &seen)

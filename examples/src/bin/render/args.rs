@@ -395,7 +395,7 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named_in_one_line() {
-        let cases: [(&[&str], &str); 42] = [
+        let cases: [(&[&str], &str); 44] = [
             (&["--threads", "0"], "--threads 0"),
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
@@ -407,6 +407,8 @@ mod tests {
             (&["--tone-map", "sepia"], "--tone-map sepia"),
             (&["--inline", "maybe"], "--inline maybe"),
             (&["--lod", "17"], "--lod 17"),
+            (&["--layers", "256"], "--layers 256"),
+            (&["--layers", "0b102"], "--layers 0b102"),
             (&["--alias", "heaps"], "--alias heaps"),
             (&["--quality", "best"], "--quality best"),
             (&["--precision", "f64"], "--precision f64"),

@@ -221,6 +221,7 @@ impl Args {
             quality: self.quality,
             lights: self.lighting.lights,
             lod_error_px: self.effects.lod_error_px,
+            visible_layers: self.effects.visible_layers,
             inline: self.inline,
             settings,
         }

@@ -2,6 +2,7 @@
 
 use crate::args::Args;
 use crate::name::{short_name, with_ending};
+use crate::pick;
 use crate::run::{Failure, Frames, Prepared, WARM_UP, device, input, prepare, render};
 use crate::table::{aligned, mebibytes};
 use framegraph::{Join, Options, Plan, Scratch, compile, recompile};
@@ -33,6 +34,8 @@ pub const HELP: &str = "
                        and latency, with one to three frames queued
   --debug MODE,...     no-cull, no-merge, no-inline, no-alias, immediate (all of these, in declared order, nothing
                        memoryless), poison (what nobody wrote is NaN or magenta)
+  --pick X,Y[:X,Y...]  print what opaque object the picture shows at a pixel from the left and the top, with its number, depth
+                       and position
   --bisect             render under each debug mode, and say which changes the picture
 ";
 
@@ -49,6 +52,8 @@ pub struct Debugging {
     /// Compare debug modes instead of rendering a picture.
     pub bisect: bool,
     sample: Option<u8>,
+    /// Pixels of which the object is printed.
+    pub picks: Vec<[u32; 2]>,
 }
 
 impl Default for Debugging {
@@ -63,6 +68,7 @@ impl Default for Debugging {
             modes: Modes::default(),
             bisect: false,
             sample: None,
+            picks: Vec::new(),
         }
     }
 }
@@ -92,6 +98,7 @@ impl Debugging {
             "timing" => self.timing = true,
             "debug" => self.modes = text()?.parse().map_err(|e| told(&e))?,
             "bisect" => self.bisect = true,
+            "pick" => self.picks = pick::pixels(&text()?)?,
             _ => return Ok(false),
         }
         Ok(true)

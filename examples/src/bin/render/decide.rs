@@ -166,7 +166,7 @@ fn value(args: &[OsString], option: &str) -> Option<OsString> {
 impl Args {
     /// Begins with a frame, which other options change.
     pub fn begin_with(&mut self, frame: &FrameSettings) {
-        let FrameSettings { quality, lights, lod_error_px, inline, settings } = *frame;
+        let FrameSettings { quality, lights, lod_error_px, visible_layers, inline, settings } = *frame;
         (self.quality, self.lighting.lights, self.inline) = (quality, lights, inline);
         (self.samples, self.shading, self.post, self.fxaa) =
             (settings.samples, settings.shading, settings.post, settings.fxaa);
@@ -185,6 +185,7 @@ impl Args {
             bloom,
             fog,
             lod_error_px,
+            visible_layers,
             glass_layers,
             ..own
         };

@@ -1,5 +1,5 @@
 //! Options of effects: ambient occlusion, reflections, glass through glass, fog, bloom, depth of field,
-//! anti-aliasing over time; and levels of detail.
+//! anti-aliasing over time; levels of detail and visible layers.
 
 use crate::look::number;
 use framegraph_passes::transmission::MOST_GLASS_LAYERS;
@@ -7,6 +7,7 @@ use framegraph_passes::upscale::{DynamicResolution, UpscaleFilter};
 use framegraph_passes::{
     BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, Settings, TaaSettings, Upscale,
 };
+use framegraph_scene::draw_options::DEFAULT_MASK;
 use lexopt::Parser;
 use std::path::PathBuf;
 
@@ -55,6 +56,8 @@ pub const HELP: &str = "
   --lod PX             meshes are drawn in fewer triangles where they are no farther than so many pixels from where they are, or
                        texels of shadow maps, 0 to 16; 0 draws all triangles (0)
   --glass-layers N     layers of glass that is seen through glass, 1 to 4; 1 shows what is opaque alone (1)
+  --layers MASK        layers of the scene that are shown, a bit each, such as 3, 0x03 or 0b11; objects in none of them neither
+                       show nor cast shadows (1)
 ";
 
 /// What was asked for.
@@ -84,6 +87,8 @@ pub struct Effects {
     pub lod_error_px: f32,
     /// Layers of glass.
     pub glass_layers: u8,
+    /// Layers of the scene that are shown, a bit each.
+    pub visible_layers: u8,
 }
 
 impl Default for Effects {
@@ -102,6 +107,7 @@ impl Default for Effects {
             fog: None,
             lod_error_px: 0.0,
             glass_layers: 1,
+            visible_layers: DEFAULT_MASK,
         }
     }
 }
@@ -169,10 +175,24 @@ impl Effects {
                 let layers = text.parse().ok().filter(|layers| (1..=MOST_GLASS_LAYERS).contains(layers));
                 self.glass_layers = layers.ok_or_else(wrong)?;
             }
+            "layers" => {
+                let text = value()?;
+                self.visible_layers = mask(&text).ok_or_else(|| {
+                    format!("--layers {text}: a mask of eight layers is needed, such as 3, 0x03 or 0b11")
+                })?;
+            }
             _ => return Ok(false),
         }
         Ok(true)
     }
+}
+
+/// Eight bits, as a decimal, hexadecimal or binary number.
+fn mask(text: &str) -> Option<u8> {
+    let radix =
+        [("0x", 16), ("0b", 2)].into_iter().find_map(|(prefix, radix)| Some((text.strip_prefix(prefix)?, radix)));
+    let (digits, radix) = radix.unwrap_or((text, 10));
+    u8::from_str_radix(digits, radix).ok().filter(|_| !digits.starts_with('+'))
 }
 
 /// A time in ms, and behind a colon the least share of the sides in percent.

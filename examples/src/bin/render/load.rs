@@ -141,6 +141,7 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
         shadows,
         lights: args.lighting.lights,
         lod_error_px: args.effects.lod_error_px,
+        visible_layers: args.effects.visible_layers,
     })
 }
 

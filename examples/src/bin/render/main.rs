@@ -17,6 +17,7 @@ mod load;
 mod look;
 mod moment;
 mod name;
+mod pick;
 mod run;
 mod sequence;
 mod shadows;

@@ -10,6 +10,7 @@ use crate::latency;
 use crate::leave_out;
 use crate::light::Around;
 use crate::load::{self, Loaded};
+use crate::pick;
 use crate::sequence;
 use crate::table::{facts_table, memory, table};
 use crate::what_if;
@@ -236,6 +237,7 @@ impl Frames {
 /// One line, by whose fault it is.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let mut outputs = outputs(args)?;
+    pick::check(args).map_err(input)?;
     let what_if = args.decide.what_if.as_deref().map(what_if::device).transpose()?;
     let chosen = args.budget.bound.map(|bound| budget::choose(args, bound)).transpose()?;
     let args = chosen.as_ref().unwrap_or(args);
@@ -295,6 +297,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if args.decide.what_it_costs {
         saved = leave_out::measure(args, &mut prepared)?;
         program::print(leave_out::table(&prepared, &saved));
+    }
+    for line in pick::lines(args, &prepared)? {
+        program::line(line);
     }
     if let Some(path) = &args.decide.json {
         outputs.write(path, |file| file.write_all(prepared.facts.json(&saved).as_bytes())).map_err(input)?;

@@ -202,7 +202,7 @@ impl Running {
 
     /// What is drawn of the settings: what the scene has nothing for, and what facts leave out, is not.
     fn settings(&mut self, size_px: [u32; 2], document: &Document, asked: &Asked) -> Settings {
-        let FrameSettings { lights, lod_error_px, settings, .. } = document.frame;
+        let FrameSettings { lights, lod_error_px, visible_layers, settings, .. } = document.frame;
         let look = &document.look;
         self.loaded.set_sun(look.sun, self.turned_rad(look));
         let Self { loaded, rig, memory, .. } = self;
@@ -234,6 +234,7 @@ impl Running {
             shadows,
             lights,
             lod_error_px,
+            visible_layers,
         };
         self.facts = decide(
             &FactInput {
@@ -286,6 +287,7 @@ impl Running {
             shadows: settings.shadows,
             lights: document.frame.lights,
             lod_error_px: document.frame.lod_error_px,
+            visible_layers: document.frame.visible_layers,
         };
         let background = self.loaded.background(look.behind);
         let mut view = CameraView::prepared(scene, prepared, &world.lighting.image, &background, &seen);

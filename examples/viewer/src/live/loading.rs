@@ -122,6 +122,7 @@ pub fn load(
         shadows: None,
         lights: LightSearch::All,
         lod_error_px: 0.0,
+        visible_layers: 1,
     };
     let view = CameraView::prepared(&scene, &prepared, &lighting.image, &background, &first);
     let world = World::of(gpu, uploaded, lighting, [view]).map_err(|e| e.to_string())?;

@@ -69,26 +69,22 @@ fn lights_state_their_shadows_and_halos() {
     assert_eq!(with(json!({"sunHalo": {}})).lights[0].halo, Some(SunHalo::FILAMENT));
     let wrong = with(json!({"shadowStrength": 7, "sunHalo": {"size": "wide"}}));
     assert_eq!((wrong.lights[0].shadow_strength, wrong.lights[0].halo), (1.0, Some(SunHalo::FILAMENT)));
-    assert_eq!(wrong.warnings.len(), 2, "{:?}", wrong.warnings);
+    let warning = "light 0: extras.framegraph.shadowStrength and one other place: 2 switches are unknown or out of range; they are ignored";
+    assert!(wrong.warnings.iter().any(|own| own.ends_with(warning)), "{:?}", wrong.warnings);
 }
 
 #[test]
 fn wrong_values_are_warnings_that_name_their_place() {
-    for (extras, expected) in [
-        (json!({"framegraph": 3}), "dir/fixture.glb: material 0: extras.framegraph is no object; it is ignored"),
-        (
-            json!({"framegraph": {"subsurface": {"power": -1}}}),
-            "dir/fixture.glb: material 0: extras.framegraph.subsurface.power: -1 was clamped to 0",
-        ),
-        (
-            json!({"framegraph": {"clothSubsurface": [1, 2]}}),
-            "dir/fixture.glb: material 0: extras.framegraph.clothSubsurface is not three numbers; it is ignored",
-        ),
-        (
-            json!({"framegraph": {"clearCoatIorChange": 0}}),
-            "dir/fixture.glb: material 0: extras.framegraph.clearCoatIorChange is no boolean; it is ignored",
-        ),
+    for (extras, place) in [
+        (json!({"framegraph": 3}), "extras.framegraph"),
+        (json!({"framegraph": {"subsurface": {"power": -1}}}), "extras.framegraph.subsurface.power"),
+        (json!({"framegraph": {"subsurface": 3}}), "extras.framegraph.subsurface"),
+        (json!({"framegraph": {"clothSubsurface": [1, 2]}}), "extras.framegraph.clothSubsurface"),
+        (json!({"framegraph": {"clearCoatIorChange": 0}}), "extras.framegraph.clearCoatIorChange"),
+        (json!({"framegraph": {"unheardOf": 0}}), "extras.framegraph.unheardOf"),
     ] {
+        let expected =
+            format!("dir/fixture.glb: material 0: {place}: 1 switches are unknown or out of range; they are ignored");
         assert_eq!(load(json!({}), extras).warnings, [expected]);
     }
 }

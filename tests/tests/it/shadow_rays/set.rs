@@ -76,6 +76,7 @@ impl Set {
             shadows: settings.shadows,
             lights: LightSearch::default(),
             lod_error_px: 0.0,
+            visible_layers: 1,
         };
         let mut view = CameraView::new(&scene, &lighting.image, &Background::None, &seen);
         for map in view.shadows.iter_mut().flat_map(|shadows| &mut shadows.maps) {
