@@ -33,9 +33,9 @@ pub(crate) static SKY_SHADER: Module<'static> = library::pass("pass/sky.wgsl").u
 pub static SURFACE: Interface =
     Interface { groups: &[FRAME_BINDINGS, &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &CONSTANTS };
 
-/// What is known of light, beside shading and shadows: whether ambient occlusion has bent normals, there is a sun, and there
-/// are lamps.
-const LIGHT_CONSTANTS: [&str; 3] = ["BENT_NORMALS", "SUN", "LAMPS"];
+/// What is known of light, beside shading and shadows: whether ambient occlusion has bent normals, there is a sun, there are
+/// lamps, and the environment is stored as RGBM.
+const LIGHT_CONSTANTS: [&str; 4] = ["BENT_NORMALS", "SUN", "LAMPS", SKY.constants[0]];
 
 /// The material's, those of shading, of light and of shadows.
 const CONSTANTS: [&str; 1 + Shading::CONSTANTS.len() + LIGHT_CONSTANTS.len() + ShadowBindings::CONSTANTS.len()] = {
@@ -54,7 +54,7 @@ const CONSTANTS: [&str; 1 + Shading::CONSTANTS.len() + LIGHT_CONSTANTS.len() + S
 };
 
 /// What they provide to the shader of the background, `pass/sky.wgsl`.
-pub static SKY: Interface = Interface { groups: &[FRAME_BINDINGS, &["sky"]], constants: &[] };
+pub static SKY: Interface = Interface { groups: &[FRAME_BINDINGS, &["sky"]], constants: &["ENVIRONMENT_RGBM"] };
 
 /// Group 0: what is the same for all draws of a view. [`SurfaceBindings`] has the bindings in this order.
 const FRAME_BINDINGS: &[&str] = &[
@@ -221,6 +221,7 @@ impl SurfaceBindings {
                 inputs.occlusion.is_some_and(|input| input.bent_normals),
                 view.view.frame.sun_illuminance != Vec3::ZERO,
                 view.view.frame.light_count > 0,
+                lighting.image.is_rgbm(),
             ],
             shadows: shadows.constants,
             epilogue,
@@ -242,6 +243,12 @@ impl SurfaceBindings {
     /// The features of the shader of the background, which is seen through the same fog.
     pub fn background_features(&self) -> Features {
         Features::NONE.with_if(Feature::FOG, self.features.contains(Feature::FOG))
+    }
+
+    /// The values of the constants of [`SKY`], then those of the effects.
+    pub fn background_constants(&self) -> Vec<f64> {
+        let effects = self.epilogue.constants.iter().map(|(_, value)| *value);
+        [f64::from(self.light[3])].into_iter().chain(effects).collect()
     }
 
     /// The values of the shader's constants behind the material's, then those of the effects.
