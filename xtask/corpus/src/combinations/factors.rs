@@ -54,7 +54,9 @@ pub const FACTORS: [Factor; 46] = [
         &[
             None,
             O("--shade aa=off,compensation=off,specular-occlusion=off,multi-bounce=off"),
-            O("--shade visibility=exact,compensation=punctual,micro-shadows=on,multi-bounce=on,fast-coat=on"),
+            O(
+                "--shade visibility=exact,compensation=punctual,micro-shadows=on,multi-bounce=on,fast-coat=on,irradiance=cube",
+            ),
         ],
     ),
     factor("precision", &[None, O("--precision f16")]),
@@ -105,7 +107,14 @@ pub const FACTORS: [Factor; 46] = [
     // Post-processing.
     factor(
         "tone mapping",
-        &[None, O("--tone-map aces"), O("--tone-map agx"), O("--tone-map gt7"), O("--tone-map generic")],
+        &[
+            None,
+            O("--tone-map aces"),
+            O("--tone-map agx"),
+            O("--tone-map gt7"),
+            O("--tone-map generic"),
+            O("--tone-map mobile"),
+        ],
     ),
     factor(
         "grading",
