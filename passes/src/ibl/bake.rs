@@ -16,7 +16,8 @@ use super::settings::{EnvironmentFormat, IblSettings};
 use super::texture::{CubeShape, cube_format, cube_view, write_cube};
 
 impl ImageLight {
-    /// Makes light of `environment`, or finds it in `cache`. Light that the environment came with
+    /// Makes light of `environment`, or finds it in `cache`. The cube of even light has five levels of 64 texels, whatever
+    /// `settings` ask for. Light that the environment came with
     /// ([`Environment::filtered`]) is taken as it is: its size and levels, and its bands, stand in place of those that
     /// `settings` ask for.
     ///
@@ -50,6 +51,9 @@ impl ImageLight {
             let cube = write_cube(gpu, &environment.name, &shape, &light.levels)?;
             return Ok(Self::of(environment, settings, &shape, &light, &cube, (false, warnings)));
         }
+        // All texels of even light are the same, so the smallest cube holds it.
+        let even = IblSettings { cube_texels: 64, levels: 5, ..*settings };
+        let settings = if map.is_even() { &even } else { settings };
         let shape = CubeShape {
             texels: settings.cube_texels,
             levels: settings.levels,

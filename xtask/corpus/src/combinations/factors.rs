@@ -107,14 +107,7 @@ pub const FACTORS: [Factor; 46] = [
     // Post-processing.
     factor(
         "tone mapping",
-        &[
-            None,
-            O("--tone-map aces"),
-            O("--tone-map agx"),
-            O("--tone-map gt7"),
-            O("--tone-map generic"),
-            O("--tone-map mobile"),
-        ],
+        &[None, O("--tone-map aces"), O("--tone-map agx"), O("--tone-map gt7"), O("--tone-map generic")],
     ),
     factor(
         "grading",
