@@ -43,7 +43,7 @@ const SMALL: IblSettings = IblSettings {
     levels: 5,
     bands: ShBands::Three,
     window: framegraph_scene::environment::ShWindow::None,
-    format: super::EnvironmentFormat::Rg11b10,
+    format: EnvironmentFormat::Rg11b10,
 };
 
 #[test]
