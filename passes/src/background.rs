@@ -34,7 +34,7 @@ pub(crate) fn draw_background(
     let features = &features.with_if(Feature::SUN_HALO, halo.is_some());
     let uniforms = sky.map(|sky| cx.uniform(&sky));
     let program = ProgramDesc { fragment: Some(fragment), features, epilogue, ..ProgramDesc::new(&SKY_SHADER, &SKY) };
-    let constants: Vec<f64> = epilogue.constants.iter().map(|(_, value)| *value).collect();
+    let constants = bindings.background_constants();
     let groups: [&[_]; 2] = [frame, &[uniforms]];
     let depth = Depth { write: false, ..Depth::NEARER };
     FullScreen { constants: &constants, depth, ..FullScreen::new(program, &groups) }.draw(world.programs, cx)

@@ -35,6 +35,8 @@ mod kernel;
 mod light;
 #[cfg(feature = "ibl")]
 mod ready_made;
+#[cfg(feature = "ibl")]
+mod rgbm;
 mod settings;
 #[cfg(feature = "ibl")]
 mod slices;
@@ -46,7 +48,7 @@ pub use error::IblError;
 #[cfg(feature = "ibl")]
 pub use kernel::{KernelRow, kernel_rows, lobe_kernel};
 pub use light::{IRRADIANCE_COEFFICIENTS, ImageLight};
-pub use settings::IblSettings;
+pub use settings::{EnvironmentFormat, IblSettings};
 pub use table::{DfgSettings, DfgTable};
 
 #[cfg(all(test, feature = "ibl"))]

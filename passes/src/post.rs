@@ -291,7 +291,10 @@ impl Post {
                     let written = io.view.map_or_else(|| cx.format_of(io.ldr), Ok)?;
                     let constants = vec![
                         (const { SettingName::new("OUTPUT_ENCODED") }, flag(!written.is_srgb())),
-                        (const { SettingName::new("INPUT_ENCODED") }, flag(settings.by != GradeBy::Direct)),
+                        (
+                            const { SettingName::new("INPUT_ENCODED") },
+                            flag(settings.by != GradeBy::Direct || look.is_encoded()),
+                        ),
                         (const { SettingName::new("LUMA_IN_ALPHA") }, flag(*for_fxaa)),
                     ];
                     let uniforms = cx.uniform(&EncodingUniforms::new(settings.dither, frame));

@@ -5,7 +5,7 @@
 //! `high` with more accurate light. The table, bands and window are also what the light is made with.
 
 use crate::choice::{Choice, ChoiceError};
-use crate::ibl::{DfgSettings, IblSettings};
+use crate::ibl::{DfgSettings, EnvironmentFormat, IblSettings};
 use crate::precision::Precision;
 use framegraph_scene::environment::{ShBands, ShWindow};
 use framegraph_shaders::reference::dfg::Visibility;
@@ -35,6 +35,10 @@ pub struct Shading {
     pub bands: ShBands,
     /// Whether the [`Lighting`](crate::Lighting)'s high bands are weakened against ringing.
     pub window: ShWindow,
+    /// Source of diffuse light from the environment.
+    pub irradiance: Irradiance,
+    /// Format that the [`Lighting`](crate::Lighting)'s prefiltered cube is stored in.
+    pub environment_format: EnvironmentFormat,
     /// Roughness is widened by how much normals turn within a pixel, as in gltfio's materials; none leaves highlights to
     /// flicker.
     pub specular_aa: Option<SpecularAa>,
@@ -58,6 +62,19 @@ pub struct Shading {
     /// Distance from the eye in m, above 0, beyond which no punctual light shines; they fade over the last 11 % of it, to
     /// half at 0.949 of it. `None`: they never fade. Filament has 100 m, the far end of `setDynamicLightingOptions`.
     pub light_fade_m: Option<f32>,
+}
+
+/// Source of irradiance of the environment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+pub enum Irradiance {
+    /// Spherical harmonics of [`Shading::bands`], from the frame's uniform block: no texture is read.
+    #[default]
+    Harmonics,
+    /// Last level of the prefiltered cube, which the lobe of roughness 1 fills with irradiance: no sampler or memory is added,
+    /// and a texture is read. As fine as that level: 16 texels a side in `low`, 4 in `high` and `ultra`. Even light, which has
+    /// no cube, keeps harmonics.
+    Cube,
 }
 
 /// Blur of what is seen through rough bodies.
@@ -153,6 +170,8 @@ impl Quality {
             compensate_punctual: true,
             bands: if matches!(self, Self::Ultra) { ShBands::Five } else { ShBands::Three },
             window: ShWindow::None,
+            irradiance: Irradiance::Harmonics,
+            environment_format: EnvironmentFormat::Rg11b10,
             specular_aa: Some(SpecularAa::FILAMENT),
             multi_bounce: high,
             specular_occlusion: true,
@@ -196,12 +215,13 @@ impl Shading {
             Quality::High => (256, 7, 128),
             Quality::Ultra => (512, 8, 128),
         };
-        let image = IblSettings { cube_texels, levels, bands: self.bands, window: self.window };
+        let (bands, window, format) = (self.bands, self.window, self.environment_format);
+        let image = IblSettings { cube_texels, levels, bands, window, format };
         LightSettings { image, dfg: DfgSettings { texels, visibility: self.table } }
     }
 
     /// Names of the `override` constants of the color shader. Those of lobes are in shaders that have the lobe.
-    pub const CONSTANTS: [&'static str; 17] = [
+    pub const CONSTANTS: [&'static str; 18] = [
         "ALPHA_MODE",
         "FAST_VISIBILITY",
         "ROUGHNESS_FLOOR",
@@ -209,6 +229,7 @@ impl Shading {
         "ENERGY_COMPENSATION",
         "PUNCTUAL_COMPENSATION",
         "SH_BANDS",
+        "IRRADIANCE_FROM_CUBE",
         "SPECULAR_AA_VARIANCE",
         "SPECULAR_AA_THRESHOLD",
         "MULTI_BOUNCE_OCCLUSION",
@@ -232,6 +253,7 @@ impl Shading {
             f64::from(self.compensate_image),
             f64::from(self.compensate_punctual),
             self.bands.count().min(bands.count()) as f64,
+            f64::from(self.irradiance == Irradiance::Cube),
             aa.variance.into(),
             aa.threshold.into(),
             f64::from(self.multi_bounce),
@@ -291,6 +313,21 @@ impl Shading {
                     _ => return Err(wrong("`none`, `hann`, `sinc` or laplacian:LAMBDA")),
                 }
             }
+            "irradiance" => {
+                self.irradiance = match value {
+                    "harmonics" => Irradiance::Harmonics,
+                    "cube" => Irradiance::Cube,
+                    _ => return Err(wrong("`harmonics` or `cube`")),
+                }
+            }
+            "environment-format" => {
+                self.environment_format = match value {
+                    "half" => EnvironmentFormat::Half,
+                    "rg11b10" => EnvironmentFormat::Rg11b10,
+                    "rgbm" => EnvironmentFormat::Rgbm,
+                    _ => return Err(wrong("`half`, `rg11b10` or `rgbm`")),
+                }
+            }
             "aa" => {
                 self.specular_aa = match value {
                     "off" => None,
@@ -335,7 +372,7 @@ impl Shading {
     }
 
     /// The names that [`Shading::set`] takes.
-    pub const KEYS: [&str; 16] = [
+    pub const KEYS: [&str; 18] = [
         "visibility",
         "table",
         "floor",
@@ -343,6 +380,8 @@ impl Shading {
         "compensation",
         "bands",
         "window",
+        "irradiance",
+        "environment-format",
         "aa",
         "multi-bounce",
         "specular-occlusion",
@@ -368,7 +407,8 @@ mod tests {
     /// The shader has all of these constants, and its defaults are the default quality.
     #[test]
     fn the_constants_are_those_of_the_shader() -> Result<(), Box<dyn std::error::Error>> {
-        let features = Features::NONE.with(Feature::CLEAR_COAT).with(Feature::TRANSMISSION);
+        let features =
+            Features::NONE.with(Feature::ENVIRONMENT_MAP).with(Feature::CLEAR_COAT).with(Feature::TRANSMISSION);
         let shader = resolve(&library::pass("pass/color.wgsl").ok_or("color")?, &features, &[])?;
         let values = Shading::default().constants(AlphaUse::None, ShBands::Five);
         for (name, value) in Shading::CONSTANTS.into_iter().zip(values) {
@@ -410,6 +450,8 @@ mod tests {
             ("compensation", "on"),
             ("bands", "3"),
             ("window", "none"),
+            ("irradiance", "harmonics"),
+            ("environment-format", "rg11b10"),
             ("aa", "on"),
             ("micro-shadows", "on"),
             ("multi-bounce", "off"),
@@ -431,6 +473,8 @@ mod tests {
             ("transmission-blur", "angle"),
             ("light-window", "filament"),
             ("light-fade", "100"),
+            ("irradiance", "cube"),
+            ("environment-format", "rgbm"),
         ] {
             low.set(key, value)?;
         }
@@ -440,9 +484,11 @@ mod tests {
             ("TRANSMISSION_BY_ANGLE", 1.0),
             ("SQUARED_LIGHT_WINDOW", 1.0),
             ("LIGHT_FADE_INV_FAR2", 1e-4),
+            ("IRRADIANCE_FROM_CUBE", 1.0),
         ] {
             assert_eq!(value(&low, ShBands::Three, name), Some(expected), "{name}");
         }
+        assert_eq!(low.light(Quality::Low).image.format, EnvironmentFormat::Rgbm);
         low.set("window", "laplacian:0.01")?;
         assert_eq!(low.light(Quality::Low).image.window, ShWindow::Laplacian { lambda: f64::from(0.01_f32) });
         low.set("aa", "0.25:0.18")?;
@@ -458,6 +504,8 @@ mod tests {
             ("light-window", "square"),
             ("transmission-blur", "on"),
             ("light-fade", "0"),
+            ("irradiance", "2"),
+            ("environment-format", "float"),
         ] {
             let told = low.set(key, value).expect_err("that is no choice").to_string();
             assert!(told.contains(key) && !told.contains('\n'), "{told}");

@@ -33,9 +33,10 @@ pub(crate) static SKY_SHADER: Module<'static> = library::pass("pass/sky.wgsl").u
 pub static SURFACE: Interface =
     Interface { groups: &[FRAME_BINDINGS, &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &CONSTANTS };
 
-/// What is known of light, beside shading and shadows: whether ambient occlusion has bent normals, there is a sun, and there
-/// are lamps; the sun's channels, and whether instances and lamps have different ones.
-const LIGHT_CONSTANTS: [&str; 5] = ["BENT_NORMALS", "SUN", "LAMPS", "SUN_CHANNELS", "CHANNELS_DIFFER"];
+/// Constants of light, beside shading and shadows: bent normals, a sun, punctual lights, the sun's channels, differing channels
+/// of instances and lights, and an environment stored as RGBM.
+const LIGHT_CONSTANTS: [&str; 6] =
+    ["BENT_NORMALS", "SUN", "LAMPS", "SUN_CHANNELS", "CHANNELS_DIFFER", SKY.constants[0]];
 
 /// The material's, the instance's, those of shading, of light and of shadows.
 const CONSTANTS: [&str; 2 + Shading::CONSTANTS.len() + LIGHT_CONSTANTS.len() + ShadowBindings::CONSTANTS.len()] = {
@@ -55,7 +56,7 @@ const CONSTANTS: [&str; 2 + Shading::CONSTANTS.len() + LIGHT_CONSTANTS.len() + S
 };
 
 /// What they provide to the shader of the background, `pass/sky.wgsl`.
-pub static SKY: Interface = Interface { groups: &[FRAME_BINDINGS, &["sky"]], constants: &[] };
+pub static SKY: Interface = Interface { groups: &[FRAME_BINDINGS, &["sky"]], constants: &["ENVIRONMENT_RGBM"] };
 
 /// Group 0: what is the same for all draws of a view. [`SurfaceBindings`] has the bindings in this order.
 const FRAME_BINDINGS: &[&str] = &[
@@ -229,6 +230,7 @@ impl SurfaceBindings {
                 f64::from(view.view.frame.light_count > 0),
                 f64::from(view.view.sun_channels),
                 f64::from(view.view.channels_differ),
+                f64::from(lighting.image.is_rgbm()),
             ],
             shadows: shadows.constants,
             epilogue,
@@ -250,6 +252,12 @@ impl SurfaceBindings {
     /// The features of the shader of the background, which is seen through the same fog.
     pub fn background_features(&self) -> Features {
         Features::NONE.with_if(Feature::FOG, self.features.contains(Feature::FOG))
+    }
+
+    /// The values of the constants of [`SKY`], then those of the effects.
+    pub fn background_constants(&self) -> Vec<f64> {
+        let effects = self.epilogue.constants.iter().map(|(_, value)| *value);
+        [self.light[LIGHT_CONSTANTS.len() - 1]].into_iter().chain(effects).collect()
     }
 
     /// The values of the shader's constants behind the material's, then those of the effects.

@@ -56,6 +56,7 @@ pub mod punctual;
 pub mod quantize;
 pub mod real;
 pub mod refraction;
+pub mod rgbm;
 pub mod sampling;
 pub mod sao;
 pub mod screen_ray;

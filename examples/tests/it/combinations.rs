@@ -1,6 +1,6 @@
 //! Combinations of effects, options and parts of scenes, each drawn by `render` in a process of its own.
 
-use crate::support::folder;
+use crate::support::{LIGHT, folder};
 use corpus::combinations::{Options, run};
 use corpus::verdict::Verdict;
 use std::path::PathBuf;
@@ -15,6 +15,7 @@ fn every_combination_is_drawn() {
         strength: if test_report::is_all() { 3 } else { 2 },
         render: PathBuf::from(env!("CARGO_BIN_EXE_render")),
         folder: folder("combinations"),
+        light: PathBuf::from(LIGHT),
         jobs: std::thread::available_parallelism().map_or(1, usize::from),
         limit: Duration::from_secs(300),
         memory_bytes: 4 << 30,

@@ -272,6 +272,8 @@ fn tone_curves_by_name() {
         ("hill", hill(x)),
         ("filmic", x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)),
         ("neutral", x - 0.04),
+        // The curve gives the code: its light is what a display makes of that.
+        ("mobile", ((x / (x + 0.155) * 1.019 + 0.055) / 1.055).powf(2.4)),
     ];
     for (name, light) in curves {
         let args = ["--environment", "uniform:1,1,1", "--background", "0.4,0.4,0.4", "--exposure", UNIT_EXPOSURE];

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Light made by one run is found by the next; none is taken from the user's folder.
-const LIGHT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
+pub const LIGHT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
 
 /// A folder of its own for each test, empty at first.
 pub fn folder(test: &str) -> PathBuf {

@@ -64,6 +64,12 @@ impl Look {
         }
     }
 
+    /// Whether the tone effect gives sRGB encoded colors: the curve is an encoded one, and neither luminance scaling nor gamut
+    /// mapping, which work on light, follows.
+    pub const fn is_encoded(&self) -> bool {
+        self.tone_map.is_encoded() && !self.luminance_scaling && !self.gamut_mapping
+    }
+
     /// Whether no channel of what comes out depends on another, so that a table of one axis holds it.
     pub fn keeps_channels_apart(&self, extras: &Extras) -> bool {
         // Grading in Rec.2020 mixes channels of Rec.709, but where it is left out.

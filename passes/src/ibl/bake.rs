@@ -11,11 +11,13 @@ use super::entry::{self, LightEntry};
 use super::error::IblError;
 use super::light::ImageLight;
 use super::ready_made;
-use super::settings::IblSettings;
+use super::rgbm;
+use super::settings::{EnvironmentFormat, IblSettings};
 use super::texture::{CubeShape, cube_format, cube_view, write_cube};
 
 impl ImageLight {
-    /// Makes light of `environment`, or finds it in `cache`. Light that the environment came with
+    /// Makes light of `environment`, or finds it in `cache`. The cube of even light has five levels of 64 texels, whatever
+    /// `settings` ask for. Light that the environment came with
     /// ([`Environment::filtered`]) is taken as it is: its size and levels, and its bands, stand in place of those that
     /// `settings` ask for.
     ///
@@ -37,34 +39,54 @@ impl ImageLight {
         progress: &mut ProgressFn<'_>,
     ) -> Result<Self, IblError> {
         settings.check()?;
+        let is_rgbm = settings.format == EnvironmentFormat::Rgbm;
         let (map, cleaning) = cleaned(&environment.map);
         let mut warnings = cleaning.warnings(&environment.name, map.texels().len());
         if let Some(filtered) = &environment.filtered {
-            let shape = ready_made::shape(filtered);
-            let light = ready_made::entry(filtered, map.average());
+            let mut shape = ready_made::shape(filtered);
+            let mut light = ready_made::entry(filtered, map.average());
+            if is_rgbm {
+                shape = rgbm::encode(&mut light, shape);
+            }
             let cube = write_cube(gpu, &environment.name, &shape, &light.levels)?;
             return Ok(Self::of(environment, settings, &shape, &light, &cube, (false, warnings)));
         }
-        let shape = CubeShape { texels: settings.cube_texels, levels: settings.levels, format: cube_format(gpu) };
+        // All texels of even light are the same, so the smallest cube holds it.
+        let even = IblSettings { cube_texels: 64, levels: 5, ..*settings };
+        let settings = if map.is_even() { &even } else { settings };
+        let shape = CubeShape {
+            texels: settings.cube_texels,
+            levels: settings.levels,
+            format: cube_format(gpu, settings.format),
+        };
         let key = key(&map, settings, &shape);
         let found = cache.load(key, entry::LIGHT, &mut warnings, |payload| entry::decode_light(payload, &shape));
         let from_cache = found.is_some();
-        let (light, cube) = match found {
+        let (mut light, cube) = match found {
+            Some(light) if is_rgbm => (light, None),
             Some(light) => {
                 let cube = write_cube(gpu, &environment.name, &shape, &light.levels)?;
-                (light, cube)
+                (light, Some(cube))
             }
             None => {
-                let read_back = cache.keeps_results_of(gpu);
+                let keeps = cache.keeps_results_of(gpu);
+                let read_back = keeps || is_rgbm;
                 let (sh, average) = (Sh::project(&map, settings.bands), map.average());
                 let map = (environment.name.as_str(), &*map);
                 let SpecularCube { texture, texel_nits, levels } =
                     specular_cube(gpu, map, settings, &shape, read_back, progress)?;
                 let light = LightEntry { sh, average, texel_nits, levels };
-                if read_back {
+                if keeps {
                     cache.store(key, entry::LIGHT, &entry::encode_light(&light, &shape), &mut warnings);
                 }
-                (light, texture)
+                (light, Some(texture).filter(|_| !is_rgbm))
+            }
+        };
+        let (shape, cube) = match cube {
+            Some(cube) => (shape, cube),
+            None => {
+                let shape = rgbm::encode(&mut light, shape);
+                (shape, write_cube(gpu, &environment.name, &shape, &light.levels)?)
             }
         };
         Ok(Self::of(environment, settings, &shape, &light, &cube, (from_cache, warnings)))

@@ -28,7 +28,7 @@ pub struct ImageLight {
     /// Prefiltered radiance in units of [`texel_nits`](Self::texel_nits), a cube view of all levels. To
     /// be sampled trilinearly.
     pub specular: TextureView,
-    /// `Rg11b10Ufloat` where the device renders it, else `Rgba16Float`.
+    /// Format of the cube's texels: `Rg11b10Ufloat` or `Rgba16Float`, or `Rgba8Unorm` for RGBM ([`is_rgbm`](Self::is_rgbm)).
     pub format: TextureFormat,
     /// Width and height of level 0 of the cube in texels.
     pub cube_texels: u32,
@@ -56,6 +56,12 @@ pub struct ImageLight {
 }
 
 impl ImageLight {
+    /// Whether shaders decode the cube's texels by `linear_from_rgbm` of `wgsl/lib/rgbm.wgsl`.
+    #[must_use]
+    pub fn is_rgbm(&self) -> bool {
+        self.format == TextureFormat::Rgba8Unorm
+    }
+
     /// The coefficients times `scale`: intensity times exposure gives what shaders are handed.
     #[must_use]
     pub fn exposed_irradiance(&self, scale: f32) -> [Vec4; IRRADIANCE_COEFFICIENTS] {

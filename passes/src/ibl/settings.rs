@@ -3,6 +3,22 @@
 use framegraph_scene::environment::{ShBands, ShWindow};
 use framegraph_scene::error::SceneError;
 
+/// Storage of the prefiltered environment's texels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+pub enum EnvironmentFormat {
+    /// `Rg11b10Ufloat`, 4 bytes a texel; half floats where the device cannot draw that format, and for light that the
+    /// environment came with.
+    #[default]
+    Rg11b10,
+    /// `Rgba16Float`, 8 bytes a texel.
+    Half,
+    /// `Rgba8Unorm` as RGBM, 4 bytes a texel: every device has it, and shaders decode it. Holds numbers from 0 to the cube's
+    /// brightest channel, with steps of 0.4 to 0.9 % there. Filters interpolate codes, which shows where bright texels are
+    /// beside dark ones.
+    Rgbm,
+}
+
 /// How fine the light is. The default is what Filament does: 256 texels, five levels, three bands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IblSettings {
@@ -17,11 +33,19 @@ pub struct IblSettings {
     pub bands: ShBands,
     /// Whether high bands are weakened against ringing.
     pub window: ShWindow,
+    /// Storage of the cube's texels.
+    pub format: EnvironmentFormat,
 }
 
 impl Default for IblSettings {
     fn default() -> Self {
-        Self { cube_texels: 256, levels: 5, bands: ShBands::Three, window: ShWindow::None }
+        Self {
+            cube_texels: 256,
+            levels: 5,
+            bands: ShBands::Three,
+            window: ShWindow::None,
+            format: EnvironmentFormat::Rg11b10,
+        }
     }
 }
 

@@ -43,6 +43,7 @@ const SMALL: IblSettings = IblSettings {
     levels: 5,
     bands: ShBands::Three,
     window: framegraph_scene::environment::ShWindow::None,
+    format: EnvironmentFormat::Rg11b10,
 };
 
 #[test]

@@ -1,5 +1,6 @@
 //! The specular cube as a texture: its format, its bytes, its views.
 
+use super::settings::EnvironmentFormat;
 use framegraph::{Extent, Format, TextureDesc};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_wgpu::{DeviceError, Gpu, texture_format};
@@ -57,13 +58,14 @@ impl CubeShape {
     }
 }
 
-/// The smallest format that the device can draw into and filter.
-pub(super) fn cube_format(gpu: &Gpu) -> Format {
+/// The format that a cube is drawn in: the smallest that the device can draw into and filter, or half floats if they are
+/// asked for. RGBM is encoded from half floats.
+pub(super) fn cube_format(gpu: &Gpu, asked: EnvironmentFormat) -> Format {
     let features = gpu.format_features(Format::Rg11b10Ufloat);
     let usages = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
     let small =
         features.allowed_usages.contains(usages) && features.flags.contains(TextureFormatFeatureFlags::FILTERABLE);
-    if small { Format::Rg11b10Ufloat } else { Format::Rgba16Float }
+    if small && asked == EnvironmentFormat::Rg11b10 { Format::Rg11b10Ufloat } else { Format::Rgba16Float }
 }
 
 /// The whole cube.

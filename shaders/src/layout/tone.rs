@@ -66,13 +66,16 @@ pub enum ToneMap {
     DisplayRange,
     /// A curve by four numbers.
     Generic(GenericCurve),
+    /// x / (x + 0.155) · 1.019 of each channel of Rec.709: close to FILMIC with the sRGB transfer function baked in. Cheap
+    /// enough for phones: no power is computed, and no encoding follows.
+    Mobile,
     /// A function of the application's own, which is known to a table of grading alone.
     Own,
 }
 
 impl ToneMap {
     /// All curves that have a name.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Linear,
         Self::Hill,
         Self::Filmic,
@@ -86,6 +89,7 @@ impl ToneMap {
         Self::Gt7,
         Self::Generic(GenericCurve::DEFAULT),
         Self::DisplayRange,
+        Self::Mobile,
     ];
 
     /// The curve's number in the shader; none of one's own.
@@ -104,6 +108,7 @@ impl ToneMap {
             Self::Gt7 => 10,
             Self::Generic(_) => 11,
             Self::DisplayRange => 12,
+            Self::Mobile => 13,
             Self::Own => return None,
         })
     }
@@ -120,7 +125,12 @@ impl ToneMap {
 
     /// Whether the curve is of each channel of Rec.709 alone.
     pub const fn keeps_channels_apart(self) -> bool {
-        matches!(self, Self::Linear | Self::Filmic)
+        matches!(self, Self::Linear | Self::Filmic | Self::Mobile)
+    }
+
+    /// Whether the curve gives sRGB encoded light, because the transfer function is part of it.
+    pub const fn is_encoded(self) -> bool {
+        matches!(self, Self::Mobile)
     }
 
     /// Name on a command line.
@@ -139,6 +149,7 @@ impl ToneMap {
             Self::Gt7 => "gt7",
             Self::Generic(_) => "generic",
             Self::DisplayRange => "display-range",
+            Self::Mobile => "mobile",
             Self::Own => "own",
         }
     }

@@ -7,6 +7,7 @@ use super::gamut::map_into_gamut;
 use super::grading::{positive_power, scale_luminance};
 use super::gt7::tone_gt7;
 use super::primaries::{LUMINANCE_REC709, LUMINANCE_REC2020, rec709_from_rec2020, rec2020_from_rec709};
+use super::srgb::linear_from_srgb;
 use glam::{DMat3, DVec3};
 
 fn input(color: DVec3) -> DVec3 {
@@ -37,6 +38,12 @@ pub fn tone_map_filmic(color: DVec3) -> DVec3 {
     ((c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14)).clamp(DVec3::ZERO, DVec3::ONE)
 }
 
+/// sRGB encoded display light: the transfer function is part of the curve.
+pub fn tone_map_mobile(color: DVec3) -> DVec3 {
+    let c = input(color);
+    (c / (c + 0.155) * 1.019).clamp(DVec3::ZERO, DVec3::ONE)
+}
+
 /// Khronos PBR Neutral.
 pub fn tone_map_neutral(color: DVec3) -> DVec3 {
     let c = input(color);
@@ -64,7 +71,7 @@ pub fn tone_generic(color: DVec3, curve: DVec3) -> DVec3 {
 
 /// Whether a curve takes Rec.2020 and gives that.
 pub fn tone_in_rec2020(curve: u32) -> bool {
-    !matches!(curve, 0..=3)
+    !matches!(curve, 0..=3 | 13)
 }
 
 /// Display light of a color, both in the primaries of the curve.
@@ -79,6 +86,7 @@ pub fn tone_curve(color: DVec3, curve: u32, generic: DVec3) -> DVec3 {
         10 => tone_gt7(color),
         11 => tone_generic(color, generic),
         12 => tone_display_range(color),
+        13 => linear_from_srgb(tone_map_mobile(color)),
         _ => color.clamp(DVec3::ZERO, DVec3::ONE),
     }
 }
@@ -113,6 +121,7 @@ pub fn tone_map_with(
 mod tests {
     use super::*;
     use crate::layout::GenericCurve;
+    use crate::reference::srgb::srgb_from_linear;
 
     fn shown(color: DVec3, curve: u32) -> DVec3 {
         tone_map(color, curve, GenericCurve::DEFAULT.numbers(), false, false)
@@ -121,7 +130,7 @@ mod tests {
     #[test]
     fn greys_rise_monotonically_from_black_to_white() {
         // All but the colors of stops.
-        for curve in 0..12 {
+        for curve in (0..12).chain([13]) {
             let grey = |x: f64| shown(DVec3::splat(x), curve);
             let mut last = grey(0.0);
             assert!(last.max_element() <= 1e-3, "curve {curve}: black is {last}");
@@ -141,7 +150,7 @@ mod tests {
     /// Hard case 47: no curve leaves 0…1, whatever it is given.
     #[test]
     fn hard_case_47_hard_inputs_stay_in_range() {
-        for (curve, luminance, gamut) in (0..13).flat_map(|c| [(c, false, false), (c, true, false), (c, false, true)]) {
+        for (curve, luminance, gamut) in (0..14).flat_map(|c| [(c, false, false), (c, true, false), (c, false, true)]) {
             for x in [-0.2, -1e9, 0.0, 160.0, 161.6, 65504.0, 1e19, 1.2e19] {
                 for color in [DVec3::splat(x), DVec3::new(x, 0.0, 0.0), DVec3::new(0.0, x, 1.0)] {
                     let c = tone_map(color, curve, GenericCurve::DEFAULT.numbers(), luminance, gamut);
@@ -158,6 +167,12 @@ mod tests {
         assert!((grey.x - 0.1056).abs() < 5e-4, "ACES renders 18 % to 10.4 %: {grey}");
         let filmic = tone_map_filmic(DVec3::splat(0.18)).x;
         assert!((filmic - 0.2669).abs() < 5e-4, "{filmic}");
+        // 0.18 / 0.335 · 1.019: three codes of 255 below the curve that it fits, encoded.
+        let mobile = tone_map_mobile(DVec3::splat(0.18)).x;
+        assert!((mobile - 0.547_522).abs() < 1e-6, "{mobile}");
+        let encoded = srgb_from_linear(tone_map_filmic(DVec3::splat(0.18))).x;
+        assert!((mobile - encoded).abs() < 4.0 / 255.0 && (mobile - filmic).abs() > 0.2, "{encoded}");
+        assert!((srgb_from_linear(shown(DVec3::splat(0.18), 13)).x - mobile).abs() < 1e-9, "encoded once, not twice");
         let base = DVec3::new(0.5, 0.3, 0.2);
         assert!(shown(base, 5).abs_diff_eq(base, 1e-9), "within the gamut nothing changes");
         // 7 of pure red: (1, 0.48, 0.11) of Rec.2020.

@@ -21,7 +21,7 @@ override OUTPUT_ENCODED: bool = false;
 /// alpha.
 override LUMA_IN_ALPHA: bool = false;
 
-/// True takes colors that are sRGB encoded already, as a table gives them.
+/// True takes colors that are sRGB encoded already, as a table or the mobile tone curve gives them.
 override INPUT_ENCODED: bool = false;
 
 @group(0) @binding(0) var<uniform> encoding: EncodingUniforms;

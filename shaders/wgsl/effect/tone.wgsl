@@ -1,6 +1,6 @@
 // Effect: the tone curve, from scene-referred light to display light.
 
-import package::lib::tone_map::tone_map;
+import package::lib::tone_map::{TONE_MAP_MOBILE, tone_map, tone_map_mobile};
 
 /// The curve, a TONE_MAP_* of lib/tone_map.wgsl.
 override TONE_MAP: u32 = 1u;
@@ -13,8 +13,12 @@ override BY_LUMINANCE: bool = false;
 /// What the display cannot show is moved to where it can, and not cut off.
 override INTO_GAMUT: bool = false;
 
-/// Linear display light in [0, 1]; alpha stays.
+/// Linear display light in [0, 1]; alpha stays. The mobile curve alone gives encoded light, which
+/// `encode` then takes as it is (INPUT_ENCODED), except where luminance or the gamut is looked at.
 fn tone(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
+    if TONE_MAP == TONE_MAP_MOBILE && !BY_LUMINANCE && !INTO_GAMUT {
+        return vec4<f32>(tone_map_mobile(color.rgb), color.a);
+    }
     let generic = vec3<f32>(GENERIC_CONTRAST, GENERIC_INPUT, GENERIC_OUTPUT);
     return vec4<f32>(tone_map(color.rgb, TONE_MAP, generic, BY_LUMINANCE, INTO_GAMUT), color.a);
 }

@@ -1,6 +1,7 @@
 // Fog in front of what is shaded: read by the color passes and the sky under FOG.
 
-import package::interface::frame::{frame, specular_map, light_sampler};
+import package::interface::environment::environment_level;
+import package::interface::frame::frame;
 import package::lib::environment::rotate_about_y;
 import package::lib::fog::{fog_optical_depth, fog_opacity, fog_glow};
 import package::lib::numerics::saturate_half3;
@@ -54,8 +55,8 @@ fn in_fog(color: vec4<f32>, direction: vec3<f32>, way_m: f32) -> vec4<f32> {
     let around = rotate_about_y(direction, frame.environment_rotation);
     let sharper = saturate(way_m * fog.per_sharp_m) * fog.sharp_levels;
     let lod = max(frame.roughness_one_lod - sharper, 0.0);
-    let image = textureSampleLevel(specular_map, light_sampler, around, lod).rgb;
-    let tint = mix(vec3<f32>(1.0), image * frame.specular_scale, fog.of_environment);
+    let image = environment_level(around, lod);
+    let tint = mix(vec3<f32>(1.0), image, fog.of_environment);
     let glow = fog_glow(dot(direction, frame.sun_direction), fog.glow_size) * fog.glows * inside;
     let sun = frame.sun_illuminance * (glow * fog_opacity(lit, 1.0));
     let scattered = fog.color * tint * opacity + sun;

@@ -1,4 +1,5 @@
 // Tone curves: linear Rec.709 light, scaled by exposure, to linear display light in [0, 1].
+// Only `tone_map_mobile` gives encoded light.
 //
 // Inputs are clamped first: a negative makes a rational curve fold back (-0.2 becomes 0.79), a
 // huge one overflows to Inf/Inf (hard case 47). Curves of one channel have long reached white by
@@ -11,6 +12,7 @@ import package::lib::gamut::map_into_gamut;
 import package::lib::grading::{positive_power, scale_luminance};
 import package::lib::gt7::tone_gt7;
 import package::lib::primaries::{rec2020_from_rec709, rec709_from_rec2020};
+import package::lib::srgb::linear_from_srgb;
 
 /// The curves by number; `layout::ToneMap` mirrors them.
 const TONE_MAP_LINEAR: u32 = 0u;
@@ -26,6 +28,7 @@ const TONE_MAP_AGX_PUNCHY: u32 = 9u;
 const TONE_MAP_GT7: u32 = 10u;
 const TONE_MAP_GENERIC: u32 = 11u;
 const TONE_MAP_DISPLAY_RANGE: u32 = 12u;
+const TONE_MAP_MOBILE: u32 = 13u;
 
 /// ACES 1.0 reference rendering and output transform for a 100 nit Rec.709 display, as fitted
 /// by Stephen Hill (BakingLab, 2016): into the rendering primaries with desaturation, one
@@ -50,6 +53,14 @@ fn tone_map_hill(color: vec3<f32>) -> vec3<f32> {
 fn tone_map_filmic(color: vec3<f32>) -> vec3<f32> {
     let c = clamp(color, vec3<f32>(0.0), vec3<f32>(100.0));
     return saturate((c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14));
+}
+
+/// sRGB encoded display light by one division a channel: the transfer function is part of the
+/// curve, so no encoding may follow (Guy and Agopian, "High Performance Mobile Rendering", 2018).
+/// Close to `tone_map_filmic` and its encoding.
+fn tone_map_mobile(color: vec3<f32>) -> vec3<f32> {
+    let c = clamp(color, vec3<f32>(0.0), vec3<f32>(100.0));
+    return saturate(c / (c + 0.155) * 1.019);
 }
 
 /// Khronos PBR Neutral (2024): base colors up to 0.76 come out as they are, highlights are
@@ -80,10 +91,10 @@ fn tone_generic(color: vec3<f32>, curve: vec3<f32>) -> vec3<f32> {
     return curve.z * x / (x + curve.y);
 }
 
-/// Whether a curve takes Rec.2020, and gives that: Filament's own do, where Khronos', Hill's and
-/// Narkowicz' are for Rec.709.
+/// Whether a curve takes Rec.2020, and gives that: Filament's own do, where Khronos', Hill's,
+/// Narkowicz' and the mobile one are for Rec.709.
 fn tone_in_rec2020(curve: u32) -> bool {
-    return curve >= TONE_MAP_ACES_LEGACY;
+    return curve >= TONE_MAP_ACES_LEGACY && curve != TONE_MAP_MOBILE;
 }
 
 /// Display light of a color, both in the primaries of the curve; an unknown number cuts off at
@@ -101,6 +112,7 @@ fn tone_curve(color: vec3<f32>, curve: u32, generic: vec3<f32>) -> vec3<f32> {
         case TONE_MAP_GT7: { return tone_gt7(color); }
         case TONE_MAP_GENERIC: { return tone_generic(color, generic); }
         case TONE_MAP_DISPLAY_RANGE: { return tone_display_range(color); }
+        case TONE_MAP_MOBILE: { return linear_from_srgb(tone_map_mobile(color)); }
         default: { return saturate(color); }
     }
 }

@@ -3,12 +3,14 @@
 // Feature ENVIRONMENT_MAP: lobes read the prefiltered cube; without it they see what three
 // bands of spherical harmonics show.
 
-import package::interface::frame::{frame, specular_map, light_sampler, dfg_table};
+@if(ENVIRONMENT_MAP)
+import package::interface::environment::environment_level;
+import package::interface::frame::{frame, light_sampler, dfg_table};
 import package::lib::dfg::dfg_uv;
 import package::lib::environment::rotate_about_y;
 import package::lib::image_light::specular_lod;
 import package::lib::sh::{irradiance_sh, irradiance_sh2, irradiance_sh5, specular_sh};
-import package::shading::quality::SH_BANDS;
+import package::shading::quality::{IRRADIANCE_FROM_CUBE, SH_BANDS};
 
 /// The first three bands.
 fn three_bands() -> array<vec4<f32>, 9> {
@@ -21,6 +23,11 @@ fn three_bands() -> array<vec4<f32>, 9> {
 /// Pre-exposed irradiance / π on a surface of unit normal n.
 fn ambient_irradiance(n: vec3<f32>) -> vec3<f32> {
     let d = rotate_about_y(n, frame.environment_rotation);
+    // The lobe of roughness 1 about n is the cosine's, so the last level is irradiance / π.
+    @if(ENVIRONMENT_MAP)
+    if IRRADIANCE_FROM_CUBE {
+        return environment_level(d, frame.roughness_one_lod);
+    }
     if SH_BANDS == 2u {
         let two = array<vec4<f32>, 4>(frame.sh[0], frame.sh[1], frame.sh[2], frame.sh[3]);
         return irradiance_sh2(two, d);
@@ -37,7 +44,7 @@ fn ambient_irradiance(n: vec3<f32>) -> vec3<f32> {
 fn ambient_radiance(direction: vec3<f32>, roughness: f32) -> vec3<f32> {
     let d = rotate_about_y(direction, frame.environment_rotation);
     let lod = specular_lod(roughness, frame.roughness_one_lod);
-    return textureSampleLevel(specular_map, light_sampler, d, lod).rgb * frame.specular_scale;
+    return environment_level(d, lod);
 }
 
 @else

@@ -17,6 +17,8 @@ override ENERGY_COMPENSATION: bool = true;
 override PUNCTUAL_COMPENSATION: bool = true;
 /// Bands of irradiance that are evaluated: 2, 3 or 5.
 override SH_BANDS: u32 = 3u;
+/// Irradiance is the last level of the specular cube instead of harmonics.
+override IRRADIANCE_FROM_CUBE: bool = false;
 /// Footprint of a pixel in specular antialiasing, 0.15 … 0.25; zero is off.
 override SPECULAR_AA_VARIANCE: f32 = 0.15;
 /// The most that specular antialiasing may add to alpha².

@@ -76,9 +76,16 @@ pub fn file_name(choice: &str) -> String {
 }
 
 fn operations(choice: &Choice) -> Option<[u32; 4]> {
-    let (function, in_half) = choice.function?;
-    let known = |case: &cases::Case| case.function == function;
-    let case = if in_half { cases::half().find(known)? } else { *cases::all().find(|case| known(case))? };
-    let found = Operations::of(&case.shader().ok()?.wgsl, function)?;
-    Some([found.arithmetic, found.transcendental, found.texture, found.conversion])
+    let mut sum = None;
+    for (function, in_half) in &choice.functions {
+        let known = |case: &cases::Case| case.function == *function;
+        let case = if *in_half { cases::half().find(known)? } else { *cases::all().find(|case| known(case))? };
+        let found = Operations::of(&case.shader().ok()?.wgsl, function)?;
+        let all = sum.get_or_insert([0; 4]);
+        for (all, own) in all.iter_mut().zip([found.arithmetic, found.transcendental, found.texture, found.conversion])
+        {
+            *all += own;
+        }
+    }
+    sum
 }

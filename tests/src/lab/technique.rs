@@ -56,8 +56,8 @@ pub struct Choice {
     pub subject: Subject,
     /// A frame that does it so: what is timed, and for pictures what is compared. None where no setting says so.
     pub setup: Option<Setup>,
-    /// Function of the shader library whose operations are counted, and whether in f16.
-    pub function: Option<(&'static str, bool)>,
+    /// Functions of the shader library whose operations are counted and added up, each with whether it is in f16.
+    pub functions: Vec<(&'static str, bool)>,
     /// Whether a preset's frame does it so.
     pub is_in: fn(&FrameSettings) -> bool,
 }

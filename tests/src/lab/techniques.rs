@@ -1,5 +1,6 @@
 //! The choices of the standard frame, as techniques of the lab.
 
+mod environment;
 mod formulas;
 mod lens;
 mod light;
@@ -15,7 +16,13 @@ use framegraph_wgpu::Gpu;
 
 /// All of them. Half floats in shaders are measured where the device has them.
 pub fn all(gpu: &Gpu) -> Vec<Technique> {
-    let own = [light::techniques(gpu), terms::techniques(), screen::techniques(), lens::techniques()];
+    let own = [
+        light::techniques(gpu),
+        environment::techniques(),
+        terms::techniques(),
+        screen::techniques(),
+        lens::techniques(),
+    ];
     own.into_iter().flatten().chain(picture::techniques(gpu)).chain(formulas::techniques()).collect()
 }
 
@@ -48,7 +55,7 @@ fn pictures(name: &str, what: &str, truth: (&str, Truth), base: Setup, choices: 
             name: (*name).to_owned(),
             subject: Subject::Picture,
             setup: Some(setup),
-            function: None,
+            functions: Vec::new(),
             is_in: *is_in,
         }
     };
@@ -71,7 +78,7 @@ fn formula(name: &str, what: &str, truth: &str, unit: &str, choices: Vec<Choice>
 /// One of them.
 fn number(name: &str, measure: impl Fn(&Gpu) -> Outcome<Measured> + 'static) -> Choice {
     let subject = Subject::Formula(Box::new(measure));
-    Choice { name: name.to_owned(), subject, setup: None, function: None, is_in: nowhere }
+    Choice { name: name.to_owned(), subject, setup: None, functions: Vec::new(), is_in: nowhere }
 }
 
 impl Choice {
@@ -80,9 +87,10 @@ impl Choice {
         Self { setup: Some(setup), ..self }
     }
 
-    /// With a function of the library whose operations are counted.
-    fn counted(self, function: &'static str, in_half: bool) -> Self {
-        Self { function: Some((function, in_half)), ..self }
+    /// With a function of the library whose operations are counted, beside those that were named before.
+    fn counted(mut self, function: &'static str, in_half: bool) -> Self {
+        self.functions.push((function, in_half));
+        self
     }
 
     /// With the presets that have it.

@@ -1,8 +1,14 @@
 //! Irradiance from spherical harmonics against integration over the hemisphere.
 
 use super::averaged_map;
+use crate::lookup::{self, Mapping};
+use framegraph_passes::ibl::cache::Cache;
+use framegraph_passes::ibl::{IblSettings, ImageLight};
 use framegraph_scene::environment::{EquirectMap, Sh, ShBands, ShWindow};
+use framegraph_scene::{Environment, progress};
+use framegraph_wgpu::Gpu;
 use glam::DVec3;
+use std::error::Error;
 use std::f64::consts::{PI, TAU};
 use truth::sphere::{directions, irradiance_over_pi};
 
@@ -100,11 +106,38 @@ pub struct Errors {
 pub fn errors(scene: Scene, bands: ShBands, window: ShWindow, normals: u32, spoil: impl Fn(Sh) -> Sh) -> Errors {
     let (map, truth) = scene.map_and_truth();
     let sh = spoil(Sh::project(&map, bands).windowed(window));
+    let brightest = sh.dominant_direction().unwrap_or(DVec3::Y);
+    let asked = directions(normals).into_iter().chain([brightest, -brightest]);
+    summed(asked.map(|n| (sh.irradiance_over_pi_at(n).x, truth(n))))
+}
+
+/// Errors of the last level of a prefiltered cube of this size with this many levels, as the device filters it, at `normals`
+/// normals.
+///
+/// # Errors
+/// Any error of the device.
+pub fn cube_errors(
+    gpu: &Gpu,
+    scene: Scene,
+    [cube_texels, levels]: [u32; 2],
+    normals: u32,
+) -> Result<Errors, Box<dyn Error>> {
+    let (map, truth) = scene.map_and_truth();
+    let environment =
+        Environment { name: scene.name().to_owned(), map, sun: None, filtered: None, warnings: Vec::new() };
+    let settings = IblSettings { cube_texels, levels, ..Default::default() };
+    let light = ImageLight::new(gpu, &environment, &settings, &Cache::off(), &mut progress::silent)?;
+    let asked: Vec<DVec3> = directions(normals).into_iter().chain([Scene::axis(), -Scene::axis()]).collect();
+    let of_lobe: Vec<[f32; 4]> = asked.iter().map(|n| n.as_vec3().extend(1.0).to_array()).collect();
+    let got = lookup::specular(gpu, &light, Mapping::Lod, &of_lobe)?;
+    Ok(summed(asked.iter().zip(got).map(|(n, [grey, ..])| (grey, truth(*n)))))
+}
+
+/// Errors of what was found beside what is exact.
+fn summed(found: impl Iterator<Item = (f64, f64)>) -> Errors {
     let (mut worst, mut lowest, mut peak) = (0.0_f64, f64::MAX, 0.0_f64);
     let (mut mean, mut clamped) = (0.0, 0.0);
-    let brightest = sh.dominant_direction().unwrap_or(DVec3::Y);
-    for n in directions(normals).into_iter().chain([brightest, -brightest]) {
-        let (got, exact) = (sh.irradiance_over_pi_at(n).x, truth(n));
+    for (got, exact) in found {
         worst = worst.max((got - exact).abs());
         lowest = lowest.min(got);
         peak = peak.max(exact);

@@ -37,7 +37,7 @@ fn the_document_is_that_of_its_record() {
     assert_ne!(DOCUMENT, document(&record), "another error is another document");
 }
 
-/// The record of a GPU has its document beside it, of as many techniques.
+/// The record of a GPU has its document beside it. Techniques that were added since it was made are missing in it.
 #[test]
 fn the_document_of_a_gpu_is_that_of_its_record() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/nvidia-h200");
@@ -45,7 +45,9 @@ fn the_document_of_a_gpu_is_that_of_its_record() {
     let text = std::fs::read_to_string(folder.join("accuracy.md")).expect("the document");
     let renew = "renew it: cargo run -p tests --bin accuracy -- --out docs/nvidia-h200 --document";
     assert_eq!(text, document(&own), "{renew}");
-    assert!(own.adapter.contains("NVIDIA H200") && own.techniques.len() == record().techniques.len());
+    let known = record().techniques;
+    assert!(own.adapter.contains("NVIDIA H200") && own.techniques.len() >= 24);
+    assert!(own.techniques.iter().all(|technique| known.iter().any(|other| other.name == technique.name)));
 }
 
 /// What presets have is what the committed record chooses, and another record chooses otherwise.

@@ -181,6 +181,23 @@ fn looks() -> Vec<Look> {
     looks
 }
 
+/// The mobile curve has the transfer function in it: its codes are shown as they are, in one pass and in a pass for each effect,
+/// and so they are where gamut mapping needs light in between.
+#[test]
+fn the_mobile_curve_is_encoded_once() -> TestResult {
+    let Some(gpu) = gpu("the_mobile_curve_is_encoded_once") else { return Ok(()) };
+    let mobile = COLOR / (COLOR + 0.155) * 1.019;
+    for (gamut_mapping, fxaa, split) in [(false, false, false), (false, true, true), (true, true, false)] {
+        let look = Look { tone_map: ToneMap::Mobile, gamut_mapping, ..Look::default() };
+        let codes = of_color(&gpu, PostSettings { look, ..plain() }, fxaa, split)?.codes;
+        let off = |expected: DVec3| (0..3).map(|c| (f64::from(codes[c]) - expected[c]).abs()).fold(0.0, f64::max);
+        assert!(off(mobile * 255.0) < 0.9, "{look:?}, {fxaa} {split}: {:?} for {mobile}", &codes[..3]);
+        let twice = DVec3::from_array(mobile.to_array().map(srgb_code));
+        assert!(off(twice) > 10.0, "encoded twice");
+    }
+    Ok(())
+}
+
 /// What the shader computes of a look is what the CPU does in f64, with all effects in one pass and with a pass for each;
 /// and what it looks up is the entry that the CPU's interpolation finds.
 #[test]

@@ -10,6 +10,7 @@ mod cubes;
 mod degenerate;
 mod documents;
 mod dof;
+mod environment_storage;
 mod errors;
 mod even_light;
 mod executed;

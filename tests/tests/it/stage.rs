@@ -132,7 +132,12 @@ impl Set {
 /// Light as coarse as it may be.
 pub fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<Lighting, LightingError> {
     let settings = LightSettings {
-        image: IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() },
+        image: IblSettings {
+            cube_texels: 64,
+            bands: shading.bands,
+            format: shading.environment_format,
+            ..IblSettings::default()
+        },
         dfg: DfgSettings { texels: 32, visibility: shading.table },
     };
     Lighting::new(gpu, environment, &settings, &light_cache(), &mut progress::silent)

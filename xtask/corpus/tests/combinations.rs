@@ -13,6 +13,7 @@ fn crashes_errors_and_radiance_that_is_not_finite_are_findings_with_their_comman
         strength: 2,
         render: Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fake_combinations.sh"),
         folder: folder.clone(),
+        light: folder.join("light"),
         jobs: 3,
         limit: Duration::from_secs(60),
         memory_bytes: 1 << 30,

@@ -53,7 +53,9 @@ LIGHTING
   --shade KEY=X,...    one by one: visibility=exact|fast, table=exact|fast (visibility's own), floor=R (least
                        roughness), f90-fades=on|off,
                        compensation=on|off|image|punctual (of light scattered more than once), bands=2|3|5 (of
-                       irradiance), window=none|hann|sinc|laplacian:LAMBDA (of its bands, against ringing), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
+                       irradiance), window=none|hann|sinc|laplacian:LAMBDA (of its bands, against ringing),
+                       irradiance=harmonics|cube (the last level of the prefiltered environment),
+                       environment-format=rg11b10|half|rgbm (of the prefiltered environment), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
                        occlusion), specular-occlusion=on|off, micro-shadows=on|off (of the sun, by the material's
                        occlusion), fast-coat=on|off (reflection under varnish), coat-ior-change=on|off (clear coat lowers
                        the base's f0), transmission-blur=distance|angle (of what is behind rough bodies; angle as Filament), light-window=gltf|filament (how punctual lights end at their range), light-fade=off|M (meters

@@ -12,7 +12,8 @@ pub const HELP: &str = "
 GRADING
   --tone-map NAME      linear, hill (ACES as fitted by Hill; default), filmic, neutral, aces (as Filament computes it),
                        aces-legacy (brighter by 1/0.6), linear-2020 (cut off in the primaries of Rec.2020), agx, agx-golden,
-                       agx-punchy, gt7, display-range (a color a stop), or generic[:CONTRAST:IN:OUT:WHITE]
+                       agx-punchy, gt7, display-range (a color a stop), mobile (cheap, sRGB encoding included), or
+                       generic[:CONTRAST:IN:OUT:WHITE]
   --grade KEY=X,...    in Filament's order, in Rec.2020: exposure=EV, night=X (0 to 1), temperature, tint (-1 to 1; 0),
                        mixer-red|green|blue=R:G:B, shadows|midtones|highlights=R:G:B:ADDED (1:1:1:0),
                        ranges=A:B:C:D (of luminance, 0:0.333:0.55:1), slope, offset, power=R:G:B (of LogC), contrast,

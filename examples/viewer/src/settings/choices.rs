@@ -37,7 +37,7 @@ const OPTIONS: [&str; 19] = [
 ];
 
 /// Fields that are one of some variants.
-const VARIANTS: [(&str, &[&str]); 29] = [
+const VARIANTS: [(&str, &[&str]); 31] = [
     ("quality", &["Low", "High", "Ultra"]),
     ("settings.samples", &["1", "4"]),
     ("settings.shadows.moments.samples", &["1", "4"]),
@@ -46,6 +46,8 @@ const VARIANTS: [(&str, &[&str]); 29] = [
     ("settings.shading.table", &["Exact", "Fast"]),
     ("settings.shading.bands", &["Two", "Three", "Five"]),
     ("settings.shading.window", &["None", "Hann", "Sinc", "Laplacian(lambda: 0.01)"]),
+    ("settings.shading.irradiance", &["Harmonics", "Cube"]),
+    ("settings.shading.environment_format", &["Rg11b10", "Half", "Rgbm"]),
     ("settings.shading.transmission_blur", &["Distance", "Angle"]),
     ("settings.shading.light_window", &["Gltf", "Filament"]),
     ("settings.shadows.filter", &["Pcf", "Dpcf", "Pcss", "Vsm", "Evsm"]),
@@ -84,6 +86,7 @@ const VARIANTS: [(&str, &[&str]); 29] = [
             "AgxPunchy",
             "Gt7",
             "DisplayRange",
+            "Mobile",
             "Generic(contrast: 1.55, middle_in: 0.18, middle_out: 0.215, white: 10.0)",
         ],
     ),

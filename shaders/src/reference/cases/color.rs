@@ -284,6 +284,13 @@ pub(super) const CASES: &[Case] = &[
         CURVE,
     ),
     to_vec3(
+        ["tone_map", "tone_map_mobile"],
+        &[HDR],
+        "tone_map_mobile(v3(0u))",
+        |x| out3(tone_map::tone_map_mobile(v3(x, 0))),
+        CURVE,
+    ),
+    to_vec3(
         ["tone_map", "tone_map_neutral"],
         &[HDR],
         "tone_map_neutral(v3(0u))",
@@ -299,7 +306,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     case(
         ["tone_map", "tone_in_rec2020"],
-        &[Count(13)],
+        &[Count(14)],
         "u32(tone_in_rec2020(u32(x[0])))",
         SCALAR,
         |x| vec![f64::from(u8::from(tone_map::tone_in_rec2020(x[0] as u32)))],
@@ -307,7 +314,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     to_vec3(
         ["tone_map", "tone_curve"],
-        &[Vector(3, 0.01, 4.0), Count(13)],
+        &[Vector(3, 0.01, 4.0), Count(14)],
         "tone_curve(v3(0u), u32(x[3]), vec3<f32>(1.55, 0.26, 1.01))",
         |x| out3(tone_map::tone_curve(v3(x, 0), x[3] as u32, DVec3::new(1.55, 0.26, 1.01))),
         bound(3e-3, 3e-3),
@@ -316,7 +323,7 @@ pub(super) const CASES: &[Case] = &[
     // 2.3, and where only luminance goes through the curve, or what is outside is moved, less follows.
     to_vec3(
         ["tone_map", "tone_map"],
-        &[EXTREME, EXTREME, EXTREME, Count(13), Count(2)],
+        &[EXTREME, EXTREME, EXTREME, Count(14), Count(2)],
         "tone_map(v3(0u), u32(x[3]), vec3<f32>(1.55, 0.26, 1.01), x[4] > 0.5, false)",
         |x| out3(tone_map::tone_map(v3(x, 0), x[3] as u32, DVec3::new(1.55, 0.26, 1.01), x[4] > 0.5, false)),
         bound(8e-3, 1e-4),

@@ -1,6 +1,6 @@
 //! Cases of the functions that make a picture out of radiance.
 
-use super::super::{dither, fullscreen, fxaa, luminance, quantize, sky, srgb};
+use super::super::{dither, fullscreen, fxaa, luminance, quantize, rgbm, sky, srgb};
 use super::case::{Bound, Case, Domain};
 use super::table::*;
 use Domain::{Count, Direction, Linear, Log, Values, Vector};
@@ -94,6 +94,14 @@ pub(super) const CASES: &[Case] = &[
         &["r.x", "r.y", "r.z", "r.w"],
         |x| quantize::quantize_rg11b10ufloat(v3(x, 0), x[3] > 0.5).to_array().to_vec(),
         EXACT,
+    ),
+    case(
+        ["rgbm", "linear_from_rgbm"],
+        &[Vector(4, 0.0, 1.0)],
+        "linear_from_rgbm(v4(0u))",
+        &["r.x", "r.y", "r.z"],
+        |x| rgbm::linear_from_rgbm(v3(x, 0).extend(x[3])).to_array().to_vec(),
+        ARITHMETIC,
     ),
     case(
         ["fxaa", "fxaa_is_edge"],

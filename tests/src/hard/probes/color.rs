@@ -7,9 +7,10 @@ use Domain::Count;
 const CODE: Domain = Values(&[-1e9, -1e-3, -0.0, 0.0, 1e-6, 0.0031308, 0.04045, 1.0, 1.0001, 1e9, f64::NAN]);
 
 pub(super) const PROBES: &[Probe] = &[
-    both(47, "tone_map", &[RADIANCE, RADIANCE, RADIANCE, Count(13), Values(&[0.0, 1.0])], is_share),
+    both(47, "tone_map", &[RADIANCE, RADIANCE, RADIANCE, Count(14), Values(&[0.0, 1.0])], is_share),
     both(47, "tone_map_hill", &[RADIANCE, RADIANCE, RADIANCE], is_share),
     both(47, "tone_map_filmic", &[RADIANCE, RADIANCE, RADIANCE], is_share),
+    both(47, "tone_map_mobile", &[RADIANCE, RADIANCE, RADIANCE], is_share),
     both(47, "tone_map_neutral", &[RADIANCE, RADIANCE, RADIANCE], is_share),
     both(
         47,

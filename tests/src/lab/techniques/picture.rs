@@ -15,7 +15,7 @@ use framegraph_wgpu::Gpu;
 use glam::{DVec2, DVec3};
 
 pub(super) fn techniques(_: &Gpu) -> Vec<Technique> {
-    vec![format(), tone_mapper(), tone_table(), table_coordinates(), oetf(), dither(), post_passes()]
+    vec![format(), tone_mapper(), tone_fit(), tone_table(), table_coordinates(), oetf(), dither(), post_passes()]
 }
 
 /// Colors from nine stops below grey to seven above, each channel by itself.
@@ -95,9 +95,36 @@ fn tone_mapper() -> Technique {
         choice("ACES as fitted by Hill", ToneMap::Hill).found_in(|f| f.settings.post.look.tone_map == ToneMap::Hill),
         choice("ACES as fitted by Narkowicz", ToneMap::Filmic),
         choice("Khronos neutral", ToneMap::Neutral),
+        choice("mobile, with the encoding in it", ToneMap::Mobile),
     ];
     let what = "The tone curve, over random colors of sixteen stops; one that is meant to look otherwise errs by what it means.";
     formula("tone-mapper", what, "Filament's ACES curve in f64.", "codes, RMS", choices)
+}
+
+fn tone_fit() -> Technique {
+    let choice = |name: &str, tone_map: ToneMap| {
+        let mut setup = base("spheres");
+        setup.settings.post.look = curve(tone_map);
+        let measure = move |_: &Gpu| {
+            let extras = Extras::default();
+            let (ours, fitted) = (curve(tone_map).function(&extras)?, curve(ToneMap::Filmic).function(&extras)?);
+            let apart: Vec<DVec3> = colors().iter().map(|c| 255.0 * (ours(*c) - fitted(*c))).collect();
+            let count = (3 * apart.len()) as f64;
+            let bias = apart.iter().map(|d| d.element_sum()).sum::<f64>() / count;
+            let error = (apart.iter().map(|d| d.length_squared()).sum::<f64>() / count).sqrt();
+            Ok(Measured { bias: Some(bias), ..Measured::exact(error) })
+        };
+        number(name, measure).timed(setup)
+    };
+    let choices = vec![
+        choice("Narkowicz, then sRGB", ToneMap::Filmic)
+            .counted("tone_map_filmic", false)
+            .counted("srgb_from_linear", false),
+        choice("mobile, with sRGB in it", ToneMap::Mobile).counted("tone_map_mobile", false),
+    ];
+    let what = "A tone curve with the transfer function in it, x / (x + 0.155) · 1.019, against the curve that it is close to, \
+                over random colors of sixteen stops.";
+    formula("tone-fit", what, "ACES as fitted by Narkowicz, sRGB encoded.", "codes, RMS", choices)
 }
 
 fn table_coordinates() -> Technique {

@@ -58,6 +58,7 @@ fn parse() -> Result<Option<Options>, Box<dyn Error>> {
         strength: 2,
         render: PathBuf::new(),
         folder: PathBuf::from("target/combinations"),
+        light: PathBuf::new(),
         jobs: std::thread::available_parallelism().map_or(1, usize::from),
         limit: Duration::from_secs(120),
         memory_bytes: 4 << 30,
@@ -83,5 +84,6 @@ fn parse() -> Result<Option<Options>, Box<dyn Error>> {
         return Err("--render: the program is missing; see --help".into());
     }
     options.folder = std::path::absolute(&options.folder)?;
+    options.light = options.folder.join("light");
     Ok(Some(options))
 }

@@ -134,8 +134,8 @@ fn wanted_sets(space: &Space, factor: usize, rest: usize, set: &mut Vec<Level>, 
     }
 }
 
-/// Completes a set to a case, one factor after another in a random order, with the level that covers most. Returns how many open
-/// sets it covers, too.
+/// Completes a set to a case, one factor after another in a random order, with the level that covers most, or else level 0.
+/// Returns how many open sets it covers, too.
 fn candidate(space: &Space, sets: &Sets, is_open: &[bool], set: &[Level], random: &mut u64) -> (usize, Vec<usize>) {
     let mut case = vec![None; space.levels.len()];
     for (factor, level) in set {
@@ -146,6 +146,7 @@ fn candidate(space: &Space, sets: &Sets, is_open: &[bool], set: &[Level], random
     while !left.is_empty() {
         let factor = left.swap_remove(next(random, left.len()));
         let turn = next(random, space.levels[factor]);
+        // Level 0, unless another one covers something: most of a late case is then left out, and so is its cost.
         let mut best = (0, 0);
         for level in (0..space.levels[factor]).map(|level| (level + turn) % space.levels[factor]) {
             if !chosen(&case).all(|other| space.allows(other, (factor, level))) {
@@ -153,12 +154,11 @@ fn candidate(space: &Space, sets: &Sets, is_open: &[bool], set: &[Level], random
             }
             let mut gain = 0;
             sets.with(&case, (factor, level), &mut |index| gain += usize::from(is_open[index]));
-            // One more than what it covers: a level that covers nothing is still better than none.
-            if gain + 1 > best.0 {
-                best = (gain + 1, level);
+            if gain > best.0 {
+                best = (gain, level);
             }
         }
-        covered += best.0.saturating_sub(1);
+        covered += best.0;
         case[factor] = Some(best.1);
     }
     (covered, case.into_iter().map(Option::unwrap_or_default).collect())

@@ -54,7 +54,9 @@ pub const FACTORS: [Factor; 46] = [
         &[
             None,
             O("--shade aa=off,compensation=off,specular-occlusion=off,multi-bounce=off"),
-            O("--shade visibility=exact,compensation=punctual,micro-shadows=on,multi-bounce=on,fast-coat=on"),
+            O(
+                "--shade visibility=exact,compensation=punctual,micro-shadows=on,multi-bounce=on,fast-coat=on,irradiance=cube",
+            ),
         ],
     ),
     factor("precision", &[None, O("--precision f16")]),
@@ -182,7 +184,10 @@ mod tests {
     fn every_pair_is_in_a_case_unless_it_is_refused() {
         let space = space();
         let cases = cover(&space, 2);
-        assert!(cases.len() < 70, "{} cases", cases.len());
+        assert!(cases.len() < 60, "{} cases", cases.len());
+        // A level that is in a case for no pair costs as much as one that is.
+        let added = cases.iter().flatten().filter(|level| **level > 0).count();
+        assert!(added < 900, "{added} levels beside the first");
         let (mut pairs, mut refused) = (0, 0);
         for (i, a) in FACTORS.iter().enumerate() {
             for (j, b) in FACTORS.iter().enumerate().skip(i + 1) {

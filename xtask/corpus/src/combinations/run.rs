@@ -26,8 +26,10 @@ pub struct Options {
     pub strength: usize,
     /// The `render` program.
     pub render: PathBuf,
-    /// Folder for scenes, light and pictures.
+    /// Folder for scenes and pictures.
     pub folder: PathBuf,
+    /// Folder that `render` keeps light in.
+    pub light: PathBuf,
     /// Processes at a time.
     pub jobs: usize,
     /// Time limit of a case.
@@ -150,7 +152,7 @@ fn one(options: &Options, number: usize, case: &[usize], scratch: &Path) -> Resu
         let _ = fs::remove_file(&picture);
         let mut command = Command::new(&options.render);
         // Mesa's device selection layer complains about a missing session on standard error.
-        command.env("NODEVICE_SELECT", "1").env("FRAMEGRAPH_LIGHT_CACHE", options.folder.join("light"));
+        command.env("NODEVICE_SELECT", "1").env("FRAMEGRAPH_LIGHT_CACHE", &options.light);
         command.current_dir(&options.folder).args(&line).arg("--out").arg(&picture);
         command.arg("--plan").arg(scratch.join("plan.txt"));
         command.args(["--inspect", "hdr", "--inspect-out"]).arg(scratch.join("hdr.png"));
