@@ -8,6 +8,7 @@ mod documents;
 mod frames;
 mod gallery;
 mod mutants;
+mod prose;
 mod prove;
 mod rooms;
 mod test;
@@ -38,6 +39,7 @@ pub const ALL: &[Command] = &[
     documents::COMMAND,
     gallery::COMMAND,
     circles::COMMAND,
+    prose::COMMAND,
     rooms::COMMAND,
     corpus::COMMAND,
 ];

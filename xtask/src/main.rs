@@ -8,6 +8,7 @@
 //! - [`adapter`]: is there a GPU or software driver, and if not, which packages bring one.
 //! - [`lints`]: this program in the place of the compiler, to lint and document what it compiles.
 //! - [`mutant`]: faults planted in sources, to see whether a test falls.
+//! - [`prose`]: style check of documentation, comments and messages.
 //! - [`source`]: the Rust files of the rooms: product code, modules, circles.
 //! - [`rustc_time`]: this program in the place of the compiler, to time crates.
 //! - [`stage`]: run one child process, time it, say how it ended.
@@ -21,6 +22,7 @@ mod command;
 mod lints;
 mod mutant;
 mod options;
+mod prose;
 mod rustc_time;
 mod source;
 mod stage;

@@ -43,7 +43,7 @@ struct Own {
     commands: &'static [&'static str],
 }
 
-const OWN: [Own; 14] = [
+const OWN: [Own; 15] = [
     Own { name: "--frames", valued: false, commands: &["bench"] },
     Own { name: "--scene", valued: true, commands: &["bench"] },
     Own { name: "--preset", valued: true, commands: &["bench"] },
@@ -57,7 +57,8 @@ const OWN: [Own; 14] = [
     Own { name: "--out", valued: true, commands: &["prove", "mutants"] },
     Own { name: "--all", valued: false, commands: &["mutants", "test"] },
     Own { name: "--count", valued: true, commands: &["mutants"] },
-    Own { name: "--list", valued: false, commands: &["mutants"] },
+    Own { name: "--list", valued: false, commands: &["mutants", "prose"] },
+    Own { name: "--lower", valued: false, commands: &["prose"] },
 ];
 
 /// What the command line asks for.
@@ -152,6 +153,8 @@ Options:
                 of `prove`: see `cargo xtask prove --help`
   --all, --count N, --list, --out FILE
                 of `mutants`: see `cargo xtask mutants --help`
+  --list, --lower
+                of `prose`: see `cargo xtask prose --help`
   --all         of `test`: see `cargo xtask test --help`
   --frames, --scene NAME, --preset NAME, --size WxH, --beside COMMAND,
   --with ARGS, --rounds N

@@ -9,6 +9,7 @@
 //! that defines it; the path that names its type is.
 
 pub mod circles;
+pub mod literals;
 pub mod module;
 pub mod product;
 pub mod uses;

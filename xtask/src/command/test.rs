@@ -18,6 +18,7 @@ pub const COMMAND: Command = Command {
     details: "\
 Stages, all of which run even if one fails:
   format  cargo fmt --all -- --check
+  prose   cargo xtask prose: the style of docs, comments and messages
   build   every target of the workspace, fuzz targets and the program beside a
           peer too: each is linted by clippy, and each library documented with
           its private items; warnings are errors
@@ -54,8 +55,10 @@ fn run(options: &Options) -> Result<(), Failure> {
     let all = options.has("--all");
     let wrapper = lints::Wrapper::new(&workspace::scratch()?)?;
     let building = |command: &[&str]| building(&wrapper, all, command);
+    let own = std::env::current_exe().map_err(|error| Failure::Failed(format!("own path: {error}")))?;
     let mut outcomes = vec![
         stage::run("format", &mut workspace::cargo(&["fmt", "--all", "--", "--check"])),
+        stage::run("prose", std::process::Command::new(own).arg("prose")),
         stage::run("build", &mut building(&["build", "--keep-going", "--all-targets"])),
     ];
     // Where the tool is not at hand, a test reads the same lists. Advisories are that test's alone: the tool fetches theirs, and

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use super::literals::literals;
+
 /// A file's code, of the text's length: what is not product code is blank, line breaks stay.
 #[derive(Debug)]
 pub struct Product {
@@ -14,7 +16,7 @@ pub struct Product {
 impl Product {
     /// Reads a file's text.
     pub fn of(text: &str) -> Self {
-        let mut code = without_literals(text.as_bytes());
+        let mut code = without_literals(text);
         let tests = test_items(&code, text);
         let test_lines: usize = tests.iter().map(|range| text[range.clone()].lines().count()).sum();
         tests.into_iter().for_each(|range| blank(&mut code[range]));
@@ -36,92 +38,10 @@ fn blank(bytes: &mut [u8]) {
 }
 
 /// The text with comments and the contents of string and character literals blank.
-fn without_literals(text: &[u8]) -> Vec<u8> {
-    let mut code = text.to_vec();
-    let mut at = 0;
-    while at < text.len() {
-        let rest = &text[at..];
-        let in_word = at > 0 && (text[at - 1].is_ascii_alphanumeric() || text[at - 1] == b'_');
-        let length = if rest.starts_with(b"//") {
-            rest.iter().position(|byte| *byte == b'\n').unwrap_or(rest.len())
-        } else if rest.starts_with(b"/*") {
-            block_comment(rest)
-        } else if let Some(length) = raw_string(rest).filter(|_| !in_word) {
-            length
-        } else if rest[0] == b'"' {
-            quoted(rest)
-        } else if rest[0] == b'\'' {
-            character(rest)
-        } else {
-            at += 1;
-            continue;
-        };
-        if length > 1 {
-            blank(&mut code[at..at + length]);
-        }
-        at += length;
-    }
+fn without_literals(text: &str) -> Vec<u8> {
+    let mut code = text.as_bytes().to_vec();
+    literals(text).into_iter().for_each(|(_, range)| blank(&mut code[range]));
     code
-}
-
-fn block_comment(rest: &[u8]) -> usize {
-    let (mut depth, mut at) = (0, 0);
-    while at < rest.len() {
-        match &rest[at..] {
-            [b'/', b'*', ..] => (depth, at) = (depth + 1, at + 2),
-            [b'*', b'/', ..] => (depth, at) = (depth - 1, at + 2),
-            _ => at += 1,
-        }
-        if depth == 0 {
-            break;
-        }
-    }
-    at
-}
-
-/// The length of the raw string that stands here, if one does.
-fn raw_string(rest: &[u8]) -> Option<usize> {
-    let prefix =
-        rest.iter().position(|byte| *byte == b'r').filter(|at| *at == 0 || (*at == 1 && b"bc".contains(&rest[0])))?;
-    let hashes = rest[prefix + 1..].iter().take_while(|byte| **byte == b'#').count();
-    let start = prefix + 1 + hashes;
-    if rest.get(start) != Some(&b'"') {
-        return None;
-    }
-    let end: Vec<u8> = std::iter::once(b'"').chain(std::iter::repeat_n(b'#', hashes)).collect();
-    let inside = &rest[start + 1..];
-    let length = inside.windows(end.len()).position(|window| window == end).map_or(inside.len(), |at| at + end.len());
-    Some(start + 1 + length)
-}
-
-fn quoted(rest: &[u8]) -> usize {
-    let mut at = 1;
-    while at < rest.len() {
-        match rest[at] {
-            b'\\' => at += 2,
-            b'"' => return at + 1,
-            _ => at += 1,
-        }
-    }
-    rest.len()
-}
-
-/// The length of a character literal; 1 where the quote starts a lifetime.
-fn character(rest: &[u8]) -> usize {
-    match rest {
-        [_, b'\\', _, after @ ..] => after.iter().position(|byte| *byte == b'\'').map_or(1, |at| at + 4),
-        [_, b'\'', ..] => 1,
-        [_, first, ..] => {
-            let width = match first {
-                0..0x80 => 1,
-                0x80..0xe0 => 2,
-                0xe0..0xf0 => 3,
-                0xf0.. => 4,
-            };
-            if rest.get(1 + width) == Some(&b'\'') { width + 2 } else { 1 }
-        }
-        _ => 1,
-    }
 }
 
 /// Where items stand that only tests compile, their attributes included.
