@@ -34,7 +34,7 @@ pub struct Flagged {
 }
 
 impl Folder {
-    /// Share of flagged sentences in tenths of a percent, rounded up.
+    /// Returns the share of flagged sentences in tenths of a percent, rounded up.
     pub fn permille(&self) -> usize {
         (1000 * self.flagged.len()).div_ceil(self.sentences.max(1))
     }
@@ -64,7 +64,7 @@ pub fn check(root: &Path) -> Result<BTreeMap<String, Folder>, String> {
     Ok(folders)
 }
 
-/// Paths of the checked files from `root`, with `/` between folders, sorted.
+/// Returns the paths of the checked files from `root`, with `/` between folders, sorted.
 fn files(root: &Path) -> Result<Vec<String>, String> {
     let mut found = Vec::new();
     let mut folders = vec![String::new()];

@@ -41,25 +41,26 @@ impl Limits {
         entries.collect::<Result<_, String>>().map(Self)
     }
 
-    /// The file's text.
+    /// Returns the file's text.
     pub fn written(&self) -> String {
         let entries = self.0.iter().map(|(name, limit)| format!("        \"{name}\": {},\n", percent(*limit)));
         HEAD.to_owned() + &entries.collect::<String>() + "    },\n)\n"
     }
 
-    /// Limit of a folder, in tenths of a percent.
+    /// Returns the limit of a folder, in tenths of a percent.
     pub fn of(&self, folder: &str) -> usize {
         self.0.get(folder).copied().unwrap_or(DEFAULT)
     }
 
-    /// Limits no higher than the measured shares; folders that are not listed get theirs, others are removed.
+    /// Returns limits no higher than the measured shares. Folders that are not listed get their share as the limit;
+    /// missing folders are removed.
     pub fn lowered(&self, folders: &BTreeMap<String, Folder>) -> Self {
         let limit = |name: &str, share: usize| self.0.get(name).map_or(share, |limit| share.min(*limit));
         Self(folders.iter().map(|(name, folder)| (name.clone(), limit(name, folder.permille()))).collect())
     }
 }
 
-/// Tenths of a percent as percent.
+/// Formats tenths of a percent as percent.
 pub fn percent(permille: usize) -> String {
     format!("{}.{}", permille / 10, permille % 10)
 }

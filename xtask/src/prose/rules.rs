@@ -3,14 +3,14 @@
 /// Longest sentence that is not flagged, in words. Writers aim for 25.
 const MAX_WORDS: usize = 30;
 
-/// First words of a clause that stands in for a noun.
+/// First words of clauses that stand in for nouns.
 const CLAUSES: &str = "what who whoever whether which where how those that of beside such as";
 
-/// First words that are a clause or an ellipsis only together.
+/// First words that form a clause or an ellipsis only together.
 const OPENINGS: [&str; 7] =
     ["so is", "so are", "so do", "none is", "any of them", "the same as", "nothing that is not"];
 
-/// First words that are fine although one of [`CLAUSES`] is among them.
+/// First words that are allowed, although [`CLAUSES`] has one of them.
 const ALLOWED: [&str; 11] = [
     "that is,",
     "where possible",
@@ -25,7 +25,7 @@ const ALLOWED: [&str; 11] = [
     "as of ",
 ];
 
-/// Words that only this project uses in this sense, and literary ones.
+/// Words that only this project uses in this sense, and literary words.
 const PRIVATE: [&str; 25] = [
     "all the same:",
     "errs by",
@@ -54,7 +54,7 @@ const PRIVATE: [&str; 25] = [
     "with which",
 ];
 
-/// Reasons to read a sentence twice; none for most good sentences.
+/// Returns the reasons a sentence is flagged; empty for most good sentences.
 pub fn reasons(sentence: &str) -> Vec<String> {
     let lower = sentence.to_lowercase();
     let words: Vec<&str> = lower.split_whitespace().collect();
@@ -72,16 +72,16 @@ pub fn reasons(sentence: &str) -> Vec<String> {
     found
 }
 
-/// Whether the subject is a clause: "What is dropped …", "So is …". Questions are fine.
+/// Returns true if the subject is a clause, as in "What is dropped …". Questions are allowed.
 fn opens_with_clause(sentence: &str, lower: &str) -> bool {
     let first = lower.split(|c: char| !c.is_alphabetic()).next().unwrap_or_default();
-    // Items of lists start with a lowercase letter; there, only these two are never right.
+    // Items of lists start with a lowercase letter; only these two words are flagged there.
     let capital = sentence.starts_with(char::is_uppercase) || ["what", "who"].contains(&first);
     let clause = CLAUSES.split(' ').any(|clause| clause == first) || OPENINGS.iter().any(|open| starts(lower, open));
     capital && clause && !lower.ends_with('?') && !ALLOWED.iter().any(|allowed| lower.starts_with(allowed))
 }
 
-/// Whether a short sentence is a pronoun with a complement: "The same of levels.", "One of two."
+/// Returns true for a pronoun with a complement, such as "The same of levels."
 fn is_fragment(words: &[&str]) -> bool {
     let [first, second, rest @ ..] = words else { return false };
     let second = second.trim_end_matches(|c: char| !c.is_alphabetic());
@@ -92,12 +92,12 @@ fn is_fragment(words: &[&str]) -> bool {
         && words.last().is_some_and(|last| last.ends_with('.'))
 }
 
-/// Whether `text` starts with whole words.
+/// Returns true if `text` starts with these words.
 fn starts(text: &str, words: &str) -> bool {
     text.strip_prefix(words).is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
 }
 
-/// Whether `phrase` stands in `text` between other words.
+/// Returns true if `phrase` occurs in `text` as whole words.
 fn has(text: &str, phrase: &str) -> bool {
     text.match_indices(phrase)
         .any(|(at, _)| !text[..at].ends_with(char::is_alphanumeric) && starts(&text[at..], phrase))
@@ -107,7 +107,7 @@ fn has(text: &str, phrase: &str) -> bool {
 mod tests {
     use super::*;
 
-    /// Flagged sentences, and what replaced them.
+    /// Flagged sentences with their replacements.
     const REWRITTEN: &str = include_str!("before_and_after.txt");
 
     #[test]

@@ -11,7 +11,7 @@ pub struct Paragraph {
     pub text: String,
 }
 
-/// Paragraphs of a Markdown file, or of the comments and string literals of a source file.
+/// Returns the paragraphs of a Markdown file, or of the comments and string literals of a source file.
 pub fn paragraphs(text: &str, markdown: bool) -> Vec<Paragraph> {
     let mut found = Vec::new();
     if markdown {
@@ -27,7 +27,7 @@ pub fn paragraphs(text: &str, markdown: bool) -> Vec<Paragraph> {
         let (start, inside) = (range.start, &text[range]);
         match kind {
             Literal::Line => {
-                // Comments on consecutive lines are one text, except beside code.
+                // Comments on consecutive lines are one text, except trailing comments.
                 let beside_code = text[..start].rsplit('\n').next().is_some_and(|before| !before.trim().is_empty());
                 if beside_code || block.last().is_some_and(|(last, _)| last + 1 != line) {
                     prose(block.drain(..), &mut found);
@@ -71,7 +71,8 @@ fn prose<'a>(lines: impl Iterator<Item = (usize, &'a str)>, found: &mut Vec<Para
     }
 }
 
-/// A string literal as prose if it reads like a message: a capital letter, a full stop and at least four words.
+/// Returns a string literal as prose if it starts with a capital letter, ends with a full stop, and has at least four
+/// words.
 fn message(line: usize, literal: &str) -> Option<Paragraph> {
     let inside = literal.trim_matches(|c| "rbc#\"".contains(c));
     let mut text = String::new();
@@ -86,7 +87,7 @@ fn message(line: usize, literal: &str) -> Option<Paragraph> {
         .then(|| Paragraph { line, text: text.replace(['{', '}'], "`").trim().to_owned() })
 }
 
-/// Sentences of a paragraph, in which code is `X`, quoted text is `Q` and links are their titles.
+/// Returns the sentences of a paragraph. Code is replaced by `X`, quoted text by `Q`, and links by their titles.
 pub fn sentences(paragraph: &str) -> Vec<String> {
     let text = links(&between(&between(paragraph, '`', "X"), '"', "Q"));
     let mut found = Vec::new();
@@ -100,7 +101,7 @@ pub fn sentences(paragraph: &str) -> Vec<String> {
     found
 }
 
-/// End of the first sentence if another one follows: punctuation, white space, a capital letter.
+/// Returns the end of the first sentence if another one follows: punctuation, white space, a capital letter.
 fn end_of_sentence(text: &str) -> Option<usize> {
     text.match_indices(['.', '!', '?']).map(|(at, _)| at + 1).find(|end| {
         let next = text[*end..].trim_start();
@@ -108,14 +109,14 @@ fn end_of_sentence(text: &str) -> Option<usize> {
     })
 }
 
-/// The text with every pair of marks, and what stands between them, replaced.
+/// Replaces every pair of marks and the text between them.
 fn between(text: &str, mark: char, with: &str) -> String {
     let parts: Vec<&str> = text.split(mark).collect();
     let inside = |at: usize| at % 2 == 1 && at + 1 < parts.len();
     parts.iter().enumerate().map(|(at, part)| if inside(at) { with } else { part }).collect()
 }
 
-/// The text in which `[title](target)` and `[title]` are `title`.
+/// Replaces `[title](target)` and `[title]` by `title`.
 fn links(text: &str) -> String {
     let mut found = String::new();
     let mut rest = text;

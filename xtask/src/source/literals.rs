@@ -62,7 +62,7 @@ fn block_comment(rest: &[u8]) -> usize {
     at
 }
 
-/// The length of the raw string that stands here, if one does.
+/// Returns the length of the raw string that starts here, if there is one.
 fn raw_string(rest: &[u8]) -> Option<usize> {
     let prefix =
         rest.iter().position(|byte| *byte == b'r').filter(|at| *at == 0 || (*at == 1 && b"bc".contains(&rest[0])))?;
@@ -89,7 +89,7 @@ fn quoted(rest: &[u8]) -> usize {
     rest.len()
 }
 
-/// The length of a character literal; 1 where the quote starts a lifetime.
+/// Returns the length of a character literal; 1 if the quote starts a lifetime.
 fn character(rest: &[u8]) -> usize {
     match rest {
         [_, b'\\', _, after @ ..] => after.iter().position(|byte| *byte == b'\'').map_or(1, |at| at + 4),

@@ -1,15 +1,15 @@
-//! The product code of a Rust file: what a user of the crate compiles, without comments, strings and tests.
+//! Product code of a Rust file: code without comments, literals and tests.
 
 use std::ops::Range;
 
 use super::literals::literals;
 
-/// A file's code, of the text's length: what is not product code is blank, line breaks stay.
+/// Code of a file. It has the length of the text; removed parts are blank, and line breaks remain.
 #[derive(Debug)]
 pub struct Product {
-    /// The code, in which comments, the contents of literals and test items are blank.
+    /// Code with comments, contents of literals, and tests replaced by blanks.
     pub code: String,
-    /// Lines of the file, docs and comments included, less those of test items.
+    /// Number of lines with documentation and comments, without tests.
     pub lines: usize,
 }
 
@@ -25,7 +25,7 @@ impl Product {
     }
 }
 
-/// Whether a condition of `cfg` holds only in tests or with the feature `testing`.
+/// Returns true if a `cfg` condition holds only in tests or with the feature `testing`.
 fn is_test(condition: &str) -> bool {
     let plain: String = condition.split_whitespace().collect();
     !plain.contains("not(")
@@ -37,14 +37,14 @@ fn blank(bytes: &mut [u8]) {
     bytes.iter_mut().filter(|byte| **byte != b'\n').for_each(|byte| *byte = b' ');
 }
 
-/// The text with comments and the contents of string and character literals blank.
+/// Replaces comments and literals with blanks.
 fn without_literals(text: &str) -> Vec<u8> {
     let mut code = text.as_bytes().to_vec();
     literals(text).into_iter().for_each(|(_, range)| blank(&mut code[range]));
     code
 }
 
-/// Where items stand that only tests compile, their attributes included.
+/// Returns the ranges of items that only tests compile, with their attributes.
 fn test_items(code: &[u8], text: &str) -> Vec<Range<usize>> {
     let mut found: Vec<Range<usize>> = Vec::new();
     let starts = code.windows(2).enumerate().filter(|(_, pair)| *pair == b"#[" || *pair == b"#!").map(|(at, _)| at);
@@ -63,7 +63,7 @@ fn test_items(code: &[u8], text: &str) -> Vec<Range<usize>> {
     found
 }
 
-/// One past the bracket that closes the one at `open`.
+/// Returns the position after the bracket that closes the one at `open`.
 fn closing(code: &[u8], open: usize) -> usize {
     let mut depth = 0_usize;
     for (at, byte) in code.iter().enumerate().skip(open) {
@@ -79,7 +79,7 @@ fn closing(code: &[u8], open: usize) -> usize {
     code.len()
 }
 
-/// One past the item that follows an attribute which ends at `from`: an item, a field, a variant or a statement.
+/// Returns the position after the item, field, variant or statement that follows an attribute ending at `from`.
 fn item_end(code: &[u8], from: usize) -> usize {
     let blanks = |at: usize| at + code[at..].iter().take_while(|byte| byte.is_ascii_whitespace()).count();
     let mut at = blanks(from);
