@@ -1,4 +1,4 @@
-//! Detection of a graphics adapter, and installation of a software driver where there is none.
+//! Detection of a graphics adapter, and installation of a software driver if none is found.
 //!
 //! `facts` reads the machine, `verdict` judges the facts, `packages` says what to install and how;
 //! the last two are pure. [`ready`] puts them together.

@@ -1,25 +1,25 @@
-//! The rows of hard inputs, and where each is held.
+//! Kinds of hard inputs, and the tests of each.
 
 use super::probe;
 use Place::{Elsewhere, Test};
 
-/// Where a row is held, beside the probes that name it.
+/// A test of a row in addition to its probes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// A test, by its file and name.
+    /// A test, by file and name.
     Test(&'static str, &'static str),
-    /// Nothing in the project has such an input, and why.
+    /// No such input occurs in the project: the reason.
     Elsewhere(&'static str),
 }
 
 /// A kind of input that breaks arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// 1…57.
+    /// Number of the row, 1…57.
     pub number: u8,
-    /// The input, with what must come of it.
+    /// Description of the input and of the required result.
     pub what: &'static str,
-    /// Where else than by probes it is held.
+    /// Tests in addition to probes.
     pub places: &'static [Place],
 }
 
@@ -217,14 +217,14 @@ pub const ROWS: [Row; 57] = [
 ];
 
 impl Row {
-    /// Functions whose probes name the row, each once.
+    /// Returns the functions whose probes name the row, without duplicates.
     pub fn functions(&self) -> Vec<&'static str> {
         let mut functions: Vec<_> = probe::all().filter(|probe| probe.row == self.number).map(|p| p.function).collect();
         functions.dedup();
         functions
     }
 
-    /// Whether something holds it, or says why nothing needs to.
+    /// Returns true if a test covers the row, or a reason says why none is needed.
     pub fn is_held(&self) -> bool {
         !self.functions().is_empty() || !self.places.is_empty()
     }

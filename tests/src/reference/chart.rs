@@ -6,22 +6,22 @@ use std::path::{Path, PathBuf};
 /// A table cannot be read.
 #[derive(thiserror::Error)]
 pub enum ChartError {
-    /// The file system said no.
+    /// The file system reported an error.
     #[error("{file}: {error}")]
     File {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// Why.
+        /// Error of the file system.
         error: std::io::Error,
     },
-    /// A line is wrong.
+    /// A line is invalid.
     #[error("{file}: line {line}: {reason}")]
     Line {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// From 1.
+        /// Line number, from 1.
         line: usize,
-        /// What is wrong.
+        /// Description of the problem.
         reason: String,
     },
 }
@@ -34,7 +34,7 @@ impl std::fmt::Debug for ChartError {
 
 const HEAD: &str = "row,col,in_r,in_g,in_b,out_r,out_g,out_b";
 
-/// Reads a table; `codes` says that the outputs are codes of 255, and not light.
+/// Reads a table; if `codes`, outputs are 8-bit values, otherwise linear light.
 ///
 /// # Errors
 /// [`ChartError`].

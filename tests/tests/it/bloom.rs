@@ -1,4 +1,4 @@
-//! Bloom and lens flare: against sums on the CPU, what they may add, and what a frame with them loads and stores.
+//! Bloom and lens flare: compared with a CPU implementation; energy; loads and stores of frames with them.
 
 pub mod stage;
 mod truth;
@@ -41,7 +41,7 @@ fn parts(gpu: &Gpu) -> Result<Parts, Box<dyn Error>> {
     Ok(Parts { views: Views::new(gpu, [CameraView::empty(&moment)])?, ..Parts::default() })
 }
 
-/// Dim noise with a bright bar, a brighter dot and a firefly.
+/// Returns dim noise with a bright bar, a brighter dot and a very bright pixel.
 fn lamps() -> Image {
     let image = Image::from_fn(SIZE, |x, y| {
         let noise = f64::from((x * 37 + y * 101 + x * y * 13) % 64) / 64.0;
@@ -56,7 +56,7 @@ fn lamps() -> Image {
     image.rounded()
 }
 
-/// What the stage hands on of a picture.
+/// Declares the bloom stage for a picture, and returns its outputs.
 fn handed(frame: &mut Frame<Parts>, hdr: Texture, settings: &BloomSettings) -> Result<Handles, StageError> {
     let mut handles = Handles::default().with(Slot::HDR, hdr);
     bloom(frame, &mut handles, settings, SIZE)?;
@@ -80,8 +80,8 @@ const FLARE: FlareSettings = FlareSettings {
     ..FlareSettings::DEFAULT
 };
 
-/// Filters of the device have weights of eight bits, and each of up to seven levels is a half float: 1 % of the brightest. A
-/// kernel that is left out, or another one, is off by several.
+/// Device filters have 8-bit weights, and each of up to seven levels is stored as half floats: 1 % of the brightest
+/// value. A missing or wrong kernel differs by several percent.
 const BOUND: f64 = 0.01;
 
 #[test]
@@ -94,7 +94,7 @@ fn bloom_is_the_sum_that_its_sources_state() -> TestResult {
         BloomSettings { narrow: true, threshold: Threshold::Hard, threshold_at: 3.0, highlight: 20.0, ..USUAL },
         BloomSettings { threshold: Threshold::None, levels: 3, multiple_px: 16, ..USUAL },
         BloomSettings { quality: BloomQuality::Low, ..USUAL },
-        // Twice halved on the way; or twice as large.
+        // Downsampled twice; or at double size.
         BloomSettings { quality: BloomQuality::Medium, height_texels: 17, levels: 1, ..USUAL },
         BloomSettings { height_texels: 17, levels: 2, ..USUAL },
     ] {
@@ -124,7 +124,7 @@ fn flare_is_ghosts_and_a_halo_of_what_glows() -> TestResult {
     for own in [FLARE, FlareSettings { ghosts: 0, ..FLARE }, FlareSettings { halo_thickness: 0.0, ..FLARE }, centered] {
         let (ours, truth) = (flare(own)?, truth::flare(&levels[0], SIZE, &own));
         assert!(truth.mean().max_element() > 1e-6, "{own:?}: nothing is seen");
-        // What glows is off by BOUND of 80, and thresholds cut it at 1 and 2: edges of ghosts move.
+        // Bloom's error is BOUND of 80, and thresholds at 1 and 2 shift the edges of ghosts.
         let off = ours.off(&truth);
         assert!(off < 0.01, "{own:?}: off by {off}");
         worst = worst.max(off);
@@ -133,7 +133,8 @@ fn flare_is_ghosts_and_a_halo_of_what_glows() -> TestResult {
     let (whole, rays) = (flare(FLARE)?, flare(FlareSettings { starburst: true, ..FLARE })?);
     let less = whole.texels.iter().zip(&rays.texels).all(|(whole, rays)| rays.cmple(*whole + 1e-3).all());
     assert!(less && rays.mean().max_element() < 0.95 * whole.mean().max_element(), "rays only take");
-    // Their noise is by a sine that drivers round otherwise: it is nearer to the mirror's than to that of any other turn.
+    // The noise uses a sine that drivers round differently, so it must be closer to the mirror's than to any other
+    // rotation's.
     let turn = (camera()?.world_from_view.inverse() * DVec3::Z).element_sum();
     let apart = |turn: f64| {
         let share = |i: usize| {
@@ -148,8 +149,7 @@ fn flare_is_ghosts_and_a_halo_of_what_glows() -> TestResult {
     Ok(())
 }
 
-/// Without a threshold every kernel is a mean: no texel of the glow is brighter than the picture's brightest a level, and in the
-/// middle of a black picture the sum of light is that of the lamp. A quarter of a level's weights may be off by one in 256.
+/// Without a threshold, every kernel is an average. No texel of a level is brighter than the picture's maximum, and the total light of a bright pixel on black is preserved. The tolerance is 1/256 of a quarter of each level's weights.
 #[test]
 fn hard_case_23_bloom_adds_no_energy() -> TestResult {
     let Some(gpu) = gpu("hard_case_23_bloom_adds_no_energy") else { return Ok(()) };
@@ -168,7 +168,7 @@ fn hard_case_23_bloom_adds_no_energy() -> TestResult {
     Ok(())
 }
 
-/// One texel that is no number, or not finite, is as if it were black or as bright as anything may be: no other texel knows.
+/// A NaN or infinite pixel counts as black or as the brightest value, and does not affect other pixels.
 #[test]
 fn hard_case_23_and_26_what_is_not_finite_does_not_spread() -> TestResult {
     let Some(gpu) = gpu("hard_case_23_and_26_what_is_not_finite_does_not_spread") else { return Ok(()) };
@@ -198,7 +198,7 @@ fn hard_case_23_and_26_what_is_not_finite_does_not_spread() -> TestResult {
     Ok(())
 }
 
-/// The glow is laid over the picture as stated, through dirt, with flare, added or in the picture's place.
+/// Bloom is blended as stated: with dirt, with flare, additively or by interpolation.
 #[test]
 fn glow_is_laid_over_the_picture() -> TestResult {
     let Some(gpu) = gpu("glow_is_laid_over_the_picture") else { return Ok(()) };
@@ -251,7 +251,7 @@ fn counts(bloom: Option<BloomSettings>) -> Counts {
     plan(&settings, &Caps::wgpu(), &Options::for_frame(FRAME[0], FRAME[1])).counts()
 }
 
-/// Without strength or levels nothing is declared: the same plan, and so the same bits.
+/// Bloom without strength or levels declares nothing, so the plan and the picture are unchanged.
 #[test]
 fn bloom_of_nothing_is_no_bloom() {
     let text = |bloom| {
@@ -263,7 +263,7 @@ fn bloom_of_nothing_is_no_bloom() {
     assert_eq!(text(Some(BloomSettings { levels: 0, ..BloomSettings::DEFAULT })), none);
     let blooms = text(Some(BloomSettings::DEFAULT));
     assert!(none.contains("pass `post`: inlined into the shader of `color`"), "{none}");
-    // Why post-processing is a pass of its own.
+    // The log states why post-processing is a separate pass.
     let why = ["store of `hdr` in step 1: stored, `bloom/half` reads it", "pass `post`: not merged with `bloom/up`"];
     assert!(why.iter().all(|why| blooms.contains(why)), "{blooms}");
 }
@@ -276,13 +276,13 @@ fn bloom_of_nothing_is_no_bloom() {
 /// bloom/up ×5       glow_sum i    don't care STORE
 /// post              ldr           don't care STORE
 ///
-/// Filament's, by its rules: as many stores, but it blends each level into the one above, which loads it: five loads. A flare
-/// is three more stores in both.
+/// Filament's bloom, by its rules, has as many stores, but blends each level into the one above, which costs five
+/// loads. A flare adds three stores in both.
 #[test]
 fn counts_beside_filaments() {
     let none = counts(None);
     let more = |passes: u32| Counts {
-        // The radiance is stored for bloom and post, which is a step of its own now.
+        // The radiance is stored for bloom and for post-processing, which becomes a step of its own.
         resolves: none.resolves + 1 + passes,
         steps: none.steps + 1 + passes,
         render_passes: none.render_passes + 1 + passes,
@@ -295,7 +295,7 @@ fn counts_beside_filaments() {
         counts(Some(BloomSettings { flare: Some(FlareSettings::DEFAULT), ..BloomSettings::DEFAULT })),
         more(12 + 3)
     );
-    // One level more instead of halves.
+    // One more level instead of half resolution.
     assert_eq!(counts(Some(BloomSettings { quality: BloomQuality::High, ..BloomSettings::DEFAULT })), more(1 + 6 + 6));
     assert_eq!(
         counts(Some(BloomSettings { levels: 1, quality: BloomQuality::High, ..BloomSettings::DEFAULT })),

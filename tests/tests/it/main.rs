@@ -1,4 +1,4 @@
-//! Tests across crates, one binary.
+//! Tests across packages, in one test binary.
 
 mod accuracy;
 mod bisect;

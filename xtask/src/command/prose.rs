@@ -13,8 +13,8 @@ pub const COMMAND: Command = Command {
     summary: "check the style of docs, comments and messages",
     details: "\
 Reads documentation, comments, messages and Markdown files, and flags sentences
-that a reader is likely to read twice: a clause as the subject, more than 30
-words, a fragment, or words that only this project uses. Prints the share of
+that a reader is likely to read twice. They have a clause as the subject, more
+than 30 words, or words that only this project uses, or are fragments. Prints the share of
 flagged sentences for each top-level folder, and the highest that
 xtask/prose.ron allows. It is a heuristic, so each folder has a limit above 0.
 

@@ -53,7 +53,9 @@ fn prose<'a>(lines: impl Iterator<Item = (usize, &'a str)>, found: &mut Vec<Para
             (fenced, open) = (!fenced, false);
             continue;
         }
-        if fenced || line.is_empty() || line.starts_with(['|', '#', '<', '!', '>', '$']) || line.starts_with("SAFETY") {
+        // Columns of a table in plain text have several blanks in between.
+        let skipped = line.starts_with(['|', '#', '<', '!', '>', '$']) || line.starts_with("SAFETY");
+        if fenced || line.is_empty() || skipped || line.contains("   ") {
             open = false;
             continue;
         }
@@ -71,20 +73,26 @@ fn prose<'a>(lines: impl Iterator<Item = (usize, &'a str)>, found: &mut Vec<Para
     }
 }
 
-/// Returns a string literal as prose if it starts with a capital letter, ends with a full stop, and has at least four
-/// words.
-fn message(line: usize, literal: &str) -> Option<Paragraph> {
+/// Returns the paragraphs of a string literal that reads like a message. Indented lines are lists of options.
+fn message(line: usize, literal: &str) -> Vec<Paragraph> {
     let inside = literal.trim_matches(|c| "rbc#\"".contains(c));
-    let mut text = String::new();
-    for part in inside.split('\n').map(str::trim) {
-        text += if text.ends_with('\\') { "" } else { " " };
-        text = text.trim_end_matches('\\').to_owned() + part;
+    let joined: Vec<String> = inside.split("\\\n").map(|part| part.trim_start_matches(' ').to_owned()).collect();
+    let text = joined.concat().replace("\\n", "\n").replace("\\\"", "\"");
+    let mut found = Vec::new();
+    for block in text.split("\n\n") {
+        let lines = block.lines().filter(|line| !line.starts_with("  "));
+        let text = lines.collect::<Vec<_>>().join(" ").replace(['{', '}'], "`").trim().to_owned();
+        if is_message(&text) {
+            found.push(Paragraph { line, text });
+        }
     }
-    let text = text.replace("\\n", " ").replace("\\\"", "\"");
+    found
+}
+
+/// Returns true if a text starts with a capital letter, ends with a full stop, and has at least four words.
+fn is_message(text: &str) -> bool {
     let words = text.split_whitespace().filter(|word| word.chars().all(|c| c.is_alphabetic() || ",.;:'".contains(c)));
-    let starts = text.trim_start().starts_with(|c: char| c.is_ascii_uppercase());
-    (starts && text.trim_end().ends_with('.') && words.count() >= 4)
-        .then(|| Paragraph { line, text: text.replace(['{', '}'], "`").trim().to_owned() })
+    text.starts_with(|c: char| c.is_ascii_uppercase()) && text.ends_with('.') && words.count() >= 4
 }
 
 /// Returns the sentences of a paragraph. Code is replaced by `X`, quoted text by `Q`, and links by their titles.

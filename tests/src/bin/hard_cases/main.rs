@@ -1,7 +1,7 @@
-//! `hard_cases`: where hard inputs are tested, and which case each guard of the shader library is for.
+//! `hard_cases`: tests of hard inputs, and the test case that needs each guard of the shader library.
 //!
-//! `cargo run -p tests --bin hard_cases` prints the tables of `docs/hard-cases.md`. The exit code is 1 when an invariant
-//! does not hold, or a guard is neither missed by a case nor explained.
+//! `cargo run -p tests --bin hard_cases` prints the tables of `docs/hard-cases.md`. The exit code is 1 if an invariant
+//! fails, or if a guard is neither covered by a test case nor explained.
 
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::error::Error;

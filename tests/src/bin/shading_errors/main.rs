@@ -1,7 +1,7 @@
-//! `shading_errors`: what half floats cost the shading library in accuracy, on the adapter that there is.
+//! `shading_errors`: error of half floats in the shading library on the default adapter.
 //!
-//! `cargo run -p tests --bin shading_errors` prints the tables of `docs/half-floats.md`. Each has a control: something
-//! wrong on purpose that its comparison must notice. The exit code is 1 when one is not noticed.
+//! `cargo run -p tests --bin shading_errors` prints the tables of `docs/half-floats.md`. Each has a negative control,
+//! an error made on purpose that its comparison must detect. The exit code is 1 if it does not.
 
 use framegraph_shaders::reference::cases;
 use framegraph_wgpu::{AdapterRequest, Gpu};
@@ -77,7 +77,7 @@ fn pictures(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
             100.0 * d.share_off,
             d.largest_codes
         ));
-        // Highlights that are wider than they should be.
+        // Negative control: highlights that are too wide.
         noticed &= scene != "spheres" || studio.difference(gpu, 0.12)?.psnr_db < d.psnr_db - 3.0;
     }
     Ok(told(noticed))
