@@ -21,13 +21,13 @@ pub struct Kept {
 }
 
 /// Reason that removing a guard changes no result on Mesa's software driver.
-const LOGARITHM: &str = "this driver's logarithm of zero and of less is finite; WGSL leaves it open";
-const SWALLOWED: &str = "the limit around it makes a number of what is none on this driver; WGSL leaves it open";
-const ROUNDING: &str = "for what rounding may carry past the limit; no input is known that it does so to here";
-const TWICE: &str = "what follows holds the same values, by WGSL's rules; the guard says it without them";
-const UNCHOSEN: &str = "a select behind it does not choose what is computed from it";
-const WHOLE: &str = "for the middle, whose share is 1 whatever the angle";
-const BEFORE: &str = "for ways that end before fog begins, which are in none whatever its mean density";
+const LOGARITHM: &str = "this driver's logarithm of zero and negative numbers is finite, which WGSL does not guarantee";
+const SWALLOWED: &str = "the enclosing limit turns NaN into a number on this driver, which WGSL does not guarantee";
+const ROUNDING: &str = "guards against rounding beyond the limit; no input is known that causes it here";
+const TWICE: &str = "the following code limits the same values by WGSL's rules; the guard makes it explicit";
+const UNCHOSEN: &str = "a later select discards the result";
+const WHOLE: &str = "for the center, where the angle has no effect";
+const BEFORE: &str = "for rays that end before the fog starts, where its density has no effect";
 
 /// Guards that no test case needs on this driver, with or without strict evaluation, and the reason.
 pub const UNNOTICED: &[(&str, &str, &str)] = &[
@@ -119,7 +119,7 @@ pub fn kept(gpu: &Gpu, start: usize, step: usize) -> Result<Vec<Kept>, Box<dyn E
                 let of_numbers = Questions::of_numbers(case);
                 if place.by.is_none() && of_numbers.failures(gpu, &strict(&wgsl, case.function))?.is_empty() {
                     let failed = of_numbers.failures(gpu, &strict(&without, case.function))?;
-                    place.by = failed.into_iter().next().map(|f| format!("{}, read strictly", f.name));
+                    place.by = failed.into_iter().next().map(|f| format!("{}, evaluated strictly", f.name));
                 }
             }
         }

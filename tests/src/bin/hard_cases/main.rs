@@ -23,7 +23,7 @@ fn main() -> ExitCode {
 
 fn print(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     program::line(format_args!("Adapter: {}\n", gpu.describe()));
-    program::line("| row | input | held by |\n| --- | --- | --- |");
+    program::line("| row | input | tested by |\n| --- | --- | --- |");
     rows().iter().for_each(program::line);
     let mut sound = true;
     let mut asked = [0; 2];
@@ -46,7 +46,7 @@ fn print(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
             (None, Some((.., why))) => (*why).to_owned(),
             (Some(_), Some(_)) | (None, None) => {
                 sound = false;
-                format!("NOT AS STATED: {:?}", guard.by)
+                format!("NOT AS DOCUMENTED: {:?}", guard.by)
             }
         };
         program::line(format_args!("| {} | `{}` | {verdict} |", guard.function, guard.guard.replace('|', "\\|")));
