@@ -22,7 +22,7 @@ pub fn asset(test: &str, path: &str) -> Option<PathBuf> {
     if found.is_none() {
         test_report::skip(
             test,
-            &format!("tests/assets/{path} is not here; tests/assets/README.md says where to find it"),
+            &format!("tests/assets/{path} is missing; tests/assets/README.md says where to find it"),
         );
     }
     found

@@ -166,7 +166,7 @@ impl Soak {
             left -= 1;
             self.draw(state).map_err(|error| format!("frame {number}, {state:?}: {error}"))?;
             if let Some(trouble) = self.trouble {
-                self.suffer(trouble, number + 1, state).map_err(|error| format!("behind frame {number}: {error}"))?;
+                self.suffer(trouble, number + 1, state).map_err(|error| format!("after frame {number}: {error}"))?;
             }
             if (number + 1) % every == 0 {
                 self.gpu.wait()?;
@@ -182,7 +182,7 @@ impl Soak {
         if drawn.is_multiple_of(trouble.reload_every.max(1)) {
             for program in self.stages[state.scene].world.programs.made() {
                 let shader = program.shader();
-                let text = format!("{}\n// Replaced behind frame {drawn}.", shader.text());
+                let text = format!("{}\n// Replaced after frame {drawn}.", shader.text());
                 self.frames.executor_mut().reload_shader(&shader, &text)?;
                 self.reloaded += 1;
             }
@@ -190,9 +190,9 @@ impl Soak {
         if drawn.is_multiple_of(trouble.lose_every.max(1)) {
             self.gpu.device.destroy();
             // The loss is reported once no work is in flight; earlier frames may still be accepted.
-            let told = (0..50).find_map(|_| self.draw(state).err()).ok_or("a lost device was not told of")?;
+            let told = (0..50).find_map(|_| self.draw(state).err()).ok_or("a lost device was not reported")?;
             if !told.to_string().contains("the device was lost") {
-                return Err(format!("of a lost device this was told: {told}").into());
+                return Err(format!("unexpected error of a lost device: {told}").into());
             }
             self.gpu = (trouble.open)()?;
             (self.stages, self.frames) = (stages(&self.gpu, self.stages.len())?, frames(&self.gpu)?);

@@ -164,7 +164,7 @@ const KNOWN: [Known; 13] = [
             "opposite_light_is_finite",
             "pictures_in_half_floats_are_close",
             "the_device_is_as_good_as_the_model",
-            "the_distribution_errs_as_stated",
+            "the_distribution_has_the_stated_error",
             "the_textbook_form_and_results_that_are_off_are_found",
         ],
         reason: "has no half floats in shaders",
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn skips_and_adapters_are_told_apart() {
+    fn skips_and_adapters_are_distinguished() {
         let text = "SKIP: b: no f16\nADAPTER: llvmpipe\n\nCASES: x::c: 3 of 9\nSKIP: a: no EXR\nADAPTER: llvmpipe\nodd\n\
                     CASES: x::c: 1 of 2\nCASES: d: x of 2\nCASES: e: 1 of 5\nRESULT: f: 3 ok\n";
         let reported = Reported::from_text(text);

@@ -83,7 +83,11 @@ pub const ROWS: [Row; 57] = [
     ),
     row(24, "one bright pixel of four before bloom", &[Test(GLOW, "hard_case_24_a_firefly_does_not_rule_the_mean")]),
     row(25, "a bloom threshold on black", &[Test(GLOW, "hard_case_25_black_and_thresholds_of_nothing_glow_finitely")]),
-    row(26, "values outside the range of R11G11B10F", &[Test(BLOOM, "hard_case_23_and_26_what_is_not_finite_does_not_spread")]),
+    row(
+        26,
+        "values outside the range of R11G11B10F",
+        &[Test(BLOOM, "hard_case_23_and_26_what_is_not_finite_does_not_spread")],
+    ),
     row(27, "negative spherical harmonics", &[]),
     row(28, "a coefficient of 65504", &[]),
     row(29, "albedo above 1 with interreflections", &[]),
@@ -201,11 +205,7 @@ pub const ROWS: [Row; 57] = [
         ],
     ),
     row(55, "noise at pixel coordinates of a million", &[]),
-    row(
-        56,
-        "denormal half floats",
-        &[Test(HALF, "bounds_hold_whether_or_not_small_numbers_are_flushed")],
-    ),
+    row(56, "denormal half floats", &[Test(HALF, "bounds_hold_whether_or_not_small_numbers_are_flushed")]),
     row(
         57,
         "froxels behind the eye and at NaN",

@@ -226,7 +226,7 @@ pub fn card(side_m: f32, normal: DVec3, tangent: DVec3, handedness: f32) -> Mesh
 
 /// Creates a red, a green and a blue light of π lux each, in directions `toward`. The color that a white surface
 /// reflects separates their three cosines.
-pub fn lamps(toward: [DVec3; 3]) -> Vec<Light> {
+pub fn punctual_lights(toward: [DVec3; 3]) -> Vec<Light> {
     let lamp = |(i, toward): (usize, DVec3)| {
         let color = [Vec3::X, Vec3::Y, Vec3::Z][i];
         Light { color, ..Light::directional("lamp", -toward.as_vec3(), std::f32::consts::PI) }

@@ -72,7 +72,7 @@ impl Columns {
     pub fn off(&self, gpu: &Gpu, settings: OcclusionSettings) -> Result<Off, Box<dyn Error>> {
         let made = studio::visibility(gpu, &self.document, &self.sources, settings)?;
         if made.texels != self.truth.size_px {
-            return Err("ambient occlusion is of another size than the truth".into());
+            return Err("ambient occlusion and reference differ in size".into());
         }
         let visibility = made.rgba().into_iter().map(|[visibility, ..]| visibility);
         Ok(self.compare(visibility))

@@ -8,7 +8,7 @@ use std::path::{Component, Path, PathBuf};
 #[derive(thiserror::Error)]
 pub enum AssetError {
     /// The folder of assets is not given.
-    #[error("{entry}: kept elsewhere; `--assets DIR` says where")]
+    #[error("{entry}: not in the repository; use `--assets DIR`")]
     NoFolder {
         /// Path of the asset.
         entry: PathBuf,

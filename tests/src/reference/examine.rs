@@ -158,7 +158,7 @@ pub fn examine(gpu: &Gpu, file: &Path, how: How<'_>) -> Result<Outcome, ExamineE
     let compared = reference.compare(&picture);
     let (verdict, control) = match rule {
         None => (Verdict::Unjudged("no rule is stated".into()), None),
-        Some(Err(part)) => (Verdict::Unjudged(format!("the rule is not understood: {part}")), None),
+        Some(Err(part)) => (Verdict::Unjudged(format!("unknown rule: {part}")), None),
         Some(Ok(Rule { clauses, soft, .. })) => {
             let failures = reference.failures(&clauses, &picture, compared.as_ref());
             let missed = reference.failures(&soft, &picture, compared.as_ref());
@@ -186,7 +186,7 @@ pub fn render(gpu: &Gpu, document: &Document, file: &Path, how: How<'_>) -> Resu
     let fails = |reason: String| ExamineError::Render { file: file.into(), reason };
     let sources = Sources::of(&document.scene, folder, how.assets);
     let sources = sources.map_err(|error| ExamineError::Asset { file: file.into(), error })?;
-    let sources = sources.ok_or_else(|| fails("scene.assets: there is none".into()))?;
+    let sources = sources.ok_or_else(|| fails("scene.assets: no model".into()))?;
     studio::render(gpu, document, &sources, how.shade).map_err(|error| fails(error.to_string()))
 }
 

@@ -20,7 +20,7 @@ pub fn around(stated: Option<&Ibl>, file: Option<&Path>) -> Result<Environment, 
         None => Environment::uniform(ibl.uniform_cube.map_or(DVec3::ZERO, DVec3::from_array))?,
     };
     if file.is_some() && environment.filtered.is_none() {
-        return Err(format!("scene.ibl.ktx1: {} has no irradiance (`sh`) or no level but one", environment.name).into());
+        return Err(format!("scene.ibl.ktx1: {} has no irradiance (`sh`) or only one level", environment.name).into());
     }
     let Some(factors) = harmonics else { return Ok(environment) };
     let sh = Sh::from_irradiance_over_pi(factors);
@@ -38,7 +38,7 @@ pub fn around(stated: Option<&Ibl>, file: Option<&Path>) -> Result<Environment, 
 /// Returns nine colors; missing ones are zero.
 fn harmonics(numbers: &[f64]) -> Result<[[f32; 3]; 9], String> {
     if !matches!(numbers.len(), 3 | 12 | 27) || numbers.iter().any(|number| !number.is_finite()) {
-        return Err("scene.ibl.sh: 3, 12 or 27 finite numbers are needed: one, two or three bands of colors".into());
+        return Err("scene.ibl.sh: needs 3, 12 or 27 finite numbers: one, two or three bands of colors".into());
     }
     let mut factors = [[0.0; 3]; 9];
     factors.as_flattened_mut().iter_mut().zip(numbers).for_each(|(factor, number)| *factor = *number as f32);

@@ -83,7 +83,7 @@ pub fn render(gpu: &Gpu, document: &Document, sources: &Sources, shade: Shade) -
     let stated = &document.scene;
     let linear = stated.output == Output::Linear;
     if let Some(key) = stated.view.color_grading.as_ref().and_then(color::wrong) {
-        return Err(format!("scene.view.color_grading.{key}: finite numbers up to a million are needed").into());
+        return Err(format!("scene.view.color_grading.{key}: needs finite numbers up to a million").into());
     }
     let wanted = |handles: &Handles| handles.get(if linear { Slot::HDR } else { Slot::PICTURE });
     let pixels = rendered(gpu, document, sources, settings(document, shade), wanted)?;
@@ -189,10 +189,10 @@ fn shading(document: &Document, shade: Shade) -> Shading {
 fn surroundings(document: &Document, sources: &Sources, scene: &mut Scene) -> Result<Environment, Box<dyn Error>> {
     let stated = &document.scene;
     if stated.clear_color.iter().any(|c| !(0.0..=MOST_LUX).contains(c)) {
-        return Err("scene.clear_color: four channels from 0 to 1e10 are needed".into());
+        return Err("scene.clear_color: needs four channels from 0 to 1e10".into());
     }
     if stated.specular_aa.iter().any(|x| !(0.0..=1.0).contains(x)) {
-        return Err("scene.specular_aa: a variance and a threshold from 0 to 1 are needed".into());
+        return Err("scene.specular_aa: needs a variance and a threshold from 0 to 1".into());
     }
     let mut environment = around(stated.ibl.as_ref(), sources.light.as_deref())?;
     let sun = stated.lights.iter().position(|light| light.cast_shadows).unwrap_or(0);
@@ -223,7 +223,7 @@ fn view_settings(document: &Document) -> Result<ViewSettings, Box<dyn Error>> {
     let stated = &document.scene;
     let ev100 = (1.0 / (1.2 * stated.exposure.direct)).log2() as f32;
     if !(stated.exposure.direct > 0.0 && (EV100_RANGE.0..=EV100_RANGE.1).contains(&ev100)) {
-        return Err(format!("scene.exposure.direct: {} is beyond what is exposed", stated.exposure.direct).into());
+        return Err(format!("scene.exposure.direct: {} is out of range", stated.exposure.direct).into());
     }
     Ok(ViewSettings {
         camera: camera(document)?,

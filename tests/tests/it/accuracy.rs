@@ -88,8 +88,8 @@ fn chosen_sets_fit_their_budgets() {
 /// Short form of `accuracy --verify`: draws the frames chosen for budgets, and every change of one option that fits.
 /// Times are taken from the record, so that the result does not depend on the machine's load.
 #[test]
-fn no_swap_of_a_chosen_frame_errs_less() -> Result<(), Box<dyn std::error::Error>> {
-    let Some(gpu) = gpu("no_swap_of_a_chosen_frame_errs_less") else { return Ok(()) };
+fn no_change_of_a_chosen_frame_has_less_error() -> Result<(), Box<dyn std::error::Error>> {
+    let Some(gpu) = gpu("no_change_of_a_chosen_frame_has_less_error") else { return Ok(()) };
     let record = record();
     let mut measured = record.budget.clone().ok_or("docs/accuracy.json has what frames are chosen from")?;
     let studio = Studio::new(&gpu, record.size_px, Rounds::QUICK);
@@ -113,7 +113,7 @@ fn no_swap_of_a_chosen_frame_errs_less() -> Result<(), Box<dyn std::error::Error
 }
 
 #[test]
-fn wrong_questions_are_told() {
+fn invalid_options_are_reported() {
     for (args, words) in [
         (&["--technique"][..], "missing argument"),
         (&["--budget-ms", "-1"], "not a number of at least 0"),

@@ -125,8 +125,8 @@ fn promised(frame: &mut Frame, faulty: bool) -> Result<Texture, DeclareError> {
 }
 
 #[test]
-fn a_read_of_what_nobody_wrote_is_found_by_poison() -> Result<(), Failure> {
-    let Some(gpu) = gpu("a_read_of_what_nobody_wrote_is_found_by_poison") else { return Ok(()) };
+fn an_uninitialized_read_is_found_by_poison() -> Result<(), Failure> {
+    let Some(gpu) = gpu("an_uninitialized_read_is_found_by_poison") else { return Ok(()) };
     assert_eq!(found(&gpu, |f| promised(f, true))?, ["poison"]);
     // Negative control: a correct frame looks the same under every mode.
     assert!(found(&gpu, |f| promised(f, false))?.is_empty());

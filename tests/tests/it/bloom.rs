@@ -42,7 +42,7 @@ fn parts(gpu: &Gpu) -> Result<Parts, Box<dyn Error>> {
 }
 
 /// Returns dim noise with a bright bar, a brighter dot and a very bright pixel.
-fn lamps() -> Image {
+fn bright_spots() -> Image {
     let image = Image::from_fn(SIZE, |x, y| {
         let noise = f64::from((x * 37 + y * 101 + x * y * 13) % 64) / 64.0;
         let dim = DVec3::new(noise, 1.2 * noise, 0.5);
@@ -87,7 +87,7 @@ const BOUND: f64 = 0.01;
 #[test]
 fn bloom_is_the_sum_that_its_sources_state() -> TestResult {
     let Some(gpu) = gpu("bloom_is_the_sum_that_its_sources_state") else { return Ok(()) };
-    let (parts, image) = (parts(&gpu)?, lamps());
+    let (parts, image) = (parts(&gpu)?, bright_spots());
     let mut worst = 0.0_f64;
     for settings in [
         USUAL,
@@ -112,7 +112,7 @@ fn bloom_is_the_sum_that_its_sources_state() -> TestResult {
 #[test]
 fn flare_is_ghosts_and_a_halo_of_what_glows() -> TestResult {
     let Some(gpu) = gpu("flare_is_ghosts_and_a_halo_of_what_glows") else { return Ok(()) };
-    let (parts, image) = (parts(&gpu)?, lamps());
+    let (parts, image) = (parts(&gpu)?, bright_spots());
     let flare = |flare: FlareSettings| {
         let settings = BloomSettings { flare: Some(flare), ..USUAL };
         let declare = |frame: &mut Frame<Parts>, [hdr]: [Texture; 1]| handed(frame, hdr, &settings)?.get(Slot::FLARE);
@@ -172,7 +172,7 @@ fn hard_case_23_bloom_adds_no_energy() -> TestResult {
 #[test]
 fn hard_case_23_and_26_what_is_not_finite_does_not_spread() -> TestResult {
     let Some(gpu) = gpu("hard_case_23_and_26_what_is_not_finite_does_not_spread") else { return Ok(()) };
-    let (parts, image) = (parts(&gpu)?, lamps());
+    let (parts, image) = (parts(&gpu)?, bright_spots());
     let with = |value: f64| {
         let mut image = image.clone();
         image.texels[usize::from(SIZE[0] as u16) * 15 + 25] = DVec3::new(value, 0.25, 0.5);
@@ -202,7 +202,7 @@ fn hard_case_23_and_26_what_is_not_finite_does_not_spread() -> TestResult {
 #[test]
 fn glow_is_laid_over_the_picture() -> TestResult {
     let Some(gpu) = gpu("glow_is_laid_over_the_picture") else { return Ok(()) };
-    let (parts, image) = (parts(&gpu)?, lamps());
+    let (parts, image) = (parts(&gpu)?, bright_spots());
     let image = Image { texels: image.texels.iter().map(|c| c.min(DVec3::splat(100.0))).collect(), ..image };
     let dust = Image::from_fn([7, 5], |x, y| DVec3::new(f64::from(x % 2), 0.5, f64::from(y) / 4.0)).rounded();
     let wide = |image: &Image, at: usize| {

@@ -227,7 +227,7 @@ fn without_merging() {
 
 /// If only the linear picture is used, post-processing and FXAA are culled.
 #[test]
-fn culled_when_nobody_looks() {
+fn unused_passes_are_culled() {
     let mut frame = framegraph_wgpu::Frame::<framegraph_passes::World>::new();
     let io = framegraph_passes::standard(&mut frame, &ONE, framegraph::Target::New).expect("a sound frame");
     frame.graph_mut().readback(io.hdr).unwrap();

@@ -59,8 +59,8 @@ fn a_perfect_conductor_vanishes_in_even_light() -> TestResult {
 
 /// Mean and largest errors of compensation against a random walk match the design (accuracy 1.3), at both qualities.
 #[test]
-fn compensation_through_the_frame_errs_as_stated() -> TestResult {
-    let Some(gpu) = gpu("compensation_through_the_frame_errs_as_stated") else { return Ok(()) };
+fn compensation_in_the_frame_has_the_stated_error() -> TestResult {
+    let Some(gpu) = gpu("compensation_in_the_frame_has_the_stated_error") else { return Ok(()) };
     let truth = truth(4000);
     let errors = frame_errors(&gpu, &Quality::High.shading(), &truth)?;
     // f0 = 1, 0.9, 0.6, 0.3, 0.04; 4000 walks have an error of up to 2 %.

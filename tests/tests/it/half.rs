@@ -98,9 +98,9 @@ fn the_textbook_form_and_results_that_are_off_are_found() -> TestResult {
 
 /// The design's table of D: median and 99th percentile.
 #[test]
-fn the_distribution_errs_as_stated() -> TestResult {
-    let Some(gpu) = gpu("the_distribution_errs_as_stated") else { return Ok(()) };
-    let check = on_the_documents_adapter("the_distribution_errs_as_stated", &gpu);
+fn the_distribution_has_the_stated_error() -> TestResult {
+    let Some(gpu) = gpu("the_distribution_has_the_stated_error") else { return Ok(()) };
+    let check = on_the_documents_adapter("the_distribution_has_the_stated_error", &gpu);
     let documented = documented("GGX");
     assert_eq!(documented.len(), half_table::ROUGHNESS.len());
     for (roughness, told) in half_table::ROUGHNESS.into_iter().zip(documented) {
@@ -150,8 +150,8 @@ fn pictures_in_half_floats_are_close() -> TestResult {
 
 /// A precision that the device lacks is rejected by name, and a supported one makes a picture.
 #[test]
-fn a_device_without_half_floats_is_told() -> TestResult {
-    let Some(gpu) = stage::gpu("a_device_without_half_floats_is_told") else { return Ok(()) };
+fn a_device_without_half_floats_is_reported() -> TestResult {
+    let Some(gpu) = stage::gpu("a_device_without_half_floats_is_reported") else { return Ok(()) };
     let has = gpu.device.features().contains(wgpu::Features::SHADER_F16);
     let studio = Studio::new(&gpu, "spheres")?;
     match studio.shoot(&gpu, Precision::Half, 0.089) {

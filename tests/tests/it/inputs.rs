@@ -14,7 +14,7 @@ use framegraph_scene::{Environment, Material, Mesh, Specular};
 use framegraph_wgpu::Gpu;
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::error::Error;
-use tests::measure::board::{Board, EXPOSURE, card, lamps};
+use tests::measure::board::{Board, EXPOSURE, card, punctual_lights};
 use truth::surface::Surface;
 
 type TestResult = Result<(), Box<dyn Error>>;
@@ -59,8 +59,8 @@ fn linear_color(texel: [u8; 4]) -> DVec3 {
 }
 
 /// Returns the radiance under the three lights.
-fn under_lamps(surface: &Surface) -> DVec3 {
-    let [r, g, b] = TOWARD.map(|toward| surface.per_lamp(DVec3::Z, toward));
+fn under_lights(surface: &Surface) -> DVec3 {
+    let [r, g, b] = TOWARD.map(|toward| surface.per_light(DVec3::Z, toward));
     DVec3::new(r.x, g.y, b.z)
 }
 
@@ -91,7 +91,7 @@ fn compare(
 
 fn lit() -> Board {
     let mut board = Board::default();
-    board.scene.lights = lamps(TOWARD);
+    board.scene.lights = punctual_lights(TOWARD);
     board
 }
 
@@ -177,16 +177,16 @@ fn metalness_and_roughness_are_their_channels() -> TestResult {
     let factors = Material { metallic: 0.9, ..Material::dielectric("both", base, 0.8) };
     let surface = |metallic, roughness, f0| Surface::metal_rough(base.as_dvec3(), metallic, roughness, f0, NORMAL);
     let cases = vec![
-        ("factors", factors.clone(), under_lamps(&surface(0.9, 0.8, 0.04))),
+        ("factors", factors.clone(), under_lights(&surface(0.9, 0.8, 0.04))),
         (
             "factors times texture",
             Material { metallic_roughness_texture: texture, ..factors.clone() },
-            under_lamps(&surface(0.9 * 0.6, 0.8 * 0.4, 0.04)),
+            under_lights(&surface(0.9 * 0.6, 0.8 * 0.4, 0.04)),
         ),
         (
             "diamond",
             Material { ior: 2.4, metallic: 0.0, roughness: 0.3, ..factors },
-            under_lamps(&surface(0.0, 0.3, (1.4_f64 / 3.4).powi(2))),
+            under_lights(&surface(0.0, 0.3, (1.4_f64 / 3.4).powi(2))),
         ),
     ];
     let shading = Shading { compensate_punctual: false, ..Shading::default() };
@@ -222,7 +222,7 @@ fn occlusion_is_its_channel_by_its_strength() -> TestResult {
     let mut board = lit();
     let _ = shown(&mut board, 4, TextureRole::Linear, TEXEL);
     let hidden = (NORMAL.dot(TOWARD[2]) / (1.0_f64 - 0.2).sqrt()).min(1.0).powi(2);
-    let expected = under_lamps(&Surface::chalk(albedo.as_dvec3(), NORMAL)) * DVec3::new(1.0, 1.0, hidden);
+    let expected = under_lights(&Surface::chalk(albedo.as_dvec3(), NORMAL)) * DVec3::new(1.0, 1.0, hidden);
     let lamp = vec![("by a lamp", chalk(1.0), expected)];
     compare(&gpu, board, &Environment::uniform(DVec3::ZERO)?, &Quality::Low.shading(), HALF_FLOATS, lamp)
 }

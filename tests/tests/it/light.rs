@@ -32,7 +32,7 @@ fn table(gpu: &Gpu, texels: u32, visibility: Visibility) -> Result<DfgTable, Box
 
 /// The design's table: largest error and lowest value for two, three and five bands.
 #[test]
-fn harmonics_err_as_stated_and_a_wrong_band_is_noticed() {
+fn harmonics_have_the_stated_error_and_a_wrong_band_is_detected() {
     let keep = |sh: Sh| sh;
     let bands = [ShBands::Two, ShBands::Three, ShBands::Five];
     for (scene, stated) in [
@@ -216,8 +216,8 @@ fn tables_err_less_than_stated_and_the_wrong_term_is_noticed() -> TestResult {
 
 /// Compensation, compared with a random walk: the design's errors within the noise of 4000 paths.
 #[test]
-fn compensation_errs_as_stated() -> TestResult {
-    let Some(gpu) = stage::gpu("compensation_errs_as_stated") else { return Ok(()) };
+fn compensation_has_the_stated_error() -> TestResult {
+    let Some(gpu) = stage::gpu("compensation_has_the_stated_error") else { return Ok(()) };
     let table = table(&gpu, 64, Visibility::Exact)?;
     let with = furnace::errors(&gpu, &table, Compensation::Table, 4000)?;
     // f0 = 1, 0.9, 0.6, 0.3, 0.04.

@@ -18,7 +18,7 @@ type TestResult = Result<(), Box<dyn Error>>;
 const FROXELS: LightSearch = LightSearch::Froxels(FroxelSettings::DEFAULT);
 const PLAIN: Settings = Settings { shadows: None, ..Settings::DEFAULT };
 
-fn lamps(count: u32) -> Result<Scene, Box<dyn Error>> {
+fn punctual_lights(count: u32) -> Result<Scene, Box<dyn Error>> {
     Ok(Scene::open(&format!("lamps:{count}"), &mut progress::silent)?)
 }
 
@@ -52,7 +52,7 @@ fn same(gpu: &Gpu, what: &str, mut night: Night) -> TestResult {
 #[test]
 fn froxels_show_what_all_lights_show() -> TestResult {
     let Some(gpu) = gpu("froxels_show_what_all_lights_show") else { return Ok(()) };
-    let scene = lamps(200)?;
+    let scene = punctual_lights(200)?;
     let own = |index: usize| scene.cameras[index].clone();
     let look = |eye, at, projection| Camera::look_at(eye, at, DVec3::Y, projection);
     let lamp = scene.lights[0].position;
@@ -91,7 +91,7 @@ fn froxels_show_what_all_lights_show() -> TestResult {
 #[test]
 fn endless_lights_and_far_places_are_lit() -> TestResult {
     let Some(gpu) = gpu("endless_lights_and_far_places_are_lit") else { return Ok(()) };
-    let mut scene = lamps(60)?;
+    let mut scene = punctual_lights(60)?;
     scene.lights.push(Light { color: Vec3::new(0.1, 0.2, 0.3), ..Light::directional("moon", Vec3::NEG_ONE, 2.0) });
     scene.lights.push(Light { color: Vec3::X, ..Light::directional("second", Vec3::new(1.0, -1.0, 0.0), 1.0) });
     let far = DVec3::new(1e6, -3e5, 7e5);
@@ -120,7 +120,7 @@ fn endless_lights_and_far_places_are_lit() -> TestResult {
 #[test]
 fn views_of_a_graph_have_lists_of_their_own() -> TestResult {
     let Some(gpu) = gpu("views_of_a_graph_have_lists_of_their_own") else { return Ok(()) };
-    let scene = lamps(200)?;
+    let scene = punctual_lights(200)?;
     let cameras = scene.cameras.clone();
     let mut night = Night::new(&gpu, scene, cameras[0].clone(), [96, 54], PLAIN)?;
     let finer = LightSearch::Froxels(FroxelSettings { tiles: 400, slices: 24, ..FroxelSettings::DEFAULT });
@@ -150,7 +150,7 @@ fn views_of_a_graph_have_lists_of_their_own() -> TestResult {
 #[test]
 fn a_light_that_is_missing_is_seen() -> TestResult {
     let Some(gpu) = gpu("a_light_that_is_missing_is_seen") else { return Ok(()) };
-    let scene = lamps(60)?;
+    let scene = punctual_lights(60)?;
     let camera = scene.cameras[1].clone();
     let mut night = Night::new(&gpu, scene, camera, [160, 90], PLAIN)?;
     let whole = night.shoot(&gpu, night.view(FROXELS), 1)?.linear;

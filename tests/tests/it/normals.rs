@@ -8,7 +8,7 @@ use framegraph_scene::{Environment, Material, Mesh, Specular};
 use glam::{DMat3, DMat4, DQuat, DVec3, Vec2, Vec3};
 use std::error::Error;
 use std::f64::consts::PI;
-use tests::measure::board::{Board, card, lamps};
+use tests::measure::board::{Board, card, punctual_lights};
 use truth::surface::Surface;
 
 type TestResult = Result<(), Box<dyn Error>>;
@@ -32,9 +32,9 @@ fn mapped(normal: DVec3, tangent: DVec3, handedness: f64, scale: f64) -> DVec3 {
 fn expected(normal: DVec3) -> DVec3 {
     let chalk = Surface::chalk(ALBEDO, normal);
     DVec3::new(
-        chalk.per_lamp(DVec3::Z, TOWARD[0]).x,
-        chalk.per_lamp(DVec3::Z, TOWARD[1]).y,
-        chalk.per_lamp(DVec3::Z, TOWARD[2]).z,
+        chalk.per_light(DVec3::Z, TOWARD[0]).x,
+        chalk.per_light(DVec3::Z, TOWARD[1]).y,
+        chalk.per_light(DVec3::Z, TOWARD[2]).z,
     )
 }
 
@@ -46,7 +46,7 @@ fn turned(axis: DVec3, angle: f64) -> DMat4 {
 fn normals_are_those_of_the_object_in_its_place() -> TestResult {
     let Some(gpu) = gpu("normals_are_those_of_the_object_in_its_place") else { return Ok(()) };
     let mut board = Board::default();
-    board.scene.lights = lamps(TOWARD);
+    board.scene.lights = punctual_lights(TOWARD);
     let nearest = Sampler { mag: Filter::Nearest, min: Filter::Nearest, mip: None, ..Sampler::default() };
     let map = board.texture(1, &[TEXEL], TextureRole::Normal, nearest);
     // The right half of a map whose left half has another normal, with the second texture coordinates.

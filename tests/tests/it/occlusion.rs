@@ -81,7 +81,7 @@ fn counts_are_less_than_filaments() {
 
 /// The depth structure is drawn only if a pass reads it.
 #[test]
-fn a_structure_that_nobody_reads_is_culled() -> TestResult {
+fn an_unread_structure_is_culled() -> TestResult {
     let mut frame = Frame::<World>::new();
     let mut handles = Handles::default();
     let first = structure(&mut frame, &mut handles, Resolution::Half, 3)?;

@@ -76,7 +76,7 @@ fn files_that_are_read_are_not_written_over() {
     let (code, told) = run(&["--json".as_ref(), statement.as_os_str()]);
     assert!(code == Some(2) && told.contains("a.json: it is read"), "{told}");
     let (code, told) = run(&["--out".as_ref(), folder.as_os_str()]);
-    assert!(code == Some(2) && told.contains("files of this folder are read"), "{told}");
+    assert!(code == Some(2) && told.contains("the folder contains the references"), "{told}");
     assert_eq!(std::fs::read_to_string(&statement).ok().as_deref(), Some("{}"));
     let gone = folder.join("gone/proofs.md");
     let output = Command::new(env!("CARGO_BIN_EXE_prove")).args(["--quick", "--out"]).arg(gone).output();

@@ -139,8 +139,8 @@ fn a_still_scene_comes_near_supersampling() -> TestResult {
 /// converged picture at the new size than a first frame. The gain is 5.5 dB, less than at a constant size, since the
 /// history has fewer pixels. Without the history, it would be 0.
 #[test]
-fn a_resize_goes_on_with_the_sum() -> TestResult {
-    let Some(gpu) = gpu("a_resize_goes_on_with_the_sum") else { return Ok(()) };
+fn a_resize_keeps_the_history() -> TestResult {
+    let Some(gpu) = gpu("a_resize_keeps_the_history") else { return Ok(()) };
     let taa = taa("on:filter-input=off,jitter=halton16")?;
     let shading = Shading { specular_aa: None, ..Settings::DEFAULT.shading };
     let settings = Settings { taa: Some(taa), shading, fxaa: false, ..Settings::DEFAULT };

@@ -89,8 +89,8 @@ fn filters_are_their_mirrors() -> TestResult {
 
 /// Uniform areas keep each 8-bit value.
 #[test]
-fn even_areas_keep_their_codes() -> TestResult {
-    let Some(gpu) = gpu("even_areas_keep_their_codes") else { return Ok(()) };
+fn uniform_areas_keep_their_values() -> TestResult {
+    let Some(gpu) = gpu("uniform_areas_keep_their_values") else { return Ok(()) };
     for code in (0..=255).step_by(15) {
         for filter in UpscaleFilter::ALL {
             let found = enlarged(&gpu, &[code; 4 * 12], [4, 3], [7, 8], filter)?;

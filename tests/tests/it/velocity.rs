@@ -252,8 +252,8 @@ fn what_a_mask_keeps_moves_as_a_whole() -> TestResult {
 /// A ball that moves with the eye accumulates as if both stood still: its velocity points to the same pixel of the
 /// history.
 #[test]
-fn what_goes_with_the_eye_is_summed_as_if_it_stood() -> TestResult {
-    let Some(gpu) = gpu("what_goes_with_the_eye_is_summed_as_if_it_stood") else { return Ok(()) };
+fn motion_with_the_eye_accumulates_like_no_motion() -> TestResult {
+    let Some(gpu) = gpu("motion_with_the_eye_accumulates_like_no_motion") else { return Ok(()) };
     const SIZE: [u32; 2] = [72, 48];
     let summed = |path| -> Result<_, Box<dyn Error>> {
         let mut film = Film { path, ..Film::new(&gpu, SIZE) };

@@ -115,7 +115,7 @@ impl Surface {
     }
 
     /// Returns BRDF · cosine toward a light, times π: radiance in nits per π lux.
-    pub fn per_lamp(&self, view: DVec3, to_light: DVec3) -> DVec3 {
+    pub fn per_light(&self, view: DVec3, to_light: DVec3) -> DVec3 {
         let h = (view + to_light).normalize();
         let loh = to_light.dot(h);
         let (f0, roughness) = self.coated();

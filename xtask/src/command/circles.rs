@@ -72,14 +72,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_file_goes_in_a_circle() {
+    fn no_files_form_a_cycle() {
         let found = found(&workspace::root()).expect("the rooms can be read");
         let told: Vec<String> = found.iter().map(|circle| circle.lines.join("\n")).collect();
         assert!(told.is_empty(), "files that use each other:\n\n{}", told.join("\n\n"));
     }
 
     #[test]
-    fn a_circle_is_told_with_what_closes_it() {
+    fn a_cycle_is_reported_with_its_uses() {
         let tree = crate::tree::Tree::new(&[
             ("passes/src/lib.rs", "mod a; mod b; pub use a::A;"),
             ("passes/src/a.rs", "use super::b::B; pub struct A;"),

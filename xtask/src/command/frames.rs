@@ -55,7 +55,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     heads.extend(WITHOUT.iter().map(|(name, _)| *name));
     heads.extend(asked.beside.iter().flat_map(|_| ["the other", "ratio"]));
     program::print(format!(
-        "Medians of frames in ms, by the device's clock where it has one; {} of each in turns.\n\n| {} |\n|{}\n",
+        "Median frame times in ms: GPU times if the device has timestamps. Variants alternate; {} each.\n\n| {} |\n|{}\n",
         if asked.rounds == 1 { "one run".to_owned() } else { format!("{} runs", asked.rounds) },
         heads.join(" | "),
         " --- |".repeat(heads.len())

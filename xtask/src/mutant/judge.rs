@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn tests_that_compile_the_line_are_asked_the_likeliest_first() {
+    fn tests_that_compile_the_line_run_with_the_likeliest_first() {
         let tests = [test("slow", 9.0, &["a.wgsl:1"]), test("quick", 1.0, &["a.wgsl:1"]), test("other", 0.1, &[])];
         let fault = &mutants("shaders/wgsl/a.wgsl", "a = b + c;", Language::Wgsl)[0];
         let names = |first| asked(&tests, fault, first).iter().map(|test| test.name.as_str()).collect::<Vec<_>>();

@@ -113,7 +113,8 @@ pub fn sentences(paragraph: &str) -> Vec<String> {
 fn end_of_sentence(text: &str) -> Option<usize> {
     text.match_indices(['.', '!', '?']).map(|(at, _)| at + 1).find(|end| {
         let next = text[*end..].trim_start();
-        next.len() < text.len() - end && next.starts_with(|c: char| c.is_ascii_uppercase())
+        let is_apart = next.len() < text.len() - end;
+        is_apart && next.trim_start_matches(['*', '_']).starts_with(|c: char| c.is_ascii_uppercase())
     })
 }
 

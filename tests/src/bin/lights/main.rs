@@ -69,7 +69,7 @@ fn length(view: &CameraView) -> Result<(f64, usize), Box<dyn Error>> {
         Found::ByFroxels { counts, entries, longest, .. } => {
             Ok((entries as f64 / f64::from(counts.iter().product::<u32>()), longest))
         }
-        Found::All(_) => Err("there are no lists".into()),
+        Found::All(_) => Err("the view has no light lists".into()),
     }
 }
 
@@ -89,7 +89,7 @@ fn lists(gpu: &Gpu) -> Outcome {
         for cut in cuts {
             let search = LightSearch::Froxels(cut);
             let view = night.view(search);
-            let lists = view.light_lists.as_ref().ok_or("there are no lists")?;
+            let lists = view.light_lists.as_ref().ok_or("the view has no light lists")?;
             let [x, y, z] = lists.uniforms.counts;
             let entries = lists.words.len() - (x * y * z) as usize - 1;
             let needed = night.touched(lists, [cut.near_m, cut.far_m].map(f64::from), SAMPLES);

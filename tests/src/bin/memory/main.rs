@@ -64,7 +64,7 @@ fn measured(gpu: &Gpu, size_px: [u32; 2], alias: Alias) -> Result<(u64, Allocate
     gpu.wait()?;
     let behind = frames.executor().allocated();
     if let Some(why) = frames.executor().not_placed() {
-        return Err(format!("nothing is placed: {why}").into());
+        return Err(format!("no texture is placed: {why}").into());
     }
     let memory = frames.plan().memory();
     Ok((memory.bytes + memory.own_bytes, Allocated { by_wgpu: behind.by_wgpu - before.by_wgpu, ..behind }))

@@ -22,7 +22,7 @@ const FRAMES: u32 = 6;
 const SPIRALS: [[u32; 2]; 7] = [[3, 1], [5, 2], [7, 5], [11, 6], [16, 7], [32, 13], [64, 25]];
 
 fn settings(text: &str) -> Result<OcclusionSettings, Box<dyn Error>> {
-    OcclusionSettings::from_text(text)?.ok_or_else(|| format!("{text}: it is off").into())
+    OcclusionSettings::from_text(text)?.ok_or_else(|| format!("{text}: ambient occlusion is off").into())
 }
 
 /// Averages blocks of 4×4 texels: the most that a blur can do without additional information.

@@ -90,8 +90,8 @@ pub fn section(document: &mut Document, graphs: usize, note: &str) {
     document.section(
         &format!("Pools compared to brute force{note}"),
         &format!(
-            "The same graphs. Textures with equal size, format (ignoring the transfer function), levels, samples and layers \
-             are a class.\nIn classes of up to {MOST} members, all assignments are tried. The lower bound of larger classes \
+            "These are the graphs of the table above. Textures with equal size, format (ignoring the transfer function), \
+             levels, samples and layers are a class.\nIn classes of up to {MOST} members, all assignments are tried. The lower bound of larger classes \
              is the number alive at the same time.\n\n{}",
             table.text()
         ),

@@ -75,17 +75,19 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     let mut folder = None;
     while let Some(arg) = parser.next().map_err(|error| error.to_string())? {
         let path = |parser: &mut lexopt::Parser, option: &str| {
-            parser.value().map(PathBuf::from).map_err(|_| format!("{option}: a value is missing"))
+            parser.value().map(PathBuf::from).map_err(|_| format!("{option}: missing value"))
         };
         match arg {
             Long("help") | Short('h') => return Ok(Command::Help),
             Long("assets") => found.assets = Some(path(&mut parser, "--assets")?),
             Long("out") => found.out = Some(path(&mut parser, "--out")?),
             Long("quality") => {
-                let given = parser.value().map_err(|_| "--quality: maker, low, high or ultra is missing".to_owned())?;
+                let given =
+                    parser.value().map_err(|_| "--quality: missing value; use maker, low, high or ultra".to_owned())?;
                 let named = given.to_str().and_then(Shade::from_name);
-                found.shade = named
-                    .ok_or_else(|| format!("--quality {}: maker, low, high or ultra is needed", given.display()))?;
+                found.shade = named.ok_or_else(|| {
+                    format!("--quality {}: unknown quality; use maker, low, high or ultra", given.display())
+                })?;
             }
             Long("compare-quality") => found.compare_quality = true,
             Long("json") => found.json = Some(path(&mut parser, "--json")?),
@@ -93,8 +95,8 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Value(value) => {
                 found.ids.push(value.into_string().map_err(|v| format!("ID {v:?}: the name is not Unicode"))?);
             }
-            Long(name) => return Err(format!("--{name}: unknown option; `reference --help` lists them")),
-            Short(name) => return Err(format!("-{name}: unknown option; `reference --help` lists them")),
+            Long(name) => return Err(format!("--{name}: unknown option; see `reference --help`")),
+            Short(name) => return Err(format!("-{name}: unknown option; see `reference --help`")),
         }
     }
     found.folder = folder.unwrap_or_else(references);
@@ -134,7 +136,7 @@ mod tests {
     #[test]
     fn wrong_words_are_named() {
         for (words, named) in [
-            (&["refs", "--out"][..], "--out: a value is missing"),
+            (&["refs", "--out"][..], "--out: missing value"),
             (&["refs", "--fast"], "--fast: unknown option"),
             (&["refs", "--quality", "best"], "--quality best"),
             (&["refs", "-x"], "-x: unknown option"),

@@ -43,10 +43,10 @@ fn statements(folder: &Path, ids: &[String]) -> Result<Vec<PathBuf>, String> {
     let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     if let Some(unknown) = ids.iter().find(|id| !files.iter().any(|file| stem(file) == **id)) {
         let known: Vec<String> = files.iter().map(|file| stem(file)).collect();
-        return Err(format!("{unknown}: {} states no such scene; there are {}", folder.display(), known.join(", ")));
+        return Err(format!("{unknown}: not a statement in {}; known are {}", folder.display(), known.join(", ")));
     }
     files.retain(|file| ids.is_empty() || ids.contains(&stem(file)));
-    if files.is_empty() { Err(format!("{}: no .json states a scene", folder.display())) } else { Ok(files) }
+    if files.is_empty() { Err(format!("{}: no statement (.json) found", folder.display())) } else { Ok(files) }
 }
 
 fn run(args: &Args) -> Result<u8, String> {
@@ -56,7 +56,7 @@ fn run(args: &Args) -> Result<u8, String> {
         let same =
             |folder: &Path| folder.canonicalize().is_ok_and(|folder| out.canonicalize().is_ok_and(|out| out == folder));
         if same(&args.folder) || args.assets.as_deref().is_some_and(same) {
-            return Err(format!("--out {}: files of this folder are read; name another", out.display()));
+            return Err(format!("--out {}: the folder contains the references; choose another", out.display()));
         }
         check_folder(out).map_err(|error| format!("--out {error}"))?;
     }

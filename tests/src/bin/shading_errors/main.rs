@@ -30,12 +30,12 @@ fn print(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
 }
 
 fn told(noticed: bool) -> bool {
-    program::line(format_args!("\ncontrol: {}", if noticed { "noticed" } else { "NOT NOTICED" }));
+    program::line(format_args!("\nnegative control: {}", if noticed { "detected" } else { "NOT DETECTED" }));
     noticed
 }
 
 fn functions(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
-    program::line(format_args!("\n## Functions against their f64 mirrors: {POINTS} points each\n"));
+    program::line(format_args!("\n## Functions compared with their f64 mirrors: {POINTS} points each\n"));
     program::line("| function | f32: largest difference | of its bound | f16: largest difference | of its bound |");
     program::line("| --- | --- | --- | --- | --- |");
     for row in mirrors(gpu)? {
@@ -64,15 +64,15 @@ fn distribution(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
 }
 
 fn pictures(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
-    program::line("\n## Pictures in f16 against f32, roughness from 0.089 on in both\n");
-    program::line("| scene | PSNR | off by more than 2 codes | largest difference |");
+    program::line("\n## Pictures in f16 compared with f32, roughness of at least 0.089 in both\n");
+    program::line("| scene | PSNR | pixels that differ by more than 2 steps | largest difference |");
     program::line("| --- | --- | --- | --- |");
     let mut noticed = true;
     for scene in SCENES {
         let studio = Studio::new(gpu, scene)?;
         let d = studio.difference(gpu, 0.089)?;
         program::line(format_args!(
-            "| {scene} | {:.1} dB | {:.3} % | {} codes |",
+            "| {scene} | {:.1} dB | {:.3} % | {} steps |",
             d.psnr_db,
             100.0 * d.share_off,
             d.largest_codes

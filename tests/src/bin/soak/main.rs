@@ -63,7 +63,7 @@ fn run() -> Result<(), Box<dyn Error>> {
         ));
     })?;
     if last != Soak::fresh(&open()?)? {
-        return Err("the last frame is not that of a fresh run".into());
+        return Err("the last frame differs from that of a fresh run".into());
     }
     program::line("\nThe last frame is that of a fresh run.");
     Ok(())

@@ -138,8 +138,8 @@ fn what_is_read_back_is_small() -> TestResult {
 
 /// Bloom is culled if twice the light is below its threshold, which changes no bit; otherwise it is kept.
 #[test]
-fn bloom_goes_where_nothing_was_bright() -> TestResult {
-    let Some(gpu) = gpu("bloom_goes_where_nothing_was_bright") else { return Ok(()) };
+fn bloom_is_culled_if_nothing_was_bright() -> TestResult {
+    let Some(gpu) = gpu("bloom_is_culled_if_nothing_was_bright") else { return Ok(()) };
     // Twice 1.15 times the factor reaches 1 at 0.434.
     for (times, decision) in [(0.42, Decision::Dropped), (0.45, Decision::Kept), (2.0, Decision::Kept)] {
         let mut row = row(&gpu, "ball")?;
@@ -167,8 +167,8 @@ fn bloom_goes_where_nothing_was_bright() -> TestResult {
 /// The floor fills the picture. Its box and the sky do not bound the distances, but measured depths show whether all is
 /// in focus.
 #[test]
-fn depth_of_field_goes_where_all_was_in_focus() -> TestResult {
-    let Some(gpu) = gpu("depth_of_field_goes_where_all_was_in_focus") else { return Ok(()) };
+fn depth_of_field_is_culled_if_all_was_in_focus() -> TestResult {
+    let Some(gpu) = gpu("depth_of_field_is_culled_if_all_was_in_focus") else { return Ok(()) };
     for (f_number, decision) in [(64.0, Decision::Dropped), (1.0, Decision::Kept)] {
         let mut row = row(&gpu, "floor")?;
         // Neither side is a multiple of eight; texels beyond the edge must not count as depth.

@@ -172,7 +172,7 @@ fn one_map_replaces_cascades_over_a_short_range() {
 }
 
 #[test]
-fn lamps_have_maps_for_what_they_reach_and_find() {
+fn punctual_lights_have_maps_for_casters_in_range() {
     let mut night = Stage::of("night");
     assert!(!night.drops(Effect::LampShadows));
     night.case.asked.shadows = Some(ShadowSettings { local_maps: 7, ..ShadowSettings::texels(64) });

@@ -1,7 +1,7 @@
 //! Inputs of material lobes: channels of textures, and directions of anisotropy and coats.
 
 use super::{
-    HALF_FLOATS, NORMAL, TANGENT, TEXEL, TestResult, compare, linear_color, lit, mesh, no_specular, shown, under_lamps,
+    HALF_FLOATS, NORMAL, TANGENT, TEXEL, TestResult, compare, linear_color, lit, mesh, no_specular, shown, under_lights,
 };
 use crate::stage::{gpu, lighting};
 use framegraph_passes::Shading;
@@ -54,21 +54,21 @@ fn a_coat_is_its_channels_over_what_is_below() -> TestResult {
     let coated = |normal, factor, roughness| Some(Coat { normal, factor, roughness });
     let cases = vec![
         // A coat without a normal map does not use the base's.
-        ("factors", under(&bare, plain), under_lamps(&Surface { coat: coated(NORMAL, 0.9, 0.7), ..below })),
+        ("factors", under(&bare, plain), under_lights(&Surface { coat: coated(NORMAL, 0.9, 0.7), ..below })),
         (
             "textures",
             under(&bare, textured),
-            under_lamps(&Surface { coat: coated(mapped(bump, 0.5), 0.9 * 0.8, 0.7 * 0.6), ..below }),
+            under_lights(&Surface { coat: coated(mapped(bump, 0.5), 0.9 * 0.8, 0.7 * 0.6), ..below }),
         ),
         (
             "turned away",
             under(&black(), ClearCoat { normal_texture: steep_normal, normal_scale: 1.0, ..plain }),
-            under_lamps(&Surface { coat: coated(mapped(steep, 1.0), 0.9, 0.7), ..nothing() }),
+            under_lights(&Surface { coat: coated(mapped(steep, 1.0), 0.9, 0.7), ..nothing() }),
         ),
         (
             "over nothing",
             under(&black(), textured),
-            under_lamps(&Surface { coat: coated(mapped(bump, 0.5), 0.9 * 0.8, 0.7 * 0.6), ..nothing() }),
+            under_lights(&Surface { coat: coated(mapped(bump, 0.5), 0.9 * 0.8, 0.7 * 0.6), ..nothing() }),
         ),
     ];
     compare(&gpu, board, &Environment::uniform(DVec3::ZERO)?, &punctual(), HALF_FLOATS, cases)
@@ -85,7 +85,7 @@ fn sheen_is_its_channels() -> TestResult {
     let plain = Sheen { color, roughness: 0.75, ..Sheen::default() };
     let sheen = |sheen: Sheen| Material { sheen: Some(sheen), ..black() };
     let expected =
-        |color, roughness| under_lamps(&Surface { sheen: Some(surface::Sheen { color, roughness }), ..nothing() });
+        |color, roughness| under_lights(&Surface { sheen: Some(surface::Sheen { color, roughness }), ..nothing() });
     let textured_color = color.as_dvec3() * linear_color([230, 150, 200, 0]);
     let cases = vec![
         ("factors", sheen(plain), expected(color.as_dvec3(), 0.75)),
@@ -112,7 +112,7 @@ fn specular_is_its_channels() -> TestResult {
     };
     let expected = |factor: f64, color: DVec3, f0: f64| {
         let f0 = (color * f0).min(DVec3::ONE) * factor;
-        under_lamps(&Surface { f0, f90: factor, roughness: 0.4, ..nothing() })
+        under_lights(&Surface { f0, f90: factor, roughness: 0.4, ..nothing() })
     };
     let (plain_color, tinted) = (color.as_dvec3(), color.as_dvec3() * linear_color([230, 150, 200, 0]));
     let dense = (9.0_f64 / 11.0).powi(2);
@@ -128,8 +128,8 @@ fn specular_is_its_channels() -> TestResult {
 /// The direction is in red and green, the strength in blue, rotated by the rotation. A mirrored object mirrors its
 /// anisotropy.
 #[test]
-fn grooves_run_as_texture_rotation_and_object_have_them() -> TestResult {
-    let Some(gpu) = gpu("grooves_run_as_texture_rotation_and_object_have_them") else { return Ok(()) };
+fn anisotropy_follows_texture_rotation_and_object() -> TestResult {
+    let Some(gpu) = gpu("anisotropy_follows_texture_rotation_and_object") else { return Ok(()) };
     let mut board = lit();
     // (0.8, -0.6) to within one 8-bit step, and a strength of 0.8.
     let texel = [230, 51, 204, 0];
@@ -150,7 +150,7 @@ fn grooves_run_as_texture_rotation_and_object_have_them() -> TestResult {
     let expected = |placed: DMat4, along: DVec3, strength: f64| {
         let carry = DMat3::from_mat4(placed);
         let grooves = Some(Grooves { along: carry * along, strength });
-        under_lamps(&Surface { normal: carry * NORMAL, grooves, ..metal })
+        under_lights(&Surface { normal: carry * NORMAL, grooves, ..metal })
     };
     let still = DMat4::IDENTITY;
     let mirror = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));

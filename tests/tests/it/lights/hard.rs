@@ -1,6 +1,6 @@
 //! Distances without a slice: the design's hard case 57, for the shader's functions in both builds.
 
-use super::{PLAIN, TestResult, lamps};
+use super::{PLAIN, TestResult, punctual_lights};
 use crate::stage::{gpu, precisions};
 use framegraph_passes::Precision;
 use framegraph_passes::punctual::{FroxelSettings, LightSearch};
@@ -33,7 +33,7 @@ const BEYOND: [f32; 3] = [1e20, f32::MAX, f32::INFINITY];
 #[test]
 fn hard_case_57_every_distance_has_a_froxel() -> TestResult {
     let Some(gpu) = gpu("hard_case_57_every_distance_has_a_froxel") else { return Ok(()) };
-    let scene = lamps(8)?;
+    let scene = punctual_lights(8)?;
     let camera = scene.cameras[1].clone();
     let mut night = Night::new(&gpu, scene, camera, [1, 1], PLAIN)?;
     let (mut rows, mut expected) = (Vec::new(), Vec::new());

@@ -94,7 +94,7 @@ fn check(name: &str, eye: Eye, origin: DVec3) -> TestResult {
         for (index, surface) in surfaces.iter().enumerate() {
             let to_lamp = origin + lamp.at - board.middle(index);
             let share = over_pi(lamp.candela, lamp.range_m, lamp.axis, to_lamp);
-            let expected = COLOR * surface.per_lamp(board.toward_viewer(index), to_lamp.normalize()) * share;
+            let expected = COLOR * surface.per_light(board.toward_viewer(index), to_lamp.normalize()) * share;
             // Half floats; at the edge of a cone or range, only the center of a card is exact.
             let apart = (seen[index].nits - expected).abs() - 3e-3 * expected;
             assert!(apart.max_element() < 3e-4, "{what}, card {index}: {} for {expected}", seen[index].nits);
@@ -138,7 +138,7 @@ fn filaments_window_and_far_fade_are_options() -> TestResult {
         let window = (1.0 - (to_lamp.length() / range_m).powi(4)).clamp(0.0, 1.0);
         let fade = (5.0 - 5.0 * ((middle - board.camera_m()).length() / far_m).powi(2)).clamp(0.0, 1.0);
         let share = over_pi(lamp.candela, lamp.range_m, None, to_lamp) * window * fade;
-        let expected = COLOR * surface.per_lamp(board.toward_viewer(index), to_lamp.normalize()) * share;
+        let expected = COLOR * surface.per_light(board.toward_viewer(index), to_lamp.normalize()) * share;
         // Half floats; the center of a card is compared, which is imprecise where the fade is steep.
         let apart = (seen[index].nits - expected).abs() - 3e-3 * expected;
         assert!(apart.max_element() < 2e-3, "card {index}: {} for {expected}, fade {fade}", seen[index].nits);
@@ -152,8 +152,8 @@ fn filaments_window_and_far_fade_are_options() -> TestResult {
 
 /// Lights add up, also a directional light beside the sun, and colors are applied.
 #[test]
-fn lamps_add_up() -> TestResult {
-    let Some(gpu) = gpu("lamps_add_up") else { return Ok(()) };
+fn lights_add_up() -> TestResult {
+    let Some(gpu) = gpu("lights_add_up") else { return Ok(()) };
     let shading = Shading { compensate_punctual: false, ..Shading::default() };
     let (mut board, surfaces) = row(Eye::Perspective, DVec3::new(3.0, 4.0, -5.0));
     let toward = [DVec3::new(0.6, 0.0, 0.8), DVec3::new(-0.48, 0.36, 0.8)];
@@ -167,9 +167,9 @@ fn lamps_add_up() -> TestResult {
     for (index, surface) in surfaces.iter().enumerate() {
         let view = board.toward_viewer(index);
         let to_point = board.origin + point.at - board.middle(index);
-        let expected = surface.per_lamp(view, toward[0]) * DVec3::Y * 2.0
-            + surface.per_lamp(view, toward[1]) * DVec3::X
-            + COLOR * surface.per_lamp(view, to_point.normalize()) * over_pi(30.0, None, None, to_point);
+        let expected = surface.per_light(view, toward[0]) * DVec3::Y * 2.0
+            + surface.per_light(view, toward[1]) * DVec3::X
+            + COLOR * surface.per_light(view, to_point.normalize()) * over_pi(30.0, None, None, to_point);
         let apart = (seen[index].nits - expected).abs() - 3e-3 * expected;
         assert!(apart.max_element() < 3e-4, "card {index}: {} for {expected}", seen[index].nits);
     }
