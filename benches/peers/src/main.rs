@@ -1,9 +1,9 @@
 //! Compares our compiler with zenfg 0.2 on zenfg's own benchmark: pass i reads buffer i − 1 and writes buffer i, and
 //! the last buffer is the output. In each round, both declare and compile the whole graph in one process, alternately.
 //!
-//! The measured work differs. Ours validates, culls, orders and merges. It derives lifetimes, loads, stores and
-//! uses, places memory in a pool, and logs a reason for each decision. In that time, zenfg validates content flow by byte range,
-//! culls, derives uses and plans its pool. zenfg's graph is dropped after each frame, as its interface requires; ours
+//! The measured work differs. Our compiler validates, culls, orders and merges. It derives lifetimes, loads, stores and
+//! uses, places memory in a pool, and logs a reason for each decision. In that time, zenfg validates content flow by byte
+//! range, culls, derives uses and plans its pool. The peer drops its graph after each frame, as its interface requires; ours
 //! keeps its memory.
 
 use framegraph::{AccessKind, Caps, Graph, Intent, Options, Plan, Scratch, compile};

@@ -77,8 +77,8 @@ pub fn page(record: &Record, pictures: &Path) -> String {
     text
 }
 
-/// Returns a table of options as parts of one frame, and a bar per group: the time that its finest option adds to its
-/// cheapest, relative to the reference.
+/// Returns a table of options as parts of one frame, with a bar per group. The bar is the additional time of its finest
+/// option over its cheapest, relative to the reference.
 fn budget(measured: &Measured) -> String {
     let mut text = format!(
         "<h2 id=budget>budget</h2><p>Options as parts of one frame, each changed alone from the reference, which takes {} ms. \

@@ -110,8 +110,8 @@ fn ten_frames_with_a_resize_are_the_same_however_they_are_planned() -> Result<()
     Ok(())
 }
 
-/// Frames with every effect and its histories, placed in one block of memory and recorded on three threads, equal
-/// frames with separate textures recorded on one thread. The first frames of every other variant are equal too.
+/// Places frames with every effect and its histories in one block of memory, and records them on three threads. They
+/// equal frames with separate textures recorded on one thread. The first frames of every other variant are equal too.
 #[test]
 fn frames_in_one_block_of_memory_are_the_frames_apart() -> Result<(), Box<dyn Error>> {
     const NAME: &str = "frames_in_one_block_of_memory_are_the_frames_apart";

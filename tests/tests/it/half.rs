@@ -77,8 +77,8 @@ fn same(what: &str, told: &str, measured: f64) {
     assert!((told - measured).abs() <= 0.2 * measured.abs() + 1e-9, "{what}: {told} is told, {measured} measured");
 }
 
-/// Negative control: the textbook's distribution in half floats exceeds the bound, and so does a result that is off by
-/// 10 % where half floats are more precise.
+/// Negative controls: the textbook's distribution in half floats exceeds the bound. A result that is off by 10 % does
+/// too, if half floats are more precise.
 #[test]
 fn the_textbook_form_and_results_that_are_off_are_found() -> TestResult {
     let Some(gpu) = gpu("the_textbook_form_and_results_that_are_off_are_found") else { return Ok(()) };

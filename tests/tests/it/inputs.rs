@@ -194,8 +194,8 @@ fn metalness_and_roughness_are_their_channels() -> TestResult {
 }
 
 /// Occlusion is in red, and its strength applies to image-based light but not to punctual lights. For the sun, the
-/// brightest or last of several directional lights, it adds micro-shadowing (Chan, "Material Advances in Call of Duty:
-/// WWII", 2018: the square of n·l over the sine of the open cone).
+/// brightest or last of several directional lights, it adds micro-shadowing. The formula is the square of n·l over the
+/// sine of the open cone (Chan, "Material Advances in Call of Duty: WWII", 2018).
 #[test]
 fn occlusion_is_its_channel_by_its_strength() -> TestResult {
     let Some(gpu) = gpu("occlusion_is_its_channel_by_its_strength") else { return Ok(()) };

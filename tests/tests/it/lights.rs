@@ -47,8 +47,8 @@ fn same(gpu: &Gpu, what: &str, mut night: Night) -> TestResult {
     Ok(())
 }
 
-/// Tested from the scene's cameras, from between the lights, and in orthographic projection; in odd sizes, with four
-/// samples, in half floats, with shadows, and with blended surfaces.
+/// Tested from the scene's cameras, from between the lights, and in orthographic projection. Also tested in odd sizes,
+/// with four samples, in half floats, with shadows, and with blended surfaces.
 #[test]
 fn froxels_show_what_all_lights_show() -> TestResult {
     let Some(gpu) = gpu("froxels_show_what_all_lights_show") else { return Ok(()) };

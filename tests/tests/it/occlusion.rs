@@ -252,7 +252,7 @@ fn texels_are_those_of_the_mirror() -> TestResult {
     Ok(())
 }
 
-/// The foot of a wall is shadowed from a sun behind it, within the cone's range; a sun that shines into the corner
+/// The foot of a wall is shadowed from a sun behind it, within the cone's range. A sun that shines into the corner
 /// casts no such shadow.
 #[test]
 fn cones_find_what_stands_before_the_sun() -> TestResult {

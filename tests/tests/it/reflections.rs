@@ -34,8 +34,8 @@ fn counts(settings: Settings) -> Counts {
 /// post                          ldr            don't care STORE
 /// fxaa                          output         don't care STORE
 ///
-/// Filament with separate grading and FXAA: five levels of structure, 5 stores; reflections, 1; two for each of six
-/// further levels, blurred across and down; color, grading and FXAA, 3. There is no load either.
+/// Filament with separate grading and FXAA has more stores. Five levels of structure have 5 stores, reflections 1, and
+/// each of six further levels 2, blurred across and down. Color, grading and FXAA have 3. There is no load either.
 #[test]
 fn counts_are_less_than_filaments() {
     for samples in [1, 4] {

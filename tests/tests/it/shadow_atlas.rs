@@ -44,8 +44,9 @@ fn off(a: &[[f32; 4]], b: &[[f32; 4]]) -> usize {
     a.iter().zip(b).filter(differs).count()
 }
 
-/// The light's six maps, next to each other and to three entirely dark ones, with every filter, wide penumbrae, blur
-/// and levels, compared with six separate layers. Moments of four samples are close to those of one sample.
+/// The light's six maps are next to each other and to three entirely dark ones, and are compared with six separate
+/// layers. Every filter, wide penumbrae, blur and levels are tested. Moments of four samples are close to those of one
+/// sample.
 #[test]
 fn nothing_bleeds_from_map_to_map() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu("nothing_bleeds_from_map_to_map") else { return Ok(()) };

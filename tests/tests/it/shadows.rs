@@ -101,8 +101,8 @@ fn casters_of_all_sides_cast() -> TestResult {
     cast("casters_of_all_sides_cast", Board::default(), &casters)
 }
 
-/// A floor at grazing light with a low-resolution map: no texel shadows itself, and the bias does not light the area
-/// under a caster near the floor.
+/// A floor at grazing light with a low-resolution map: no texel shadows itself. The bias does not light the area under
+/// a caster near the floor.
 #[test]
 fn what_nothing_shades_is_lit_in_full() -> TestResult {
     let Some(gpu) = gpu("what_nothing_shades_is_lit_in_full") else { return Ok(()) };
@@ -145,7 +145,7 @@ fn each_cascade_has_its_color() -> TestResult {
         }
         board.scene.lights = vec![Light::directional("sun", Vec3::NEG_Z, PI as f32)];
         let seen = board.render_lit(&gpu, lighting(&gpu, &Environment::uniform(DVec3::ZERO)?, &shading)?, &shading)?;
-        // Half floats.
+        // Tolerance for half floats.
         assert!((seen[0].nits - tint).abs().max_element() < 2e-3, "cascade {number}: {} for {tint}", seen[0].nits);
     }
     Ok(())

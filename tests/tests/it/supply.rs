@@ -144,8 +144,8 @@ fn crates_come_from_the_registry_alone() {
     }
 }
 
-/// Number of crates that were added after the snapshot and not looked up when this list was started, without the two
-/// crates of `multiversion` that came with it.
+/// Number of crates that were added after the snapshot and not looked up when this list was started. The two crates of
+/// `multiversion`, which came with the list, are not included.
 const OPEN: usize = 58;
 
 /// Parses the three numbers of a version.

@@ -100,8 +100,8 @@ fn uniform_areas_keep_their_values() -> TestResult {
     Ok(())
 }
 
-/// A frame of half the width and height has the same steps with a quarter of the texels, then `upscale` and its
-/// sharpening, which each store once and load nothing. The picture has the same size and brightness as without
+/// A frame of half the width and height has the same steps with a quarter of the texels. The passes `upscale` and its
+/// sharpening follow, which each store once and load nothing. The picture has the same size and brightness as without
 /// upscaling.
 #[test]
 fn a_smaller_frame_is_shown_as_large() -> TestResult {

@@ -285,8 +285,8 @@ fn motion_with_the_eye_accumulates_like_no_motion() -> TestResult {
     Ok(())
 }
 
-/// With moving ball and eye, the accumulated picture with velocity is about twice as close to 64 samples per pixel as
-/// without, and closer than a single frame.
+/// If ball and eye move, the accumulated picture with velocity is closer to 64 samples per pixel than a single frame.
+/// It is about twice as close as without velocity.
 #[test]
 fn sums_follow_what_moves() -> TestResult {
     let Some(gpu) = gpu("sums_follow_what_moves") else { return Ok(()) };

@@ -12,7 +12,7 @@ const COLUMNS: u32 = 256;
 /// Returns ∫ L(l)·D(h)·cos over the hemisphere about n, divided by the integral without L; `radiance` has up to three
 /// channels.
 ///
-/// The grid is uniform in azimuth, and in the fourth root of the angle, so that a third of its rows cover the lobe,
+/// The grid is uniform in azimuth, and in the fourth root of the angle. A third of its rows therefore cover the lobe,
 /// regardless of its width.
 pub fn gathered(n: DVec3, roughness: f64, radiance: impl Fn(DVec3) -> DVec3) -> DVec3 {
     let (t, b) = frame(n);

@@ -1,5 +1,5 @@
-//! Random walk of light on a rough conductor: Heitz, Hanika, d'Eon and Dachsbacher, "Multiple-Scattering Microfacet
-//! BSDFs with the Smith Model", SIGGRAPH 2016, for GGX and heights uniform over [-1, 1].
+//! Random walk of light on a rough conductor, for GGX and heights uniform over [-1, 1]. Source: Heitz, Hanika, d'Eon
+//! and Dachsbacher, "Multiple-Scattering Microfacet BSDFs with the Smith Model", SIGGRAPH 2016.
 
 use glam::DVec3;
 use std::f64::consts::TAU;

@@ -15,8 +15,8 @@ pub fn directions(count: u32) -> Vec<DVec3> {
     (0..count).map(direction).collect()
 }
 
-/// Returns irradiance over π on a surface facing `normal`, by a grid of `rows`² directions that is uniform in the
-/// squared cosine, so that each has the same weight.
+/// Returns irradiance over π on a surface facing `normal`, by a grid of `rows`² directions. The grid is uniform in the
+/// squared cosine, so that each direction has the same weight.
 pub fn irradiance_over_pi(normal: DVec3, rows: u32, radiance: impl Fn(DVec3) -> f64) -> f64 {
     let (t, b) = frame(normal);
     let mut sum = 0.0;

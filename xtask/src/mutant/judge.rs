@@ -150,8 +150,8 @@ pub fn learn(program: &Path, folder: &Path, name: String, notes: &Path) -> Resul
 }
 
 /// Runs one test and returns its processor time, or wall-clock time if the system does not report that. A test counts
-/// as endless after 30 s of processor time and 20 times its normal time, or after 120 s and 100 times its normal time
-/// by the clock.
+/// as endless after 30 s of processor time and 20 times its normal time. It also does after 120 s and 100 times its
+/// normal time by the clock.
 fn run(
     program: &Path,
     folder: &Path,

@@ -197,7 +197,7 @@ pub enum GradingQuality {
 pub enum GradingFormat {
     /// 10-bit integers.
     Integer,
-    /// Half floats.
+    /// Tolerance for half floats.
     Float,
 }
 

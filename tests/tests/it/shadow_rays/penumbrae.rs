@@ -72,7 +72,7 @@ fn penumbrae_are_as_wide_in_the_middle_of_the_depth() -> TestResult {
     under_the_sun(&gpu, &floors, [0.0286, 0.0033], [0.0569, 0.0033])
 }
 
-/// A light of 12 cm radius at a height of 4 m, and the plate's edge at 2.5 m below it: a penumbra of 20 cm to either
+/// A light of 12 cm radius is at a height of 4 m, above the plate's edge at 2.5 m. The penumbra extends 20 cm to either
 /// side.
 #[test]
 fn penumbrae_of_a_spot_are_those_of_its_bulb() -> TestResult {

@@ -108,9 +108,9 @@ fn panes_side_by_side_need_one_layer() -> TestResult {
     Ok(())
 }
 
-/// A ball of glass shows the edge of a checkerboard behind it as a continuous edge, row by row, in the position given
-/// by refraction. A ray that enters at x exits at 2 / 1.5 − 1 times x, so the edge appears three times as far from the
-/// ball's center.
+/// A ball of glass shows the edge of a checkerboard behind it as a continuous edge in every row. Its position follows
+/// from refraction: a ray that enters at x exits at 2 / 1.5 − 1 times x. The edge therefore appears three times as far
+/// from the ball's center.
 #[test]
 fn balls_bend_an_edge_and_do_not_break_it() -> TestResult {
     let Some(gpu) = gpu("balls_bend_an_edge_and_do_not_break_it") else { return Ok(()) };
