@@ -45,7 +45,7 @@ fn run(options: &Options) -> Result<(), Failure> {
         let note = if share > limit {
             exceeded.push(name.as_str());
             "  EXCEEDED"
-        } else if share < limit {
+        } else if lowered.of(name) < limit {
             "  lower the limit"
         } else {
             ""

@@ -10,6 +10,9 @@ pub const FILE: &str = "xtask/prose.ron";
 /// Limit of a folder that the file does not list, in tenths of a percent.
 const DEFAULT: usize = 40;
 
+/// Smallest limit, in tenths of a percent: the rules also flag a few good sentences.
+const MIN_LIMIT: usize = 20;
+
 const HEAD: &str = "\
 // Highest allowed share of flagged sentences per top-level folder, in percent.
 // `cargo xtask prose --lower` lowers limits to the measured shares; limits are raised by hand.
@@ -52,10 +55,10 @@ impl Limits {
         self.0.get(folder).copied().unwrap_or(DEFAULT)
     }
 
-    /// Returns limits no higher than the measured shares. Folders that are not listed get their share as the limit;
-    /// missing folders are removed.
+    /// Returns limits no higher than the measured shares, but at least [`MIN_LIMIT`]. Folders that are not listed get
+    /// their share as the limit; missing folders are removed.
     pub fn lowered(&self, folders: &BTreeMap<String, Folder>) -> Self {
-        let limit = |name: &str, share: usize| self.0.get(name).map_or(share, |limit| share.min(*limit));
+        let limit = |name: &str, share: usize| self.0.get(name).map_or(share, |limit| share.min(*limit)).max(MIN_LIMIT);
         Self(folders.iter().map(|(name, folder)| (name.clone(), limit(name, folder.permille()))).collect())
     }
 }
@@ -82,7 +85,10 @@ mod tests {
         assert_eq!([limits.of("a"), limits.of("b"), limits.of("new")], [50, 125, DEFAULT]);
         let folders = [("a", folder(100, 9)), ("b", folder(300, 1)), ("new", folder(10, 3))];
         let lowered = limits.lowered(&folders.map(|(name, folder)| (name.to_owned(), folder)).into());
-        assert_eq!(lowered.0, [("a", 50), ("b", 4), ("new", 300)].map(|(name, limit)| (name.to_owned(), limit)).into());
+        assert_eq!(
+            lowered.0,
+            [("a", 50), ("b", MIN_LIMIT), ("new", 300)].map(|(name, limit)| (name.to_owned(), limit)).into()
+        );
         assert_eq!(Limits::read(&lowered.written()), Ok(lowered));
     }
 
