@@ -1,4 +1,4 @@
-"""A frame of the real Filament, as Open3D brings it, timed for `cargo xtask bench --frames --beside`.
+"""Times a frame of Filament from Open3D for `cargo xtask bench --frames --beside`.
 
     python3 frame.py SCENE.glb 1280x720 3.2,2.6,4.6 -0.2,0.7,-0.4
 
@@ -19,7 +19,7 @@ WARMING_UP, FRAMES = 2, 12
 
 
 def median_ms(path, size, eye, target):
-    """The median time of a frame with its picture read back; of an empty one where the path is empty."""
+    """Returns the median time of a frame with readback; of an empty frame if the path is empty."""
     renderer = rendering.OffscreenRenderer(*size)
     shown, view = renderer.scene, renderer.scene.view
     if path:

@@ -1,17 +1,18 @@
-//! Comparing two pictures of display codes.
+//! Comparison of two 8-bit pictures.
 
-/// How far two pictures are apart.
+/// Difference of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
     /// Peak signal-to-noise ratio over red, green and blue in dB; infinite for equal pictures.
     pub psnr_db: f64,
-    /// Share of pixels with a channel that is off by more than 2 codes, 0…1.
+    /// Share of pixels with a channel that differs by more than 2 of 255 steps, 0…1.
     pub share_off: f64,
-    /// The largest difference of any channel, in codes.
+    /// Largest difference of any channel, in 8-bit steps.
     pub largest_codes: u8,
 }
 
-/// Compares red, green and blue of two pictures of four bytes a texel; `None` when their lengths differ or are no pictures.
+/// Compares red, green and blue of two pictures of four bytes per texel. Returns `None` if their lengths differ or are
+/// not multiples of four.
 pub fn compare(a: &[u8], b: &[u8]) -> Option<Difference> {
     if a.len() != b.len() || a.is_empty() || !a.len().is_multiple_of(4) {
         return None;

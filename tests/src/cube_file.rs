@@ -1,9 +1,8 @@
-//! Khronos textures that hold a cube of light, written: the opposite of what is read, from the formats' specifications, with
-//! no code in common.
+//! Writer of Khronos cube textures, from the formats' specifications, without code shared with the reader.
 
 use glam::{DVec2, DVec3};
 
-/// The right, downward and forward axes of each face: OpenGL 4.6, table 8.19.
+/// Right, down and forward axes of each face: OpenGL 4.6, table 8.19.
 const FACES: [[DVec3; 3]; 6] = [
     [DVec3::NEG_Z, DVec3::NEG_Y, DVec3::X],
     [DVec3::Z, DVec3::NEG_Y, DVec3::NEG_X],
@@ -13,39 +12,39 @@ const FACES: [[DVec3; 3]; 6] = [
     [DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z],
 ];
 
-/// A cube to write.
+/// A cube texture to write.
 #[derive(Clone, Debug)]
 pub struct CubeFile {
-    /// Width of the faces of the first level in texels.
+    /// Width of the faces at level 0, in texels.
     pub size: u32,
-    /// The texels of each level in the order of files: faces, rows, columns.
+    /// Texels of each level in file order: faces, rows, columns.
     pub levels: Vec<Vec<DVec3>>,
-    /// What stands under `sh`.
+    /// Value of the metadata key `sh`.
     pub sh: Option<String>,
 }
 
-/// How texels are written.
+/// Texel format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Texels {
     /// Four half floats.
     Rgba16,
-    /// Three of them.
+    /// Three half floats.
     Rgb16,
     /// Four floats.
     Rgba32,
-    /// Three of them.
+    /// Three floats.
     Rgb32,
-    /// 11, 11 and 10 bits.
+    /// Unsigned floats of 11, 11 and 10 bits.
     Rg11b10,
-    /// Three mantissas, one exponent.
+    /// Three mantissas of 9 bits with a shared exponent of 5 bits.
     Rgb9e5,
 }
 
 impl Texels {
-    /// All of them.
+    /// All formats.
     pub const ALL: [Self; 6] = [Self::Rgba16, Self::Rgb16, Self::Rgba32, Self::Rgb32, Self::Rg11b10, Self::Rgb9e5];
 
-    /// OpenGL's internal format and Vulkan's format.
+    /// Returns OpenGL's internal format and Vulkan's format.
     const fn numbers(self) -> [u32; 2] {
         match self {
             Self::Rgba16 => [0x881A, 97],
@@ -57,7 +56,7 @@ impl Texels {
         }
     }
 
-    /// The most that rounding moves a number by, as a share of the brightest channel.
+    /// Returns the maximum rounding error, relative to the brightest channel.
     pub const fn error(self) -> f64 {
         match self {
             Self::Rgba16 | Self::Rgb16 => 1.0 / 2048.0,
@@ -88,7 +87,7 @@ impl Texels {
                 word(r + (g << 11) + (b << 22), 4);
             }
             Self::Rgb9e5 => {
-                // The specification's: a shared exponent with room for the brightest channel after rounding.
+                // The shared exponent leaves room for the brightest channel after rounding.
                 let most = rgb.iter().copied().fold(0.0, f64::max).max(1e-30);
                 let mut exponent = most.log2().floor().max(-16.0) + 16.0;
                 if (most / (exponent - 24.0).exp2()).round() > 511.0 {
@@ -101,7 +100,7 @@ impl Texels {
     }
 }
 
-/// The nearest number of 5 bits of exponent and so many of mantissa, without sign: those below 2^-14 in steps.
+/// Rounds to an unsigned float with a 5-bit exponent and `mantissa` bits; values below 2^-14 are denormal.
 fn small_float(value: f64, mantissa: i32) -> u64 {
     let steps = f64::from(mantissa).exp2();
     if value < f64::exp2(-14.0) {
@@ -114,7 +113,7 @@ fn small_float(value: f64, mantissa: i32) -> u64 {
 }
 
 impl CubeFile {
-    /// A cube whose levels halve, of `radiance` by level and direction.
+    /// Creates a cube with a mip chain from a function of level and direction.
     pub fn new(size: u32, levels: u32, radiance: impl Fn(u32, DVec3) -> DVec3) -> Self {
         let texels = |level: u32| {
             let side = (size >> level).max(1);
@@ -133,7 +132,7 @@ impl CubeFile {
         Self { size, levels: (0..levels).map(texels).collect(), sh: None }
     }
 
-    /// The same with irradiance.
+    /// Adds coefficients of irradiance in spherical harmonics.
     pub fn with_sh(self, factors: &[DVec3]) -> Self {
         let line = |c: &DVec3| format!("{:.9} {:.9} {:.9}\n", c.x, c.y, c.z);
         Self { sh: Some(factors.iter().map(line).collect()), ..self }
@@ -151,7 +150,7 @@ impl CubeFile {
         out
     }
 
-    /// Version 1, as `cmgen` writes it.
+    /// Returns the file in version 1, as `cmgen` writes it.
     pub fn ktx1(&self, texels: Texels, big_endian: bool) -> Vec<u8> {
         let metadata = self.metadata(big_endian);
         let mut out = vec![0xAB, 0x4B, 0x54, 0x58, 0x20, 0x31, 0x31, 0xBB, 0x0D, 0x0A, 0x1A, 0x0A];
@@ -160,7 +159,8 @@ impl CubeFile {
             _ => 4,
         };
         let [internal, _] = texels.numbers();
-        // Endianness, type, its size, format, internal and base format; width, height, depth, elements, faces, levels.
+        // Endianness, type, type size, format, internal format, base format; then width, height, depth, elements,
+        // faces, levels.
         let head = [0x0403_0201, 0x8C3B, type_size, 0x1907, internal, 0x1907];
         let shape = [self.size, self.size, 0, 0, 6, self.levels.len() as u32, metadata.len() as u32];
         head.into_iter().chain(shape).for_each(|word| put(&mut out, word, big_endian));
@@ -181,7 +181,7 @@ impl CubeFile {
         out
     }
 
-    /// Version 2, its coarsest level first as the specification asks.
+    /// Returns the file in version 2, with the coarsest level first, as specified.
     pub fn ktx2(&self, texels: Texels) -> Vec<u8> {
         let metadata = self.metadata(false);
         let mut out = vec![0xAB, 0x4B, 0x54, 0x58, 0x20, 0x32, 0x30, 0xBB, 0x0D, 0x0A, 0x1A, 0x0A];
@@ -189,7 +189,7 @@ impl CubeFile {
         let count = self.levels.len();
         let index_end = 80 + 24 * count;
         let head = [format, 4, self.size, self.size, 0, 0, 6, count as u32, 0];
-        // No descriptor of the format is read; the metadata stand behind the index.
+        // The reader ignores the format descriptor; metadata follow the index.
         let places = [0, 0, index_end as u32, metadata.len() as u32, 0, 0, 0, 0];
         head.into_iter().chain(places).for_each(|word| put(&mut out, word, false));
         let levels: Vec<Vec<u8>> = self

@@ -1,18 +1,18 @@
-//! Executors that tests lend each other: a device's pipelines are made once, and not for each picture.
+//! Pool of executors, so that tests compile a device's pipelines only once.
 
 use framegraph_wgpu::{Executor, Gpu};
 use std::ops::{Deref, DerefMut};
 use std::sync::{Mutex, PoisonError};
 
-/// Executors that nobody uses, the last one given back last. They keep their devices open, so there are no more of them than
-/// tests run at once.
+/// Idle executors, the most recently used last. They keep their devices open, so there are at most as many as
+/// concurrent tests.
 static IDLE: Mutex<Vec<Executor>> = Mutex::new(Vec::new());
 
-/// An executor of a device, which may have drawn other frames. It has no histories.
+/// An executor from the pool, which may have drawn other frames. It has no history textures.
 #[derive(Debug)]
 pub struct Lent(Option<Executor>);
 
-/// One that was used before on that device, or else a new one.
+/// Returns an idle executor of the device, or a new one.
 ///
 /// ```no_run
 /// let gpu = framegraph_wgpu::Gpu::open(&framegraph_wgpu::AdapterRequest::from_env())?;

@@ -1,4 +1,4 @@
-//! One pass over a picture of eight bits a channel, with nothing but its shaders.
+//! Runs a single pass over an 8-bit picture.
 
 use crate::executors;
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Options, Plan, Scratch, Texture, TextureDesc, compile};
@@ -8,10 +8,10 @@ use std::error::Error;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
 
-/// What a pass makes of codes, four bytes a texel from left to right and top to bottom.
+/// Returns the output of a pass for a picture of four bytes per texel, left to right and top to bottom.
 ///
 /// # Errors
-/// What the frame, the compiler or the device refuses.
+/// Any error of the frame, the compiler or the device.
 pub fn filtered(
     gpu: &Gpu,
     codes: &[u8],

@@ -1,8 +1,8 @@
-//! What is read from files, given any bytes: a value that keeps its promises, or an error of one line; never a panic, and never
-//! more than a little memory.
+//! Readers of files, called with arbitrary bytes. Each must return a valid value or a one-line error, without a panic
+//! and within a memory limit.
 //!
-//! The fuzz targets under `tests/fuzz` are these functions. `tests/corpus` has small files for each, which a test replays with
-//! damage done to them ([`Damage`]).
+//! The fuzz targets in `tests/fuzz` call these functions. `tests/corpus` has small files for each; a test replays them
+//! with damage ([`Damage`]).
 
 use crate::reference::document::Document;
 use crate::reference::rule;
@@ -12,10 +12,10 @@ use framegraph_scene::{ColorTable, Environment, LoadOptions, Memory, import, pro
 use glam::DVec3;
 use std::path::Path;
 
-/// A reader, by the name of its target and its folder in the corpus.
+/// Name of a target and its corpus folder, and the reader.
 pub type Target = (&'static str, fn(&[u8]) -> bool);
 
-/// Every reader of files from elsewhere. Each returns whether it found the bytes sound.
+/// Every reader of external files. Each returns true if the bytes were valid.
 pub const TARGETS: [Target; 5] = [
     ("gltf", gltf),
     ("environment", environment),
@@ -24,15 +24,15 @@ pub const TARGETS: [Target; 5] = [
     ("color_table", color_table),
 ];
 
-/// What a file of the corpus may take once it is read.
+/// Memory limit for reading a file of the corpus, in bytes.
 const MEMORY_BYTES: u64 = 16 << 20;
 
-/// Few bytes may claim to be much.
+/// Returns options with a low memory limit, since a small file can claim a large size.
 fn options() -> LoadOptions {
     LoadOptions { memory: Memory::new(MEMORY_BYTES).into(), ..LoadOptions::default() }
 }
 
-/// A glTF or GLB file. Files beside it are not there.
+/// Reads a glTF or GLB file; external files are missing.
 pub fn gltf(bytes: &[u8]) -> bool {
     let path = Path::new("no such folder/fuzz.glb");
     match import::load_bytes_with(path, bytes, &options(), &mut progress::silent) {
@@ -44,7 +44,7 @@ pub fn gltf(bytes: &[u8]) -> bool {
     }
 }
 
-/// A Radiance or OpenEXR picture, or a cube in a Khronos texture.
+/// Reads a Radiance or OpenEXR picture, or a Khronos cube texture.
 pub fn environment(bytes: &[u8]) -> bool {
     match Environment::load_bytes(Path::new("fuzz.hdr"), bytes, &options(), &mut progress::silent) {
         Ok(environment) => {
@@ -55,24 +55,24 @@ pub fn environment(bytes: &[u8]) -> bool {
         }
         Err(error) => {
             let error = error.to_string();
-            // Panics of other crates' decoders are caught; that of Radiance files is our own and must not need it.
+            // Panics of third-party decoders are caught. Our own decoder of Radiance files must not panic.
             assert!(!(bytes.starts_with(b"#?") && error.contains("the decoder failed")), "{error}");
             one_line(&error, "fuzz.hdr")
         }
     }
 }
 
-/// An entry of the cache of computed light.
+/// Reads an entry of the light cache.
 pub fn light_cache(bytes: &[u8]) -> bool {
     cache::examine(bytes)
 }
 
-/// A statement of a reference picture, in JSON.
+/// Reads a statement of a reference picture, in JSON.
 pub fn statement(bytes: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(bytes) else { return false };
     match Document::parse(Path::new("fuzz.json"), text) {
         Ok(document) => {
-            // What is understood of its rule does not matter; that it is read without a panic does.
+            // The parsed rule is irrelevant, as long as parsing does not panic.
             drop(document.suggested_pass.as_deref().map(rule::parse));
             true
         }
@@ -80,7 +80,7 @@ pub fn statement(bytes: &[u8]) -> bool {
     }
 }
 
-/// A `.cube` file.
+/// Reads a `.cube` file.
 pub fn color_table(bytes: &[u8]) -> bool {
     match ColorTable::load_bytes(Path::new("fuzz.cube"), bytes) {
         Ok(table) => {
@@ -92,13 +92,13 @@ pub fn color_table(bytes: &[u8]) -> bool {
     }
 }
 
-/// An error names the file, on one line.
+/// Returns true if an error names the file in a single line.
 fn one_line(error: &str, file: &str) -> bool {
     assert!(error.contains(file) && !error.contains('\n'), "{error}");
     false
 }
 
-/// A fixed sequence of damage, so that a failure can be repeated (Knuth's MMIX generator).
+/// A deterministic sequence of damage, for reproducible failures (Knuth's MMIX generator).
 #[derive(Clone, Copy, Debug)]
 pub struct Damage(pub u64);
 
@@ -108,8 +108,7 @@ impl Damage {
         (self.0 >> 33) as usize % n.max(1)
     }
 
-    /// A copy of a file with up to four faults: bytes set or flipped, digits exchanged, a piece cut out, doubled, or taken
-    /// from another file, the end cut off.
+    /// Returns a copy of a file with up to four faults. A fault sets or flips bytes, replaces digits, cuts or duplicates a piece, copies a piece from another file, or cuts the end off.
     pub fn done_to(&mut self, file: &[u8], other: &[u8]) -> Vec<u8> {
         let mut bytes = file.to_vec();
         for _ in 0..=self.below(4) {
@@ -121,7 +120,7 @@ impl Damage {
                 1 => bytes[at] = [0, 0xff, 0x7f, b'"', b'-'][self.below(5)],
                 2 => bytes[at] = self.below(256) as u8,
                 3 | 4 => {
-                    // In texts numbers go wrong while the structure stays.
+                    // In text files, changing digits breaks numbers and keeps the structure.
                     let digits: Vec<usize> = (0..bytes.len()).filter(|at| bytes[*at].is_ascii_digit()).collect();
                     if let Some(at) = digits.get(self.below(digits.len())) {
                         bytes[*at] = b'0' + self.below(10) as u8;

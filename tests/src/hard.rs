@@ -1,8 +1,8 @@
-//! The shader library at inputs that break arithmetic, the rows of them, and what each guard in it is good for.
+//! Tests of the shader library with inputs that break arithmetic, and of each guard in it.
 //!
-//! [`probe`] says what is asked of a function and what must come of it, [`judge`] asks the device, [`guard`] finds what
-//! holds values back and makes texts without it, [`strict`] reads texts as other drivers may, [`rows`] says where each kind of hard input is tested. The program
-//! `hard_cases` prints `docs/hard-cases.md`; tests find its rows again.
+//! [`probe`] defines inputs and invariants of functions, [`judge`] evaluates them on the device, and [`guard`] finds
+//! guards and removes them. [`strict`] rewrites shaders as stricter drivers may evaluate them, and [`rows`] lists the
+//! kinds of hard inputs. The program `hard_cases` prints `docs/hard-cases.md`, and a test compares the document.
 
 pub mod document;
 pub mod guard;

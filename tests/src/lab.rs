@@ -1,8 +1,9 @@
-//! The lab: what each approximation of the frame errs by, and what it costs, in one schema.
+//! Measurement of the error and cost of each approximation of the frame.
 //!
-//! A [`technique::Technique`] is a choice with its options, its truth and its metric; [`techniques`] has those of the standard
-//! frame, and a pass from outside brings its own. [`run`] measures them into a [`record::Record`], which
-//! [`markdown`] and [`html`] show. [`budget`] measures what frames within a budget are chosen from, and how they turn out. The program is `accuracy`.
+//! A [`technique::Technique`] is a setting with its options, reference and metric. [`techniques`] has those of the
+//! standard frame, and external passes can add their own. [`run`] measures them into a [`record::Record`], which
+//! [`markdown`] and [`html`] display. [`budget`] measures options as parts of one frame and verifies the chosen
+//! settings. The program is `accuracy`.
 
 pub mod answers;
 pub mod budget;

@@ -1,4 +1,4 @@
-//! What the tests across crates share: comparing pictures, the README's examples as tests.
+//! Helpers of the tests across packages: comparison of pictures, and documentation examples as tests.
 
 pub mod compare;
 pub mod cube_file;
@@ -15,12 +15,12 @@ pub mod reference;
 pub mod soak;
 pub mod stage;
 
-/// The examples of the README, run as doc tests.
+/// Examples of the README, run as doc tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;
 
-/// The guides of `docs/guide`, run as doc tests.
+/// Guides in `docs/guide`, run as doc tests.
 #[cfg(doctest)]
 mod guide {
     #[doc = include_str!("../../docs/guide/own-device.md")]
@@ -41,7 +41,7 @@ mod guide {
     pub struct Threads;
 }
 
-/// Whether there is an adapter to run `test` on; says that it is skipped where there is none.
+/// Returns true if an adapter exists. Otherwise reports `test` as skipped.
 pub fn has_adapter(test: &str) -> bool {
     let opened = framegraph_wgpu::Gpu::open(&framegraph_wgpu::AdapterRequest::from_env());
     if let Err(error) = &opened {

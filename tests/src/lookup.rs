@@ -1,4 +1,4 @@
-//! Light looked up on the device as a shading pass does it: the specular cube, the DFG table, the harmonics.
+//! Image-based light evaluated on the device as in shading passes: specular cube, DFG table, harmonics.
 
 use framegraph_passes::ibl::{DfgTable, ImageLight};
 use framegraph_shaders::{Features, Module};
@@ -42,19 +42,19 @@ import package::lib::sh::irradiance_sh5;
     got[id.x] = vec4<f32>(irradiance_sh5(harmonics, asked[id.x].xyz), 1.0);
 }";
 
-/// How roughness chooses a level.
+/// Mapping from roughness to a mip level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mapping {
-    /// As shaders do.
+    /// The mapping of the shaders.
     Lod,
-    /// In proportion: wrong, for controls.
+    /// A linear mapping: wrong, for negative controls.
     Linear,
 }
 
-/// Radiance in nits that lobes of these (direction, roughness) gather.
+/// Returns the prefiltered radiance in nits for pairs of direction and roughness.
 ///
 /// # Errors
-/// When the device refuses or fails.
+/// The device fails.
 pub fn specular(
     gpu: &Gpu,
     light: &ImageLight,
@@ -74,10 +74,10 @@ pub fn specular(
     Ok(got.into_iter().map(|[r, g, b, _]| [r, g, b].map(|c| f64::from(c) * nits)).collect())
 }
 
-/// What the table holds at these (n·v, roughness).
+/// Returns the table's values for pairs of n·v and roughness.
 ///
 /// # Errors
-/// When the device refuses or fails.
+/// The device fails.
 pub fn dfg(gpu: &Gpu, table: &DfgTable, asked: &[[f64; 2]]) -> Result<Vec<[f64; 3]>, Box<dyn Error>> {
     let sampler = trilinear(gpu);
     let bindings = [(2, BindingResource::TextureView(&table.view)), (3, BindingResource::Sampler(&sampler))];
@@ -86,10 +86,10 @@ pub fn dfg(gpu: &Gpu, table: &DfgTable, asked: &[[f64; 2]]) -> Result<Vec<[f64; 
     Ok(got.into_iter().map(|[r, g, b, _]| [r, g, b].map(f64::from)).collect())
 }
 
-/// Irradiance / π in nits on surfaces of these normals.
+/// Returns irradiance / π in nits for surface normals.
 ///
 /// # Errors
-/// When the device refuses or fails.
+/// The device fails.
 pub fn irradiance(gpu: &Gpu, light: &ImageLight, normals: &[[f32; 4]]) -> Result<Vec<[f64; 3]>, Box<dyn Error>> {
     let harmonics = uniform(gpu, bytemuck::cast_slice(&light.irradiance));
     let got = run(gpu, IRRADIANCE, normals, &[(4, harmonics.as_entire_binding())])?;

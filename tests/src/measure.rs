@@ -1,4 +1,4 @@
-//! Errors of image-based light against brute force, as numbers: printed by the program `ibl_errors`, bounded by tests.
+//! Errors of image-based light against brute force, printed by the program `ibl_errors` and bounded by tests.
 
 pub mod albedo;
 pub mod board;
@@ -20,7 +20,7 @@ pub mod temporal;
 use framegraph_scene::environment::{EquirectMap, direction_from_equirect_uv};
 use glam::{DVec2, DVec3};
 
-/// A grey map whose texels hold the mean of `radiance` over 4×4 points, so that edges do not step from texel to texel.
+/// Creates a gray map whose texels average `radiance` over 4×4 points, which smooths edges.
 pub fn averaged_map(width: u32, radiance: impl Fn(DVec3) -> f64) -> EquirectMap {
     let height = width / 2;
     let mut texels = Vec::with_capacity((width * height) as usize);

@@ -1,4 +1,4 @@
-//! The shader library on a device against its f64 mirrors: one compute pipeline a function.
+//! Functions of the shader library on a device, compared with their f64 mirrors: one compute pipeline per function.
 
 use std::error::Error;
 
@@ -7,18 +7,18 @@ use framegraph_wgpu::{Gpu, read_buffer};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BindGroupDescriptor, BindGroupEntry, BufferDescriptor, BufferUsages, ComputePipelineDescriptor};
 
-/// What `case` gives on the device for `inputs`, row by row.
+/// Returns the results of `case` on the device for `inputs`, row by row.
 ///
 /// # Errors
-/// When the shader does not resolve, or the device refuses or fails.
+/// The shader does not resolve, or the device fails.
 pub fn results(gpu: &Gpu, case: &Case, inputs: &[f32]) -> Result<Vec<f32>, Box<dyn Error>> {
     results_of(gpu, case, &case.shader()?.wgsl, inputs)
 }
 
-/// The same of another text with the interface of [`Case::shader`].
+/// Returns the results of another shader text with the interface of [`Case::shader`].
 ///
 /// # Errors
-/// When the device refuses the text or fails.
+/// The device rejects the text or fails.
 pub fn results_of(gpu: &Gpu, case: &Case, wgsl: &str, inputs: &[f32]) -> Result<Vec<f32>, Box<dyn Error>> {
     let rows = inputs.len() / case.input_width();
     let size = (rows * case.results.len() * size_of::<f32>()) as u64;
@@ -66,10 +66,10 @@ fn bound_entry(buffer: &wgpu::Buffer, binding: u32) -> BindGroupEntry<'_> {
     BindGroupEntry { binding, resource: buffer.as_entire_binding() }
 }
 
-/// Runs `case` over `count` points of its domain and compares with the mirror.
+/// Evaluates `case` at `count` points of its domain and compares with the mirror.
 ///
 /// # Errors
-/// As [`results`], or the first point outside of the bound.
+/// The first point that exceeds the bound, or an error of [`results`].
 pub fn compare(gpu: &Gpu, case: &Case, count: usize) -> Result<Deviation, Box<dyn Error>> {
     let inputs = case.inputs(count);
     let results = results(gpu, case, &inputs)?;

@@ -1,4 +1,4 @@
-//! Reference pictures: scenes stated in full beside what another renderer made of them, rendered again and compared.
+//! Reference pictures: scenes described in JSON with another renderer's pictures, rendered again and compared.
 //!
 //! ```text
 //! JSON ─ document ─> Document ─ built ─> what is not built
@@ -6,7 +6,7 @@
 //! EXR, PNG, CSV ─ picture, chart ─> Picture, Patches ─┴─ metrics (flip), rule ─> Outcome
 //! ```
 //!
-//! What compares shares no code with what renders.
+//! The code that compares pictures is independent of the renderer.
 
 pub mod asset;
 pub mod bloom;

@@ -1,6 +1,5 @@
-//! A long run of the standard frame under everything that changes while an application runs: the size of its window, the
-//! effects that are on, the scene that is shown, how memory is shared, the texts of its shaders, the device. What a run leaves
-//! behind is compared with a fresh one.
+//! Long-running test of the standard frame. Window size, effects, scene, aliasing and shaders change, and the device is
+//! lost. The final state is compared with a fresh run.
 
 use crate::stage::Stage;
 use framegraph::Alias;
@@ -12,70 +11,70 @@ use framegraph_passes::{OcclusionSettings, ReflectionSettings, Settings, TaaSett
 use framegraph_wgpu::{FrameLoop, Gpu, OpenError, PoolCounts, Workers, read_texture};
 use std::error::Error;
 
-/// What a run is made of, drawn anew from frame to frame.
+/// Parameters of a frame, which change randomly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
-    /// Width and height of the picture.
+    /// Width and height of the picture, in pixels.
     pub size_px: [u32; 2],
-    /// Which of the scenes.
+    /// Index of the scene.
     pub scene: usize,
-    /// Which of the settings.
+    /// Index of the settings.
     pub variant: usize,
-    /// How textures share memory.
+    /// Aliasing mode of textures.
     pub alias: Alias,
 }
 
-/// The state in which a run ends, and which a fresh run draws alone.
+/// Final state of a run, which a fresh run also draws.
 const LAST: State = State { size_px: [64, 36], scene: 0, variant: 0, alias: Alias::Pool };
-/// Side of a shadow map.
+/// Size of a shadow map, in texels.
 const SHADOW_TEXELS: u32 = 128;
 
-/// What a run holds after a number of frames.
+/// Resources in use after a number of frames.
 #[derive(Clone, Copy, Debug)]
 pub struct Held {
-    /// Frames until then.
+    /// Number of frames so far.
     pub frames: usize,
-    /// Textures of the executor's pool.
+    /// Textures in the executor's pool.
     pub textures: PoolCounts,
-    /// Resident memory of the program in bytes; zero where the system does not say.
+    /// Resident memory of the program in bytes; zero if the system does not report it.
     pub resident_bytes: u64,
-    /// Shaders that were replaced until then.
+    /// Number of replaced shaders so far.
     pub reloaded: usize,
-    /// Devices that were lost until then, and made anew.
+    /// Number of lost and reopened devices so far.
     pub lost: usize,
 }
 
-/// What happens on the way beside changes of the frame.
+/// Disturbances during a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Trouble {
-    /// All shaders are replaced by another text of the same meaning each time so many frames were drawn.
+    /// Number of frames after which all shaders are replaced by an equivalent text.
     pub reload_every: usize,
-    /// The device is lost each time so many frames were drawn, and everything made anew.
+    /// Number of frames after which the device is lost and everything is created again.
     pub lose_every: usize,
-    /// Opens a device in its place.
+    /// Opens a device after a loss.
     pub open: fn() -> Result<Gpu, OpenError>,
 }
 
-/// A run.
+/// A long run.
 pub struct Soak {
     gpu: Gpu,
     frames: FrameLoop<World>,
     stages: Vec<Stage>,
     state: u64,
-    /// Frames that were drawn.
+    /// Number of frames drawn.
     drawn: u32,
     largest_px: u32,
-    /// How many of the variants there are.
+    /// Number of variants.
     variants: u32,
     trouble: Option<Trouble>,
     reloaded: usize,
     lost: usize,
 }
 
-/// What differs in what it calls for: opaque surfaces, many lights, surfaces that transmit.
+/// Scenes with different features: opaque surfaces, many lights, transmission.
 const SCENES: [&str; 3] = ["spheres", "lamps:3", "glass"];
 
-/// Effects in different combinations, the simplest first.
+/// Returns combinations of effects, the simplest first.
 fn variants() -> [Settings; 10] {
     let shadows = |cascades| Some(ShadowSettings { cascades, ..ShadowSettings::texels(SHADOW_TEXELS) });
     let plain = Settings { shadows: shadows(1), ..Settings::DEFAULT };
@@ -96,18 +95,18 @@ fn variants() -> [Settings; 10] {
 }
 
 impl Soak {
-    /// A run whose windows are at most `largest_px` wide and high.
+    /// Creates a run with windows of at most `largest_px` in width and height.
     ///
     /// # Errors
-    /// When a scene cannot be set up.
+    /// A scene cannot be created.
     pub fn new(gpu: &Gpu, largest_px: u32) -> Result<Self, Box<dyn Error>> {
         Self::of(gpu, largest_px, variants().len() as u32, SCENES.len())
     }
 
-    /// The same with the first combinations of effects and the first scene alone, whose shaders are soon compiled.
+    /// Creates a run with simple effects and the first scene only, whose shaders compile quickly.
     ///
     /// # Errors
-    /// As [`Soak::new`].
+    /// A scene cannot be created.
     pub fn simple(gpu: &Gpu, largest_px: u32) -> Result<Self, Box<dyn Error>> {
         Self::of(gpu, largest_px, 2, 1)
     }
@@ -118,7 +117,7 @@ impl Soak {
         Ok(Self { gpu, frames, stages, state: 1, drawn: 0, largest_px, variants, trouble, reloaded: 0, lost: 0 })
     }
 
-    /// The same run, with that on the way.
+    /// Adds disturbances to the run.
     #[must_use]
     pub fn with(self, trouble: Trouble) -> Self {
         Self { trouble: Some(trouble), ..self }
@@ -129,8 +128,8 @@ impl Soak {
         (self.state >> 33) as u32 % below
     }
 
-    /// Another window, effect or scene, or some of them at once. Small windows are more frequent than large ones, and a single texel
-    /// comes too.
+    /// Changes window size, effects or scene, or several of them. Small windows are more frequent than large ones, down
+    /// to one pixel.
     fn next(&mut self, before: State) -> State {
         let mut state = before;
         let changed = self.random(15) + 1;
@@ -153,8 +152,8 @@ impl Soak {
         state
     }
 
-    /// Draws `count` frames, each state some of them, and tells what is held every `every` frames; the last frame is that of
-    /// a fresh run, and its bytes are returned.
+    /// Draws `count` frames and reports resources every `every` frames. Returns the bytes of the last frame, which is
+    /// in the final state.
     ///
     /// # Errors
     /// Any error of any frame.
@@ -167,7 +166,7 @@ impl Soak {
             left -= 1;
             self.draw(state).map_err(|error| format!("frame {number}, {state:?}: {error}"))?;
             if let Some(trouble) = self.trouble {
-                self.suffer(trouble, number + 1, state).map_err(|error| format!("behind frame {number}: {error}"))?;
+                self.suffer(trouble, number + 1, state).map_err(|error| format!("after frame {number}: {error}"))?;
             }
             if (number + 1) % every == 0 {
                 self.gpu.wait()?;
@@ -183,17 +182,17 @@ impl Soak {
         if drawn.is_multiple_of(trouble.reload_every.max(1)) {
             for program in self.stages[state.scene].world.programs.made() {
                 let shader = program.shader();
-                let text = format!("{}\n// Replaced behind frame {drawn}.", shader.text());
+                let text = format!("{}\n// Replaced after frame {drawn}.", shader.text());
                 self.frames.executor_mut().reload_shader(&shader, &text)?;
                 self.reloaded += 1;
             }
         }
         if drawn.is_multiple_of(trouble.lose_every.max(1)) {
             self.gpu.device.destroy();
-            // It is told of once nothing is in flight; until then frames may still be taken.
-            let told = (0..50).find_map(|_| self.draw(state).err()).ok_or("a lost device was not told of")?;
+            // The loss is reported once no work is in flight; earlier frames may still be accepted.
+            let told = (0..50).find_map(|_| self.draw(state).err()).ok_or("a lost device was not reported")?;
             if !told.to_string().contains("the device was lost") {
-                return Err(format!("of a lost device this was told: {told}").into());
+                return Err(format!("unexpected error of a lost device: {told}").into());
             }
             self.gpu = (trouble.open)()?;
             (self.stages, self.frames) = (stages(&self.gpu, self.stages.len())?, frames(&self.gpu)?);
@@ -202,7 +201,7 @@ impl Soak {
         Ok(())
     }
 
-    /// What a fresh run draws in the last state.
+    /// Returns the bytes of the final state, drawn by a fresh run.
     ///
     /// # Errors
     /// Any error of the frame.
@@ -223,19 +222,19 @@ impl Soak {
     }
 }
 
-/// The first scenes, on a device.
+/// Creates the first scenes on a device.
 fn stages(gpu: &Gpu, count: usize) -> Result<Vec<Stage>, Box<dyn Error>> {
     SCENES.into_iter().take(count).map(|name| Stage::new(gpu, name)).collect()
 }
 
-/// Frames that are recorded on all cores where that is faster.
+/// Creates a frame loop that records on several cores where that is faster.
 fn frames(gpu: &Gpu) -> Result<FrameLoop<World>, Box<dyn Error>> {
     let mut frames = FrameLoop::new(gpu);
     frames.executor_mut().record_on(Some(Workers::new()?));
     Ok(frames)
 }
 
-/// Resident memory of this program, as Linux tells.
+/// Returns the resident memory of this program on Linux.
 fn resident_bytes() -> u64 {
     let text = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
     let pages: Option<u64> = text.split_whitespace().nth(1).and_then(|pages| pages.parse().ok());

@@ -1,4 +1,4 @@
-//! A scene on a device, drawn by the standard frame again and again.
+//! A scene on a device, drawn repeatedly by the standard frame.
 
 use framegraph::{Extent, Format, Target, Texture, TextureDesc};
 use framegraph_passes::ibl::cache::Cache;
@@ -16,8 +16,8 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::UNIX_EPOCH;
 
-/// Where a program of this package finds light that it made: a folder beside it in the target folder, never the user's own. A program
-/// that is built anew finds none: what makes light may have changed, and its tests are to notice.
+/// Returns the cache of precomputed light of this build: a folder in the target folder, never the user's own. A new
+/// build starts with an empty cache, so that tests notice changes in the code that computes light.
 #[must_use]
 pub fn light_cache() -> Cache {
     static CACHE: OnceLock<Cache> = OnceLock::new();
@@ -30,25 +30,25 @@ fn own_folder() -> std::io::Result<PathBuf> {
     let all = program.with_extension("light");
     let own = all.join(built.to_string());
     if !own.exists() {
-        // What an earlier build has left.
+        // Remove the caches of earlier builds.
         let _ = std::fs::remove_dir_all(&all);
     }
     Ok(own)
 }
 
-/// A scene with all that drawing it takes, under an even sky.
+/// A scene with its resources, under a uniform sky.
 pub struct Stage {
     scene: Scene,
     prepared: PreparedScene,
-    /// What its frames are recorded with.
+    /// Data that passes read.
     pub world: World,
 }
 
 impl Stage {
-    /// A built-in scene.
+    /// Creates a built-in scene.
     ///
     /// # Errors
-    /// When it cannot be set up.
+    /// The scene cannot be created.
     pub fn new(gpu: &Gpu, name: &str) -> Result<Self, Box<dyn Error>> {
         let scene = Scene::open(name, &mut progress::silent)?;
         let prepared = PreparedScene::new(&scene);
@@ -62,8 +62,8 @@ impl Stage {
         Ok(Self { scene, prepared, world })
     }
 
-    /// Draws a frame of `frames`, seen anew, through the places in pixels that frame `number` looks through where frames are
-    /// added up; its picture.
+    /// Draws a frame of `frames` with a new view, and returns its picture. With temporal anti-aliasing, `number`
+    /// selects the jitter.
     ///
     /// # Errors
     /// Any error of the frame.

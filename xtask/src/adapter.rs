@@ -1,4 +1,4 @@
-//! Is there an adapter to render with, and if not, how does one get there.
+//! Detection of a graphics adapter, and installation of a software driver if none is found.
 //!
 //! `facts` reads the machine, `verdict` judges the facts, `packages` says what to install and how;
 //! the last two are pure. [`ready`] puts them together.
@@ -23,12 +23,12 @@ use facts::Machine;
 use packages::{Install, Want};
 use verdict::Verdict;
 
-/// Makes sure that an adapter is usable, installing Mesa's software Vulkan driver where none is,
-/// and returns what was found, in words.
+/// Makes sure that a usable adapter exists; installs Mesa's software Vulkan driver where none does. Returns a
+/// description of the adapter.
 ///
 /// # Errors
-/// With `--no-install`: the command to run. Otherwise: why nothing could be installed, which command
-/// failed, or what is still missing after it.
+/// With `--no-install`: the command to run. Otherwise: the reason nothing could be installed, the command that failed,
+/// or what is still missing afterwards.
 pub fn ready(options: &Options) -> Result<String, Failure> {
     let missing = match probe() {
         Verdict::Usable(found) => {
@@ -64,8 +64,8 @@ pub fn ready(options: &Options) -> Result<String, Failure> {
     }
 }
 
-/// Installs what tests ask for that replay streams under Vulkan's validation layers and open windows. What cannot be installed
-/// is said, and the tests count as skipped.
+/// Installs Vulkan's validation layers and Xvfb, which tests of Vulkan streams and of windows use. If that fails, a
+/// message says so, and those tests are skipped.
 pub fn checks(options: &Options) {
     let missing = facts::missing_checks(&machine(&variable));
     if missing.is_empty() || !cfg!(target_os = "linux") {
@@ -74,7 +74,7 @@ pub fn checks(options: &Options) {
     let missing = missing.join(" and ");
     let told = match packages::plan(&facts::packages(&machine(&variable)), Want::Checks) {
         Err(reason) => reason,
-        Ok(install) if options.no_install => format!("they are installed by: {install}"),
+        Ok(install) if options.no_install => format!("install them with: {install}"),
         Ok(install) => {
             program::line(format_args!("xtask: installing {missing}: {install}"));
             match carry_out(&install) {
@@ -94,8 +94,8 @@ fn probe() -> Verdict {
     verdict::judge(&facts::graphics(&machine(&variable)))
 }
 
-/// The graphics interface that comes with the operating system, where one does: no driver package
-/// is ever needed there, because it includes a software adapter or always has hardware.
+/// Graphics interface of the operating system, if it has one. These systems need no driver package: they always have
+/// hardware, or include a software adapter.
 const fn native_api() -> Option<&'static str> {
     if cfg!(target_vendor = "apple") {
         Some("Metal")
@@ -120,8 +120,7 @@ fn carry_out(install: &Install) -> Result<(), Failure> {
     for attempt in &install.attempts {
         let failed = attempt.iter().find_map(|line| {
             let mut command = line.command();
-            // Nothing may wait for an answer that nobody gives; a password is asked for at the
-            // terminal itself.
+            // An installer must not wait for input; a password is asked for at the terminal itself.
             let outcome = stage::run("install", command.stdin(Stdio::null()));
             outcome.result.err().map(|reason| format!("`{line}`: {reason}"))
         });
@@ -130,5 +129,5 @@ fn carry_out(install: &Install) -> Result<(), Failure> {
             Some(failed) => reason = failed,
         }
     }
-    Err(Failure::Failed(format!("cannot be installed: {reason}")))
+    Err(Failure::Failed(format!("installation failed: {reason}")))
 }

@@ -1,4 +1,4 @@
-//! The commands, a file each.
+//! The commands, one per file.
 
 mod bench;
 mod circles;
@@ -8,6 +8,7 @@ mod documents;
 mod frames;
 mod gallery;
 mod mutants;
+mod prose;
 mod prove;
 mod rooms;
 mod test;
@@ -18,17 +19,17 @@ use crate::options::Options;
 /// One command of `cargo xtask`.
 #[derive(Debug)]
 pub struct Command {
-    /// What is typed after `cargo xtask`.
+    /// Name on the command line, after `cargo xtask`.
     pub name: &'static str,
-    /// One line for the list of commands.
+    /// One-line summary for the list of commands.
     pub summary: &'static str,
-    /// What it does, in full, for `cargo xtask NAME --help`.
+    /// Full description for `cargo xtask NAME --help`.
     pub details: &'static str,
-    /// Does it.
+    /// Runs the command.
     pub run: fn(&Options) -> Result<(), Failure>,
 }
 
-/// Every command, in the order in which help lists them.
+/// Every command, in the order of the help text.
 pub const ALL: &[Command] = &[
     demo::COMMAND,
     test::COMMAND,
@@ -38,6 +39,7 @@ pub const ALL: &[Command] = &[
     documents::COMMAND,
     gallery::COMMAND,
     circles::COMMAND,
+    prose::COMMAND,
     rooms::COMMAND,
     corpus::COMMAND,
 ];

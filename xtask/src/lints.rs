@@ -1,9 +1,9 @@
-//! This program in the place of `rustc` for the workspace's own crates: it has clippy compile a crate and rustdoc document it.
+//! Compiler wrapper that runs clippy and rustdoc on the workspace's own crates.
 //!
-//! `cargo clippy` and `cargo doc` would first check all that the workspace depends on, which tests have to compile anyway, and
-//! clippy would read each crate a second time. But clippy's driver is the compiler with more lints: it makes programs too, with
-//! less optimization of its own before LLVM's. Cargo starts the program named in `RUSTC_WORKSPACE_WRAPPER` with the compiler
-//! and its arguments; a crate that clippy or rustdoc find fault with counts as one that does not compile.
+//! `cargo clippy` and `cargo doc` would first check every dependency, which the tests compile anyway, and clippy would
+//! read each crate a second time. Clippy's driver is a compiler with more lints, so it can build programs too, although
+//! with fewer optimizations before LLVM's. Cargo starts the program named in `RUSTC_WORKSPACE_WRAPPER` with the
+//! compiler and its arguments. If clippy or rustdoc report a warning, the crate counts as not compiled.
 
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -12,30 +12,31 @@ use std::process::{Command, ExitCode};
 
 use crate::Failure;
 
-/// The environment variable that says what is documented, [`LIBRARIES`] or [`PROGRAMS`] too; where it is set, this program
-/// is the wrapper.
+/// Environment variable that selects the documented crates: [`LIBRARIES`], or [`PROGRAMS`] too. If it is set, this
+/// program acts as the wrapper.
 pub const DOCUMENT: &str = "FRAMEGRAPH_DOCUMENT";
 const LIBRARIES: &str = "libraries";
 const PROGRAMS: &str = "programs";
-/// What cargo says of fuzz targets, which are compiled and not linked: that takes a compiler of C++ and another of Rust.
+/// Argument that marks fuzz targets. They are compiled but not linked, since linking needs a C++ compiler and nightly
+/// Rust.
 const FUZZER: &str = "feature=\"fuzzer\"";
 
-/// What cargo is told to start in the place of the compiler.
+/// Compiler wrapper for cargo.
 pub struct Wrapper {
     program: PathBuf,
-    /// A library of the fuzzer without anything in it; its own would ask for a compiler of C++.
+    /// Empty library in place of libFuzzer, whose build would need a C++ compiler.
     fuzzer: PathBuf,
 }
 
 impl Wrapper {
-    /// A copy of this program in a folder, since compiling the workspace may write a new one.
+    /// Copies this program into a folder, since building the workspace may replace it.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// The copy cannot be written.
     pub fn new(folder: &Path) -> Result<Self, Failure> {
         let program = folder.join(format!("lints{}", std::env::consts::EXE_SUFFIX));
         let fuzzer = folder.join(if cfg!(target_env = "msvc") { "fuzzer.lib" } else { "libfuzzer.a" });
-        // A new time of what is there would have crates compiled again.
+        // An unchanged file keeps its time stamp, so that crates are not compiled again.
         let written = std::env::current_exe().and_then(|own| {
             renew(&program, &fs::read(&own)?, Some(fs::metadata(&own)?.permissions()))?;
             renew(&fuzzer, b"!<arch>\n", None)
@@ -44,20 +45,20 @@ impl Wrapper {
         Ok(Self { program, fuzzer })
     }
 
-    /// Has a command of cargo lint and document what it compiles: libraries, or `programs` too, each of which takes as long
-    /// to document as a library, whose links are most.
+    /// Makes a cargo command lint and document the crates it compiles. Programs are documented only if `programs` is
+    /// set: each takes as long as a library.
     pub fn around(&self, cargo: &mut Command, programs: bool) {
         cargo.env("RUSTC_WORKSPACE_WRAPPER", &self.program).env("CUSTOM_LIBFUZZER_PATH", &self.fuzzer);
         cargo.env(DOCUMENT, if programs { PROGRAMS } else { LIBRARIES });
     }
 }
 
-/// Writes a file anew if it holds something else, with permissions of its own if there are some.
+/// Writes a file if its contents differ, optionally with permissions.
 fn renew(file: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> std::io::Result<()> {
     if fs::read(file).is_ok_and(|there| there == bytes) {
         return Ok(());
     }
-    // What is there may be running for another build.
+    // The existing file may be in use by another build.
     let part = file.with_extension(format!("{}.part", std::process::id()));
     fs::write(&part, bytes)?;
     if let Some(permissions) = permissions {
@@ -66,11 +67,11 @@ fn renew(file: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> std
     fs::rename(&part, file)
 }
 
-/// Compiles with lints and documents; `arguments` are the compiler's path and its own arguments.
+/// Compiles, lints and documents a crate; `arguments` are the compiler's path and arguments.
 pub fn wrap(mut arguments: impl Iterator<Item = OsString>, document: &OsStr) -> ExitCode {
     let Some(compiler) = arguments.next().map(PathBuf::from) else { return ExitCode::from(2) };
     let arguments: Vec<OsString> = arguments.collect();
-    // Cargo asks the compiler about itself, too.
+    // Cargo also queries the compiler for its version and targets.
     if !arguments.iter().any(|word| word.to_string_lossy().starts_with("--emit")) {
         return code(Command::new(&compiler).args(&arguments));
     }
@@ -78,7 +79,7 @@ pub fn wrap(mut arguments: impl Iterator<Item = OsString>, document: &OsStr) -> 
     let tested = arguments.iter().any(|word| word == "--test");
     let mut compiled = arguments.clone();
     if is("bin") && arguments.iter().any(|word| word == FUZZER) {
-        // Cargo looks for the program.
+        // Cargo expects the program to exist.
         if let Err(error) = fs::write(program(&arguments), []) {
             program::note(format_args!("xtask: {}: {error}", program(&arguments).display()));
             return ExitCode::FAILURE;
@@ -96,7 +97,7 @@ pub fn wrap(mut arguments: impl Iterator<Item = OsString>, document: &OsStr) -> 
     code(Command::new(compiler.with_file_name("rustdoc")).args(quiet(with(&arguments, &left_out, &document))))
 }
 
-/// Where a program is linked to.
+/// Returns the path of the linked program.
 fn program(arguments: &[OsString]) -> PathBuf {
     let folder = PathBuf::from(value(arguments, "--out-dir").unwrap_or_default());
     let own = |word: &OsString| word.to_str().and_then(|word| word.strip_prefix("extra-filename=")).map(str::to_owned);
@@ -106,12 +107,12 @@ fn program(arguments: &[OsString]) -> PathBuf {
     folder.join(name)
 }
 
-/// The value of an option, in a word of its own.
+/// Returns the value that follows an option.
 fn value(arguments: &[OsString], option: &str) -> Option<OsString> {
     arguments.iter().skip_while(|word| *word != option).nth(1).cloned()
 }
 
-/// The arguments without some options and their values, be they in words of their own or behind `=`, and with others.
+/// Removes options with their values, given as `--option value` or `--option=value`, and appends other arguments.
 fn with(arguments: &[OsString], left_out: &[&str], more: &[OsString]) -> Vec<OsString> {
     let mut kept = Vec::with_capacity(arguments.len() + more.len());
     let mut words = arguments.iter();
@@ -130,7 +131,7 @@ fn with(arguments: &[OsString], left_out: &[&str], more: &[OsString]) -> Vec<OsS
     kept
 }
 
-/// The arguments without the request to name the files that were written: cargo has heard of the crate's own.
+/// Stops rustc from reporting written files, since cargo already knows them.
 fn quiet(arguments: Vec<OsString>) -> Vec<OsString> {
     let plain = |word: OsString| match word.to_str().and_then(|text| text.strip_prefix("--json=")) {
         Some(kinds) => {
@@ -142,7 +143,7 @@ fn quiet(arguments: Vec<OsString>) -> Vec<OsString> {
     arguments.into_iter().map(plain).collect()
 }
 
-/// Runs a command; how it ended.
+/// Runs a command and returns its exit code.
 fn code(command: &mut Command) -> ExitCode {
     match command.status() {
         Ok(status) if status.success() => ExitCode::SUCCESS,

@@ -1,26 +1,28 @@
-//! `cargo xtask demo` and `cargo xtask test`: set a fresh machine up, then run.
+//! `cargo xtask`: sets a fresh machine up, and runs demos, tests and measurements.
 //!
-//! The program depends on the standard library and on how programs here print, so it builds in a second or two even where
-//! nothing else has been built yet. It starts `cargo` for the rest.
+//! The program depends only on the standard library and the package `program`, so it builds within two seconds. It
+//! starts `cargo` for the rest.
 //!
 //! # Map
-//! - [`command`]: a command a file. To add one, write the file and name it in [`command::ALL`].
-//! - [`adapter`]: is there a GPU or software driver, and if not, which packages bring one.
-//! - [`lints`]: this program in the place of the compiler, to lint and document what it compiles.
-//! - [`mutant`]: faults planted in sources, to see whether a test falls.
-//! - [`source`]: the Rust files of the rooms: product code, modules, circles.
-//! - [`rustc_time`]: this program in the place of the compiler, to time crates.
-//! - [`stage`]: run one child process, time it, say how it ended.
-//! - [`tally`]: what the tests reported: totals, skips, adapters.
+//! - [`command`]: one command per file. To add one, write the file and list it in [`command::ALL`].
+//! - [`adapter`]: finds a GPU or software driver, or the packages that install one.
+//! - [`lints`]: compiler wrapper that lints and documents.
+//! - [`mutant`]: mutation testing.
+//! - [`prose`]: style check of documentation, comments and messages.
+//! - [`source`]: Rust files of the packages: product code, modules, cycles.
+//! - [`rustc_time`]: compiler wrapper that times crates.
+//! - [`stage`]: runs and times one child process.
+//! - [`tally`]: summary of test reports: totals, skips, adapters.
 //!
 //! # Exit codes
-//! 0 done; 1 something failed; 2 the command line was wrong.
+//! 0: success. 1: a stage failed. 2: the command line was wrong.
 
 mod adapter;
 mod command;
 mod lints;
 mod mutant;
 mod options;
+mod prose;
 mod rustc_time;
 mod source;
 mod stage;
@@ -34,19 +36,19 @@ use std::process::ExitCode;
 
 use options::Request;
 
-/// Why a command did not do what it was asked for; shown as one line.
+/// Reason a command failed; displayed as one line.
 #[derive(Debug, PartialEq, Eq)]
 enum Failure {
-    /// The command line was wrong: exit code 2.
+    /// Invalid command line: exit code 2.
     Usage(String),
-    /// The work was tried and failed: exit code 1.
+    /// The command ran and failed: exit code 1.
     Failed(String),
 }
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Usage(reason) => write!(f, "{reason}; `cargo xtask --help` lists what there is"),
+            Self::Usage(reason) => write!(f, "{reason}; see `cargo xtask --help`"),
             Self::Failed(reason) => f.write_str(reason),
         }
     }
@@ -71,7 +73,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Reads the command line and does what it asks for.
+/// Parses the command line and runs the command.
 fn run() -> Result<(), Failure> {
     match options::parse(std::env::args_os().skip(1), command::ALL)? {
         Request::Help(None) => program::print(options::help(command::ALL)),

@@ -1,8 +1,8 @@
-//! Faults planted in sources one at a time, to see whether a test falls.
+//! Mutation testing: plants one fault at a time, and checks that a test fails.
 //!
-//! [`plant`] finds the places, [`room`] says which files and which tests, [`judge`] asks
-//! the tests, [`run`] tries one after the other on threads that [`workers`] starts, [`kept`] keeps
-//! what came of it, [`explained`] holds the faults that no test can see, and [`document`] prints all that.
+//! [`plant`] finds places for faults. [`room`] lists files and their tests. [`judge`] runs the tests, and [`run`] tries
+//! all mutants on the threads of [`workers`]. [`kept`] stores results, [`explained`] lists faults that no test can
+//! detect, and [`document`] prints the report.
 
 pub mod document;
 pub mod explained;

@@ -1,49 +1,49 @@
-//! The command line: one command, then its options.
+//! Command line: one command and its options.
 
 use std::ffi::OsString;
 
 use crate::Failure;
 use crate::command::Command;
 
-/// The options that commands take.
+/// Options of all commands.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
-    /// Print the command that would install a missing driver, instead of running it.
+    /// Prints the command that would install a missing driver, instead of running it.
     pub no_install: bool,
-    /// The rooms that `mutants` is about; all of them if none is named.
+    /// Rooms given to `mutants`; all rooms if empty.
     pub rooms: Vec<String>,
-    /// Words after `corpus`, for its program.
+    /// Arguments after `corpus`, for its program.
     pub words_of_corpus: Vec<OsString>,
-    /// Options of one command, with their values, as they stand.
+    /// Options of individual commands, with their values.
     own: Vec<(&'static str, Option<OsString>)>,
 }
 
 impl Options {
-    /// Whether an option was given.
+    /// Returns true if an option was given.
     pub fn has(&self, name: &str) -> bool {
         self.own.iter().any(|(own, _)| *own == name)
     }
 
-    /// The value of an option, the last if it was given twice.
+    /// Returns the value of an option, the last one if it was given twice.
     pub fn value(&self, name: &str) -> Option<&OsString> {
         self.own.iter().rfind(|(own, _)| *own == name).and_then(|(_, value)| value.as_ref())
     }
 
-    /// The options of the command, to hand on to the program that it runs.
+    /// Returns the options and values, to pass on to another program.
     pub fn words(&self) -> impl Iterator<Item = OsString> + '_ {
         self.own.iter().flat_map(|(name, value)| [Some(name.into()), value.clone()].into_iter().flatten())
     }
 }
 
-/// An option of some commands alone.
+/// An option of certain commands.
 struct Own {
     name: &'static str,
-    /// A value follows.
+    /// True if a value follows.
     valued: bool,
     commands: &'static [&'static str],
 }
 
-const OWN: [Own; 14] = [
+const OWN: [Own; 15] = [
     Own { name: "--frames", valued: false, commands: &["bench"] },
     Own { name: "--scene", valued: true, commands: &["bench"] },
     Own { name: "--preset", valued: true, commands: &["bench"] },
@@ -57,24 +57,25 @@ const OWN: [Own; 14] = [
     Own { name: "--out", valued: true, commands: &["prove", "mutants"] },
     Own { name: "--all", valued: false, commands: &["mutants", "test"] },
     Own { name: "--count", valued: true, commands: &["mutants"] },
-    Own { name: "--list", valued: false, commands: &["mutants"] },
+    Own { name: "--list", valued: false, commands: &["mutants", "prose"] },
+    Own { name: "--lower", valued: false, commands: &["prose"] },
 ];
 
-/// What the command line asks for.
+/// Action that the command line requests.
 #[derive(Debug)]
 pub enum Request<'a> {
-    /// Print help: of one command, or of the program.
+    /// Print help for one command, or for the program.
     Help(Option<&'a Command>),
     /// Run a command.
     Run(&'a Command, Options),
 }
 
-/// Reads `arguments` (without the program's name) against the known `commands`.
+/// Parses `arguments` (without the program's name).
 ///
-/// No argument at all asks for help, as `--help` does.
+/// No arguments print the help, as `--help` does.
 ///
 /// # Errors
-/// [`Failure::Usage`] names the first argument that is neither a known command nor a known option.
+/// [`Failure::Usage`], which names the first unknown command or option.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>, commands: &[Command]) -> Result<Request<'_>, Failure> {
     let mut command: Option<&Command> = None;
     let mut options = Options::default();
@@ -119,25 +120,25 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, commands: &[Command]
                 None => Ok(Request::Run(command, options)),
                 Some(Own { name, commands, .. }) => {
                     let commands = commands.join("` and `");
-                    Err(Failure::Usage(format!("`{name}` goes together with `{commands}` only")))
+                    Err(Failure::Usage(format!("`{name}` is an option of `{commands}` only")))
                 }
             }
         }
         None if options == Options::default() => Ok(Request::Help(None)),
-        None => Err(Failure::Usage("an option without a command".to_owned())),
+        None => Err(Failure::Usage("missing command".to_owned())),
     }
 }
 
-/// The help of the program: usage, commands, options, exit codes.
+/// Returns the help of the program: usage, commands, options, exit codes.
 pub fn help(commands: &[Command]) -> String {
     let mut text = String::from("Usage: cargo xtask <COMMAND> [--no-install]\n\nCommands:\n");
     for Command { name, summary, .. } in commands {
         text += &format!("  {name:<9} {summary}\n");
     }
-    text + OPTIONS + "\nExit codes: 0 done, 1 something failed, 2 the command line was wrong.\n"
+    text + OPTIONS + "\nExit codes: 0 success, 1 failure, 2 invalid command line.\n"
 }
 
-/// The help of one command.
+/// Returns the help of one command.
 pub fn help_of(command: &Command) -> String {
     let Command { name, summary, details, .. } = command;
     format!("{summary}\n\nUsage: cargo xtask {name} [--no-install]\n\n{details}{OPTIONS}")
@@ -145,13 +146,15 @@ pub fn help_of(command: &Command) -> String {
 
 const OPTIONS: &str = "
 Options:
-  --no-install  where no adapter is usable, print the command that installs
-                Mesa's software Vulkan driver and exit 1, instead of running it;
-                for what tests want beside it, print the command and go on
+  --no-install  if no adapter is usable, print the command that installs Mesa's
+                software Vulkan driver and exit with code 1; for other tools that
+                tests need, print the command and continue
   --quick, --dsa DIR, --out FILE
                 of `prove`: see `cargo xtask prove --help`
   --all, --count N, --list, --out FILE
                 of `mutants`: see `cargo xtask mutants --help`
+  --list, --lower
+                of `prose`: see `cargo xtask prose --help`
   --all         of `test`: see `cargo xtask test --help`
   --frames, --scene NAME, --preset NAME, --size WxH, --beside COMMAND,
   --with ARGS, --rounds N
@@ -209,9 +212,9 @@ mod tests {
     fn options_of_prove_are_handed_on() {
         let Ok(Request::Run(_, options)) = read("--dsa some/folder prove --out a.md") else { panic!("sound") };
         assert_eq!(options.words().collect::<Vec<_>>(), ["--dsa", "some/folder", "--out", "a.md"]);
-        assert_eq!(refusal("one --quick"), "`--quick` goes together with `prove` only");
-        assert_eq!(refusal("one --build"), "`--build` goes together with `rooms` only");
-        assert_eq!(refusal("one --out a"), "`--out` goes together with `prove` and `mutants` only");
+        assert_eq!(refusal("one --quick"), "`--quick` is an option of `prove` only");
+        assert_eq!(refusal("one --build"), "`--build` is an option of `rooms` only");
+        assert_eq!(refusal("one --out a"), "`--out` is an option of `prove` and `mutants` only");
         assert_eq!(refusal("prove --dsa"), "`--dsa` needs a value");
     }
 
@@ -235,7 +238,7 @@ mod tests {
         assert_eq!(refusal("one --fast"), "unknown option `--fast`");
         assert_eq!(refusal("three"), "unknown command `three`");
         assert_eq!(refusal("one two"), "unexpected argument `two`");
-        assert_eq!(refusal("--no-install"), "an option without a command");
+        assert_eq!(refusal("--no-install"), "missing command");
     }
 
     #[test]

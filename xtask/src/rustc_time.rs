@@ -1,7 +1,7 @@
-//! This program in the place of `rustc`: it runs the compiler and notes how much processor time a crate took.
+//! Compiler wrapper that records the processor time of each crate.
 //!
-//! Processor time is what a build costs whatever else the machine does; the clock of a busy machine is not. Cargo starts
-//! the program named in `RUSTC_WRAPPER` with the compiler and its arguments.
+//! Processor time hardly depends on other load, unlike wall-clock time. Cargo starts the program named in
+//! `RUSTC_WRAPPER` with the compiler and its arguments.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -9,13 +9,13 @@ use std::fs;
 use std::io::Write as _;
 use std::process::{Command, ExitCode};
 
-/// The environment variable that names the file for the times; where it is set, this program is the wrapper.
+/// Environment variable with the path of the log. If it is set, this program acts as the wrapper.
 pub const LOG: &str = "FRAMEGRAPH_RUSTC_LOG";
 
-/// Clock ticks a second in `/proc`, which Linux fixes at 100 for programs (`USER_HZ`).
+/// Clock ticks per second in `/proc`, which Linux fixes at 100 for programs (`USER_HZ`).
 const TICKS_PER_SECOND: f64 = 100.0;
 
-/// Runs the compiler; `arguments` are its path and its own arguments.
+/// Runs the compiler; `arguments` are its path and arguments.
 pub fn wrap(mut arguments: impl Iterator<Item = OsString>, log: &OsString) -> ExitCode {
     let Some(compiler) = arguments.next() else { return ExitCode::from(2) };
     let arguments: Vec<OsString> = arguments.collect();
@@ -29,8 +29,8 @@ pub fn wrap(mut arguments: impl Iterator<Item = OsString>, log: &OsString) -> Ex
     let name = arguments.iter().skip_while(|word| *word != "--crate-name").nth(1);
     if let (Some(name), Some(seconds)) = (name, children_seconds()) {
         let line = format!("{} {seconds:.2}\n", name.display());
-        // One write of one line: those of crates that are built at once do not mix. A log that cannot be written loses a
-        // time, not the build.
+        // A single write per line keeps lines of concurrent builds apart. If the log cannot be written, only the time
+        // is lost.
         if let Ok(mut file) = fs::OpenOptions::new().create(true).append(true).open(log) {
             let _ = file.write_all(line.as_bytes());
         }
@@ -38,18 +38,19 @@ pub fn wrap(mut arguments: impl Iterator<Item = OsString>, log: &OsString) -> Ex
     ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1))
 }
 
-/// Processor time of the children that ended, in seconds; none where there is no `/proc` (proc(5), fields 16 and 17).
+/// Returns the processor time of finished child processes in seconds; `None` without `/proc` (proc(5), fields 16 and
+/// 17).
 pub fn children_seconds() -> Option<f64> {
     seconds("self", 13, 2)
 }
 
-/// Processor time that a process and its children that ended have taken so far, in seconds; none where there is no `/proc`
-/// (proc(5), fields 14 to 17).
+/// Returns the processor time of a process and its finished children in seconds; `None` without `/proc` (proc(5),
+/// fields 14 to 17).
 pub fn seconds_of(process: u32) -> Option<f64> {
     seconds(&process.to_string(), 11, 4)
 }
 
-/// The sum of some fields of a process, counted from the one after its name.
+/// Sums some fields of a process, counted from the one after its name.
 fn seconds(process: &str, first: usize, count: usize) -> Option<f64> {
     let stat = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     let after_name = stat.rsplit_once(") ")?.1;
@@ -57,7 +58,8 @@ fn seconds(process: &str, first: usize, count: usize) -> Option<f64> {
     Some(ticks.collect::<Result<Vec<_>, _>>().ok()?.iter().sum::<f64>() / TICKS_PER_SECOND)
 }
 
-/// Seconds for each crate of a log; a crate that is compiled several times (a build script is one) counts each time.
+/// Returns the seconds of each crate in a log. A crate that is compiled several times, such as a build script, is
+/// summed.
 pub fn sums(log: &str) -> BTreeMap<String, f64> {
     let mut sums = BTreeMap::new();
     for (name, seconds) in log.lines().filter_map(|line| line.split_once(' ')) {

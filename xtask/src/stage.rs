@@ -1,6 +1,6 @@
-//! One child process as a stage: announced, run, timed, judged.
+//! Child processes as stages that are announced, run and timed.
 //!
-//! Children share this program's process group, so Ctrl-C in a terminal reaches them too.
+//! Children share this program's process group, so Ctrl-C in a terminal reaches them.
 
 use crate::rustc_time::children_seconds;
 use std::fmt;
@@ -8,16 +8,16 @@ use std::io::{BufRead as _, BufReader};
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// How a stage ended.
+/// Result of a stage.
 #[derive(Debug)]
 pub struct Outcome {
-    /// The stage's name, as announced.
+    /// Name of the stage.
     pub name: &'static str,
-    /// `Err` holds the reason in words.
+    /// `Err` holds the reason.
     pub result: Result<(), String>,
     /// Wall-clock time.
     pub took: Duration,
-    /// Processor time of the stage's processes, where the system tells it.
+    /// Processor time of the stage's processes, if the system reports it.
     pub processor: Option<Duration>,
 }
 
@@ -32,17 +32,17 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// Whether a command starts and succeeds; it says nothing.
+/// Returns true if a command starts and succeeds; its output is discarded.
 pub fn is_there(command: &mut Command) -> bool {
     command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
 }
 
-/// Runs `command` with this program's own input and output.
+/// Runs `command` with inherited input and output.
 pub fn run(name: &'static str, command: &mut Command) -> Outcome {
     timed(name, command, |command| command.status())
 }
 
-/// Runs `command`, hands each line of its standard output on, and to `line` as well.
+/// Runs `command`, prints its standard output, and calls `line` for each line of it.
 pub fn run_reading(name: &'static str, command: &mut Command, mut line: impl FnMut(&str)) -> Outcome {
     timed(name, command, |command| {
         let mut child = command.stdout(Stdio::piped()).spawn()?;
@@ -60,7 +60,7 @@ pub fn run_reading(name: &'static str, command: &mut Command, mut line: impl FnM
     })
 }
 
-/// The command as one would type it: program name, then arguments, quoted where they need it.
+/// Formats a command as it would be typed, with arguments quoted where needed.
 pub fn shown(command: &Command) -> String {
     let program = std::path::Path::new(command.get_program());
     let program = program.file_stem().unwrap_or(command.get_program());
@@ -126,8 +126,8 @@ mod tests {
         assert_eq!(lines, ["one", "two", "thr\u{fffd}ee"]);
     }
 
-    /// The times of all children of a process are told as one, so the children of tests beside this one would count:
-    /// it runs in a process that runs no other test.
+    /// The system reports only the total time of all children of a process. This test therefore starts itself in a
+    /// process that runs no other test.
     #[test]
     fn processor_time_is_that_of_the_child() {
         const ALONE: &str = "XTASK_TEST_RUNS_ALONE";

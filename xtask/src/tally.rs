@@ -1,24 +1,24 @@
-//! What the tests reported: totals from libtest's closing lines, skips and adapters from a file.
+//! Summary of test reports: totals from libtest's closing lines, and skips and adapters from a file.
 //!
 //! # The convention
-//! libtest shows no output of a passing test, so a test that skips would stay silent. Such a test
-//! therefore prints `SKIP: <test>: <reason>` *and*, where the environment variable
-//! [`SKIP_LOG`] (`FRAMEGRAPH_SKIP_LOG`) names a file, appends the same line to it. A test that opens
-//! an adapter appends `ADAPTER: <name>` in the same way, one with counts of its own `RESULT: <test>: <counts>`, and one that runs some of its cases `CASES: <test>: <N> of <M>`. One `write` of one whole line on a file
-//! opened for appending keeps lines of concurrent tests apart. `cargo xtask test` sets the variable,
-//! and prints in its summary how many skips there were, each of them, what was left out of which test, and the adapters.
+//! libtest hides the output of passing tests, so a skipped test would go unnoticed. A test that skips prints `SKIP:
+//! <test>: <reason>`, and appends this line to the file in the environment variable [`SKIP_LOG`]
+//! (`FRAMEGRAPH_SKIP_LOG`). Tests append other lines in the same way: `ADAPTER: <name>` for an opened adapter, `RESULT:
+//! <test>: <counts>` for additional counts, and `CASES: <test>: <N> of <M>` if only some cases ran. Each line is a
+//! single write to a file opened for appending, so lines of concurrent tests do not mix. `cargo xtask test` sets the
+//! variable and prints all of these in its summary.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The environment variable that names the file for `SKIP: `, `CASES: ` and `ADAPTER: ` lines.
+/// Environment variable with the path of the file for `SKIP: `, `CASES: `, `RESULT: ` and `ADAPTER: ` lines.
 pub const SKIP_LOG: &str = "FRAMEGRAPH_SKIP_LOG";
 
 /// Sums of the `test result:` lines of all test binaries and doc tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Totals {
-    /// Closing lines seen: one for each test binary and each crate's doc tests.
+    /// Number of closing lines: one for each test binary and each crate's doc tests.
     pub runs: u32,
-    /// Tests that passed; those that skipped are among them.
+    /// Tests that passed, including skipped ones.
     pub passed: u32,
     /// Tests that failed.
     pub failed: u32,
@@ -52,21 +52,21 @@ impl Totals {
     }
 }
 
-/// What the tests wrote into the file named by [`SKIP_LOG`].
+/// Lines that the tests wrote into the file named by [`SKIP_LOG`].
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Reported {
-    /// `<test>: <reason>`, in order of text, since tests run in no fixed order.
+    /// `<test>: <reason>`, sorted, since tests run in any order.
     pub skips: Vec<String>,
-    /// Tests that left cases out: how many ran of how many.
+    /// Tests that ran only some of their cases: the number that ran, and the total.
     pub shares: BTreeMap<String, [usize; 2]>,
-    /// `<test>: <counts>` of tests that count more than themselves, in order of text.
+    /// `<test>: <counts>` of tests that report additional counts, sorted.
     pub results: Vec<String>,
-    /// Distinct adapter names, in order of text.
+    /// Distinct adapter names, sorted.
     pub adapters: BTreeSet<String>,
 }
 
 impl Reported {
-    /// Reads the file's text. A line of no kind counts as a skip, so that none gets lost.
+    /// Reads the file's text. A line of unknown kind counts as a skip.
     pub fn from_text(text: &str) -> Self {
         let mut reported = Self::default();
         for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
@@ -95,15 +95,15 @@ fn share(text: &str) -> Option<(&str, [usize; 2])> {
     Some((test.trim(), [ran.parse().ok()?, all.parse().ok()?]))
 }
 
-/// A skip that is no failure: what tests with an adapter may leave out for want of something else.
+/// A skip that does not fail the run.
 struct Known {
-    /// The tests, or the part of one.
+    /// Names of the tests, or of one of their cases.
     tests: &'static [&'static str],
-    /// Stands in the reason.
+    /// Part of the reason.
     reason: &'static str,
 }
 
-/// Every skip that is known. `cargo xtask test` fails for any other, and where no test named an adapter.
+/// Every allowed skip. `cargo xtask test` fails on any other, and if no test reported an adapter.
 const KNOWN: [Known; 13] = [
     Known {
         tests: &[
@@ -121,7 +121,7 @@ const KNOWN: [Known; 13] = [
         reason: "this device does not sample",
     },
     Known { tests: &["misuse_does_not_compile"], reason: "the words are those of Rust" },
-    // A model too large to be committed.
+    // A model that is too large to be committed.
     Known { tests: &["scene", "the_helmet_agrees_with_rays"], reason: "tests/assets/models/FlightHelmet" },
     Known { tests: &["one_depth_of_four_samples_is_that_asked_for"], reason: "depth of several samples" },
     Known { tests: &["inline, Rg11b10Ufloat"], reason: "cannot draw into it" },
@@ -133,7 +133,7 @@ const KNOWN: [Known; 13] = [
         tests: &["the_validation_layers_accept_placed_resources", "the_layers_are_silent_about_whole_frames"],
         reason: "do not detect missing aliasing barriers",
     },
-    // Streams are replayed where the layers are there to say whether they suffice.
+    // Streams are replayed only if the validation layers can check their barriers.
     Known {
         tests: &[
             "barriers_that_are_left_out_are_noticed",
@@ -143,7 +143,7 @@ const KNOWN: [Known; 13] = [
         ],
         reason: "streams are replayed on Vulkan with its layers",
     },
-    // Textures are placed on Vulkan alone.
+    // Only the Vulkan backend places textures in given memory.
     Known {
         tests: &[
             "a_placed_chain_equals_the_unshared_chain",
@@ -164,12 +164,12 @@ const KNOWN: [Known; 13] = [
             "opposite_light_is_finite",
             "pictures_in_half_floats_are_close",
             "the_device_is_as_good_as_the_model",
-            "the_distribution_errs_as_stated",
+            "the_distribution_has_the_stated_error",
             "the_textbook_form_and_results_that_are_off_are_found",
         ],
         reason: "has no half floats in shaders",
     },
-    // The figures in a document are of one device.
+    // The figures of a document belong to one device.
     Known {
         tests: &[
             "every_function_of_the_half_build_equals_its_mirror_on_the_device",
@@ -186,22 +186,22 @@ impl Known {
     }
 }
 
-/// Number of skips that are known.
+/// Returns the number of allowed skips.
 pub fn known_skips() -> usize {
     KNOWN.iter().map(|known| known.tests.len()).sum()
 }
 
 impl Reported {
-    /// What must not be so: skips that are not known, and no adapter at all.
+    /// Returns the first problem: a skip that is not allowed, or no adapter.
     pub fn fault(&self) -> Option<String> {
         if self.adapters.is_empty() {
             return Some("no test found an adapter".to_owned());
         }
         let others = self.skips.iter().filter(|skip| !KNOWN.iter().any(|known| known.is(skip))).count();
-        (others > 0).then(|| format!("{others} skips are not among the known ones of xtask/src/tally.rs"))
+        (others > 0).then(|| format!("{others} skips are not allowed by xtask/src/tally.rs"))
     }
 
-    /// Cases that ran, and all that there are, of the tests that share.
+    /// Returns the number of cases that ran, and the total, over tests that ran only some.
     pub fn cases(&self) -> [usize; 2] {
         self.shares.iter().fold([0, 0], |[ran, all], (_, cases)| [ran + cases[0], all + cases[1]])
     }
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn skips_and_adapters_are_told_apart() {
+    fn skips_and_adapters_are_distinguished() {
         let text = "SKIP: b: no f16\nADAPTER: llvmpipe\n\nCASES: x::c: 3 of 9\nSKIP: a: no EXR\nADAPTER: llvmpipe\nodd\n\
                     CASES: x::c: 1 of 2\nCASES: d: x of 2\nCASES: e: 1 of 5\nRESULT: f: 3 ok\n";
         let reported = Reported::from_text(text);
@@ -247,7 +247,7 @@ mod tests {
         let elsewhere =
             "hard_inputs_leave_every_invariant_and_guards_are_missed: the figures of docs/hard-cases.md are not of it";
         assert_eq!(with(&format!("SKIP: {elsewhere}\n")), None);
-        // Another test for that reason, that test for another reason, a test whose adapter went away.
+        // A wrong test, a wrong reason, and a test that lost its adapter.
         for skip in [
             "b: there is no Xvfb",
             "a_window_is_drawn_into: it is late",
@@ -261,7 +261,7 @@ mod tests {
         assert_eq!(none.fault().as_deref(), Some("no test found an adapter"));
     }
 
-    /// The list does not outlive the tests.
+    /// Removed tests must not stay in the list.
     #[test]
     fn every_known_skip_is_one_of_a_test() {
         let rooms = ["framegraph/tests", "renderer/src", "renderer/tests", "scene/src", "tests/tests", "examples"];
@@ -282,7 +282,7 @@ mod tests {
             let file = reason.rsplit('/').next().unwrap_or(reason);
             assert!(texts.contains(file), "{reason}");
             for test in tests {
-                // Some names end with what a case is called.
+                // Some names end with the name of a case.
                 let (name, case) = test.split_once(", ").unwrap_or((test, ""));
                 assert!(texts.contains(name) && texts.contains(case), "{test}: {reason}");
             }

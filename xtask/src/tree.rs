@@ -1,16 +1,16 @@
-//! A made-up file tree for tests, removed when dropped.
+//! Temporary file tree for tests, removed when dropped.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// A folder of its own under the system's temporary folder.
+/// A folder of its own in the system's temporary folder.
 #[derive(Debug)]
 pub struct Tree(PathBuf);
 
 impl Tree {
-    /// A tree with `files`: (path, text). A leading `/` means the tree's root.
+    /// Creates a tree with `files`, pairs of path and text. A leading `/` means the tree's root.
     pub fn new(files: &[(&str, &str)]) -> Self {
-        // A number per tree keeps tests of one process apart, the process id those of several.
+        // The number separates trees of one process, and the process id separates processes.
         static NEXT: AtomicU32 = AtomicU32::new(0);
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let root = std::env::temp_dir().join(format!("xtask-{}-{number}", std::process::id()));
@@ -23,7 +23,7 @@ impl Tree {
         Self(root)
     }
 
-    /// The tree's root.
+    /// Returns the tree's root.
     pub fn root(&self) -> &Path {
         &self.0
     }
@@ -31,7 +31,7 @@ impl Tree {
 
 impl Drop for Tree {
     fn drop(&mut self) {
-        // Nothing can be done about a file that will not go; the system clears the folder.
+        // The system clears its temporary folder if this fails.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }

@@ -1,21 +1,20 @@
-//! Where the workspace lies, and the `cargo` that builds it.
+//! Path of the workspace, and the `cargo` that builds it.
 
 use std::path::PathBuf;
 use std::process::Command;
 
 use crate::Failure;
 
-/// The workspace's root folder.
+/// Returns the workspace's root folder.
 ///
-/// `cargo run` tells where this package lies; a program started without cargo falls back on the
-/// place it was compiled in.
+/// `cargo run` sets the path of this package. Without cargo, the path at compile time is used.
 pub fn root() -> PathBuf {
     let package =
         std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
     package.parent().map_or_else(|| PathBuf::from("."), PathBuf::from)
 }
 
-/// The same `cargo` that started this program, with `arguments`, in the workspace's root.
+/// Returns the `cargo` that started this program, with `arguments`, in the workspace's root.
 pub fn cargo(arguments: &[&str]) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     // Mesa's device selection layer complains about a missing session on standard error.
@@ -23,10 +22,10 @@ pub fn cargo(arguments: &[&str]) -> Command {
     command
 }
 
-/// The folder for what this program writes for itself, made where it is not there.
+/// Returns the folder for temporary files of this program, and creates it if needed.
 ///
 /// # Errors
-/// Where it cannot be made.
+/// The folder cannot be created.
 pub fn scratch() -> Result<PathBuf, Failure> {
     let folder = root().join("target/xtask");
     std::fs::create_dir_all(&folder).map_err(|error| Failure::Failed(format!("{}: {error}", folder.display())))?;

@@ -1,4 +1,4 @@
-//! Any bytes as a `.cube` file.
+//! Fuzz target: reads arbitrary bytes as a `.cube` file.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

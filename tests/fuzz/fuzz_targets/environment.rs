@@ -1,4 +1,4 @@
-//! Any bytes as a Radiance or OpenEXR picture.
+//! Fuzz target: reads arbitrary bytes as a Radiance or OpenEXR picture.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

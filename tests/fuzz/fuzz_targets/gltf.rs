@@ -1,4 +1,4 @@
-//! Any bytes as a glTF or GLB file.
+//! Fuzz target: reads arbitrary bytes as a glTF or GLB file.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Any bytes as an entry of the light cache.
+//! Fuzz target: reads arbitrary bytes as an entry of the light cache.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Any bytes as the statement of a reference picture.
+//! Fuzz target: reads arbitrary bytes as the statement of a reference picture.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

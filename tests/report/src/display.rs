@@ -1,18 +1,18 @@
-//! A display without a screen, for programs that open windows.
+//! Virtual X11 display for programs that open windows.
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 
-/// A server of X11 that shows nothing, gone with this value.
+/// An Xvfb server, stopped when this value is dropped.
 #[derive(Debug)]
 pub struct Display {
     server: Child,
-    /// What `DISPLAY` names it by.
+    /// Value of `DISPLAY` for client programs.
     pub name: String,
 }
 
 impl Display {
-    /// One with a screen of 1280 × 800 texels; none where there is no `Xvfb`.
+    /// Starts a server with a screen of 1280 × 800 pixels; `None` if `Xvfb` is not installed.
     pub fn open() -> Option<Self> {
         let mut server = Command::new("Xvfb");
         server.args(["-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp"]);
@@ -27,7 +27,7 @@ impl Display {
 
 impl Drop for Display {
     fn drop(&mut self) {
-        // Asked to end, it takes its lock file with it.
+        // After SIGTERM, the server removes its lock file.
         let asked = Command::new("kill").arg(self.server.id().to_string()).status();
         if !asked.is_ok_and(|status| status.success()) {
             let _ = self.server.kill();

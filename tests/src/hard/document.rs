@@ -1,4 +1,4 @@
-//! The tables of `docs/hard-cases.md`, as rows: printed by the program `hard_cases`, found again by tests.
+//! Rows of the tables in `docs/hard-cases.md`, printed by the program `hard_cases` and compared by a test.
 
 use super::guard::guards;
 use super::judge::Questions;
@@ -9,27 +9,27 @@ use framegraph_wgpu::Gpu;
 use std::collections::BTreeMap;
 use std::error::Error;
 
-/// A guard of the library, and the named case that fails without it.
+/// A guard of the library, with a test case that fails without it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Kept {
     /// File and function.
     pub function: String,
-    /// The guard as it is written.
+    /// Source text of the guard.
     pub guard: String,
-    /// The first case that fails; nothing if none does.
+    /// First test case that fails without the guard; `None` if every case passes.
     pub by: Option<String>,
 }
 
-/// Why taking a guard out changes no result on Mesa's software driver.
-const LOGARITHM: &str = "this driver's logarithm of zero and of less is finite; WGSL leaves it open";
-const SWALLOWED: &str = "the limit around it makes a number of what is none on this driver; WGSL leaves it open";
-const ROUNDING: &str = "for what rounding may carry past the limit; no input is known that it does so to here";
-const TWICE: &str = "what follows holds the same values, by WGSL's rules; the guard says it without them";
-const UNCHOSEN: &str = "a select behind it does not choose what is computed from it";
-const WHOLE: &str = "for the middle, whose share is 1 whatever the angle";
-const BEFORE: &str = "for ways that end before fog begins, which are in none whatever its mean density";
+/// Reason that removing a guard changes no result on Mesa's software driver.
+const LOGARITHM: &str = "this driver's logarithm of zero and negative numbers is finite, which WGSL does not guarantee";
+const SWALLOWED: &str = "the enclosing limit turns NaN into a number on this driver, which WGSL does not guarantee";
+const ROUNDING: &str = "guards against rounding beyond the limit; no input is known that causes it here";
+const TWICE: &str = "the following code limits the same values by WGSL's rules; the guard makes it explicit";
+const UNCHOSEN: &str = "a later select discards the result";
+const WHOLE: &str = "for the center, where the angle has no effect";
+const BEFORE: &str = "for rays that end before the fog starts, where its density has no effect";
 
-/// Guards that no case misses on this driver, nor where the function is read strictly, and why.
+/// Guards that no test case needs on this driver, with or without strict evaluation, and the reason.
 pub const UNNOTICED: &[(&str, &str, &str)] = &[
     ("aces::aces_glow", "max(chroma2, 0.0)", ROUNDING),
     ("aces::aces_glow", "max(brightness, 1e-6)", SWALLOWED),
@@ -81,7 +81,7 @@ pub const UNNOTICED: &[(&str, &str, &str)] = &[
     ),
 ];
 
-/// The table of rows: number, input, where it is held.
+/// Returns the table of hard inputs: number, input, tests.
 pub fn rows() -> Vec<String> {
     let line = |row: &super::rows::Row| {
         let functions = row.functions().into_iter().map(|function| format!("`{function}`"));
@@ -95,10 +95,10 @@ pub fn rows() -> Vec<String> {
     ROWS.iter().map(line).collect()
 }
 
-/// Every guard of every function in every build, taken out one at a time; or every `step`th one from `start` on.
+/// Tests every guard of every function in every build by removing it, or every `step`th guard from `start`.
 ///
 /// # Errors
-/// When the device fails, or refuses a text without a guard.
+/// The device fails, or rejects a shader without a guard.
 pub fn kept(gpu: &Gpu, start: usize, step: usize) -> Result<Vec<Kept>, Box<dyn Error>> {
     let mut found: BTreeMap<(String, usize), Kept> = BTreeMap::new();
     let mut count = 0;
@@ -116,11 +116,11 @@ pub fn kept(gpu: &Gpu, start: usize, step: usize) -> Result<Vec<Kept>, Box<dyn E
             if place.by.is_none() && (step == 1 || chosen) {
                 let without = guard.removed_from(&wgsl);
                 place.by = questions.failures(gpu, &without)?.into_iter().next().map(|f| f.name);
-                // As a driver may read it, where the guarded function itself is sound so.
+                // Strict evaluation, if the guarded function itself passes under it.
                 let of_numbers = Questions::of_numbers(case);
                 if place.by.is_none() && of_numbers.failures(gpu, &strict(&wgsl, case.function))?.is_empty() {
                     let failed = of_numbers.failures(gpu, &strict(&without, case.function))?;
-                    place.by = failed.into_iter().next().map(|f| format!("{}, read strictly", f.name));
+                    place.by = failed.into_iter().next().map(|f| format!("{}, evaluated strictly", f.name));
                 }
             }
         }

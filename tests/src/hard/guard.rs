@@ -1,37 +1,37 @@
-//! Guards of the library: what holds a value back before arithmetic breaks, found in a shader's text, and the text without it.
+//! Guards of the library, found in shader text: code that limits a value before arithmetic breaks.
 //!
-//! A guard is `max`, `min`, `clamp` or `saturate` whose limit is a constant, a `select`, and an `if` that returns early. To
-//! take it out leaves the value that it holds: `max(x, 1e-4)` becomes `(x)`, `select(a, b, c)` `(a)`, and an `if` never
-//! applies.
+//! A guard is a `max`, `min`, `clamp` or `saturate` with a constant limit, a `select`, or an `if` that returns early.
+//! Removing it keeps the value that it limits: `max(x, 1e-4)` becomes `(x)`, `select(a, b, c)` becomes `(a)`, and the
+//! condition of an `if` becomes false.
 
 use std::ops::Range;
 
 /// A guard in the text of a shader.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Guard {
-    /// As it is written.
+    /// Source text of the guard.
     pub text: String,
-    /// What stands in its place without it.
+    /// Replacement text without the guard.
     pub without: String,
-    /// Bytes of the shader's text.
+    /// Byte range in the shader's text.
     pub at: Range<usize>,
 }
 
 impl Guard {
-    /// The shader's text without the guard.
+    /// Returns the shader's text without the guard.
     pub fn removed_from(&self, wgsl: &str) -> String {
         format!("{}{}{}", &wgsl[..self.at.start], self.without, &wgsl[self.at.end..])
     }
 }
 
-/// The bytes of a function's body in a shader's text.
+/// Returns the byte range of a function's body.
 pub(super) fn body(wgsl: &str, function: &str) -> Option<Range<usize>> {
     let head = wgsl.find(&format!("fn {function}("))?;
     let open = head + wgsl[head..].find('{')?;
     Some(open..open + closing(&wgsl[open..])?)
 }
 
-/// Where the bracket that a text begins with is closed.
+/// Returns the position of the bracket that closes the first one.
 pub(super) fn closing(text: &str) -> Option<usize> {
     let mut depth = 0;
     for (at, c) in text.char_indices() {
@@ -49,14 +49,14 @@ pub(super) fn closing(text: &str) -> Option<usize> {
     None
 }
 
-/// Arguments of a call, without the brackets around them.
+/// Splits the arguments of a call, given without its brackets.
 pub(super) fn arguments(list: &str) -> Vec<&str> {
     let (mut depth, mut from, mut found) = (0_i32, 0, Vec::new());
     for (at, c) in list.char_indices() {
         match c {
             '(' | '[' => depth += 1,
             ')' | ']' => depth -= 1,
-            // A template list holds one type here, and a comparison no comma.
+            // A template list has a single type here, and a comparison no comma.
             ',' if depth == 0 => {
                 found.push(list[from..at].trim());
                 from = at + 1;
@@ -71,7 +71,7 @@ pub(super) fn arguments(list: &str) -> Vec<&str> {
     found
 }
 
-/// Whether an expression is a number, or made of numbers and constants.
+/// Returns true if an expression consists of numbers and constants.
 pub(super) fn is_constant(expression: &str) -> bool {
     let words = expression.split(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.'));
     let known = |word: &str| {
@@ -83,7 +83,7 @@ pub(super) fn is_constant(expression: &str) -> bool {
     words.into_iter().all(known)
 }
 
-/// What is left of a call without its limit; nothing if it is no guard.
+/// Returns the argument of a call without its limit; `None` if the call is not a guard.
 fn unheld(name: &str, arguments: &[&str]) -> Option<String> {
     let held = match (name, arguments) {
         ("saturate", [x]) => Some(*x),
@@ -96,7 +96,7 @@ fn unheld(name: &str, arguments: &[&str]) -> Option<String> {
     held.map(|x| format!("({x})"))
 }
 
-/// The guards of a function of a shader, in order.
+/// Returns the guards of a function in order.
 pub fn guards(wgsl: &str, function: &str) -> Vec<Guard> {
     let Some(body) = body(wgsl, function) else { return Vec::new() };
     let mut found = Vec::new();
@@ -135,7 +135,7 @@ pub fn guards(wgsl: &str, function: &str) -> Vec<Guard> {
     found
 }
 
-/// In one line.
+/// Joins the text into one line.
 fn words(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

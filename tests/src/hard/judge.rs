@@ -1,4 +1,4 @@
-//! Asking the device: one dispatch a function and build, for its probes and for the ends of its domain.
+//! Evaluation on the device: one dispatch per function and build, for its probes and the ends of its domain.
 
 use super::probe::{self, Probe, WIDER, Wider};
 use crate::mirror;
@@ -7,19 +7,19 @@ use framegraph_wgpu::Gpu;
 use std::error::Error;
 use std::ops::Range;
 
-/// Combinations that one probe tries at most.
+/// Maximum number of combinations per probe.
 pub const MOST: usize = 4096;
 
-/// What is not as it must be.
+/// A violated invariant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
-    /// The named case: a row and a function, or a function at the ends of its domain.
+    /// Name of the case: a row and a function, or a function at the ends of its domain.
     pub name: String,
-    /// Inputs and results of the first place.
+    /// Inputs and results of the first violation.
     pub what: String,
 }
 
-/// Inputs of everything that is asked of one build of a function.
+/// All inputs for one build of a function.
 #[derive(Debug)]
 pub struct Questions {
     case: Case,
@@ -28,12 +28,12 @@ pub struct Questions {
 }
 
 impl Questions {
-    /// Of a function in one build.
+    /// Collects the inputs for one build of a function.
     pub fn of(case: Case) -> Self {
         Self::where_all(case, |_| true)
     }
 
-    /// Of a function in one build, of numbers alone: nothing infinite, and nothing that is no number.
+    /// Collects the inputs for one build of a function, without infinities and NaN.
     pub fn of_numbers(case: Case) -> Self {
         Self::where_all(case, is_finite)
     }
@@ -57,20 +57,20 @@ impl Questions {
         Self { case, probes, inputs }
     }
 
-    /// The function and its build.
+    /// Returns the function with its build.
     pub fn case(&self) -> &Case {
         &self.case
     }
 
-    /// Rows of numbers.
+    /// Returns the number of input rows.
     pub fn rows(&self) -> usize {
         self.inputs.len() / self.case.input_width()
     }
 
-    /// What the device makes of them with this text in place of the function's own.
+    /// Evaluates the inputs with a replaced shader text, and returns violations.
     ///
     /// # Errors
-    /// When the device refuses the text or fails.
+    /// The device rejects the text or fails.
     pub fn failures(&self, gpu: &Gpu, wgsl: &str) -> Result<Vec<Failure>, Box<dyn Error>> {
         let results = mirror::results_of(gpu, &self.case, wgsl, &self.inputs)?;
         let (width, count) = (self.case.input_width(), self.case.results.len());
@@ -96,15 +96,15 @@ impl Questions {
         Ok(failures)
     }
 
-    /// The same of the function's own text.
+    /// Evaluates the inputs with the function's own text, and returns violations.
     ///
     /// # Errors
-    /// As [`Self::failures`].
+    /// The device rejects the text or fails.
     pub fn ask(&self, gpu: &Gpu) -> Result<Vec<Failure>, Box<dyn Error>> {
         self.failures(gpu, &self.case.shader()?.wgsl)
     }
 
-    /// Against the mirror where that is a number: rows of `inputs` with their results.
+    /// Compares results with the f64 mirror where that is finite. `place` is a range of the input rows.
     fn check_numbers(&self, place: Range<usize>, results: &[f32]) -> Result<(), String> {
         let (width, count, case) = (self.case.input_width(), self.case.results.len(), self.widened());
         let (mut inputs, mut outputs) = (Vec::new(), Vec::new());
@@ -125,7 +125,7 @@ impl Questions {
     }
 }
 
-/// By its bits: compilers may take every comparison with what is no number as they like.
+/// Tests the bits, since compilers may evaluate comparisons with NaN arbitrarily.
 fn is_finite(x: f32) -> bool {
     x.to_bits() & 0x7fff_ffff < 0x7f80_0000
 }

@@ -1,44 +1,44 @@
-//! What a function of the library is asked beyond its domain, and what must come of it.
+//! Inputs of a function beyond its domain, and the invariant of its results.
 
 use super::probes;
 use framegraph_shaders::reference::cases::{self, Bound, Case, Domain};
 
-/// The builds that a probe is for.
+/// Builds that a probe applies to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Build {
-    /// Both, where the function has both.
+    /// Both, if the function has both.
     Both,
-    /// f32 alone.
+    /// f32 only.
     Full,
-    /// f16 alone.
+    /// f16 only.
     Half,
 }
 
-/// Inputs from the ends of arithmetic, and what every result for them must be. That it is finite goes without saying, and is
-/// told by its bits.
+/// Extreme inputs of a function, and an invariant of every result. Results must also be finite, which is tested by
+/// their bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Probe {
     /// Row of the table of hard inputs.
     pub row: u8,
     /// Function of the library.
     pub function: &'static str,
-    /// Which builds.
+    /// Builds that the probe applies to.
     pub build: Build,
-    /// A list for each number of the function's case; every combination is tried.
+    /// Values of each parameter; every combination is tested.
     pub parameters: &'static [Domain],
-    /// Whether results for the inputs are sound.
+    /// Returns true if the results for the inputs are valid.
     pub holds: fn(&[f32], &[f32]) -> bool,
-    /// Whether they must be the mirror's too, where that is a number: within the bound of the function's case.
+    /// True if results must also match the mirror, where that is finite, within the bound of the function's case.
     pub mirrored: bool,
 }
 
 impl Probe {
-    /// For a report.
+    /// Returns the name for reports.
     pub fn name(&self) -> String {
         format!("row {}: {}", self.row, self.function)
     }
 
-    /// The function's case in one build, over the probe's inputs. Nothing if the probe is not for that build.
+    /// Returns the function's case with the inputs of the probe; `None` if the probe does not apply to that build.
     pub fn case(&self, case: &Case) -> Option<Case> {
         let meant = match self.build {
             Build::Both => true,
@@ -49,24 +49,24 @@ impl Probe {
     }
 }
 
-/// All probes.
+/// Returns all probes.
 pub fn all() -> impl Iterator<Item = &'static Probe> {
     probes::ALL.into_iter().flatten()
 }
 
-/// Every function of the library in every build that it has.
+/// Returns every function of the library in each of its builds.
 pub fn builds() -> Vec<Case> {
     cases::all().copied().chain(cases::half()).collect()
 }
 
-/// A bound of a function in one build at the ends of its domain.
+/// Error bound of one build of a function at the ends of its domain.
 #[derive(Clone, Copy, Debug)]
 pub struct Wider {
-    /// The function.
+    /// Name of the function.
     pub function: &'static str,
-    /// Its build.
+    /// True for the f16 build.
     pub in_half: bool,
-    /// How far it may be from the mirror there.
+    /// Maximum distance from the mirror.
     pub bound: Bound,
 }
 
@@ -74,8 +74,9 @@ const fn wider(function: &'static str, in_half: bool, absolute: f64, relative: f
     Wider { function, in_half, bound: Bound { absolute, relative, period: 0.0 } }
 }
 
-/// Functions that may be farther from their mirrors at the ends of their domains than between them.
+/// Functions with a larger error bound at the ends of their domains.
 pub const WIDER: &[Wider] = &[
-    // Near the corner it is a root of one less a thirtieth power of a number near one: 1e-6, of which half is rounding.
+    // Near the corner, the function is the root of 1 minus the 30th power of a number near 1: 1e-6, half of which is
+    // rounding.
     wider("edge_share", false, 1e-3, 1e-4),
 ];

@@ -1,4 +1,4 @@
-//! The probes, by what their functions are about.
+//! Probes by topic of the function.
 
 mod color;
 mod lens;
@@ -15,23 +15,23 @@ use framegraph_shaders::reference::cases::Domain::Values;
 pub(super) const ALL: [&[Probe]; 7] =
     [shading::PROBES, lobes::PROBES, lens::PROBES, screen::PROBES, shadow::PROBES, picture::PROBES, color::PROBES];
 
-/// The largest half float.
+/// Largest finite half float.
 const MOST: f32 = 65504.0;
-/// One exact number.
+/// Zero.
 const NONE: Domain = Values(&[0.0]);
 const ONE: Domain = Values(&[1.0]);
-/// Cosines: none, less than none, numbers too small for all their bits, more than one (1, 2, 3, 6).
+/// Cosines: zero, negative, denormal, above one (rows 1, 2, 3, 6).
 const COSINE: Domain = Values(&[0.0, -0.0, -0.1, 6e-8, 6.1e-5, 1e-4, 0.5, 0.9995, 1.0, 1.000_000_2, 1.0005, 1.002]);
-/// Cosines toward the viewer as callers clamp them.
+/// Cosines toward the viewer, clamped as by callers.
 const NOV: Domain = Values(&[1e-4, 0.01, 0.5, 1.0, 1.002]);
-/// alpha: the floors of both builds, a tenth, one (4).
+/// Alpha: the minimum of both builds, a tenth, one (row 4).
 const ALPHA: Domain = Values(&[0.007_921, 0.002_025, 0.1, 1.0]);
-/// The same, less than the floors, and none.
+/// Alpha below the minimum of both builds, and zero.
 const LOW_ALPHA: Domain = Values(&[0.007_921, 0.002_025, 4e-4, 0.0, 0.1, 1.0]);
-/// Components of vectors that cancel, vanish or are too long (3, 7, 8).
+/// Components of vectors that cancel, vanish or are longer than 1 (rows 3, 7, 8).
 const COMPONENT: Domain = Values(&[0.0, 1.0, -1.0, 0.001, -0.001, 0.6, -0.6, 1.002]);
 const SHARE: Domain = Values(&[0.0, 6e-8, 0.04, 0.5, 1.0]);
-/// Radiance that a tone curve must survive (47).
+/// Radiance that a tone curve must handle (row 47).
 const RADIANCE: Domain =
     Values(&[-0.2, 0.0, -0.0, 0.18, 160.0, 161.6, 65504.0, 1e19, 1.2e19, f64::INFINITY, f64::NEG_INFINITY, f64::NAN]);
 
@@ -44,7 +44,8 @@ const fn both(
     Probe { row, function, build: Build::Both, parameters, holds, mirrored: true }
 }
 
-/// A probe of what lies so far out that shader and mirror need not agree: cancellation, or floors that differ by build.
+/// A probe whose inputs are so extreme that shader and mirror may differ: cancellation, or limits that depend on the
+/// build.
 const fn bounded(
     row: u8,
     function: &'static str,
@@ -54,27 +55,27 @@ const fn bounded(
     Probe { row, function, build: Build::Both, parameters, holds, mirrored: false }
 }
 
-/// Whether every result is a number that a half float holds, and not below zero.
+/// Returns true if every result is non-negative and representable as a half float.
 fn in_half(_: &[f32], y: &[f32]) -> bool {
     y.iter().all(|y| (0.0..=MOST).contains(y))
 }
 
-/// Whether every result is a share.
+/// Returns true if every result is within 0…1.
 fn is_share(_: &[f32], y: &[f32]) -> bool {
     y.iter().all(|y| (0.0..=1.0).contains(y))
 }
 
-/// Whether no result is below zero.
+/// Returns true if no result is negative.
 fn is_positive(_: &[f32], y: &[f32]) -> bool {
     y.iter().all(|y| *y >= 0.0)
 }
 
-/// For probes that ask for finite results and no more.
+/// Accepts any result, for probes that only require finite values.
 fn is_any(_: &[f32], _: &[f32]) -> bool {
     true
 }
 
-/// Whether the first three results are a vector of length one, but for a thousandth.
+/// Returns true if the first three results are a unit vector, to within 0.001.
 fn is_unit(_: &[f32], y: &[f32]) -> bool {
     let length2: f32 = y[..3].iter().map(|c| c * c).sum();
     (length2.sqrt() - 1.0).abs() < 1e-3

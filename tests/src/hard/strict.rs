@@ -1,21 +1,21 @@
-//! A function's text as a driver may read it that takes every liberty WGSL leaves: what is no number goes through every
-//! limit, and a logarithm or a power of nothing and of less is no number.
+//! Strict evaluation of a function: NaN passes through limits, and the logarithm or power of zero and negative numbers
+//! is NaN. WGSL allows drivers to do so.
 //!
-//! Mesa's software driver makes a number of what is none in `max` and `clamp`, and has finite logarithms of zero; others do
-//! not. A guard whose absence that hides is missed here.
+//! Mesa's software driver turns NaN into a number in `max` and `clamp`, and gives finite logarithms of zero; other
+//! drivers do not. Strict evaluation detects guards whose removal this would hide.
 
 use super::guard::{arguments, body, closing, is_constant};
 
-/// Calls that are read strictly.
+/// Calls that are evaluated strictly.
 const CALLS: [&str; 7] = ["max", "min", "clamp", "saturate", "log2", "log", "pow"];
 
-/// The shader's text with one function's body read strictly.
+/// Returns the shader's text with strict evaluation in one function's body.
 pub fn strict(wgsl: &str, function: &str) -> String {
     let Some(body) = body(wgsl, function) else { return wgsl.to_owned() };
     format!("{}{}{}", &wgsl[..body.start], read(&wgsl[body.clone()]), &wgsl[body.end..])
 }
 
-/// Every call in a text, from the inner ones out.
+/// Rewrites every call in a text, innermost first.
 fn read(text: &str) -> String {
     let mut out = String::new();
     let mut from = 0;
@@ -32,7 +32,7 @@ fn read(text: &str) -> String {
     out
 }
 
-/// The first of the calls from a place on.
+/// Returns the first of the calls at or after a position.
 fn next_call(text: &str, from: usize) -> Option<(usize, &'static str)> {
     let joined = |at: usize| text[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == '.');
     let first = |name: &'static str| {
@@ -45,7 +45,7 @@ fn next_call(text: &str, from: usize) -> Option<(usize, &'static str)> {
 
 fn call(name: &str, given: &[String]) -> String {
     let plain = format!("{name}({})", given.join(", "));
-    // Numbers are what they are.
+    // Constants need no check.
     if given.iter().all(|argument| is_constant(argument)) {
         return plain;
     }

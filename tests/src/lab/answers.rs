@@ -1,4 +1,5 @@
-//! What a newcomer asks, answered from a record: what more taps cost, what each preset has, what a budget buys.
+//! Answers to common questions from a record: the gain of more samples, the options of each preset, the frames within a
+//! budget.
 
 use super::record::{ChoiceRecord, Record};
 use super::statistics::number;
@@ -6,22 +7,25 @@ use framegraph_passes::budget::{Choices, Chosen, Measured, Offers};
 use framegraph_passes::{Facts, FrameSettings, Preset};
 use std::fmt::Write as _;
 
-/// What one of two options costs against the other, in a sentence: error, time, and who has them.
+/// Compares two options of a technique in one sentence: error, time, and the presets that use them.
 pub fn taps(record: &Record) -> String {
     let taps = record.techniques.iter().find(|technique| technique.name == "ao-taps");
     let of = |count: &str| taps?.choices.iter().find(|choice| choice.name.starts_with(count));
     let (Some(few), Some(many), Some(technique)) = (of("7 "), of("16 "), taps) else { return String::new() };
     let told = |choice: &ChoiceRecord| {
-        let ms = choice.ms.map_or_else(|| "was not timed".to_owned(), |ms| format!("takes {} ms", number(ms.median)));
+        let ms = choice.ms.map_or_else(
+            || "it was not timed".to_owned(),
+            |ms| format!("a frame with it takes {} ms", number(ms.median)),
+        );
         let step = choice.steps.iter().find(|step| step.passes.split(" + ").any(|pass| pass == "occlusion"));
-        let step =
-            step.map_or_else(String::new, |step| format!(", {} of them the step `occlusion`", number(step.median)));
-        let noise = choice.noise.map_or_else(String::new, |noise| format!(", of which noise {}", number(noise)));
+        let step = step
+            .map_or_else(String::new, |step| format!(", of which {} ms are the step `occlusion`", number(step.median)));
+        let noise = choice.noise.map_or_else(String::new, |noise| format!(", of which {} are noise", number(noise)));
         let presets = choice.presets.join(" and ");
         let presets =
-            if presets.is_empty() { "no preset has it".to_owned() } else { format!("preset {presets} has it") };
+            if presets.is_empty() { "no preset uses it".to_owned() } else { format!("preset {presets} uses it") };
         format!(
-            "**{}** errs by {} ({}{noise}), a frame {ms}{step}, and {presets}",
+            "**{}** have an error of {} ({}{noise}), {ms}{step}, and {presets}",
             choice.name,
             number(choice.error),
             technique.unit
@@ -36,9 +40,9 @@ pub fn taps(record: &Record) -> String {
     )
 }
 
-/// What each preset has of each choice that presets differ in.
+/// Returns a table of the options in which presets differ.
 pub fn presets(record: &Record) -> String {
-    let mut text = String::from("| choice | low | medium | high | ultra |\n| --- | --- | --- | --- | --- |\n");
+    let mut text = String::from("| setting | low | medium | high | ultra |\n| --- | --- | --- | --- | --- |\n");
     for technique in &record.techniques {
         let of = |preset: Preset| {
             let has = |choice: &&ChoiceRecord| choice.presets.iter().any(|own| own == preset.name());
@@ -52,7 +56,7 @@ pub fn presets(record: &Record) -> String {
     text
 }
 
-/// The option that a frame has of each group; none where it has one of its own.
+/// Returns the frame's option in each group; `None` if its value is not among the options.
 fn set_of(choices: &Choices, frame: &FrameSettings) -> Vec<Option<usize>> {
     let has = |options: &Vec<&framegraph_passes::budget::FrameOption>| {
         options.iter().position(|option| {
@@ -64,16 +68,18 @@ fn set_of(choices: &Choices, frame: &FrameSettings) -> Vec<Option<usize>> {
     choices.iter().map(|(_, options)| has(options)).collect()
 }
 
-/// What options take and err by as parts of one frame, what a budget buys, and where presets are against that.
+/// Describes the cost and error of options as parts of one frame, the frames within a budget, and the position of the
+/// presets.
 pub fn budget(measured: &Measured) -> String {
     let Ok(choices) = measured.choices(&Facts::default(), |_| true) else { return String::new() };
     let offers = measured.offers(&choices, measured.fastest_ms, measured.reference_ms);
     let mut text = format!(
-        "\n## budget\n\nWhat options take and err by as parts of one frame: each is changed alone of the *reference*, the finest \
-        preset with the finest option of each, and compared with the reference's picture. The reference takes {} ms, the frame \
-        with the cheapest option of each {} ms. `render --budget-ms` and `--max-error` choose from this table; scenes leave out \
-        groups that they do not call for. *Saved* is what a frame takes less with the option than the reference.\n\n\
-        | group | scene | option | codes, RMS | ms | saved, ms |\n| --- | --- | --- | --- | --- | --- |\n",
+        "\n## budget\n\nCost and error of options as parts of one frame. The *reference* is the finest preset with the finest option \
+        of each group. One option at a time is changed, and the picture is compared with the reference's. The reference takes \
+        {} ms, the frame with the cheapest option of each group {} ms. `render --budget-ms` and `--max-error` choose from this \
+        table, without the groups that a scene does not use. *Saved* is the time of the reference minus the time with the \
+        option.\n\n\
+        | group | scene | option | 8-bit steps, RMS | ms | saved, ms |\n| --- | --- | --- | --- | --- | --- |\n",
         number(measured.reference_ms),
         number(measured.fastest_ms)
     );
@@ -85,8 +91,8 @@ pub fn budget(measured: &Measured) -> String {
         }
     }
     if !measured.pairs.is_empty() {
-        text.push_str("\nErrors of independent options add up as squares. These do not, by so many codes squared:\n\n");
-        text.push_str("| one | other | beyond the sum |\n| --- | --- | --- |\n");
+        text.push_str("\nSquared errors of independent options add up. These pairs deviate from the sum, in squared 8-bit steps:\n\n");
+        text.push_str("| option | option | beyond the sum |\n| --- | --- | --- |\n");
         for pair in &measured.pairs {
             let [one, other] = pair.options.each_ref().map(|[group, option]| format!("{group}: {option}"));
             let _ = writeln!(text, "| {one} | {other} | {} |", number(pair.squares));
@@ -96,16 +102,16 @@ pub fn budget(measured: &Measured) -> String {
     text
 }
 
-/// Presets as sets of the groups, and the most accurate set in the same time.
+/// Compares each preset, as a set of options, with the most accurate set of the same cost.
 fn preset_rows(choices: &Choices, offers: &Offers) -> String {
     let mut text = String::from(
-        "\nPresets as sets of these groups, on a frame that calls for all of them; beside each the most accurate set that is \
-        predicted to take no more, and in which groups it is another one.\n\n\
-        | preset | codes | ms | best in that time: codes | where it differs |\n| --- | --- | --- | --- | --- |\n",
+        "\nPresets as sets of these options, for a frame that uses all groups. The last columns are the most accurate set with \
+        at most the same predicted time, and the options in which it differs.\n\n\
+        | preset | 8-bit steps | ms | best in that time: 8-bit steps | differences |\n| --- | --- | --- | --- | --- |\n",
     );
     for preset in Preset::ALL {
         let own = set_of(choices, &preset.frame());
-        // What no option stands for is taken for the finest below it: none of the presets has such.
+        // A value without an option counts as the finest option below it; no preset has one.
         let set: Vec<usize> = own.iter().map(|index| index.unwrap_or(0)).collect();
         let Chosen { ms, .. } = offers.predicted(&set);
         let codes = offers.predicted(&set).codes();

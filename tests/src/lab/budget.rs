@@ -1,4 +1,4 @@
-//! Frames within a budget: what the options of the frame's groups take and err by, and how the sets that are chosen turn out.
+//! Budgets: measures the cost and error of the frame's options, and verifies the chosen sets.
 
 use super::record::Rounds;
 use super::statistics::quantile;
@@ -14,12 +14,12 @@ use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::{FrameSettings, Preset};
 use glam::Vec3;
 
-/// Scenes that options are measured on; the first is the one that sets are tried on.
+/// Scenes for measuring options; sets are tried on the first.
 pub const SCENES: [&str; 3] = ["columns", "spheres", "glass"];
-/// Errors along the front that are tried for pairs that do not add up.
+/// Number of errors along the Pareto front at which pairs are tested for additivity.
 const TRIED: usize = 6;
 
-/// Draws frames of sets, and keeps what was compiled for them.
+/// Draws frames of option sets, and caches compiled resources.
 #[derive(Debug)]
 pub struct Bench<'a> {
     studio: &'a Studio<'a>,
@@ -27,8 +27,8 @@ pub struct Bench<'a> {
     references: Vec<(&'static str, Picture)>,
 }
 
-/// The reference: the finest preset with the finest option of each group, without dither, and without maps of lamps, which the
-/// scenes have none of.
+/// Returns the reference settings: the finest preset with the finest option of each group, without dithering. Shadow
+/// maps of punctual lights are off, since the scenes have none.
 pub fn finest() -> FrameSettings {
     let mut frame = reference(&Preset::Ultra.frame());
     frame.settings.post.dither = 0.0;
@@ -36,14 +36,14 @@ pub fn finest() -> FrameSettings {
     frame
 }
 
-/// The reference with other options.
+/// Returns the reference with other options.
 pub fn with(options: impl IntoIterator<Item = &'static FrameOption>) -> FrameSettings {
     let mut frame = finest();
     options.into_iter().for_each(|option| (option.apply)(&mut frame));
     frame
 }
 
-/// The set's option of each group.
+/// Returns the set's option in each group.
 pub fn chosen(choices: &Choices, set: &[usize]) -> Vec<&'static FrameOption> {
     choices.iter().zip(set).map(|((_, options), index)| options[*index]).collect()
 }
@@ -60,7 +60,7 @@ fn setup(scene: &'static str, frame: &FrameSettings) -> Setup {
 }
 
 impl<'a> Bench<'a> {
-    /// Nothing is drawn yet.
+    /// Creates a bench without drawn frames.
     pub fn new(studio: &'a Studio<'a>) -> Self {
         Self { studio, made: Vec::new(), references: Vec::new() }
     }
@@ -92,10 +92,10 @@ impl<'a> Bench<'a> {
         Ok(picture)
     }
 
-    /// Mean square difference of a frame from the reference, in codes squared.
+    /// Returns the mean squared difference of a frame from the reference, in squared 8-bit steps.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// Any error of the device.
     pub fn squares(&mut self, scene: &'static str, frame: &FrameSettings) -> Outcome<f64> {
         let truth = self.reference(scene)?;
         let gpu = self.studio.gpu;
@@ -104,10 +104,10 @@ impl<'a> Bench<'a> {
         Ok(apart.iter().map(|d| d * d).sum::<f64>() / apart.len() as f64)
     }
 
-    /// Median time of a frame in ms, of as many as any choice is timed with.
+    /// Returns the median time of a frame in ms, over as many frames as for a technique.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// Any error of the device.
     pub fn ms(&mut self, scene: &'static str, frame: &FrameSettings) -> Outcome<f64> {
         let (gpu, Rounds { warm_up, timed }) = (self.studio.gpu, self.studio.rounds);
         let ready = self.ready(scene, frame)?;
@@ -121,20 +121,20 @@ impl<'a> Bench<'a> {
         Ok(quantile(&took, 0.5))
     }
 
-    /// Groups that facts about a scene leave something to choose of.
+    /// Returns the groups in which a scene leaves a choice after feature culling.
     ///
     /// # Errors
-    /// What the device refuses, or a record that names what there is not.
+    /// Any error of the device, or an unknown name in the record.
     pub fn choices(&mut self, scene: &'static str, measured: &Measured) -> Outcome<Choices> {
         let facts = self.ready(scene, &finest())?.facts();
         Ok(measured.choices(&facts, |option| self.has(option))?)
     }
 
-    /// What each option takes and errs by, changed alone of the reference, on the first scene that calls for its group;
-    /// then which do not add up.
+    /// Measures cost and error of each option, changed alone from the reference, on the first scene that uses its
+    /// group. Then finds pairs of options that do not add up.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// Any error of the device.
     pub fn measured(&mut self) -> Outcome<Measured> {
         let mut measured = Measured::default();
         let mut facts = Vec::new();
@@ -166,16 +166,16 @@ impl<'a> Bench<'a> {
         Ok(measured)
     }
 
-    /// Median times of frames in ms, in three rounds of another order each: the finest option of a group is the reference, so a
-    /// group has its own. In a round a frame is drawn as often as it takes to warm up and to be timed, since drivers keep what
-    /// they compile for each executor, and one for each frame would take gigabytes.
+    /// Returns median times of frames in ms, over three rounds in different orders. The finest option of a group is the
+    /// reference, so each group has its own. Within a round, each frame is drawn until it is warm and timed. One
+    /// executor is used at a time, since drivers cache compiled code per executor, which would take gigabytes.
     fn timed(&mut self, frames: &[(&'static str, FrameSettings)]) -> Outcome<Vec<f64>> {
         const ROUNDS: u32 = 3;
         let (gpu, Rounds { warm_up, timed }) = (self.studio.gpu, self.studio.rounds);
         let mut took = vec![Vec::new(); frames.len()];
         for round in 0..ROUNDS {
             for step in 0..frames.len() {
-                // Another one first each round, and every other round backwards.
+                // Each round starts with another frame, and every other round runs backward.
                 let at = (step + round as usize) % frames.len();
                 let at = if round % 2 == 1 { frames.len() - 1 - at } else { at };
                 let (scene, frame) = &frames[at];
@@ -194,7 +194,7 @@ impl<'a> Bench<'a> {
         Ok(took.into_iter().map(median).collect())
     }
 
-    /// Those that the device has.
+    /// Returns the options that the device supports.
     fn options(&self, group: &'static Group) -> Vec<&'static FrameOption> {
         group.options.iter().filter(|option| self.has(option)).collect()
     }
@@ -214,7 +214,7 @@ impl<'a> Bench<'a> {
             let asked = offers.clone();
             settle(&mut offers, Bound::Codes(bound), |set| {
                 let squares = self.squares(SCENES[0], &with(chosen(&choices, set)))?;
-                // Times are as they were measured.
+                // Times are predicted from measurements.
                 Ok::<_, Box<dyn std::error::Error>>(Trial { ms: asked.predicted(set).ms, squares })
             })?;
         }
@@ -227,29 +227,29 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// How sets turned out that were chosen within random budgets.
+/// Verification of sets that were chosen for random budgets.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verified {
-    /// Budgets that were asked for.
+    /// Number of budgets.
     pub budgets: usize,
-    /// Of those, how many a frame that was drawn and timed anew was within.
+    /// Number of budgets that the chosen frame met when drawn and timed again.
     pub within: usize,
-    /// Sets that were chosen.
+    /// Number of chosen sets.
     pub sets: usize,
-    /// Swaps of one option that are within the budget.
+    /// Number of changes of one option that also fit the budget.
     pub swaps: usize,
-    /// Of those, how many err less than the chosen set by more than a twentieth, in words.
+    /// Descriptions of changes whose error is more than 5 % below that of the chosen set.
     pub better: Vec<String>,
 }
 
-/// Times a frame that may, or may not, be timed: in tests they are predicted.
+/// Measures the time of a frame, or predicts it in tests; `None` if it cannot be timed.
 pub type Clock<'c> = dyn FnMut(&mut Bench<'_>, &FrameSettings, &Offers, &[usize]) -> Outcome<f64> + 'c;
 
-/// Chooses for `count` random budgets between the fastest frame and the reference, draws what was chosen anew, and every swap
-/// of one option that fits.
+/// Chooses sets for `count` random budgets between the fastest frame and the reference. Draws each chosen set, and
+/// every change of one option that fits the budget.
 ///
 /// # Errors
-/// What the device refuses.
+/// Any error of the device.
 pub fn verify(
     bench: &mut Bench<'_>,
     measured: &Measured,
@@ -278,7 +278,7 @@ pub fn verify(
     for index in 0..count {
         progress(index);
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        // From a little above the fastest frame, which nothing is below.
+        // Budgets start above the fastest frame, since no frame is faster.
         let budget = 1.1 * low + (high - 1.1 * low).max(0.0) * ((state >> 40) as f64 / (1_u64 << 24) as f64);
         let settled = settle(&mut offers, Bound::Ms(budget), |set| {
             let ms = clock(bench, &frame_of(set), &given, set)?;

@@ -1,4 +1,4 @@
-//! A record as a page that needs no other file: plots of error against time, tables, and pictures.
+//! HTML page of a record in a single file: plots of error against time, tables, and pictures.
 
 use super::answers;
 use super::markdown::number;
@@ -11,10 +11,10 @@ use image::{ImageEncoder as _, codecs::png::PngEncoder};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Truth, picture, and sixteen times what the picture is off about grey, side by side, as a PNG file.
+/// Returns a PNG with reference, picture, and sixteen times their difference around gray, side by side.
 ///
 /// # Errors
-/// When the encoder fails.
+/// The encoder fails.
 pub fn strip(ours: &Picture, truth: &Picture) -> Outcome<Vec<u8>> {
     let [width, height] = ours.size_px;
     let code = |x: f32| (255.0 * x).round().clamp(0.0, 255.0) as u8;
@@ -31,26 +31,26 @@ pub fn strip(ours: &Picture, truth: &Picture) -> Outcome<Vec<u8>> {
     Ok(file)
 }
 
-/// The page; pictures are read from `pictures`, where there are any.
+/// Returns the page; pictures are read from `pictures`, if they exist.
 pub fn page(record: &Record, pictures: &Path) -> String {
     let mut text = String::from(
-        "<!doctype html><meta charset=utf-8><title>What accuracy costs</title><style>\
+        "<!doctype html><meta charset=utf-8><title>Error and cost of approximations</title><style>\
         body{font:15px/1.4 sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}\
         table{border-collapse:collapse;margin:1em 0}td,th{padding:.2em .7em;border-bottom:1px solid #ddd;text-align:left}\
         svg{background:#fafafa;border:1px solid #ddd}img{image-rendering:pixelated;width:100%;max-width:60em}\
-        .dim{color:#999}</style><h1>What accuracy costs</h1>",
+        .dim{color:#999}</style><h1>Error and cost of approximations</h1>",
     );
     let Record { adapter, size_px, repeats, .. } = record;
     let _ = write!(
         text,
-        "<p>{}, frames of {} × {} pixels, {repeats} repeats. In plots: error against the time of a whole frame, both on \
-        logarithmic scales; grey: another option is better in both; ringed: what the preset <i>high</i> has. Pictures: the \
-        truth, the option, and sixteen times the difference about grey.</p>",
+        "<p>{}, frames of {} × {} pixels, {repeats} repeats. Plots show error against the time of a whole frame, \
+        both on logarithmic scales. Gray options are not Pareto-optimal, and the preset <i>high</i> is ringed. Pictures show \
+        the reference, the option, and sixteen times their difference around gray.</p>",
         escaped(adapter),
         size_px[0],
         size_px[1]
     );
-    // The same sentence as in the document, without Markdown's marks and its link.
+    // The sentence of the document, without Markdown and link.
     let taps = answers::taps(record).replace(['*', '`'], "");
     let taps = taps.split(" More under").next().unwrap_or_default();
     let _ = write!(text, "<p>{}</p>", escaped(taps));
@@ -59,7 +59,7 @@ pub fn page(record: &Record, pictures: &Path) -> String {
     }
     for technique in &record.techniques {
         let TechniqueRecord { name, what, truth, .. } = technique;
-        let _ = write!(text, "<h2 id={name}>{name}</h2><p>{} Truth: {}</p>", escaped(what), escaped(truth));
+        let _ = write!(text, "<h2 id={name}>{name}</h2><p>{} Reference: {}</p>", escaped(what), escaped(truth));
         text.push_str(&plot(technique));
         text.push_str(&table(technique));
         for choice in technique.choices.iter().filter(|choice| choice.picture.is_some()) {
@@ -77,13 +77,13 @@ pub fn page(record: &Record, pictures: &Path) -> String {
     text
 }
 
-/// What options take and err by as parts of one frame, and a bar a group: how much of the reference's time its finest option
-/// takes beyond the cheapest.
+/// Returns a table of options as parts of one frame, with a bar per group. The bar is the additional time of its finest
+/// option over its cheapest, relative to the reference.
 fn budget(measured: &Measured) -> String {
     let mut text = format!(
-        "<h2 id=budget>budget</h2><p>Options as parts of one frame, each changed alone of the reference, which takes {} ms. \
-        Bars: of that time, what the option takes beyond its group's fastest.</p><table><tr><th>group<th>option<th>codes, \
-        RMS<th>ms<th>",
+        "<h2 id=budget>budget</h2><p>Options as parts of one frame, each changed alone from the reference, which takes {} ms. \
+        Bars show the time beyond the group's fastest option, relative to the reference.</p><table><tr><th>group<th>option\
+        <th>8-bit steps, RMS<th>ms<th>",
         number(measured.reference_ms)
     );
     for group in &measured.groups {
@@ -110,7 +110,7 @@ fn table(technique: &TechniqueRecord) -> String {
     let mut text = format!("<table><tr>{head} <!-- {} -->", technique.unit);
     for (choice, best) in technique.choices.iter().zip(technique.front()) {
         let optional = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), number);
-        let error = if choice.is_void() { "below the truth's own".to_owned() } else { number(choice.error) };
+        let error = if choice.is_void() { "below the reference's own".to_owned() } else { number(choice.error) };
         let operations = choice.operations.map(|parts| f64::from(parts.iter().sum::<u32>()));
         let _ = write!(
             text,
@@ -127,7 +127,7 @@ fn table(technique: &TechniqueRecord) -> String {
     text + "</table>"
 }
 
-/// Error against time, or nothing where fewer than two options are timed.
+/// Returns a plot of error against time; empty if fewer than two options were timed.
 fn plot(technique: &TechniqueRecord) -> String {
     let timed = technique.choices.iter().zip(technique.front());
     let points: Vec<_> = timed.filter_map(|(choice, best)| Some((choice, best, choice.ms?))).collect();
@@ -135,7 +135,7 @@ fn plot(technique: &TechniqueRecord) -> String {
         return String::new();
     }
     let (width, height, margin) = (560.0, 300.0, 50.0);
-    // No error at all has no logarithm: it stands where a hundredth of the smallest other would.
+    // An error of 0 has no logarithm; it is drawn at a hundredth of the smallest other error.
     let least = points.iter().map(|(c, ..)| c.error).filter(|e| *e > 0.0).fold(f64::INFINITY, f64::min);
     let least = if least.is_finite() { 0.01 * least } else { 1e-6 };
     let scale = |values: Vec<f64>| {
@@ -173,7 +173,7 @@ fn plot(technique: &TechniqueRecord) -> String {
             let _ = write!(text, "<circle cx={x:.1} cy={y:.1} r=8 fill=none stroke=#c00 />");
         }
     }
-    // From the top down, each under the one above it; those on the right end at their points.
+    // Labels are placed from top to bottom without overlap; those on the right end at their points.
     let mut labels: Vec<_> = points.iter().collect();
     labels.sort_by(|a, b| b.0.error.total_cmp(&a.0.error));
     let mut above = 20.0_f64;
@@ -197,7 +197,7 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// RFC 4648.
+/// Encodes bytes as base64 (RFC 4648).
 fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);

@@ -1,4 +1,4 @@
-//! A record as a document: `accuracy.md`, which `docs/accuracy.md` is of a committed record.
+//! Markdown document of a record, such as `docs/accuracy.md`.
 
 use super::answers;
 use super::record::{ChoiceRecord, Record, TechniqueRecord};
@@ -6,35 +6,36 @@ pub use super::statistics::number;
 
 use super::statistics::Times;
 
-/// The document.
+/// Returns the document.
 pub fn document(record: &Record) -> String {
     let Record { adapter, size_px, load, warm_up, repeats, scene, quick, optimized, .. } = record;
     let mut text = format!(
-        "# What accuracy costs\n\n\
-        Printed by `cargo run {}-p tests --bin accuracy{}`; the numbers are those of the `accuracy.json` beside it. \
-        Each table is a choice of the frame: its options, what each errs by against a truth that is stated, and what a \
-        whole frame with it takes. Adapter: {adapter}. Frames of {} × {} pixels, {repeats} times after {warm_up} that do not \
-        count, the options of a table in turn and in random order; {} processors, {:.1} tasks that wanted one. Times are \
-        of this adapter: a software driver's say nothing about a GPU's, and here only ratios within a table count.\n\n\
-        *Best* marks options that no other beats in both error and time (in operations where no frame is timed). Times are \
-        medians with the interval that holds them in 95 of 100 resamplings; `≈` marks options whose interval overlaps \
-        that of the fastest, which are not distinguishable from it. An error below three standard errors of the truth is not \
-        printed. *Steps* is the sum of the medians of the frame's steps by the device's own clock, in which waiting and \
-        recording have no part. Operations are those of the shader's function: arithmetic + transcendental + texture + \
-        conversion.{}\n\n",
+        "# Error and cost of approximations\n\n\
+        Printed by `cargo run {}-p tests --bin accuracy{}` from the `accuracy.json` in the same folder. Each table compares \
+        the options of one setting: their error against a stated reference, and the time of a whole frame.\n\n\
+        Adapter: {adapter}. Frames have {} × {} pixels. Each option is timed in {repeats} frames after {warm_up} warm-up \
+        frames, interleaved with the other options of its table in random order. The machine has {} processors and had a \
+        load average of {:.1}. Times are of this adapter: those of a software driver say nothing about a GPU, and only ratios \
+        within a table are meaningful.\n\n\
+        *Best* marks Pareto-optimal options: no other has a lower error and a lower time (or fewer operations, if no frame \
+        is timed). Times are medians with their 95 % bootstrap interval. `≈` marks options whose interval overlaps that of \
+        the fastest, which are not distinguishable from it. An error below three standard errors of the reference is not \
+        printed. *Steps* is the sum of the median GPU times of the frame's steps, without waiting and recording. Operations \
+        are counted in the shader's function: arithmetic + transcendental + texture + conversion. Differences of pictures \
+        are in 8-bit steps, 1/255 of white.{}\n\n",
         if *optimized { "--release " } else { "" },
         if *quick { " -- --quick" } else { "" },
         size_px[0],
         size_px[1],
         load[0],
         load[1],
-        scene.as_ref().map_or_else(String::new, |scene| format!(" All pictures are of the scene `{scene}`.")),
+        scene.as_ref().map_or_else(String::new, |scene| format!(" All pictures show the scene `{scene}`.")),
     );
     text.push_str(&answers::taps(record));
-    text.push_str("What presets have, where they differ:\n\n");
+    text.push_str("Options in which presets differ:\n\n");
     text.push_str(&answers::presets(record));
-    text.push_str("\nAll choices:\n\n");
-    text.push_str("| choice | options | smallest to largest error | unit | fastest to slowest |\n| --- | --- | --- | --- | --- |\n");
+    text.push_str("\nAll settings:\n\n");
+    text.push_str("| setting | options | smallest to largest error | unit | fastest to slowest |\n| --- | --- | --- | --- | --- |\n");
     record.techniques.iter().for_each(|technique| text.push_str(&overview(technique)));
     record.techniques.iter().for_each(|technique| text.push_str(&section(technique)));
     record.budget.iter().for_each(|measured| text.push_str(&answers::budget(measured)));
@@ -55,7 +56,7 @@ fn overview(technique: &TechniqueRecord) -> String {
 
 fn section(technique: &TechniqueRecord) -> String {
     let TechniqueRecord { name, what, truth, unit, choices } = technique;
-    let mut text = format!("\n## {name}\n\n{what} Truth: {truth}\n\n");
+    let mut text = format!("\n## {name}\n\n{what} Reference: {truth}\n\n");
     let any = |has: fn(&ChoiceRecord) -> bool| choices.iter().any(has);
     let columns: [(&str, bool); 10] = [
         ("option", true),
@@ -106,7 +107,7 @@ fn cells(choice: &ChoiceRecord, best: bool, fastest: Option<Times>) -> [String; 
     };
     let operations = choice.operations.map_or_else(String::new, |parts| parts.map(|n| n.to_string()).join(" + "));
     let error = if choice.is_void() {
-        format!("below {}, the truth's own", number(3.0 * choice.truth_error))
+        format!("below {}, the reference's own", number(3.0 * choice.truth_error))
     } else {
         number(choice.error)
     };

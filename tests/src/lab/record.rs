@@ -1,4 +1,4 @@
-//! What was measured, as a file: `accuracy.json`.
+//! Measurements as a file: `accuracy.json`.
 
 use super::statistics::{Times, undominated};
 use framegraph_passes::budget::Measured;
@@ -6,28 +6,28 @@ use serde::{Deserialize, Serialize};
 use std::error::Error;
 use std::path::Path;
 
-/// The file's `schema`.
+/// Value of `schema` in the file.
 pub const SCHEMA: &str = "framegraph-accuracy";
-/// Its `version`: another one is not read.
+/// Value of `version` in the file; other versions are rejected.
 pub const VERSION: u32 = 2;
 
-/// How often each choice is drawn to be timed.
+/// Number of frames per option.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rounds {
-    /// Frames before any is timed.
+    /// Frames before timing starts.
     pub warm_up: u32,
     /// Timed frames.
     pub timed: u32,
 }
 
 impl Rounds {
-    /// Those of a record that others are to rely on.
+    /// Frames of a complete record.
     pub const FULL: Self = Self { warm_up: 10, timed: 31 };
-    /// Those of the short run: the order of options that differ by a tenth or more.
+    /// Frames of the short run, enough to order options that differ by a tenth or more.
     pub const QUICK: Self = Self { warm_up: 3, timed: 11 };
 }
 
-/// All that was measured in one place.
+/// All measurements on one adapter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Record {
@@ -35,101 +35,101 @@ pub struct Record {
     pub schema: String,
     /// [`VERSION`].
     pub version: u32,
-    /// Adapter, driver and interface.
+    /// Adapter, driver and backend.
     pub adapter: String,
-    /// Pictures whose frames are timed, in pixels.
+    /// Size of timed pictures, in pixels.
     pub size_px: [u32; 2],
-    /// Processors, and how many tasks wanted one when the measuring began, over a minute.
+    /// Number of processors, and the load average over one minute at the start.
     pub load: [f64; 2],
-    /// Frames of each choice that are drawn before any is timed.
+    /// Frames per option before timing starts.
     pub warm_up: u32,
-    /// Timed frames of each choice, interleaved with those of the others in random order.
+    /// Timed frames per option, interleaved in random order.
     pub repeats: u32,
-    /// The scene of all pictures; none where each technique has its own.
+    /// Scene of all pictures; `None` if each technique uses its own.
     pub scene: Option<String>,
-    /// Whether it is the short run.
+    /// True for the short run.
     pub quick: bool,
-    /// Whether the program was optimized; one that is not takes longer about every frame.
+    /// True if the program was built with optimizations.
     pub optimized: bool,
-    /// In the order of their list.
+    /// Techniques, in the order of their list.
     pub techniques: Vec<TechniqueRecord>,
-    /// What frames are chosen from within a budget; none until all of it is measured.
+    /// Measurements for budgets; `None` until they are complete.
     pub budget: Option<Measured>,
 }
 
-/// A choice of the frame.
+/// A technique: a setting of the frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TechniqueRecord {
-    /// Its name.
+    /// Name of the technique.
     pub name: String,
-    /// What is approximated.
+    /// Description of the approximation.
     pub what: String,
-    /// What is taken for the truth.
+    /// Description of the reference.
     pub truth: String,
     /// Unit of errors.
     pub unit: String,
-    /// In the order of their list.
+    /// Options, in the order of their list.
     pub choices: Vec<ChoiceRecord>,
 }
 
-/// An option.
+/// An option of a technique.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChoiceRecord {
-    /// Its name.
+    /// Name of the option.
     pub name: String,
-    /// The error, in the technique's unit.
+    /// Error, in the technique's unit.
     pub error: f64,
     /// Mean of the signed error.
     pub bias: Option<f64>,
-    /// Deviation of what should be the same.
+    /// Standard deviation of values that should be equal.
     pub noise: Option<f64>,
-    /// Standard error of the truth.
+    /// Standard error of the reference.
     pub truth_error: f64,
-    /// What else a picture's difference comes to.
+    /// Further metrics of a picture.
     pub picture: Option<PictureRecord>,
     /// Time of a whole frame.
     pub ms: Option<Times>,
-    /// Of a frame, where the device has a clock of its own.
+    /// GPU times of the frame's steps, if the device has timestamps.
     pub steps: Vec<StepRecord>,
-    /// Arithmetic, transcendental, texture and conversion operations of the shader's function.
+    /// Counts of arithmetic, transcendental, texture and conversion operations in the shader's function.
     pub operations: Option<[u32; 4]>,
-    /// Presets that have it.
+    /// Presets that use the option.
     pub presets: Vec<String>,
 }
 
-/// Time of a step of a frame by the device's clock, in ms.
+/// GPU time of a step, in ms.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StepRecord {
-    /// Names of its passes, joined by ` + `.
+    /// Names of the step's passes, joined by ` + `.
     pub passes: String,
-    /// The least.
+    /// Minimum.
     pub min: f64,
-    /// A quarter is below.
+    /// First quartile.
     pub p25: f64,
-    /// Half is below.
+    /// Median.
     pub median: f64,
 }
 
-/// A picture against the truth.
+/// Metrics of a picture compared to the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PictureRecord {
-    /// The largest difference of a channel, in codes.
+    /// Largest difference of a channel, in 8-bit steps.
     pub worst: f64,
-    /// What a thousandth of the channels exceeds, in codes.
+    /// Difference that 0.1 % of the channels exceed, in 8-bit steps.
     pub p999: f64,
-    /// Peak signal-to-noise ratio in dB; none for equal pictures.
+    /// Peak signal-to-noise ratio in dB; `None` for equal pictures.
     pub psnr_db: Option<f64>,
-    /// Mean FLIP.
+    /// Mean FLIP error.
     pub flip: f64,
-    /// Mean of squares over (truth² + 0.01), of linear light.
+    /// Mean of squared differences divided by (reference² + 0.01), of linear radiance.
     pub relative_mse: f64,
 }
 
-/// What every version begins with.
+/// Fields that every version starts with.
 #[derive(Deserialize)]
 struct Head {
     schema: String,
@@ -137,14 +137,14 @@ struct Head {
 }
 
 impl ChoiceRecord {
-    /// Whether the truth is not known well enough to say so: the error is below three of its standard errors.
+    /// Returns true if the error is below three standard errors of the reference, and thus not significant.
     pub fn is_void(&self) -> bool {
         self.truth_error > 0.0 && self.error < 3.0 * self.truth_error
     }
 }
 
 impl TechniqueRecord {
-    /// For each choice whether no other beats it: in time where all are timed, else in operations, else by error alone.
+    /// Marks the Pareto-optimal options: by time if all are timed, otherwise by operations, otherwise by error alone.
     pub fn front(&self) -> Vec<bool> {
         let timed = self.choices.iter().all(|choice| choice.ms.is_some());
         let point = |choice: &ChoiceRecord| {
@@ -156,19 +156,19 @@ impl TechniqueRecord {
 }
 
 impl Record {
-    /// How often its choices were drawn.
+    /// Returns the number of frames per option.
     pub fn rounds(&self) -> Rounds {
         Rounds { warm_up: self.warm_up, timed: self.repeats }
     }
 
-    /// Reads one.
+    /// Reads a record from a file.
     ///
     /// # Errors
-    /// With the file's name, when it is missing, no such record, or of another version.
+    /// A missing file, another schema or another version; the message names the file.
     pub fn read(path: &Path) -> Result<Self, Box<dyn Error>> {
         let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
         let told = |error| format!("{}: {error}", path.display());
-        // The version first: another one has other fields.
+        // The version is read first, since other versions have other fields.
         let Head { schema, version } = serde_json::from_str(&text).map_err(told)?;
         if schema != SCHEMA || version != VERSION {
             return Err(format!(
@@ -180,17 +180,16 @@ impl Record {
         Ok(serde_json::from_str(&text).map_err(told)?)
     }
 
-    /// Whether what one has measured may stand beside what the other has: all is the same but the results, and how busy the
-    /// machine was.
+    /// Returns true if two records can be combined: everything but the results and the load is equal.
     pub fn is_of_the_kind_of(&self, other: &Self) -> bool {
         let kind = |of: &Self| Self { load: [0.0; 2], techniques: Vec::new(), budget: None, ..of.clone() };
         kind(self) == kind(other)
     }
 
-    /// As a file, a line each number of lines long that a person can read.
+    /// Returns the file's text, with each array of numbers on one line.
     ///
     /// # Errors
-    /// When a number is none, which JSON has no word for.
+    /// A value is NaN or infinite, which JSON cannot express.
     pub fn json(&self) -> Result<String, serde_json::Error> {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }

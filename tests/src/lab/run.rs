@@ -1,4 +1,4 @@
-//! Measuring techniques into a record.
+//! Measures techniques and records the results.
 
 use super::html::strip;
 use super::record::{ChoiceRecord, TechniqueRecord};
@@ -10,10 +10,10 @@ use framegraph_shaders::reflect::Operations;
 use program::outputs::Outputs;
 use std::path::Path;
 
-/// Measures a technique; pictures go into `pictures`, a file a choice.
+/// Measures a technique; writes one picture per option into `pictures`.
 ///
 /// # Errors
-/// What the device refuses, in its words; that a picture cannot be written.
+/// Any error of the device, or a picture that cannot be written.
 pub fn measure(studio: &Studio<'_>, technique: &Technique, pictures: &Path) -> Outcome<TechniqueRecord> {
     let truth = technique.picture.as_ref().map(|truth| studio.truth(truth)).transpose()?;
     let mut choices = Vec::new();
@@ -70,7 +70,7 @@ fn judged(
     Ok(ChoiceRecord { name, error, bias, noise, truth_error, picture, ms, steps, operations, presets })
 }
 
-/// A choice's name as a part of a file's.
+/// Returns an option's name as part of a file name.
 pub fn file_name(choice: &str) -> String {
     choice.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect()
 }

@@ -1,28 +1,28 @@
-//! Times as numbers that say how sure they are, and which choices nothing beats.
+//! Statistics of times with confidence intervals, and Pareto fronts.
 
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 
-/// A frame's time over interleaved repeats, in ms.
+/// Time of a frame over interleaved repeats, in ms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Times {
-    /// The least.
+    /// Minimum.
     pub min: f64,
-    /// A quarter is below.
+    /// First quartile.
     pub p25: f64,
-    /// Half is below.
+    /// Median.
     pub median: f64,
-    /// Where the median lies in 95 of 100 samples drawn from the repeats: low end.
+    /// Lower end of the median's 95 % bootstrap interval.
     pub low: f64,
-    /// And high end.
+    /// Upper end of the median's 95 % bootstrap interval.
     pub high: f64,
 }
 
-/// Samples drawn for an interval.
+/// Bootstrap samples per interval.
 const DRAWS: usize = 1000;
 
 impl Times {
-    /// Of at least one measurement.
+    /// Returns the statistics of at least one measurement.
     pub fn of(measured: &[f64]) -> Self {
         let sorted = sorted(measured.to_vec());
         let mut state = 0x2545_f491_4f6c_dd1d_u64;
@@ -46,7 +46,7 @@ impl Times {
         }
     }
 
-    /// Whether the intervals are apart; where they are not, neither is known to be the faster.
+    /// Returns true if the intervals do not overlap; otherwise neither is known to be faster.
     pub fn differs_from(&self, other: &Self) -> bool {
         self.low > other.high || other.low > self.high
     }
@@ -57,19 +57,19 @@ fn sorted(mut values: Vec<f64>) -> Vec<f64> {
     values
 }
 
-/// Of sorted values, by the nearest rank.
+/// Returns a quantile of sorted values, by the nearest rank.
 pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     let at = (share * sorted.len() as f64).ceil() as usize;
     sorted[at.clamp(1, sorted.len()) - 1]
 }
 
-/// Which of these (cost, error) no other beats in one without losing in the other.
+/// Marks the Pareto-optimal points of (cost, error).
 pub fn undominated(points: &[[f64; 2]]) -> Vec<bool> {
     let beats = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
     points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect()
 }
 
-/// Three digits.
+/// Formats a number with three digits.
 pub fn number(x: f64) -> String {
     if x == 0.0 {
         return "0".to_owned();

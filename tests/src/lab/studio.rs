@@ -1,4 +1,4 @@
-//! Frames of built-in scenes: their pictures, the pictures they should be, and their times.
+//! Frames of built-in scenes: pictures, references and times.
 
 use super::statistics::Times;
 use super::technique::Outcome;
@@ -24,48 +24,48 @@ use std::time::Instant;
 
 use super::record::{PictureRecord, Rounds, StepRecord};
 
-/// A frame to be drawn.
+/// A frame to draw.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setup {
-    /// A built-in scene.
+    /// Name of a built-in scene.
     pub scene: &'static str,
     /// Exposure value at ISO 100.
     pub ev100: f32,
-    /// The frame.
+    /// Settings of the frame.
     pub settings: Settings,
-    /// What light from all around is made with.
+    /// Settings of image-based light.
     pub light: LightSettings,
-    /// How shading finds lights.
+    /// Method by which shading finds lights.
     pub lights: LightSearch,
-    /// A sun in place of the scene's lights: where it stands, and its angular radius in radians.
+    /// Sun that replaces the scene's lights: direction, and angular radius in radians.
     pub sun: Option<(Vec3, f32)>,
 }
 
-/// What a picture is compared with.
+/// Reference of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Truth {
     /// Another frame.
     Frame(Setup),
-    /// The frame at so many times the width and height, averaged as light after its tone curve.
+    /// The frame at a multiple of width and height, averaged as linear light after its tone curve.
     Supersampled(Setup, u32),
-    /// The mean of so many frames, each with a sharp sun at another place of the disc.
+    /// Mean of several frames with hard shadows, each with the sun at another point of its disc.
     Suns(Setup, u32),
 }
 
-/// What frames are drawn with.
+/// Device, picture size and caches for drawing frames.
 #[derive(Debug)]
 pub struct Studio<'a> {
     /// The device.
     pub gpu: &'a Gpu,
-    /// Of pictures, in pixels.
+    /// Size of pictures, in pixels.
     pub size_px: [u32; 2],
-    /// How often choices are drawn.
+    /// Number of frames per option.
     pub rounds: Rounds,
-    /// Truths that were drawn, which techniques share.
+    /// References that were drawn, shared between techniques.
     truths: RefCell<Vec<(Truth, (Picture, f64))>>,
 }
 
-/// A frame that is ready to be drawn again and again.
+/// A frame that can be drawn repeatedly.
 #[derive(Debug)]
 pub struct Ready {
     scene: Scene,
@@ -80,20 +80,20 @@ pub struct Ready {
     drawn: u32,
 }
 
-/// Frames that are added up over time before their picture is taken, and how many after them tell how it trembles.
+/// Number of accumulated frames before a picture is taken. Half as many frames after it measure temporal noise.
 const SUMMED: u32 = 32;
 const TREMBLING: u32 = 16;
 
 impl<'a> Studio<'a> {
-    /// Pictures of a size, in pixels.
+    /// Creates a studio for pictures of a size, in pixels.
     pub fn new(gpu: &'a Gpu, size_px: [u32; 2], rounds: Rounds) -> Self {
         Self { gpu, size_px, rounds, truths: RefCell::default() }
     }
 
-    /// Makes everything that a setup needs.
+    /// Creates all resources that a setup needs.
     ///
     /// # Errors
-    /// When the scene is none, or the device refuses.
+    /// The scene is unknown, or the device fails.
     pub fn prepare(&self, setup: &Setup, size_px: [u32; 2]) -> Outcome<Ready> {
         let mut scene = Scene::open(setup.scene, &mut progress::silent)?;
         if let Some((toward, _)) = setup.sun {
@@ -114,7 +114,7 @@ impl<'a> Studio<'a> {
         let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
         let world = World::new(self.gpu, &scene, lighting, [view], &mut progress::silent)?;
         let (frame, plan, output) = self.declared(&setup.settings, &scene, size_px)?;
-        // Textures of a frame that is not drawn any more go; pipelines stay, since frames share them.
+        // Textures of old frames are freed; pipelines remain, since frames share them.
         let options = ExecutorOptions { max_age: 4, ..ExecutorOptions::default() };
         let executor = Executor::with(self.gpu, options);
         let settings = setup.settings;
@@ -138,10 +138,10 @@ impl<'a> Studio<'a> {
         Ok((frame, plan, io.output))
     }
 
-    /// The same scene, light and device with other settings: what was compiled for them stays.
+    /// Changes the settings of a prepared frame, and keeps compiled resources.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn change(&self, ready: &mut Ready, settings: &Settings) -> Outcome<()> {
         (ready.moment.shadows, ready.moment.size_px) = (settings.shadows, settings.drawn_px(ready.size_px));
         let light = &ready.world.lighting.image;
@@ -153,18 +153,19 @@ impl<'a> Studio<'a> {
         Ok(())
     }
 
-    /// The picture of a setup.
+    /// Draws the picture of a setup.
     ///
     /// # Errors
-    /// As [`Self::prepare`].
+    /// The scene is unknown, or the device fails.
     pub fn picture(&self, setup: &Setup) -> Outcome<Picture> {
         self.prepare(setup, self.size_px)?.picture(self.gpu)
     }
 
-    /// The picture that others are compared with, and its standard error in codes: the difference of its two halves over two.
+    /// Returns the reference picture with its standard error in 8-bit steps, half of the difference between its two
+    /// halves.
     ///
     /// # Errors
-    /// As [`Self::prepare`].
+    /// The scene is unknown, or the device fails.
     pub fn truth(&self, truth: &Truth) -> Outcome<(Picture, f64)> {
         if let Some((_, known)) = self.truths.borrow().iter().find(|(own, _)| own == truth) {
             return Ok(known.clone());
@@ -220,10 +221,10 @@ impl<'a> Studio<'a> {
     }
 }
 
-/// Times of frames, interleaved: each round draws all of them in another order.
+/// Measures frames interleaved: each round draws all of them in another order.
 ///
 /// # Errors
-/// What the device refuses.
+/// The device fails.
 pub fn times(gpu: &Gpu, ready: &mut [Ready], rounds: Rounds) -> Outcome<Vec<Times>> {
     let mut measured = vec![Vec::new(); ready.len()];
     let mut order: Vec<usize> = (0..ready.len()).collect();
@@ -245,10 +246,10 @@ pub fn times(gpu: &Gpu, ready: &mut [Ready], rounds: Rounds) -> Outcome<Vec<Time
 }
 
 impl Ready {
-    /// Draws it; how long that took from the call to the device's last step, in ms.
+    /// Draws the frame. Returns the time from the call until the GPU has finished, in ms.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn draw(&mut self, gpu: &Gpu) -> Outcome<f64> {
         let Settings { taa, reflections, .. } = self.settings;
         if taa.is_some() || reflections.is_some() {
@@ -263,10 +264,10 @@ impl Ready {
         Ok(1e3 * start.elapsed().as_secs_f64())
     }
 
-    /// Its picture: of the second frame where frames look into the one before, and of a sum where they are added up.
+    /// Returns the picture: the second frame if frames use the previous one, or the last of several accumulated frames.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn picture(&mut self, gpu: &Gpu) -> Outcome<Picture> {
         let frames = match self.settings {
             Settings { taa: Some(_), .. } => SUMMED,
@@ -279,11 +280,11 @@ impl Ready {
         self.read(gpu)
     }
 
-    /// How much the picture trembles where frames are added up: the root mean square of 16 frames against their mean, in
-    /// codes. None where frames are not added up.
+    /// Returns the temporal noise of accumulated frames: root mean square of 16 frames against their mean, in 8-bit
+    /// steps. `None` if frames are not accumulated.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn trembles(&mut self, gpu: &Gpu) -> Outcome<Option<f64>> {
         if self.settings.taa.is_none() {
             return Ok(None);
@@ -299,7 +300,7 @@ impl Ready {
         Ok(Some((squares.sum::<f64>() / (frames.len() * 3 * rest.linear.len()) as f64).sqrt()))
     }
 
-    /// What the facts about its scene say of its frame.
+    /// Returns the feature culling of the scene and settings.
     pub fn facts(&self) -> Facts {
         let input = FactInput {
             scene: &self.scene,
@@ -323,10 +324,10 @@ impl Ready {
         Ok(encoded(self.size_px, codes.chunks_exact(4).map(linear).collect()))
     }
 
-    /// What the device's own clock says of each step, where it has one: frames but the first four.
+    /// Returns GPU times of each step without the first four frames; empty if the device has no timestamps.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn steps(&mut self) -> Outcome<Vec<StepRecord>> {
         self.executor.catch_up()?;
         let timing = self.executor.timing();
@@ -340,7 +341,7 @@ impl Ready {
     }
 }
 
-/// A picture of linear light of a display.
+/// Converts linear display light to a picture.
 fn encoded(size_px: [u32; 2], linear: Vec<[f32; 3]>) -> Picture {
     let encode = |pixel: &[f32; 3]| pixel.map(|c| srgb_from_linear_channel(c.into()) as f32);
     Picture { size_px, encoded: linear.iter().map(encode).collect(), linear }
@@ -351,16 +352,16 @@ fn mean_of(pixels: impl Iterator<Item = [f32; 3]>) -> [f32; 3] {
     sum.map(|c| c / count)
 }
 
-/// Differences of all channels, in codes of 255.
+/// Returns the differences of all channels, in 8-bit steps.
 pub fn codes(ours: &Picture, truth: &Picture) -> Vec<f64> {
     let pixels = ours.encoded.iter().zip(&truth.encoded);
     pixels.flat_map(|(a, b)| [0, 1, 2].map(|c| 255.0 * (f64::from(a[c]) - f64::from(b[c])))).collect()
 }
 
-/// Root mean square in codes, signed mean in codes, and what else a picture's difference comes to.
+/// Returns root mean square and signed mean in 8-bit steps, and further metrics.
 ///
 /// # Errors
-/// When the pictures' sizes differ.
+/// The pictures' sizes differ.
 pub fn compared(ours: &Picture, truth: &Picture) -> Outcome<(f64, f64, PictureRecord)> {
     let metrics = Metrics::of(ours, truth).ok_or("pictures of one size")?;
     let codes = codes(ours, truth);

@@ -1,4 +1,4 @@
-//! What is measured: a choice with its options, its truth, its metric.
+//! Techniques: a setting with its options, reference and metric.
 
 use super::record::TechniqueRecord;
 use super::studio::{Setup, Truth};
@@ -7,34 +7,34 @@ use framegraph_wgpu::Gpu;
 use std::error::Error;
 use std::fmt;
 
-/// What goes wrong is told in its own words.
+/// Result of a measurement; errors are displayed as they are.
 pub type Outcome<T> = Result<T, Box<dyn Error>>;
 
-/// An error with its parts.
+/// Measured error of an option.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
-    /// The error, in the technique's unit.
+    /// Error, in the technique's unit.
     pub error: f64,
-    /// Mean of the signed error, where that is told apart.
+    /// Mean of the signed error, if measured.
     pub bias: Option<f64>,
-    /// Deviation from place to place of what should be the same, where that is told apart.
+    /// Standard deviation of values that should be equal, if measured.
     pub noise: Option<f64>,
-    /// Standard error of the truth, in the same unit: a claim below three times it is void.
+    /// Standard error of the reference, in the same unit. An error below three times this value is not significant.
     pub truth_error: f64,
 }
 
 impl Measured {
-    /// Against a truth that is exact.
+    /// Creates an error measured against an exact reference.
     pub fn exact(error: f64) -> Self {
         Self { error, ..Self::default() }
     }
 }
 
-/// How an option's error is found.
+/// Method by which an option's error is measured.
 pub enum Subject {
-    /// Its picture against the technique's truth: root mean square in codes of 255.
+    /// Compares its picture with the technique's reference: root mean square in 8-bit steps.
     Picture,
-    /// A number of its own.
+    /// Computes the error by a function.
     Formula(Box<dyn Fn(&Gpu) -> Outcome<Measured>>),
 }
 
@@ -47,40 +47,40 @@ impl fmt::Debug for Subject {
     }
 }
 
-/// One way of doing it.
+/// An option of a technique.
 #[derive(Debug)]
 pub struct Choice {
-    /// For tables and files.
+    /// Name in tables and files.
     pub name: String,
-    /// How its error is found.
+    /// Method by which the error is measured.
     pub subject: Subject,
-    /// A frame that does it so: what is timed, and for pictures what is compared. None where no setting says so.
+    /// Frame with this option, which is timed and, for pictures, compared. `None` if no setting selects the option.
     pub setup: Option<Setup>,
-    /// Functions of the shader library whose operations are counted and added up, each with whether it is in f16.
+    /// Functions of the shader library whose operations are counted and summed, each with true for its f16 build.
     pub functions: Vec<(&'static str, bool)>,
-    /// Whether a preset's frame does it so.
+    /// Returns true if a preset uses this option.
     pub is_in: fn(&FrameSettings) -> bool,
 }
 
-/// A choice of the frame.
+/// A setting of the frame.
 #[derive(Debug)]
 pub struct Technique {
-    /// For the command line, files and tables: lower case, words joined by `-`.
+    /// Name for the command line, files and tables: lower case, words joined by `-`.
     pub name: String,
-    /// What is approximated, and the metric, in a sentence.
+    /// Description of the approximation and the metric, one sentence.
     pub what: String,
-    /// What is taken for the truth, in a sentence.
+    /// Description of the reference, one sentence.
     pub truth: String,
     /// Unit of errors.
     pub unit: String,
-    /// The picture that pictures are compared with.
+    /// Reference of pictures.
     pub picture: Option<Truth>,
-    /// The ways of doing it.
+    /// The options.
     pub choices: Vec<Choice>,
 }
 
 impl Technique {
-    /// Draws another scene in all of its frames.
+    /// Replaces the scene of all frames.
     pub fn show(&mut self, scene: &'static str) {
         if let Some(Truth::Frame(setup) | Truth::Supersampled(setup, _) | Truth::Suns(setup, _)) = &mut self.picture {
             setup.scene = scene;
@@ -88,7 +88,7 @@ impl Technique {
         self.choices.iter_mut().filter_map(|choice| choice.setup.as_mut()).for_each(|setup| setup.scene = scene);
     }
 
-    /// Notes in what was measured which presets have each option.
+    /// Records which presets use each option.
     pub fn note_presets(&self, record: &mut TechniqueRecord) {
         for found in &mut record.choices {
             let own = self.choices.iter().find(|choice| choice.name == found.name);

@@ -1,4 +1,4 @@
-//! The choices of the standard frame, as techniques of the lab.
+//! Techniques of the standard frame.
 
 mod environment;
 mod formulas;
@@ -14,7 +14,7 @@ use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::{FrameSettings, LightSearch, PostSettings, Quality, Settings};
 use framegraph_wgpu::Gpu;
 
-/// All of them. Half floats in shaders are measured where the device has them.
+/// Returns all techniques. Half floats in shaders are included if the device supports them.
 pub fn all(gpu: &Gpu) -> Vec<Technique> {
     let own = [
         light::techniques(gpu),
@@ -26,8 +26,8 @@ pub fn all(gpu: &Gpu) -> Vec<Technique> {
     own.into_iter().flatten().chain(picture::techniques(gpu)).chain(formulas::techniques()).collect()
 }
 
-/// The frame that choices vary: high quality, one sample, no dither and no edge filter, which would make an edge more or less
-/// of a code of difference.
+/// Returns the frame that options modify: high quality, one sample per pixel, no dithering, and no FXAA, which would
+/// amplify differences at edges.
 fn base(scene: &'static str) -> Setup {
     let post = PostSettings { dither: 0.0, ..PostSettings::DEFAULT };
     let settings = Settings { post, fxaa: false, shadows: Some(ShadowSettings::texels(1024)), ..Settings::default() };
@@ -38,7 +38,7 @@ fn base(scene: &'static str) -> Setup {
     Setup { scene, ev100: 14.5, settings, light, lights: LightSearch::default(), sun: None }
 }
 
-/// For choices that no preset is told by.
+/// Returns false, for options that presets do not distinguish.
 fn nowhere(_: &FrameSettings) -> bool {
     false
 }
@@ -46,7 +46,7 @@ fn nowhere(_: &FrameSettings) -> bool {
 type Change = fn(&mut Setup);
 type IsIn = fn(&FrameSettings) -> bool;
 
-/// A technique whose options are frames, compared as pictures.
+/// Creates a technique whose options are compared as pictures.
 fn pictures(name: &str, what: &str, truth: (&str, Truth), base: Setup, choices: &[(&str, Change, IsIn)]) -> Technique {
     let choice = |(name, change, is_in): &(&str, Change, IsIn)| {
         let mut setup = base;
@@ -63,37 +63,37 @@ fn pictures(name: &str, what: &str, truth: (&str, Truth), base: Setup, choices: 
         name: name.to_owned(),
         what: what.to_owned(),
         truth: truth.0.to_owned(),
-        unit: "RMSE in codes".to_owned(),
+        unit: "RMSE, 8-bit steps".to_owned(),
         picture: Some(truth.1),
         choices: choices.iter().map(choice).collect(),
     }
 }
 
-/// A technique whose options have numbers of their own.
+/// Creates a technique whose options are measured by functions.
 fn formula(name: &str, what: &str, truth: &str, unit: &str, choices: Vec<Choice>) -> Technique {
     let [name, what, truth, unit] = [name, what, truth, unit].map(str::to_owned);
     Technique { name, what, truth, unit, picture: None, choices }
 }
 
-/// One of them.
+/// Creates an option that is measured by a function.
 fn number(name: &str, measure: impl Fn(&Gpu) -> Outcome<Measured> + 'static) -> Choice {
     let subject = Subject::Formula(Box::new(measure));
     Choice { name: name.to_owned(), subject, setup: None, functions: Vec::new(), is_in: nowhere }
 }
 
 impl Choice {
-    /// With a frame that is timed.
+    /// Adds a frame to time.
     fn timed(self, setup: Setup) -> Self {
         Self { setup: Some(setup), ..self }
     }
 
-    /// With a function of the library whose operations are counted, beside those that were named before.
+    /// Adds a function of the library whose operations are counted.
     fn counted(mut self, function: &'static str, in_half: bool) -> Self {
         self.functions.push((function, in_half));
         self
     }
 
-    /// With the presets that have it.
+    /// Adds the test for presets that use the option.
     fn found_in(self, is_in: IsIn) -> Self {
         Self { is_in, ..self }
     }

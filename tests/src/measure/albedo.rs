@@ -1,4 +1,4 @@
-//! The DFG table, looked up as shaders do, against a grid of half vectors.
+//! The DFG table, evaluated as in shaders, compared with integration over half vectors.
 
 use crate::lookup;
 use framegraph_passes::ibl::DfgTable;
@@ -7,27 +7,27 @@ use std::error::Error;
 use truth::albedo::{Masking, cloth, ggx};
 use truth::microsurface::Random;
 
-/// How far the table is off, over points with n·v above 0.05 and roughness above 0.089.
+/// Errors of the table for n·v above 0.05 and roughness above 0.089.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
-    /// The largest error of the albedo at f0 = 1 (green).
+    /// Largest error of the albedo at f0 = 1 (green).
     pub albedo: f64,
-    /// Root mean square of it.
+    /// Root mean square error of the albedo.
     pub albedo_rms: f64,
-    /// The largest error of the Fresnel part (red).
+    /// Largest error of the Fresnel part (red).
     pub fresnel: f64,
-    /// The largest error of 1/green, which compensates for multiple scattering.
+    /// Largest error of 1/green, which compensates for multiple scattering.
     pub compensation: f64,
-    /// The largest error of the cloth's albedo (blue).
+    /// Largest error of the cloth albedo (blue).
     pub cloth: f64,
-    /// The lowest green.
+    /// Smallest value of green.
     pub lowest: f64,
 }
 
-/// Errors at `count` points thrown over the domain, against the lobe with this masking.
+/// Returns the errors at `count` points in the domain, for a lobe with this masking.
 ///
 /// # Errors
-/// When the device refuses or fails.
+/// The device fails.
 pub fn errors(gpu: &Gpu, table: &DfgTable, masking: Masking, count: usize) -> Result<Errors, Box<dyn Error>> {
     let mut random = Random(11);
     let points: Vec<[f64; 2]> =

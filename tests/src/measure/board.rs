@@ -1,7 +1,7 @@
-//! A board of small surfaces, rendered through the standard frame: the pixel in the middle of each is one evaluation of the
-//! color pass at a place that is known.
+//! A board of small surfaces, rendered by the standard frame. The center pixel of each surface evaluates the color pass
+//! at a known position.
 //!
-//! The board hangs across the view, in the plane z = 0 about its origin; the eye is five meters in front of it.
+//! The board is perpendicular to the view, in the plane z = 0 of its origin; the eye is 5 m in front of it.
 
 use crate::executors;
 use crate::stage::light_cache;
@@ -19,62 +19,62 @@ use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::error::Error;
 
-/// What a surface of the board looks like.
+/// Rendered color of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// Radiance in nits.
+    /// Radiance, in nits.
     pub nits: DVec3,
-    /// Display codes: linear tone curve, no dither.
+    /// Display color in 8 bits: linear tone curve, no dithering.
     pub code: [u8; 3],
 }
 
-/// A mesh with a material, in its place on the board.
+/// A mesh with a material, in one cell of the board.
 #[derive(Clone, Debug)]
 pub struct Piece {
-    /// The surface.
+    /// Material of the surface.
     pub material: Material,
-    /// Its shape about the middle of its place, which is a square of one meter.
+    /// Shape relative to the center of its cell, a square of 1 m.
     pub mesh: Mesh,
-    /// Turns, mirrors and scales the mesh about that middle.
+    /// Transform of the mesh about the center: rotation, mirroring and scale.
     pub placed: DMat4,
 }
 
-/// How the eye sees the board.
+/// Projection of the board's camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Eye {
-    /// Along -z everywhere.
+    /// Parallel, along -z.
     #[default]
     Parallel,
-    /// From a point in front of the middle of the board.
+    /// Perspective, from a point in front of the board's center.
     Perspective,
 }
 
-/// Pieces in a row of the board.
+/// Pieces per row.
 const COLUMNS: usize = 20;
-/// Pixels along a side of a piece's place.
+/// Width of a cell, in pixels.
 const SIDE_PX: u32 = 3;
-/// From the eye to the board, in meters.
+/// Distance from the eye to the board, in m.
 const DISTANCE_M: f64 = 5.0;
-/// 1 / (1.2 · 2^EV): one nit is shown as a half.
+/// 1 / (1.2 · 2^EV): one nit is displayed as 0.5.
 pub const EXPOSURE: f64 = 0.5;
 
-/// Surfaces side by side.
+/// A grid of surfaces.
 #[derive(Clone, Debug, Default)]
 pub struct Board {
-    /// Textures that the materials name, and lights; nothing else.
+    /// Scene with the lights and the textures of the materials, and nothing else.
     pub scene: Scene,
-    /// What hangs on the board, row by row.
+    /// Pieces of the board, row by row.
     pub pieces: Vec<Piece>,
-    /// How it is seen.
+    /// Projection of the camera.
     pub eye: Eye,
-    /// The upper left corner of the board in the world, in meters.
+    /// Upper left corner of the board in world space, in m.
     pub origin: DVec3,
-    /// How shadows are made; without it nothing casts.
+    /// Shadow settings; without them, nothing casts shadows.
     pub shadows: Option<ShadowSettings>,
 }
 
 impl Board {
-    /// Adds a picture of `width` texels a row that materials may show in one role.
+    /// Adds a texture with rows of `width` texels, for use in one role.
     pub fn texture(&mut self, width: u32, texels: &[[u8; 4]], role: TextureRole, sampler: Sampler) -> TextureSlot {
         let height = texels.len() as u32 / width;
         let image = Image::from_rgba8("card", width, height, texels.concat());
@@ -82,13 +82,13 @@ impl Board {
         TextureSlot { texture, uv_set: 0, transform: UvTransform::default() }
     }
 
-    /// Adds a piece and says where its middle is, in the world.
+    /// Adds a piece, and returns its index.
     pub fn hang(&mut self, material: Material, mesh: Mesh, placed: DMat4) -> usize {
         self.pieces.push(Piece { material, mesh, placed });
         self.pieces.len() - 1
     }
 
-    /// The middle of a piece's place, in the world.
+    /// Returns the center of a piece's cell in world space.
     pub fn middle(&self, index: usize) -> DVec3 {
         let (column, row) = ((index % COLUMNS) as f64, (index / COLUMNS) as f64);
         self.origin + DVec3::new(column + 0.5, -row - 0.5, 0.0)
@@ -98,7 +98,7 @@ impl Board {
         self.pieces.len() / COLUMNS + 1
     }
 
-    /// The unit vector from the middle of a piece's place toward the viewer.
+    /// Returns the unit vector from the center of a piece's cell toward the viewer.
     pub fn toward_viewer(&self, index: usize) -> DVec3 {
         match self.eye {
             Eye::Parallel => DVec3::Z,
@@ -106,7 +106,7 @@ impl Board {
         }
     }
 
-    /// The eye in the world.
+    /// Returns the position of the eye in world space, in m.
     pub fn camera_m(&self) -> DVec3 {
         self.origin + DVec3::new(0.5 * COLUMNS as f64, -0.5 * self.rows() as f64, DISTANCE_M)
     }
@@ -123,11 +123,11 @@ impl Board {
         Ok(Camera::look_at(eye, eye - DVec3::Z, DVec3::Y, projection)?)
     }
 
-    /// Renders the board under `environment`; the pieces in their order, and last what is seen beside them, which is the
+    /// Renders the board under `environment`. Returns the pieces in order, then the background, which is the
     /// environment.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn render(&self, gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<Vec<Seen>, Box<dyn Error>> {
         let settings = LightSettings {
             image: IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() },
@@ -137,10 +137,10 @@ impl Board {
         self.render_lit(gpu, lighting, shading)
     }
 
-    /// The same by light that was made before.
+    /// Renders the board with precomputed light. Returns the pieces in order, then the background.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn render_lit(&self, gpu: &Gpu, lighting: Lighting, shading: &Shading) -> Result<Vec<Seen>, Box<dyn Error>> {
         let (scene, size_px) = (self.placed(), self.size_px());
         let view = self.view(&lighting)?;
@@ -178,10 +178,10 @@ impl Board {
         [COLUMNS as u32 * SIDE_PX, self.rows() as u32 * SIDE_PX]
     }
 
-    /// What the board is rendered with: positions in it are relative to the eye.
+    /// Returns the view of the board; its positions are relative to the eye.
     ///
     /// # Errors
-    /// When the board is too large for a camera.
+    /// The board is too large for a camera.
     pub fn view(&self, lighting: &Lighting) -> Result<CameraView, Box<dyn Error>> {
         let moment = ViewSettings {
             camera: self.camera()?,
@@ -207,7 +207,8 @@ impl Board {
     }
 }
 
-/// A square of `side_m` across the view, shaded as if it had another normal; its texture coordinates are those of one point.
+/// Creates a square with side `side_m` that faces the viewer, shaded with another normal. All of it has the same
+/// texture coordinates.
 pub fn card(side_m: f32, normal: DVec3, tangent: DVec3, handedness: f32) -> Mesh {
     let half = 0.5 * side_m;
     let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
@@ -224,9 +225,9 @@ pub fn card(side_m: f32, normal: DVec3, tangent: DVec3, handedness: f32) -> Mesh
     }
 }
 
-/// Three lamps of π lux, a red, a green and a blue one, the first of which comes from `toward[0]`: what a white surface
-/// reflects of them tells three cosines apart.
-pub fn lamps(toward: [DVec3; 3]) -> Vec<Light> {
+/// Creates a red, a green and a blue light of π lux each, in directions `toward`. The color that a white surface
+/// reflects separates their three cosines.
+pub fn punctual_lights(toward: [DVec3; 3]) -> Vec<Light> {
     let lamp = |(i, toward): (usize, DVec3)| {
         let color = [Vec3::X, Vec3::Y, Vec3::Z][i];
         Light { color, ..Light::directional("lamp", -toward.as_vec3(), std::f32::consts::PI) }

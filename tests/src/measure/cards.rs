@@ -1,6 +1,6 @@
-//! A wall of cards: a card for each material and angle of view.
+//! A grid of cards: one for each material and angle of view.
 //!
-//! Cards face a parallel camera, but their vertex normals lean away from it, so each is shaded at one angle exactly.
+//! Cards face a parallel camera, but their vertex normals are tilted, so each is shaded at exactly one angle.
 
 use super::board::{Board, Seen, card};
 use framegraph_passes::Shading;
@@ -9,32 +9,32 @@ use framegraph_wgpu::Gpu;
 use glam::{DMat4, DVec3};
 use std::error::Error;
 
-/// A surface and how it is seen.
+/// A surface with its angle of view.
 #[derive(Clone, Debug)]
 pub struct Card {
-    /// The surface.
+    /// Material of the surface.
     pub material: Material,
-    /// n·v, above 0: the normal leans toward +x.
+    /// n·v, above 0: the normal tilts toward +x.
     pub nov: f64,
 }
 
-/// The scene: its first textures may be used by materials.
+/// A grid of cards, with a scene whose textures the materials may use.
 #[derive(Clone, Debug, Default)]
 pub struct Wall {
-    /// Textures that the cards' materials name; nothing else.
+    /// Scene with the textures of the cards' materials, and nothing else.
     pub scene: Scene,
     /// The cards.
     pub cards: Vec<Card>,
-    /// What lights them directly.
+    /// Direct light, if any.
     pub light: Option<Light>,
 }
 
 impl Wall {
-    /// Renders the wall under `environment`; the cards in their order, and last what is seen beside them, which is the
-    /// environment. One nit is shown as 0.5.
+    /// Renders the wall under `environment`. Returns the cards in order, then the background, which is the environment.
+    /// One nit is displayed as 0.5.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn render(&self, gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<Vec<Seen>, Box<dyn Error>> {
         let mut board = Board { scene: self.scene.clone(), ..Board::default() };
         for Card { material, nov } in &self.cards {

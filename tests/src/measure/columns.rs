@@ -1,4 +1,4 @@
-//! Ambient occlusion of the scene of columns against a path tracer's.
+//! Ambient occlusion in the scene of columns, compared with a path tracer.
 
 use crate::reference::asset::Sources;
 use crate::reference::document::Document;
@@ -9,27 +9,27 @@ use framegraph_wgpu::Gpu;
 use std::error::Error;
 use std::path::Path;
 
-/// The scene with its truth: rays of 0.3 m.
+/// The scene with its reference, path traced with rays of 0.3 m.
 #[derive(Debug)]
 pub struct Columns {
     document: Document,
     sources: Sources,
     truth: VisibilityMap,
-    /// Where something is: what is lit.
+    /// True for pixels that show a lit surface.
     covered: Vec<bool>,
 }
 
-/// A picture of one channel: visibility, rows from the top.
+/// A picture of visibility in one channel, rows from the top.
 #[derive(Clone, Debug)]
 struct VisibilityMap {
-    /// Width and height.
+    /// Width and height, in pixels.
     size_px: [u32; 2],
-    /// 0 to 1.
+    /// Visibility, 0 to 1.
     visibility: Vec<f32>,
 }
 
 impl VisibilityMap {
-    /// Reads an OpenEXR picture; fails where it has several channels.
+    /// Reads an OpenEXR picture; fails if it has more than one channel.
     fn read(path: &Path) -> Result<Self, exr::error::Error> {
         let image = exr::prelude::read_first_flat_layer_from_file(path)?;
         let layer = image.layer_data;
@@ -41,20 +41,20 @@ impl VisibilityMap {
     }
 }
 
-/// How far visibility is off.
+/// Error of visibility.
 #[derive(Clone, Copy, Debug)]
 pub struct Off {
     /// Root mean square.
     pub rms: f64,
-    /// Mean of ours less the truth.
+    /// Mean of the signed error.
     pub bias: f64,
 }
 
 impl Columns {
-    /// From `tests/references/filament_frame`.
+    /// Reads the scene and its reference from `tests/references/filament_frame`.
     ///
     /// # Errors
-    /// When a file is missing or broken.
+    /// A file is missing or invalid.
     pub fn open(folder: &Path) -> Result<Self, Box<dyn Error>> {
         let lit = Picture::read(&folder.join("05a_columns_ibl_ao_off.exr"))?;
         Ok(Self {
@@ -65,24 +65,24 @@ impl Columns {
         })
     }
 
-    /// Ambient occlusion of the frame, made as `settings` say, at full resolution.
+    /// Returns the error of the frame's ambient occlusion at full resolution.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn off(&self, gpu: &Gpu, settings: OcclusionSettings) -> Result<Off, Box<dyn Error>> {
         let made = studio::visibility(gpu, &self.document, &self.sources, settings)?;
         if made.texels != self.truth.size_px {
-            return Err("ambient occlusion is of another size than the truth".into());
+            return Err("ambient occlusion and reference differ in size".into());
         }
         let visibility = made.rgba().into_iter().map(|[visibility, ..]| visibility);
         Ok(self.compare(visibility))
     }
 
-    /// The same as it reaches surfaces: radiance with ambient occlusion over radiance without, which diffuse light from all
-    /// around makes visibility but for the reflection of 4 %, at any resolution.
+    /// Returns the error of ambient occlusion as surfaces are shaded: radiance with it divided by radiance without it.
+    /// Under uniform light, this is visibility, apart from the 4 % reflection. Works at any resolution.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn off_as_shaded(&self, gpu: &Gpu, settings: OcclusionSettings) -> Result<Off, Box<dyn Error>> {
         let [without, with] =
             [None, Some(settings)].map(|settings| studio::radiance(gpu, &self.document, &self.sources, settings));

@@ -1,5 +1,4 @@
-//! Six small scenes between one that needs nothing and one that needs most, drawn with the effects that they are asked for
-//! and with those that their facts leave.
+//! Six small scenes, from one that needs no effect to one that needs most, drawn with and without feature culling.
 
 pub mod late;
 pub mod random;
@@ -29,10 +28,10 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::time::Instant;
 
-/// Width and height of the pictures.
+/// Width and height of the pictures, in pixels.
 pub const SIZE_PX: [u32; 2] = [64, 64];
 
-/// The effects whose every combination is tried.
+/// Effects of which every combination is tested.
 pub const MASKED: [Effect; 12] = [
     Effect::SunShadows,
     Effect::LampShadows,
@@ -48,26 +47,26 @@ pub const MASKED: [Effect; 12] = [
     Effect::Msaa,
 ];
 
-/// A scene with its light, and the frame that it is asked for.
+/// A scene with its light and the requested settings.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// As tables call it.
+    /// Name in tables.
     pub name: &'static str,
-    /// What is drawn.
+    /// Scene to draw.
     pub scene: Scene,
-    /// Radiance from all around, in nits.
+    /// Radiance of the uniform environment, in nits.
     pub nits: DVec3,
-    /// What stands behind.
+    /// Background of the scene.
     pub background: Background,
-    /// Every effect on, but those that the scene is about.
+    /// Settings with every effect enabled, except where the scene is about one.
     pub asked: Settings,
-    /// Exposure of the camera, EV100.
+    /// Exposure value of the camera, EV100.
     pub ev100: f32,
-    /// Width and height of its pictures.
+    /// Size of the pictures, in pixels.
     pub size_px: [u32; 2],
 }
 
-/// Every effect, small.
+/// Returns settings with every effect, at low cost.
 pub fn every_effect() -> Settings {
     let shadows = ShadowSettings {
         cascades: 2,
@@ -114,7 +113,7 @@ fn sun() -> Light {
     Light::directional("sun", Vec3::new(-0.5, -1.0, -0.3), 20_000.0)
 }
 
-/// Things on a floor: a block, a ball, a mirror, glass and something that blends.
+/// Adds a floor with a block, a ball, a mirror, glass and a blended surface.
 fn things(scene: &mut Scene) {
     put(scene, "floor", plane(Vec2::splat(8.0), 1, Vec2::ONE), matt("floor", Vec3::splat(0.5), 0.3), DVec3::ZERO);
     put(
@@ -128,10 +127,10 @@ fn things(scene: &mut Scene) {
     put(scene, "ball", sphere(0.4, 16, 8), mirror, DVec3::new(0.6, 0.4, 0.1));
 }
 
-/// The six scenes.
+/// Returns the six scenes.
 ///
 /// # Errors
-/// Never; the transmissive one needs a size.
+/// Only on a bug in a built-in scene.
 pub fn cases() -> [Case; 6] {
     let origin = DVec3::new(0.0, 0.4, 0.0);
     let ahead = || scene(DVec3::new(0.2, 1.2, 3.2), origin);
@@ -185,13 +184,13 @@ pub fn cases() -> [Case; 6] {
 }
 
 impl Case {
-    /// What is asked for without some of [`MASKED`]: those whose bit is 0.
+    /// Returns the settings without the effects of [`MASKED`] whose bit in `mask` is 0.
     pub fn masked(&self, mask: u32) -> Settings {
         let off = MASKED.into_iter().enumerate().filter(|(bit, _)| mask >> bit & 1 == 0);
         off.fold(self.asked, |settings, (_, effect)| settings.without(effect))
     }
 
-    /// The view of its camera.
+    /// Returns the view of the scene's camera.
     pub fn view(&self, settings: &Settings, size_px: [u32; 2]) -> ViewSettings {
         ViewSettings {
             camera: self.scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
@@ -206,7 +205,7 @@ impl Case {
     }
 }
 
-/// What all cases are drawn with, so that shaders and pipelines are made once.
+/// Executor and programs that all cases share, so that pipelines are created once.
 #[derive(Debug)]
 pub struct Easel {
     gpu: Gpu,
@@ -216,7 +215,7 @@ pub struct Easel {
 }
 
 impl Easel {
-    /// One for a device.
+    /// Creates an easel for a device.
     pub fn new(gpu: &Gpu) -> Self {
         let (executor, programs) = (Executor::new(gpu), Programs::new());
         Self { gpu: gpu.clone(), executor, programs, scratch: Scratch::new() }
@@ -226,19 +225,19 @@ impl Easel {
 /// A case on a device.
 #[derive(Debug)]
 pub struct Drawn {
-    /// What is drawn.
+    /// Case to draw.
     pub case: Case,
     survey: Survey,
     world: World,
-    /// Pictures that were drawn, by their settings in words.
+    /// Pictures by settings in text form.
     known: BTreeMap<String, Vec<u8>>,
 }
 
 impl Drawn {
-    /// Uploads a case; its light is made, or found in a cache.
+    /// Uploads a case; its light is computed, or read from a cache.
     ///
     /// # Errors
-    /// When the device fails.
+    /// The device fails.
     pub fn new(gpu: &Gpu, case: Case) -> Result<Self, Box<dyn Error>> {
         let shading = case.asked.shading;
         let image = IblSettings { cube_texels: 64, bands: shading.bands, ..IblSettings::default() };
@@ -251,7 +250,7 @@ impl Drawn {
         Ok(Self { survey: Survey::new(&case.scene), case, world, known: BTreeMap::new() })
     }
 
-    /// What the facts say of the case with these settings.
+    /// Returns the feature culling of the case with these settings.
     pub fn facts(&self, asked: &Settings, forced: EffectSet, memory: &mut FactMemory) -> Facts {
         let views = [self.case.view(asked, self.case.size_px)];
         let input = FactInput {
@@ -268,16 +267,16 @@ impl Drawn {
         decide(&input, memory)
     }
 
-    /// The picture of these settings: drawn, or found among those that were.
+    /// Returns the picture of these settings, drawn or cached.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn picture(&mut self, easel: &mut Easel, settings: &Settings) -> Result<Vec<u8>, Box<dyn Error>> {
         let key = format!("{settings:?}");
         if let Some(known) = self.known.get(&key) {
             return Ok(known.clone());
         }
-        // Reflections are of the frame before, which is to be one of these settings.
+        // Reflections read the previous frame, which must have the same settings.
         easel.executor.reset_histories();
         let frames = if settings.reflections.is_some() { 2 } else { 1 };
         let (picture, ..) = self.frames(easel, settings, self.case.size_px, frames)?;
@@ -285,10 +284,10 @@ impl Drawn {
         Ok(picture)
     }
 
-    /// The picture, the plan and the least time of so many frames in ms.
+    /// Returns the picture, the plan, and the minimum time of several frames in ms.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn frames(
         &mut self,
         easel: &mut Easel,
@@ -320,45 +319,45 @@ impl Drawn {
     }
 }
 
-/// How far the pictures of one mask are apart: the frame as asked for, and as decided.
+/// Difference between the pictures with and without feature culling.
 #[derive(Clone, Debug)]
 pub struct Compared {
-    /// What was dropped whose bound is in codes.
+    /// Culled effects whose error bound is in 8-bit steps.
     pub dropped: EffectSet,
-    /// The sum of their bounds in codes.
+    /// Sum of their error bounds, in 8-bit steps.
     pub bound_codes: f32,
-    /// The largest difference in codes.
+    /// Largest difference, in 8-bit steps.
     pub largest_codes: u8,
-    /// Pixels that differ by more than the bound.
+    /// Number of pixels that differ by more than the bound.
     pub beyond: usize,
-    /// Pixels that may: a code more or less can have FXAA find another edge.
+    /// Number of pixels that may exceed the bound, since FXAA can detect another edge after the smallest difference.
     pub may_be_beyond: usize,
 }
 
 impl Compared {
-    /// Whether the drops keep what they promise.
+    /// Returns true if the culled effects stay within their bounds.
     pub fn holds(&self) -> bool {
         self.beyond <= self.may_be_beyond
     }
 }
 
-/// Draws a mask of a case with and without what its facts drop. Drops that are bounded otherwise than in codes are not made.
+/// Draws a combination of effects with and without feature culling. Effects with other kinds of bounds are not culled.
 ///
 /// # Errors
-/// What the device refuses.
+/// The device fails.
 pub fn compare_mask(easel: &mut Easel, drawn: &mut Drawn, mask: u32) -> Result<Compared, Box<dyn Error>> {
     let asked = drawn.case.masked(mask);
     compare(easel, drawn, &asked)
 }
 
-/// Draws settings of a case with and without what its facts drop. Drops that are bounded otherwise than in codes are not made.
+/// Draws settings with and without feature culling. Effects with other kinds of bounds are not culled.
 ///
 /// # Errors
-/// Fails if the device refuses a frame.
+/// The device fails.
 pub fn compare(easel: &mut Easel, drawn: &mut Drawn, asked: &Settings) -> Result<Compared, Box<dyn Error>> {
     let asked = *asked;
     let all = drawn.facts(&asked, EffectSet::NONE, &mut FactMemory::default());
-    // With one sample there are no edges of several samples.
+    // Without multisampling, no edge has several samples.
     let edges = asked.samples > 1;
     let otherwise = all.rows.iter().filter(|row| match row.proof {
         Proof::Truer | Proof::Texels(_) => true,
@@ -395,7 +394,8 @@ pub fn compare(easel: &mut Easel, drawn: &mut Drawn, asked: &Settings) -> Result
     })
 }
 
-/// All, none, and all but each: of these every pair of effects takes all four of its states. With each `alone`, if asked.
+/// Returns masks with all effects, with none, and with all but one. Every pair of effects then occurs in all four
+/// states. With `alone`, also returns masks with a single effect.
 pub fn some_masks(alone: bool) -> Vec<u32> {
     let (count, all) = (MASKED.len() as u32, (1 << MASKED.len()) - 1);
     let each = (0..count).map(|bit| 1 << bit);

@@ -1,4 +1,4 @@
-//! A white furnace: what a conductor gives back of even light, against a random walk on its surface.
+//! White furnace test: albedo of conductors under uniform light, compared with a random walk on their microsurface.
 
 use super::cards::{Card, Wall};
 use crate::lookup;
@@ -10,31 +10,31 @@ use glam::{DVec3, Vec3};
 use std::error::Error;
 use truth::microsurface::{self, Random};
 
-/// Reflectances at normal incidence that are compared.
+/// Tested reflectances at normal incidence.
 pub const F0: [f64; 5] = [1.0, 0.9, 0.6, 0.3, 0.04];
 
-/// How far the albedo is off, relative to the walk, over 60 points: six roughnesses by ten angles.
+/// Relative error of the albedo over 60 points: six roughnesses by ten angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
-    /// The mean of the relative error's magnitude.
+    /// Mean absolute relative error.
     pub mean: f64,
-    /// The relative error of the largest magnitude, with its sign.
+    /// Largest relative error by magnitude, with its sign.
     pub worst: f64,
 }
 
-/// Whether and how light scattered more than once is given back.
+/// Compensation for multiple scattering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compensation {
-    /// It is lost.
+    /// No compensation.
     None,
-    /// 1 + f0 (1/green - 1).
+    /// Factor 1 + f0 (1/green - 1).
     Table,
 }
 
-/// Errors for each of [`F0`], from `paths` walks a point.
+/// Returns the errors for each value of [`F0`], from `paths` random walks per point.
 ///
 /// # Errors
-/// When the device refuses or fails.
+/// The device fails.
 pub fn errors(
     gpu: &Gpu,
     table: &DfgTable,
@@ -55,11 +55,11 @@ pub fn errors(
     Ok(against(&truth(paths), reflected))
 }
 
-/// The same of what the color pass renders of cards under an even environment of one nit, shaded as `shading` says.
-/// `truth` is [`truth()`].
+/// Returns the errors of cards rendered by the color pass under a uniform environment of 1 nit. `truth` is the result
+/// of [`truth()`].
 ///
 /// # Errors
-/// When the device refuses or fails.
+/// The device fails.
 pub fn frame_errors(
     gpu: &Gpu,
     shading: &Shading,
@@ -74,13 +74,13 @@ pub fn frame_errors(
     Ok(against(truth, reflected))
 }
 
-/// (n·v, roughness): six roughnesses by ten angles.
+/// Returns pairs of n·v and roughness: six roughnesses by ten angles.
 fn points() -> Vec<[f64; 2]> {
     let angles = |roughness: f64| (0..10).map(move |i| [0.05 + 0.1 * f64::from(i), roughness]);
     [0.1, 0.3, 0.5, 0.7, 0.85, 1.0].into_iter().flat_map(angles).collect()
 }
 
-/// What conductors of each of [`F0`] give back at each point, by `paths` walks.
+/// Returns the albedo of conductors for each value of [`F0`] at each point, by `paths` random walks.
 pub fn truth(paths: u32) -> Vec<[f64; F0.len()]> {
     let mut random = Random(3);
     let walked = |[nov, roughness]: [f64; 2]| microsurface::albedo(nov, roughness, F0, paths, &mut random);

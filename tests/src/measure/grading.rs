@@ -1,34 +1,34 @@
-//! How far tables of grading are from the looks that they are made of.
+//! Errors of color grading tables against the exact functions.
 
 use framegraph_passes::grading::{Baked, Extras, GradingError, Look, TableDesc, TableFormat};
 use framegraph_shaders::layout::{Grading, ToneMap};
 use glam::DVec3;
 
-/// A table of a look against the look itself, in codes of 255.
+/// Error of one table, in 8-bit steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableError {
     /// Name of the look.
     pub look: &'static str,
     /// Entries along each axis.
     pub entries: usize,
-    /// Numbers of the entries.
+    /// Number format of the entries.
     pub format: &'static str,
-    /// Bytes of the table.
+    /// Size of the table, in bytes.
     pub bytes: usize,
-    /// The worst of greys.
+    /// Largest error of grays.
     pub grey: f64,
-    /// Root mean square over channels of colors.
+    /// Root mean square error of colors, over channels.
     pub rms: f64,
-    /// What a hundredth of the colors exceed.
+    /// Error that 1 % of the colors exceed.
     pub p99: f64,
-    /// The worst of colors.
+    /// Largest error of colors.
     pub worst: f64,
-    /// Root mean square where four entries of a simplex are interpolated, and not eight.
+    /// Root mean square error with tetrahedral interpolation instead of trilinear.
     pub tetrahedral: f64,
 }
 
 impl TableError {
-    /// The row of the document.
+    /// Returns the row of the document.
     pub fn row(&self) -> String {
         let Self { look, entries, format, bytes, grey, rms, p99, worst, tetrahedral } = self;
         let kib = *bytes as f64 / 1024.0;
@@ -38,12 +38,12 @@ impl TableError {
     }
 }
 
-/// Head of the table that [`TableError::row`] is a row of.
+/// Head of the table with the rows of [`TableError::row`].
 pub const HEAD: &str = "\
 | look     | size | bits  |    KiB |  grey |   rms |   p99 | worst | tetr. |
 | -------- | ---- | ----- | ------ | ----- | ----- | ----- | ----- | ----- |";
 
-/// Looks that are measured, by name.
+/// Returns the measured looks with their names.
 pub fn looks() -> [(&'static str, Look); 4] {
     let graded = Grading { temperature: 0.3, tint: -0.2, contrast: 1.2, saturation: 1.2, ..Grading::NEUTRAL };
     let plain = Look::default();
@@ -55,7 +55,7 @@ pub fn looks() -> [(&'static str, Look); 4] {
     ]
 }
 
-/// Tables that are measured; curves of one axis have but one size.
+/// Returns the measured tables; one-dimensional curves have a single size.
 pub fn descs(look: &Look) -> Vec<TableDesc> {
     if look.keeps_channels_apart(&Extras::default()) {
         return vec![TableDesc::DEFAULT];
@@ -66,7 +66,7 @@ pub fn descs(look: &Look) -> Vec<TableDesc> {
 /// Measures one table.
 ///
 /// # Errors
-/// As [`Look::function`].
+/// The errors of [`Look::function`].
 pub fn error(name: &'static str, look: &Look, desc: TableDesc) -> Result<TableError, GradingError> {
     let extras = Extras::default();
     let (baked, exact) = (Baked::new(look, &extras, desc)?, look.function(&extras)?);
@@ -78,7 +78,7 @@ pub fn error(name: &'static str, look: &Look, desc: TableDesc) -> Result<TableEr
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (seed >> 33) as f64 / (1_u64 << 31) as f64
     };
-    // From nine stops below 18 % grey to seven above, each channel by itself.
+    // Colors from nine stops below 18 % gray to seven above, independent per channel.
     let colors: Vec<DVec3> = (0..8192).map(|_| DVec3::new(stop(random()), stop(random()), stop(random()))).collect();
     let rms = |tetrahedral| {
         let squares: f64 = colors.iter().map(|color| off(*color, tetrahedral).length_squared()).sum();

@@ -1,26 +1,27 @@
-//! Half-float arithmetic on the CPU, operation by operation, with or without numbers below 6.1e-5: what a device may do.
+//! Model of half-float arithmetic on the CPU, operation by operation, with or without denormals below 6.1e-5.
 //!
-//! The terms of `lib/ggx.wgsl` again, in the shader's order of operations. This is a model of the shader, not a truth.
+//! It repeats the terms of `lib/ggx.wgsl` in the shader's order of operations. It models the shader and is not a
+//! reference.
 
 use framegraph_shaders::reference::quantize::quantize_mantissa;
 use glam::DVec3;
 
-/// The smallest half float with all of its bits.
+/// Smallest normal half float.
 const SMALLEST_NORMAL: f64 = 1.0 / 16384.0;
-/// The largest.
+/// Largest finite half float.
 const LARGEST: f64 = 65504.0;
 
-/// How a device rounds.
+/// Rounding of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfModel {
-    /// Numbers too small to have all of their bits become zero.
+    /// True if denormals become zero.
     pub flush: bool,
-    /// Factor on what is squared; 64 in the shader, and 1 is what goes wrong without.
+    /// Factor on squared values: 64 in the shader; 1 shows the error without it.
     pub scale: f64,
 }
 
 impl HalfModel {
-    /// The half float that stands for `x`.
+    /// Rounds to a half float.
     pub fn round(self, x: f64) -> f64 {
         if !x.is_finite() {
             return x;
@@ -50,7 +51,7 @@ impl HalfModel {
         DVec3::new(minor(a.y, b.z, a.z, b.y), minor(a.z, b.x, a.x, b.z), minor(a.x, b.y, a.y, b.x))
     }
 
-    /// `d_ggx_cross` of half floats.
+    /// Models `d_ggx_cross` in half floats.
     pub fn d_ggx_cross(self, n: DVec3, h: DVec3, noh: f64, alpha: f64) -> f64 {
         let scale2 = self.scale * self.scale;
         let sine = self.cross(n, h).to_array().map(|x| self.product(self.scale, x));
@@ -62,42 +63,42 @@ impl HalfModel {
         self.round(k * k / std::f64::consts::PI)
     }
 
-    /// `pow5` of half floats.
+    /// Models `pow5` in half floats.
     pub fn pow5(self, x: f64) -> f64 {
         let x2 = self.product(x, x);
         self.product(self.product(x2, x2), x)
     }
 
-    /// `f_schlick_scalar` of half floats.
+    /// Models `f_schlick_scalar` in half floats.
     pub fn f_schlick_scalar(self, f0: f64, f90: f64, voh: f64) -> f64 {
         let rise = self.pow5(self.sum(1.0, -voh.clamp(0.0, 1.0)));
         self.sum(f0, self.product(self.sum(f90, -f0), rise))
     }
 
-    /// `v_kelemen` of half floats.
+    /// Models `v_kelemen` in half floats.
     pub fn v_kelemen(self, loh: f64) -> f64 {
         let v = self.round(0.5 / loh.max(self.round(0.001_974_842)));
         self.product(v, v)
     }
 
-    /// `v_neubelt` of half floats.
+    /// Models `v_neubelt` in half floats.
     pub fn v_neubelt(self, nov: f64, nol: f64) -> f64 {
         let covered = self.sum(self.sum(nol, nov), -self.product(nol, nov));
         self.round(0.25 / covered.max(self.round(6.2e-5)))
     }
 
-    /// A channel of `energy_compensation` of half floats.
+    /// Models one channel of `energy_compensation` in half floats.
     pub fn energy_compensation(self, f0: f64, dfg_y: f64) -> f64 {
         let lost = self.sum(self.round(1.0 / dfg_y.clamp(self.round(0.3), 1.0)), -1.0);
         self.sum(1.0, self.product(f0, lost))
     }
 
-    /// `clamp_nov` of half floats.
+    /// Models `clamp_nov` in half floats.
     pub fn clamp_nov(self, nov: f64) -> f64 {
         nov.max(self.round(1e-4))
     }
 
-    /// `v_smith_ggx_correlated_fast` of half floats.
+    /// Models `v_smith_ggx_correlated_fast` in half floats.
     pub fn v_smith_ggx_correlated_fast(self, nov: f64, nol: f64, alpha: f64) -> f64 {
         let l = self.product(self.scale, nol);
         let both = self.product(self.product(2.0, l), nov);
@@ -106,7 +107,7 @@ impl HalfModel {
         self.round(0.5 * self.scale / lambda.max(self.round(self.scale * 7.7e-6)))
     }
 
-    /// `v_smith_ggx_correlated` of half floats.
+    /// Models `v_smith_ggx_correlated` in half floats.
     pub fn v_smith_ggx_correlated(self, nov: f64, nol: f64, alpha: f64) -> f64 {
         let (a2, a) = (self.product(alpha, alpha), self.product(self.scale, alpha));
         let root = |c: f64| {

@@ -1,4 +1,4 @@
-//! The tables of `docs/half-floats.md`, as rows: printed by the program `shading_errors`, found again by tests.
+//! Rows of the tables in `docs/half-floats.md`, printed by the program `shading_errors` and compared by tests.
 
 use crate::compare::{Difference, compare};
 use crate::executors;
@@ -20,30 +20,30 @@ use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Gpu, Imports, read_texture};
 use std::error::Error;
 
-/// Points of each function's domain, a quarter of which are corners.
+/// Points in each function's domain; a quarter are corners.
 pub const POINTS: usize = 2048;
 /// Samples of a lobe.
 pub const SAMPLES: u32 = 4096;
 /// Roughness of the lobes.
 pub const ROUGHNESS: [f64; 5] = [0.03, 0.045, 0.089, 0.2, 0.5];
-/// Scenes of the pictures; each built in.
+/// Built-in scenes of the pictures.
 pub const SCENES: [&str; 5] = ["spheres", "columns", "materials", "lobes", "glass"];
 
-/// A function that computes in half floats where that is asked for, against its mirror.
+/// Error of a function with an f16 build, against its f64 mirror.
 #[derive(Clone, Debug)]
 pub struct MirrorRow {
     /// File and function.
     pub name: String,
-    /// In f32.
+    /// Error in f32.
     pub full: Deviation,
-    /// In f16, of the rounded numbers.
+    /// Error in f16, for inputs rounded to f16.
     pub half: Deviation,
 }
 
-/// Every such function.
+/// Measures every function with an f16 build.
 ///
 /// # Errors
-/// The first that is outside of its bound, or what the device refuses.
+/// The first function that exceeds its bound, or an error of the device.
 pub fn mirrors(gpu: &Gpu) -> Result<Vec<MirrorRow>, Box<dyn Error>> {
     let row = |half: Case| {
         let full = cases::all().find(|case| (case.file, case.function) == (half.file, half.function));
@@ -55,10 +55,10 @@ pub fn mirrors(gpu: &Gpu) -> Result<Vec<MirrorRow>, Box<dyn Error>> {
     cases::half().map(row).collect()
 }
 
-/// Errors of every form of the distribution at one roughness.
+/// Returns the errors of every form of the distribution at one roughness.
 ///
 /// # Errors
-/// What the device refuses.
+/// The device fails.
 pub fn lobes(gpu: &Gpu, roughness: f64) -> Result<[LobeError; Form::ALL.len()], Box<dyn Error>> {
     let mut errors = [LobeError { median: 0.0, p99: 0.0 }; Form::ALL.len()];
     for (error, form) in errors.iter_mut().zip(Form::ALL) {
@@ -67,7 +67,7 @@ pub fn lobes(gpu: &Gpu, roughness: f64) -> Result<[LobeError; Form::ALL.len()], 
     Ok(errors)
 }
 
-/// Built-in scenes under the default sky, made once and rendered with several shadings.
+/// A built-in scene under the default sky, rendered with several shading settings.
 #[derive(Debug)]
 pub struct Studio {
     world: World,
@@ -79,10 +79,10 @@ impl Studio {
     /// Loads a scene.
     ///
     /// # Errors
-    /// When there is no such scene, or the device fails.
+    /// The scene is unknown, or the device fails.
     pub fn new(gpu: &Gpu, scene: &str) -> Result<Self, Box<dyn Error>> {
         let size_px = [320, 180];
-        // The edge filter would turn a code of difference into an edge more or less.
+        // FXAA is off, since it would amplify small differences at edges.
         let post = PostSettings { dither: 0.0, ..PostSettings::DEFAULT };
         let settings =
             Settings { post, fxaa: false, shadows: Some(ShadowSettings::texels(1024)), ..Settings::default() };
@@ -110,12 +110,12 @@ impl Studio {
         Ok(Self { world, settings, size_px })
     }
 
-    /// Renders it, roughness held above `floor`; display codes, four bytes a texel.
+    /// Renders the scene with roughness of at least `floor`. Returns 8-bit display colors, four bytes per pixel.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn shoot(&self, gpu: &Gpu, precision: Precision, floor: f32) -> Result<Vec<u8>, Box<dyn Error>> {
-        // The filter of normals would widen highlights whatever the floor.
+        // Specular anti-aliasing is off, since it would widen highlights regardless of the floor.
         let shading = Shading { precision, roughness_floor: floor, specular_aa: None, ..self.settings.shading };
         let mut frame = Frame::new();
         let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
@@ -130,10 +130,10 @@ impl Studio {
         Ok(read_texture(gpu, texture)?.rgba8())
     }
 
-    /// f16 against f32, both with roughness from `floor` and from 0.089 on.
+    /// Compares f16 and f32, once with roughness of at least `floor` and once of at least 0.089.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn difference(&self, gpu: &Gpu, floor: f32) -> Result<Difference, Box<dyn Error>> {
         let half = self.shoot(gpu, Precision::Half, Precision::Half.roughness_floor())?;
         let full = self.shoot(gpu, Precision::Full, floor)?;

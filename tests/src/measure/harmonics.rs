@@ -1,4 +1,4 @@
-//! Irradiance from spherical harmonics against integration over the hemisphere.
+//! Irradiance from spherical harmonics, compared with integration over the hemisphere.
 
 use super::averaged_map;
 use crate::lookup::{self, Mapping};
@@ -12,27 +12,27 @@ use std::error::Error;
 use std::f64::consts::{PI, TAU};
 use truth::sphere::{directions, irradiance_over_pi};
 
-/// Width of the maps in texels.
+/// Width of the maps, in texels.
 const WIDTH: u32 = 512;
 
-/// An environment whose irradiance is known.
+/// An environment with known irradiance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scene {
-    /// Brightest at the horizon, 0.4 of that above and 0.3 below.
+    /// A sky that is brightest at the horizon, with 0.4 of that above and 0.3 below.
     Sky,
-    /// A disc of 30° about its middle at a radiance of 20, half of one around it.
+    /// A disc with a radius of 30° and a radiance of 20, on a background of 0.5.
     KeyDisc,
-    /// One texel in blackness.
+    /// One bright texel on black.
     Sun,
-    /// The same with an even ambient light of a fifth of its illuminance.
+    /// One bright texel, with uniform light of a fifth of its illuminance.
     SunAndAmbient,
 }
 
 impl Scene {
-    /// All of them.
+    /// All environments.
     pub const ALL: [Self; 4] = [Self::Sky, Self::KeyDisc, Self::Sun, Self::SunAndAmbient];
 
-    /// For tables.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Sky => "sky gradient",
@@ -66,7 +66,7 @@ impl Scene {
         }
     }
 
-    /// The map, and irradiance / π as it is.
+    /// Returns the map, and the exact irradiance / π.
     fn map_and_truth(self) -> (EquirectMap, Box<dyn Fn(DVec3) -> f64>) {
         let height = WIDTH / 2;
         match self {
@@ -91,18 +91,19 @@ impl Scene {
     }
 }
 
-/// How far irradiance is off, as shares of its largest value.
+/// Errors of irradiance, relative to its largest value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
-    /// The largest difference either way.
+    /// Largest difference.
     pub worst: f64,
-    /// The lowest value; below zero where it rings.
+    /// Smallest value; negative if the harmonics ring.
     pub lowest: f64,
-    /// What clamping at zero adds to the mean.
+    /// Increase of the mean by clamping at zero.
     pub clamped: f64,
 }
 
-/// Errors of a projection at `normals` normals; `spoil` is applied to it first (the identity, or a mistake for a control).
+/// Returns the errors of a projection at `normals` normals. `spoil` modifies it first: the identity, or an error as a
+/// negative control.
 pub fn errors(scene: Scene, bands: ShBands, window: ShWindow, normals: u32, spoil: impl Fn(Sh) -> Sh) -> Errors {
     let (map, truth) = scene.map_and_truth();
     let sh = spoil(Sh::project(&map, bands).windowed(window));

@@ -1,4 +1,4 @@
-//! Many lights: a scene at night, with its lights found by froxels and with all of them looked at everywhere.
+//! Many lights: a scene at night, rendered with froxels and with a loop over all lights.
 
 use crate::executors;
 use crate::stage::light_cache;
@@ -16,34 +16,34 @@ use std::collections::BTreeSet;
 use std::error::Error;
 use std::time::Instant;
 
-/// A scene without light from all around, on the GPU.
+/// A scene without environment light, on the GPU.
 #[derive(Debug)]
 pub struct Night {
     /// The scene.
     pub scene: Scene,
-    /// How it is seen. Its shadows are those of the settings.
+    /// View of the scene; its shadows are taken from the settings.
     pub seen: ViewSettings,
-    /// How it is drawn.
+    /// Settings of the frame.
     pub settings: Settings,
     world: World,
 }
 
-/// A picture, and how long it took.
+/// A picture with its time.
 #[derive(Clone, Debug)]
 pub struct Shot {
     /// Radiance times exposure of each pixel, rows from the top.
     pub linear: Vec<[f32; 4]>,
-    /// The least time of the frames in ms, from handing the commands over until the device is done.
+    /// Minimum time of the frames in ms, from submission until the GPU has finished.
     pub ms: f64,
-    /// Layers that shadow maps were drawn in.
+    /// Number of rendered shadow map layers.
     pub layers: usize,
 }
 
 impl Night {
-    /// A scene seen by `camera` in a picture of this size.
+    /// Creates a night scene with a camera and a picture size.
     ///
     /// # Errors
-    /// When the device fails.
+    /// The device fails.
     pub fn new(
         gpu: &Gpu,
         scene: Scene,
@@ -71,25 +71,25 @@ impl Night {
         Ok(Self { scene, seen, settings, world })
     }
 
-    /// The view with its lights found in some way.
+    /// Returns the view with a method of finding lights.
     pub fn view(&self, lights: LightSearch) -> CameraView {
         let seen = ViewSettings { lights, ..self.seen.clone() };
         CameraView::new(&self.scene, &self.world.lighting.image, &Background::None, &seen)
     }
 
-    /// Draws a view, so many times.
+    /// Draws a view `frames` times.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn shoot(&mut self, gpu: &Gpu, view: CameraView, frames: u32) -> Result<Shot, Box<dyn Error>> {
         self.world.set_view(gpu, ViewId::MAIN, view)?;
         self.execute(gpu, Frame::new(), Handles::default(), &Imports::new(), frames)
     }
 
-    /// Draws a view once with shadow maps that are kept.
+    /// Draws a view once with cached shadow maps.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn shoot_keeping(
         &mut self,
         gpu: &Gpu,
@@ -123,10 +123,10 @@ impl Night {
         Ok(Shot { linear: pictures.concat(), ms, layers })
     }
 
-    /// Draws views of one graph, each in its size.
+    /// Draws several views in one graph, each in its size.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn shoot_together(&mut self, gpu: &Gpu, views: Vec<CameraView>) -> Result<Vec<Vec<[f32; 4]>>, Box<dyn Error>> {
         let sizes: Vec<_> = views.iter().map(|view| view.frame.viewport_size_px).collect();
         self.world.views = Views::new(gpu, views)?;
@@ -140,7 +140,7 @@ impl Night {
         Ok(self.run(gpu, &mut frame, &pictures, &Imports::new(), 1)?.0)
     }
 
-    /// What textures hold after so many executions of a frame, and the least time of one in ms.
+    /// Executes a frame several times. Returns its textures, and the minimum time in ms.
     fn run(
         &self,
         gpu: &Gpu,
@@ -168,7 +168,7 @@ impl Night {
         Ok((wanted.iter().map(read).collect::<Result<_, _>>()?, ms))
     }
 
-    /// The least time in ms that making the view takes.
+    /// Returns the minimum time of creating the view, in ms.
     pub fn view_ms(&self, lights: LightSearch, repeats: u32) -> f64 {
         let time = |_| {
             let start = Instant::now();
@@ -178,9 +178,9 @@ impl Night {
         (0..repeats).map(time).fold(f64::INFINITY, f64::min)
     }
 
-    /// How many pairs of a light and a froxel there are of which one of `samples` places that the light reaches is in the
-    /// froxel, and seen. Lights are taken one by one from the scene; all must have an end. The froxel of a place is worked
-    /// out from the settings' words: squares of the picture, ends at equal ratios from `ends_m`.
+    /// Counts pairs of a light and a froxel such that one of `samples` points lit by the light is visible in the
+    /// froxel. All lights must have a range. The froxel of a point is computed from the documented rule: tiles of the
+    /// picture, and depths in geometric steps between `ends_m`.
     pub fn touched(&self, lists: &LightLists, ends_m: [f64; 2], samples: u32) -> usize {
         let [width, height] = self.seen.size_px.map(f64::from);
         let camera = &self.seen.camera;
@@ -210,7 +210,7 @@ impl Night {
     }
 }
 
-/// A place that a light with an end reaches, from the light.
+/// Returns a point within the range of a light, relative to the light.
 fn reached(light: &Light, random: &mut Random) -> DVec3 {
     let (LightKind::Point { range_m, .. } | LightKind::Spot { range_m, .. }) = light.kind else { return DVec3::ZERO };
     let range = f64::from(range_m.unwrap_or(0.0));
@@ -226,7 +226,7 @@ fn reached(light: &Light, random: &mut Random) -> DVec3 {
     (axis * cosine + (right * cos + up * sin) * aside) * (range * random.next().cbrt())
 }
 
-/// SplitMix64 (Steele et al. 2014), 0…1.
+/// SplitMix64 generator (Steele et al. 2014) of numbers in 0…1.
 struct Random(u64);
 
 impl Random {

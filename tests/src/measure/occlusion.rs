@@ -1,4 +1,4 @@
-//! Ambient occlusion of analytic scenes on a device: a depth given by a formula, and what the passes make of it.
+//! Ambient occlusion of analytic scenes on a device: the passes run on a depth given by a formula.
 
 pub mod mirror;
 
@@ -18,7 +18,7 @@ use truth::occlusion as truth;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{CompareFunction, Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
 
-/// Writes an uploaded picture into a depth attachment.
+/// Copies an uploaded picture into a depth attachment.
 const GIVEN: Shader<'static> = Shader::new(
     "given_depth",
     "@group(0) @binding(0) var given: texture_2d<f32>;
@@ -30,20 +30,20 @@ const GIVEN: Shader<'static> = Shader::new(
      }",
 );
 
-/// A camera at the origin that looks along -z, and what it sees.
+/// A camera at the origin that looks along -z, with a given depth.
 #[derive(Clone, Debug)]
 pub struct Stage {
     /// The camera.
     pub camera: Camera,
-    /// Width and height of the picture.
+    /// Width and height of the picture, in pixels.
     pub size_px: [u32; 2],
-    /// Reversed depth of each pixel, rows from the top; 0 where there is nothing.
+    /// Reversed depth of each pixel, rows from the top; 0 without a surface.
     pub depth: Vec<f32>,
-    /// Toward the sun, in view space; none is no sun.
+    /// Direction toward the sun in view space; `None` without a sun.
     pub toward_sun: Option<DVec3>,
 }
 
-/// The passes' world: shaders and a camera.
+/// Data that the passes read: shaders and a camera.
 struct Parts {
     programs: Programs,
     views: Views,
@@ -62,11 +62,11 @@ impl AsRef<Views> for Parts {
 }
 
 impl Stage {
-    /// What a camera sees where `scene` gives the way along a ray, from a start, to what is there, if anything; both in view
-    /// space, the way in units of the direction.
+    /// Creates a stage from `scene`, which intersects a ray, given by start and direction, and returns the hit
+    /// distance. All are in view space, and the distance is in units of the direction.
     ///
     /// # Errors
-    /// When the camera has no direction.
+    /// The camera has no direction.
     pub fn new(
         projection: Projection,
         size_px: [u32; 2],
@@ -90,7 +90,7 @@ impl Stage {
         self.camera.clip_from_view(f64::from(self.size_px[0]) / f64::from(self.size_px[1]))
     }
 
-    /// Start and direction of the ray through the middle of a texel, in view space; z of the direction is -1.
+    /// Returns start and direction of the ray through the center of a texel, in view space. The direction has z = -1.
     pub fn ray(&self, texel: u32) -> (DVec3, DVec3) {
         let [width, height] = self.size_px.map(f64::from);
         let at = DVec2::new(f64::from(texel % self.size_px[0]) + 0.5, f64::from(texel / self.size_px[0]) + 0.5);
@@ -103,16 +103,16 @@ impl Stage {
         }
     }
 
-    /// Position that a texel shows, in view space.
+    /// Returns the position that a texel shows, in view space.
     pub fn position(&self, texel: u32, scene: impl Fn(DVec3, DVec3) -> Option<f64>) -> Option<DVec3> {
         let (start, direction) = self.ray(texel);
         scene(start, direction).map(|way| start + way * direction)
     }
 
-    /// Ambient occlusion that the passes make of it: visibility of each texel.
+    /// Returns the visibility of each texel from the ambient occlusion passes.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn visibility(
         &self,
         gpu: &Gpu,
@@ -123,11 +123,12 @@ impl Stage {
         Ok(texels.into_iter().map(|[visibility, ..]| visibility).collect())
     }
 
-    /// The same with the mean open direction, where it is kept; and the least time of so many frames, in ms, from handing
-    /// the commands over until the device is done. The settings' resolution is not looked at: it is that of the picture.
+    /// Returns the visibility of each texel, with the mean open direction if enabled, and the minimum time of several
+    /// frames in ms. The time runs from submission until the GPU has finished. The resolution is that of the picture;
+    /// the setting is ignored.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn occlusion(
         &self,
         gpu: &Gpu,
@@ -192,7 +193,7 @@ impl Stage {
     }
 }
 
-/// Declares the passes of ambient occlusion over a depth that is given.
+/// Declares the passes of ambient occlusion over a given depth.
 fn declare(
     frame: &mut Frame<Parts>,
     given: Texture,
@@ -216,7 +217,7 @@ fn declare(
     Ok(occlusion)
 }
 
-/// Declares level 0 of a structure that is given.
+/// Declares level 0 of a given structure.
 fn structure(frame: &mut Frame<Parts>, given: Texture, levels: u8) -> Result<Texture, Box<dyn Error>> {
     let desc = TextureDesc::new(Extent::FRAME, Format::Depth32Float).mips(levels);
     let structure = frame.graph_mut().texture("structure", desc);
@@ -241,7 +242,7 @@ fn structure(frame: &mut Frame<Parts>, given: Texture, levels: u8) -> Result<Tex
     Ok(structure)
 }
 
-/// Ground that tilts away from the eye: through (0, 0, -distance), turned by so many degrees about x from facing the eye.
+/// Returns a ground plane through (0, 0, -distance), rotated about x by `tilt_deg` degrees from facing the eye.
 pub fn ground(distance_m: f64, tilt_deg: f64) -> impl Fn(DVec3, DVec3) -> Option<f64> + Clone {
     let (sin, cos) = tilt_deg.to_radians().sin_cos();
     let normal = DVec3::new(0.0, sin, cos);
@@ -251,9 +252,10 @@ pub fn ground(distance_m: f64, tilt_deg: f64) -> impl Fn(DVec3, DVec3) -> Option
     }
 }
 
-/// A corner of two planes at right angles that both face the eye at 45°, its edge upright at x = 0, `distance_m` away.
+/// Returns a corner of two perpendicular planes that both face the eye at 45°. Its vertical edge is at x = 0,
+/// `distance_m` away.
 pub fn corner(distance_m: f64) -> impl Fn(DVec3, DVec3) -> Option<f64> + Clone {
-    // The nearer of z = -distance + |x|.
+    // Returns the nearer intersection with z = -distance + |x|.
     move |start, direction| {
         let to = |side: f64| {
             let normal = DVec3::new(-side, 0.0, 1.0);
@@ -263,8 +265,8 @@ pub fn corner(distance_m: f64) -> impl Fn(DVec3, DVec3) -> Option<f64> + Clone {
     }
 }
 
-/// The corner as a stage of its own: 256 pixels a side, of which the radius of 0.3 m spans some 55, seen by a parallel
-/// projection, so that all pixels of a column are as far from the edge.
+/// Creates a stage with the corner: 256 pixels wide, with a radius of 0.3 m of about 55 pixels. The projection is
+/// parallel, so all pixels of a column have the same distance from the edge.
 ///
 /// # Errors
 /// Never: the camera has a direction.
@@ -273,28 +275,28 @@ pub fn corner_stage(side_px: u32) -> Result<Stage, Box<dyn Error>> {
     Stage::new(projection, [side_px, side_px], corner(3.0))
 }
 
-/// How far each column of [`corner_stage`] is from the edge, along its side, in m; none is beyond `radius_m`.
+/// Returns the columns of [`corner_stage`] within `radius_m` of the edge, with their distance along the plane in m.
 pub fn corner_columns(stage: &Stage, radius_m: f64) -> Vec<(u32, f64)> {
     let scene = corner(3.0);
     let distance = |x| stage.position(x, &scene).map_or(f64::INFINITY, |p| p.x.abs() * std::f64::consts::SQRT_2);
     (0..stage.size_px[0]).map(|x| (x, distance(x))).filter(|(_, d)| *d <= radius_m).collect()
 }
 
-/// The texels of a column, without an eighth at either end.
+/// Returns the texels of a column, without an eighth at either end.
 pub fn column(stage: &Stage, texels: &[f32], x: u32) -> Vec<f64> {
     let [width, height] = stage.size_px;
     let rows = height / 8..height - height / 8;
     rows.map(|y| f64::from(texels[(y * width + x) as usize])).collect()
 }
 
-/// Mean and standard deviation.
+/// Returns mean and standard deviation.
 pub fn mean_and_deviation(values: &[f64]) -> [f64; 2] {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;
     [mean, (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / count).sqrt()]
 }
 
-/// Root mean square of visibility against the truth of the corner within `radius_m`.
+/// Returns the root mean square error of visibility within `radius_m` of the corner.
 pub fn corner_error(stage: &Stage, visibility: &[f32], radius_m: f64) -> f64 {
     let columns = corner_columns(stage, radius_m).into_iter();
     let errors = columns.flat_map(|(x, distance_m)| {

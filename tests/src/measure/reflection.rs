@@ -1,4 +1,4 @@
-//! Reflections of a room on a device: where rays find what mirrors show, against the truth.
+//! Screen-space reflections of a room on a device, compared with exact reflections.
 
 use crate::executors;
 use framegraph::{Extent, Format, Intent, Options, Plan, Scratch, Texture, compile};
@@ -16,8 +16,8 @@ use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 use std::error::Error;
 use truth::reflection::{Lens, Mirrored, Room};
 
-/// What stands in for the radiance of the frame before: its texture coordinates, so that what is reflected says where it was
-/// found; or what no shader should ever make, in the left half.
+/// Replaces the previous frame's radiance with texture coordinates, so that a reflection shows where it was found. The
+/// left half can contain invalid values instead.
 const PAINT: &str = "
     override BROKEN: f32 = 0.0;
     @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
@@ -26,33 +26,33 @@ const PAINT: &str = "
     @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {
         let uv = at.xy / vec2f(WIDTH, HEIGHT);
         if uv.x < 0.5 && BROKEN != 0.0 {
-            // Made at run time: a constant that is no number is refused.
+            // Computed at run time, since constant NaN is rejected.
             return vec4f(bitcast<f32>(u32(BROKEN) << 16u));
         }
         return vec4f(uv, 1.0, 1.0);
     }";
 
-/// The first 16 bits of a float that is no number, and of one that is infinite.
+/// First 16 bits of an f32 that is NaN, infinity and negative infinity.
 pub const BROKEN: [u32; 3] = [0x7fc0, 0x7f80, 0xff80];
 
-/// A room of mirrors before a camera, as a scene and as formulas.
+/// A room of mirrors with a camera, as a scene and as formulas.
 #[derive(Debug)]
 pub struct Stage {
-    /// The formulas.
+    /// Room as formulas.
     pub room: Room,
-    /// The camera.
+    /// Camera as formulas.
     pub lens: Lens,
-    /// Width and height of the picture.
+    /// Width and height of the picture, in pixels.
     pub size_px: [u32; 2],
-    /// From where the frame before was seen.
+    /// Camera of the previous frame.
     pub earlier: Lens,
-    /// The scene.
+    /// The room as a scene.
     pub scene: Scene,
-    /// What kind of projection; that of the lens where it is one.
+    /// Projection of the camera.
     pub projection: Projection,
 }
 
-/// The passes' world: shaders, meshes and a camera.
+/// Data that the passes read: shaders, meshes and a camera.
 struct Parts {
     programs: Programs,
     scene: GpuScene,
@@ -77,29 +77,29 @@ impl AsRef<Views> for Parts {
     }
 }
 
-/// How rays did, of the pixels of one kind of mirror.
+/// Statistics of rays from the pixels of one kind of mirror.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Found {
-    /// Pixels whose mirror shows what the picture shows, away from its border.
+    /// Number of pixels that reflect a visible point, away from the picture's border.
     pub seen: usize,
-    /// Of these, the share in which something was found.
+    /// Share of these pixels with a hit.
     pub hit: f64,
-    /// How far from the truth, in pixels: the median of what was found, and what 95 % stay below.
+    /// Distance from the exact hit in pixels: median and 95th percentile.
     pub off_px: [f64; 2],
-    /// The share of what was found that is off by more than 4 pixels: it is another thing.
+    /// Share of hits that are off by more than 4 pixels, and thus on another object.
     pub elsewhere: f64,
-    /// Pixels whose rays meet nothing within reach.
+    /// Number of pixels whose rays hit nothing within the range.
     pub empty: usize,
-    /// Of these, the share in which something was found.
+    /// Share of these pixels with a hit, which is wrong.
     pub made_up: f64,
-    /// Pixels that show what the picture does not.
+    /// Number of pixels that reflect a point outside of the picture or hidden in it.
     pub unseen: usize,
-    /// Of these, the share in which something was found.
+    /// Share of these pixels with a hit, which is wrong.
     pub mistaken: f64,
 }
 
 impl Stage {
-    /// Three balls over a floor, all of them mirrors.
+    /// Creates three mirror balls over a mirror floor.
     pub fn balls(size_px: [u32; 2]) -> Self {
         let balls = [(-0.9, 0.5, 0.0, 0.4), (0.1, 0.62, -0.5, 0.45), (0.95, 0.45, 0.3, 0.35)];
         let balls = balls.map(|(x, y, z, radius)| (DVec3::new(x, y, z), radius)).to_vec();
@@ -112,7 +112,7 @@ impl Stage {
         Self::new(Room { floor_m: 0.0, balls }, lens, size_px)
     }
 
-    /// A room before a lens.
+    /// Creates a stage from a room and a camera.
     pub fn new(room: Room, lens: Lens, size_px: [u32; 2]) -> Self {
         let mut scene = Scene { name: "room".into(), ..Scene::default() };
         let mirror = scene.add_material(Material { metallic: 1.0, ..Material::dielectric("mirror", Vec3::ONE, 0.0) });
@@ -143,11 +143,12 @@ impl Stage {
         Ok(CameraView::unlit(&PreparedScene::new(&self.scene), &seen))
     }
 
-    /// What the passes make of it in the second frame, where the first one was painted with texture coordinates; `broken` is
-    /// of [`BROKEN`], or 0. Each texel is the coordinates that it found and 1, all times how much that counts, and that.
+    /// Returns the reflections in the second frame, where the first one was filled with texture coordinates. `broken`
+    /// is an element of [`BROKEN`], or 0. Each texel has the coordinates of the hit and 1, multiplied by the weight,
+    /// and the weight.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn reflected(
         &self,
         gpu: &Gpu,
@@ -177,10 +178,10 @@ impl Stage {
         read()
     }
 
-    /// How rays did on the floor and on balls.
+    /// Returns statistics of rays on the floor and on the balls.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn found(
         &self,
         gpu: &Gpu,
@@ -201,10 +202,10 @@ impl Stage {
             let truth = self.room.mirrored(&self.lens, (at + 0.5) / size, reach_m, &self.earlier);
             let Some((_, shown)) = truth.filter(|(place, _)| place.on_floor == floor) else { continue };
             let [u, v, _, counts] = texel.map(f64::from);
-            // A tenth that counts: what is all but faded has few bits left.
+            // Hits with a weight below 0.1 are ignored, since they have few significant bits.
             let met = counts > 0.1;
             match shown {
-                // Near the border and the end of the reach reflections fade.
+                // Reflections fade near the border of the picture and near the end of the range.
                 Mirrored::Seen(uv) if (uv - 0.5).abs().max_element() < 0.4 => {
                     found.seen += 1;
                     if met {
@@ -230,7 +231,7 @@ impl Stage {
     }
 }
 
-/// Declares the pass that paints the history.
+/// Declares the pass that fills the history.
 fn paint(
     frame: &mut Frame<Parts>,
     history: Texture,

@@ -1,4 +1,4 @@
-//! The prefiltered cube, looked up as shaders do, against the lobe integrated over directions.
+//! The prefiltered cube, evaluated as in shaders, compared with integration of the lobe over directions.
 
 use super::averaged_map;
 use crate::lookup::{self, Mapping};
@@ -10,24 +10,24 @@ use glam::DVec3;
 use std::error::Error;
 use truth::lobe::{gathered, gathered_of_disc};
 
-/// An environment in black and white with one feature, and a line of directions across it.
+/// A gray environment with one feature, and a line of directions across it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Feature {
     /// Bright on one side of a plane.
     Edge,
-    /// A bright disc of this angular radius in degrees.
+    /// A bright disc with an angular radius in degrees.
     Disc(f64),
-    /// The same radiance everywhere.
+    /// Uniform radiance.
     Uniform,
 }
 
 impl Feature {
     fn axis() -> DVec3 {
-        // Off the axes of the cube, on one of its faces.
+        // A direction away from the cube's axes, within one of its faces.
         DVec3::new(0.36, 0.48, 0.8)
     }
 
-    /// Radiance from a direction.
+    /// Returns the radiance from a direction.
     pub fn radiance(self, d: DVec3) -> f64 {
         let bright = match self {
             Self::Edge => d.dot(Self::axis()) > 0.0,
@@ -37,7 +37,7 @@ impl Feature {
         f64::from(u8::from(bright))
     }
 
-    /// For tables.
+    /// Returns the name in tables.
     pub fn name(self) -> String {
         match self {
             Self::Edge => "step edge".into(),
@@ -46,7 +46,7 @@ impl Feature {
         }
     }
 
-    /// An odd number of directions across the feature, from its middle outward on both sides.
+    /// Returns an odd number of directions across the feature, from its center outward on both sides.
     fn directions(self, count: i32) -> Vec<DVec3> {
         let axis = Self::axis();
         let aside = axis.cross(DVec3::new(0.6, -0.64, 0.48)).normalize();
@@ -57,10 +57,10 @@ impl Feature {
     }
 }
 
-/// Light of a feature drawn into a panorama of `width` texels, as a cube of this size with this many levels.
+/// Creates the light of a feature from a panorama of `width` texels, as a cube with a given size and number of levels.
 ///
 /// # Errors
-/// When the device refuses or fails.
+/// The device fails.
 pub fn light_of(
     gpu: &Gpu,
     feature: Feature,
@@ -73,19 +73,19 @@ pub fn light_of(
     Ok(ImageLight::new(gpu, &environment, &settings, &Cache::off(), &mut progress::silent)?)
 }
 
-/// How far lookups are off, as shares of the largest value across the feature.
+/// Errors relative to the largest value across the feature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
-    /// The largest difference.
+    /// Largest difference.
     pub worst: f64,
-    /// The root of the mean square over the directions.
+    /// Root mean square over the directions.
     pub rms: f64,
 }
 
-/// Errors of one roughness, at `count` (odd) directions across the feature.
+/// Returns the errors at one roughness, for `count` (odd) directions across the feature.
 ///
 /// # Errors
-/// When the device refuses or fails.
+/// The device fails.
 pub fn errors(
     gpu: &Gpu,
     light: &ImageLight,

@@ -1,4 +1,4 @@
-//! Anti-aliasing over time of painted pictures: a disc that moves before a background, at the places that the jitter asks for.
+//! Temporal anti-aliasing of analytic pictures: a moving disc before a background, sampled with the jitter.
 
 use framegraph::{
     ClearValue, DeclareError, Extent, Format, Intent, Options, Plan, Scratch, Target, Texture, TextureDesc, compile,
@@ -13,7 +13,7 @@ use framegraph_wgpu::{Executor, Frame, Gpu, Imports, Raster, Shader, read_textur
 use glam::{DVec2, DVec3};
 use std::error::Error;
 
-/// A disc of light before stripes; `disc` is its middle and radius in pixels and its light.
+/// Draws a disc before stripes; `disc` has its center and radius in pixels, and its radiance.
 const PAINT: Shader<'static> = Shader::new(
     "paint",
     "struct Painted { disc: vec4f, jitter: vec2f, stripes: vec2f }
@@ -30,17 +30,17 @@ const PAINT: Shader<'static> = Shader::new(
      }",
 );
 
-/// What is painted.
+/// Parameters of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Painted {
-    /// Middle and radius in pixels from the top left, and light.
+    /// Center and radius in pixels from the top left, and radiance.
     pub disc: [f32; 4],
-    /// The background's light, and what every other stripe has in addition.
+    /// Radiance of the background, and the addition of every other stripe.
     pub ground: [f32; 2],
 }
 
 impl Painted {
-    /// The light at a place, in pixels from the top left.
+    /// Returns the radiance at a point, in pixels from the top left.
     pub fn light(&self, place: DVec2) -> f64 {
         let [x, y, radius, light] = self.disc.map(f64::from);
         let stripe = ((place.x + 0.4 * place.y) / 8.0).rem_euclid(1.0) >= 0.5;
@@ -49,7 +49,7 @@ impl Painted {
     }
 }
 
-/// What frames are recorded with.
+/// Data that passes read.
 struct World {
     programs: Programs,
     views: Views,
@@ -68,22 +68,22 @@ impl AsRef<Views> for World {
     }
 }
 
-/// The pass alone, frame after frame.
+/// The temporal pass alone, frame after frame.
 pub struct Stage<'g> {
     gpu: &'g Gpu,
     executor: Executor,
     frame: Frame<World>,
     world: World,
     index: u32,
-    /// Of the frames to come; a frame in which it or what is painted is another is another view.
+    /// Exposure of the following frames. Changing it or the picture changes the view.
     pub exposure: f32,
 }
 
 impl<'g> Stage<'g> {
-    /// Nothing was drawn yet.
+    /// Creates a stage without frames.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn new(gpu: &'g Gpu) -> Result<Self, Box<dyn Error>> {
         let camera = Camera::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, Projection::perspective(1.0, 0.1))?;
         let (size_px, lights) = ([64, 64], LightSearch::default());
@@ -110,10 +110,10 @@ impl<'g> Stage<'g> {
         })
     }
 
-    /// One more frame: what was painted, and what frames came to.
+    /// Draws a frame. Returns the current picture and the accumulated one.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn frame(
         &mut self,
         settings: &TaaSettings,
@@ -139,7 +139,7 @@ impl<'g> Stage<'g> {
             "depth",
             |pass| {
                 let depth = pass.texture("depth", TextureDesc::new(Extent::FRAME, Format::Depth32Float));
-                // A wall two meters away.
+                // A wall at a distance of 2 m.
                 pass.depth(depth, Intent::Clear(ClearValue::DepthStencil(0.05, 0)))
             },
             |_, _, _| Ok(()),
@@ -153,10 +153,10 @@ impl<'g> Stage<'g> {
         self.run([hdr, sum], size_px)
     }
 
-    /// A frame in which something else fills the sum with a number.
+    /// Draws a frame in which another pass fills the accumulated picture with a number.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn spoil(&mut self, number: f32, size_px: [u32; 2]) -> Result<(), Box<dyn Error>> {
         let frame = &mut self.frame;
         frame.reset();
@@ -166,7 +166,7 @@ impl<'g> Stage<'g> {
         self.run([sum, sum], size_px).map(|_| ())
     }
 
-    /// The camera is elsewhere now.
+    /// Marks a camera cut.
     pub fn cut(&mut self) {
         self.executor.reset_history("taa");
     }
@@ -183,7 +183,7 @@ impl<'g> Stage<'g> {
     }
 }
 
-/// The pass that paints.
+/// Declares the pass that draws the picture.
 fn paint(frame: &mut Frame<World>, into: Target, jitter_px: DVec2) -> Result<Texture, DeclareError> {
     let jitter = jitter_px.as_vec2().to_array();
     frame.add_fn(
@@ -206,11 +206,12 @@ fn paint(frame: &mut Frame<World>, into: Target, jitter_px: DVec2) -> Result<Tex
     )
 }
 
-/// Still stripes and a disc after so many frames, against 16×16 places of each pixel: PSNR in dB of encoded light, and the same
-/// of each of the last sixteen frames against their mean, which is how much the picture trembles.
+/// Returns two PSNRs in dB of encoded values, for still stripes and a disc after `frames` frames. The first compares
+/// with 16×16 samples per pixel. The second compares each of the last sixteen frames with their mean, and measures
+/// temporal noise.
 ///
 /// # Errors
-/// What the device refuses.
+/// The device fails.
 pub fn still(gpu: &Gpu, settings: &TaaSettings, frames: u32) -> Result<[f64; 2], Box<dyn Error>> {
     let size_px = [48_u32, 48];
     let painted = Painted { disc: [24.3, 22.8, 14.0, 0.9], ground: [0.05, 0.4] };
@@ -240,12 +241,12 @@ pub fn still(gpu: &Gpu, settings: &TaaSettings, frames: u32) -> Result<[f64; 2],
     Ok([error(end, &truth), trembles].map(|squares| -10.0 * squares.log10()))
 }
 
-/// A disc that crosses the picture, `speed_px` to the right a frame: how far the sum of the last frame is from what may be there,
-/// the least and the most light of the pixel's neighborhood, at pixels that the disc left two frames ago or more. The greatest
-/// of all pixels, and the root of the mean square.
+/// Measures ghosting of a disc that moves right by `speed_px` pixels per frame. At pixels that the disc left at least
+/// two frames ago, the accumulated value is compared with the range of the pixel's neighborhood. Returns the largest
+/// error and the root mean square.
 ///
 /// # Errors
-/// What the device refuses.
+/// The device fails.
 pub fn ghost(gpu: &Gpu, settings: &TaaSettings, ground: [f32; 2], speed_px: f64) -> Result<[f64; 2], Box<dyn Error>> {
     let (size_px, frames, radius) = ([96_u32, 32_u32], 16, 7.0);
     let mut stage = Stage::new(gpu)?;
@@ -277,7 +278,7 @@ pub fn ghost(gpu: &Gpu, settings: &TaaSettings, ground: [f32; 2], speed_px: f64)
     Ok([most, (squares / f64::from(count.max(1))).sqrt()])
 }
 
-/// Choices whose figures are printed.
+/// Settings whose figures are printed.
 const CHOICES: [&str; 12] = [
     "on:feedback=1,filter-input=off",
     "on",
@@ -293,10 +294,10 @@ const CHOICES: [&str; 12] = [
     "on:converge=on,filter-input=off,jitter=halton32",
 ];
 
-/// The table of `docs/taa.md`, a row each, its head first.
+/// Returns the rows of the table in `docs/taa.md`, starting with its head.
 ///
 /// # Errors
-/// What the device refuses.
+/// The device fails.
 pub fn table(gpu: &Gpu) -> Result<Vec<String>, Box<dyn Error>> {
     let mut rows = vec![
         "| `--taa` | still, dB | trembles, dB | ghost on even ground | on stripes, most | RMS |".to_owned(),

@@ -1,40 +1,40 @@
-//! Where the models and the light of a reference are.
+//! Paths of the models and environments of a reference.
 
 use super::document::{Asset, Hashes, Kept, Scene};
 use sha2::{Digest, Sha256};
 use std::path::{Component, Path, PathBuf};
 
-/// A file is not to be had.
+/// A file cannot be used.
 #[derive(thiserror::Error)]
 pub enum AssetError {
-    /// Nobody said where such files are.
-    #[error("{entry}: kept elsewhere; `--assets DIR` says where")]
+    /// The folder of assets is not given.
+    #[error("{entry}: not in the repository; use `--assets DIR`")]
     NoFolder {
-        /// What was asked for.
+        /// Path of the asset.
         entry: PathBuf,
     },
     /// A path leads out of its folder.
     #[error("{entry}: the path leads out of the folder of assets")]
     Outside {
-        /// What was asked for.
+        /// Path of the asset.
         entry: PathBuf,
     },
-    /// The file system said no.
+    /// The file system reported an error.
     #[error("{file}: {error}")]
     File {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// Why.
+        /// Error of the file system.
         error: std::io::Error,
     },
-    /// It is another file.
+    /// The file has another hash.
     #[error("{file}: its SHA-256 is {found}, not {expected}")]
     Hash {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// What it is.
+        /// Actual hash.
         found: String,
-        /// What it should be.
+        /// Expected hash.
         expected: String,
     },
 }
@@ -45,18 +45,18 @@ impl std::fmt::Debug for AssetError {
     }
 }
 
-/// The files that a scene is made of.
+/// Files of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sources {
-    /// Its model.
+    /// Model.
     pub model: PathBuf,
-    /// Its light from all around, where that is in a file.
+    /// Environment, if it is a file.
     pub light: Option<PathBuf>,
 }
 
 impl Sources {
-    /// Those of a statement in `folder`; `assets` is where files are that it names with their hashes. None where it names no
-    /// model.
+    /// Resolves the files of a scene. `folder` has the statement; `assets` has files that are named with hashes.
+    /// Returns `None` if the scene has no model.
     ///
     /// # Errors
     /// [`AssetError`].
@@ -68,7 +68,7 @@ impl Sources {
     }
 }
 
-/// The file of an asset: beside the statement in `folder`, or with the hashes that are stated in `assets` or a folder in it.
+/// Resolves an asset: beside the statement in `folder`, or by its hash in `assets` or a folder within.
 ///
 /// # Errors
 /// [`AssetError`].
@@ -92,13 +92,13 @@ pub fn resolve(asset: &Asset, folder: &Path, assets: Option<&Path>) -> Result<Pa
     Ok(file)
 }
 
-/// A path that stays in its folder.
+/// Returns a path that stays in its folder.
 fn inside(path: &Path) -> Result<&Path, AssetError> {
     let stays = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
     if stays { Ok(path) } else { Err(AssetError::Outside { entry: path.into() }) }
 }
 
-/// `assets`, or the first folder in it that has the entry which it has not itself.
+/// Returns `assets` if it has the entry, otherwise the first folder in it that has the entry.
 fn root_of(entry: &Path, assets: &Path) -> PathBuf {
     let mut folders: Vec<PathBuf> =
         std::fs::read_dir(assets).into_iter().flatten().flatten().map(|f| f.path()).collect();
@@ -144,7 +144,7 @@ mod tests {
         assert!(told(kept("abc", right), None).is_err_and(|e| e.contains("--assets")));
         assert!(told(kept("../abc", right), Some(&folder)).is_err_and(|e| e.contains("out of the folder")));
         assert!(told(kept("abd", right), Some(&folder)).is_err_and(|e| e.contains("abd")));
-        // In a folder of that one, and a hash for each of its files, beside the entry or from the folder.
+        // Files in a subfolder, with a hash for each file. Paths are relative to the entry or to the folder.
         std::fs::create_dir_all(folder.join("kind/model"))?;
         std::fs::write(folder.join("kind/model/abc"), "abc")?;
         std::fs::write(folder.join("kind/model/abc.bin"), "abc")?;

@@ -1,11 +1,11 @@
-//! Bloom as stated, in terms of ours.
+//! Conversion of stated bloom to our settings.
 
 use super::document::{BlendMode, Bloom, BloomQuality as Stated};
 use framegraph_passes::BloomSettings;
 use framegraph_passes::bloom::{Blend, BloomQuality, FlareSettings, Threshold};
 
-/// What is stated, made as Filament makes it on phones if `as_made`, else as on desktops; what is not said is Filament's.
-/// None where it is off.
+/// Converts bloom; missing options have Filament's defaults. If `as_made`, filters are those of Filament's mobile
+/// quality, otherwise those of its desktop quality. Returns `None` if bloom is off.
 pub fn settings(stated: &Bloom, as_made: bool) -> Option<BloomSettings> {
     let (usual, flare) = (BloomSettings::DEFAULT, FlareSettings::DEFAULT);
     let number = |value: Option<f64>, default: f32| value.map_or(default, |x| x as f32);

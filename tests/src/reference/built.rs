@@ -1,19 +1,19 @@
-//! What a statement asks for that is not built, and what is built otherwise than in the program that made the reference.
+//! Features of a statement that are not implemented, or implemented differently from the reference's renderer.
 
 use super::document::{Document, Msaa, ShadowType};
 use super::occlusion;
 use framegraph_passes::shadow::MOST_CASCADES;
 
-/// What stands between a statement and its picture.
+/// Differences between a statement and our renderer.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Gaps {
-    /// Keys that ask for what is not built: the scene cannot be rendered as stated.
+    /// Keys of features that are not implemented; the scene cannot be rendered as stated.
     pub missing: Vec<String>,
-    /// Keys whose effect is built in another way: the scene is rendered, and is expected to be near.
+    /// Keys of features that are implemented differently; the picture is expected to be similar.
     pub otherwise: Vec<String>,
 }
 
-/// Goes through a statement.
+/// Finds the gaps of a statement.
 pub fn gaps(document: &Document) -> Gaps {
     let Document { scene, shadow_type, dithering, .. } = document;
     let (mut missing, mut otherwise) = (Vec::new(), Vec::new());
@@ -63,7 +63,7 @@ pub fn gaps(document: &Document) -> Gaps {
     Gaps { missing, otherwise }
 }
 
-/// Keys that were not read, with their places.
+/// Returns unknown keys with their paths.
 fn unknown(document: &Document) -> Vec<String> {
     let view = &document.scene.view;
     let lights = document.scene.lights.iter().enumerate();
@@ -111,7 +111,7 @@ mod tests {
             let Gaps { missing, .. } = of(&scene);
             assert!(matches!(&missing[..], [one] if one.starts_with(key)), "{scene}: {missing:?}");
         }
-        // What weighs less is rendered in our way, and said.
+        // Minor differences are rendered and reported.
         for (scene, told) in [
             (
                 format!(r#"{linear}, "view": {{"ao": {{"enabled": true, "resolution": 0.25, "noise": 1}}}}"#),

@@ -6,22 +6,22 @@ use std::path::{Path, PathBuf};
 /// A table cannot be read.
 #[derive(thiserror::Error)]
 pub enum ChartError {
-    /// The file system said no.
+    /// The file system reported an error.
     #[error("{file}: {error}")]
     File {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// Why.
+        /// Error of the file system.
         error: std::io::Error,
     },
-    /// A line is wrong.
+    /// A line is invalid.
     #[error("{file}: line {line}: {reason}")]
     Line {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// From 1.
+        /// Line number, from 1.
         line: usize,
-        /// What is wrong.
+        /// Description of the problem.
         reason: String,
     },
 }
@@ -34,7 +34,7 @@ impl std::fmt::Debug for ChartError {
 
 const HEAD: &str = "row,col,in_r,in_g,in_b,out_r,out_g,out_b";
 
-/// Reads a table; `codes` says that the outputs are codes of 255, and not light.
+/// Reads a table; if `codes`, outputs are 8-bit values, otherwise linear light.
 ///
 /// # Errors
 /// [`ChartError`].
@@ -47,21 +47,23 @@ fn parse(text: &str, codes: bool) -> Result<Vec<Patch>, (usize, String)> {
     let mut lines = text.lines().enumerate();
     match lines.next() {
         Some((_, head)) if head.trim() == HEAD => {}
-        _ => return Err((1, format!("the head is not {HEAD}"))),
+        _ => return Err((1, format!("the head must be {HEAD}"))),
     }
     let mut rows: Vec<([u32; 2], [f64; 3])> = Vec::new();
     for (index, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
         let wrong = |reason: &str| (index + 1, reason.to_owned());
         let cells: Vec<&str> = line.split(',').map(str::trim).collect();
-        let &[row, col, .., r, g, b] = cells.as_slice() else { return Err(wrong("there are not eight cells")) };
+        let &[row, col, .., r, g, b] = cells.as_slice() else { return Err(wrong("a row needs eight cells")) };
         if cells.len() != 8 {
-            return Err(wrong("there are not eight cells"));
+            return Err(wrong("a row needs eight cells"));
         }
         let place = |cell: &str| cell.parse::<u32>().ok().filter(|n| *n < 1 << 16);
         let number = |cell: &str| cell.parse::<f64>().ok().filter(|n| n.is_finite());
-        let (Some(row), Some(col)) = (place(row), place(col)) else { return Err(wrong("a place is no small number")) };
+        let (Some(row), Some(col)) = (place(row), place(col)) else {
+            return Err(wrong("row and column need small integers"));
+        };
         let (Some(r), Some(g), Some(b)) = (number(r), number(g), number(b)) else {
-            return Err(wrong("an output is no number"));
+            return Err(wrong("an output is not a number"));
         };
         rows.push(([col, row], [r, g, b]));
     }

@@ -1,11 +1,11 @@
-//! Color grading of statements in our terms.
+//! Conversion of stated color grading to our settings.
 
 use super::document::{ColorGrading, GradingFormat, GradingQuality, ToneMapping, Vignette};
 use framegraph_passes::grading::{GradeBy, Look, TableDesc, TableFormat};
 use framegraph_shaders::layout::{EdgeFade, Grading, ToneMap};
 use glam::{Vec3, Vec4};
 
-/// What a statement says of color; what it does not say is as Filament has it.
+/// Converts color grading; missing options have Filament's defaults.
 pub fn look(stated: &ColorGrading) -> Look {
     let usual = Grading::NEUTRAL;
     let number = |value: Option<f64>, default: f32| value.map_or(default, |x| x as f32);
@@ -52,7 +52,7 @@ pub fn look(stated: &ColorGrading) -> Look {
     }
 }
 
-/// The table that the maker looked colors up in.
+/// Returns the size and format of the reference's color table.
 pub fn by(stated: &ColorGrading) -> GradeBy {
     let (entries, format) = match stated.quality.unwrap_or(GradingQuality::Medium) {
         GradingQuality::Low => (16, TableFormat::Rgb10),
@@ -68,7 +68,7 @@ pub fn by(stated: &ColorGrading) -> GradeBy {
     GradeBy::Table(TableDesc { entries, format })
 }
 
-/// How the picture fades toward its edges, if it does.
+/// Converts a vignette; `None` if it is off.
 pub fn edge_fade(stated: &Vignette) -> Option<EdgeFade> {
     let usual = EdgeFade::DEFAULT;
     let number = |value: Option<f64>, default: f32| value.map_or(default, |x| x as f32);
@@ -81,7 +81,7 @@ pub fn edge_fade(stated: &Vignette) -> Option<EdgeFade> {
     })
 }
 
-/// A number that no picture can be made with, by its key.
+/// Returns the key of the first invalid number.
 pub fn wrong(stated: &ColorGrading) -> Option<&'static str> {
     let finite = |numbers: &[f64]| numbers.iter().all(|x| x.is_finite() && x.abs() <= 1e6);
     let g = stated;

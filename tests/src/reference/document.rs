@@ -1,8 +1,8 @@
-//! What states a reference: a JSON file with a scene, how its picture was made, and when another is close enough.
+//! Statement of a reference: a JSON file with a scene, the conditions of its picture, and the tolerance.
 //!
-//! A key of the scene that the schema does not know is an error that names it, since the picture may depend on it. An option
-//! of an effect that is not known, or a key beside the scene, is kept by name, for the report to say that it was not read.
-//! Facts about the making of the reference are known by name.
+//! An unknown key of the scene is an error, since the picture may depend on it. Unknown options of an effect, and
+//! unknown keys outside the scene, are reported as ignored. Keys with facts about the reference's production are known
+//! and ignored.
 
 mod occlusion;
 mod scene;
@@ -26,30 +26,30 @@ use std::path::{Path, PathBuf};
 /// A reference cannot be read.
 #[derive(thiserror::Error)]
 pub enum DocumentError {
-    /// The file system said no.
+    /// The file system reported an error.
     #[error("{file}: {error}")]
     File {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// Why.
+        /// Error of the file system.
         error: std::io::Error,
     },
-    /// It is no JSON.
+    /// Invalid JSON.
     #[error("{file}: {error}")]
     Json {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// Why, with the line.
+        /// Parse error with the line.
         error: serde_json::Error,
     },
-    /// A key is missing, unknown, or holds something else than it should.
+    /// A key is missing, unknown, or has an invalid value.
     #[error("{file}: {key}: {reason}")]
     Key {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// Where, such as `scene.view.ao`.
+        /// Path of the key, such as `scene.view.ao`.
         key: String,
-        /// What is wrong.
+        /// Description of the problem.
         reason: String,
     },
 }
@@ -63,27 +63,27 @@ impl std::fmt::Debug for DocumentError {
 /// A reference, as its file states it.
 #[derive(Clone, Debug)]
 pub struct Document {
-    /// Its name.
+    /// Identifier.
     pub id: String,
-    /// What it shows, in words.
+    /// Description of the picture.
     pub what: String,
-    /// What to render.
+    /// Scene to render.
     pub scene: Scene,
-    /// Codes were dithered.
+    /// True if the picture was dithered.
     pub dithering: bool,
-    /// How shadows were filtered; none where there are none.
+    /// Filter of shadow maps; `None` without shadows.
     pub shadow_type: Option<ShadowType>,
-    /// Pictures and tables beside the file.
+    /// Pictures and tables of the reference.
     pub files: Files,
-    /// Centers of the spheres of the scene, in meters.
+    /// Centers of the scene's spheres, in m.
     pub spheres: Vec<[f64; 3]>,
-    /// When a picture is close enough, in the words that [`rule`](super::rule) knows.
+    /// Tolerance, in the syntax of [`rule`](super::rule).
     pub suggested_pass: Option<String>,
-    /// Keys beside the scene that are neither of the schema nor facts about the making.
+    /// Unknown keys outside the scene.
     pub unknown: Vec<String>,
 }
 
-/// Facts about how a reference was made; further ones begin as [`MADE_PREFIXES`] say.
+/// Keys with facts about the reference's production; [`MADE_PREFIXES`] has the prefixes of further ones.
 const MADE: [&str; 4] = ["oracle", "conventions", "brdf", "camera_matrices"];
 const MADE_PREFIXES: [&str; 7] =
     ["note", "measured_", "second_oracle", "known_wrong", "internal_", "gltf_", "render_ms"];
@@ -98,7 +98,7 @@ impl Document {
         Self::parse(file, &text)
     }
 
-    /// Reads a text; `file` names it in errors.
+    /// Parses a text; `file` names it in errors.
     ///
     /// # Errors
     /// [`DocumentError`].
@@ -129,7 +129,7 @@ impl Document {
     }
 }
 
-/// The centers of all spheres among objects, which are a list, or a map by name, of objects or of further lists.
+/// Returns the centers of all spheres among objects: a list, or a map by name, of objects or nested lists.
 fn spheres(file: &Path, objects: &Value) -> Result<Vec<[f64; 3]>, DocumentError> {
     match objects {
         Value::Array(all) => Ok(all.iter().map(|one| spheres(file, one)).collect::<Result<Vec<_>, _>>()?.concat()),
@@ -143,7 +143,7 @@ fn spheres(file: &Path, objects: &Value) -> Result<Vec<[f64; 3]>, DocumentError>
     }
 }
 
-/// A value with its place in errors.
+/// Deserializes a value; `key` is its path in errors.
 fn read<T: DeserializeOwned>(file: &Path, key: &str, value: Value) -> Result<T, DocumentError> {
     serde_path_to_error::deserialize(value).map_err(|error| {
         let within = error.path().to_string();
@@ -152,29 +152,29 @@ fn read<T: DeserializeOwned>(file: &Path, key: &str, value: Value) -> Result<T, 
     })
 }
 
-/// Files beside the statement.
+/// Files of a reference, relative to the statement.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Files {
-    /// Light.
+    /// Picture of linear light.
     pub exr: Option<PathBuf>,
-    /// Codes; beside light only a preview.
+    /// 8-bit picture; only a preview if there is a picture of linear light.
     pub png: Option<PathBuf>,
     /// Patches of a chart.
     pub csv: Option<PathBuf>,
 }
 
-/// How a shadow map is filtered.
+/// Filter of a shadow map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum ShadowType {
-    /// A tent of 3×3 texels.
+    /// Percentage-closer filtering with a 3×3 tent.
     Pcf,
-    /// Variance.
+    /// Variance shadow map.
     Vsm,
-    /// A penumbra that grows with distance.
+    /// Percentage-closer soft shadows with Filament's `DPCF`: the penumbra grows with distance.
     Dpcf,
-    /// The same, with a search for blockers.
+    /// Percentage-closer soft shadows with a blocker search.
     Pcss,
 }
 
@@ -217,8 +217,8 @@ mod tests {
         Ok(())
     }
 
-    /// What stands in other statements of the same maker: options that are not known, objects by name, a hash for each file,
-    /// nothing where there is none.
+    /// Variations in other statements of the same source: unknown options, objects by name, a hash per file, null
+    /// values.
     #[test]
     fn forms_of_lesser_weight_are_read_too() -> Result<(), DocumentError> {
         let mut text = PLAIN.to_owned();

@@ -1,4 +1,4 @@
-//! One reference: rendered, compared, judged.
+//! Examination of one reference: rendering, comparison and verdict.
 
 use super::asset::{AssetError, Sources};
 use super::built::{Gaps, gaps};
@@ -17,48 +17,48 @@ use std::path::{Path, PathBuf};
 /// A reference cannot be examined.
 #[derive(thiserror::Error)]
 pub enum ExamineError {
-    /// Its statement is wrong.
+    /// The statement is invalid.
     #[error(transparent)]
     Document(#[from] DocumentError),
-    /// Its model or its light is not to be had.
+    /// A model or environment is not available.
     #[error("{file}: {error}")]
     Asset {
-        /// The statement.
+        /// Path of the statement.
         file: PathBuf,
-        /// Why.
+        /// Reason.
         error: AssetError,
     },
-    /// Its picture cannot be read.
+    /// The picture cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// Its chart cannot be read.
+    /// The chart cannot be read.
     #[error(transparent)]
     Chart(#[from] ChartError),
-    /// It cannot be rendered.
+    /// The scene cannot be rendered.
     #[error("{file}: {reason}")]
     Render {
-        /// The statement.
+        /// Path of the statement.
         file: PathBuf,
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// A picture cannot be written.
     #[error(transparent)]
     Write(#[from] OutputError),
-    /// Its picture has another size.
+    /// The picture has another size.
     #[error("{file}: files: the picture is {}×{}, and scene.resolution {}×{}", found[0], found[1], stated[0], stated[1])]
     Size {
-        /// The statement.
+        /// Path of the statement.
         file: PathBuf,
-        /// The picture's.
+        /// Size of the picture, in pixels.
         found: [u32; 2],
-        /// The statement's.
+        /// Size in the statement, in pixels.
         stated: [u32; 2],
     },
-    /// There is nothing to compare with.
+    /// The statement has neither a picture nor a chart.
     #[error("{file}: files: neither exr nor png nor csv")]
     Nothing {
-        /// The statement.
+        /// Path of the statement.
         file: PathBuf,
     },
 }
@@ -69,71 +69,71 @@ impl std::fmt::Debug for ExamineError {
     }
 }
 
-/// Whether a picture is close enough.
+/// Verdict on a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Its rule holds.
+    /// All clauses of the rule hold.
     Passed,
-    /// Parts of its rule do not hold: these.
+    /// Some clauses do not hold.
     Failed(Vec<String>),
-    /// Only soft parts of its rule do not hold: these.
+    /// Only soft clauses do not hold.
     Missed(Vec<String>),
-    /// There is no rule, or one that is not understood.
+    /// There is no rule, or its syntax is unknown.
     Unjudged(String),
-    /// The statement asks for what is not built: these keys.
+    /// The statement uses features that are not implemented: their keys.
     Skipped(Vec<String>),
 }
 
-/// What became of a reference.
+/// Result for a reference.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Its name.
+    /// Identifier of the reference.
     pub id: String,
-    /// Whether it is close enough.
+    /// Verdict.
     pub verdict: Verdict,
-    /// How close its picture is, where it has one.
+    /// Metrics of the picture, if there is one.
     pub metrics: Option<Metrics>,
-    /// How close its chart is, where it has one.
+    /// Metrics of the chart, if there is one.
     pub chart: Option<ChartNumbers>,
-    /// What is built otherwise than in the program that made it.
+    /// Keys of features that are implemented differently.
     pub otherwise: Vec<String>,
-    /// Whether the rule refuses our picture made brighter by a tenth, where it passed.
+    /// Negative control of a passed rule: true if the rule rejects our picture with radiance multiplied by 1.1.
     pub control: Option<bool>,
-    /// What we rendered.
+    /// Rendered picture.
     pub picture: Option<Picture>,
 }
 
-/// How close a chart is.
+/// Metrics of a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChartNumbers {
-    /// Patches.
+    /// Number of patches.
     pub count: usize,
-    /// Share of patches that are off by at most 2 codes, 0…1.
+    /// Share of patches that differ by at most 2 8-bit steps, 0…1.
     pub within_2: f64,
-    /// Codes that the worst is off by.
+    /// Largest difference, in 8-bit steps.
     pub worst_codes: f64,
-    /// Relative error of the worst, where the chart is of light.
+    /// Largest relative error, if the chart has linear light.
     pub worst_relative: Option<f64>,
 }
 
-/// How references are examined.
+/// Options for examining references.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct How<'a> {
-    /// How surfaces are shaded.
+    /// Shading quality.
     pub shade: Shade,
-    /// Models that are kept elsewhere.
+    /// Folder of assets.
     pub assets: Option<&'a Path>,
-    /// Where rendered pictures and differences go.
+    /// Output folder of rendered pictures and differences.
     pub out: Option<&'a Path>,
 }
 
-/// The factor on light that every rule must notice.
+/// Factor on radiance that every rule must detect.
 const CONTROL: f32 = 1.1;
 
 /// Reads the statement `file`, renders it, compares, and judges.
 ///
 /// # Errors
-/// [`ExamineError`]; a picture that is too far off is none.
+/// [`ExamineError`]; a picture outside the tolerance is not an error.
 pub fn examine(gpu: &Gpu, file: &Path, how: How<'_>) -> Result<Outcome, ExamineError> {
     let document = Document::read(file)?;
     let Gaps { missing, otherwise } = gaps(&document);
@@ -158,7 +158,7 @@ pub fn examine(gpu: &Gpu, file: &Path, how: How<'_>) -> Result<Outcome, ExamineE
     let compared = reference.compare(&picture);
     let (verdict, control) = match rule {
         None => (Verdict::Unjudged("no rule is stated".into()), None),
-        Some(Err(part)) => (Verdict::Unjudged(format!("the rule is not understood: {part}")), None),
+        Some(Err(part)) => (Verdict::Unjudged(format!("unknown rule: {part}")), None),
         Some(Ok(Rule { clauses, soft, .. })) => {
             let failures = reference.failures(&clauses, &picture, compared.as_ref());
             let missed = reference.failures(&soft, &picture, compared.as_ref());
@@ -167,7 +167,7 @@ pub fn examine(gpu: &Gpu, file: &Path, how: How<'_>) -> Result<Outcome, ExamineE
             } else if !missed.is_empty() {
                 (Verdict::Missed(missed), None)
             } else {
-                // What is soft may well be too soft to notice.
+                // Soft clauses may be too weak to detect the control.
                 let noticed = (!clauses.is_empty()).then(|| reference.notices(&clauses, &picture.brighter(CONTROL)));
                 (Verdict::Passed, noticed)
             }
@@ -180,21 +180,21 @@ pub fn examine(gpu: &Gpu, file: &Path, how: How<'_>) -> Result<Outcome, ExamineE
 /// Renders a statement that was read from `file`.
 ///
 /// # Errors
-/// What its model or the device has against it.
+/// An invalid model, or a failure of the device.
 pub fn render(gpu: &Gpu, document: &Document, file: &Path, how: How<'_>) -> Result<Picture, ExamineError> {
     let folder = file.parent().unwrap_or(Path::new(""));
     let fails = |reason: String| ExamineError::Render { file: file.into(), reason };
     let sources = Sources::of(&document.scene, folder, how.assets);
     let sources = sources.map_err(|error| ExamineError::Asset { file: file.into(), error })?;
-    let sources = sources.ok_or_else(|| fails("scene.assets: there is none".into()))?;
+    let sources = sources.ok_or_else(|| fails("scene.assets: no model".into()))?;
     studio::render(gpu, document, &sources, how.shade).map_err(|error| fails(error.to_string()))
 }
 
-/// How far the same scene moves between the two qualities: the high one's picture against the low one's. None where the
-/// statement asks for what is not built.
+/// Compares the picture at high quality with the one at low quality. Returns `None` if the statement uses features that
+/// are not implemented.
 ///
 /// # Errors
-/// As [`examine`].
+/// The errors of [`examine`].
 pub fn between_qualities(gpu: &Gpu, file: &Path, how: How<'_>) -> Result<Option<(String, Metrics)>, ExamineError> {
     let document = Document::read(file)?;
     if !gaps(&document).missing.is_empty() {
@@ -205,10 +205,10 @@ pub fn between_qualities(gpu: &Gpu, file: &Path, how: How<'_>) -> Result<Option<
     Ok(Metrics::of(&high?, &low?).map(|metrics| (document.id, metrics)))
 }
 
-/// What there is to compare with.
+/// Picture or chart to compare with.
 struct Reference {
     picture: Option<Picture>,
-    /// The picture is of codes.
+    /// True if the picture has 8-bit values.
     codes: bool,
     patches: Vec<Patch>,
     centres: Vec<[f64; 2]>,
@@ -237,7 +237,7 @@ impl Reference {
         self.picture.as_ref().and_then(|reference| Metrics::of(&self.comparable(ours), reference))
     }
 
-    /// Light that is compared with codes is clamped as they are.
+    /// Clamps linear light before comparing it with 8-bit values.
     fn comparable<'a>(&self, ours: &'a Picture) -> Cow<'a, Picture> {
         if self.codes { Cow::Owned(ours.clamped()) } else { Cow::Borrowed(ours) }
     }
@@ -252,7 +252,7 @@ impl Reference {
         failures
     }
 
-    /// Whether some clause refuses a picture. FLIP, which takes by far the longest, is asked only when all else agrees.
+    /// Returns true if a clause rejects a picture. FLIP is by far the slowest metric and is evaluated last.
     fn notices(&self, clauses: &[Clause], wrong: &Picture) -> bool {
         let is_flip = |clause: &Clause| matches!(clause, Clause::AtMost(Number::Flip, _));
         let quick: Vec<Clause> = clauses.iter().copied().filter(|clause| !is_flip(clause)).collect();
@@ -279,9 +279,9 @@ impl Reference {
     }
 }
 
-/// `ID.png`, `ID.exr` where it is light, and `ID.difference.png`.
+/// Writes `ID.png`, `ID.exr` for linear light, and `ID.difference.png`.
 fn write(picture: &Picture, document: &Document, reference: Option<&Picture>, out: &Path) -> Result<(), OutputError> {
-    // An id may hold anything; a file's name may not.
+    // Identifiers may have characters that are invalid in file names.
     let name: String =
         document.id.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
     picture.write_png(&out.join(format!("{name}.png")))?;

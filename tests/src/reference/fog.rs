@@ -1,13 +1,14 @@
-//! Fog as stated, in terms of ours.
+//! Conversion of stated fog to our settings.
 
 use super::document::{Fog, Scene};
 use framegraph_passes::FogSettings;
 use framegraph_passes::fog::{FogColor, FogGlow};
 
-/// Filament's brightness of an environment that there is none of: its fog's color is a factor on that.
+/// Filament's default brightness of the environment, a factor on the fog's color.
 const NO_ENVIRONMENT: f64 = 30_000.0;
 
-/// What is stated; what is not is Filament's. Where nothing is, Filament draws no sky, and so no fog before it.
+/// Converts fog; missing options have Filament's defaults. Returns `None` without an environment, since Filament then
+/// draws no sky and no fog in front of it.
 pub fn settings(stated: &Fog, scene: &Scene) -> Option<FogSettings> {
     let usual = FogSettings::DEFAULT;
     let number = |value: Option<f64>, default: f32| value.map_or(default, |x| x as f32);

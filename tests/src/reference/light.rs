@@ -1,4 +1,4 @@
-//! Light from all around as stated.
+//! Conversion of stated image-based light.
 
 use super::document::Ibl;
 use framegraph_scene::environment::{FilteredLight, Sh};
@@ -7,11 +7,11 @@ use glam::DVec3;
 use std::error::Error;
 use std::path::Path;
 
-/// What is stated, from `file` where it names one; black where nothing is. Harmonics that say otherwise than the cube stand
-/// for themselves, as in the program that made the reference.
+/// Returns the environment, from `file` if the statement names one; black by default. Stated harmonics override those
+/// of the cube, as in Filament.
 ///
 /// # Errors
-/// What the statement or the file has wrong.
+/// An invalid statement or file.
 pub fn around(stated: Option<&Ibl>, file: Option<&Path>) -> Result<Environment, Box<dyn Error>> {
     let Some(ibl) = stated else { return Ok(Environment::uniform(DVec3::ZERO)?) };
     let harmonics = ibl.sh.as_deref().map(harmonics).transpose()?;
@@ -20,7 +20,7 @@ pub fn around(stated: Option<&Ibl>, file: Option<&Path>) -> Result<Environment, 
         None => Environment::uniform(ibl.uniform_cube.map_or(DVec3::ZERO, DVec3::from_array))?,
     };
     if file.is_some() && environment.filtered.is_none() {
-        return Err(format!("scene.ibl.ktx1: {} has no irradiance (`sh`) or no level but one", environment.name).into());
+        return Err(format!("scene.ibl.ktx1: {} has no irradiance (`sh`) or only one level", environment.name).into());
     }
     let Some(factors) = harmonics else { return Ok(environment) };
     let sh = Sh::from_irradiance_over_pi(factors);
@@ -35,10 +35,10 @@ pub fn around(stated: Option<&Ibl>, file: Option<&Path>) -> Result<Environment, 
     Ok(environment)
 }
 
-/// Nine colors, of which those that are not given are zero.
+/// Returns nine colors; missing ones are zero.
 fn harmonics(numbers: &[f64]) -> Result<[[f32; 3]; 9], String> {
     if !matches!(numbers.len(), 3 | 12 | 27) || numbers.iter().any(|number| !number.is_finite()) {
-        return Err("scene.ibl.sh: 3, 12 or 27 finite numbers are needed: one, two or three bands of colors".into());
+        return Err("scene.ibl.sh: needs 3, 12 or 27 finite numbers: one, two or three bands of colors".into());
     }
     let mut factors = [[0.0; 3]; 9];
     factors.as_flattened_mut().iter_mut().zip(numbers).for_each(|(factor, number)| *factor = *number as f32);

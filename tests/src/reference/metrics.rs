@@ -1,25 +1,26 @@
-//! How far a picture is from its reference.
+//! Metrics of a picture compared with its reference.
 
 use super::picture::Picture;
 use truth::flip::{PIXELS_PER_DEGREE, flip};
 
-/// The numbers of a comparison.
+/// Metrics of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metrics {
-    /// Peak signal-to-noise ratio of the clamped, sRGB-encoded pictures in dB, over all channels; infinite for equal ones.
+    /// Peak signal-to-noise ratio of the clamped, sRGB-encoded pictures in dB, over all channels; infinite for equal
+    /// ones.
     pub psnr_db: f64,
-    /// Mean FLIP at 67 pixels a degree, 0…1.
+    /// Mean FLIP error at 67 pixels per degree, 0…1.
     pub flip: f64,
-    /// Share of pixels with a channel that is off by more than 2 codes of 255, 0…1.
+    /// Share of pixels with a channel that differs by more than 2 8-bit steps, 0…1.
     pub off_2: f64,
-    /// The same of 8 codes.
+    /// Share of pixels with a channel that differs by more than 8 8-bit steps, 0…1.
     pub off_8: f64,
     /// |a − b| / (|b| + 0.01) of linear light, b being the reference: median, 95th and 99th percentile of all channels.
     pub relative: [f64; 3],
 }
 
 impl Metrics {
-    /// Compares `ours` with `reference`; none when their sizes differ.
+    /// Compares `ours` with `reference`; `None` if their sizes differ.
     pub fn of(ours: &Picture, reference: &Picture) -> Option<Self> {
         let others = Self::without_flip(ours, reference)?;
         let differences = flip(&ours.encoded, &reference.encoded, ours.size_px, PIXELS_PER_DEGREE);
@@ -27,7 +28,7 @@ impl Metrics {
         Some(Self { flip, ..others })
     }
 
-    /// All but FLIP, which is NaN.
+    /// Compares with all metrics but FLIP, which is NaN.
     pub fn without_flip(ours: &Picture, reference: &Picture) -> Option<Self> {
         if ours.size_px != reference.size_px || ours.encoded.is_empty() {
             return None;
@@ -37,7 +38,7 @@ impl Metrics {
             let apart: [f64; 3] = std::array::from_fn(|c| f64::from(a[c]) - f64::from(b[c]));
             squares += apart.iter().map(|d| d * d).sum::<f64>();
             let worst = apart.iter().fold(0.0_f64, |worst, d| worst.max(d.abs())) * 255.0;
-            // A difference of exactly so many codes is not more than that, whatever rounding makes of it.
+            // The tolerance keeps differences of exactly 2 steps from counting after rounding.
             off_2 += u64::from(worst > 2.0 + 1e-4);
             off_8 += u64::from(worst > 8.0 + 1e-4);
         }
@@ -51,7 +52,7 @@ impl Metrics {
 fn relative(ours: &Picture, reference: &Picture) -> [f64; 3] {
     let pairs = ours.linear.as_flattened().iter().zip(reference.linear.as_flattened());
     let mut errors: Vec<f64> = pairs.map(|(a, b)| relative_error((*a).into(), (*b).into())).collect();
-    // What is not finite is as far off as can be.
+    // Values that are not finite count as infinitely wrong.
     errors.iter_mut().filter(|e| !e.is_finite()).for_each(|e| *e = f64::INFINITY);
     [0.5, 0.95, 0.99].map(|share| {
         let at = ((errors.len() - 1) as f64 * share).round() as usize;

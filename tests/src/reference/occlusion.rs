@@ -1,11 +1,11 @@
-//! Ambient occlusion as stated, in terms of ours.
+//! Conversion of stated ambient occlusion to our settings.
 
 use super::document::{self, Ao, AoQuality, AoType, Ssct};
 use framegraph_passes::occlusion::{Blur, ConeTrace, Gtao, Method, Occluders, OcclusionSettings, SaoQuality};
 use framegraph_passes::structure::Resolution;
 
-/// What is stated, made as Filament makes it if `as_made`, else as we do: a tap where its depth was found, and normals from
-/// the nearer texels. None where it is off.
+/// Converts ambient occlusion; `None` if it is off. If `as_made`, details match Filament. Otherwise they are ours:
+/// samples at the position of their depth, and normals from the nearer neighbors.
 pub fn settings(ao: &Ao, as_made: bool) -> Option<OcclusionSettings> {
     let quality = match ao.quality.unwrap_or_default() {
         AoQuality::Low => SaoQuality::Low,
@@ -56,7 +56,7 @@ fn cone(stated: &Ssct) -> ConeTrace {
     }
 }
 
-/// As stated; what is not said is Filament's, or ours unless it is to be as made.
+/// Converts GTAO; missing options have Filament's defaults if `as_made`, otherwise ours.
 fn gtao(stated: &document::Gtao, as_made: bool) -> Gtao {
     let own = if as_made { Gtao::FILAMENT } else { Gtao::DEFAULT };
     Gtao {
@@ -71,7 +71,7 @@ fn gtao(stated: &document::Gtao, as_made: bool) -> Gtao {
     }
 }
 
-/// Keys of `scene.view.ao` that are built otherwise, and how.
+/// Returns keys of `scene.view.ao` that are implemented differently, with explanations.
 pub fn otherwise(ao: &Ao) -> Vec<[&'static str; 2]> {
     let asked = [
         (ao.resolution.is_some_and(|share| share != 1.0 && share != 0.5), ["resolution", "half"]),

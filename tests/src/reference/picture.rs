@@ -1,40 +1,40 @@
-//! Pictures to compare, as light and as display codes.
+//! Pictures to compare, as linear light and as display values.
 
 use framegraph_scene::picture::{PictureError, encode_exr, encode_png, read_rgba8};
 use program::outputs::{OutputError, Outputs};
 use std::path::{Path, PathBuf};
 
-/// A picture in both of the forms that metrics want.
+/// A picture in the two forms that metrics use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Width and height.
+    /// Width and height, in pixels.
     pub size_px: [u32; 2],
-    /// Linear Rec.709, rows from the top. Of a picture of codes: what they stand for.
+    /// Linear Rec.709, rows from the top; decoded if the picture is 8-bit.
     pub linear: Vec<[f32; 3]>,
-    /// Clamped to 0…1 and sRGB encoded. Of a picture of codes: the codes over 255.
+    /// Values clamped to 0…1 and sRGB encoded; divided by 255 if the picture is 8-bit.
     pub encoded: Vec<[f32; 3]>,
 }
 
 /// A picture cannot be read.
 #[derive(thiserror::Error)]
 pub enum ReadError {
-    /// The file system or the decoder said no.
+    /// The file system or the decoder reported an error.
     #[error(transparent)]
     Picture(#[from] PictureError),
-    /// The decoder of floating point said no.
+    /// The decoder of floating-point pictures reported an error.
     #[error("{path}: {error}")]
     Decode {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Error of the decoder.
         error: image::ImageError,
     },
-    /// A reference must be numbers.
+    /// A reference has values that are not finite.
     #[error("{path}: {count} texels are not finite")]
     NotFinite {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// How many.
+        /// Number of such values.
         count: usize,
     },
 }
@@ -46,13 +46,13 @@ impl std::fmt::Debug for ReadError {
 }
 
 impl Picture {
-    /// From light, rows from the top.
+    /// Creates a picture from linear light, rows from the top.
     pub fn from_linear(size_px: [u32; 2], linear: Vec<[f32; 3]>) -> Self {
         let encoded = linear.iter().map(|rgb| rgb.map(encode)).collect();
         Self { size_px, linear, encoded }
     }
 
-    /// From sRGB codes, four bytes a texel.
+    /// Creates a picture from sRGB values, four bytes per pixel.
     pub fn from_codes(size_px: [u32; 2], rgba8: &[u8]) -> Self {
         let codes = rgba8.chunks_exact(4);
         let encoded: Vec<[f32; 3]> = codes.map(|t| [t[0], t[1], t[2]].map(|c| f32::from(c) / 255.0)).collect();
@@ -60,10 +60,10 @@ impl Picture {
         Self { size_px, linear, encoded }
     }
 
-    /// Reads an OpenEXR picture of light (`.exr`) or a picture of codes (any other ending).
+    /// Reads an OpenEXR picture of linear light (`.exr`) or an 8-bit picture (any other extension).
     ///
     /// # Errors
-    /// When the file is missing, cannot be decoded, or holds light that is not finite.
+    /// The file is missing, cannot be decoded, or has values that are not finite.
     pub fn read(path: &Path) -> Result<Self, ReadError> {
         if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("exr")) {
             let (size_px, rgba8) = read_rgba8(path)?;
@@ -77,31 +77,31 @@ impl Picture {
         if count > 0 { Err(ReadError::NotFinite { path: path.into(), count }) } else { Ok(picture) }
     }
 
-    /// Texels with a channel that is not finite.
+    /// Returns the number of pixels with a channel that is not finite.
     pub fn not_finite(&self) -> usize {
         self.linear.iter().filter(|rgb| rgb.iter().any(|c| !c.is_finite())).count()
     }
 
-    /// The texel that shows a point of the picture, x and y in 0…1 from the top left.
+    /// Returns the index of the pixel at a point, x and y in 0…1 from the top left.
     pub fn at(&self, [x, y]: [f64; 2]) -> usize {
         let place = |t: f64, side: u32| ((t * f64::from(side)) as usize).min(side as usize - 1);
         place(y, self.size_px[1]) * self.size_px[0] as usize + place(x, self.size_px[0])
     }
 
-    /// The picture without what codes cannot say: light clamped to 0…1.
+    /// Returns the picture with light clamped to 0…1.
     #[must_use]
     pub fn clamped(&self) -> Self {
         let linear = self.linear.iter().map(|rgb| rgb.map(|c| c.clamp(0.0, 1.0))).collect();
         Self { linear, ..self.clone() }
     }
 
-    /// The picture with its light multiplied: a control that comparisons must notice.
+    /// Multiplies the light by a factor, as a negative control.
     #[must_use]
     pub fn brighter(&self, factor: f32) -> Self {
         Self::from_linear(self.size_px, self.linear.iter().map(|rgb| rgb.map(|c| c * factor)).collect())
     }
 
-    /// Writes the codes as PNG.
+    /// Writes the display values as PNG.
     ///
     /// # Errors
     /// [`OutputError`], with the path.
@@ -113,10 +113,10 @@ impl Picture {
         outputs.commit().map(drop)
     }
 
-    /// Writes the light as OpenEXR.
+    /// Writes the linear light as OpenEXR.
     ///
     /// # Errors
-    /// As [`Picture::write_png`].
+    /// [`OutputError`], with the path.
     pub fn write_exr(&self, path: &Path) -> Result<(), OutputError> {
         let rgba: Vec<[f32; 4]> = self.linear.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();
         let mut outputs = Outputs::default();
@@ -124,7 +124,7 @@ impl Picture {
         outputs.commit().map(drop)
     }
 
-    /// How far apart two pictures of one size are, as a picture: differences of codes, eight times as large, on black.
+    /// Returns the difference of two pictures of equal size: absolute 8-bit differences times eight.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Self {
         let apart = |(a, b): (&[f32; 3], &[f32; 3])| -> [f32; 3] {
@@ -136,7 +136,7 @@ impl Picture {
     }
 }
 
-/// IEC 61966-2-1, clamped; NaN is black.
+/// Encodes and clamps a value by IEC 61966-2-1; NaN becomes black.
 fn encode(linear: f32) -> f32 {
     let c = if linear > 0.0 { f64::from(linear.min(1.0)) } else { 0.0 };
     let encoded = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };

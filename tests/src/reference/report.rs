@@ -1,10 +1,10 @@
-//! Outcomes as a table and as JSON.
+//! Results as a table and as JSON.
 
 use super::examine::{ChartNumbers, Outcome, Verdict};
 use super::metrics::Metrics;
 use serde_json::{Value, json};
 
-/// One line for each reference, then what is to be said of single ones.
+/// Returns one line per reference, then notes on some of them.
 pub fn table(outcomes: &[Outcome]) -> String {
     let head = ["reference", "verdict", "PSNR dB", "FLIP", "> 2 codes", "> 8 codes", "rel. p50", "p95", "p99"];
     let mut rows = vec![head.map(String::from)];
@@ -37,7 +37,7 @@ pub fn table(outcomes: &[Outcome]) -> String {
     text
 }
 
-/// How far scenes move between two ways of rendering them, a line each.
+/// Returns the differences of scenes between two ways of rendering, one line each.
 pub fn distances(rows: &[(String, Metrics)], what: &str) -> String {
     let head = ["scene", what, "PSNR dB", "FLIP", "> 2 codes", "> 8 codes", "rel. p50", "p95", "p99"];
     let row = |(id, metrics): &(String, Metrics)| {
@@ -48,7 +48,7 @@ pub fn distances(rows: &[(String, Metrics)], what: &str) -> String {
     aligned(&[head.map(String::from)].into_iter().chain(rows.iter().map(row)).collect::<Vec<_>>())
 }
 
-/// PSNR, FLIP, shares in percent, relative errors.
+/// Formats PSNR, FLIP, shares in percent, and relative errors.
 pub fn cells(metrics: Metrics) -> [String; 7] {
     let Metrics { psnr_db, flip, off_2, off_8, relative: [p50, p95, p99] } = metrics;
     [
@@ -62,7 +62,7 @@ pub fn cells(metrics: Metrics) -> [String; 7] {
     ]
 }
 
-/// Columns side by side, under the first row as head: the first two to the left, numbers to the right.
+/// Aligns columns, with the first row as the head. The first two are left-aligned, numbers right-aligned.
 pub fn aligned<const N: usize>(rows: &[[String; N]]) -> String {
     let widths: [usize; N] =
         std::array::from_fn(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
@@ -78,7 +78,7 @@ pub fn aligned<const N: usize>(rows: &[[String; N]]) -> String {
     head.iter().map(row).chain([rule]).chain(body.iter().map(row)).collect()
 }
 
-/// The verdict in a word.
+/// Returns the verdict as a word.
 pub const fn word(verdict: &Verdict) -> &'static str {
     match verdict {
         Verdict::Passed => "pass",
@@ -89,11 +89,11 @@ pub const fn word(verdict: &Verdict) -> &'static str {
     }
 }
 
-/// Version of what [`json()`] writes; `docs/references.md` has its schema.
+/// Version of the output of [`json()`]; `docs/references.md` has its schema.
 pub const JSON_VERSION: u32 = 1;
 
-/// The same as JSON, those references last that could not be examined, with the reason. What is infinite is the string
-/// `inf`.
+/// Returns the results as JSON. References that could not be examined follow with the reason. Infinite values are the
+/// string `inf`.
 pub fn json(outcomes: &[Outcome], errors: &[String]) -> String {
     let number = |n: f64| if n.is_finite() { json!(n) } else { json!("inf") };
     let one = |outcome: &Outcome| {

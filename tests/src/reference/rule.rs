@@ -1,19 +1,19 @@
-//! When a picture is close enough: the rules that references state in words.
+//! Tolerances of references: rules stated in words.
 
 use super::metrics::{Metrics, relative_error};
 use super::picture::Picture;
 use std::path::PathBuf;
 
-/// One number of a comparison.
+/// Metric of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Number {
-    /// Peak signal-to-noise ratio in dB.
+    /// Peak signal-to-noise ratio, in dB.
     Psnr,
-    /// Mean FLIP.
+    /// Mean FLIP error.
     Flip,
-    /// Share of pixels off by more than 2 codes.
+    /// Share of pixels that differ by more than 2 8-bit steps.
     Off2,
-    /// Share of pixels off by more than 8 codes.
+    /// Share of pixels that differ by more than 8 8-bit steps.
     Off8,
     /// Median of the relative error.
     Relative50,
@@ -48,38 +48,38 @@ impl Number {
     }
 }
 
-/// A rule that is understood.
+/// A parsed rule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
-    /// The picture is not that of the scene, but this one, beside the statement, after the edge filter alone.
+    /// If given, this picture beside the statement is filtered by FXAA and judged, instead of a rendered scene.
     pub filtered: Option<PathBuf>,
-    /// All of these must hold.
+    /// Clauses that must hold.
     pub clauses: Vec<Clause>,
-    /// These should: what does not hold is told, and is no failure.
+    /// Clauses that should hold; violations are reported and do not fail.
     pub soft: Vec<Clause>,
 }
 
-/// One part of a rule.
+/// Clause of a rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clause {
-    /// The number is at least so much.
+    /// The metric is at least this value.
     AtLeast(Number, f64),
-    /// The number is at most so much.
+    /// The metric is at most this value.
     AtMost(Number, f64),
-    /// Every channel of the texel at the center of every sphere.
+    /// Limits each channel of the pixel at the center of every sphere.
     Centres {
-        /// What it is.
+        /// Expected value, linear light.
         light: f64,
-        /// How far it may be off.
+        /// Maximum difference.
         within: f64,
     },
-    /// The middle of every patch of the chart, in codes.
+    /// Limits the center of every patch of the chart.
     Patches {
-        /// So many codes off …
+        /// Maximum difference of most patches, in 8-bit steps.
         codes: f64,
-        /// … in at least this share of the patches, 0…1,
+        /// Minimum share of patches within this difference, 0…1.
         share: f64,
-        /// and so many in all; infinity where nothing is said of all.
+        /// Maximum difference of any patch, in 8-bit steps; infinity if not limited.
         worst: f64,
     },
 }
@@ -87,32 +87,32 @@ pub enum Clause {
 /// A patch of a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
-    /// Where its middle is, x and y in 0…1 from the top left.
+    /// Center of the patch, x and y in 0…1 from the top left.
     pub at: [f64; 2],
-    /// What the reference shows there, in codes of 255 or linear light.
+    /// Color of the reference, as 8-bit values or linear light.
     pub expected: [f64; 3],
-    /// Whether these are codes.
+    /// True if the color has 8-bit values.
     pub codes: bool,
 }
 
-/// What clauses look at.
+/// Data that clauses evaluate.
 #[derive(Clone, Copy, Debug)]
 pub struct Evidence<'a> {
-    /// Our picture.
+    /// Rendered picture.
     pub picture: &'a Picture,
-    /// Its distance from the reference, where that is a picture.
+    /// Metrics of the picture, if the reference is a picture.
     pub metrics: Option<&'a Metrics>,
-    /// Patches of the reference, where it is a chart.
+    /// Patches of the reference, if it is a chart.
     pub patches: &'a [Patch],
-    /// Where the centers of spheres are seen, x and y in 0…1 from the top left.
+    /// Centers of spheres in the picture, x and y in 0…1 from the top left.
     pub centres: &'a [[f64; 2]],
 }
 
-/// Reads a rule: clauses separated by commas, semicolons or `and`, after `apply FXAA to FILE:` where it is about that; those
-/// after `SOFT:` are soft. What stands in brackets explains.
+/// Parses a rule: clauses separated by commas, semicolons or `and`, after an optional `apply FXAA to FILE:`. Clauses
+/// after `SOFT:` are soft. Text in parentheses is ignored.
 ///
 /// # Errors
-/// The part that is not understood.
+/// The first part that is not understood.
 pub fn parse(text: &str) -> Result<Rule, String> {
     let plain = without_brackets(text).replace('≥', ">=").replace('≤', "<=").replace('±', "+-");
     let (filtered, plain) = match plain.trim_start().strip_prefix("apply FXAA to ").and_then(|p| p.split_once(": ")) {
@@ -124,7 +124,7 @@ pub fn parse(text: &str) -> Result<Rule, String> {
     if clauses.is_empty() && soft.is_empty() { Err(text.to_owned()) } else { Ok(Rule { filtered, clauses, soft }) }
 }
 
-/// The clauses of a text. One that begins with `<=` says of all patches what the one before it said of most.
+/// Parses clauses. A clause that starts with `<=` limits all patches, after one that limits most.
 fn clauses(text: &str) -> Result<Vec<Clause>, String> {
     let mut found: Vec<Clause> = Vec::new();
     let parts = text.split([',', ';']).flat_map(|part| part.split(" and "));
@@ -138,7 +138,7 @@ fn clauses(text: &str) -> Result<Vec<Clause>, String> {
     Ok(found)
 }
 
-/// `<=6/255 everywhere`.
+/// Parses `<=6/255 everywhere`.
 fn everywhere(part: &str) -> Option<f64> {
     number(part.strip_prefix("<=")?.strip_suffix("everywhere")?.trim_end().strip_suffix("/255")?)
 }
@@ -184,7 +184,7 @@ fn number(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|n: &f64| n.is_finite())
 }
 
-/// What is wrong with a picture, a line for each clause that does not hold; empty when all hold.
+/// Returns one line for each clause that does not hold.
 pub fn failures(clauses: &[Clause], evidence: Evidence<'_>) -> Vec<String> {
     clauses.iter().filter_map(|clause| failure(*clause, evidence)).collect()
 }
@@ -232,12 +232,12 @@ fn told(value: Option<f64>) -> String {
     value.map_or("unknown".into(), |v| format!("{v:.4}"))
 }
 
-/// The larger; NaN, which is worse than anything, stays.
+/// Returns the larger number, or NaN if one is NaN.
 fn worse(a: f64, b: f64) -> f64 {
     if b > a || b.is_nan() { b } else { a }
 }
 
-/// By how many codes of 255 the middle of a patch is off; light is encoded first.
+/// Returns the difference at the center of a patch in 8-bit steps; linear light is encoded first.
 pub fn codes_off(picture: &Picture, patch: &Patch) -> f64 {
     let at = picture.at(patch.at);
     let reference = if patch.codes {
@@ -248,7 +248,7 @@ pub fn codes_off(picture: &Picture, patch: &Patch) -> f64 {
     (0..3).map(|c| (f64::from(picture.encoded[at][c]) * 255.0 - reference[c]).abs()).fold(0.0, worse)
 }
 
-/// The relative error of the worst channel of a patch of light.
+/// Returns the largest relative error of a patch's channels, in linear light.
 pub fn patch_relative(picture: &Picture, patch: &Patch) -> f64 {
     let at = picture.at(patch.at);
     (0..3).map(|c| relative_error(picture.linear[at][c].into(), patch.expected[c])).fold(0.0, worse)

@@ -1,4 +1,4 @@
-//! From a statement to a picture: the standard frame on the adapter that there is.
+//! Rendering of a statement by the standard frame on the default adapter.
 
 use super::asset::Sources;
 use super::bloom;
@@ -33,28 +33,28 @@ use framegraph_wgpu::{Gpu, Imports, Pixels, read_texture};
 use glam::{DVec3, DVec4, Vec3};
 use std::error::Error;
 
-/// Texels across a shadow map where a statement does not say: Filament's number.
+/// Filament's default size of shadow maps, in texels.
 const SHADOW_MAP_TEXELS: u32 = 1024;
-/// The brightest light that is accepted: sums stay finite in f32.
+/// Maximum accepted illuminance in lux, so that sums stay finite in f32.
 const MOST_LUX: f64 = 1e10;
 
-/// Frames until reflections, which show the frame before, show each other.
+/// Number of frames until multiple reflections converge, since reflections show the previous frame.
 const FRAMES_WITH_HISTORY: u32 = 4;
 
-/// How surfaces are shaded.
+/// Shading quality.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shade {
-    /// Filament's low quality with gltfio's materials, as the references were made. It differs from our low quality in the
-    /// table, which is that of the exact term. Ambient occlusion does not darken reflections, and a base under a clear coat
-    /// keeps its reflectance. Rough glass blurs by an angle. Punctual lights have Filament's range window and fade to 100 m.
+    /// Filament's low quality with gltfio's materials, as in the references. Unlike our low quality, it uses the DFG
+    /// table of the exact term. Ambient occlusion does not darken reflections, and a base under a clear coat keeps its
+    /// reflectance. Rough glass blurs by an angle. Punctual lights have Filament's range window and fade to 100 m.
     #[default]
     Maker,
-    /// By one of our presets.
+    /// A preset of this project.
     Preset(Quality),
 }
 
 impl Shade {
-    /// `maker`, or the name of a preset.
+    /// Parses `maker` or the name of a preset.
     pub fn from_name(name: &str) -> Option<Self> {
         if name == "maker" { Some(Self::Maker) } else { Quality::from_name(name).map(Self::Preset) }
     }
@@ -75,15 +75,15 @@ impl Shade {
     }
 }
 
-/// Renders what `document` states, of the files of `sources`, shaded as `shade` says.
+/// Renders a statement with its files and a shading quality.
 ///
 /// # Errors
-/// What the statement or the model has wrong, or the device refuses.
+/// An invalid statement or model, or a failure of the device.
 pub fn render(gpu: &Gpu, document: &Document, sources: &Sources, shade: Shade) -> Result<Picture, Box<dyn Error>> {
     let stated = &document.scene;
     let linear = stated.output == Output::Linear;
     if let Some(key) = stated.view.color_grading.as_ref().and_then(color::wrong) {
-        return Err(format!("scene.view.color_grading.{key}: finite numbers up to a million are needed").into());
+        return Err(format!("scene.view.color_grading.{key}: needs finite numbers up to a million").into());
     }
     let wanted = |handles: &Handles| handles.get(if linear { Slot::HDR } else { Slot::PICTURE });
     let pixels = rendered(gpu, document, sources, settings(document, shade), wanted)?;
@@ -94,10 +94,11 @@ pub fn render(gpu: &Gpu, document: &Document, sources: &Sources, shade: Shade) -
     })
 }
 
-/// Ambient occlusion of what `document` states, made as `occlusion` says: visibility, rows from the top, with its size.
+/// Renders the ambient occlusion of a statement with other settings. Returns visibility, rows from the top, and the
+/// size.
 ///
 /// # Errors
-/// As [`render`].
+/// The errors of [`render`].
 pub fn visibility(
     gpu: &Gpu,
     document: &Document,
@@ -108,11 +109,11 @@ pub fn visibility(
     rendered(gpu, document, sources, settings, |handles| handles.get(Slot::OCCLUSION))
 }
 
-/// Radiance times exposure of what `document` states, with other ambient occlusion than it states, of reflections too as our
-/// presets have it.
+/// Renders a statement with other ambient occlusion, which also affects reflections as in our presets. Returns radiance
+/// times exposure.
 ///
 /// # Errors
-/// As [`render`].
+/// The errors of [`render`].
 pub fn radiance(
     gpu: &Gpu,
     document: &Document,
@@ -125,7 +126,7 @@ pub fn radiance(
     Ok(Picture::from_linear(pixels.texels, pixels.rgba().into_iter().map(|[r, g, b, _]| [r, g, b]).collect()))
 }
 
-/// The texture that is `wanted` of the frame of a statement.
+/// Renders a statement and returns the texture that `wanted` selects.
 fn rendered(
     gpu: &Gpu,
     document: &Document,
@@ -168,7 +169,7 @@ fn rendered(
     Ok(read_texture(gpu, texture)?)
 }
 
-/// The same radiance from everywhere needs no fine cube; the table is what matters.
+/// Uniform light needs only a small cube; the DFG table determines the result.
 fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<Lighting, Box<dyn Error>> {
     let settings = LightSettings {
         image: IblSettings { cube_texels: 64, ..IblSettings::default() },
@@ -177,21 +178,21 @@ fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<L
     Ok(Lighting::new(gpu, environment, &settings, &light_cache(), &mut progress::silent)?)
 }
 
-/// How `shade` says, with the filter of normals that is stated.
+/// Returns the shading settings of `shade`, with the stated specular anti-aliasing.
 fn shading(document: &Document, shade: Shade) -> Shading {
     let [variance, threshold] = document.scene.specular_aa.map(|x| x as f32);
     let specular_aa = (variance > 0.0 && threshold > 0.0).then_some(SpecularAa { variance, threshold });
     Shading { specular_aa, ..shade.shading() }
 }
 
-/// Light from all around with the sun in it; further lights go into the scene.
+/// Creates the environment with the sun; other lights are added to the scene.
 fn surroundings(document: &Document, sources: &Sources, scene: &mut Scene) -> Result<Environment, Box<dyn Error>> {
     let stated = &document.scene;
     if stated.clear_color.iter().any(|c| !(0.0..=MOST_LUX).contains(c)) {
-        return Err("scene.clear_color: four channels from 0 to 1e10 are needed".into());
+        return Err("scene.clear_color: needs four channels from 0 to 1e10".into());
     }
     if stated.specular_aa.iter().any(|x| !(0.0..=1.0).contains(x)) {
-        return Err("scene.specular_aa: a variance and a threshold from 0 to 1 are needed".into());
+        return Err("scene.specular_aa: needs a variance and a threshold from 0 to 1".into());
     }
     let mut environment = around(stated.ibl.as_ref(), sources.light.as_deref())?;
     let sun = stated.lights.iter().position(|light| light.cast_shadows).unwrap_or(0);
@@ -217,12 +218,12 @@ fn surroundings(document: &Document, sources: &Sources, scene: &mut Scene) -> Re
     Ok(environment)
 }
 
-/// The camera, exposure and shadow map of a statement.
+/// Returns the camera, exposure and shadow map of a statement.
 fn view_settings(document: &Document) -> Result<ViewSettings, Box<dyn Error>> {
     let stated = &document.scene;
     let ev100 = (1.0 / (1.2 * stated.exposure.direct)).log2() as f32;
     if !(stated.exposure.direct > 0.0 && (EV100_RANGE.0..=EV100_RANGE.1).contains(&ev100)) {
-        return Err(format!("scene.exposure.direct: {} is beyond what is exposed", stated.exposure.direct).into());
+        return Err(format!("scene.exposure.direct: {} is out of range", stated.exposure.direct).into());
     }
     Ok(ViewSettings {
         camera: camera(document)?,
@@ -236,7 +237,7 @@ fn view_settings(document: &Document) -> Result<ViewSettings, Box<dyn Error>> {
     })
 }
 
-/// A parallel camera looks through the middle of its window, whatever its eye.
+/// An orthographic camera looks through the center of its window, regardless of the eye.
 fn camera(document: &Document) -> Result<Camera, String> {
     let stated = &document.scene.camera;
     let missing = |key: &str, needed: &str| format!("scene.camera.{key}: {needed} is needed");
@@ -275,10 +276,10 @@ fn camera(document: &Document) -> Result<Camera, String> {
     Ok(camera)
 }
 
-/// Where points of the scene are seen, x and y in 0…1 from the top left.
+/// Returns the positions of points in the picture, x and y in 0…1 from the top left.
 ///
 /// # Errors
-/// What the camera has wrong.
+/// An invalid camera.
 pub fn seen_at(document: &Document, points: &[[f64; 3]]) -> Result<Vec<[f64; 2]>, String> {
     let camera = camera(document)?;
     let [width, height] = document.scene.resolution.map(f64::from);
@@ -290,7 +291,7 @@ pub fn seen_at(document: &Document, points: &[[f64; 3]]) -> Result<Vec<[f64; 2]>
     Ok(points.iter().map(place).collect())
 }
 
-/// How the statement's light casts shadows, if one does; what it does not say is as Filament has it.
+/// Returns the shadow settings of the light that casts shadows, if any; missing options have Filament's defaults.
 fn shadows(document: &Document) -> Option<ShadowSettings> {
     let light = document.scene.lights.iter().find(|light| light.cast_shadows)?;
     let options = &light.shadow_options;
@@ -362,10 +363,10 @@ fn settings(document: &Document, shade: Shade) -> Settings {
     }
 }
 
-/// A finished picture after our edge filter alone: what rules ask for that start from another program's picture.
+/// Applies our FXAA to a finished picture, for rules that start from another program's picture.
 ///
 /// # Errors
-/// What the device refuses.
+/// The device fails.
 pub fn antialiased(gpu: &Gpu, picture: &Picture) -> Result<Picture, Box<dyn Error>> {
     let codes = filtered(gpu, &with_luma(picture), picture.size_px, |frame, ldr| {
         let filter = Fxaa { ldr, into: Target::New, settings: FxaaUniforms::default() };
@@ -374,7 +375,7 @@ pub fn antialiased(gpu: &Gpu, picture: &Picture) -> Result<Picture, Box<dyn Erro
     Ok(Picture::from_codes(picture.size_px, &codes))
 }
 
-/// Codes with the luma of the encoded color in alpha, as the filter reads them (Rec.709).
+/// Returns 8-bit colors with the luma of the encoded color (Rec.709) in alpha, as FXAA reads it.
 fn with_luma(picture: &Picture) -> Vec<u8> {
     let code = |c: f32| (c * 255.0).round() as u8;
     let texel = |[r, g, b]: &[f32; 3]| [*r, *g, *b, 0.2126 * r + 0.7152 * g + 0.0722 * b].map(code);

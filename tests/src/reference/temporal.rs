@@ -1,12 +1,12 @@
-//! Anti-aliasing over time, from Filament's terms into ours.
+//! Conversion of stated temporal anti-aliasing to our settings.
 
 use super::document::{Taa, TaaBox, TaaClipping, TaaJitter};
 use framegraph_passes::taa::{Clipping, ColorBox, JitterPattern, TaaSettings};
 
-/// Frames that the maker of the references added up.
+/// Number of frames that the references accumulate.
 pub const FRAMES: u32 = 24;
 
-/// What a statement asks for; what it does not say is as Filament has it.
+/// Converts temporal anti-aliasing; missing options have Filament's defaults.
 pub fn settings(stated: &Taa) -> TaaSettings {
     let own = TaaSettings::DEFAULT;
     let number = |value: Option<f64>, default: f32| value.map_or(default, |value| value as f32);

@@ -1,4 +1,4 @@
-//! The lab's document is that of its record, and its program says what is wrong with what it is asked.
+//! The committed documents match their records, and `accuracy` reports invalid options.
 
 use crate::stage::gpu;
 use framegraph_passes::budget::Measured;
@@ -28,7 +28,7 @@ fn the_document_is_that_of_its_record() {
     let mut record = record();
     assert_eq!(DOCUMENT, document(&record), "renew it: cargo run -p tests --bin accuracy -- --out docs --document");
     assert!(record.techniques.len() >= 24, "{} techniques", record.techniques.len());
-    // What a newcomer asks: taps, error, time, and who has them.
+    // The most common question: samples, error, time, and presets.
     assert!(DOCUMENT.contains("What does ambient occlusion with 7 taps cost against 16? **7 taps"), "it is answered");
     let taps = record.techniques.iter().find(|t| t.name == "ao-taps").expect("taps of ambient occlusion");
     let of = |count: &str| taps.choices.iter().find(|c| c.name.starts_with(count)).expect("so many taps");
@@ -37,7 +37,7 @@ fn the_document_is_that_of_its_record() {
     assert_ne!(DOCUMENT, document(&record), "another error is another document");
 }
 
-/// The record of a GPU has its document beside it. Techniques that were added since it was made are missing in it.
+/// The record of a GPU has its own document, with the same techniques.
 #[test]
 fn the_document_of_a_gpu_is_that_of_its_record() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/nvidia-h200");
@@ -50,7 +50,7 @@ fn the_document_of_a_gpu_is_that_of_its_record() {
     assert!(own.techniques.iter().all(|technique| known.iter().any(|other| other.name == technique.name)));
 }
 
-/// What presets have is what the committed record chooses, and another record chooses otherwise.
+/// The presets match the choice from the committed record, and another record leads to another choice.
 #[test]
 fn presets_are_those_of_the_record() {
     let mut measured = record().budget.expect("docs/accuracy.json has what frames are chosen from");
@@ -64,8 +64,7 @@ fn presets_are_those_of_the_record() {
     assert_ne!(CHOSEN, source(&measured).expect("options that there are"), "samples that cost nothing are taken");
 }
 
-/// Chosen sets of the record are within a hundred budgets, and no swap of one option within the budget errs less, as far as
-/// the record knows.
+/// Chosen sets meet a hundred budgets. By the record, no change of one option within the budget reduces the error.
 #[test]
 fn chosen_sets_fit_their_budgets() {
     let measured = record().budget.expect("docs/accuracy.json has what frames are chosen from");
@@ -88,11 +87,11 @@ fn chosen_sets_fit_their_budgets() {
     }
 }
 
-/// The short form of `accuracy --verify`: frames that are chosen within budgets are drawn, and so is every swap of one option
-/// that fits. Times are those of the record, so that nothing depends on how busy the machine is.
+/// Short form of `accuracy --verify`: draws the frames chosen for budgets, and every change of one option that fits.
+/// Times are taken from the record, so that the result does not depend on the machine's load.
 #[test]
-fn no_swap_of_a_chosen_frame_errs_less() -> Result<(), Box<dyn std::error::Error>> {
-    let Some(gpu) = gpu("no_swap_of_a_chosen_frame_errs_less") else { return Ok(()) };
+fn no_change_of_a_chosen_frame_has_less_error() -> Result<(), Box<dyn std::error::Error>> {
+    let Some(gpu) = gpu("no_change_of_a_chosen_frame_has_less_error") else { return Ok(()) };
     let record = record();
     let mut measured = record.budget.clone().ok_or("docs/accuracy.json has what frames are chosen from")?;
     let studio = Studio::new(&gpu, record.size_px, Rounds::QUICK);
@@ -102,7 +101,7 @@ fn no_swap_of_a_chosen_frame_errs_less() -> Result<(), Box<dyn std::error::Error
     };
     let found = verified(&mut bench, &measured)?;
     assert!(found.within == found.budgets && found.swaps > 10 && found.better.is_empty(), "{found:?}");
-    // A record that takes frames without ambient occlusion and shadows for the finest chooses them, which is noticed.
+    // Negative control: a record whose best frames have no ambient occlusion and shadows.
     let worthless =
         measured.groups.iter_mut().filter(|group| ["occlusion", "sun-shadows", "edges"].contains(&&*group.name));
     for group in worthless {
@@ -116,11 +115,11 @@ fn no_swap_of_a_chosen_frame_errs_less() -> Result<(), Box<dyn std::error::Error
 }
 
 #[test]
-fn wrong_questions_are_told() {
+fn invalid_options_are_reported() {
     for (args, words) in [
         (&["--technique"][..], "missing argument"),
-        (&["--budget-ms", "-1"], "no number from 0 on"),
-        (&["--scene", "sepia"], "there is no such built-in scene"),
+        (&["--budget-ms", "-1"], "not a number of at least 0"),
+        (&["--scene", "sepia"], "unknown built-in scene"),
         (&["--frobnicate"], "--frobnicate"),
         (&["--document", "--out", "nowhere"], "nowhere/accuracy.json"),
     ] {

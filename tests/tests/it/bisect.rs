@@ -1,4 +1,4 @@
-//! Faulty passes are found by the mode that takes away what they rely on, and by no other.
+//! Each kind of faulty pass is found by the debug mode that removes what it relies on, and by no other.
 
 use crate::stage::gpu;
 use framegraph::{
@@ -39,7 +39,7 @@ fn fill(cx: &mut Cx<'_>, vertex: &str, red: f32) -> Result<(), RecordError> {
     Ok(())
 }
 
-/// The picture `out` of what `declare` declares, under a mode.
+/// Returns the picture `out` of the declared frame under a debug mode.
 fn picture(
     gpu: &Gpu,
     declare: &impl Fn(&mut Frame) -> Result<Texture, DeclareError>,
@@ -58,7 +58,7 @@ fn picture(
     Ok(read_texture(gpu, texture)?.rgba8())
 }
 
-/// The rows of the bisection in which the picture is another one.
+/// Returns the names of the debug modes that change the picture.
 fn found(
     gpu: &Gpu,
     declare: impl Fn(&mut Frame) -> Result<Texture, DeclareError>,
@@ -91,8 +91,8 @@ const SHOW: Shader<'static> = Shader::new(
      }",
 );
 
-/// A pass that overwrites a buffer, and one that shows it; with `faulty`, the first writes half of what it promises, and
-/// counts on zeros in the rest. Where there are zeros on this device, no other mode shows that.
+/// Declares a pass that overwrites a buffer, and one that displays it. If `faulty`, the first pass writes only half and
+/// relies on zeros in the rest. On devices that clear memory, only poisoning shows this.
 fn promised(frame: &mut Frame, faulty: bool) -> Result<Texture, DeclareError> {
     let sums = frame.graph_mut().buffer("sums", 64);
     let entry = if faulty { "half" } else { "all" };
@@ -125,16 +125,16 @@ fn promised(frame: &mut Frame, faulty: bool) -> Result<Texture, DeclareError> {
 }
 
 #[test]
-fn a_read_of_what_nobody_wrote_is_found_by_poison() -> Result<(), Failure> {
-    let Some(gpu) = gpu("a_read_of_what_nobody_wrote_is_found_by_poison") else { return Ok(()) };
+fn an_uninitialized_read_is_found_by_poison() -> Result<(), Failure> {
+    let Some(gpu) = gpu("an_uninitialized_read_is_found_by_poison") else { return Ok(()) };
     assert_eq!(found(&gpu, |f| promised(f, true))?, ["poison"]);
-    // The control: a sound frame looks the same under every mode.
+    // Negative control: a correct frame looks the same under every mode.
     assert!(found(&gpu, |f| promised(f, false))?.is_empty());
     Ok(())
 }
 
-/// A target that is declared as overwritten and covered by half. What is in the rest is the driver's affair: it may
-/// change from run to run, or stay, but it is never what poison puts there.
+/// A target that is declared as overwritten but only half covered. The rest is undefined and may vary, but never equals
+/// the poison value.
 #[test]
 fn a_target_that_is_not_covered_is_found_by_poison() -> Result<(), Failure> {
     let Some(gpu) = gpu("a_target_that_is_not_covered_is_found_by_poison") else { return Ok(()) };
@@ -149,8 +149,8 @@ fn a_target_that_is_not_covered_is_found_by_poison() -> Result<(), Failure> {
     Ok(())
 }
 
-/// `late` and `early` share a step if `other` comes after both; with `faulty`, a counter behind the graph's back tells
-/// `late` how many passes were recorded before it.
+/// `late` and `early` share a step if `other` follows both. If `faulty`, a counter outside the graph tells `late` how
+/// many passes were recorded before it.
 fn ordered(frame: &mut Frame, faulty: bool) -> Result<Texture, DeclareError> {
     let graph = frame.graph_mut();
     let (out, other) = (graph.texture("out", DESC), graph.texture("other", DESC));
@@ -190,7 +190,7 @@ fn ordered(frame: &mut Frame, faulty: bool) -> Result<Texture, DeclareError> {
 fn an_order_that_was_not_declared_is_found_by_immediate() -> Result<(), Failure> {
     let Some(gpu) = gpu("an_order_that_was_not_declared_is_found_by_immediate") else { return Ok(()) };
     let modes = found(&gpu, |f| ordered(f, true))?;
-    // Without merging there is no reason to bring the two together, so that shows it too.
+    // Without merging, there is no reason to reorder the two passes, so this mode shows the fault too.
     assert_eq!(modes, ["no-merge", "immediate"]);
     assert!(found(&gpu, |f| ordered(f, false))?.is_empty());
     Ok(())

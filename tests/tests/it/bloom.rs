@@ -1,4 +1,4 @@
-//! Bloom and lens flare: against sums on the CPU, what they may add, and what a frame with them loads and stores.
+//! Bloom and lens flare: compared with a CPU implementation; energy; loads and stores of frames with them.
 
 pub mod stage;
 mod truth;
@@ -42,8 +42,8 @@ fn parts(gpu: &Gpu) -> Result<Parts, Box<dyn Error>> {
     Ok(Parts { views: Views::new(gpu, [CameraView::empty(&moment)])?, ..Parts::default() })
 }
 
-/// Dim noise with a bright bar, a brighter dot and a firefly.
-fn lamps() -> Image {
+/// Returns dim noise with a bright bar, a brighter dot and a very bright pixel.
+fn bright_spots() -> Image {
     let image = Image::from_fn(SIZE, |x, y| {
         let noise = f64::from((x * 37 + y * 101 + x * y * 13) % 64) / 64.0;
         let dim = DVec3::new(noise, 1.2 * noise, 0.5);
@@ -57,7 +57,7 @@ fn lamps() -> Image {
     image.rounded()
 }
 
-/// What the stage hands on of a picture.
+/// Declares the bloom stage for a picture, and returns its outputs.
 fn handed(frame: &mut Frame<Parts>, hdr: Texture, settings: &BloomSettings) -> Result<Handles, StageError> {
     let mut handles = Handles::default().with(Slot::HDR, hdr);
     bloom(frame, &mut handles, settings, SIZE)?;
@@ -81,21 +81,21 @@ const FLARE: FlareSettings = FlareSettings {
     ..FlareSettings::DEFAULT
 };
 
-/// Filters of the device have weights of eight bits, and each of up to seven levels is a half float: 1 % of the brightest. A
-/// kernel that is left out, or another one, is off by several.
+/// Device filters have 8-bit weights, and each of up to seven levels is stored as half floats: 1 % of the brightest
+/// value. A missing or wrong kernel differs by several percent.
 const BOUND: f64 = 0.01;
 
 #[test]
 fn bloom_is_the_sum_that_its_sources_state() -> TestResult {
     let Some(gpu) = gpu("bloom_is_the_sum_that_its_sources_state") else { return Ok(()) };
-    let (parts, image) = (parts(&gpu)?, lamps());
+    let (parts, image) = (parts(&gpu)?, bright_spots());
     let mut worst = 0.0_f64;
     for settings in [
         USUAL,
         BloomSettings { narrow: true, threshold: Threshold::Hard, threshold_at: 3.0, highlight: 20.0, ..USUAL },
         BloomSettings { threshold: Threshold::None, levels: 3, multiple_px: 16, ..USUAL },
         BloomSettings { quality: BloomQuality::Low, ..USUAL },
-        // Twice halved on the way; or twice as large.
+        // Downsampled twice; or at double size.
         BloomSettings { quality: BloomQuality::Medium, height_texels: 17, levels: 1, ..USUAL },
         BloomSettings { height_texels: 17, levels: 2, ..USUAL },
     ] {
@@ -113,7 +113,7 @@ fn bloom_is_the_sum_that_its_sources_state() -> TestResult {
 #[test]
 fn flare_is_ghosts_and_a_halo_of_what_glows() -> TestResult {
     let Some(gpu) = gpu("flare_is_ghosts_and_a_halo_of_what_glows") else { return Ok(()) };
-    let (parts, image) = (parts(&gpu)?, lamps());
+    let (parts, image) = (parts(&gpu)?, bright_spots());
     let flare = |flare: FlareSettings| {
         let settings = BloomSettings { flare: Some(flare), ..USUAL };
         let declare = |frame: &mut Frame<Parts>, [hdr]: [Texture; 1]| handed(frame, hdr, &settings)?.get(Slot::FLARE);
@@ -125,7 +125,7 @@ fn flare_is_ghosts_and_a_halo_of_what_glows() -> TestResult {
     for own in [FLARE, FlareSettings { ghosts: 0, ..FLARE }, FlareSettings { halo_thickness: 0.0, ..FLARE }, centered] {
         let (ours, truth) = (flare(own)?, truth::flare(&levels[0], SIZE, &own));
         assert!(truth.mean().max_element() > 1e-6, "{own:?}: nothing is seen");
-        // What glows is off by BOUND of 80, and thresholds cut it at 1 and 2: edges of ghosts move.
+        // Bloom's error is BOUND of 80, and thresholds at 1 and 2 shift the edges of ghosts.
         let off = ours.off(&truth);
         assert!(off < 0.01, "{own:?}: off by {off}");
         worst = worst.max(off);
@@ -134,7 +134,8 @@ fn flare_is_ghosts_and_a_halo_of_what_glows() -> TestResult {
     let (whole, rays) = (flare(FLARE)?, flare(FlareSettings { starburst: true, ..FLARE })?);
     let less = whole.texels.iter().zip(&rays.texels).all(|(whole, rays)| rays.cmple(*whole + 1e-3).all());
     assert!(less && rays.mean().max_element() < 0.95 * whole.mean().max_element(), "rays only take");
-    // Their noise is by a sine that drivers round otherwise: it is nearer to the mirror's than to that of any other turn.
+    // The noise uses a sine that drivers round differently, so it must be closer to the mirror's than to any other
+    // rotation's.
     let turn = (camera()?.world_from_view.inverse() * DVec3::Z).element_sum();
     let apart = |turn: f64| {
         let share = |i: usize| {
@@ -149,8 +150,7 @@ fn flare_is_ghosts_and_a_halo_of_what_glows() -> TestResult {
     Ok(())
 }
 
-/// Without a threshold every kernel is a mean: no texel of the glow is brighter than the picture's brightest a level, and in the
-/// middle of a black picture the sum of light is that of the lamp. A quarter of a level's weights may be off by one in 256.
+/// Without a threshold, every kernel is an average. No texel of a level is brighter than the picture's maximum, and the total light of a bright pixel on black is preserved. The tolerance is 1/256 of a quarter of each level's weights.
 #[test]
 fn hard_case_23_bloom_adds_no_energy() -> TestResult {
     let Some(gpu) = gpu("hard_case_23_bloom_adds_no_energy") else { return Ok(()) };
@@ -169,11 +169,11 @@ fn hard_case_23_bloom_adds_no_energy() -> TestResult {
     Ok(())
 }
 
-/// One texel that is no number, or not finite, is as if it were black or as bright as anything may be: no other texel knows.
+/// A NaN or infinite pixel counts as black or as the brightest value, and does not affect other pixels.
 #[test]
 fn hard_case_23_and_26_what_is_not_finite_does_not_spread() -> TestResult {
     let Some(gpu) = gpu("hard_case_23_and_26_what_is_not_finite_does_not_spread") else { return Ok(()) };
-    let (parts, image) = (parts(&gpu)?, lamps());
+    let (parts, image) = (parts(&gpu)?, bright_spots());
     let with = |value: f64| {
         let mut image = image.clone();
         image.texels[usize::from(SIZE[0] as u16) * 15 + 25] = DVec3::new(value, 0.25, 0.5);
@@ -199,11 +199,11 @@ fn hard_case_23_and_26_what_is_not_finite_does_not_spread() -> TestResult {
     Ok(())
 }
 
-/// The glow is laid over the picture as stated, through dirt, with flare, added or in the picture's place.
+/// Bloom is blended as stated: with dirt, with flare, additively or by interpolation.
 #[test]
 fn glow_is_laid_over_the_picture() -> TestResult {
     let Some(gpu) = gpu("glow_is_laid_over_the_picture") else { return Ok(()) };
-    let (parts, image) = (parts(&gpu)?, lamps());
+    let (parts, image) = (parts(&gpu)?, bright_spots());
     let image = Image { texels: image.texels.iter().map(|c| c.min(DVec3::splat(100.0))).collect(), ..image };
     let dust = Image::from_fn([7, 5], |x, y| DVec3::new(f64::from(x % 2), 0.5, f64::from(y) / 4.0)).rounded();
     let wide = |image: &Image, at: usize| {
@@ -252,7 +252,7 @@ fn counts(bloom: Option<BloomSettings>) -> Counts {
     plan(&settings, &Caps::wgpu(), &Options::for_frame(FRAME[0], FRAME[1])).counts()
 }
 
-/// Without strength or levels nothing is declared: the same plan, and so the same bits.
+/// Bloom without strength or levels declares nothing, so the plan and the picture are unchanged.
 #[test]
 fn bloom_of_nothing_is_no_bloom() {
     let text = |bloom| {
@@ -264,7 +264,7 @@ fn bloom_of_nothing_is_no_bloom() {
     assert_eq!(text(Some(BloomSettings { levels: 0, ..BloomSettings::DEFAULT })), none);
     let blooms = text(Some(BloomSettings::DEFAULT));
     assert!(none.contains("pass `post`: inlined into the shader of `color`"), "{none}");
-    // Why post-processing is a pass of its own.
+    // The log states why post-processing is a separate pass.
     let why = ["store of `hdr` in step 1: stored, `bloom/half` reads it", "pass `post`: not merged with `bloom/up`"];
     assert!(why.iter().all(|why| blooms.contains(why)), "{blooms}");
 }
@@ -277,13 +277,13 @@ fn bloom_of_nothing_is_no_bloom() {
 /// bloom/up ×5       glow_sum i    don't care STORE
 /// post              ldr           don't care STORE
 ///
-/// Filament's, by its rules: as many stores, but it blends each level into the one above, which loads it: five loads. A flare
-/// is three more stores in both.
+/// Filament's bloom, by its rules, has as many stores, but blends each level into the one above, which costs five
+/// loads. A flare adds three stores in both.
 #[test]
 fn counts_beside_filaments() {
     let none = counts(None);
     let more = |passes: u32| Counts {
-        // The radiance is stored for bloom and post, which is a step of its own now.
+        // The radiance is stored for bloom and for post-processing, which becomes a step of its own.
         resolves: none.resolves + 1 + passes,
         steps: none.steps + 1 + passes,
         render_passes: none.render_passes + 1 + passes,
@@ -296,7 +296,7 @@ fn counts_beside_filaments() {
         counts(Some(BloomSettings { flare: Some(FlareSettings::DEFAULT), ..BloomSettings::DEFAULT })),
         more(12 + 3)
     );
-    // One level more instead of halves.
+    // One more level instead of half resolution.
     assert_eq!(counts(Some(BloomSettings { quality: BloomQuality::High, ..BloomSettings::DEFAULT })), more(1 + 6 + 6));
     assert_eq!(
         counts(Some(BloomSettings { levels: 1, quality: BloomQuality::High, ..BloomSettings::DEFAULT })),

@@ -1,8 +1,8 @@
-//! Frames as data: every file under `cases/` is planned as its `expect` section says, and must come to the counts there.
+//! Frames as data: every file in `cases/` must be planned as its `expect` section says.
 //!
-//! A case states the device, features that differ from the file's, order and size, then loads and stores, and whatever
-//! else it cares about. `filament` holds what Filament makes of the same passes; this compiler may do better, never
-//! worse, and the note says why. Every plan is handed to the independent checker too.
+//! A case states the device, features that differ from the file's, order and size, then loads and stores, and
+//! optionally other counts. `filament` has Filament's counts for the same passes. This compiler may be better but never
+//! worse; the note gives the reason. The independent checker verifies every plan.
 
 mod expect;
 
@@ -15,7 +15,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("cases")
 }
 
-/// Paths and texts of all cases, in alphabetical order.
+/// Returns paths and texts of all cases, sorted.
 pub fn files() -> Vec<(String, String)> {
     let mut files: Vec<_> = std::fs::read_dir(folder())
         .expect("tests/cases is a folder")
@@ -103,7 +103,7 @@ fn combinations_of_features_plan_soundly_everywhere() {
     for (path, text) in files() {
         let file = GraphFile::parse(&path, &text).unwrap_or_else(|e| panic!("{e}"));
         let features = file.features().to_vec();
-        // Every combination of up to seven features, and every eighth, scattered, of more.
+        // Tests every combination of up to seven features, and a scattered eighth of the combinations of more.
         let scattered = |mask: &u32| features.len() < 8 || mask.wrapping_mul(0x9E37_79B9) >> 29 == 0;
         for mask in (0..1u32 << features.len()).filter(scattered) {
             let on = |bit: usize| mask >> bit & 1 == 1;
@@ -128,7 +128,7 @@ fn combinations_of_features_plan_soundly_everywhere() {
     assert!(plans > 200, "only {plans} plans");
 }
 
-/// A chain of `passes` passes as a file: each samples what the one before it drew.
+/// Returns a chain of `passes` passes as a file: each samples the output of the previous one.
 fn chain(passes: usize) -> String {
     let mut text = String::from("(version: 1, resources: [\n");
     for i in 0..passes {
@@ -143,7 +143,7 @@ fn chain(passes: usize) -> String {
     text + &format!("], exports: [Keep(of: \"t{}\")])", passes - 1)
 }
 
-/// The checker takes time with the square of the steps, so it is given a shorter chain than the compiler.
+/// The checker takes quadratic time, so its chain is shorter than the compiler's.
 #[test]
 fn a_chain_of_ten_thousand_passes_is_loaded_and_planned() {
     for (passes, checked) in [(10_000, false), (300, true)] {
@@ -155,7 +155,7 @@ fn a_chain_of_ten_thousand_passes_is_loaded_and_planned() {
         let counts = plan.counts();
         let passes = passes as u32;
         assert_eq!((counts.steps, counts.resolves, counts.unresolves, counts.culled), (passes, passes, 0, 0));
-        // Two take turns; the exported one has memory of its own.
+        // Two textures share memory; the exported one has its own.
         assert_eq!((plan.slots().len(), plan.memory().bytes), (2, 2 * 256 * 256 * 4));
         assert!(!checked || check(&plan).is_ok());
     }

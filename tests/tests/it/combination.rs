@@ -1,4 +1,4 @@
-//! Combinations of effects that have crashed a driver, each drawn in a child process.
+//! Combinations of effects that once crashed a driver, each drawn in a child process.
 
 use crate::stage::gpu;
 use framegraph_passes::shadow::{ShadowFilter, ShadowSettings};
@@ -10,12 +10,12 @@ use tests::stage::Stage;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Tells the child from its parent.
+/// Environment variable that is set in the child process.
 const CHILD: &str = "FRAMEGRAPH_COMBINATION";
 const NAME: &str = "combination::fog_froxels_and_one_cascade_are_drawn";
 
-/// Fog, lists of lights by froxel and one map of the sun together crashed Mesa's software driver. The reason and the check of
-/// all shaders are in `shaders/tests/all/branches.rs`.
+/// Fog, froxels and a single shadow map of the sun together crashed Mesa's software driver.
+/// `shaders/tests/all/branches.rs` explains the reason and checks all shaders.
 #[test]
 fn fog_froxels_and_one_cascade_are_drawn() -> TestResult {
     let Some(gpu) = gpu(NAME) else { return Ok(()) };

@@ -1,4 +1,4 @@
-//! One torus under every compression of geometry that is imported, drawn: the pictures differ as little as quantization explains.
+//! One torus in every supported geometry compression: pictures differ only by quantization.
 
 use crate::stage::{Set, Shot, gpu};
 use framegraph::Options;
@@ -15,7 +15,7 @@ fn load(name: &str) -> Result<Scene, Box<dyn Error>> {
     Ok(import::load(&folder.join(format!("{name}.glb")), &mut progress::silent)?)
 }
 
-/// Draws a scene from a camera, since bounds that a camera of its own would look at are quantized, too.
+/// Draws a scene from a given camera. The default camera would follow the quantized bounds.
 fn picture(gpu: &Gpu, mut scene: Scene, camera: &Camera) -> Result<Vec<u8>, Box<dyn Error>> {
     scene.cameras = vec![camera.clone()];
     let options = Options::for_frame(64, 64);
@@ -23,8 +23,8 @@ fn picture(gpu: &Gpu, mut scene: Scene, camera: &Camera) -> Result<Vec<u8>, Box<
     Ok(Set::of(gpu, scene, &shot, &Background::Environment)?.shoot(gpu, &shot)?.0)
 }
 
-/// PSNR that normals keep which are tilted by at most `tilt_rad`: light changes by at most that share of white, evenly
-/// distributed. Errors of positions are below a hundredth of a pixel here, and those of colors below two steps of 8 bits.
+/// Returns the PSNR in dB for normals tilted by at most `tilt_rad`. Light changes by at most that share of white,
+/// uniformly distributed. Position errors are below 0.01 pixels, and color errors below two 8-bit steps.
 fn psnr_db(tilt_rad: f64) -> f64 {
     20.0 * (12f64.sqrt() / tilt_rad).log10()
 }
@@ -39,11 +39,11 @@ fn compressed_meshes_look_like_the_uncompressed_one() -> Result<(), Box<dyn Erro
         let difference = compare(&picture(&gpu, scene, &camera)?, &expected);
         Ok(difference.ok_or("the pictures differ in size")?.psnr_db)
     };
-    // Errors of normals, as the tests of the importer derive them from the encoders' settings.
+    // Errors of normals, derived from the encoders' settings as in the importer's tests.
     let fine = psnr_db(18f64.sqrt() / 1022.0);
     let bytes = psnr_db((18f64.sqrt() + 3f64.sqrt()) * 0.5 / 127.0);
     for (name, least_psnr_db) in [
-        // Equal triangles in another order; a texel is left to drivers.
+        // Equal triangles in another order; drivers may differ in single pixels.
         ("draco_lossless", 60.0),
         ("meshopt_v1", 60.0),
         ("draco_edgebreaker_0", fine),
@@ -54,7 +54,7 @@ fn compressed_meshes_look_like_the_uncompressed_one() -> Result<(), Box<dyn Erro
         let found = psnr_of(load(name)?)?;
         assert!(found >= least_psnr_db, "{name}: {found:.1} dB, less than {least_psnr_db:.1}");
     }
-    // Negative controls: 6 bits for normals, and colors that are missing.
+    // Negative controls: normals of 6 bits, and missing colors.
     let coarse = psnr_of(load("draco_coarse")?)?;
     assert!(coarse < fine, "6 bits for normals look like 10: {coarse:.1} dB");
     let mut white = raw;

@@ -1,4 +1,4 @@
-//! Environments from Khronos textures: what an encoder of our own writes is read by numbers, and lights as it should.
+//! Environments from Khronos textures, written by an independent encoder: exact values and correct lighting.
 
 use crate::stage::gpu;
 use framegraph_passes::ibl::cache::Cache;
@@ -12,13 +12,13 @@ use tests::cube_file::{CubeFile, Texels};
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Different in every direction and channel, above 0, at most 7.
+/// Returns light that differs in every direction and channel, above 0 and at most 7.
 fn light(d: DVec3) -> DVec3 {
     DVec3::new(3.0 + 2.0 * d.x + d.y * d.z, 2.0 + d.y, 1.0 + 0.5 * d.z + 0.25 * d.x * d.y)
 }
 
-/// Radiance · ∫ over the sphere against the nine polynomials, in the form that `cmgen` writes: with the basis' factors squared and
-/// the cosine's over π (Ramamoorthi and Hanrahan 2001; Sloan 2008). By a lattice of points.
+/// Integrates radiance with nine polynomials over the sphere, scaled as by `cmgen`: squared basis factors times the
+/// cosine's over π (Ramamoorthi and Hanrahan 2001; Sloan 2008). The integral is a sum over a point lattice.
 fn harmonics(radiance: impl Fn(DVec3) -> DVec3) -> Vec<DVec3> {
     use std::f64::consts::PI;
     let count = 20_000;
@@ -44,7 +44,7 @@ fn load(bytes: &[u8]) -> Result<Environment, String> {
     loaded.map_err(|error| error.to_string())
 }
 
-/// The map of a cube shows the light in its direction: of half a texel's slope, and of the format's rounding.
+/// Returns the largest error of a cube's map in excess of half a texel's slope and the format's rounding.
 fn shows(environment: &Environment, error: f64) -> f64 {
     let mut worst = 0.0_f64;
     environment.map.for_each_texel(|direction, _, radiance| {
@@ -54,7 +54,7 @@ fn shows(environment: &Environment, error: f64) -> f64 {
     worst
 }
 
-/// Every format in either version and order of bytes, each texel in its place.
+/// Every format in both versions and byte orders, with each texel in its position.
 #[test]
 fn cubes_are_read_to_the_precision_of_their_texels() {
     let cube = CubeFile::new(32, 1, |_, d| light(d));
@@ -64,19 +64,19 @@ fn cubes_are_read_to_the_precision_of_their_texels() {
             let environment = load(file).unwrap_or_else(|error| panic!("{texels:?} {index}: {error}"));
             assert_eq!((environment.map.width(), environment.map.height()), (128, 64));
             assert!(environment.filtered.is_none() && environment.warnings.is_empty(), "{texels:?} {index}");
-            // Bilinear lookup errs by the curvature over a texel, corners of faces by its slope.
+            // Bilinear filtering has an error proportional to curvature, or to slope at the corners of faces.
             let worst = shows(&environment, texels.error());
             assert!(worst < 0.04, "{texels:?} {index}: off by {worst}");
         }
     }
-    // One face exchanged with its neighbor is far off.
+    // Negative control: one face exchanged with its neighbor.
     let mut wrong = cube.clone();
     wrong.levels[0].rotate_right(32 * 32);
     let environment = load(&wrong.ktx2(Texels::Rgba32)).expect("a sound file");
     assert!(shows(&environment, 0.0) > 1.0, "the control is not noticed");
 }
 
-/// A file with irradiance is light already: its levels and harmonics come through as they are.
+/// A file with irradiance is prefiltered light: its levels and harmonics are used unchanged.
 #[test]
 fn irradiance_makes_a_cube_filtered_light() -> TestResult {
     let factors = harmonics(light);
@@ -92,10 +92,10 @@ fn irradiance_makes_a_cube_filtered_light() -> TestResult {
         }
         for (stated, found) in factors.iter().zip(filtered.sh.irradiance_over_pi()) {
             let apart = *stated - glam::Vec3::from(found).as_dvec3();
-            // Nine decimals, then single precision.
+            // Nine decimals in the file, then f32.
             assert!(apart.abs().max_element() < 1e-6, "{stated}: {found:?}");
         }
-        // What the file says agrees with what is seen: the map's own irradiance, summed texel by texel.
+        // The stated harmonics agree with the map's own irradiance, summed over texels.
         for normal in [DVec3::X, DVec3::NEG_Y, DVec3::new(0.6, 0.0, 0.8)] {
             let summed = environment.map.irradiance(normal) / std::f64::consts::PI;
             let apart = (filtered.sh.irradiance_over_pi_at(normal) - summed).abs().max_element();
@@ -103,18 +103,18 @@ fn irradiance_makes_a_cube_filtered_light() -> TestResult {
         }
         assert_eq!(environment.extract_sun(), SunExtraction::Filtered);
     }
-    // Without further levels there is nothing filtered to look up.
+    // A single level cannot be prefiltered light.
     let single = CubeFile { levels: cube.levels[..1].to_vec(), ..cube.clone() };
     assert!(load(&single.ktx1(Texels::Rg11b10, false))?.filtered.is_none());
     Ok(())
 }
 
-/// On the device it is the file's light, whatever the settings ask for.
+/// On the device, the file's light is used, regardless of the settings.
 #[test]
 fn filtered_light_is_taken_as_it_is() -> TestResult {
     let Some(gpu) = gpu("filtered_light_is_taken_as_it_is") else { return Ok(()) };
     let factors = harmonics(light);
-    // Brighter than half floats hold, so that the cube is scaled.
+    // Brighter than the range of half floats, so that the cube is scaled.
     let cube = CubeFile::new(16, 5, |_, d| light(d) * 2e4).with_sh(&factors);
     let environment = load(&cube.ktx1(Texels::Rgba32, false))?;
     let settings = IblSettings { bands: ShBands::Five, ..IblSettings::default() };
@@ -125,12 +125,12 @@ fn filtered_light_is_taken_as_it_is() -> TestResult {
         assert!((*stated - found.truncate().as_dvec3()).abs().max_element() < 1e-6, "{stated}: {found}");
     }
     let toward = made.dominant_direction.ok_or("it is uneven")?;
-    // Red, a fifth of luminance, leans to +x by 2, and green, most of it, to +y by 1.
+    // Red, a fifth of luminance, points to +x with strength 2; green, most of it, to +y with strength 1.
     assert!(toward.y > toward.x && toward.x > 0.4, "{toward}");
     Ok(())
 }
 
-/// What is wrong is told in a line, and nothing that a file claims is believed before it is there.
+/// Errors are one line each, and sizes claimed by a file are checked before allocation.
 #[test]
 fn broken_cubes_are_errors_of_one_line() {
     let cube = CubeFile::new(4, 2, |_, d| light(d)).with_sh(&harmonics(light));
@@ -170,7 +170,7 @@ fn broken_cubes_are_errors_of_one_line() {
         let error = load(&file).expect_err(word);
         assert!(error.starts_with("a/cube.ktx: ") && error.contains(word) && !error.contains('\n'), "{word}: {error}");
     }
-    // Twelve levels of a small cube are refused, and so is a cube that the budget cannot hold.
+    // Twelve levels of a small cube are rejected, and so is a cube that exceeds the memory budget.
     let large = CubeFile::new(1024, 1, |_, _| DVec3::ONE).ktx2(Texels::Rg11b10);
     assert!(load(&large).is_err_and(|error| error.contains("a cube of 1024²") && error.contains("--memory")));
 }

@@ -1,4 +1,5 @@
-//! Scenes of which a number is zero, less or far too large: every pixel of the frame is a number, and what is beside shows.
+//! Scenes with a number that is zero, negative or far too large: every pixel is finite, and the rest of the scene stays
+//! visible.
 
 use crate::stage::{Shot, declared, gpu, lighting};
 use framegraph::{Plan, Scratch, compile};
@@ -15,7 +16,7 @@ use tests::executors;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// A sphere of 1 m on a floor, under a sun.
+/// Returns a sphere of 1 m on a floor under a sun.
 fn base(origin: DVec3) -> Scene {
     let mut scene = Scene::default();
     let material = scene.add_material(Material::dielectric("clay", Vec3::splat(0.5), 0.4));
@@ -31,7 +32,7 @@ fn camera(eye: DVec3, target: DVec3) -> Result<Camera, Box<dyn Error>> {
     Ok(Camera::look_at(eye, target, DVec3::Y, Projection::perspective(0.8, 0.1))?)
 }
 
-/// Radiance times exposure of every pixel.
+/// Returns radiance times exposure of every pixel.
 fn radiance(
     gpu: &Gpu,
     scene: &Scene,
@@ -65,7 +66,8 @@ fn radiance(
     Ok(read_texture(gpu, texture)?.rgba())
 }
 
-/// Every channel is a number, by its bits, not below zero, and what a half float holds; and not all of it is black.
+/// Checks that every channel is finite by its bits, not negative, and within the range of half floats, and that the
+/// picture is not all black.
 fn is_sound(what: &str, pixels: &[[f32; 4]]) {
     let channels = || pixels.iter().flat_map(|p| &p[..3]);
     assert!(
@@ -90,7 +92,7 @@ fn meshes_without_area_and_direction() -> TestResult {
     let mut scene = base(DVec3::ZERO);
     let material = scene.instances[0].material;
     let mut flat = sphere(1.2, 8, 4);
-    // A third of the vertices where the others are; every normal and tangent without length, or no number.
+    // A third of the vertices coincide; normals and tangents have length 0 or are NaN.
     let first = flat.positions[0];
     flat.positions.iter_mut().step_by(3).for_each(|p| *p = first);
     flat.normals.iter_mut().for_each(|n| *n = Vec3::ZERO);
@@ -130,7 +132,8 @@ fn lights_at_surfaces_and_along_the_view() -> TestResult {
         inner_cone_rad,
         outer_cone_rad,
     };
-    // On the floor, in the ball, at the eye; a cone whose ends are one, and one of half a degree; a sun along the view.
+    // Lights on the floor, in the ball and at the eye; a cone with equal angles, and one of 0.5°; a sun along the view
+    // direction.
     scene.lights.push(lamp(point, DVec3::new(1.5, -1.0, 0.5), Vec3::NEG_Y));
     scene.lights.push(lamp(point, DVec3::ZERO, Vec3::NEG_Y));
     scene.lights.push(lamp(point, DVec3::new(2.0, 1.5, 4.0), Vec3::NEG_Y));
@@ -141,8 +144,8 @@ fn lights_at_surfaces_and_along_the_view() -> TestResult {
     seen(&gpu, "lights at surfaces", &scene)
 }
 
-/// A thousand kilometers away the picture is the same, but for what 64 bits have left there: positions are relative to the eye
-/// before they become 32 bits.
+/// At a distance of 1000 km from the origin, the picture is unchanged, apart from f64 rounding. Positions are relative
+/// to the eye before they are converted to f32.
 #[test]
 fn a_thousand_kilometers_from_the_origin() -> TestResult {
     let Some(gpu) = gpu("a_thousand_kilometers_from_the_origin") else { return Ok(()) };
@@ -153,7 +156,7 @@ fn a_thousand_kilometers_from_the_origin() -> TestResult {
     let (near, far) = (shoot(DVec3::ZERO)?, shoot(DVec3::new(1e6, -1e6, 1e6))?);
     is_sound("far away", &far);
     let apart = near.iter().zip(&far).filter(|(a, b)| (0..3).any(|c| (a[c] - b[c]).abs() > 0.02 * (a[c] + 0.02)));
-    // Pixels on an edge or on a shadow's, where 1e-10 of a meter decides.
+    // Pixels on an edge or a shadow's edge, where 1e-10 m decide.
     assert!(apart.count() < near.len() / 50);
     Ok(())
 }
@@ -170,7 +173,8 @@ fn targets_of_a_pixel_and_of_a_line() -> TestResult {
     Ok(())
 }
 
-/// In the dark's exposure sunlight is more than half floats hold, and is held; within the ball nothing is outside of it.
+/// With an exposure for the dark, sunlight exceeds half floats and is clamped. Inside the ball, nothing outside is
+/// visible.
 #[test]
 fn exposures_from_cave_to_sun() -> TestResult {
     let Some(gpu) = gpu("exposures_from_cave_to_sun") else { return Ok(()) };

@@ -1,8 +1,8 @@
-//! Documents name files that are in the repository, and no others.
+//! Documents name only files that exist in the repository.
 
 use std::path::{Path, PathBuf};
 
-/// The repository's files outside of build folders.
+/// Returns the repository's files, without build folders.
 fn files() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut found = Vec::new();
@@ -21,7 +21,7 @@ fn files() -> Vec<PathBuf> {
     found
 }
 
-/// The repository's documents.
+/// Returns the repository's documents.
 fn documents() -> Vec<PathBuf> {
     let mut files = files();
     files.retain(|file| file.extension().is_some_and(|ending| ending == "md"));
@@ -29,7 +29,7 @@ fn documents() -> Vec<PathBuf> {
     files
 }
 
-/// What a document links to, without anchors and without other sites.
+/// Returns a document's links, without anchors and external sites.
 fn links(text: &str) -> impl Iterator<Item = &str> {
     let targets = text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target);
     let files = targets.map(|target| target.split('#').next().unwrap_or_default());
@@ -47,11 +47,11 @@ fn every_link_leads_to_a_file() {
     }
 }
 
-/// The rooms, the first words of paths.
+/// Top-level folders, the first parts of paths.
 const ROOMS: [&str; 9] =
     ["framegraph/", "renderer/", "scene/", "shaders/", "passes/", "tests/", "docs/", "examples/", "xtask/"];
 
-/// Sentences call a file by its name where the folder is plain.
+/// Text may name a file without its folder where that is unambiguous.
 #[test]
 fn every_file_that_is_named_is_there() {
     let files = files();
@@ -64,8 +64,7 @@ fn every_file_that_is_named_is_there() {
     }
 }
 
-/// Whoever has only this repository can type what the documents at its top and in `docs` say, and find the files that they
-/// name.
+/// Commands and files named in top-level documents and in `docs` must work in this repository alone.
 #[test]
 fn commands_and_sentences_name_files_of_the_repository() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -78,7 +77,7 @@ fn commands_and_sentences_name_files_of_the_repository() {
             assert!(command.is_none() || !line.contains("../"), "{}: {line}", document.display());
             let code = line.split('`').skip(1).step_by(2).filter(|code| !code.contains([' ', '*']));
             for word in command.into_iter().flatten().chain(code) {
-                // A model too large to be committed; tests/assets/README.md says where to find it.
+                // A model that is too large to be committed; tests/assets/README.md says where to find it.
                 let elsewhere = word.starts_with("tests/assets/models/FlightHelmet");
                 if ROOMS.iter().any(|room| word.starts_with(room)) && !elsewhere {
                     assert!(root.join(word).exists(), "{}: there is no {word}", document.display());

@@ -1,4 +1,4 @@
-//! Depth of field: against a lens's discs summed on the CPU, what stays in focus, and what a frame with it loads and stores.
+//! Depth of field: compared with lens discs summed on the CPU; pixels in focus; loads and stores of frames with it.
 
 mod steps;
 
@@ -36,22 +36,22 @@ fn parts(gpu: &Gpu) -> Result<Parts, Box<dyn Error>> {
     Ok(Parts { views: Views::new(gpu, [CameraView::empty(&moment)])?, ..Parts::default() })
 }
 
-/// A lens that has discs of a radius of `radius_px` infinitely far away, and 4 m in focus.
+/// Returns a lens focused at 4 m, whose circle of confusion has a radius of `radius_px` at infinity.
 fn lens(radius_px: f32) -> DofSettings {
     let whole =
         DofSettings { focus_m: 4.0, focal_length_m: Some(0.05), resolution: Resolution::Full, ..DofSettings::DEFAULT };
-    // On the film, in pixels of the picture, without a factor.
+    // Diameter on the film, in pixels of the picture, with a circle-of-confusion scale of 1.
     let diameter = 0.05 / 2.8 * 0.05 / (4.0 - 0.05) / 0.024 * SIZE[1] as f32;
     DofSettings { scale: 2.0 * radius_px / diameter, ..whole }
 }
 
-/// Radius of the disc of what is that far away, in pixels, negative before what is in focus.
+/// Returns the radius of the circle of confusion at a distance, in pixels; negative in front of the focus.
 fn radius(radius_px: f64, distance_m: f64) -> f64 {
     let radius = radius_px * (1.0 - 4.0 / distance_m);
     if radius.abs() < 1.0 { 0.0 } else { radius.clamp(-32.0, 32.0) }
 }
 
-/// A picture whose places are as far away as `distance_m` says, through the lens.
+/// Draws a picture with depths `distance_m` through a lens.
 fn shoot(
     gpu: &Gpu,
     image: &Image,
@@ -68,12 +68,12 @@ fn shoot(
     Ok(made(gpu, &parts(gpu)?, [image, &depth], declare)?.0)
 }
 
-/// The slot of depth, for a picture of it.
+/// Slot of a picture that is used as depth.
 const DEPTH: Slot = Slot::new(Slot::DEPTH.name, framegraph_passes::stages::Holds::ColorSamples);
 
-/// Any picture of any depths, step by step. What is stored between steps is rounded to half floats, which a driver may cut off:
-/// that alone is a mean of 0.0005 to 0.0014, and 0.0018 where rings behind what is in focus ask which of them is nearer. Of nine
-/// faults planted in constants and signs of the gather, seven are above the limits, by 1.04 to 40 times.
+/// Compares pictures of random depths with the CPU. Textures between steps have half floats, which a driver may
+/// truncate. Truncation alone causes a mean difference of 0.0005 to 0.0014, and 0.0018 with rings behind the focus, which
+/// compare distances. Seven of nine mutants of the gather pass exceed the limits, by factors of 1.04 to 40.
 #[test]
 fn pictures_are_those_of_the_steps_on_the_cpu() -> TestResult {
     let Some(gpu) = gpu("pictures_are_those_of_the_steps_on_the_cpu") else { return Ok(()) };
@@ -85,7 +85,8 @@ fn pictures_are_those_of_the_steps_on_the_cpu() -> TestResult {
         DVec3::from_array([1, 2, 3].map(|salt| 3.0 * random(x.into(), y.into(), salt).powi(3)))
     })
     .rounded();
-    // Focus over distance: patches of eight pixels before and behind what is in focus; and all of it on one side.
+    // Focus distance divided by distance: patches of eight pixels before and behind the focus, and all pixels on one
+    // side.
     let mixed = |x: i64, y: i64| f64::exp2((random(x / 8, y / 8, 9) * 4.0).floor() - 2.0);
     let before = |x: i64, y: i64| 1.25 + (random(x / 8, y / 8, 9) * 4.0).floor() / 4.0;
     let behind = |x: i64, y: i64| (random(x / 8, y / 8, 9) * 4.0).floor() / 8.0;
@@ -104,7 +105,7 @@ fn pictures_are_those_of_the_steps_on_the_cpu() -> TestResult {
             let settings =
                 DofSettings { resolution, rings_before, rings_behind, rings_even, median, ..lens(radius_px) };
             let ours = shoot(&gpu, &image, |x, y| 4.0 / per_focus(x.into(), y.into()), &settings)?;
-            // As half floats hold the depth.
+            // Depth as rounded by half floats.
             let held = |x: i64, y: i64| f16::from_f64(NEAR_M * per_focus(x, y) / 4.0).to_f64() / NEAR_M * 4.0;
             let shot =
                 steps::Shot { image: &image, per_focus: &held, radius_px: radius_px.into(), settings: &settings };
@@ -117,7 +118,7 @@ fn pictures_are_those_of_the_steps_on_the_cpu() -> TestResult {
     Ok(())
 }
 
-/// Waves of a period of 20 pixels and more, and no more contrast than 2 to 1.
+/// Returns waves with periods of at least 20 pixels and a contrast of at most 2 to 1.
 fn smooth() -> Image {
     Image::from_fn(SIZE, |x, y| {
         let wave = |x: f64| 1.5 + 0.5 * (x * std::f64::consts::TAU / 20.0).sin();
@@ -126,7 +127,7 @@ fn smooth() -> Image {
     .rounded()
 }
 
-/// The mean of a disc about each place: what a lens makes of a wall, summed at sixteen places a texel.
+/// Averages over a disc around each pixel, as a lens blurs a wall, with sixteen samples per texel.
 fn disc(image: &Image, radius: f64) -> Image {
     let reach = radius.ceil() as i64 + 1;
     Image::from_fn(image.size, |x, y| {
@@ -144,7 +145,7 @@ fn disc(image: &Image, radius: f64) -> Image {
     })
 }
 
-/// Root of the mean squared difference away from the border, as a share of the mean.
+/// Returns the root mean square difference away from the border, relative to the mean.
 fn rms(ours: &Image, truth: &Image) -> f64 {
     let inner = |i: &usize| {
         let (x, y) = (*i as u32 % SIZE[0], *i as u32 / SIZE[0]);
@@ -155,8 +156,8 @@ fn rms(ours: &Image, truth: &Image) -> f64 {
     (squares / all.len() as f64).sqrt() / truth.mean().element_sum() * 3.0
 }
 
-/// A wall before or behind what is in focus, full or half size, against the mean of discs. Rings of taps stand for a disc:
-/// the median and the noise leave some percent of the waves' contrast of a third.
+/// A wall before or behind the focus, at full or half resolution, compared with averages over discs. A disc is sampled
+/// by rings; median and noise leave some percent of the waves' contrast of a third.
 #[test]
 fn walls_are_blurred_by_discs() -> TestResult {
     let Some(gpu) = gpu("walls_are_blurred_by_discs") else { return Ok(()) };
@@ -174,14 +175,13 @@ fn walls_are_blurred_by_discs() -> TestResult {
     Ok(())
 }
 
-/// A near wall over the left half of a far one: the lens seen as many rays, each through another place of the aperture, which
-/// meet the near wall or pass it.
+/// Renders a near wall over the left half of a far one, by tracing rays through points of the aperture.
 fn two_walls([near, far]: [&Image; 2], distances: [f64; 2], radius_px: f64) -> Image {
     const RAYS: u32 = 2048;
     let radii = distances.map(|distance_m| radius(radius_px, distance_m));
     Image::from_fn(SIZE, |x, y| {
         let ray = |i: u32| {
-            // A sunflower's seeds fill the disc evenly.
+            // Sunflower sampling fills the disc uniformly.
             let (r, angle) = (((f64::from(i) + 0.5) / f64::from(RAYS)).sqrt(), f64::from(i) * 2.399963);
             let at = |radius: f64| (f64::from(x) + radius * r * angle.cos(), f64::from(y) + radius * r * angle.sin());
             let texel = |image: &Image, (x, y): (f64, f64)| image.at(x.round() as i64, y.round() as i64);
@@ -191,7 +191,7 @@ fn two_walls([near, far]: [&Image; 2], distances: [f64; 2], radius_px: f64) -> I
     })
 }
 
-/// At an edge a picture does not know what is hidden: taps opposite guess it.
+/// At an edge, the picture does not contain the occluded background, and opposite samples approximate it.
 #[test]
 fn edges_are_near_what_rays_through_the_lens_see() -> TestResult {
     let Some(gpu) = gpu("edges_are_near_what_rays_through_the_lens_see") else { return Ok(()) };
@@ -216,8 +216,9 @@ fn edges_are_near_what_rays_through_the_lens_see() -> TestResult {
     Ok(())
 }
 
-/// Two walls before what is in focus, full size: the nearer lies over the other. Taps see neither what is hidden, nor more than
-/// two layers; of two walls behind what is in focus they make hardly more than the sharp picture has (0.115 for 0.127).
+/// Two walls in front of the focus at full resolution: the nearer one covers the other. The passes know neither the
+/// occluded background nor more than two layers. For two walls behind the focus, they are hardly better than the sharp
+/// picture (0.115 and 0.127).
 #[test]
 fn walls_on_one_side_of_focus_are_near_what_rays_see() -> TestResult {
     let Some(gpu) = gpu("walls_on_one_side_of_focus_are_near_what_rays_see") else { return Ok(()) };
@@ -230,20 +231,20 @@ fn walls_on_one_side_of_focus_are_near_what_rays_see() -> TestResult {
     let ours = shoot(&gpu, &image, |x, _| if x < 32 { 1.6 } else { 2.4 }, &settings)?;
     let truth = two_walls([&near, &far], [1.6, 2.4], 8.0);
     let (off, sharp) = (rms(&ours, &truth), rms(&image, &truth));
-    // A sixth of what blur changes; taps that miss what is hidden leave the rest.
+    // A sixth of the blur's effect, plus the unknown background.
     assert!(off < 0.25 * sharp, "off by {off}, sharp by {sharp}");
     Ok(())
 }
 
-/// What is in focus has the same bits, also beside what is not; and the light of a disc is that of its point.
+/// Pixels in focus keep their bits, also next to blurred ones, and a blurred point keeps its total light.
 #[test]
 fn what_is_in_focus_stays() -> TestResult {
     let Some(gpu) = gpu("what_is_in_focus_stays") else { return Ok(()) };
     let image = smooth();
     assert!(shoot(&gpu, &image, |_, _| 4.0, &lens(16.0))? == image);
-    // Of radii below a pixel too.
+    // Radii below one pixel change nothing.
     assert!(shoot(&gpu, &image, |_, _| 4.2, &lens(16.0))? == image);
-    // Far from the edge, a far wall that is blurred leaves a near one in focus as it was.
+    // A blurred far wall does not change a near one in focus, away from the edge.
     let edge = shoot(&gpu, &image, |x, _| if x < 32 { 4.0 } else { 1e6 }, &lens(6.0))?;
     let left = |image: &Image| {
         (0..48).flat_map(|y| (0..24).map(move |x| (x, y))).map(|(x, y)| image.at(x, y)).collect::<Vec<_>>()
@@ -259,8 +260,8 @@ fn what_is_in_focus_stays() -> TestResult {
     Ok(())
 }
 
-/// Whatever is asked for, no circle is larger than 32 pixels, and everything is finite: depth 0 and depth 1, and a lens focused
-/// at less than its focal length.
+/// No circle is larger than 32 pixels, and every pixel is finite: at depth 0 and 1, and for a focus distance below the
+/// focal length.
 #[test]
 fn hard_case_54_pictures_stay_finite() -> TestResult {
     let Some(gpu) = gpu("hard_case_54_pictures_stay_finite") else { return Ok(()) };
@@ -289,8 +290,8 @@ fn planned(dof: Option<DofSettings>, samples: u8) -> framegraph::Plan {
 /// dof/tiles, dof/dilate, dof/gather, dof/median     a STORE each
 /// dof/combine + (post)            hdr_focused: stays in the tile, post reads it at the same pixel
 ///
-/// Filament's, by its rules, at half resolution: radiance and radius stored apart, and tiles halved three times: 2 + 2·2 + 3 +
-/// 2 + 2 + 2 + 1 = 16 stores where these are 9, and no load in either.
+/// Filament's passes at half resolution store radiance and radius separately, and halve tiles three times. The sum is 2 + 2·2 + 3 +
+/// 2 + 2 + 2 + 1 = 16 stores. Ours have 9, and neither loads.
 #[test]
 fn counts_beside_filaments() {
     let none = planned(None, 1).counts();
@@ -298,7 +299,7 @@ fn counts_beside_filaments() {
     let found = dof.counts();
     assert_eq!(found.unresolves, 0, "{}", dump::text(&dof));
     assert_eq!(found.passes, none.passes + 9, "{}", dump::text(&dof));
-    // Depth and radiance, and a store for each of eight passes; combine is one more if post does not join it.
+    // Stores of depth, of radiance, and of each of eight passes. Combine is one more unless post-processing joins it.
     let combined = found.resolves - none.resolves - 2;
     assert!((8..=9).contains(&combined), "{}", dump::text(&dof));
     let nothing = DofSettings { scale: 0.0, ..DofSettings::DEFAULT };

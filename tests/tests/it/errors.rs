@@ -1,10 +1,10 @@
-//! `Debug` of an error is its sentence, so that `unwrap()` and `main() -> Result` print what `Display` prints.
+//! `Debug` of an error is its message, so that `unwrap()` and `main() -> Result` print it as `Display` does.
 
 use framegraph::{Extent, Format, Graph, Intent, TextureDesc};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// All sources of the rooms, not those of dependencies.
+/// Returns all sources of the packages, without dependencies.
 fn sources() -> Result<Vec<PathBuf>, std::io::Error> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let rooms = ["framegraph", "renderer", "scene", "shaders", "passes", "tests", "examples", "xtask"];
@@ -26,14 +26,14 @@ fn sources() -> Result<Vec<PathBuf>, std::io::Error> {
 
 #[test]
 fn no_error_derives_debug() -> Result<(), Box<dyn Error>> {
-    // Reasons of decisions, which are no errors; and numbers that a measurement prints.
+    // Reasons of decisions, which are not errors, and measured errors.
     let other = ["pub enum Reason", "pub enum DropReason", "pub struct TableError", "pub struct LobeError"];
     let mut errors = 0;
     for file in sources()? {
         let text = std::fs::read_to_string(&file)?;
         let lines: Vec<_> = text.lines().map(str::trim_start).collect();
         for (number, line) in lines.iter().enumerate().filter(|(_, line)| line.starts_with("#[derive(")) {
-            // What is derived for: behind its attributes and documentation.
+            // The item after the attributes and documentation.
             let item = lines[number..].iter().find(|line| !line.starts_with('#') && !line.starts_with("//"));
             let words: Vec<_> = item.unwrap_or(&"").split([' ', '{', '<', '(', ';']).collect();
             let kind = words.iter().position(|word| ["enum", "struct"].contains(word));

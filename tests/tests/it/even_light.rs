@@ -1,4 +1,4 @@
-//! Light that is the same from all sides.
+//! Uniform environment light.
 
 use crate::stage::{self, Shot};
 use framegraph::{Plan, Scratch, compile};
@@ -13,8 +13,8 @@ use tests::executors;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Where light is the same from all sides, shading reads no cube of it; the picture is that of a cube, which holds powers of two
-/// exactly, within a code.
+/// Under uniform light, shading reads no cube. The picture equals the one with a cube, which holds powers of two
+/// exactly, to one 8-bit step.
 #[test]
 fn even_light_is_shaded_without_the_cube() -> TestResult {
     let Some(gpu) = stage::gpu("even_light_is_shaded_without_the_cube") else { return Ok(()) };

@@ -1,7 +1,7 @@
-//! Every frame under `cases/` on a device: what was done is what was planned, under every debug mode.
+//! Every frame in `cases/` on a device: execution matches the plan under every debug mode.
 //!
-//! The passes of these files have no shaders; stand-ins bind what they declare and keep what they promise
-//! (`framegraph_wgpu::mock`). Counts are taken where wgpu was told, objects where they were made.
+//! The passes have no shaders; mock recorders bind the declared resources and honor the declared accesses
+//! (`framegraph_wgpu::mock`). Operations are counted at the wgpu calls, and objects at their creation.
 
 use crate::cases::{cases_of, files};
 use crate::stage::gpu;
@@ -14,23 +14,23 @@ use std::error::Error;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Small, odd and not square.
+/// A small, odd, non-square size.
 const FRAME: [u32; 2] = [67, 38];
-/// Absolute sizes of the files that a software driver needs long for, and what they are here: plans do not change by it.
+/// Smaller replacements for absolute sizes that are slow on a software driver; plans do not depend on them.
 const SMALLER: [(&str, &str); 3] = [
     ("Texels(4096, 4096)", "Texels(96, 96)"),
     ("Texels(2048, 2048)", "Texels(80, 80)"),
     ("Texels(1024, 1024)", "Texels(64, 64)"),
 ];
 
-/// A frame of a file with stand-ins, as a case asks for it.
+/// A frame of a file with mock recorders, as a case requires.
 pub struct Staged {
     pub label: String,
     pub frame: Frame,
     pub options: Options,
 }
 
-/// Every distinct frame of every file.
+/// Returns every distinct frame of every file.
 pub fn staged() -> Vec<Staged> {
     let mut all = Vec::new();
     for (path, text) in files() {
@@ -56,9 +56,9 @@ pub fn staged() -> Vec<Staged> {
     all
 }
 
-/// Textures of the pool, images of histories and buffers that a plan comes to, worked out from its placements alone.
+/// Computes the number of pooled textures, history images and buffers of a plan from its placements alone.
 ///
-/// Memoryless attachments live in one step each, so those of one shape need as many textures as the busiest step has.
+/// A memoryless attachment lives in one step, so each shape needs as many textures as the busiest step.
 fn objects(plan: &Plan) -> [u64; 3] {
     let (mut textures, mut histories, mut buffers) = (0, 0, 0);
     for slot in plan.slots() {
@@ -72,7 +72,7 @@ fn objects(plan: &Plan) -> [u64; 3] {
             (Placement::Own, Kind::Transient, Desc::Buffer(_)) => buffers += 1,
             (Placement::Own, Kind::HistoryCurrent { frames }, _) => histories += u64::from(frames) + 1,
             (Placement::Memoryless, _, Desc::Texture(desc)) => {
-                // The size counts, not how it was said.
+                // Only the size matters, not how it was declared.
                 let [width, height] = desc.extent.texels(plan.frame());
                 let format = plan.format(resource).unwrap_or(desc.format);
                 let desc = desc.extent(framegraph::Extent::absolute(width, height)).format(format);
@@ -104,14 +104,14 @@ fn planned(gpu: &Gpu, staged: &Staged, mode: Option<Mode>) -> (Plan, ExecutorOpt
     (plan, execute)
 }
 
-/// Executes the frame three times and compares what was done with what was planned; with `fresh`, by an executor of its
-/// own, whose objects are counted too. Returns the bytes of every picture that outlives the frame.
+/// Executes the frame three times and compares with the plan. A new executor's objects are counted too. Returns the
+/// bytes of every picture that outlives the frame.
 fn check(gpu: &Gpu, staged: &Staged, mode: Option<Mode>, by: &mut Executors) -> Result<Vec<Vec<u8>>, Box<dyn Error>> {
     let (plan, options) = planned(gpu, staged, mode);
     let imported = mock::imports(gpu, &plan)?;
     let (executor, fresh) = by.get(gpu, options);
     executor.reset_histories();
-    // A history swaps two images, so views of both are made in the first two frames.
+    // A history swaps two images, so the first two frames create views.
     let mut made = None;
     for frame in 0..3 {
         match executor.execute(&plan, &staged.frame, &(), &imported.bound) {
@@ -130,7 +130,7 @@ fn check(gpu: &Gpu, staged: &Staged, mode: Option<Mode>, by: &mut Executors) -> 
     readable.map(|(_, texture)| Ok(read_texture(gpu, texture)?.bytes)).collect()
 }
 
-/// Executors that are made anew for each frame, or kept so that pipelines are compiled once.
+/// New executors for each frame, or one that caches pipelines.
 enum Executors {
     Fresh(Option<Box<Executor>>),
     Kept(Vec<(ExecutorOptions, Executor)>),
@@ -156,8 +156,7 @@ const EVERY_MODE: [Option<Mode>; 7] = {
     [None, Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)]
 };
 
-/// Without a driver, formats that WebGPU does not guarantee for storage are missing; frames with such are counted, and
-/// executed by the test below.
+/// On the noop device, formats without guaranteed storage support are missing. These frames are counted here, and executed by the next test.
 #[test]
 fn what_is_done_is_what_was_planned() -> TestResult {
     let gpu = Gpu::noop()?;
@@ -176,12 +175,12 @@ fn what_is_done_is_what_was_planned() -> TestResult {
     Ok(())
 }
 
-/// The same on a driver, and what the frames leave behind is the same to the bit under every mode. Inlining is left out
-/// of the comparison: a stand-in that takes an epilogue does nothing with it.
+/// On a real driver, execution matches the plan, and every mode leaves the same bits. Inlined frames are not compared,
+/// since mock recorders ignore epilogues.
 #[test]
 fn no_mode_changes_what_a_frame_leaves_behind() -> TestResult {
     let Some(gpu) = gpu("no_mode_changes_what_a_frame_leaves_behind") else { return Ok(()) };
-    // One frame draws four cascades at once. Whether the driver keeps them apart is another test's matter.
+    // One frame draws four cascades at once; another test checks that the driver separates them.
     gpu.trust_attached_layers();
     let mut executors = Executors::Kept(Vec::new());
     let (mut compared, mut plain) = (0, 0);

@@ -1,4 +1,4 @@
-//! What facts leave out of a frame changes its picture by no more than they say.
+//! Feature culling changes pictures by no more than its error bounds.
 
 mod late;
 mod masks;

@@ -1,10 +1,10 @@
-//! Figures of long runs that follow from others in their row: sums, quotients, differences, proofs. What a long run printed is
-//! compared by `cargo xtask documents`; that nobody changed one figure alone, here.
+//! Consistency of figures within rows of long runs: sums, quotients, differences, proofs. `cargo xtask documents`
+//! compares with new runs; this test detects a changed figure.
 
 const PROOFS: &str = include_str!("../../../docs/proofs.md");
 const PERFORMANCE: &str = include_str!("../../../docs/performance.md");
 
-/// A row by the heads of its table.
+/// A table row, accessed by column names.
 struct Row<'a> {
     heads: &'a [&'a str],
     cells: Vec<&'a str>,
@@ -15,7 +15,7 @@ impl Row<'_> {
         self.cells[self.heads.iter().position(|h| *h == head).unwrap_or_else(|| panic!("no column {head}"))]
     }
 
-    /// The first number of a cell and the one in parentheses, or the first again.
+    /// Returns the first number of a cell and the one in parentheses, or the first twice.
     fn numbers(&self, at: usize) -> [f64; 2] {
         let number = |text: &str| {
             let text = text.trim().trim_end_matches(" %").trim_end_matches(')');
@@ -36,7 +36,7 @@ fn cells(line: &str) -> Vec<&str> {
     line.strip_prefix('|').map_or_else(Vec::new, |line| line.trim_end_matches('|').split('|').map(str::trim).collect())
 }
 
-/// Asks for something of each row of the tables whose head begins so; how many rows there were.
+/// Checks each row of the tables whose head starts with `head`. Returns the number of rows.
 fn each<'a>(document: &'a str, head: &str, mut holds: impl FnMut(&Row<'a>, &[Row<'a>]) -> bool) -> usize {
     let mut asked = 0;
     let mut lines = document.lines();
@@ -55,7 +55,7 @@ fn each<'a>(document: &'a str, head: &str, mut holds: impl FnMut(&Row<'a>, &[Row
     asked
 }
 
-/// Whether a figure with so many digits is this one, where what it was made from was rounded in the `off`th part of itself.
+/// Returns true if a figure with a number of digits is `made`, up to a relative rounding error of its inputs.
 fn is(figure: f64, made: f64, digits: i32, off: f64) -> bool {
     (figure - made).abs() <= 0.51 * 10_f64.powi(-digits) + off * made.abs()
 }
@@ -99,18 +99,18 @@ fn proofs_of_long_runs_follow_from_their_row() {
     assert!(cuts > 15 && instances > 5 && frames > 5 && memory > 20 && classes > 6 && graphs > 5);
 }
 
-/// Of what no test notices, each is proved: proofs of a field add up to what was as good as the plan.
+/// Every undetected mutant has a proof: the proofs of a row add up to the number of equivalent plans.
 #[test]
 fn every_mutant_is_reported_or_proved() {
     let (_, long) = PROOFS.split_once("of 2000 plans").expect("the long run");
     let mut proved = std::collections::BTreeMap::<&str, f64>::new();
-    let proofs = each(long, "| field | mutants as good as the plan |", |row, _| {
-        *proved.entry(row.cells[0]).or_default() += row.number("mutants as good as the plan");
+    let proofs = each(long, "| field | equivalent mutants |", |row, _| {
+        *proved.entry(row.cells[0]).or_default() += row.number("equivalent mutants");
         true
     });
-    let fields = each(long, "| field | mutants | reported |", |row, _| {
-        let good = row.number("as good as the plan");
-        row.number("mutants") == row.number("reported") + good
+    let fields = each(long, "| field | mutants | rejected |", |row, _| {
+        let good = row.number("equivalent");
+        row.number("mutants") == row.number("rejected") + good
             && proved.remove(row.cells[0]).unwrap_or_default() == good
     });
     assert!(proofs > 5 && fields > 50 && proved.is_empty(), "{proofs} {fields} {proved:?}");
@@ -118,7 +118,7 @@ fn every_mutant_is_reported_or_proved() {
 
 #[test]
 fn figures_of_performance_follow_from_their_row() {
-    // Times are rounded to tenths: quotients of two of them are off by as much.
+    // Times are rounded to tenths, which limits the precision of quotients.
     let heap = each(PERFORMANCE, "| aliasing |", |row, rows| {
         let (placing, off) = (row.cells[2], rows[0].numbers(1));
         let added = |i: usize| row.numbers(1)[i] - off[i];
@@ -131,7 +131,7 @@ fn figures_of_performance_follow_from_their_row() {
     });
     let peer = each(PERFORMANCE, "| chain of buffers |", |row, _| {
         let [ours, theirs, ratio] = [1, 2, 3].map(|at| row.numbers(at));
-        // Nanoseconds are whole numbers.
+        // Nanoseconds are integers.
         (0..2).all(|i| is(ratio[i], theirs[i] / ours[i], 1, 0.6 / ours[i]))
     });
     let over = each(PERFORMANCE, "| passes × draws | by hand, µs |", |row, _| {
@@ -153,13 +153,13 @@ fn figures_of_performance_follow_from_their_row() {
         is(row.number("frame, ms"), sum, 2, 0.005)
     });
     let boxes = each(PERFORMANCE, "| boxes | order |", |row, _| {
-        // Of the fastest, in parentheses.
+        // Minimum times, in parentheses.
         let [one, two] = [4, 5].map(|at| row.numbers(at)[1]);
         is(row.number("speed-up"), one / two, 2, 0.001 / two)
     });
     let soak = each(PERFORMANCE, "| frames | textures held |", |row, _| {
         let [held, made] = [row.number("textures held"), row.number("made")];
-        // Behind a device that was lost nothing is held.
+        // Nothing is allocated after a device was lost.
         held <= made && (held > 0.0 || row.number("their MiB") == 0.0 && row.number("devices lost") > 0.0)
     });
     assert!(
@@ -175,14 +175,14 @@ fn figures_of_performance_follow_from_their_row() {
     );
 }
 
-/// One more in a column that adds up.
+/// Negative control: a column that adds up is changed by one.
 #[test]
 fn a_changed_figure_is_noticed() {
     let changed =
         PROOFS.replacen("| attachment.clear | 6118 | 1995 | 4123 |", "| attachment.clear | 6118 | 1996 | 4123 |", 1);
     let off = std::panic::catch_unwind(|| {
-        each(Box::leak(changed.into_boxed_str()), "| field | mutants | reported |", |row, _| {
-            row.number("mutants") == row.number("reported") + row.number("as good as the plan")
+        each(Box::leak(changed.into_boxed_str()), "| field | mutants | rejected |", |row, _| {
+            row.number("mutants") == row.number("rejected") + row.number("equivalent")
         })
     });
     assert!(off.is_err());

@@ -1,4 +1,4 @@
-//! Fog: what it hides of the ground and of the sky, against its density summed along each ray.
+//! Fog: opacity over ground and sky, compared with its density integrated along each ray.
 
 use crate::lens_document::documented;
 use crate::stage::{gpu, lighting, plan};
@@ -16,23 +16,23 @@ use truth::lobe::gathered;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// A plane of 8 m either way at y = 0, with balls before the middle that no ray of the ground looked at meets.
+/// A plane of ±8 m at y = 0, with balls in front of the center, outside of the tested rays.
 const GRID: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/references/filament_frame/assets/grid.glb");
 const SIZE: [u32; 2] = [64, 48];
 const EYE: DVec3 = DVec3::new(0.3, 1.5, 12.0);
 const LOOK: DVec3 = DVec3::new(-0.02, -0.05, -1.0);
 const SUN: DVec3 = DVec3::new(-0.2, 0.3, -1.0);
 const SUN_LUX: f32 = 2.0;
-/// What is behind all, in nits; the exposure is one.
+/// Radiance of the background in nits, at an exposure of 1.
 const SKY: Vec3 = Vec3::new(0.25, 0.5, 1.0);
 const FOV: f64 = 0.9;
 
-/// What the standard frame shows of the grid: radiance.
+/// Returns the radiance of the grid, rendered by the standard frame.
 fn shoot(gpu: &Gpu, fog: Option<FogSettings>, background: &Background) -> Result<Vec<[f32; 4]>, Box<dyn Error>> {
     shoot_under(gpu, fog, background, &Environment::uniform(DVec3::new(0.5, 1.0, 0.75))?)
 }
 
-/// The same under another sky.
+/// Returns the radiance of the grid under another sky.
 fn shoot_under(
     gpu: &Gpu,
     fog: Option<FogSettings>,
@@ -66,7 +66,7 @@ fn shoot_under(
     Ok(read_texture(gpu, texture)?.rgba())
 }
 
-/// The unit ray of each pixel, and how far it goes until it meets the ground or, in fog, for ever; none where balls may be.
+/// Returns each pixel's unit ray, and its length to the ground, or infinity for sky. `None` where balls may be.
 fn rays() -> Vec<Option<(DVec3, f64)>> {
     let [width, height] = SIZE.map(f64::from);
     let forward = LOOK.normalize();
@@ -81,19 +81,19 @@ fn rays() -> Vec<Option<(DVec3, f64)>> {
         let ray = ray.normalize();
         let way_m = -EYE.y / ray.y;
         let met = EYE + ray * way_m;
-        // A pixel within the edge of the plane, so that no neighbor of another kind counts.
+        // A pixel inside the plane's border, so that edges do not matter.
         let ground = ray.y < 0.0 && met.x.abs() < 7.5 && (1.5..7.5).contains(&met.z);
         if ground { Some((ray, way_m)) } else { (ray.y > 0.0).then_some((ray, 1e10)) }
     };
     (0..SIZE[0] * SIZE[1]).map(ray).collect()
 }
 
-/// Share of light that fog takes on a way, its density summed at the middles of steps that grow with the distance.
+/// Returns the opacity of fog along a ray, by integration with geometric steps.
 fn hidden(fog: &FogSettings, start_m: f32, ray: DVec3, way_m: f64) -> f64 {
     const STEPS: u32 = 4000;
     let (density, falloff, height) = (f64::from(fog.density), f64::from(fog.falloff), f64::from(fog.height_m));
     let start_m = f64::from(start_m);
-    // Beyond that distance there is no fog above, and below none is seen through.
+    // Beyond this distance there is no fog above, and below, the fog is opaque.
     let way_m = if ray.y.abs() * falloff > 0.0 { way_m.min(start_m + 60.0 / (ray.y.abs() * falloff)) } else { way_m };
     if way_m <= start_m {
         return 0.0;
@@ -108,7 +108,8 @@ fn hidden(fog: &FogSettings, start_m: f32, ray: DVec3, way_m: f64) -> f64 {
     1.0 - (-depth).exp()
 }
 
-/// The largest difference between a picture in fog and the one without, faded by hand, in shares of the brightest channel.
+/// Returns the largest difference between a picture with fog and one without that is faded by `expected`, relative to
+/// the brightest channel.
 fn off(clear: &[[f32; 4]], shot: &[[f32; 4]], expected: impl Fn(DVec3, f64, DVec3) -> DVec3) -> f64 {
     let mut worst = 0.0_f64;
     let mut seen = [0, 0];
@@ -123,7 +124,7 @@ fn off(clear: &[[f32; 4]], shot: &[[f32; 4]], expected: impl Fn(DVec3, f64, DVec
     worst
 }
 
-/// Both pictures are half floats, which are good to 1/2048 each; the sums err by less.
+/// Both pictures have half floats with a relative error of 1/2048 each; integration errors are smaller.
 const BOUND: f64 = 2e-3;
 
 #[test]
@@ -155,7 +156,7 @@ fn fog_hides_what_its_density_along_the_ray_does() -> TestResult {
         most = most.max(worst);
     }
     documented("fog", most);
-    // What Filament takes for the mean density where the start is clear is another number.
+    // Filament's mean density for a clear start differs.
     let filament = shoot(&gpu, Some(FogSettings { exact: false, ..low }), &background)?;
     let faded = |ray: DVec3, way_m: f64, clear: DVec3| {
         let share = hidden(&low, low.start_m, ray, way_m);
@@ -167,7 +168,7 @@ fn fog_hides_what_its_density_along_the_ray_does() -> TestResult {
     Ok(())
 }
 
-/// The environment is even, so its color is known whatever the level; a black sky is in fog too.
+/// The environment is uniform, so its color does not depend on the level; a black sky is covered by fog too.
 #[test]
 fn fog_takes_the_environments_color() -> TestResult {
     let Some(gpu) = gpu("fog_takes_the_environments_color") else { return Ok(()) };
@@ -183,14 +184,13 @@ fn fog_takes_the_environments_color() -> TestResult {
     Ok(())
 }
 
-/// Where fog hides all, it has the colors of the environment as the roughest surface mirrors them, and a level less blurred beyond
-/// the distance that is stated.
+/// Opaque fog has the color of the environment's roughest level, and of a sharper level beyond a stated distance.
 #[test]
 fn far_fog_takes_a_sharper_image() -> TestResult {
     let Some(gpu) = gpu("far_fog_takes_a_sharper_image") else { return Ok(()) };
     let map = EquirectMap::from_fn(256, 128, |d| DVec3::splat(2.0 + 1.9 * d.x));
     let sky = Environment { name: "slope".into(), map, sun: None, filtered: None, warnings: Vec::new() };
-    // What is seen at the left and at the right of the sky, and the rays there.
+    // Colors at the left and right of the sky, and the rays there.
     let ends = [8, SIZE[0] as usize - 8];
     let rays = ends.map(|at| rays()[at].map_or(DVec3::ZERO, |(ray, _)| ray));
     let slope = |sharp_m: f32, sharp_levels: f32| -> Result<f64, Box<dyn Error>> {
@@ -201,7 +201,7 @@ fn far_fog_takes_a_sharper_image() -> TestResult {
     };
     let [near, far, sky_itself] = [slope(1e20, 16.0)?, slope(1e-3, 1.0)?, slope(1e-3, 16.0)?];
     let blurred = |roughness: f64| gathered(DVec3::Z, roughness, |l| DVec3::splat(l.z)).z;
-    // Between the four texels across a face of that level the slope is not straight.
+    // The slope is not linear between the four texels of a face at this level.
     assert!((near / blurred(1.0) - 1.0).abs() < 0.08, "{near} for {}", blurred(1.0));
     assert!(far > 1.05 * near && far < 1.0, "{far} beyond, {near} before");
     // All levels leave no blur: Filament's `skyColor`.
@@ -209,7 +209,7 @@ fn far_fog_takes_a_sharper_image() -> TestResult {
     Ok(())
 }
 
-/// Without density, and with all of it out of reach, no bit differs; and fog changes no plan.
+/// Fog without density, or entirely out of range, changes no bit; fog changes no plan.
 #[test]
 fn fog_of_no_density_changes_no_bit() -> TestResult {
     let options = Options::for_frame(64, 64);

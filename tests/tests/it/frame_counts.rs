@@ -1,4 +1,4 @@
-//! The standard frame's loads and stores, worked out by hand in the comments.
+//! Loads and stores of the standard frame, derived by hand in the comments.
 
 use crate::stage::plan;
 use framegraph::{Caps, Counts, LoadOp, Options, StoreOp, dump};
@@ -13,7 +13,7 @@ fn counts(settings: Settings) -> Counts {
     plan(&settings, &Caps::wgpu(), &Options::for_frame(FRAME[0], FRAME[1])).counts()
 }
 
-/// With post-processing in a pass of its own.
+/// Returns the counts with a separate post-processing pass.
 fn counts_apart(settings: Settings) -> Counts {
     plan(&settings, &Caps::wgpu(), &Options { inline: false, ..Options::for_frame(FRAME[0], FRAME[1]) }).counts()
 }
@@ -44,8 +44,8 @@ fn one_sample() {
     assert_eq!(counts(ONE), expected);
 }
 
-/// As with one sample, but: hdr_samples clear -> discard (memoryless, in the format of ldr), and ldr is the target of its
-/// resolve, one of the three stores.
+/// As with one sample, but hdr_samples is cleared and discarded (memoryless, in the format of ldr), and ldr is its
+/// resolve target, one of the three stores.
 #[test]
 fn four_samples() {
     let one = counts(ONE);
@@ -53,7 +53,7 @@ fn four_samples() {
     assert_eq!(counts(FOUR), expected);
 }
 
-/// Post apart: hdr is stored for it (one of four stores), and ldr is its own attachment.
+/// With a separate post-processing pass, hdr is stored for it (one of four stores), and ldr is its attachment.
 ///
 /// prepass + color  hdr           clear      STORE   (post reads it)
 ///                  depth         clear      discard: memoryless
@@ -73,8 +73,8 @@ fn without_inlining() {
     }
 }
 
-/// Each effect in a pass of its own: inlined they are still one chain in the color pass; apart, exposure and tone curve
-/// store one picture each that the next pass reads.
+/// Each effect in its own pass: with inlining, they form a chain in the color pass. Without inlining, exposure and tone
+/// curve each store a picture that the next pass reads.
 #[test]
 fn split_into_passes() {
     for settings in [ONE, FOUR] {
@@ -92,7 +92,7 @@ fn split_into_passes() {
     }
 }
 
-/// A surface that blends must blend before it is graded: the plan falls back.
+/// Blending must happen before grading, so post-processing is not inlined.
 #[test]
 fn blending_keeps_post_apart() {
     for settings in [ONE, FOUR] {
@@ -100,8 +100,8 @@ fn blending_keeps_post_apart() {
     }
 }
 
-/// FXAA off: the output takes the place of ldr. Without inlining, post writes the output itself. One step, one store and
-/// one pass less either way.
+/// Without FXAA, the output replaces ldr. Without inlining, post-processing writes the output. Both have one step,
+/// store and pass less.
 #[test]
 fn without_fxaa() {
     for (settings, counts) in [ONE, FOUR].into_iter().flat_map(|s| [counts, counts_apart].map(|c| (s, c))) {
@@ -118,8 +118,8 @@ fn without_fxaa() {
     }
 }
 
-/// Four cascades beside Filament's table (four shadow layers: four stores, no load): three clears and stores more than one map
-/// has. The maps of a point light are six more; moments are stored once a map, and blurred twice.
+/// Four cascades, as in Filament's table (four shadow layers: four stores, no load), add three clears and stores to a
+/// single map. A point light adds six maps. Moments are stored once per map, and blurred twice.
 ///
 /// shadow/cascade   shadow_map layer  clear      STORE
 /// shadow/cascade   moments layer     clear      STORE, its depth clear -> discard (memoryless)
@@ -141,7 +141,7 @@ fn cascades_and_their_filters() {
     assert_eq!(with(four), more(3));
     assert_eq!(with(ShadowSettings { filter: ShadowFilter::Pcss, ..four }), more(3));
     assert_eq!(with(ShadowSettings { local_maps: 6, ..four }), more(9));
-    // Six maps that share a layer are one more, and take a sixth of the memory.
+    // Six maps in one layer add one clear and store, and take a sixth of the memory.
     let [apart, shared] = [6, 1].map(|local_layers| ShadowSettings { local_maps: 6, local_layers, ..four });
     assert_eq!(with(shared), more(4));
     let bytes = |shadows| {
@@ -156,7 +156,7 @@ fn cascades_and_their_filters() {
         Counts { clears: more(3).clears + 4, discards: one.discards + 4, memoryless: one.memoryless + 4, ..more(3) };
     assert_eq!(with(moments), drawn);
     let blurred = ShadowSettings { moments: MomentSettings { blur_texels: 5.0, ..four.moments }, ..moments };
-    // The structure that contact shadows look around in: drawn and stored once, as by Filament, at any number of cascades.
+    // The depth structure for contact shadows is drawn and stored once, as in Filament, for any number of cascades.
     assert_eq!(with(ShadowSettings { contact: Some(ContactShadows::FILAMENT), ..four }), more(4));
     let expected = Counts {
         resolves: drawn.resolves + 8,
@@ -168,7 +168,7 @@ fn cascades_and_their_filters() {
     assert_eq!(with(blurred), expected);
 }
 
-/// Each effect of several passes says in the plan why it is there; one that is not there says nothing.
+/// The plan states the reason for each effect with several passes, and nothing for absent ones.
 #[test]
 fn effects_say_why_they_are_there() {
     let told = |settings: &Settings| {
@@ -193,7 +193,7 @@ fn effects_say_why_they_are_there() {
     assert!(told(&Settings { shadows: None, ..ONE }).is_empty());
 }
 
-/// Shadows off: the shadow map's clear and store go with its step.
+/// Without shadows, the shadow map's clear and store are gone with its step.
 #[test]
 fn without_shadows() {
     for settings in [ONE, FOUR] {
@@ -211,8 +211,8 @@ fn without_shadows() {
     }
 }
 
-/// Without merging, the prepass stores depth and the color pass loads it: one unresolve and one resolve more, and depth
-/// takes memory. The color pass is its last reader and discards it.
+/// Without merging, the prepass stores depth and the color pass loads it: one more load and store, and depth takes
+/// memory. The color pass reads it last and discards it.
 #[test]
 fn without_merging() {
     let options = Options { merge: false, ..Options::for_frame(FRAME[0], FRAME[1]) };
@@ -225,9 +225,9 @@ fn without_merging() {
     assert_eq!(ops, [(LoadOp::Clear, StoreOp::Store), (LoadOp::Load, StoreOp::Discard)]);
 }
 
-/// Only the linear picture is wanted: post and fxaa are culled.
+/// If only the linear picture is used, post-processing and FXAA are culled.
 #[test]
-fn culled_when_nobody_looks() {
+fn unused_passes_are_culled() {
     let mut frame = framegraph_wgpu::Frame::<framegraph_passes::World>::new();
     let io = framegraph_passes::standard(&mut frame, &ONE, framegraph::Target::New).expect("a sound frame");
     frame.graph_mut().readback(io.hdr).unwrap();
@@ -239,7 +239,7 @@ fn culled_when_nobody_looks() {
     assert_eq!((counts.culled, counts.passes, counts.resolves), (2, 3, 2));
 }
 
-/// The plan is the same to the byte in two runs, and the same as in the committed file, which another process wrote.
+/// Two runs give the same plan, byte for byte, as the committed file from another process.
 #[test]
 fn the_plan_is_reproducible() {
     let make = || {

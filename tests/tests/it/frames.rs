@@ -1,5 +1,5 @@
-//! The standard frame from frame to frame: the same picture however it is planned, through resizes and toggles, and
-//! nothing made anew once it is warm.
+//! The standard frame over time: equal pictures from every plan, through resizes and toggles, and no new objects once
+//! warm.
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Alias, Options, Order, Placement, Plan, Scratch};
@@ -11,7 +11,7 @@ use framegraph_scene::{Scene, progress};
 use framegraph_wgpu::{Executor, Gpu, Imports, ObjectCounts, Workers, read_texture};
 use std::error::Error;
 
-/// A scene with all that one executor keeps from frame to frame.
+/// A scene with everything that an executor caches between frames.
 struct Film {
     gpu: Gpu,
     scene: Scene,
@@ -34,12 +34,12 @@ impl Film {
         Ok(Self { gpu: gpu.clone(), scene, world, executor, plan, scratch })
     }
 
-    /// Forgets everything that was made for earlier frames.
+    /// Discards everything cached from earlier frames.
     fn forget(&mut self) {
         self.executor = Executor::new(&self.gpu);
     }
 
-    /// One frame, declared anew; its picture.
+    /// Declares and draws one frame; returns its picture.
     fn shoot(&mut self, shot: &Shot) -> Result<Vec<u8>, Box<dyn Error>> {
         let view = view_of(&self.scene, &self.world.lighting.image, &Background::Environment, shot);
         self.world.set_view(&self.gpu, ViewId::MAIN, view)?;
@@ -53,7 +53,7 @@ impl Film {
     }
 }
 
-/// Ten frames that all look different, with a resize to an odd size in the middle.
+/// Returns ten frames that all look different, with a resize to an odd size in the middle.
 fn ten(settings: Settings) -> Vec<Shot> {
     let shot = |index: u8| Shot {
         size_px: if index < 5 { [64, 36] } else { [51, 43] },
@@ -63,7 +63,7 @@ fn ten(settings: Settings) -> Vec<Shot> {
     (0..10).map(shot).collect()
 }
 
-/// Neither black nor one color: most of the picture is lit, and it has many colors.
+/// Returns true if most of the picture is lit, and it has many colors.
 fn is_picture(rgba8: &[u8]) -> bool {
     let lit = rgba8.chunks_exact(4).filter(|t| t[0] > 8).count() * 4 > rgba8.len() / 2;
     let mut colors: Vec<_> = rgba8.chunks_exact(4).collect();
@@ -77,8 +77,7 @@ fn ten_frames_with_a_resize_are_the_same_however_they_are_planned() -> Result<()
     let Some(gpu) = gpu("ten_frames_with_a_resize_are_the_same_however_they_are_planned") else { return Ok(()) };
     let mut film = Film::new(&gpu, "spheres")?;
     let base = Options::default();
-    // Inlining grades each sample; at one sample, and with the rounding of a store, it is the same to the bit, which
-    // `inline` shows.
+    // Inlining grades each sample. At one sample, and with the rounding of a store, it is bit-exact, as `inline` tests.
     let base = Options { inline: false, ..base };
     let ways = [
         base,
@@ -101,7 +100,7 @@ fn ten_frames_with_a_resize_are_the_same_however_they_are_planned() -> Result<()
                 Some(picture) => assert!(found == *picture, "frame {index} of {options:?}"),
                 None => {
                     assert!(is_picture(&found), "frame {index}");
-                    // Each frame has its own exposure: one that shows the frame before is noticed.
+                    // Each frame has its own exposure, so a stale frame is detected.
                     assert!(expected.last() != Some(&found), "frame {index} is the one before it");
                     expected.push(found);
                 }
@@ -111,8 +110,8 @@ fn ten_frames_with_a_resize_are_the_same_however_they_are_planned() -> Result<()
     Ok(())
 }
 
-/// With every effect and its histories, frame after frame: textures in one block of memory, recorded on three threads, show what
-/// they show apart, recorded on one; and so it is with the first frames of every other way.
+/// Places frames with every effect and its histories in one block of memory, and records them on three threads. They
+/// equal frames with separate textures recorded on one thread. The first frames of every other variant are equal too.
 #[test]
 fn frames_in_one_block_of_memory_are_the_frames_apart() -> Result<(), Box<dyn Error>> {
     const NAME: &str = "frames_in_one_block_of_memory_are_the_frames_apart";
@@ -148,7 +147,7 @@ fn frames_in_one_block_of_memory_are_the_frames_apart() -> Result<(), Box<dyn Er
             (alias == Alias::Heap, threads),
             "{placed} are placed"
         );
-        // What the driver gave is less than it asks for one by one.
+        // Sharing needs less memory than separate textures.
         let given = film.executor.allocated();
         assert_eq!(given.placed > 0 && given.placed < given.unshared, alias == Alias::Heap, "{given:?}");
     }
@@ -189,7 +188,7 @@ fn toggles_and_odd_sizes_show_neither_black_nor_stale_frames() -> Result<(), Box
 #[test]
 fn a_warm_frame_makes_no_object() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu("a_warm_frame_makes_no_object") else { return Ok(()) };
-    // Up to forty frames for what most scenes are made of; a few for those that call for more passes or more shaders.
+    // Up to forty frames for basic scenes; a few for those with more passes or shaders.
     let most = test_report::share(0..40_u8).len() as u8;
     for (scene, frames) in [("materials", most), ("glass", 4), ("lobes", 4)] {
         warm_frames_make_no_object(&gpu, scene, frames).map_err(|error| format!("{scene}: {error}"))?;
@@ -216,7 +215,7 @@ fn warm_frames_make_no_object(gpu: &Gpu, scene: &str, frames: u8) -> Result<(), 
         }
         let made = film.executor.objects().since(&before);
         assert_eq!(made, ObjectCounts::default(), "{scene}: made in {frames} frames");
-        // Every look-up found what it asked for: views, bind groups and pipelines of each pass, textures of the plan.
+        // Every cache lookup hits: views, bind groups and pipelines of each pass, textures of the plan.
         for ((name, after), before) in film.executor.caches().into_iter().zip(counts) {
             let hits = after.hits - before.hits;
             let each = u64::from(film.plan.counts().passes);

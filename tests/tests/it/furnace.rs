@@ -1,4 +1,4 @@
-//! White furnaces through the standard frame: what goes in comes out, and what is switched off is lost as is known.
+//! White furnace tests of the standard frame: energy is preserved, and disabled compensation loses a known share.
 
 use crate::light_document::numbers;
 use crate::stage::gpu;
@@ -17,21 +17,21 @@ type TestResult = Result<(), Box<dyn Error>>;
 const ROUGHNESS: [f64; 8] = [0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 1.0];
 const NOV: [f64; 5] = [0.1, 0.3, 0.5, 0.8, 1.0];
 
-/// Perfect conductors at every roughness and angle.
+/// Returns perfect conductors at every roughness and angle.
 fn mirrors() -> Wall {
     let card = |r: f64| NOV.map(|nov| Card { material: Material::metal("furnace", Vec3::ONE, r as f32), nov });
     Wall { cards: ROUGHNESS.into_iter().flat_map(card).collect(), ..Wall::default() }
 }
 
-/// How many codes the worst card differs by from the environment beside it.
+/// Returns the largest difference between a card and the environment beside it, in 8-bit steps.
 fn codes_apart(seen: &[Seen]) -> u8 {
     let (beside, cards) = seen.split_last().expect("something is seen");
     let apart = |card: &Seen| (0..3).map(|c| card.code[c].abs_diff(beside.code[c])).max();
     cards.iter().filter_map(apart).max().unwrap_or(0)
 }
 
-/// Nothing is seen of a perfect conductor in even light, but for a code; without compensation it loses what single
-/// scattering does, which for the exact term is 1 - E by quadrature.
+/// A perfect conductor in uniform light is invisible, to one 8-bit step. Without compensation, it loses the share of
+/// multiple scattering, which for the exact term is 1 - E by quadrature.
 #[test]
 fn a_perfect_conductor_vanishes_in_even_light() -> TestResult {
     let Some(gpu) = gpu("a_perfect_conductor_vanishes_in_even_light") else { return Ok(()) };
@@ -40,7 +40,7 @@ fn a_perfect_conductor_vanishes_in_even_light() -> TestResult {
     for quality in Quality::ALL {
         let seen = wall.render(&gpu, &environment, &quality.shading())?;
         assert!(codes_apart(&seen) <= 1, "{quality:?}: {} codes", codes_apart(&seen));
-        // The picture is not merely even: it shows the light that there is.
+        // The picture shows the environment's radiance, rather than any uniform color.
         let beside = seen.last().map(|s| s.nits).unwrap_or_default();
         assert!((beside - DVec3::new(1.0, 0.5, 0.25)).abs().max_element() < 1e-3, "{beside}");
 
@@ -50,20 +50,20 @@ fn a_perfect_conductor_vanishes_in_even_light() -> TestResult {
         let masking = if quality == Quality::Low { Masking::Hammon } else { Masking::Smith };
         for (card, seen) in wall.cards.iter().zip(&seen) {
             let [_, kept] = ggx(card.nov, card.material.roughness.into(), masking);
-            // Half floats, a table of 64², and eleven bits of the cube.
+            // Half floats, a 64² table, and 11 bits of the cube.
             assert!((seen.nits.x - kept).abs() < 4e-3, "{quality:?} {card:?}: {} for {kept}", seen.nits.x);
         }
     }
     Ok(())
 }
 
-/// Mean and worst errors of compensation against a random walk are those of the design (accuracy 1.3), in both qualities.
+/// Mean and largest errors of compensation against a random walk match the design (accuracy 1.3), at both qualities.
 #[test]
-fn compensation_through_the_frame_errs_as_stated() -> TestResult {
-    let Some(gpu) = gpu("compensation_through_the_frame_errs_as_stated") else { return Ok(()) };
+fn compensation_in_the_frame_has_the_stated_error() -> TestResult {
+    let Some(gpu) = gpu("compensation_in_the_frame_has_the_stated_error") else { return Ok(()) };
     let truth = truth(4000);
     let errors = frame_errors(&gpu, &Quality::High.shading(), &truth)?;
-    // f0 = 1, 0.9, 0.6, 0.3, 0.04; 4000 walks err by up to 2 %.
+    // f0 = 1, 0.9, 0.6, 0.3, 0.04; 4000 walks have an error of up to 2 %.
     for ((e, f0), (mean, worst)) in
         errors.iter().zip(F0).zip([(0.0, 0.0), (0.005, 0.047), (0.016, 0.145), (0.021, 0.13), (0.034, -0.08)])
     {
@@ -77,7 +77,8 @@ fn compensation_through_the_frame_errs_as_stated() -> TestResult {
     Ok(())
 }
 
-/// Lights get back what image-based light does: the ratio of on to off is 1/E, and a table of the other term is noticed.
+/// Direct lights are compensated like image-based light: the ratio of on to off is 1/E. A table of the wrong term is
+/// detected.
 #[test]
 fn lights_are_compensated_by_the_table_of_their_term() -> TestResult {
     let Some(gpu) = gpu("lights_are_compensated_by_the_table_of_their_term") else { return Ok(()) };
@@ -99,7 +100,7 @@ fn lights_are_compensated_by_the_table_of_their_term() -> TestResult {
     };
     let high = apart(&ratios(Quality::High.shading())?, Masking::Smith);
     let low = apart(&ratios(Quality::Low.shading())?, Masking::Hammon);
-    // Two half floats, and a table of 64².
+    // Two half floats, and a 64² table.
     assert!(high < 6e-3 && low < 6e-3, "{high} {low}");
     let mixed = Shading { table: Visibility::Exact, ..Quality::Low.shading() };
     let mixed = apart(&ratios(mixed)?, Masking::Hammon);

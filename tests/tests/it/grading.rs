@@ -1,5 +1,5 @@
-//! Color grading: tables made once and as near as the document says, what only tables know, and inputs that break curves:
-//! the design's hard cases, by their numbers there.
+//! Color grading: errors of tables, features that only tables have, and hard inputs of curves, numbered as in the
+//! design.
 
 use crate::stage::{Set, Shot, gpu};
 use framegraph_passes::grading::{Extras, GradeBy, GradingTables, Look, OwnCurve, TableDesc};
@@ -19,12 +19,12 @@ use tests::reference::document::Document;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Settings alone.
+/// Extras of settings alone.
 static NO_EXTRAS: Extras = Extras { own: None, colors: None };
 
 const DOCUMENT: &str = include_str!("../../../docs/grading.md");
 
-/// The document's table is what the command prints. Tables of 64 entries a side are left to the command.
+/// The document's table matches the command's output; tables with 64 entries per axis are left to the command.
 #[test]
 fn tables_are_as_near_as_the_document_says() -> TestResult {
     assert!(DOCUMENT.contains(HEAD), "the head of the table");
@@ -52,7 +52,7 @@ fn tables_are_as_near_as_the_document_says() -> TestResult {
     Ok(())
 }
 
-/// Looks computed in f64 on the charts that Filament graded: what its table rounds off is all that differs.
+/// Looks computed in f64 on charts graded by Filament differ only by the rounding of its table.
 #[test]
 fn directly_computed_charts_are_as_near_as_the_document_says() -> TestResult {
     let folder = references().with_file_name("filament_frame");
@@ -80,13 +80,13 @@ fn directly_computed_charts_are_as_near_as_the_document_says() -> TestResult {
     Ok(())
 }
 
-/// Numbers that break ordinary arithmetic (47, 48, 49, 56).
+/// Hard inputs of arithmetic (rows 47, 48, 49, 56).
 const HARD: Domain = Domain::Values(&[
     0.0, -0.0, -0.2, -1.0, -0.008_64, 6e-8, 1e-6, 6.1e-5, 0.18, 1.0001, 58.86, 160.0, 161.6, 65504.0, 1e19, 1.2e19,
     3e38,
 ]);
 
-/// Results of a function at hard inputs, in f32 and, where the device has it, in the build in half floats.
+/// Evaluates a function at hard inputs in f32 and, if the device supports it, in half floats.
 fn at(name: &str, parameters: &'static [Domain], holds: impl Fn(&[f32], &[f32]) -> bool) -> TestResult {
     let Some(gpu) = gpu(name) else { return Ok(()) };
     let halves = gpu.device.features().contains(wgpu::Features::SHADER_F16);
@@ -97,7 +97,7 @@ fn at(name: &str, parameters: &'static [Domain], holds: impl Fn(&[f32], &[f32]) 
             continue;
         }
         let case = Case { parameters, in_half, ..*function };
-        // Colors are in 32 bits in both builds, so inputs need not be half floats.
+        // Colors are f32 in both builds, so inputs need not be half floats.
         let inputs = Case { in_half: false, ..case }.inputs(4096);
         let results = mirror::results(&gpu, &case, &inputs)?;
         let rows = inputs.chunks_exact(case.input_width()).zip(results.chunks_exact(case.results.len()));
@@ -116,7 +116,7 @@ fn in_unit(y: &[f32]) -> bool {
 #[test]
 fn hard_case_47_no_curve_leaves_its_range() -> TestResult {
     at("tone_map", &[HARD, HARD, HARD, Domain::Count(13), Domain::Count(2)], |_, y| in_unit(y))?;
-    // Greys do not turn dark as light grows.
+    // Grays do not get darker as light grows.
     at("tone_aces", &[Domain::Vector(3, 100.0, 1e19), Domain::Values(&[1.0, 1.0 / 0.6])], |_, y| {
         y.iter().all(|y| *y > 0.5)
     })
@@ -136,7 +136,7 @@ fn hard_case_49_encoding_stays_within() -> TestResult {
     at("linear_from_srgb", &[HARD, HARD, HARD], |_, y| in_unit(y))
 }
 
-/// What a texture of 11 or 16 bits is given is what it can hold.
+/// Values stored in textures of 11 or 16 bits are within the format's range.
 #[test]
 fn hard_case_26_stored_light_is_finite() -> TestResult {
     at("quantize_rgba16float", &[HARD, HARD, HARD, HARD, Domain::Count(2)], |_, y| {
@@ -165,7 +165,7 @@ fn hard_case_55_noise_does_not_repeat_far_out() -> TestResult {
     Ok(())
 }
 
-/// Exposure is a factor in 32 bits, and no light becomes none.
+/// Exposure is an f32 factor that never becomes 0.
 #[test]
 fn hard_case_21_exposure_is_finite_and_above_zero() {
     for ev in [-24.0, -20.0, -15.0, -10.0, 0.0, 10.0, 16.0] {
@@ -180,7 +180,7 @@ fn settings(look: Look, by: GradeBy) -> Settings {
     Settings { samples: 1, fxaa: false, shadows: None, post, ..Settings::default() }
 }
 
-/// A table is made once for a look, whatever the number of frames, and again when the look changes.
+/// A look's table is computed once for any number of frames, and again when the look changes.
 #[test]
 fn a_table_is_made_once_for_a_look() -> TestResult {
     let Some(gpu) = gpu("a_table_is_made_once_for_a_look") else { return Ok(()) };
@@ -197,7 +197,7 @@ fn a_table_is_made_once_for_a_look() -> TestResult {
         let off = |(a, b): (&u8, &u8)| f64::from(a.abs_diff(*b));
         a.iter().zip(b).map(off).sum::<f64>() / a.len() as f64
     };
-    // The document's mean error of 16 entries is under two codes.
+    // The mean error of 16 entries in the document is below two 8-bit steps.
     assert!((1e-3..2.0).contains(&apart(&direct, &table)), "{}", apart(&direct, &table));
     let aces = Look { tone_map: ToneMap::Aces, ..Look::default() };
     set.shoot(&gpu, &Shot::small(settings(aces, by)))?;
@@ -205,7 +205,7 @@ fn a_table_is_made_once_for_a_look() -> TestResult {
     Ok(())
 }
 
-/// What only a table knows: a curve of one's own, and colors of a file; without a table they are refused in words.
+/// Custom curves and colors from a file need a table; without one, the error explains this.
 #[test]
 fn tables_know_curves_and_colors_of_ones_own() -> TestResult {
     let Some(gpu) = gpu("tables_know_curves_and_colors_of_ones_own") else { return Ok(()) };
@@ -231,14 +231,14 @@ fn tables_know_curves_and_colors_of_ones_own() -> TestResult {
     let (changed, _) = set.shoot(&gpu, &shot(linear, by))?;
     for (a, b) in by_name.chunks_exact(4).zip(changed.chunks_exact(4)) {
         let off = (0..3).map(|c| a[c].abs_diff(b[2 - c])).max();
-        // Codes of a half float of a table, interpolated by the device.
+        // 8-bit steps of interpolated half floats.
         assert!(off <= Some(1), "{a:?} {b:?}");
     }
     assert!(told(set.shoot(&gpu, &shot(linear, GradeBy::Direct))).contains("a file of colors"));
     Ok(())
 }
 
-/// Tables belong to the world: they know nothing beside settings unless told.
+/// Tables have no extras by default.
 #[test]
 fn new_tables_have_no_extras() {
     let tables = GradingTables::default();

@@ -1,5 +1,5 @@
-//! The shading library in half floats, on a device that has them: against its mirrors, at inputs that break it, and with
-//! what must not pass.
+//! The shading library in half floats, on a device that supports them: compared with mirrors, at hard inputs, and with
+//! negative controls.
 
 use crate::stage;
 use framegraph_passes::Precision;
@@ -16,7 +16,7 @@ mod hard;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// A device whose shaders can compute in half floats, or the words for why there is none.
+/// Returns a device with half floats in shaders; otherwise reports `test` as skipped.
 fn gpu(test: &str) -> Option<Gpu> {
     let gpu = stage::gpu(test)?;
     if gpu.device.features().contains(wgpu::Features::SHADER_F16) {
@@ -30,7 +30,7 @@ fn case(function: &str) -> Result<Case, String> {
     cases::half().find(|case| case.function == function).ok_or(format!("{function} has no case in half floats"))
 }
 
-/// And the document's table is theirs.
+/// Also compares the document's table.
 #[test]
 fn every_function_of_the_half_build_equals_its_mirror_on_the_device() -> TestResult {
     let test = "every_function_of_the_half_build_equals_its_mirror_on_the_device";
@@ -52,7 +52,7 @@ fn every_function_of_the_half_build_equals_its_mirror_on_the_device() -> TestRes
 
 const DOCUMENT: &str = include_str!("../../../docs/half-floats.md");
 
-/// The cells of the rows of the table under a heading that begins so.
+/// Returns the cells of the table below a heading.
 fn documented(heading: &str) -> Vec<Vec<&'static str>> {
     let mark = format!("\n## {heading}");
     let (_, after) = DOCUMENT.split_once(&mark).expect("the document has the heading");
@@ -62,7 +62,7 @@ fn documented(heading: &str) -> Vec<Vec<&'static str>> {
     lines.skip(2).map(cells).collect()
 }
 
-/// Figures are those of one device; another rounds in other places.
+/// Returns true on the document's adapter, since rounding depends on the device.
 fn on_the_documents_adapter(test: &str, gpu: &Gpu) -> bool {
     let same = DOCUMENT.contains(&format!("Adapter: {}\n", gpu.describe()));
     if !same {
@@ -71,14 +71,14 @@ fn on_the_documents_adapter(test: &str, gpu: &Gpu) -> bool {
     same
 }
 
-/// The document's figure is the measured one, but for what another processor under the same driver may do.
+/// Checks a documented figure, with a tolerance for other processors under the same driver.
 fn same(what: &str, told: &str, measured: f64) {
     let told: f64 = told.parse().unwrap_or_else(|e| panic!("{what}: {told}: {e}"));
     assert!((told - measured).abs() <= 0.2 * measured.abs() + 1e-9, "{what}: {told} is told, {measured} measured");
 }
 
-/// What the textbook makes of the distribution in half floats lies outside of the bound, and so does a result that is 10 %
-/// off where half floats are good to less.
+/// Negative controls: the textbook's distribution in half floats exceeds the bound. A result that is off by 10 % does
+/// too, if half floats are more precise.
 #[test]
 fn the_textbook_form_and_results_that_are_off_are_found() -> TestResult {
     let Some(gpu) = gpu("the_textbook_form_and_results_that_are_off_are_found") else { return Ok(()) };
@@ -96,11 +96,11 @@ fn the_textbook_form_and_results_that_are_off_are_found() -> TestResult {
     Ok(())
 }
 
-/// The design's table of D, with what was measured there: median and 99th percentile.
+/// The design's table of D: median and 99th percentile.
 #[test]
-fn the_distribution_errs_as_stated() -> TestResult {
-    let Some(gpu) = gpu("the_distribution_errs_as_stated") else { return Ok(()) };
-    let check = on_the_documents_adapter("the_distribution_errs_as_stated", &gpu);
+fn the_distribution_has_the_stated_error() -> TestResult {
+    let Some(gpu) = gpu("the_distribution_has_the_stated_error") else { return Ok(()) };
+    let check = on_the_documents_adapter("the_distribution_has_the_stated_error", &gpu);
     let documented = documented("GGX");
     assert_eq!(documented.len(), half_table::ROUGHNESS.len());
     for (roughness, told) in half_table::ROUGHNESS.into_iter().zip(documented) {
@@ -108,7 +108,7 @@ fn the_distribution_errs_as_stated() -> TestResult {
         let stated = [(0.089, 0.011, 0.085), (0.2, 0.0025, 0.017), (0.5, 0.0010, 0.0041)];
         let [textbook, product, cross, half_textbook, half_cross] = errors;
         if let Some((_, median, p99)) = stated.into_iter().find(|(r, ..)| *r == roughness) {
-            // Other samples than the design's, and two digits there.
+            // The samples differ from the design's, which has two digits.
             let e = half_cross;
             assert!(e.median < 1.25 * median && e.p99 < 1.25 * p99, "roughness {roughness}: {e:?}");
             assert!([textbook, product, cross].iter().all(|e| e.p99 < 0.01), "roughness {roughness}: {errors:?}");
@@ -124,7 +124,7 @@ fn the_distribution_errs_as_stated() -> TestResult {
     Ok(())
 }
 
-/// Pictures in half floats look like those in f32, and unlike those with wider highlights.
+/// Pictures in half floats resemble those in f32, unlike pictures with wider highlights.
 #[test]
 fn pictures_in_half_floats_are_close() -> TestResult {
     let test = "pictures_in_half_floats_are_close";
@@ -133,7 +133,7 @@ fn pictures_in_half_floats_are_close() -> TestResult {
     for (scene, told) in half_table::SCENES.into_iter().zip(documented("Pictures")) {
         let studio = Studio::new(&gpu, scene)?;
         let d = studio.difference(&gpu, 0.089)?;
-        // The design measured 0.9 codes on a sphere; a channel next to a rounding moves by one more.
+        // The design measured 0.9 8-bit steps on a sphere; rounding can add one.
         assert!(d.psnr_db > 58.0 && d.largest_codes <= 3, "{scene}: {d:?}");
         assert_eq!(told[0], scene);
         if check {
@@ -148,10 +148,10 @@ fn pictures_in_half_floats_are_close() -> TestResult {
     Ok(())
 }
 
-/// A precision that a device lacks is refused with its name, and one that it has makes a picture.
+/// A precision that the device lacks is rejected by name, and a supported one makes a picture.
 #[test]
-fn a_device_without_half_floats_is_told() -> TestResult {
-    let Some(gpu) = stage::gpu("a_device_without_half_floats_is_told") else { return Ok(()) };
+fn a_device_without_half_floats_is_reported() -> TestResult {
+    let Some(gpu) = stage::gpu("a_device_without_half_floats_is_reported") else { return Ok(()) };
     let has = gpu.device.features().contains(wgpu::Features::SHADER_F16);
     let studio = Studio::new(&gpu, "spheres")?;
     match studio.shoot(&gpu, Precision::Half, 0.089) {
@@ -161,8 +161,8 @@ fn a_device_without_half_floats_is_told() -> TestResult {
     Ok(())
 }
 
-/// Devices may make zero of numbers below 6.1e-5. On the CPU, operation by operation, both kinds stay within the bounds that
-/// the shader is held to; without the factor on squares they do not.
+/// Devices may flush numbers below 6.1e-5 to zero. A CPU model stays within the shader's bounds with and without
+/// flushing, but not without the factor on squares.
 #[test]
 fn bounds_hold_whether_or_not_small_numbers_are_flushed() -> TestResult {
     let (d, v) = (case("d_ggx_cross")?, case("v_smith_ggx_correlated")?);
@@ -186,7 +186,7 @@ fn bounds_hold_whether_or_not_small_numbers_are_flushed() -> TestResult {
     Ok(())
 }
 
-/// The device computes in half floats, no worse than the model of them.
+/// The device computes in half floats at least as precisely as the model.
 #[test]
 fn the_device_is_as_good_as_the_model() -> TestResult {
     let Some(gpu) = gpu("the_device_is_as_good_as_the_model") else { return Ok(()) };

@@ -1,4 +1,4 @@
-//! The library at inputs that break arithmetic, and what its guards are for. `tests/src/hard` has the tables.
+//! The library with inputs that break arithmetic, and the purpose of its guards. `tests/src/hard` has the tables.
 
 use crate::stage;
 use std::error::Error;
@@ -15,7 +15,7 @@ type TestResult = Result<(), Box<dyn Error>>;
 const DOCUMENT: &str = include_str!("../../../docs/hard-cases.md");
 const RENEW: &str = "renew docs/hard-cases.md: cargo run -p tests --bin hard_cases";
 
-/// Whether a file has a test of that name.
+/// Returns true if a file has a test with a name.
 fn is_tested(file: &str, test: &str) -> Result<bool, Box<dyn Error>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file);
     let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
@@ -45,8 +45,7 @@ fn every_row_is_held_by_tests_that_are_there() -> TestResult {
     Ok(())
 }
 
-/// Every function in every build the device has, one dispatch each; and a guard of each function of five taken out, which
-/// must be noticed unless it is explained. The program takes out every one.
+/// Tests every function in every build of the device, one dispatch each. Also removes every fifth guard, which must be detected or explained; the program `hard_cases` removes each.
 #[test]
 fn hard_inputs_leave_every_invariant_and_guards_are_missed() -> TestResult {
     let test = "hard_inputs_leave_every_invariant_and_guards_are_missed";
@@ -76,7 +75,7 @@ fn hard_inputs_leave_every_invariant_and_guards_are_missed() -> TestResult {
     Ok(())
 }
 
-/// What probes ask of the device holds for half floats on the CPU too, whether or not numbers below 6.1e-5 become zero.
+/// The invariants of probes also hold for half floats on the CPU, with and without flushing of numbers below 6.1e-5.
 #[test]
 fn models_of_half_floats_hold_with_and_without_small_numbers() {
     type Model = fn(HalfModel, &[f64]) -> f64;

@@ -1,8 +1,8 @@
-//! Post-processing at the end of the color pass's own shaders, against the same effects in passes of their own.
+//! Post-processing inlined into the color pass, compared with separate passes.
 //!
-//! A software rasterizer computes in 32 bits either way, so the two can be compared to the bit once the epilogue rounds
-//! as the texture in between would have. With four samples the two paths differ by intent: without inlining samples are
-//! averaged before they are graded. There the judge is `inline/samples.rs`, which reads the samples and grades each.
+//! A software rasterizer uses f32 either way, so both are bit-exact if the epilogue rounds like the intermediate
+//! texture. With four samples they differ by design, since without inlining samples are averaged before grading.
+//! `inline/samples.rs` then grades each sample as the reference.
 
 mod own;
 mod samples;
@@ -19,7 +19,7 @@ use tests::compare::compare;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Every effect on, so that each is compared.
+/// Returns settings with every effect, so that each is compared.
 fn graded(samples: u8, fxaa: bool) -> Settings {
     let grading = Grading { temperature: 0.3, contrast: 1.2, vibrance: 0.7, saturation: 1.3, ..Grading::NEUTRAL };
     let look = Look { grading, ..Look::default() };
@@ -27,7 +27,7 @@ fn graded(samples: u8, fxaa: bool) -> Settings {
     Settings { samples, fxaa, post, ..Settings::default() }
 }
 
-/// The shot with post-processing apart.
+/// Returns the shot with separate post-processing.
 fn apart(shot: &Shot) -> Shot {
     Shot { options: Options { inline: false, ..shot.options }, ..*shot }
 }
@@ -38,7 +38,7 @@ fn with(shot: &Shot, change: impl FnOnce(&mut Settings)) -> Shot {
     shot
 }
 
-/// Why the plan did not inline the pass of that name.
+/// Returns the reason that a pass was not inlined.
 fn refusal(plan: &Plan, pass: &str) -> Option<Refusal> {
     let pass = plan.graph().find_pass(pass)?;
     plan.reasons(Subject::Pass(pass)).find_map(|reason| match reason {
@@ -47,7 +47,7 @@ fn refusal(plan: &Plan, pass: &str) -> Option<Refusal> {
     })
 }
 
-/// How many texels differ in any of four channels.
+/// Returns the number of texels that differ in any of four channels.
 fn differing(a: &[u8], b: &[u8]) -> usize {
     a.chunks_exact(4).zip(b.chunks_exact(4)).filter(|(a, b)| a != b).count()
 }
@@ -56,7 +56,7 @@ fn rounding_of(gpu: &Gpu) -> Result<StoreRounding, Box<dyn Error>> {
     Ok(StoreRounding::measure(gpu)?)
 }
 
-/// The color, the sky and the clear value go through the same functions: with rounding, the same bits.
+/// Color, sky and clear value use the same functions: with rounding, the pictures are bit-exact.
 #[test]
 fn at_one_sample_with_rounding_the_picture_is_the_same_to_the_bit() -> TestResult {
     let Some(gpu) = gpu("at_one_sample_with_rounding_the_picture_is_the_same_to_the_bit") else { return Ok(()) };
@@ -79,7 +79,7 @@ fn at_one_sample_with_rounding_the_picture_is_the_same_to_the_bit() -> TestResul
         assert_eq!((plan.counts().inlined, two.counts().inlined), (1, 0), "{told}");
         assert_eq!(differing(&inlined, &expected), 0, "{told}");
 
-        // The controls: without rounding, and rounded the other way, some texel shows it.
+        // Negative controls: without rounding, and with another rounding, some texel differs.
         let (exact, _) = set.shoot(&gpu, &with(&shot, |s| s.stored = None))?;
         assert!(differing(&exact, &expected) > 0, "{told}: rounding makes no difference");
         let other = |r| if r == Rounding::Nearest { Rounding::TowardZero } else { Rounding::Nearest };
@@ -91,8 +91,8 @@ fn at_one_sample_with_rounding_the_picture_is_the_same_to_the_bit() -> TestResul
     Ok(())
 }
 
-/// Without rounding the epilogue works on 32 bits where the texture keeps 11: a share of 2⁻¹⁰ or less, which at the
-/// steepest of the curves is less than a code of 255. (FXAA, which decides by thresholds, can make more of it.)
+/// Without rounding, the epilogue uses f32 where the texture has 11 bits: a relative difference of at most 2⁻¹⁰. At the
+/// steepest part of the curves, this is less than one 8-bit step. FXAA uses thresholds and can amplify it.
 #[test]
 fn at_one_sample_without_rounding_the_picture_is_the_same_to_a_code() -> TestResult {
     let Some(gpu) = gpu("at_one_sample_without_rounding_the_picture_is_the_same_to_a_code") else { return Ok(()) };
@@ -110,8 +110,8 @@ fn at_one_sample_without_rounding_the_picture_is_the_same_to_a_code() -> TestRes
     Ok(())
 }
 
-/// Five passes of one effect each are one epilogue: the same bits as all effects in one pass. With rounding between them
-/// they have the bits of five full-screen passes with a texture between each two.
+/// Five passes of one effect each form one epilogue, bit-exact with all effects in one pass. With rounding, they are
+/// bit-exact with five full-screen passes and textures in between.
 #[test]
 fn a_chain_of_passes_is_one_epilogue() -> TestResult {
     let Some(gpu) = gpu("a_chain_of_passes_is_one_epilogue") else { return Ok(()) };
@@ -135,7 +135,7 @@ fn a_chain_of_passes_is_one_epilogue() -> TestResult {
     Ok(())
 }
 
-/// A surface that blends must be blended before it is graded.
+/// Blending must happen before grading.
 #[test]
 fn a_scene_that_blends_falls_back() -> TestResult {
     let Some(gpu) = gpu("a_scene_that_blends_falls_back") else { return Ok(()) };
@@ -146,7 +146,7 @@ fn a_scene_that_blends_falls_back() -> TestResult {
         assert_eq!((plan.counts().inlined, refusal(&plan, "post")), (0, Some(Refusal::Blends)));
         assert_eq!(differing(&picture, &expected), 0);
 
-        // Declared wrongly, the frame is refused in words instead of being graded in the wrong order.
+        // A wrong declaration is rejected with a message instead of grading in the wrong order.
         let (frame, io) = crate::stage::declared(&shot.settings);
         let told = set.render(&gpu, &frame, io.output, &shot.options).map(|_| ()).map_err(|e| e.to_string());
         let told = told.err().unwrap_or_default();
@@ -156,7 +156,7 @@ fn a_scene_that_blends_falls_back() -> TestResult {
     Ok(())
 }
 
-/// Somebody else looks at the radiance, or inlining is switched off: two steps, and the same picture.
+/// With another reader of the radiance, or without inlining, there are two steps and the same picture.
 #[test]
 fn other_readers_and_the_switch_keep_it_apart() -> TestResult {
     let Some(gpu) = gpu("other_readers_and_the_switch_keep_it_apart") else { return Ok(()) };

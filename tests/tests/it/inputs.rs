@@ -1,7 +1,7 @@
-//! What a glTF material gives to shading: factors, channels, texture coordinates and units, with numbers known beforehand.
+//! Material inputs of glTF: factors, channels, texture coordinates and units, compared with known results.
 //!
-//! Each texture shows its texel at a place of its own, found by its own set of coordinates and its own transform, and the
-//! complement of the texel everywhere else: the place of another texture shows something else.
+//! Each texture has its texel at its own position, set of coordinates and transform, and the inverted texel everywhere
+//! else. A wrong lookup therefore gives another value.
 
 mod lobes;
 
@@ -14,29 +14,29 @@ use framegraph_scene::{Environment, Material, Mesh, Specular};
 use framegraph_wgpu::Gpu;
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::error::Error;
-use tests::measure::board::{Board, EXPOSURE, card, lamps};
+use tests::measure::board::{Board, EXPOSURE, card, punctual_lights};
 use truth::surface::Surface;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Unit vectors toward the red, the green and the blue lamp.
+/// Unit vectors toward the red, the green and the blue light.
 const TOWARD: [DVec3; 3] = [DVec3::new(0.6, 0.0, 0.8), DVec3::new(0.0, 0.6, 0.8), DVec3::new(-0.36, -0.48, 0.8)];
-/// The shaded normal and tangent of every card.
+/// Shading normal and tangent of every card.
 const NORMAL: DVec3 = DVec3::new(0.36, -0.48, 0.8);
 const TANGENT: DVec3 = DVec3::new(0.8, 0.6, 0.0);
 /// A different value in each channel: 0.2, 0.4, 0.6, 0.8.
 const TEXEL: [u8; 4] = [51, 102, 153, 204];
 
-/// Places along a texture.
+/// Positions along a texture.
 const PLACES: usize = 16;
 
-/// The card of this file: the first coordinates lie in the first place, the second in the ninth.
+/// Returns the card: its first coordinates are at position 0, its second at position 8.
 fn mesh() -> Mesh {
     let at = |place: f32| vec![Vec2::new((place + 0.5) / PLACES as f32, 0.5); 4];
     Mesh { uv0: at(0.0), uv1: at(8.0), ..card(0.9, NORMAL, TANGENT, 1.0) }
 }
 
-/// A texture that shows `texel` at its place alone.
+/// Adds a texture with `texel` at one position only.
 fn shown(board: &mut Board, place: usize, role: TextureRole, texel: [u8; 4]) -> Option<TextureSlot> {
     let nearest = Sampler { mag: Filter::Nearest, min: Filter::Nearest, mip: None, ..Sampler::default() };
     let mut texels = [texel.map(|c| 255 - c); PLACES];
@@ -48,7 +48,7 @@ fn shown(board: &mut Board, place: usize, role: TextureRole, texel: [u8; 4]) -> 
     Some(TextureSlot { uv_set, transform: UvTransform { offset, ..UvTransform::default() }, ..slot })
 }
 
-/// IEC 61966-2-1.
+/// Decodes sRGB by IEC 61966-2-1.
 fn linear(code: u8) -> f64 {
     let c = f64::from(code) / 255.0;
     if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
@@ -58,18 +58,18 @@ fn linear_color(texel: [u8; 4]) -> DVec3 {
     DVec3::new(linear(texel[0]), linear(texel[1]), linear(texel[2]))
 }
 
-/// Radiance under the three lamps.
-fn under_lamps(surface: &Surface) -> DVec3 {
-    let [r, g, b] = TOWARD.map(|toward| surface.per_lamp(DVec3::Z, toward));
+/// Returns the radiance under the three lights.
+fn under_lights(surface: &Surface) -> DVec3 {
+    let [r, g, b] = TOWARD.map(|toward| surface.per_light(DVec3::Z, toward));
     DVec3::new(r.x, g.y, b.z)
 }
 
-/// Half floats, twice.
+/// Relative error of two roundings to half floats.
 const HALF_FLOATS: f64 = 3e-3;
-/// What a driver's own decoding of sRGB may err by: Vulkan asks for no more than a code's half, lavapipe takes a polynomial.
+/// Relative error of the driver's sRGB decoding: Vulkan allows half an 8-bit step, and lavapipe uses a polynomial.
 const DECODED: f64 = 1e-2;
 
-/// Renders cards of `materials` and compares with what is expected of each, within a share of it.
+/// Renders cards of `materials` and compares each with its expected radiance, within a relative error.
 fn compare(
     gpu: &Gpu,
     mut board: Board,
@@ -91,7 +91,7 @@ fn compare(
 
 fn lit() -> Board {
     let mut board = Board::default();
-    board.scene.lights = lamps(TOWARD);
+    board.scene.lights = punctual_lights(TOWARD);
     board
 }
 
@@ -99,7 +99,7 @@ fn no_specular() -> Option<Specular> {
     Some(Specular { factor: 0.0, ..Specular::default() })
 }
 
-/// Colors that are shown as they are: unlit surfaces and emission, in display units or in nits.
+/// Unlit and emissive colors, in display units or in nits, are displayed unchanged.
 #[test]
 fn colors_and_emission_are_factor_times_texture() -> TestResult {
     let Some(gpu) = gpu("colors_and_emission_are_factor_times_texture") else { return Ok(()) };
@@ -132,7 +132,7 @@ fn colors_and_emission_are_factor_times_texture() -> TestResult {
     compare(&gpu, board, &dark, &Shading::default(), DECODED, cases)
 }
 
-/// Colors of vertices multiply the base color; alpha in mode BLEND is how much of it covers what is behind.
+/// Vertex colors multiply the base color; alpha in mode BLEND is the coverage.
 #[test]
 fn vertex_colors_and_alpha_multiply() -> TestResult {
     let Some(gpu) = gpu("vertex_colors_and_alpha_multiply") else { return Ok(()) };
@@ -177,25 +177,25 @@ fn metalness_and_roughness_are_their_channels() -> TestResult {
     let factors = Material { metallic: 0.9, ..Material::dielectric("both", base, 0.8) };
     let surface = |metallic, roughness, f0| Surface::metal_rough(base.as_dvec3(), metallic, roughness, f0, NORMAL);
     let cases = vec![
-        ("factors", factors.clone(), under_lamps(&surface(0.9, 0.8, 0.04))),
+        ("factors", factors.clone(), under_lights(&surface(0.9, 0.8, 0.04))),
         (
             "factors times texture",
             Material { metallic_roughness_texture: texture, ..factors.clone() },
-            under_lamps(&surface(0.9 * 0.6, 0.8 * 0.4, 0.04)),
+            under_lights(&surface(0.9 * 0.6, 0.8 * 0.4, 0.04)),
         ),
         (
             "diamond",
             Material { ior: 2.4, metallic: 0.0, roughness: 0.3, ..factors },
-            under_lamps(&surface(0.0, 0.3, (1.4_f64 / 3.4).powi(2))),
+            under_lights(&surface(0.0, 0.3, (1.4_f64 / 3.4).powi(2))),
         ),
     ];
     let shading = Shading { compensate_punctual: false, ..Shading::default() };
     compare(&gpu, board, &Environment::uniform(DVec3::ZERO)?, &shading, HALF_FLOATS, cases)
 }
 
-/// Occlusion is in red and takes its strength's share of the light from all around and none of a lamp's; of the sun, which is
-/// the brightest of the directional lamps, or the last of several, it takes what the crevices that it stands for hide (Chan,
-/// "Material Advances in Call of Duty: WWII", 2018: the square of n·l over the sine of the open cone).
+/// Occlusion is in red, and its strength applies to image-based light but not to punctual lights. For the sun, the
+/// brightest or last of several directional lights, it adds micro-shadowing. The formula is the square of n·l over the
+/// sine of the open cone (Chan, "Material Advances in Call of Duty: WWII", 2018).
 #[test]
 fn occlusion_is_its_channel_by_its_strength() -> TestResult {
     let Some(gpu) = gpu("occlusion_is_its_channel_by_its_strength") else { return Ok(()) };
@@ -212,23 +212,23 @@ fn occlusion_is_its_channel_by_its_strength() -> TestResult {
     let light = DVec3::new(1.0, 0.5, 0.25);
     let open = |strength: f64| albedo.as_dvec3() * light * (1.0 + strength * (0.2 - 1.0));
     let mut cases = [1.0, 0.5, 0.0].map(|strength| ("occluded", chalk(strength as f32), open(strength))).to_vec();
-    // Of one texture in one place, and of one in two.
+    // One texture at one position, and at two.
     let rough = |texture| Material { metallic_roughness_texture: texture, ..chalk(1.0) };
     cases.extend([("packed", rough(texture), open(1.0)), ("apart", rough(others[0]), open(1.0))]);
-    // Looked up by the first coordinates as they are, alone and packed.
+    // Untransformed first coordinates, alone and packed.
     let plain = |texture| Material { occlusion_texture: others[1], metallic_roughness_texture: texture, ..chalk(1.0) };
     cases.extend([None, others[1]].map(|texture| ("plain", plain(texture), open(1.0))));
     compare(&gpu, board, &Environment::uniform(light)?, &Quality::Low.shading(), HALF_FLOATS, cases)?;
     let mut board = lit();
     let _ = shown(&mut board, 4, TextureRole::Linear, TEXEL);
     let hidden = (NORMAL.dot(TOWARD[2]) / (1.0_f64 - 0.2).sqrt()).min(1.0).powi(2);
-    let expected = under_lamps(&Surface::chalk(albedo.as_dvec3(), NORMAL)) * DVec3::new(1.0, 1.0, hidden);
+    let expected = under_lights(&Surface::chalk(albedo.as_dvec3(), NORMAL)) * DVec3::new(1.0, 1.0, hidden);
     let lamp = vec![("by a lamp", chalk(1.0), expected)];
     compare(&gpu, board, &Environment::uniform(DVec3::ZERO)?, &Quality::Low.shading(), HALF_FLOATS, lamp)
 }
 
-/// Without a shadow map, post-processing in the shader of the surface: of that and a texture of occlusion Mesa 22.3's
-/// software driver crashed, of a branch that hung on the texture's strength and on a texel.
+/// Without a shadow map, with inlined post-processing. Mesa 22.3's software driver crashed on a branch that depended on
+/// both the texture's strength and a texel.
 #[test]
 fn occlusion_shows_where_nothing_casts_shadows() -> TestResult {
     let Some(gpu) = gpu("occlusion_shows_where_nothing_casts_shadows") else { return Ok(()) };

@@ -1,4 +1,4 @@
-//! Everything in the standard frame can be looked at, and looking changes nothing.
+//! Inspection of every resource in the standard frame, without side effects.
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Placement, Plan, Scratch, compile, dump};
@@ -63,7 +63,7 @@ fn every_version_of_the_standard_frame_is_seen() -> Result<(), Box<dyn Error>> {
             }
             if seen.name == "depth" {
                 let distances = found.texels.distances_m(near_m).ok_or("no depths")?;
-                // The spheres are some meters away, the plane beneath them reaches further.
+                // The spheres are a few meters away; the plane below extends farther.
                 let [nearest, farthest] =
                     [f32::min, f32::max].map(|pick| distances.iter().copied().fold(distances[0], pick));
                 assert!(nearest > near_m && farthest > 1.5 * nearest, "from {nearest} m to {farthest} m");

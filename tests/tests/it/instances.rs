@@ -1,4 +1,4 @@
-//! Instanced and indirect draws: that they are few, and that the picture is that of a draw for each instance.
+//! Instanced and indirect draws: their number, and equality with one draw per instance.
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Options, Plan, Scratch, compile};
@@ -17,7 +17,7 @@ use tests::executors;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Rows of balls and boxes of all kinds of surfaces, each many times, some mirrored, on a floor.
+/// Returns rows of balls and boxes with all kinds of surfaces, many instances of each, some mirrored, on a floor.
 fn crowd() -> Scene {
     let mut scene = Scene::default();
     let meshes = [cuboid(Vec3::splat(0.3)), sphere(0.35, 12, 8)].map(|mesh| scene.add_mesh(mesh));
@@ -54,8 +54,8 @@ fn draw(gpu: &Gpu, world: &World, settings: &Settings, options: &Options) -> Res
     Ok(read_texture(gpu, picture)?.rgba8())
 }
 
-/// A mesh of more than 65,536 vertices has indices of 32 bits, others of 16, in one buffer: the same bytes of a picture whether
-/// vertices that nothing uses make none, one or all meshes so large.
+/// Meshes with more than 65,536 vertices use 32-bit indices, others 16-bit ones, in the same buffer. The picture has
+/// the same bytes whether unused vertices enlarge no mesh, one or all of them.
 #[test]
 fn short_and_long_indices_draw_the_same_picture() -> TestResult {
     let Some(gpu) = gpu("short_and_long_indices_draw_the_same_picture") else { return Ok(()) };
@@ -90,8 +90,8 @@ fn short_and_long_indices_draw_the_same_picture() -> TestResult {
     Ok(())
 }
 
-/// Objects that come with their instances make the picture that those in buffers do: all kinds of surfaces, turned and mirrored
-/// under a normal map, with colors at vertices and without, also where materials are taken from an array.
+/// Objects in the instance stream give the same picture as objects in buffers. Tested with all kinds of surfaces,
+/// rotated and mirrored under a normal map, with and without vertex colors, also with materials in an array.
 #[test]
 fn objects_in_a_stream_and_in_buffers_are_the_same_picture() -> TestResult {
     let Some(gpu) = gpu("objects_in_a_stream_and_in_buffers_are_the_same_picture") else { return Ok(()) };
@@ -128,8 +128,9 @@ fn objects_in_a_stream_and_in_buffers_are_the_same_picture() -> TestResult {
     Ok(())
 }
 
-/// Moments as a shadow map, which unlike depth show the order of equally near ones; masked, blended and transmissive surfaces, mirrored ones: the same bytes from instanced
-/// draws as from a draw for each, in levels of detail as whole. What moves is where a scene prepared anew has it, in the buffers too.
+/// Instanced draws give the same bytes as one draw per instance. Moment shadow maps are tested, since they depend on
+/// the order of draws at equal depth. Masked, blended, transmissive and mirrored surfaces and levels of detail are
+/// tested too. Moved objects match a newly uploaded scene.
 #[test]
 fn instanced_draws_are_the_same_picture() -> TestResult {
     let Some(gpu) = gpu("instanced_draws_are_the_same_picture") else { return Ok(()) };
@@ -147,8 +148,8 @@ fn instanced_draws_are_the_same_picture() -> TestResult {
     let instanced = view(&scene, &lighting.image);
     let apart = CameraView { draws: instanced.draws.clone().one_by_one(), ..instanced.clone() };
     let (few, many) = (instanced.draws.count(), apart.draws.count());
-    // Opaque and masked ones of one mesh, material and side are one draw each; clear ones, and blended ones that are no
-    // neighbors, are not.
+    // Opaque and masked instances of one mesh, material and side are one draw. Transmissive ones, and blended ones that
+    // are not adjacent, are not.
     assert!(many > 250 && few < 100, "{few} draws for {many}");
     let mut world = World::new(&gpu, &scene, lighting, [instanced], &mut progress::silent)?;
     let first = draw(&gpu, &world, &settings, &shot.options)?;
@@ -193,7 +194,7 @@ fn instanced_draws_are_the_same_picture() -> TestResult {
     Ok(())
 }
 
-/// A wall of boxes and balls, each with a material of its own: some masked, some coated, two thirds with a texture.
+/// Returns a wall of boxes and balls with a material each: some masked, some coated, two thirds textured.
 fn wall(count: usize) -> Scene {
     let mut scene = Scene::default();
     let meshes = [cuboid(Vec3::splat(0.3)), sphere(0.35, 8, 6)].map(|mesh| scene.add_mesh(mesh));
@@ -220,8 +221,8 @@ fn wall(count: usize) -> Scene {
     scene
 }
 
-/// Opaque and masked lists that are long enough are drawn by arguments in a buffer, and what has no textures by materials in an array:
-/// the same bytes as from a call and a bind group for each. A material that is written anew is so in the array too.
+/// Long opaque and masked lists use indirect draws, and untextured materials an array: the same bytes as with a call
+/// and bind group each. A changed material is updated in the array too.
 #[test]
 fn indirect_draws_are_the_same_picture() -> TestResult {
     let Some(gpu) = gpu("indirect_draws_are_the_same_picture") else { return Ok(()) };
@@ -243,7 +244,7 @@ fn indirect_draws_are_the_same_picture() -> TestResult {
     let variants = world.programs.made().iter().filter(|program| program.name().contains("MATERIAL_TABLE")).count();
     assert!(variants >= 2, "{variants} shaders read materials from an array");
 
-    // Which are those in the middle of the picture.
+    // Indices in the middle of the picture.
     for index in (count / 6..5 * count / 6).filter(|index| index % 29 != 0) {
         let id = MaterialId::new(index);
         let green = Material { base_color: glam::Vec4::new(0.0, 1.0, 0.0, 1.0), ..scene.materials[index].clone() };

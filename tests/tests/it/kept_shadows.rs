@@ -1,4 +1,4 @@
-//! Shadow maps that stay from frame to frame: how many are drawn, and that pictures are those of maps drawn anew.
+//! Cached shadow maps: number of rendered maps, and equality with new maps.
 
 use crate::stage::gpu;
 use framegraph_passes::shadow::{Fit, KeptShadows, MomentSettings, Redraw, ShadowFilter, ShadowSettings};
@@ -12,10 +12,10 @@ use tests::measure::lights::Night;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Two lamps with six maps each and a spot with one, over a block that casts; a moon where there are cascades.
+/// Creates two lights with six maps each and a spot light with one, above a block, and a moon if there are cascades.
 fn night(gpu: &Gpu, shadows: ShadowSettings) -> Result<Night, Box<dyn Error>> {
     let mut scene = Scene::open("lamps:3", &mut progress::silent)?;
-    // Together, so that all are seen and cast.
+    // Close together, so that all are visible and cast shadows.
     for (light, x) in scene.lights.iter_mut().zip([-1.5, 1.5, 0.0]) {
         light.position = DVec3::new(x, 1.2, -3.0);
     }
@@ -36,18 +36,18 @@ fn shift(scene: &mut Scene, instance: usize, by: DVec3) {
     moved.bounds.max += by;
 }
 
-/// Pixels of which a channel differs by more than a code of 255 on a linear scale.
+/// Returns the number of pixels with a channel that differs by more than 1/255 on a linear scale.
 fn off(a: &[[f32; 4]], b: &[[f32; 4]]) -> usize {
     let differs = |(a, b): &(&[f32; 4], &[f32; 4])| a.iter().zip(*b).any(|(a, b)| (a - b).abs() > 1.0 / 255.0);
     a.iter().zip(b).filter(differs).count()
 }
 
-/// Thirteen maps of 64 texels, four a layer.
+/// Thirteen maps of 64 texels, four per layer.
 const LOCAL: ShadowSettings =
     ShadowSettings { cascades: 0, local_maps: 13, local_layers: 4, ..ShadowSettings::texels(128) };
 
-/// The second frame of a still scene draws no map, nor does one after the camera moved; what moves has those maps drawn that
-/// see it.
+/// The second frame of a still scene draws no map, also after camera motion. A moving object redraws the maps that see
+/// it.
 #[test]
 fn still_maps_are_drawn_once() -> TestResult {
     let Some(gpu) = gpu("still_maps_are_drawn_once") else { return Ok(()) };
@@ -70,7 +70,7 @@ fn drawn_once(gpu: &Gpu, shadows: ShadowSettings) -> TestResult {
     assert_eq!(kept.due(&fitted(&night)?), (0..13).map(|map| (map, Redraw::First)).collect::<Vec<_>>());
     assert_eq!(shoot(&mut night, &mut kept)?, (4, 0), "the first frame: {shadows:?}");
     assert_eq!(shoot(&mut night, &mut kept)?, (0, 0), "a still frame");
-    // Positions are rounded relative to another eye: a texel at an edge may fall to the other side.
+    // Positions are rounded relative to another eye, so a texel at an edge may change.
     night.seen.camera.eye += DVec3::new(0.05, 0.02, 0.03);
     let (layers, differ) = shoot(&mut night, &mut kept)?;
     assert!(layers == 0 && differ <= 4, "a camera that moves: {layers} layers, {differ} pixels");
@@ -84,7 +84,7 @@ fn drawn_once(gpu: &Gpu, shadows: ShadowSettings) -> TestResult {
     let (layers, differ) = shoot(&mut night, &mut kept)?;
     assert!(layers == drawn.len() && differ <= 4, "a block that moves: {layers} layers, {differ} pixels");
 
-    // Only the order of importance may move other maps to other places. Where it lies, other maps are kept beside it.
+    // Moving a light may change the order of importance and thus the layout; maps of the other layout stay cached.
     night.scene.lights[2].position.y += 0.2;
     let due = kept.due(&fitted(&night)?);
     assert!(due.len() == 1 && due[0].1 == Redraw::Light, "{due:?}");
@@ -93,7 +93,8 @@ fn drawn_once(gpu: &Gpu, shadows: ShadowSettings) -> TestResult {
     Ok(())
 }
 
-/// The comparison notices a map that should have been drawn and was not; a frame that was not executed is drawn again.
+/// The comparison detects a map that should have been redrawn. A frame that was declared but not executed is drawn
+/// again.
 #[test]
 fn a_stale_map_is_seen() -> TestResult {
     let Some(gpu) = gpu("a_stale_map_is_seen") else { return Ok(()) };
@@ -103,7 +104,7 @@ fn a_stale_map_is_seen() -> TestResult {
     let block = night.scene.instances.iter().position(|instance| instance.name == "block").ok_or("a block")?;
     shift(&mut night.scene, block, DVec3::new(0.8, 0.0, 0.6));
     let view = night.view(search);
-    // As if the maps were drawn.
+    // Marks the maps as drawn, although they are not.
     kept.drawn(view.shadows.as_ref().ok_or("shadows")?);
     let stale = night.shoot_keeping(&gpu, view.clone(), &mut kept)?;
     let right = night.shoot(&gpu, view.clone(), 1)?;
@@ -121,7 +122,8 @@ fn a_stale_map_is_seen() -> TestResult {
     Ok(())
 }
 
-/// Cascades stay while the camera does; moments stay with their levels. Another size is another texture.
+/// Cascades stay cached while the camera is still, and moments together with their levels. Another size is another
+/// texture.
 #[test]
 fn cascades_and_moments_stay_too() -> TestResult {
     let Some(gpu) = gpu("cascades_and_moments_stay_too") else { return Ok(()) };

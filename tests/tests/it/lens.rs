@@ -1,5 +1,5 @@
-//! What happens to a picture after shading, pixel by pixel: exposure, vignette, grading, curves, codes and dither; and what
-//! is seen where there is no surface.
+//! Processing of pixels after shading: exposure, vignette, grading, curves, quantization and dithering; and the
+//! background.
 
 use crate::stage::{declared, gpu, lighting};
 use framegraph::{Options, Plan, Scratch, compile};
@@ -20,7 +20,7 @@ use tests::executors;
 type TestResult = Result<(), Box<dyn Error>>;
 
 const SIZE: [u32; 2] = [96, 60];
-/// Full vertical field of view in radians.
+/// Vertical field of view, in radians.
 const FOV: f64 = 1.1;
 
 struct Picture {
@@ -28,7 +28,7 @@ struct Picture {
     linear: Vec<[f32; 4]>,
 }
 
-/// No surface at all, but what stands behind everything; an exposure of one.
+/// Draws an empty scene with a background, at an exposure of 1.
 fn shoot(
     gpu: &Gpu,
     environment: &Environment,
@@ -66,20 +66,20 @@ fn shoot(
 
 const LOOK: DVec3 = DVec3::new(0.48, 0.36, -0.8);
 
-/// Not rounded.
+/// Encodes sRGB without rounding, in 8-bit steps.
 fn srgb_code(linear: f64) -> f64 {
     let c = linear.clamp(0.0, 1.0);
     255.0 * if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// The middle of each pixel from the middle of the picture, in pixels.
+/// Returns the center of each pixel relative to the picture's center, in pixels.
 fn from_middle() -> impl Iterator<Item = DVec2> {
     let [width, height] = SIZE.map(f64::from);
     let pixels = (0..SIZE[0] * SIZE[1]).map(|i| DVec2::new(f64::from(i % SIZE[0]), f64::from(i / SIZE[0])));
     pixels.map(move |p| p + 0.5 - 0.5 * DVec2::new(width, height))
 }
 
-/// The largest difference in codes from what each pixel should show.
+/// Returns the largest difference from the expected color, in 8-bit steps.
 fn apart(codes: &[u8], expected: impl Fn(DVec2) -> DVec3) -> f64 {
     let off = |(texel, at): (&[u8], DVec2)| {
         let codes = expected(at).to_array().map(srgb_code);
@@ -100,7 +100,8 @@ fn of_color(gpu: &Gpu, post: PostSettings, fxaa: bool, split_post: bool) -> Resu
     shoot(gpu, &dark, &Background::Constant(COLOR.as_vec3()), settings)
 }
 
-/// By the cosine-fourth law: 1/(1 + f r²)², r the share of the way to a corner. A radius off by a tenth is nine codes.
+/// Vignette by the cosine-fourth law: 1/(1 + f r²)², with r relative to the distance of a corner. A radius that is off
+/// by a tenth changes nine 8-bit steps.
 #[test]
 fn corners_are_darker_by_the_stops_asked_for() -> TestResult {
     let Some(gpu) = gpu("corners_are_darker_by_the_stops_asked_for") else { return Ok(()) };
@@ -114,8 +115,8 @@ fn corners_are_darker_by_the_stops_asked_for() -> TestResult {
         let post = PostSettings { vignette_ev: stops as f32, compensation_ev, ..plain() };
         for (fxaa, split) in [(false, false), (true, false), (false, true)] {
             let codes = of_color(&gpu, post, fxaa, split)?.codes;
-            // Half a code of rounding; half floats between passes are a quarter of one more. Slopes are smooth, so the edge
-            // filter does nothing.
+            // Half an 8-bit step of rounding, and a quarter for half floats between passes. Slopes are smooth, so FXAA
+            // changes nothing.
             let off = apart(&codes, vignetted(corner));
             assert!(off < 0.8, "{stops} stops, {fxaa} {split}: {off} codes");
             let control = apart(&codes, vignetted(corner * 1.1));
@@ -125,7 +126,7 @@ fn corners_are_darker_by_the_stops_asked_for() -> TestResult {
     Ok(())
 }
 
-/// Dither moves a code by less than one, and the mean not at all; each frame has a pattern of its own.
+/// Dithering changes values by less than one step, and keeps the mean; each frame has its own pattern.
 #[test]
 fn dither_keeps_the_mean() -> TestResult {
     let Some(gpu) = gpu("dither_keeps_the_mean") else { return Ok(()) };
@@ -135,9 +136,9 @@ fn dither_keeps_the_mean() -> TestResult {
             let exact = srgb_code(COLOR[channel]);
             let own = || codes.chunks_exact(4).map(|t| f64::from(t[channel]));
             let mean = own().sum::<f64>() / own().count() as f64;
-            // Without dither the mean would be a whole code.
+            // Without dithering, the mean would be an integer.
             assert!((exact - exact.round()).abs() > 0.3, "{channel}: {exact}");
-            // Encoding by the target is the driver's own, and lavapipe's an eighth of a code off.
+            // The target's encoding depends on the driver; lavapipe's is off by an eighth of a step.
             assert!((mean - exact).abs() < if fxaa { 0.06 } else { 0.2 }, "{channel}: {mean} for {exact}");
             assert!(own().all(|code| (code - exact).abs() < 1.01), "{channel}");
         }
@@ -145,7 +146,7 @@ fn dither_keeps_the_mean() -> TestResult {
     Ok(())
 }
 
-/// Looks with every part of grading on, and curves of each kind.
+/// Returns looks with every grading option, and curves of each kind.
 fn looks() -> Vec<Look> {
     let warm = Grading {
         exposure_ev: 0.3,
@@ -170,7 +171,7 @@ fn looks() -> Vec<Look> {
     let mut looks = curves.to_vec();
     looks.push(Look { grading: warm, ..Look::default() });
     looks.push(Look { grading: warm, tone_map: ToneMap::Filmic, ..Look::default() });
-    // Every channel is below the middle of its curve, and above it.
+    // Every channel is tested below and above the middle of its curve.
     for middle in [8.0, 0.01] {
         let (shadow_gamma, highlight_scale) = (Vec3::new(1.5, 0.8, 1.2), Vec3::new(0.7, 1.3, 0.9));
         let grading = Grading { shadow_gamma, middle: Vec3::splat(middle), highlight_scale, ..Grading::NEUTRAL };
@@ -198,8 +199,8 @@ fn the_mobile_curve_is_encoded_once() -> TestResult {
     Ok(())
 }
 
-/// What the shader computes of a look is what the CPU does in f64, with all effects in one pass and with a pass for each;
-/// and what it looks up is the entry that the CPU's interpolation finds.
+/// Looks in the shader match the CPU's f64 functions, with all effects in one pass and with one pass each. Table
+/// lookups match the CPU's interpolation.
 #[test]
 fn looks_are_computed_and_looked_up_as_on_the_cpu() -> TestResult {
     let Some(gpu) = gpu("looks_are_computed_and_looked_up_as_on_the_cpu") else { return Ok(()) };
@@ -210,7 +211,7 @@ fn looks_are_computed_and_looked_up_as_on_the_cpu() -> TestResult {
         let exact = look.function(extras)?(COLOR) * 255.0;
         for split in [false, true] {
             let found = codes_of(&of_color(&gpu, PostSettings { look, ..plain() }, true, split)?);
-            // Half a code of rounding; half floats between passes are a quarter of one more.
+            // Half an 8-bit step of rounding, and a quarter for half floats between passes.
             let off = (DVec3::from_array(found) - exact).abs().max_element();
             assert!(off < 0.9, "{look:?}, split {split}: {found:?} for {exact}");
         }
@@ -219,20 +220,20 @@ fn looks_are_computed_and_looked_up_as_on_the_cpu() -> TestResult {
             let GradeBy::Table(desc) = by else { continue };
             let expected = Baked::new(&look, extras, desc)?.sample(COLOR, false) * 255.0;
             let found = codes_of(&of_color(&gpu, PostSettings { look, by, ..plain() }, true, true)?);
-            // A device may place a sample between texels by 1/256; from entry to entry codes move by up to 40.
+            // A device may shift a sample by 1/256 texel; neighboring entries differ by up to 40 steps.
             let off = (DVec3::from_array(found) - expected).abs().max_element();
             assert!(off < 1.0, "{look:?} {text}: {found:?} for {expected}");
         }
     }
-    // The control: another look is told apart.
+    // Negative control: another look is detected.
     let look = Look { tone_map: ToneMap::Aces, ..Look::default() };
     let (aces, hill) = (look.function(extras)?(COLOR) * 255.0, Look::default().function(extras)?(COLOR) * 255.0);
     assert!((aces - hill).abs().max_element() > 2.0, "{aces} {hill}");
     Ok(())
 }
 
-/// An edge fade is what its published form says: -0.5…0.5 across the picture, scaled, to a power, its length squared, to
-/// another power.
+/// An edge fade follows its published formula: coordinates of -0.5…0.5 are scaled and raised to a power, and their
+/// squared length is raised to another power.
 #[test]
 fn the_picture_fades_toward_its_edges() -> TestResult {
     let Some(gpu) = gpu("the_picture_fades_toward_its_edges") else { return Ok(()) };
@@ -261,7 +262,7 @@ fn the_picture_fades_toward_its_edges() -> TestResult {
     Ok(())
 }
 
-/// Where there is no surface the environment is seen, each pixel in its own direction.
+/// Pixels without a surface show the environment in their own direction.
 #[test]
 fn each_pixel_sees_the_environment_in_its_direction() -> TestResult {
     let Some(gpu) = gpu("each_pixel_sees_the_environment_in_its_direction") else { return Ok(()) };
@@ -323,7 +324,7 @@ fn the_sun_has_a_disc_and_a_halo_on_demand() -> TestResult {
     Ok(())
 }
 
-/// A clear sky with a wide sun: each pixel is what the model's mirror says of its direction.
+/// A clear sky with a wide sun matches the model's mirror in each pixel's direction.
 #[test]
 fn a_clear_sky_shows_its_sun() -> TestResult {
     let Some(gpu) = gpu("a_clear_sky_shows_its_sun") else { return Ok(()) };
@@ -343,7 +344,7 @@ fn a_clear_sky_shows_its_sun() -> TestResult {
     for (texel, at) in seen.linear.iter().zip(from_middle()) {
         let d = (forward + right * (at.x * per_px) - up * (at.y * per_px)).normalize();
         let disc = sky::sun_disc(d, toward, radius.sin());
-        // At the edge of the disc and at the horizon a direction in single precision may lie on the other side.
+        // At the edge of the disc and at the horizon, rounding to f32 may choose the other side.
         if d.y.abs() < 1e-3 || disc > 0.0 && disc < 1.0 {
             continue;
         }

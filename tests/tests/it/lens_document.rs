@@ -1,9 +1,9 @@
-//! The errors that docs/lens.md states, as tests find them: `cargo test -p tests --test it -- bloom:: dof:: fog:: --nocapture` prints
-//! its rows.
+//! Errors documented in docs/lens.md, compared by tests: `cargo test -p tests --test it -- bloom:: dof:: fog::
+//! --nocapture` prints its rows.
 
 const DOCUMENT: &str = include_str!("../../../docs/lens.md");
 
-/// Prints a row of the document and compares: the last column is within a tenth, and a rounding, of what was found.
+/// Prints a row of the document, and checks that its last column is within 10 %, plus rounding, of the measured value.
 #[allow(clippy::print_stdout, reason = "shown with --nocapture")]
 pub fn documented(row: &str, found: f64) {
     println!("| {row} | {found:.4} |");

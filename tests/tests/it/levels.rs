@@ -1,4 +1,4 @@
-//! Levels of detail: the picture is near the one of all triangles, and what is drawn coarser shadows nothing that it did not.
+//! Levels of detail: pictures are close to those of full meshes, and simplified casters add no shadows.
 
 use crate::stage::{Shot, declared, gpu, lighting};
 use framegraph::{Options, Plan, Scratch, compile};
@@ -16,7 +16,7 @@ use tests::executors;
 
 const SIZE_PX: [u32; 2] = [192, 128];
 
-/// Balls and rings from near to far on a floor, each a mesh of its own, which is drawn by a draw of its own.
+/// Returns balls and rings from near to far on a floor, each a mesh with its own draw.
 fn rows() -> Result<Scene, Box<dyn Error>> {
     let mut scene = Scene::default();
     let clay = scene.add_material(Material::dielectric("clay", Vec3::new(0.8, 0.3, 0.2), 0.35));
@@ -42,7 +42,7 @@ fn shoot(gpu: &Gpu, world: &World, settings: &Settings) -> Result<Vec<u8>, Box<d
     Ok(read_texture(gpu, executor.texture(&plan, io.output).ok_or("the frame left no picture")?)?.rgba8())
 }
 
-/// The share of pixels of which a channel differs by more than 8 codes, and how far two pictures are apart in dB.
+/// Returns the share of pixels with a channel that differs by more than 8 8-bit steps, and the PSNR in dB.
 fn apart(a: &[u8], b: &[u8]) -> (f64, f64) {
     let off = |(a, b): (&[u8], &[u8])| a.iter().zip(b).take(3).any(|(a, b)| a.abs_diff(*b) > 8);
     let differ = a.chunks(4).zip(b.chunks(4)).filter(|pair| off(*pair)).count();
@@ -80,7 +80,7 @@ fn a_pixel_off_is_hardly_seen_and_surfaces_shadow_nothing_of_their_own() -> Resu
         };
         view.draws.surfaces[0].iter().map(of).sum::<usize>()
     };
-    // Casters of all triangles behind surfaces of few: what must not be.
+    // Negative control: full casters with simplified surfaces.
     let far = view(8.0)?;
     assert_eq!(far.draws.numbers, whole.draws.numbers);
     let draws = ViewDraws { casters: whole.draws.casters.clone(), ..far.draws.clone() };
@@ -97,7 +97,7 @@ fn a_pixel_off_is_hardly_seen_and_surfaces_shadow_nothing_of_their_own() -> Resu
         assert!(count < before.1 && db < before.3, "{lod_error_px} px: {count} triangles, {db} dB after {before:?}");
         table.push((lod_error_px, count, share, db));
     }
-    // A pixel is the most that anything is off: of edges some pixels are others.
+    // With an error limit of 1 pixel, only pixels at edges differ.
     let pixel = table[2];
     assert!(pixel.1 * 3 < table[0].1 * 2 && pixel.2 < 0.02 && pixel.3 > 38.0, "{table:?}");
     world.set_view(&gpu, ViewId::MAIN, mixed)?;
@@ -107,7 +107,7 @@ fn a_pixel_off_is_hardly_seen_and_surfaces_shadow_nothing_of_their_own() -> Resu
     Ok(())
 }
 
-/// The rows as the document has them: triangles to the last one, pictures as nearly as drivers agree.
+/// Compares the document's rows: triangle counts exactly, pictures within the tolerance between drivers.
 fn is_documented(table: &[(f32, usize, f64, f64)]) {
     let document = include_str!("../../../docs/performance.md");
     let marked = document.split_once("<!-- table: levels -->").and_then(|(_, rest)| rest.split_once("<!-- end -->"));

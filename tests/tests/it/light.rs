@@ -1,4 +1,4 @@
-//! Image-based light on the adapter that there is, against brute force: what `ibl_errors` prints, bounded.
+//! Image-based lighting on the default adapter, compared with brute force: bounds on the output of `ibl_errors`.
 
 use crate::light_document::numbers;
 use crate::stage;
@@ -32,7 +32,7 @@ fn table(gpu: &Gpu, texels: u32, visibility: Visibility) -> Result<DfgTable, Box
 
 /// The design's table: largest error and lowest value for two, three and five bands.
 #[test]
-fn harmonics_err_as_stated_and_a_wrong_band_is_noticed() {
+fn harmonics_have_the_stated_error_and_a_wrong_band_is_detected() {
     let keep = |sh: Sh| sh;
     let bands = [ShBands::Two, ShBands::Three, ShBands::Five];
     for (scene, stated) in [
@@ -67,7 +67,7 @@ fn harmonics_err_as_stated_and_a_wrong_band_is_noticed() {
     assert!(wrong.worst > 0.0065, "a third band 20 % too strong: {wrong:?}");
 }
 
-/// What the shader evaluates is what the CPU projected, in all three forms.
+/// The shader's irradiance matches the CPU's projection, in all three forms.
 #[test]
 fn irradiance_on_the_device_is_that_of_the_projection() -> TestResult {
     let Some(gpu) = stage::gpu("irradiance_on_the_device_is_that_of_the_projection") else { return Ok(()) };
@@ -83,7 +83,7 @@ fn irradiance_on_the_device_is_that_of_the_projection() -> TestResult {
             let apart = (DVec3::from_array(got) - exact).abs().max_element();
             assert!(apart < 2e-5 * f64::from(light.luminance_nits), "{bands:?} {n}: {got:?} for {exact}");
         }
-        // The sun is apart, but the sky around it is brighter and so is the ground that it lights.
+        // The sun is a separate light, but the sky around it and the ground that it lights are bright.
         let toward = light.dominant_direction.ok_or("a sky has a bright side")?;
         let sun = -light.sun.as_ref().ok_or("the sun is up")?.direction;
         assert!(toward.dot(sun) > 0.5, "{toward}");
@@ -91,7 +91,7 @@ fn irradiance_on_the_device_is_that_of_the_projection() -> TestResult {
     Ok(())
 }
 
-/// Even light: irradiance and every level of the cube are that light, and a perfect conductor gives it all back.
+/// Uniform light: irradiance and every level of the cube equal it, and a perfect conductor reflects all of it.
 #[test]
 fn a_white_furnace_is_white() -> TestResult {
     let Some(gpu) = stage::gpu("a_white_furnace_is_white") else { return Ok(()) };
@@ -104,7 +104,7 @@ fn a_white_furnace_is_white() -> TestResult {
     let specular = lookup::specular(&gpu, &light, Mapping::Lod, &asked)?;
     let irradiance = lookup::irradiance(&gpu, &light, &asked)?;
     for got in specular.iter().chain(&irradiance) {
-        // Powers of two, which every format holds; a thousandth for sums of samples.
+        // Powers of two are exact in every format; sums of samples have an error of 0.001.
         let apart = (DVec3::from_array(*got) / radiance - DVec3::ONE).abs().max_element();
         assert!(apart < 1e-3, "{got:?}");
     }
@@ -118,7 +118,7 @@ fn a_white_furnace_is_white() -> TestResult {
     Ok(())
 }
 
-/// Radiance from a thousandth of a nit to that of the sun's disc comes back within the rounding of six bits.
+/// Radiance from 0.001 nits to the sun's disc is stored with a precision of six bits.
 #[test]
 fn any_photometric_range_fits() -> TestResult {
     let Some(gpu) = stage::gpu("any_photometric_range_fits") else { return Ok(()) };
@@ -138,7 +138,7 @@ fn any_photometric_range_fits() -> TestResult {
     Ok(())
 }
 
-/// What comes from the cache lights as what was computed, to the bit.
+/// Cached light equals computed light, bit for bit.
 #[test]
 fn light_from_the_cache_is_the_same_light() -> TestResult {
     let Some(gpu) = stage::gpu("light_from_the_cache_is_the_same_light") else { return Ok(()) };
@@ -171,13 +171,13 @@ fn the_cube_holds_what_lobes_gather_and_a_wrong_level_is_noticed() -> TestResult
     let Some(gpu) = stage::gpu("the_cube_holds_what_lobes_gather_and_a_wrong_level_is_noticed") else { return Ok(()) };
     let disc = Feature::Disc(5.0);
     let light = specular::light_of(&gpu, disc, 512, [256, 5])?;
-    // At the roughness of a level: samples, resolution and rounding. The program prints 3.5, 1.5, 1.0 and 0.6 % for a map
-    // four times as fine.
+    // Roughness values of levels: errors of sampling, resolution and rounding. The program prints 3.5, 1.5, 1.0 and 0.6
+    // % for a map four times as fine.
     for (roughness, bound) in [(0.133_975, 0.08), (0.292_893, 0.04), (0.5, 0.03), (1.0, 0.025)] {
         let e = specular::errors(&gpu, &light, disc, roughness, Mapping::Lod, 11)?;
         assert!(e.worst < bound, "roughness {roughness}: {e:?}");
     }
-    // Between levels the design states 47 % at 0.4 and 26 % at 0.7.
+    // Between levels, the design states 47 % at 0.4 and 26 % at 0.7.
     let printed = numbers("Specular cube", &["disc of radius 5°", "256 → 16, 5"]);
     for (roughness, stated, column) in [(0.4, 0.47, 4), (0.7, 0.26, 6)] {
         let e = specular::errors(&gpu, &light, disc, roughness, Mapping::Lod, 11)?;
@@ -198,9 +198,9 @@ fn tables_err_less_than_stated_and_the_wrong_term_is_noticed() -> TestResult {
     let Some(gpu) = stage::gpu("tables_err_less_than_stated_and_the_wrong_term_is_noticed") else { return Ok(()) };
     for (visibility, masking) in [(Visibility::Exact, Masking::Smith), (Visibility::Fast, Masking::Hammon)] {
         let e = albedo::errors(&gpu, &table(&gpu, 64, visibility)?, masking, 24)?;
-        // Design 1.3 for 64²: 0.0057 at most, 0.036 of 1/E. Cloth: 4096 uniform samples.
+        // Design 1.3 for 64²: at most 0.0057, and 0.036 for 1/E. Cloth: 4096 uniform samples.
         assert!(e.albedo < 0.0057 && e.fresnel < 0.0057 && e.compensation < 0.036 && e.cloth < 0.006, "{e:?}");
-        // Of 400 points, where here are 24: their worst is no worse.
+        // The document uses 400 points, this test 24, so its maximum is no larger.
         let printed = numbers("DFG tables", &[&format!("{visibility:?} 64²")]).concat();
         let found = [e.albedo, e.albedo_rms, e.fresnel, e.compensation, e.cloth];
         let near = |(found, printed): (&f64, &f64)| *found <= printed * 1.2 + 5e-5;
@@ -214,10 +214,10 @@ fn tables_err_less_than_stated_and_the_wrong_term_is_noticed() -> TestResult {
     Ok(())
 }
 
-/// Against a random walk, within the noise of 4000 paths of what the design states.
+/// Compensation, compared with a random walk: the design's errors within the noise of 4000 paths.
 #[test]
-fn compensation_errs_as_stated() -> TestResult {
-    let Some(gpu) = stage::gpu("compensation_errs_as_stated") else { return Ok(()) };
+fn compensation_has_the_stated_error() -> TestResult {
+    let Some(gpu) = stage::gpu("compensation_has_the_stated_error") else { return Ok(()) };
     let table = table(&gpu, 64, Visibility::Exact)?;
     let with = furnace::errors(&gpu, &table, Compensation::Table, 4000)?;
     // f0 = 1, 0.9, 0.6, 0.3, 0.04.
@@ -234,8 +234,8 @@ fn compensation_errs_as_stated() -> TestResult {
     Ok(())
 }
 
-/// A map as lossy compression left it, radiance down to -1876: its clamped texels are counted, and its light is finite and
-/// not negative everywhere, with and without its sun.
+/// A map damaged by lossy compression, with radiance down to -1876. Clamped texels are counted, and the light is finite
+/// and non-negative everywhere, with and without its sun.
 #[test]
 fn a_map_with_negative_radiance_becomes_sound_light() -> TestResult {
     let test = "a_map_with_negative_radiance_becomes_sound_light";

@@ -1,9 +1,9 @@
-//! `docs/image-light.md` in numbers: tests that measure less than the program does compare with what it printed.
-//! `cargo xtask documents` prints all of it anew and compares every row.
+//! Figures of `docs/image-light.md`. Tests that measure less than the program compare with its output. `cargo xtask
+//! documents` prints the document again and compares every row.
 
 const DOCUMENT: &str = include_str!("../../../docs/image-light.md");
 
-/// The rows under the heading that begins with `heading`, cell by cell, heads of tables among them.
+/// Returns the cells of rows below a heading, with the heads of tables.
 pub fn rows(heading: &str) -> Vec<Vec<&'static str>> {
     let start = format!("\n## {heading}");
     let (_, after) = DOCUMENT.split_once(&start).unwrap_or_else(|| panic!("there is no {heading}"));
@@ -12,7 +12,7 @@ pub fn rows(heading: &str) -> Vec<Vec<&'static str>> {
     rows.map(|row| row.trim_matches('|').split('|').map(str::trim).collect()).collect()
 }
 
-/// The numbers of the row that begins with these cells: of each further cell all that it holds, percents as shares.
+/// Returns the numbers of the row that starts with these cells, for each further cell; percentages become shares.
 pub fn numbers(heading: &str, first: &[&str]) -> Vec<Vec<f64>> {
     let rows = rows(heading);
     let row = rows.iter().find(|row| row.starts_with(first)).unwrap_or_else(|| panic!("{heading}: no row {first:?}"));

@@ -1,4 +1,4 @@
-//! Many lights: pictures with lights found by froxels against pictures for which all are looked at everywhere.
+//! Many lights: pictures with froxels equal pictures with a loop over all lights.
 
 mod hard;
 
@@ -18,12 +18,12 @@ type TestResult = Result<(), Box<dyn Error>>;
 const FROXELS: LightSearch = LightSearch::Froxels(FroxelSettings::DEFAULT);
 const PLAIN: Settings = Settings { shadows: None, ..Settings::DEFAULT };
 
-fn lamps(count: u32) -> Result<Scene, Box<dyn Error>> {
+fn punctual_lights(count: u32) -> Result<Scene, Box<dyn Error>> {
     Ok(Scene::open(&format!("lamps:{count}"), &mut progress::silent)?)
 }
 
-/// The largest difference of a channel in codes of 255 on a linear scale, and whether anything is lit. A display code is
-/// never finer: half floats at 1 have eleven bits.
+/// Returns the largest difference of a channel in 1/255 on a linear scale, and checks that some pixel is lit. Half
+/// floats near 1 have eleven bits, which is finer.
 fn apart(a: &[[f32; 4]], b: &[[f32; 4]]) -> f32 {
     assert_eq!(a.len(), b.len());
     let pairs = a.iter().flatten().zip(b.iter().flatten());
@@ -34,7 +34,8 @@ fn brightest(picture: &[[f32; 4]]) -> f32 {
     picture.iter().flat_map(|texel| &texel[..3]).copied().fold(0.0, f32::max)
 }
 
-/// Both ways; the lists must be made. The same sum in the same order is the same to the bit, so a code is ample.
+/// Draws both ways, and checks that lists exist. Sums in the same order are bit-exact, so one step is an ample
+/// tolerance.
 fn same(gpu: &Gpu, what: &str, mut night: Night) -> TestResult {
     let view = night.view(FROXELS);
     assert!(matches!(view.light_report.found, Found::ByFroxels { .. }), "{what}: {}", view.light_report);
@@ -46,12 +47,12 @@ fn same(gpu: &Gpu, what: &str, mut night: Night) -> TestResult {
     Ok(())
 }
 
-/// From the scene's cameras, from among the lamps, by a parallel projection; in odd sizes, with four samples, in half floats,
-/// with shadows, with surfaces that blend.
+/// Tested from the scene's cameras, from between the lights, and in orthographic projection. Also tested in odd sizes,
+/// with four samples, in half floats, with shadows, and with blended surfaces.
 #[test]
 fn froxels_show_what_all_lights_show() -> TestResult {
     let Some(gpu) = gpu("froxels_show_what_all_lights_show") else { return Ok(()) };
-    let scene = lamps(200)?;
+    let scene = punctual_lights(200)?;
     let own = |index: usize| scene.cameras[index].clone();
     let look = |eye, at, projection| Camera::look_at(eye, at, DVec3::Y, projection);
     let lamp = scene.lights[0].position;
@@ -86,11 +87,11 @@ fn froxels_show_what_all_lights_show() -> TestResult {
     same(&gpu, "blended", Night::new(&gpu, blended, own(1), [96, 54], PLAIN)?)
 }
 
-/// Lights without an end are in no list and light all the same; a thousand kilometers from the origin nothing changes.
+/// Lights without a range are in no list but still light the scene; at 1000 km from the origin, nothing changes.
 #[test]
 fn endless_lights_and_far_places_are_lit() -> TestResult {
     let Some(gpu) = gpu("endless_lights_and_far_places_are_lit") else { return Ok(()) };
-    let mut scene = lamps(60)?;
+    let mut scene = punctual_lights(60)?;
     scene.lights.push(Light { color: Vec3::new(0.1, 0.2, 0.3), ..Light::directional("moon", Vec3::NEG_ONE, 2.0) });
     scene.lights.push(Light { color: Vec3::X, ..Light::directional("second", Vec3::new(1.0, -1.0, 0.0), 1.0) });
     let far = DVec3::new(1e6, -3e5, 7e5);
@@ -107,19 +108,19 @@ fn endless_lights_and_far_places_are_lit() -> TestResult {
     let mut there = Night::new(&gpu, moved, away, [96, 54], PLAIN)?;
     let a = here.shoot(&gpu, here.view(FROXELS), 1)?.linear;
     let b = there.shoot(&gpu, there.view(FROXELS), 1)?.linear;
-    // In double precision a thousand kilometers have steps of a tenth of a nanometer; an edge may take another pixel.
+    // At 1000 km, f64 has steps of 0.1 nm; pixels at edges may change.
     let off = a.iter().zip(&b).filter(|(a, b)| apart(&[**a], &[**b]) > 1.0).count();
     assert!(off <= a.len() / 500, "{off} pixels of {}", a.len());
     same(&gpu, "endless", here)?;
     same(&gpu, "far", there)
 }
 
-/// Two views of one graph, of other sizes, cameras and froxels, each with its own lists: pictures are those of each alone, to
-/// the bit. A view that reads the lists of the other is seen.
+/// Two views in one graph with different sizes, cameras and froxels have their own lists: each picture equals that of
+/// the view alone, bit for bit. Negative control: a view that reads the other's lists.
 #[test]
 fn views_of_a_graph_have_lists_of_their_own() -> TestResult {
     let Some(gpu) = gpu("views_of_a_graph_have_lists_of_their_own") else { return Ok(()) };
-    let scene = lamps(200)?;
+    let scene = punctual_lights(200)?;
     let cameras = scene.cameras.clone();
     let mut night = Night::new(&gpu, scene, cameras[0].clone(), [96, 54], PLAIN)?;
     let finer = LightSearch::Froxels(FroxelSettings { tiles: 400, slices: 24, ..FroxelSettings::DEFAULT });
@@ -145,11 +146,11 @@ fn views_of_a_graph_have_lists_of_their_own() -> TestResult {
     Ok(())
 }
 
-/// The comparison notices one light that is missing from the lists, and lists that are shifted by one froxel.
+/// Negative controls: a light that is missing from the lists, and lists shifted by one froxel.
 #[test]
 fn a_light_that_is_missing_is_seen() -> TestResult {
     let Some(gpu) = gpu("a_light_that_is_missing_is_seen") else { return Ok(()) };
-    let scene = lamps(60)?;
+    let scene = punctual_lights(60)?;
     let camera = scene.cameras[1].clone();
     let mut night = Night::new(&gpu, scene, camera, [160, 90], PLAIN)?;
     let whole = night.shoot(&gpu, night.view(FROXELS), 1)?.linear;
@@ -161,7 +162,7 @@ fn a_light_that_is_missing_is_seen() -> TestResult {
     let mut missing = night.view(FROXELS);
     let lists = missing.light_lists.as_mut().ok_or("lists")?;
     let words = &mut lists.words[froxels + 1..];
-    // The light that most froxels list is taken for another one, which adds nothing there.
+    // The most frequent light in the lists is replaced by another one that adds nothing there.
     let most = (0..60).max_by_key(|light| words.iter().filter(|word| *word == light).count()).unwrap_or(0);
     words.iter_mut().filter(|word| **word == most).for_each(|word| *word = (most + 30) % 60);
     assert!(apart(&whole, &night.shoot(&gpu, missing, 1)?.linear) > 1.0, "light {most}");

@@ -1,4 +1,4 @@
-//! Lines and points in pictures: which pixels they light, against where they are, and every frame that draws them.
+//! Lines and points: lit pixels compared with positions, in every kind of frame.
 
 mod frames;
 
@@ -15,15 +15,15 @@ use tests::executors;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Width and height of the pictures; a unit of the scene is a pixel.
+/// Width and height of the pictures; a unit of the scene is one pixel.
 const SIZE: usize = 48;
 
-/// A material that is shown as it is.
+/// Returns an unlit material of a color.
 fn unlit(color: Vec3) -> Material {
     Material { unlit: true, ..Material::dielectric("unlit", color, 1.0) }
 }
 
-/// Primitives without normals; places in pixels from the upper left corner of the picture.
+/// Creates primitives without normals at positions in pixels from the upper left.
 fn mesh(topology: Topology, places_px: &[DVec2]) -> Mesh {
     let half = SIZE as f64 / 2.0;
     let positions: Vec<Vec3> = places_px.iter().map(|at| DVec3::new(at.x - half, half - at.y, 0.0).as_vec3()).collect();
@@ -31,7 +31,7 @@ fn mesh(topology: Topology, places_px: &[DVec2]) -> Mesh {
     Mesh { topology, bounds: Aabb::from_points(&positions), positions, indices, ..Mesh::default() }
 }
 
-/// A scene that is seen straight on, a unit a pixel.
+/// Creates an orthographic scene in which a unit is one pixel.
 fn scene() -> Scene {
     let projection =
         Projection::Orthographic { half_width_m: None, half_height_m: SIZE as f64 / 2.0, near_m: 1.0, far_m: 100.0 };
@@ -44,7 +44,7 @@ fn put(scene: &mut Scene, mesh: Mesh, material: Material, at: DVec3) {
     scene.add_instance("it", mesh, material, DMat4::from_translation(at));
 }
 
-/// Pre-exposed radiance of a picture, row by row, over black; at an exposure of 1 to a few parts in a thousand.
+/// Returns pre-exposed radiance row by row, on black; the exposure is 1 to within a few thousandths.
 fn radiance(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<Vec3>, Box<dyn Error>> {
     let size_px = [SIZE as u32; 2];
     let settings = settings.for_scene(scene, size_px);
@@ -62,13 +62,13 @@ fn radiance(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<Vec3>, B
     Ok(read_texture(gpu, texture)?.rgba().iter().map(|[r, g, b, _]| Vec3::new(*r, *g, *b)).collect())
 }
 
-/// Settings of a plain frame.
+/// Returns settings of a frame without effects.
 fn plain(samples: u8, prepass: bool, shadows: bool) -> Settings {
     let shadows = shadows.then(|| ShadowSettings::texels(128));
     Settings { samples, prepass, shadows, fxaa: false, ..Settings::default() }
 }
 
-/// The plain frames that a device draws.
+/// Returns the frames without effects that a device can draw.
 fn frames(gpu: &Gpu) -> Vec<Settings> {
     let most = if gpu.info().backend == wgpu::Backend::Gl { 1 } else { 4 };
     let all = [(1, true, true), (1, false, false), (4, true, false), (4, false, true)];
@@ -78,15 +78,15 @@ fn frames(gpu: &Gpu) -> Vec<Settings> {
         .collect()
 }
 
-/// Distance of a point from a segment.
+/// Returns the distance of a point from a segment.
 fn distance(point: DVec2, [from, to]: [DVec2; 2]) -> f64 {
     let along = to - from;
     let share = ((point - from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
     point.distance(from + along * share)
 }
 
-/// Checks the light of a picture against segments of a pixel's width that do not meet. All light is within a pixel of one; each
-/// column of a flat segment, or row of a steep one, has the light of a pixel.
+/// Compares a picture with segments one pixel wide that do not intersect. All light is within a pixel of a segment.
+/// Each column of a flat segment, or row of a steep one, has the light of one pixel.
 fn is_drawn_as(light: &[f32], segments: &[[DVec2; 2]], samples: u8) {
     for (at, light) in light.iter().enumerate().filter(|(_, light)| **light > 0.0) {
         let center = DVec2::new((at % SIZE) as f64 + 0.5, (at / SIZE) as f64 + 0.5);
@@ -97,7 +97,7 @@ fn is_drawn_as(light: &[f32], segments: &[[DVec2; 2]], samples: u8) {
         let along = (segment[1] - segment[0]).abs();
         let axis = usize::from(along.y > along.x);
         let (first, last) = (segment[0][axis].min(segment[1][axis]), segment[0][axis].max(segment[1][axis]));
-        // Ends may lack a pixel or have one more.
+        // Ends may have one pixel more or less.
         for step in first.ceil() as usize + 1..last.floor() as usize - 1 {
             let column = (0..SIZE).map(|across| {
                 let at = if axis == 0 {
@@ -109,8 +109,8 @@ fn is_drawn_as(light: &[f32], segments: &[[DVec2; 2]], samples: u8) {
                 if own { light[at.y as usize * SIZE + at.x as usize] } else { 0.0 }
             });
             let sum = column.sum::<f32>();
-            // A device draws a pixel a step, or a rectangle of a pixel's width, which is up to √2 as high at a slant. With one
-            // sample that is a pixel or two, with four samples a pixel three to seven samples.
+            // A device draws one pixel per step, or a rectangle one pixel wide, which is up to √2 pixels high if
+            // slanted. With one sample, this covers one or two pixels; with four samples, three to seven samples.
             let range = if samples == 1 { 0.99..=2.01 } else { 0.74..=1.76 };
             assert!(range.contains(&sum), "step {step} of {segment:?} along axis {axis}: {sum}");
         }
@@ -139,8 +139,7 @@ fn lines_light_the_pixels_along_them() -> TestResult {
     Ok(())
 }
 
-/// Points light the pixel that they are in the middle of, and no other; colors of vertices are theirs. A picture of nothing else is
-/// drawn.
+/// A point lights only the pixel that contains it, in its vertex color. A scene of only points is drawn.
 #[test]
 fn points_light_the_pixels_that_they_are_in() -> TestResult {
     let Some(gpu) = gpu("points_light_the_pixels_that_they_are_in") else { return Ok(()) };
@@ -161,8 +160,8 @@ fn points_light_the_pixels_that_they_are_in() -> TestResult {
     Ok(())
 }
 
-/// Nearer lines hide farther triangles and are hidden by nearer ones; blended lines cover by their alpha, and masked ones below the
-/// cutoff are not drawn.
+/// Near lines hide far triangles and the reverse. Blended lines cover by alpha, and masked ones below the cutoff are
+/// not drawn.
 #[test]
 fn depth_and_alpha_are_those_of_triangles() -> TestResult {
     let Some(gpu) = gpu("depth_and_alpha_are_those_of_triangles") else { return Ok(()) };
@@ -199,7 +198,8 @@ fn depth_and_alpha_are_those_of_triangles() -> TestResult {
     Ok(())
 }
 
-/// Without normals base color and emission add up; with normals lines and points are lit as a plane with the same normal is.
+/// Without normals, base color and emission add up; with normals, lines and points are lit like a plane with that
+/// normal.
 #[test]
 fn lines_with_normals_are_lit_and_others_are_not() -> TestResult {
     let Some(gpu) = gpu("lines_with_normals_are_lit_and_others_are_not") else { return Ok(()) };
@@ -223,7 +223,7 @@ fn lines_with_normals_are_lit_and_others_are_not() -> TestResult {
         assert!(wall.min_element() > 0.05, "the wall is lit: {wall}");
         for y in [10, 20] {
             assert!(at(y).abs_diff_eq(Vec3::new(0.5, 0.5, 0.5), 2e-3), "row {y}: {}", at(y));
-            // Half floats; the place in the picture turns the view by nothing.
+            // Half floats; the position in the picture does not change the view direction.
             assert!(
                 (at(y + 5) - wall).abs().max_element() < 4e-3 * wall.max_element(),
                 "row {y}: {} {wall}",

@@ -1,4 +1,4 @@
-//! Lobes and choices of shading through the standard frame, against what they say on paper.
+//! Material lobes and shading options in the standard frame, compared with their formulas.
 
 use crate::stage::{Set, Shot, gpu, precisions};
 use framegraph_passes::view::Background;
@@ -25,19 +25,19 @@ fn coat(factor: f32, roughness: f32) -> Option<ClearCoat> {
     Some(ClearCoat { factor, roughness, normal_scale: 1.0, ..ClearCoat::default() })
 }
 
-/// A card of each material at each angle.
+/// Creates a card of each material at each angle.
 fn wall(materials: &[Material]) -> Wall {
     let card = |material: &Material| NOV.map(|nov| Card { material: material.clone(), nov });
     Wall { cards: materials.iter().flat_map(card).collect(), ..Wall::default() }
 }
 
-/// What each material reflects of an even nit at each angle.
+/// Returns each material's reflected radiance under a uniform nit, at each angle.
 fn in_even_light(gpu: &Gpu, wall: &Wall, shading: &Shading) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
     let seen = wall.render(gpu, &Environment::uniform(DVec3::ONE)?, shading)?;
     Ok(seen[..wall.cards.len()].chunks(NOV.len()).map(|c| c.iter().map(|s| s.nits.x).collect()).collect())
 }
 
-/// What each material reflects at each angle of one light of π lux, from (0.36, 0.48, 0.8).
+/// Returns each material's reflected radiance under one light of π lux from (0.36, 0.48, 0.8), at each angle.
 fn in_one_light(gpu: &Gpu, materials: &[Material], shading: &Shading) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
     let light = Light::directional("lamp", -TOWARD.as_vec3(), PI as f32);
     let wall = Wall { light: Some(light), ..wall(materials) };
@@ -47,7 +47,7 @@ fn in_one_light(gpu: &Gpu, materials: &[Material], shading: &Shading) -> Result<
 
 const TOWARD: DVec3 = DVec3::new(0.36, 0.48, 0.8);
 
-/// Normal, tangent and bitangent of a card, the viewer being at +z.
+/// Returns normal, tangent and bitangent of a card; the viewer is at +z.
 fn frame(nov: f64) -> [DVec3; 3] {
     let sin = (1.0 - nov * nov).sqrt();
     let (n, t) = (DVec3::new(sin, 0.0, nov), DVec3::new(nov, 0.0, -sin));
@@ -65,14 +65,14 @@ fn close(what: &str, got: &[f64], expected: impl Fn(f64) -> f64, relative: f64, 
     }
 }
 
-/// Even light needs no integral: a coat takes Schlick's share and lets the rest through, fibers reflect their albedo, and
-/// KHR_materials_specular can switch reflection off.
+/// Uniform light needs no integral. A coat reflects Schlick's share and transmits the rest, cloth reflects its albedo,
+/// and KHR_materials_specular can disable reflection.
 #[test]
 fn lobes_in_even_light_reflect_what_they_must() -> TestResult {
     let Some(gpu) = gpu("lobes_in_even_light_reflect_what_they_must") else { return Ok(()) };
     let white = Material::metal("white", Vec3::ONE, 0.5);
     let materials = [
-        // Index 1.5 under a coat of 1.5: there is no border, and nothing reflects but the coat.
+        // A base of index 1.5 under a coat of 1.5 has no interface, so only the coat reflects.
         Material { clear_coat: coat(1.0, 0.1), ..black(0.5) },
         Material { clear_coat: coat(0.5, 0.1), ..white.clone() },
         Material { clear_coat: coat(1.0, 0.1), ..white.clone() },
@@ -85,7 +85,7 @@ fn lobes_in_even_light_reflect_what_they_must() -> TestResult {
         Material { anisotropy: Some(Anisotropy { strength: 0.9, ..Anisotropy::default() }), ..white },
     ];
     let seen = in_even_light(&gpu, &wall(&materials), &Shading::default())?;
-    // Half floats of 0.05 %, tables of 64².
+    // Half floats with an error of 0.05 %, tables of 64².
     let fresnel = |nov: f64| schlick(0.04, nov);
     close("a coat over nothing", &seen[0], fresnel, 2e-3, 1e-4);
     close("half a coat over white", &seen[1], |_| 1.0, 2e-3, 0.0);
@@ -96,8 +96,8 @@ fn lobes_in_even_light_reflect_what_they_must() -> TestResult {
     Ok(())
 }
 
-/// Without the change of index, a base under a coat reflects as it does in air, less the coat's share; with it a dielectric of
-/// the coat's index reflects nothing.
+/// With the option, a base under a coat reflects as in air, minus the coat's share. Without it, a dielectric of the
+/// coat's index reflects nothing.
 #[test]
 fn a_base_under_a_coat_keeps_its_reflectance_on_demand() -> TestResult {
     let Some(gpu) = gpu("a_base_under_a_coat_keeps_its_reflectance_on_demand") else { return Ok(()) };
@@ -117,7 +117,7 @@ fn a_base_under_a_coat_keeps_its_reflectance_on_demand() -> TestResult {
             let fresnel = schlick(0.04, nov);
             let expected = fresnel + (1.0 - fresnel) * kept[bare][index];
             let found = kept[under][index];
-            // Half floats of 0.05 %, tables of 64².
+            // Half floats with an error of 0.05 %, tables of 64².
             assert!((found - expected).abs() < 2e-3 * expected + 1e-4, "{under} at {nov}: {found} for {expected}");
             assert!(changed[under][index] < found - 1e-3, "{under} at {nov}: the coat lowers what the base reflects");
         }
@@ -129,7 +129,7 @@ fn a_base_under_a_coat_keeps_its_reflectance_on_demand() -> TestResult {
     Ok(())
 }
 
-/// One light: the lobes' formulas written out again, in doubles.
+/// One light: the lobes' formulas, implemented independently in f64.
 #[test]
 fn lobes_in_one_light_are_their_formulas() -> TestResult {
     let Some(gpu) = gpu("lobes_in_one_light_are_their_formulas") else { return Ok(()) };
@@ -188,12 +188,12 @@ fn lobes_in_one_light_are_their_formulas() -> TestResult {
     close("grooves turned", &seen[3], stretched(0.8, f64::from(0.7_f32)), 3e-3, 1e-5);
     close("grooves of no depth", &seen[4], stretched(0.0, 0.0), 3e-3, 1e-5);
     close("no grooves", &seen[5], stretched(0.0, 0.0), 3e-3, 1e-5);
-    // What is scattered within the surface is added to grooves of no depth as to none, by the same factor.
+    // Anisotropy of strength zero is compensated by the same factor as no anisotropy.
     let whole = in_one_light(&gpu, &materials[4..], &Shading { compensate_punctual: true, ..shading })?;
     for (of, (grooved, plain)) in whole[0].iter().zip(&whole[1]).enumerate() {
         assert!(*plain > 1.02 * seen[5][of] && (grooved / plain - 1.0).abs() < 5e-3, "{grooved} for {plain}");
     }
-    // The control: turned and straight grooves differ by more than what is let pass.
+    // Negative control: rotated and unrotated anisotropy differ by more than the tolerance.
     assert!(seen[2].iter().zip(&seen[3]).any(|(a, b)| (a / b - 1.0).abs() > 0.05));
     Ok(())
 }
@@ -240,7 +240,8 @@ fn light_is_scattered_below_surfaces_as_in_filament() -> TestResult {
     Ok(())
 }
 
-/// Ambient occlusion of one half: plain in the low quality, with bounces in the high one; reflections follow in both.
+/// Ambient occlusion of 0.5: unchanged at low quality, with interreflections at high quality; specular occlusion in
+/// both.
 #[test]
 fn occlusion_is_as_the_quality_has_it() -> TestResult {
     let Some(gpu) = gpu("occlusion_is_as_the_quality_has_it") else { return Ok(()) };
@@ -271,7 +272,7 @@ fn occlusion_is_as_the_quality_has_it() -> TestResult {
     Ok(())
 }
 
-/// Every choice shows somewhere, and none where it must not: a card that a choice is not about stays as it is, to the bit.
+/// Each shading option changes the cards that it applies to, and no bit of the others.
 #[test]
 fn every_choice_of_shading_shows() -> TestResult {
     let Some(gpu) = gpu("every_choice_of_shading_shows") else { return Ok(()) };
@@ -282,7 +283,7 @@ fn every_choice_of_shading_shows() -> TestResult {
     let materials = [
         Material::metal("rough", Vec3::splat(0.9), 0.7),
         Material::metal("smooth", Vec3::splat(0.9), 0.0),
-        // An f0 of 0.002, which no solid has.
+        // An f0 of 0.002, below that of any solid.
         Material { ior: 1.1, ..black(0.3) },
         Material { occlusion_texture: slot, ..Material::dielectric("chalk", Vec3::splat(0.8), 0.9) },
         Material { clear_coat: coat(1.0, 0.1), ..Material::metal("coated", Vec3::new(0.3, 0.6, 0.9), 0.4) },
@@ -325,14 +326,14 @@ fn every_choice_of_shading_shows() -> TestResult {
     Ok(())
 }
 
-/// Specular antialiasing widens highlights where normals turn, and leaves what is flat alone, to the bit.
+/// Specular anti-aliasing widens highlights on curved surfaces, and changes no bit of flat ones.
 #[test]
 fn highlights_are_widened_where_normals_turn() -> TestResult {
     let Some(gpu) = gpu("highlights_are_widened_where_normals_turn") else { return Ok(()) };
     let on = Quality::High.shading();
     let off = Shading { specular_aa: None, ..on };
     let post = PostSettings { dither: 0.0, ..PostSettings::DEFAULT };
-    // So dark that little but the sun in smooth spheres is left.
+    // So dark that only the sun's reflections in smooth spheres remain.
     let dark =
         |shading| Shot { ev100: 20.0, ..Shot::small(Settings { shading, fxaa: false, post, ..Settings::default() }) };
     let set = Set::new(&gpu, "spheres", &dark(off), &Background::None)?;
@@ -341,14 +342,14 @@ fn highlights_are_widened_where_normals_turn() -> TestResult {
         Ok(picture.chunks_exact(4).filter(|t| t[0] > 16).count())
     };
     let [wide, narrow] = [lit(on)?, lit(off)?];
-    // A fifth more at least; a filter that widens everything would fill the spheres, a fifth of the picture.
+    // At least a fifth more pixels. A filter that widens everything would fill the spheres, a fifth of the picture.
     assert!(narrow > 0 && wide * 5 > narrow * 6 && wide < 160 * 90 / 5, "highlights of {wide} pixels for {narrow}");
     let flat = wall(&[Material::metal("smooth", Vec3::splat(0.9), 0.1), black(0.3)]);
     assert_eq!(in_even_light(&gpu, &flat, &on)?, in_even_light(&gpu, &flat, &off)?);
     Ok(())
 }
 
-/// The clear sky's map at a brightness about one.
+/// Scales the clear sky's map to a brightness near 1.
 fn dimmed(map: &framegraph_scene::environment::EquirectMap) -> framegraph_scene::environment::EquirectMap {
     let texels = map.texels().iter().map(|[r, g, b, a]| [r / 8000.0, g / 8000.0, b / 8000.0, *a]).collect();
     framegraph_scene::environment::EquirectMap::new(map.width(), map.height(), texels)

@@ -1,4 +1,4 @@
-//! Shadows of the sun where nothing casts: a plane alone, or a convex box, shows no shadow whatever the filter and the fit.
+//! Shadows of the sun without casters: a single plane or convex box has no shadow, for any filter and fit.
 
 use crate::stage::gpu;
 use framegraph_passes::facts::Effect;
@@ -13,7 +13,7 @@ use tests::measure::facts::{Case, Drawn, Easel};
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Angles between the plane and the horizon, in radians, about an axis that is neither the camera's nor the sun's.
+/// Angles between the plane and the horizon in radians, about an axis that differs from the camera's and the sun's.
 const TILTS: [f64; 4] = [0.0, 0.02, 0.4, -0.3];
 const SUN: DVec3 = DVec3::new(1.0, 1.0, 0.5);
 
@@ -54,7 +54,7 @@ fn what_stands_alone_has_no_shadow_on_it() -> TestResult {
                     let shadows = ShadowSettings { filter, fit, ..ShadowSettings::texels(1024) };
                     let seen = drawn.picture(&mut easel, &Settings { shadows: Some(shadows), ..bare })?;
                     let pairs = seen.chunks_exact(4).zip(lit.chunks_exact(4));
-                    // Another variant of the shader computes the same, within a code.
+                    // Another shader variant gives the same result within one 8-bit step.
                     let dark = pairs.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1)).count();
                     if dark > 0 {
                         failures.push(format!("{name} tilted by {tilt}: {dark} pixels, {filter:?} {fit:?}"));

@@ -1,11 +1,11 @@
-//! Which standard shaders are compiled with their loops counted, or their indices tested, at run time.
+//! Standard shaders whose loops are counted, or whose indices are checked, at run time.
 
 use framegraph_shaders::{Feature, Features, library, resolve};
 use framegraph_wgpu::{endless_loop, unproved_index};
 use std::collections::BTreeMap;
 use std::error::Error;
 
-/// The standard shaders of which a variant has what `told` names, each with it, and how many have not.
+/// Returns the standard shaders with a variant for which `of` returns a message, and the number of the others.
 fn told(of: impl Fn(&str) -> Option<String>) -> (BTreeMap<String, String>, usize) {
     let (mut found, mut free) = (BTreeMap::new(), 0);
     for module in library::passes() {
@@ -34,7 +34,7 @@ fn compare(table: &str, found: &BTreeMap<String, String>) -> Result<(), Box<dyn 
     Ok(())
 }
 
-/// Whose loops go by steps of floats, or to a bound that the text does not have: the document lists them, and no other.
+/// The document lists exactly the shaders whose loops use float steps or a bound that is not a constant.
 #[test]
 fn the_document_names_the_shaders_whose_loops_are_counted() -> Result<(), Box<dyn Error>> {
     let (counted, free) = told(endless_loop);
@@ -42,7 +42,7 @@ fn the_document_names_the_shaders_whose_loops_are_counted() -> Result<(), Box<dy
     compare("loops", &counted)
 }
 
-/// Who loads texels by their place, or has arrays whose length is the application's: the document lists them, and no other.
+/// The document lists exactly the shaders that load texels by position, or have arrays of dynamic length.
 #[test]
 fn the_document_names_the_shaders_whose_indices_are_tested() -> Result<(), Box<dyn Error>> {
     let (tested, free) = told(unproved_index);

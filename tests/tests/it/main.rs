@@ -1,4 +1,4 @@
-//! Tests across crates, one binary.
+//! Tests across packages, in one test binary.
 
 mod accuracy;
 mod bisect;
@@ -28,7 +28,6 @@ mod inputs;
 mod inspect;
 mod instances;
 mod kept_shadows;
-mod lamps;
 mod lens;
 mod lens_document;
 mod levels;
@@ -52,6 +51,7 @@ mod poison;
 mod prepass;
 mod programs;
 mod proofs;
+mod punctual_lights;
 mod readme;
 mod reference;
 mod reflections;

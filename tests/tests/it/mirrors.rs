@@ -1,4 +1,4 @@
-//! Every function of the shader library, on the adapter that there is, equals its f64 mirror within its stated bound.
+//! Every function of the shader library on the default adapter matches its f64 mirror within the documented bound.
 
 use crate::light_document::rows;
 use crate::stage;
@@ -6,7 +6,7 @@ use framegraph_shaders::reference::cases;
 use std::error::Error;
 use tests::mirror;
 
-/// Points of each function's domain, a quarter of which are corners.
+/// Points in each function's domain; a quarter are corners.
 const POINTS: usize = 2048;
 
 #[test]
@@ -23,7 +23,7 @@ fn every_library_function_equals_its_mirror_on_the_device() -> Result<(), Box<dy
         match mirror::compare(&gpu, case, POINTS) {
             Ok(deviation) => {
                 compared += 1;
-                // Another driver rounds otherwise; a function that has become another does not err half as much again.
+                // Drivers round differently, so the largest error may grow by half.
                 let of_bound: f64 = printed[2].trim_end_matches(" %").parse()?;
                 let found = 100.0 * deviation.of_bound;
                 assert!(
@@ -39,7 +39,7 @@ fn every_library_function_equals_its_mirror_on_the_device() -> Result<(), Box<dy
     Ok(())
 }
 
-/// The same comparison finds a shader that is wrong by 0.1 %: each function's own result, spoilt on the way to the check.
+/// Negative control: each function's result is changed by 0.1 % before the comparison.
 #[test]
 fn a_result_that_is_off_is_found() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = stage::gpu("a_result_that_is_off_is_found") else { return Ok(()) };

@@ -1,5 +1,5 @@
-//! Normals: maps, tangents, mirrored, stretched and flattened objects, and both sides of a surface. Three lamps tell each
-//! component apart.
+//! Normals: maps, tangents; mirrored, stretched and flattened objects; both sides of a surface. Three colored lights
+//! separate the components.
 
 use crate::stage::{gpu, lighting};
 use framegraph_passes::Shading;
@@ -8,33 +8,33 @@ use framegraph_scene::{Environment, Material, Mesh, Specular};
 use glam::{DMat3, DMat4, DQuat, DVec3, Vec2, Vec3};
 use std::error::Error;
 use std::f64::consts::PI;
-use tests::measure::board::{Board, card, lamps};
+use tests::measure::board::{Board, card, punctual_lights};
 use truth::surface::Surface;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Unit vectors toward the red, the green and the blue lamp.
+/// Unit vectors toward the red, the green and the blue light.
 const TOWARD: [DVec3; 3] = [DVec3::new(0.6, 0.0, 0.8), DVec3::new(0.0, 0.6, 0.8), DVec3::new(-0.36, -0.48, 0.8)];
 const ALBEDO: DVec3 = DVec3::new(0.9, 0.7, 0.5);
-/// The shaded normal and tangent of every card.
+/// Shading normal and tangent of every card.
 const NORMAL: DVec3 = DVec3::new(0.36, -0.48, 0.8);
 const TANGENT: DVec3 = DVec3::new(0.8, 0.6, 0.0);
-/// Of a normal map: (0.569, -0.294, 0.725).
+/// Texel of a normal map: (0.569, -0.294, 0.725).
 const TEXEL: [u8; 4] = [200, 90, 220, 0];
 
-/// TEXEL's normal, by glTF 2.0: x and y scaled, over normal, tangent and the bitangent that is theirs.
+/// Returns TEXEL's normal by glTF 2.0: x and y are scaled, in the basis of normal, tangent and bitangent.
 fn mapped(normal: DVec3, tangent: DVec3, handedness: f64, scale: f64) -> DVec3 {
     let [x, y, z] = [TEXEL[0], TEXEL[1], TEXEL[2]].map(|c| f64::from(c) / 255.0 * 2.0 - 1.0);
     (tangent * (x * scale) + normal.cross(tangent) * (handedness * y * scale) + normal * z).normalize()
 }
 
-/// What is shaded with this normal.
+/// Returns the radiance of a surface with a normal.
 fn expected(normal: DVec3) -> DVec3 {
     let chalk = Surface::chalk(ALBEDO, normal);
     DVec3::new(
-        chalk.per_lamp(DVec3::Z, TOWARD[0]).x,
-        chalk.per_lamp(DVec3::Z, TOWARD[1]).y,
-        chalk.per_lamp(DVec3::Z, TOWARD[2]).z,
+        chalk.per_light(DVec3::Z, TOWARD[0]).x,
+        chalk.per_light(DVec3::Z, TOWARD[1]).y,
+        chalk.per_light(DVec3::Z, TOWARD[2]).z,
     )
 }
 
@@ -46,10 +46,10 @@ fn turned(axis: DVec3, angle: f64) -> DMat4 {
 fn normals_are_those_of_the_object_in_its_place() -> TestResult {
     let Some(gpu) = gpu("normals_are_those_of_the_object_in_its_place") else { return Ok(()) };
     let mut board = Board::default();
-    board.scene.lights = lamps(TOWARD);
+    board.scene.lights = punctual_lights(TOWARD);
     let nearest = Sampler { mag: Filter::Nearest, min: Filter::Nearest, mip: None, ..Sampler::default() };
     let map = board.texture(1, &[TEXEL], TextureRole::Normal, nearest);
-    // The right half of a picture whose left half leans elsewhere, seen through the second texture coordinates.
+    // The right half of a map whose left half has another normal, with the second texture coordinates.
     let second = board.texture(2, &[[10, 240, 200, 255], TEXEL], TextureRole::Normal, nearest);
     let chalk = Material {
         specular: Some(Specular { factor: 0.0, ..Specular::default() }),
@@ -73,7 +73,7 @@ fn normals_are_those_of_the_object_in_its_place() -> TestResult {
     let no_normals = Mesh { normals: vec![Vec3::ZERO; 4], ..plain.clone() };
     let no_tangents = Mesh { tangents: Vec::new(), ..plain.clone() };
     let along_normal = Mesh { tangents: vec![NORMAL.as_vec3().extend(1.0); 4], ..plain.clone() };
-    // Least turn of the axes that brings z to the normal: what Duff's frame is.
+    // Duff's frame is the smallest rotation that takes z to the normal.
     let frame = DQuat::from_rotation_arc(DVec3::Z, NORMAL) * DVec3::X;
     let two_sets = Mesh { uv0: vec![Vec2::new(0.25, 0.5); 4], uv1: vec![Vec2::new(0.75, 0.5); 4], ..plain.clone() };
     let of_second = |uv_set: u32| Material {
@@ -137,7 +137,7 @@ fn normals_are_those_of_the_object_in_its_place() -> TestResult {
     let mut wrong = Vec::new();
     for ((name, .., normal), seen) in cases.iter().zip(&seen) {
         let expected = normal.map_or(hidden, expected);
-        // Half floats: 5e-4 of a nit.
+        // Half floats: 5e-4 nits.
         let apart = (seen.nits - expected).abs().max_element();
         if apart >= 1e-3 {
             wrong.push(format!("{name}: {} for {expected}", seen.nits));

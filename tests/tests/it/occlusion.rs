@@ -1,4 +1,4 @@
-//! Ambient occlusion: what a frame with it loads and stores, and how far it is from the truth on scenes whose truth is known.
+//! Ambient occlusion: loads and stores of frames with it, and its error in scenes with known results.
 
 mod hard;
 mod shaded;
@@ -23,22 +23,23 @@ use truth::occlusion as truth;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// How far occluders count, in m, where nothing else is said.
+/// Default radius, in m.
 const RADIUS_M: f64 = 0.3;
 
 fn settings(text: &str) -> Result<OcclusionSettings, Box<dyn Error>> {
     OcclusionSettings::from_text(text)?.ok_or_else(|| format!("{text}: it is off").into())
 }
 
-/// Least and mean visibility of what is there.
+/// Returns the minimum and mean visibility of surfaces.
 fn least_and_mean(stage: &Stage, visibility: &[f32]) -> [f64; 2] {
     let covered = visibility.iter().zip(&stage.depth).filter(|(_, depth)| **depth > 0.0);
     let covered: Vec<f64> = covered.map(|(visibility, _)| f64::from(*visibility)).collect();
     [covered.iter().copied().fold(f64::INFINITY, f64::min), mean_and_deviation(&covered)[0]]
 }
 
-/// Filament's frame with separate grading, FXAA and SAO, no shadows, five levels of structure: 3 loads (the structure's depth,
-/// read-only, in the three passes of SAO) and 14 stores, of which 3 are those loads' flags.
+/// Filament's frame with separate grading, FXAA and SAO, without shadows and with five levels of structure, has 3 loads
+/// and 14 stores. The loads are the structure's depth, read-only in the three passes of SAO; 3 of the stores are flags
+/// of these loads.
 ///
 /// step              attachment         load       store
 /// structure         level 0            clear      STORE
@@ -71,16 +72,16 @@ fn counts_are_less_than_filaments() {
             culled: 0,
         };
         assert_eq!(plan.counts(), expected, "{samples} samples, {resolution:?}");
-        // Post-processing in a pass of its own, as Filament has it, stores one picture more: still fewer than 14, or the 11
-        // that are real.
+        // A separate post-processing pass, as in Filament, stores one more picture: still fewer than 14, or than the 11
+        // actual stores.
         let apart = stage::plan(&frame, &Caps::wgpu(), &Options { inline: false, ..options }).counts();
         assert_eq!((apart.unresolves, apart.resolves), (0, 11));
     }
 }
 
-/// The structure is there for whom it concerns; without a reader none of its passes runs.
+/// The depth structure is drawn only if a pass reads it.
 #[test]
-fn a_structure_that_nobody_reads_is_culled() -> TestResult {
+fn an_unread_structure_is_culled() -> TestResult {
     let mut frame = Frame::<World>::new();
     let mut handles = Handles::default();
     let first = structure(&mut frame, &mut handles, Resolution::Half, 3)?;
@@ -96,14 +97,14 @@ fn a_structure_that_nobody_reads_is_culled() -> TestResult {
     Ok(())
 }
 
-/// Ground without occluders is open, however it tilts: at least 0.98, where Filament has 0.85. Its way of placing taps is what
-/// darkens it, and the test sees that.
+/// Ground without occluders has a visibility of at least 0.98 at any tilt; Filament has 0.85. Negative control:
+/// Filament's sample positions, which cause the darkening.
 #[test]
 fn open_ground_stays_open() -> TestResult {
     let test = "open_ground_stays_open";
     let Some(gpu) = gpu(test) else { return Ok(()) };
     for tilt in [0.0, -45.0, 80.0] {
-        // So near that the radius spans all levels of the pyramid.
+        // A view so close that the radius covers all levels of the pyramid.
         let stage = Stage::new(Projection::perspective(0.8, 0.01), [256, 192], ground(1.0, tilt))?;
         for precision in precisions(test, &gpu) {
             for text in ["sao:quality=high", "gtao", "gtao:occluders=0.5", "gtao:bent-normals=on,cone=on"] {
@@ -121,8 +122,8 @@ fn open_ground_stays_open() -> TestResult {
     Ok(())
 }
 
-/// Two planes at right angles: horizons are within .05 of the truth. SAO is not, for its model is another quantity: what it
-/// converges to is known, and that is what it gives.
+/// Two perpendicular planes: the error of GTAO is within 0.05. SAO estimates another quantity, and is compared with its
+/// known limit.
 #[test]
 fn the_corner_is_near_its_truth() -> TestResult {
     let Some(gpu) = gpu("the_corner_is_near_its_truth") else { return Ok(()) };
@@ -134,7 +135,7 @@ fn the_corner_is_near_its_truth() -> TestResult {
     let made = stage.visibility(&gpu, &settings("sao:quality=ultra,blur=off,bias=0")?, Precision::Full)?;
     let error = corner_error(&stage, &made, RADIUS_M);
     assert!((0.06..0.12).contains(&error), "the model's error: {error}");
-    // By a separate computation from another eye; within 0.04, and the closest column is a third of a centimeter wide.
+    // Computed independently from another eye; within 0.04, since the closest column is a third of a centimeter wide.
     for (distance_m, known) in [(0.05, 0.490), (0.1, 0.692), (0.15, 0.826), (0.2, 0.918)] {
         let columns = corner_columns(&stage, 1.0);
         let nearest = columns.iter().min_by(|a, b| (a.1 - distance_m).abs().total_cmp(&(b.1 - distance_m).abs()));
@@ -149,8 +150,8 @@ fn the_corner_is_near_its_truth() -> TestResult {
     Ok(())
 }
 
-/// The scene of columns against rays: root mean square of at most .05, where Filament has .057 after its offset is divided
-/// out, and some .17 with it.
+/// The scene of columns compared with path tracing: a root mean square error of at most 0.05. Filament has 0.057 after
+/// division by its offset, and about 0.17 with it.
 #[test]
 fn columns_are_near_what_rays_find() -> TestResult {
     let Some(gpu) = gpu("columns_are_near_what_rays_find") else { return Ok(()) };
@@ -161,18 +162,18 @@ fn columns_are_near_what_rays_find() -> TestResult {
     }
     let filaments = columns.off(&gpu, settings("sao:quality=ultra,place=filament,normals=coarse")?)?;
     assert!(filaments.rms > 0.1, "{filaments:?}");
-    // As surfaces are shaded with it, at half the resolution: the color pass picks texels by depth.
+    // Shading at half resolution: the color pass selects texels by depth.
     let half = columns.off_as_shaded(&gpu, settings("gtao:resolution=half")?)?;
     assert!(half.rms < 0.05, "{half:?}");
     Ok(())
 }
 
-/// On the floor of a corner the mean open direction leans away from the wall, by as much as adding up directions says.
+/// On the floor of a corner, the bent normal leans away from the wall as in the sum over directions.
 #[test]
 fn bent_normals_lean_away_from_walls() -> TestResult {
     let Some(gpu) = gpu("bent_normals_lean_away_from_walls") else { return Ok(()) };
     let stage = corner_stage(256)?;
-    // The right side of the corner: its normal, and the way to the edge along it.
+    // Right side of the corner: its normal, and the direction to the edge along it.
     let (normal, to_edge) = (DVec3::new(-1.0, 0.0, 1.0).normalize(), DVec3::new(-1.0, 0.0, -1.0).normalize());
     let bent = settings("gtao:slices=8,steps=16,bent-normals=on,blur=off")?;
     let (texels, _) = stage.occlusion(&gpu, &bent, Precision::Full, 1)?;
@@ -197,8 +198,8 @@ fn bent_normals_lean_away_from_walls() -> TestResult {
     Ok(())
 }
 
-/// Each texel is what the pass gives in double precision, of a ball before a corner with nothing beside it, near and far, by
-/// both projections; but for those in which rounding has a tap find another texel, or a sector of 32 end elsewhere.
+/// Texels match the f64 mirror, for a ball before a corner without surroundings, near and far, in both projections.
+/// Exceptions are texels in which rounding selects another texel, or another end of the 32 sectors.
 #[test]
 fn texels_are_those_of_the_mirror() -> TestResult {
     let Some(gpu) = gpu("texels_are_those_of_the_mirror") else { return Ok(()) };
@@ -251,12 +252,12 @@ fn texels_are_those_of_the_mirror() -> TestResult {
     Ok(())
 }
 
-/// A sun beyond the wall of a corner is shadowed at its foot, as far as the cone reaches; one that shines into the corner is
-/// not.
+/// The foot of a wall is shadowed from a sun behind it, within the cone's range. A sun that shines into the corner
+/// casts no such shadow.
 #[test]
 fn cones_find_what_stands_before_the_sun() -> TestResult {
     let Some(gpu) = gpu("cones_find_what_stands_before_the_sun") else { return Ok(()) };
-    // No occlusion but the cone's: a radius of next to nothing.
+    // A tiny radius leaves only the cone's occlusion.
     let traced = settings("gtao:radius=0.0001,cone=on,blur=off")?;
     let shadowed = |toward_sun| {
         let stage = Stage { toward_sun: Some(toward_sun), ..corner_stage(256)? };
@@ -270,7 +271,7 @@ fn cones_find_what_stands_before_the_sun() -> TestResult {
         };
         Ok::<_, Box<dyn Error>>([mean(0.02..0.1), mean(0.45..0.6)])
     };
-    // Toward the edge and a little out of the right side's plane: the left side stands before it.
+    // Toward the edge, slightly out of the right side's plane: the left side occludes it.
     let before = shadowed(DVec3::new(-1.0, 0.0, -0.6))?;
     assert!(before[0] < 0.7 && before[1] > 0.95, "{before:?}");
     let open = shadowed(DVec3::new(0.0, 0.3, 1.0))?;
@@ -278,9 +279,8 @@ fn cones_find_what_stands_before_the_sun() -> TestResult {
     Ok(())
 }
 
-/// Ground at a grazing angle is smoothed downward too, although its depth changes from row to row by more than what tells
-/// surfaces apart: along rows, on which nothing changes, less than a 25th of the
-/// noise is left.
+/// Ground at a grazing angle is blurred vertically too, although depth changes between rows by more than the blur's
+/// threshold. Along rows, less than 1/25 of the noise remains.
 #[test]
 fn grazing_ground_is_smoothed_as_far_as_a_wall() -> TestResult {
     let Some(gpu) = gpu("grazing_ground_is_smoothed_as_far_as_a_wall") else { return Ok(()) };
@@ -297,7 +297,7 @@ fn grazing_ground_is_smoothed_as_far_as_a_wall() -> TestResult {
     };
     let (raw, smooth) = (noise("sao:blur=off")?, noise("sao:quality=low,blur=high")?);
     assert!(raw > 0.03, "there is noise to smooth: {raw}");
-    // Without following the slope a nineteenth is left.
+    // Without following the slope, 1/19 remains.
     assert!(smooth < raw / 25.0, "{smooth} of {raw}");
     Ok(())
 }

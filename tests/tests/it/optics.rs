@@ -1,4 +1,4 @@
-//! Thin films, dispersion, diffuse and rough transmission, against light summed up by brute force.
+//! Thin films, dispersion and diffuse transmission, compared with brute-force integration.
 
 mod film;
 mod slab;
@@ -16,14 +16,13 @@ fn black(roughness: f32) -> Material {
     Material::dielectric("black", Vec3::ZERO, roughness)
 }
 
-/// Light that differs by direction: `of` must be a constant and a multiple of the direction's components, which three bands of
-/// spherical harmonics hold whole.
+/// Creates light that is linear in the direction, which three bands of spherical harmonics represent exactly.
 fn gradient(of: impl Fn(DVec3) -> DVec3) -> Result<Environment, Box<dyn Error>> {
     let map = EquirectMap::from_fn(128, 64, of);
     Ok(Environment { map, name: "gradient".into(), ..Environment::uniform(DVec3::ONE)? })
 }
 
-/// Fails for what is not within a share of what is expected, or within an absolute bound.
+/// Checks a color within a relative or an absolute tolerance.
 fn near(name: &str, seen: &Seen, expected: DVec3, relative: f64, absolute: f64) {
     let apart = (seen.nits - expected).abs();
     let allowed = expected.abs() * relative + DVec3::splat(absolute);

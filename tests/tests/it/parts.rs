@@ -1,5 +1,5 @@
-//! Passes are recorded with no more than the parts that they use: post-processing and the edge filter on an uploaded
-//! picture, the copy of a scene on an uploaded depth, without a scene, tables or light.
+//! Passes recorded with only the parts that they use: post-processing and FXAA on an uploaded picture, and the scene
+//! copy on an uploaded depth. There is no scene, table or light.
 
 use crate::stage::gpu;
 use framegraph::{
@@ -26,7 +26,7 @@ use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, Texture
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// All that post-processing takes: shaders, tables of grading, and which frame it is.
+/// Parts that post-processing needs: shaders, grading tables and the frame index.
 #[derive(Default)]
 pub struct Parts {
     pub programs: Programs,
@@ -76,7 +76,7 @@ fn uploaded(gpu: &Gpu, format: TextureFormat, bytes: &[u8]) -> wgpu::Texture {
     gpu.device.create_texture_with_data(&gpu.queue, &desc, TextureDataOrder::LayerMajor, bytes)
 }
 
-/// Executes what `declare` makes of an imported picture, with nothing but `parts`; the result's texels.
+/// Executes declared passes on an imported picture with only `parts`; returns the texels.
 fn filtered(
     gpu: &Gpu,
     parts: &Parts,
@@ -99,12 +99,12 @@ fn filtered(
     Ok((read_texture(gpu, texture)?, plan))
 }
 
-/// A gray of the ramp at column `x`: from 0.5 in steps so small that none is an edge.
+/// Returns a gray of the ramp at column `x`, from 0.5 in steps too small for FXAA.
 fn gray(x: u32) -> f32 {
     0.5 + 0.05 * x as f32
 }
 
-/// Half floats of a gray ramp from left to right, with a black bar across the middle.
+/// Returns half floats of a gray ramp from left to right, with a black bar in the middle.
 fn ramp() -> Vec<u8> {
     let texel = |i: usize| {
         let [x, y] = [i % SIZE[0] as usize, i / SIZE[0] as usize];
@@ -114,7 +114,7 @@ fn ramp() -> Vec<u8> {
     (0..TEXELS).flat_map(|i| texel(i).map(::half::f16::to_le_bytes).concat()).collect()
 }
 
-/// The code of an sRGB channel for linear light.
+/// Encodes linear light as an 8-bit sRGB value.
 fn code(linear: f64) -> f64 {
     255.0 * srgb_from_linear_channel(linear.clamp(0.0, 1.0))
 }
@@ -143,18 +143,18 @@ fn post_and_fxaa_run_on_a_picture_without_a_scene() -> TestResult {
         for x in 0..SIZE[0] {
             let expected = if y == 6 { 0.0 } else { code(0.5 * f64::from(gray(x))) };
             let texel = plain.at(x, y).ok_or("inside")?;
-            // A code is rounded up or down; where the target encodes, within 0.6 (Vulkan's allowance).
+            // Rounding, and encoding by the target to within 0.6 steps (Vulkan's tolerance).
             assert!((f64::from(texel[0]) - expected).abs() < 1.1, "({x}, {y}): {texel:?} for {expected}");
         }
     }
 
-    // A target of sRGB that is seen without it is given the same codes.
+    // An sRGB target with a non-sRGB view receives the same values.
     let (codes, _) = filtered(&gpu, &parts, picture, |frame, hdr| {
         let into = frame.graph_mut().texture("codes", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
         let into = into.viewed_as(Format::Rgba8Unorm).into();
         Ok(frame.add("post", Post { into, ..post(hdr, false) })?.ldr)
     })?;
-    // The device encodes within 0.6 of a code (Vulkan's allowance), the shader to the nearest one.
+    // The device encodes within 0.6 steps (Vulkan's tolerance), the shader to the nearest step.
     let same = plain.rgba8().iter().zip(codes.rgba8()).all(|(a, b)| a.abs_diff(b) <= 1);
     assert!(same, "light is written where codes are asked for");
 
@@ -163,7 +163,7 @@ fn post_and_fxaa_run_on_a_picture_without_a_scene() -> TestResult {
         Ok(frame.add("fxaa", Fxaa { ldr, into: Target::New, settings: FxaaUniforms::default() })?.output)
     })?;
     assert_eq!((plan.counts().steps, plan.counts().resolves), (2, 2));
-    // The rows away from the bar have no edge; the bar is softened.
+    // Rows away from the bar have no edge; the bar is smoothed.
     let row = |pixels: &framegraph_wgpu::Pixels, y: u32| {
         (0..SIZE[0]).filter_map(|x| Some(pixels.at(x, y)?[0])).collect::<Vec<_>>()
     };
@@ -176,7 +176,7 @@ fn post_and_fxaa_run_on_a_picture_without_a_scene() -> TestResult {
     Ok(())
 }
 
-/// The edge filter needs programs alone: [`Programs`] itself is world enough.
+/// FXAA needs only programs: [`Programs`] itself can be its world.
 #[test]
 fn programs_alone_are_a_world() -> TestResult {
     fn records<W: ?Sized, P: framegraph_wgpu::Record<W>>() {}
@@ -186,7 +186,7 @@ fn programs_alone_are_a_world() -> TestResult {
     Ok(())
 }
 
-/// Depth d of a camera with an infinite far plane is near / distance.
+/// With an infinite far plane, depth d is near / distance.
 #[test]
 fn a_scene_copy_takes_a_camera_and_no_scene() -> TestResult {
     let Some(gpu) = gpu("a_scene_copy_takes_a_camera_and_no_scene") else { return Ok(()) };
@@ -219,7 +219,7 @@ fn a_scene_copy_takes_a_camera_and_no_scene() -> TestResult {
     Ok(())
 }
 
-/// Four samples of known depths: reversed, so the largest is nearest.
+/// Draws four samples of known depths; depth is reversed, so the largest is the nearest.
 const SAMPLES: Shader<'static> = Shader::new(
     "samples",
     "@vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {

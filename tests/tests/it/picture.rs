@@ -1,4 +1,4 @@
-//! The standard frame as a picture, against committed ones.
+//! Pictures of the standard frame, compared with committed ones.
 
 use crate::stage::{Shot, gpu, picture};
 use framegraph::Options;
@@ -9,10 +9,8 @@ use std::error::Error;
 use std::path::PathBuf;
 use tests::compare::compare;
 
-/// PSNR in dB, and share of pixels that may be off. The pictures are of Mesa's software driver, which draws the same ones
-/// in every version that was tried; a texel or two is left to other processors. Another driver may round a texel the other
-/// way at an edge or in a filter: 40 dB and half a percent is what two builds of one renderer differ by (the reference
-/// pictures' README); a twentieth of a stop is 32 dB.
+/// Returns the minimum PSNR in dB, and the maximum share of differing pixels. The pictures are from Mesa's software
+/// driver, all tested versions of which agree apart from a few texels on other processors. Other drivers may round differently at edges and in filters. They are allowed 40 dB and 0.5 %, the difference between two builds of one renderer (see the reference pictures' README). A change of 1/20 stop gives 32 dB.
 fn limits(gpu: &Gpu) -> (f64, f64) {
     if gpu.describe().contains("llvmpipe") { (60.0, 0.0003) } else { (40.0, 0.005) }
 }
@@ -37,8 +35,8 @@ fn matches(gpu: &Gpu, name: &str, size_px: [u32; 2], rgba8: &[u8]) -> Result<(bo
 #[test]
 fn the_built_in_scenes_look_as_they_did() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu("the_built_in_scenes_look_as_they_did") else { return Ok(()) };
-    // With four samples it shows at edges whether they are graded before they are averaged (inlined) or after. A scene that
-    // blends is never inlined, and at one sample the two are the same to a code.
+    // With four samples, edges show whether grading happens before the resolve (inlined) or after it. A scene that
+    // blends is never inlined, and at one sample both are equal within one 8-bit step.
     for (reference, scene, samples, inline) in [
         ("spheres", "spheres", 4, false),
         ("spheres_inlined", "spheres", 4, true),
@@ -53,7 +51,7 @@ fn the_built_in_scenes_look_as_they_did() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The negative control: a twentieth of a stop, a missing shadow, or grading at the other end of the average must be seen.
+/// Negative controls: 1/20 stop, a missing shadow, and grading on the other side of the resolve.
 #[test]
 fn one_perturbed_constant_fails_the_comparison() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu("one_perturbed_constant_fails_the_comparison") else { return Ok(()) };
@@ -72,7 +70,7 @@ fn one_perturbed_constant_fails_the_comparison() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// One driver gives one picture, however the frame is planned.
+/// On one driver, the picture does not depend on the plan.
 #[test]
 fn the_plan_does_not_change_the_picture() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu("the_plan_does_not_change_the_picture") else { return Ok(()) };

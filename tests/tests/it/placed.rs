@@ -1,5 +1,4 @@
-//! Whole frames in one block of memory under the driver's validation layers, with synchronization validation: the standard frame
-//! with depth, samples and histories, and by stand-ins frames of `cases/` with storage, and one with buffers and copies.
+//! Whole frames in one block of memory under Vulkan's synchronization validation. Tested are the standard frame with depth, samples and histories, and frames of `cases/` with storage, buffers and copies, executed by mock recorders.
 
 use crate::executed::{Staged, staged};
 use crate::stage::gpu;
@@ -19,14 +18,14 @@ use tests::stage::Stage;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Small, since layers take their time over texels too.
+/// Small, since the validation layers also cost time per texel.
 const SIZE_PX: [u32; 2] = [96, 54];
 
 fn options(alias: Alias) -> Options {
     Options { alias, ..Options::default() }
 }
 
-/// What is among the placed resources of all frames.
+/// Kinds of resources that all frames place.
 #[derive(Debug, Default)]
 struct Covered {
     depth: usize,
@@ -56,7 +55,7 @@ impl Covered {
     }
 }
 
-/// Effects of many textures, and two histories.
+/// Returns settings with effects that use many textures, and two histories.
 fn settings() -> Settings {
     let shadows = ShadowSettings { filter: ShadowFilter::Evsm, cascades: 2, ..ShadowSettings::texels(128) };
     Settings {
@@ -71,13 +70,13 @@ fn settings() -> Settings {
     }
 }
 
-/// How frames are executed in a run.
+/// Variants of execution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     Apart,
-    /// In one block, recorded on three threads.
+    /// One block, recorded on three threads.
     Block,
-    /// In one block whose hand-overs are left out.
+    /// One block without alias barriers, as a negative control.
     Broken,
 }
 
@@ -110,7 +109,7 @@ fn standard(gpu: &Gpu, way: Way, covered: &mut Covered) -> TestResult {
     Ok(gpu.wait()?)
 }
 
-/// Textures and buffers that are copied from memory which others get.
+/// Textures and buffers that are copied, in memory that later resources reuse.
 const COPIES: &str = r#"(version: 1,
     resources: [
         Texture(name: "screen", format: Rgba8UnormSrgb, kind: Import(entry: Undefined, exit: Keep)),
@@ -155,13 +154,13 @@ fn by_stand_ins(gpu: &Gpu, staged: &Staged, way: Way, covered: &mut Covered) -> 
     Ok(gpu.wait()?)
 }
 
-/// A run of its own with the layers on; see `the_layers_are_silent_about_whole_frames`.
+/// Runs in a process with the layers enabled; see `the_layers_are_silent_about_whole_frames`.
 #[test]
 #[ignore = "a part of another test, which sets its environment"]
 fn frames_under_validation() -> TestResult {
     let asked = std::env::var("FRAMEGRAPH_WAY").unwrap_or_default();
     let way = Way::ALL.into_iter().find(|way| format!("{way:?}") == asked).ok_or("FRAMEGRAPH_WAY: no such way")?;
-    // A device of its own for each frame: these layers do not see that the host waits, and take what was freed for in use.
+    // A new device for each frame, since these layers do not track host waits and report freed memory as in use.
     let open = || Gpu::open(&AdapterRequest::from_env());
     let (gpu, mut covered) = (open()?, Covered::default());
     let mut probe = Executor::new(&gpu);
@@ -180,10 +179,10 @@ fn frames_under_validation() -> TestResult {
     for staged in asked.chain([copies()?]) {
         println!("FRAME {}", staged.label);
         let gpu = open()?;
-        // One frame draws four cascades at once. Whether the driver keeps them apart is another test's matter.
+        // One frame draws four cascades at once; another test checks that the driver separates them.
         gpu.trust_attached_layers();
         match by_stand_ins(&gpu, &staged, way, &mut covered) {
-            // Not every device has all formats.
+            // Devices may lack some formats.
             Err(error) if error.is::<Unsupported>() => {}
             ran => ran?,
         }
@@ -193,12 +192,12 @@ fn frames_under_validation() -> TestResult {
     Ok(())
 }
 
-/// What the layers say of each frame, each message of a kind once; an error where nothing is placed.
+/// Returns the layers' messages for each frame, each kind once; an error if nothing was placed.
 fn told(way: Way) -> Result<Result<BTreeSet<(String, String)>, String>, Box<dyn Error>> {
     let mut run = Command::new(std::env::current_exe()?);
     run.args(["--exact", "placed::frames_under_validation", "--ignored", "--nocapture"]);
     run.env("WGPU_VALIDATION", "1").env("FRAMEGRAPH_WAY", format!("{way:?}"));
-    // Older layers compare command buffers with each other only when told to.
+    // Older layers compare command buffers with each other only if enabled.
     run.env("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT");
     let out = run.output()?;
     let [said, errors] = [out.stdout, out.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
@@ -212,7 +211,7 @@ fn told(way: Way) -> Result<Result<BTreeSet<(String, String)>, String>, Box<dyn 
             frame = name.1;
         }
         if line.contains("Validation Error") {
-            // What it is about, and between what: not the handles and counts.
+            // The kinds of accesses in conflict, without handles and counts.
             let about = ["[ ", "recorded_usage: ", "command: ", "prior_usage: "].iter().filter_map(|mark| {
                 let (_, rest) = line.split_once(mark)?;
                 rest.split([',', ' ']).next()
@@ -224,8 +223,8 @@ fn told(way: Way) -> Result<Result<BTreeSet<(String, String)>, String>, Box<dyn 
     Ok(Ok(messages))
 }
 
-/// Nothing is said of frames in one block that is not said of them apart: wgpu stores depth that is only read, which the layers
-/// take for a write that nobody waits for.
+/// Frames in one block cause no messages that separate textures do not. wgpu stores read-only depth, which the layers
+/// report as an unsynchronized write.
 #[test]
 fn the_layers_are_silent_about_whole_frames() -> TestResult {
     const NAME: &str = "the_layers_are_silent_about_whole_frames";
@@ -241,7 +240,7 @@ fn the_layers_are_silent_about_whole_frames() -> TestResult {
     };
     let more: Vec<_> = block.difference(&apart).collect();
     assert!(more.is_empty(), "{more:?}");
-    // Without layers nothing is said of either, and newer ones do not compare memory of different images.
+    // Without layers there are no messages, and newer layers do not compare memory of different images.
     let broken = told(Way::Broken)?.unwrap_or_default();
     let more: Vec<_> = broken.difference(&apart).filter(|(_, kind)| kind.contains("HAZARD")).collect();
     if more.is_empty() {

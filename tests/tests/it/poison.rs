@@ -1,4 +1,4 @@
-//! One bad pixel at the edges of the standard frame: it stays where it is, and no pixel of any texture behind it is no number.
+//! A bad pixel at the interfaces of the standard frame's stages: it stays local, and no later texture has a NaN pixel.
 
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{DeclareError, Intent, Pass, PassBuilder, Plan, Scratch, Target, Texture, TextureDesc, View, compile};
@@ -22,7 +22,7 @@ static SHADER: Module<'static> = Module::new("poison.wgsl", include_str!("poison
 
 const SIZE_PX: [u32; 2] = [64, 64];
 
-/// A copy of a texture with one texel of other bits in every channel.
+/// Copies a texture and sets one texel to given bits in every channel.
 #[derive(Clone, Copy, Debug)]
 struct Poison {
     source: Texture,
@@ -44,7 +44,7 @@ impl Pass for Poison {
 impl<W: AsRef<Programs> + ?Sized> Record<W> for Poison {
     fn record(&self, (source, _): &Self::Io, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let [x, y] = self.at.map(f64::from);
-        // Constants are f64, and the bits of a number that is none would not survive being one.
+        // Constants are f64, in which the payload of an f32 NaN would be lost, so the bits are passed in two halves.
         let constants = [x, y, f64::from(self.bits & 0xffff), f64::from(self.bits >> 16)];
         let provided = [Some(cx.view(*source)?.into())];
         let draw = FullScreen::new(ProgramDesc::new(&SHADER, &INTERFACE), &[]);
@@ -52,7 +52,7 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for Poison {
     }
 }
 
-/// What is put into a texel: no number, both infinities, less than nothing, the largest half float, one without all bits.
+/// Values for the texel: NaN, both infinities, a negative number, the largest half float, and a denormal.
 const BAD: [(&str, u32); 6] = [
     ("NaN", 0x7fc0_0000),
     ("+Inf", 0x7f80_0000),
@@ -62,19 +62,19 @@ const BAD: [(&str, u32); 6] = [
     ("6e-8", 0x3380_0000),
 ];
 
-/// A place in the frame where a texel is spoilt.
+/// An interface in the frame at which a texel is replaced.
 struct Edge {
-    /// The frame's settings have what lies between scene and sensor: frames that are added up, depth of field, bloom.
+    /// True if the frame has temporal anti-aliasing, depth of field and bloom.
     lens: bool,
-    /// After which stage, and what of it.
+    /// Stage and its output.
     stage: &'static str,
     slot: Slot,
-    /// The texel.
+    /// Position of the texel.
     at: [i32; 2],
-    /// How far from the texel the picture may differ, in pixels; nothing where what is bright is to be seen farther away:
-    /// there the number of pixels is bounded.
+    /// Maximum distance of changed pixels from the texel, in pixels. `None` if bright pixels legitimately spread; then
+    /// the number of pixels is bounded.
     reach: Option<i32>,
-    /// How many texels of a texture behind it may be no numbers: those that the bad one itself is drawn over or copied to.
+    /// Maximum number of NaN texels in later textures: those that the bad texel is drawn over or copied to.
     spoilt: usize,
 }
 
@@ -82,7 +82,7 @@ const fn edge(lens: bool, stage: &'static str, slot: Slot, reach: Option<i32>, s
     Edge { lens, stage, slot, at: [30, 40], reach, spoilt }
 }
 
-/// The edge filter reaches 7 pixels, the upsampling of occlusion one more; what is added up over time is looked at 3×3.
+/// FXAA reads up to 7 pixels away, the upsampling of occlusion one more, and temporal anti-aliasing a 3×3 neighborhood.
 const EDGES: [Edge; 8] = [
     edge(false, "occlusion", Slot::OCCLUSION, Some(9), 0),
     edge(false, "color", Slot::HDR, None, 1),
@@ -94,7 +94,7 @@ const EDGES: [Edge; 8] = [
     Edge { at: [15, 20], ..edge(true, "bloom", Slot::BLOOM, None, 1) },
 ];
 
-/// The standard frame with a copy behind a stage, and the picture's handle.
+/// Declares the standard frame with a copy after a stage; returns the picture's handle.
 fn frame(
     settings: &Settings,
     stage: &str,
@@ -119,7 +119,7 @@ fn frame(
     Ok((frame, picture))
 }
 
-/// Texels that are no numbers, of every texture behind the poisoned one.
+/// Returns the number of NaN texels in every texture after the replaced one.
 fn counted(gpu: &Gpu, set: &Set, shot: &Shot, frame: &Frame<World>) -> Result<Vec<(String, usize)>, Box<dyn Error>> {
     let mut plan = Plan::new();
     compile(frame.graph(), &gpu.caps(), &shot.options, &mut Scratch::new(), &mut plan)?;
@@ -169,7 +169,7 @@ fn a_poisoned_pixel_stays_where_it_is() -> TestResult {
                 reach.is_some_and(|reach| x.abs().max(y.abs()) > reach)
             };
             assert_eq!(changed.iter().find(far), None, "{name} after {stage}: {} pixels", changed.len());
-            // Light of 65504 is light, and glass shows it blurred; anything else is dark.
+            // Light of 65504 is valid and appears blurred in glass; other values are dark.
             assert!(
                 name == "65504" || name == "+Inf" || changed.len() < 500,
                 "{name} after {stage}: {}",
@@ -179,7 +179,7 @@ fn a_poisoned_pixel_stays_where_it_is() -> TestResult {
         assert!(noticed > 0, "nothing that is put behind {stage} is seen");
         let (frame, _) = frame(&settings, stage, slot, at, BAD[0].1)?;
         for (title, count) in counted(&gpu, &set, &shot, &frame)? {
-            // The texel itself, in what it was put into and in what is drawn over that before it is graded.
+            // The texel itself, in the replaced texture and in those drawn over it before grading.
             let own = ["poisoned", "hdr", "taa", "dof"].iter().any(|name| title.contains(name));
             let most = if own { spoilt.max(usize::from(title.contains("poisoned"))) } else { 0 };
             assert!(count <= most, "NaN after {stage}: {count} texels of {title}");

@@ -1,4 +1,4 @@
-//! Frames with and without a depth prepass: the same picture to the bit, one pass less, and nothing loaded or stored for it.
+//! Frames with and without a depth prepass: bit-exact pictures, one pass less, and no load or store for it.
 
 use crate::stage::{Set, Shot, gpu};
 use framegraph::Options;
@@ -14,8 +14,8 @@ use framegraph_scene::{AlphaMode, Camera, Material, Mesh, Projection, Scene, pro
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use std::error::Error;
 
-/// Boards and blocks with faces in one plane, of several colors and sides: of equally near ones the last is seen, unless it is masked
-/// there, as all of the fifth is.
+/// Returns boards and blocks with coplanar faces of several colors and sides. The last face at equal depth is visible,
+/// unless its material masks it, as all of the fifth is.
 fn boards() -> Scene {
     let mut scene = Scene::default();
     let mesh = scene.add_mesh(plane(Vec2::splat(1.0), 2, Vec2::ONE));
@@ -35,8 +35,8 @@ fn boards() -> Scene {
     scene
 }
 
-/// A floor of which the middle is `floor_z_m` away from the origin, toward the eye, and something over it that covers a part of it in the
-/// picture; and so many of the same beyond the view's far side.
+/// Returns a floor whose center is offset toward the eye by `floor_z_m`, with an object over it that covers a part of
+/// it. `more` copies of the object are beyond the far plane.
 fn over_a_floor(mesh: Mesh, floor_z_m: f64, more: usize) -> Scene {
     let mut scene = Scene::default();
     let material = scene.add_material(Material::default());
@@ -50,7 +50,7 @@ fn over_a_floor(mesh: Mesh, floor_z_m: f64, more: usize) -> Scene {
     scene
 }
 
-/// Whether the fact drops the prepass, and why.
+/// Returns true if feature culling drops the prepass, and the reason.
 fn decided(scene: &Scene, asked: Settings) -> (bool, String) {
     let camera =
         Camera::look_at(DVec3::new(0.2, 1.2, 3.2), DVec3::Y * 0.4, DVec3::Y, Projection::perspective(0.8, 0.1));
@@ -81,8 +81,8 @@ fn decided(scene: &Scene, asked: Settings) -> (bool, String) {
     (fact.decision == Decision::Dropped, fact.reason.clone())
 }
 
-/// What is drawn over a floor that was drawn before it is shaded again, unless it has more triangles than that is worth; drawn before
-/// the floor it hides it.
+/// Objects drawn after the floor beneath them make the prepass worthwhile, unless they have too many triangles. Objects
+/// drawn before the floor already hide it.
 #[test]
 fn a_prepass_is_drawn_where_it_saves_more_than_it_costs() {
     let plain = Settings { shadows: None, ..Settings::DEFAULT };

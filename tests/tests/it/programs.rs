@@ -1,11 +1,11 @@
-//! The programs of this package from outside: where their words and files go.
+//! Programs of this package as processes: output streams and exit codes.
 #![cfg(unix)]
 
 use std::path::Path;
 use std::process::Command;
 
-/// Standard output and standard error that take nothing more: an exit code says so, and nothing panics. The programs are those
-/// that cargo lists, so that a new one is among them.
+/// With a full standard output and standard error, programs exit with an error code and do not panic. The list of
+/// programs comes from cargo, so new ones are included.
 #[test]
 fn a_full_standard_output_is_an_exit_code() {
     let folder = Path::new(env!("CARGO_BIN_EXE_prove")).parent().expect("a program lies in a folder");
@@ -23,12 +23,12 @@ fn a_full_standard_output_is_an_exit_code() {
         }
         let status = Command::new(program).arg("--help").stdout(full()).stderr(full()).status();
         let code = status.expect("the program starts").code();
-        // 2: help was asked for and not taken. 1: there is none, which could not be said.
+        // Code 2: help was requested and could not be written. Code 1: there is no help, which could not be reported.
         assert!(matches!(code, Some(1 | 2)), "{name}: {code:?}");
     }
 }
 
-/// The programs of the workspace that are built without a feature being asked for.
+/// Returns the programs of the workspace that need no optional features.
 fn programs() -> Vec<String> {
     let mut cargo = Command::new(env!("CARGO"));
     cargo.current_dir(env!("CARGO_MANIFEST_DIR")).args(["metadata", "--no-deps", "--offline", "--format-version=1"]);
@@ -47,7 +47,7 @@ fn programs() -> Vec<String> {
     names
 }
 
-/// Every package takes the lints of the workspace, `print_stdout` among them; fuzz targets, which print nothing, have their own.
+/// Every package uses the workspace's lints with `print_stdout`; fuzz targets, which print nothing, have their own.
 #[test]
 fn no_package_prints_with_a_macro_that_can_panic() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace");
@@ -76,7 +76,7 @@ fn files_that_are_read_are_not_written_over() {
     let (code, told) = run(&["--json".as_ref(), statement.as_os_str()]);
     assert!(code == Some(2) && told.contains("a.json: it is read"), "{told}");
     let (code, told) = run(&["--out".as_ref(), folder.as_os_str()]);
-    assert!(code == Some(2) && told.contains("files of this folder are read"), "{told}");
+    assert!(code == Some(2) && told.contains("the folder contains the references"), "{told}");
     assert_eq!(std::fs::read_to_string(&statement).ok().as_deref(), Some("{}"));
     let gone = folder.join("gone/proofs.md");
     let output = Command::new(env!("CARGO_BIN_EXE_prove")).args(["--quick", "--out"]).arg(gone).output();

@@ -1,4 +1,4 @@
-//! `docs/proofs.md` is what the `prove` program prints: all of it that is quick and the same on every machine.
+//! `docs/proofs.md` matches the output of the `prove` program, for the parts that are quick and machine-independent.
 
 use std::process::{Command, Output};
 
@@ -8,7 +8,7 @@ fn prove(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_prove")).args(args).output().expect("the program starts")
 }
 
-/// The first of `lines` that does not stand in the document behind the one before it.
+/// Returns the first of `lines` that the document lacks after the position of the previous one.
 fn missing<'a>(lines: &[&'a str]) -> Option<&'a str> {
     let mut rest = DOCUMENT.lines();
     lines.iter().find(|line| !rest.by_ref().any(|other| other == **line)).copied()
@@ -25,7 +25,7 @@ fn the_document_is_what_the_program_prints() {
     assert!(rows > 36, "{text}");
     let renew = "renew docs/proofs.md: cargo xtask prove --dsa tests/offset_assignment --out docs/proofs.md";
     assert_eq!(missing(&lines), None, "{renew}");
-    // Each figure is looked at: one more in any row is noticed.
+    // Negative control: a number changed by one in any row is detected.
     for (at, line) in lines.iter().enumerate().filter(|(_, line)| line.starts_with("| ") && !line.contains("---")) {
         let digit = line.rfind(|c: char| c.is_ascii_digit());
         let Some(digit) = digit else { continue };
@@ -46,7 +46,7 @@ fn the_document_holds_the_long_runs_and_nothing_in_it_fails() {
         assert_eq!(heads.count(), 1, "{long}");
     }
     assert!(!DOCUMENT.contains(" | no |") && !DOCUMENT.contains("Skipped"), "something is not proved");
-    assert_eq!(DOCUMENT.matches("; 0 live without a proof").count(), 2);
+    assert_eq!(DOCUMENT.matches("; 0 survive without a proof").count(), 2);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The numbers in the README are those that the program prints.
+//! The numbers in the README match the program's output.
 
 use crate::stage::plan;
 use framegraph::{Caps, Join, Options, StepId};
@@ -8,7 +8,7 @@ use framegraph_shaders::layout::Grading;
 
 const README: &str = include_str!("../../../README.md");
 
-/// The cells of the rows of the table that a command prints, without the head.
+/// Returns the cells of the rows of a command's table, without the head.
 fn rows(command: &str) -> Vec<Vec<&'static str>> {
     let mark = format!("<!-- table: {command} -->");
     let (_, after) = README.split_once(&mark).expect("the README has the table");
@@ -24,7 +24,7 @@ fn mebibytes(bytes: u64) -> String {
 
 #[test]
 fn the_table_is_what_the_program_prints() {
-    // The built-in scene under the clear sky has a sun and nothing that blends; `render` takes four samples.
+    // The built-in scene under the clear sky has a sun and no blending; `render` uses four samples.
     let settings = Settings { samples: 4, ..Settings::default() };
     let plan = plan(&settings, &Caps::wgpu(), &Options::for_frame(1280, 720));
     let rows = rows("render spheres --force-effects");
@@ -67,7 +67,7 @@ fn the_ways_of_post_processing_cost_what_the_program_prints() {
     let post = PostSettings { vignette_ev: 0.5, look, ..PostSettings::DEFAULT };
     let every_effect = Settings { post, ..Settings::default() };
     let (effects, hdr_bytes) = (5, 1920 * 1080 * 8);
-    // Name, inlined, a pass for each effect, how often a picture of half floats is fetched.
+    // Name, inlined, one pass per effect, and the number of times that a half-float picture is read.
     let ways = [
         ("inlined", true, false, 0),
         ("fused: one full-screen pass", false, false, 1),

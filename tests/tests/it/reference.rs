@@ -1,4 +1,5 @@
-//! References: another renderer's pictures of scenes stated in full, which ours must be near; and the harness itself.
+//! References: another renderer's pictures of fully stated scenes, which ours must match within a tolerance; and tests
+//! of the harness.
 
 use crate::stage::gpu;
 use framegraph_passes::Quality;
@@ -14,7 +15,7 @@ use tests::reference::studio::Shade;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Examines statements of a folder, and compares with the table in the document that `command` prints.
+/// Examines statements of a folder, and compares with the table that `command` prints.
 #[allow(clippy::print_stdout, reason = "shown with --nocapture")]
 fn examined(test: &str, (command, folder): Table<'_>, ids: &[&str]) -> Result<Option<Vec<Outcome>>, Box<dyn Error>> {
     let Some(gpu) = gpu(test) else { return Ok(None) };
@@ -25,12 +26,12 @@ fn examined(test: &str, (command, folder): Table<'_>, ids: &[&str]) -> Result<Op
     Ok(Some(outcomes))
 }
 
-/// A table of the document: the command that prints it, and the folder of the references in it.
+/// A table of the document: the command that prints it, and the folder of its references.
 type Table<'a> = (&'a str, &'a Path);
 
 const DOCUMENT: &str = include_str!("../../../docs/references.md");
 
-/// The cells of the row of a scene in the table that a command prints.
+/// Returns the cells of a scene's row in the table that a command prints.
 fn row(command: &str, id: &str) -> Vec<&'static str> {
     let (_, after) = DOCUMENT.split_once(&format!("<!-- table: {command} -->")).expect("the document has the table");
     let (table, _) = after.split_once("<!-- end -->").expect("the table ends");
@@ -38,7 +39,7 @@ fn row(command: &str, id: &str) -> Vec<&'static str> {
     row.trim_matches('|').split('|').map(str::trim).collect()
 }
 
-/// The document holds what the command prints: the same verdict, and the numbers.
+/// Checks that the document has the same verdict and numbers.
 fn documented(command: &str, outcomes: &[Outcome]) {
     for Outcome { id, verdict, metrics, .. } in outcomes {
         let cells = row(command, id);
@@ -65,11 +66,11 @@ fn printed(cells: &[&str], found: &Metrics) {
     assert!(near(1, found.flip, 5e-5) && shares && errors, "{cells:?}: {found:?}");
 }
 
-/// Those that state a rule.
+/// References that state a rule.
 const RULED: [&str; 5] =
     ["01_furnace_metal_f0_1", "02_grid_sun_noshadow", "04_grid_ibl_gray", "06_ramp_filmic", "07_edges_fxaa"];
 
-/// The rules are the references' own, and each refuses light that is a tenth too bright.
+/// The rules come with the references, and each rejects light that is a tenth too bright.
 #[test]
 fn references_pass_by_their_own_rules() -> TestResult {
     let test = "references_pass_by_their_own_rules";
@@ -77,14 +78,14 @@ fn references_pass_by_their_own_rules() -> TestResult {
     Ok(())
 }
 
-/// All of them passed, and refuse the same picture made a tenth brighter.
+/// Checks that all passed, and that each rejects the same picture made a tenth brighter.
 fn pass(outcomes: Option<Vec<Outcome>>) {
     for Outcome { id, verdict, control, .. } in outcomes.into_iter().flatten() {
         assert_eq!((verdict, control), (Verdict::Passed, Some(true)), "{id}");
     }
 }
 
-/// Those of whole frames that ask for nothing that is not built.
+/// References of whole frames that use only implemented features.
 const FRAMES: [&str; 17] = [
     "01b_furnace_dielectric_f05_gold",
     "03_grid_sun_shadow_pcf",
@@ -113,7 +114,7 @@ fn whole_frames_that_are_built_pass() -> TestResult {
     Ok(())
 }
 
-/// The low preset has a table of its own, and meets the rules all the same. The last two are not shaded at all.
+/// The low preset has its own DFG table and also passes the rules.
 #[test]
 fn the_low_preset_passes_too() -> TestResult {
     let test = "the_low_preset_passes_too";
@@ -124,14 +125,14 @@ fn the_low_preset_passes_too() -> TestResult {
         assert_eq!((&outcome.verdict, outcome.control), (&Verdict::Passed, Some(true)), "{id}: {:?}", outcome.metrics);
         documented("reference --quality low", &[outcome]);
     }
-    // These two are not shaded at all.
+    // These two scenes are unlit.
     for id in ["06_ramp_input_linear", "07_edges_none"] {
         assert_eq!(row("reference --quality low", id), row("reference", id));
     }
     Ok(())
 }
 
-/// How far a scene moves between the presets: one that is shaded, and one that is not.
+/// The difference of a lit and an unlit scene between presets matches the document.
 #[test]
 fn presets_are_as_far_apart_as_the_document_says() -> TestResult {
     let test = "presets_are_as_far_apart_as_the_document_says";
@@ -153,17 +154,17 @@ fn the_chart_is_exact_and_edges_are_where_they_are() -> TestResult {
     let test = "the_chart_is_exact_and_edges_are_where_they_are";
     let Some(outcomes) = examined(test, ("reference", &references()), &ids)? else { return Ok(()) };
     let chart = outcomes[0].chart.ok_or("a chart")?;
-    // Half floats round by 1/2048, vertex colors on their way in and radiance on its way out; the reference rounds too.
+    // Half floats round vertex colors and radiance by 1/2048 each; the reference rounds too.
     let worst = chart.worst_relative.ok_or("of light")?;
     assert!(worst < 1.5 / 1024.0, "{worst}");
-    // The rasterizer of the reference places corners on a grid of 1/16 pixel: pixels whose center is within 1/32 of an edge
-    // may fall to the other side. White comes out of its table of colors as 253.
+    // The reference's rasterizer snaps vertices to 1/16 pixel, so pixels whose center is within 1/32 pixel of an edge
+    // may differ. Its color table maps white to 253.
     let edges = outcomes[1].metrics.ok_or("a picture")?;
     assert!(edges.off_2 < 0.001, "{edges:?}");
     Ok(())
 }
 
-/// The maker of the references states what the picture of edges is from the same without FXAA, by metrics of his own.
+/// The references state metrics between the picture of edges and the same without FXAA, computed independently.
 #[test]
 fn metrics_are_those_of_the_references() -> TestResult {
     let read = |name: &str| Picture::read(&references().join(name));
@@ -172,7 +173,7 @@ fn metrics_are_those_of_the_references() -> TestResult {
     Ok(())
 }
 
-/// A card, two meters wide, facing +z.
+/// A card 2 m wide that faces +z.
 const CARD: &str = r#"{
   "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
   "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "material": 0}]}],
@@ -185,7 +186,7 @@ const CARD: &str = r#"{
   "buffers": [{"uri": "card.bin", "byteLength": 144}]
 }"#;
 
-/// Seen through a window that is not in the middle: the card fills its right half.
+/// Seen through an off-center window: the card fills its right half.
 const STATEMENT: &str = r#"{
   "id": "card", "scene": {
     "assets": ["card.gltf"], "resolution": [64, 32], "exposure": {"direct": 0.5}, "clear_color": [0.25, 0.5, 2, 1],
@@ -223,7 +224,7 @@ fn a_statement_means_what_it_says_and_a_perturbed_picture_fails() -> TestResult 
     let ours = render(&gpu, &Document::read(&file)?, &file, How::default())?;
     let at = |x: f64| ours.linear[ours.at([x, 0.5])];
     assert_eq!(at(0.2), [0.25, 0.5, 2.0], "the background is exposed already");
-    // Lambert, and at most a tenth of highlight: 12 lux at half exposure, the blue of the light being half.
+    // Lambert with at most a tenth of highlight: 12 lux at an exposure of 0.5, and half of the light's blue.
     let lambert = [0.5, 0.25, 0.0625].map(|albedo| albedo * 6.0 / std::f32::consts::PI);
     for (found, expected) in at(0.8).iter().zip(lambert) {
         assert!((expected..1.1 * expected + 0.03).contains(found), "{:?}, Lambert alone {lambert:?}", at(0.8));
@@ -249,7 +250,7 @@ fn a_statement_means_what_it_says_and_a_perturbed_picture_fails() -> TestResult 
         let outcome = examine(&gpu, &file, How::default())?;
         assert!(matches!(&outcome.verdict, Verdict::Failed(why) if !why.is_empty()), "{:?}", outcome.metrics);
     }
-    // Centers of spheres are looked up where the camera sees them: here in the background.
+    // Sphere centers are read where the camera sees them: here in the background.
     for (rule, passes) in [("every sphere centre 0.25 +-2", true), ("every sphere centre 0.25 +-0.1", false)] {
         std::fs::write(&file, STATEMENT.replace("psnr_srgb>=60, flip<=0.001, rel_p99<=0.001", rule))?;
         let verdict = examine(&gpu, &file, How::default())?.verdict;

@@ -1,5 +1,4 @@
-//! Reflections in what the picture shows: what a frame with them loads and stores, where rays find what mirrors show, and what
-//! the color pass makes of it.
+//! Screen-space reflections: loads and stores of frames with them, accuracy of hits, and shading.
 
 mod hard;
 mod shaded;
@@ -35,8 +34,8 @@ fn counts(settings: Settings) -> Counts {
 /// post                          ldr            don't care STORE
 /// fxaa                          output         don't care STORE
 ///
-/// Filament's, by its rules, separate grading and FXAA: structure with five levels, 5; reflections, 1; two for each of six
-/// further levels, which it blurs across and down; color, grading, FXAA, 3. No load either.
+/// Filament with separate grading and FXAA has more stores. Five levels of structure have 5 stores, reflections 1, and
+/// each of six further levels 2, blurred across and down. Color, grading and FXAA have 3. There is no load either.
 #[test]
 fn counts_are_less_than_filaments() {
     for samples in [1, 4] {
@@ -66,7 +65,7 @@ fn counts_are_less_than_filaments() {
     }
 }
 
-/// Ambient occlusion has made the structure: reflections draw none of their own.
+/// Ambient occlusion already draws the depth structure, which reflections reuse.
 #[test]
 fn the_structure_is_shared() {
     let occlusion = Some(OcclusionSettings::SAO);
@@ -79,8 +78,8 @@ fn the_structure_is_shared() {
     assert_eq!(both + none + 1, reflected + occluded, "the structure's store");
 }
 
-/// What mirrors show is found where it is: of what the picture shows, all but a few in a hundred pixels, at most a pixel off in
-/// the median, and little is made up where there is nothing.
+/// Checks the accuracy of hits: almost all visible reflections are found, the median error is at most one pixel, and
+/// there are few false hits.
 fn near_the_truth(what: &str, found: Found, [least_hit, median_px, most_px]: [f64; 3]) {
     assert!(found.seen > 1000 && found.empty > 1000, "{what}: there is something to judge: {found:?}");
     assert!(found.hit > least_hit, "{what}: {found:?}");
@@ -93,7 +92,7 @@ fn rays_find_what_mirrors_show() -> TestResult {
     let Some(gpu) = gpu("rays_find_what_mirrors_show") else { return Ok(()) };
     let settings = ReflectionSettings::DEFAULT;
     let mut stage = Stage::balls(SIZE);
-    // What was measured and half as much again; a device that rounds otherwise may need some of it.
+    // Bounds are the measured values times 1.5, since devices round differently.
     let bounds = [
         (Resolution::Full, [0.99, 0.3, 0.85], [0.99, 0.5, 1.8]),
         (Resolution::Half, [0.95, 0.5, 1.6], [0.93, 0.95, 3.5]),
@@ -103,14 +102,14 @@ fn rays_find_what_mirrors_show() -> TestResult {
         near_the_truth("floor", floor, of_floor);
         near_the_truth("balls", balls, of_balls);
     }
-    // The frame before was seen from elsewhere.
+    // The previous frame was seen from another position.
     stage.earlier.eye += DVec3::new(0.3, 0.1, -0.2);
     let [floor, _] = stage.found(&gpu, &settings, Resolution::Full)?;
     near_the_truth("floor, moved", floor, bounds[0].1);
     Ok(())
 }
 
-/// Rays that leave a floor as flat as the eye sees it do not meet that floor.
+/// Grazing rays that leave a floor do not hit that floor.
 #[test]
 fn flat_rays_do_not_meet_what_they_leave() -> TestResult {
     let Some(gpu) = gpu("flat_rays_do_not_meet_what_they_leave") else { return Ok(()) };

@@ -1,11 +1,11 @@
-//! The corpus of the fuzz targets, replayed: as it is, and thousands of times damaged, the same way each time.
+//! The corpus of the fuzz targets, replayed as it is and with thousands of deterministic damages.
 
 use std::path::Path;
 use tests::fuzz::{Damage, TARGETS};
 
-/// Damaged copies of each file.
+/// Number of damaged copies of each file.
 const ROUNDS: usize = 400;
-/// A file of the corpus is for reading, too.
+/// Maximum size of a corpus file in bytes, so that it remains readable.
 const MOST_BYTES: usize = 8 << 10;
 
 #[test]
@@ -32,7 +32,7 @@ fn the_corpus_is_read_and_no_damage_to_it_panics() {
                 }
             }
         }
-        // Damage that nothing survives, or that nothing notices, would try nothing.
+        // Damage that always or never breaks a file would test nothing.
         assert!(sound > 10 && broken > 100, "{name}: {sound} sound, {broken} broken");
     }
 }

@@ -1,4 +1,5 @@
-//! How a material's texture is sampled: wrapping along both axes, filters near and far, levels, and its transform.
+//! Sampling of a material's texture: wrapping along both axes, minification and magnification filters, mip levels, and
+//! transforms.
 
 use crate::stage::{gpu, lighting};
 use framegraph_passes::Shading;
@@ -10,10 +11,10 @@ use tests::measure::board::{Board, EXPOSURE, card};
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Texels along a side of the picture, each of a color of its own.
+/// Texels along each side of the picture, all of different colors.
 const SIDE: usize = 4;
 
-/// Red tells the column, green the row, blue both.
+/// Red encodes the column, green the row, blue both.
 fn texel(column: usize, row: usize) -> [u8; 4] {
     [30 + 60 * column as u8, 40 + 50 * row as u8, (17 * column + 43 * row) as u8, 255]
 }
@@ -26,7 +27,7 @@ fn linear(texel: [u8; 4]) -> DVec3 {
     DVec3::new(decode(texel[0]), decode(texel[1]), decode(texel[2]))
 }
 
-/// A card that shows `slot` at `uv`; `span` is how far its coordinates run, 0 for one point.
+/// Adds a card that shows `slot` at `uv`; `span` is the extent of its coordinates, 0 for a single point.
 fn shows(board: &mut Board, slot: TextureSlot, uv: DVec2, span: f64) {
     let material = Material { base_color_texture: Some(slot), unlit: true, ..Material::default() };
     let flat = card(0.99, DVec3::Z, DVec3::X, 1.0);
@@ -35,14 +36,14 @@ fn shows(board: &mut Board, slot: TextureSlot, uv: DVec2, span: f64) {
     board.hang(material, Mesh { uv0, ..flat }, DMat4::IDENTITY);
 }
 
-/// What the card in that place shows.
+/// Renders the board and compares each card with its expected color.
 fn compare(board: &Board, expected: &[(String, DVec3)], name: &str) -> TestResult {
     let Some(gpu) = gpu(name) else { return Ok(()) };
     let shading = Shading::default();
     let dark = lighting(&gpu, &Environment::uniform(DVec3::ZERO)?, &shading)?;
     let seen = board.render_lit(&gpu, dark, &shading)?;
     for ((what, expected), seen) in expected.iter().zip(seen) {
-        // Filters have eight bits of weight, and the frame is of half floats.
+        // Filters have 8-bit weights, and the frame has half floats.
         let apart = (seen.nits * EXPOSURE - *expected).abs().max_element();
         assert!(apart < 4e-3, "{what}: {} for {expected}", seen.nits * EXPOSURE);
     }
@@ -60,12 +61,12 @@ const SHARP: Sampler =
 fn coordinates_wrap_along_each_axis_as_asked() -> TestResult {
     let mut board = Board::default();
     let mut expected = Vec::new();
-    // One period beyond the picture, in its second texel: the repeated one, its mirror image, or the last.
+    // One period beyond the picture, in its second texel: the repeated texel, its mirror image, or the last one.
     let beyond = |wrap, back: bool| match (wrap, back) {
         (Wrap::Repeat, false) => 1,
         (Wrap::MirroredRepeat, false) => 2,
         (Wrap::ClampToEdge, false) => 3,
-        // One period before it, in what would be its third.
+        // One period before it, where its third texel would be.
         (Wrap::Repeat, true) => 2,
         (Wrap::MirroredRepeat, true) => 1,
         (Wrap::ClampToEdge, true) => 0,
@@ -94,11 +95,11 @@ fn filters_near_and_far_are_those_asked_for() -> TestResult {
     };
     let (of, mean) = (|column, row| linear(texel(column, row)), |a: DVec3, b: DVec3| 0.5 * (a + b));
     let smooth = Sampler { mag: Filter::Linear, ..SHARP };
-    // Near: between the second and third texel of the second row, a little left of the middle.
+    // Magnification: between the second and third texel of the second row, slightly left of the center.
     let between = DVec2::new(0.499, 0.375);
     add("magnified, nearest", SHARP, between, 0.0, of(1, 1));
     add("magnified, linear", smooth, between, 0.0, mean(of(1, 1), of(2, 1)));
-    // Far: a pixel spans 4 texels by 4, so the first level alone shows the texel in its middle and the last level the mean.
+    // Minification: a pixel covers 4×4 texels, so level 0 shows the center texel, and the last level the mean.
     let whole = (0..SIDE * SIDE).map(|i| of(i % SIDE, i / SIDE)).sum::<DVec3>() / (SIDE * SIDE) as f64;
     let (far, middle) = (3.0, DVec2::new(0.625, 0.375));
     let minified = |min, mip| Sampler { min, mip, mag: Filter::Linear, ..SHARP };
@@ -107,7 +108,7 @@ fn filters_near_and_far_are_those_asked_for() -> TestResult {
     add("minified, nearest where magnified is linear", minified(Filter::Nearest, None), between, far, of(1, 1));
     add("minified, last level", minified(Filter::Nearest, Some(Filter::Nearest)), middle, far, whole);
     add("minified, last level, linear", minified(Filter::Linear, Some(Filter::Linear)), middle, far, whole);
-    // Half way between levels 0 and 1: a pixel spans √2 texels.
+    // Halfway between levels 0 and 1: a pixel covers √2 texels.
     let quarter = (of(2, 0) + of(3, 0) + of(2, 1) + of(3, 1)) / 4.0;
     let half_way = 3.0 * 2.0_f64.sqrt() / SIDE as f64;
     let blended = minified(Filter::Nearest, Some(Filter::Linear));
@@ -118,7 +119,7 @@ fn filters_near_and_far_are_those_asked_for() -> TestResult {
     compare(&board, &expected, "filters_near_and_far_are_those_asked_for")
 }
 
-/// KHR_texture_transform: scaled, then turned against the clock as the picture is seen, then moved.
+/// KHR_texture_transform: scale, then counterclockwise rotation as seen, then translation.
 #[test]
 fn transforms_scale_turn_and_move() -> TestResult {
     let mut board = Board::default();

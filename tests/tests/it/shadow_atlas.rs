@@ -1,4 +1,4 @@
-//! Maps of local lights that share layers: pictures are those of maps that have a layer each, whatever lies beside them.
+//! Shadow maps of punctual lights that share layers: pictures equal those with one layer per map, for any neighbors.
 
 use crate::stage::gpu;
 use framegraph_passes::shadow::{MomentSettings, Place, ShadowFilter, ShadowSettings};
@@ -9,12 +9,12 @@ use glam::{DMat4, DVec3, Vec3};
 use std::error::Error;
 use tests::measure::lights::Night;
 
-/// Texels across a layer, and across a map of the lamp that lights the picture.
+/// Size of a layer, and of a map of the light, in texels.
 const LAYER: u32 = 256;
 const MAP: u32 = 64;
 
-/// A lamp over a floor with posts; where `beside` is asked for, three spots too, too faint to be seen, each over a slab at arm's
-/// length that fills its map. The slabs are there in either case.
+/// Returns a light over a floor with posts and three slabs. With `beside`, also three spot lights, too faint to be
+/// visible, each close to a slab that fills its map.
 fn yard(beside: bool) -> Scene {
     let mut scene = Scene { name: "yard".into(), ..Scene::default() };
     let chalk = scene.add_material(Material::dielectric("chalk", Vec3::splat(0.5), 1.0));
@@ -38,14 +38,15 @@ fn yard(beside: bool) -> Scene {
     scene
 }
 
-/// Pixels of which a channel differs by more than a code of 255 on a linear scale.
+/// Returns the number of pixels with a channel that differs by more than 1/255 on a linear scale.
 fn off(a: &[[f32; 4]], b: &[[f32; 4]]) -> usize {
     let differs = |(a, b): &(&[f32; 4], &[f32; 4])| a.iter().zip(*b).any(|(a, b)| (a - b).abs() > 1.0 / 255.0);
     a.iter().zip(b).filter(differs).count()
 }
 
-/// The lamp's six maps beside each other and beside three that are dark from edge to edge, with every filter, wide penumbrae,
-/// blur and levels; against six layers of the size of a map. Moments of four samples are near those of one, in either layer.
+/// The light's six maps are next to each other and to three entirely dark ones, and are compared with six separate
+/// layers. Every filter, wide penumbrae, blur and levels are tested. Moments of four samples are close to those of one
+/// sample.
 #[test]
 fn nothing_bleeds_from_map_to_map() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu("nothing_bleeds_from_map_to_map") else { return Ok(()) };
@@ -55,7 +56,7 @@ fn nothing_bleeds_from_map_to_map() -> Result<(), Box<dyn Error>> {
     let shared = ShadowSettings { cascades: 0, local_maps: 9, local_layers: 2, ..ShadowSettings::texels(LAYER) };
     for filter in ShadowFilter::ALL {
         let shared = ShadowSettings { filter, moments, bulb_m: Some(0.4), ..shared };
-        // Levels down to a texel a map, which the maps of 64 texels in layers of 256 end with too.
+        // Levels down to one texel per map, like the maps of 64 texels in layers of 256.
         let own_levels = MomentSettings { levels: 7, ..moments };
         let alone = ShadowSettings { local_maps: 6, local_layers: 6, map_texels: MAP, moments: own_levels, ..shared };
         let shoot = |beside, shadows| -> Result<_, Box<dyn Error>> {
@@ -75,7 +76,7 @@ fn nothing_bleeds_from_map_to_map() -> Result<(), Box<dyn Error>> {
         assert_eq!(own, (0..6).map(|layer| at(layer, 0, 0, MAP)).collect::<Vec<_>>());
         let brightest = found.iter().map(|texel| texel[0]).fold(0.0, f32::max);
         assert!(brightest > 0.1, "{filter:?}: nothing is lit");
-        // Places in a layer are rounded otherwise: an edge may take another texel.
+        // Positions in a layer are rounded differently, so texels at edges may change.
         let differ = off(&found, &expected);
         println!("{filter:?}: {differ} pixels differ");
         assert!(differ <= 9, "{filter:?}: {differ} pixels differ");

@@ -1,4 +1,4 @@
-//! Shadows against rays: what a picture with shadows says of visibility, beside what rays through the same scene meet.
+//! Shadows compared with ray-traced visibility of the same scene.
 
 mod hard;
 mod penumbrae;
@@ -22,8 +22,8 @@ use tests::reference::picture::Picture;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Steps and small things on a floor, under a map whose texels are as wide as they are: contact shadows darken what the map
-/// misses within the ray's reach, and nearly nothing that is lit; also where the depth that they look into is of half the size.
+/// Steps and small objects on a floor, with a shadow map whose texels are as wide as the objects. Contact shadows
+/// darken what the map misses within their range, and almost nothing that is lit, also with a depth of half resolution.
 #[test]
 fn contact_shadows_find_what_the_map_misses() -> TestResult {
     let Some(gpu) = gpu("contact_shadows_find_what_the_map_misses") else { return Ok(()) };
@@ -47,7 +47,7 @@ fn contact_shadows_find_what_the_map_misses() -> TestResult {
         Ok([missed, darkened, pairs.len()])
     };
     let [plain, _, all] = count(None, None)?;
-    // A texel of half the size sticks out over two pixels.
+    // A half-resolution texel extends over two pixels.
     for (occlusion, most) in [(None, 0.02), (half, 0.04)] {
         let [missed, darkened, _] = count(Some(ContactShadows::FILAMENT), occlusion)?;
         println!(
@@ -59,7 +59,7 @@ fn contact_shadows_find_what_the_map_misses() -> TestResult {
     Ok(())
 }
 
-/// A ray from near the eye toward a sun behind it passes the eye, where no picture shows what it meets: a lit floor stays lit.
+/// A ray that starts near the eye toward a sun behind it leaves the picture's depth, so a lit floor stays lit.
 #[test]
 fn contact_shadows_give_up_behind_the_eye() -> TestResult {
     let Some(gpu) = gpu("contact_shadows_give_up_behind_the_eye") else { return Ok(()) };
@@ -90,7 +90,7 @@ fn camera(eye: [f64; 3], target: [f64; 3], fov_y_deg: f64) -> Result<Camera, Box
     Ok(Camera::look_at(DVec3::from(eye), DVec3::from(target), DVec3::Y, projection)?)
 }
 
-/// A floor of 100 m that is thick, so that it is drawn into the maps, with boxes and posts.
+/// Creates a thick floor of 100 m, which is drawn into the maps, with boxes and posts.
 fn field() -> Result<Set, Box<dyn Error>> {
     let floor = ([0.0, -0.5, 0.0], [50.0, 0.5, 50.0]);
     let boxes = (0..12).map(|i| {
@@ -101,7 +101,7 @@ fn field() -> Result<Set, Box<dyn Error>> {
     Ok(Set::new(scene, camera([1.0, 2.5, 8.0], [0.0, 0.0, -4.0], 50.0)?, DVec3::new(0.5, 0.6, 0.3)))
 }
 
-/// Every fit with the filter of hardware comparisons; the others as they are meant to be used.
+/// Returns every fit with hardware comparison, and the other filters with their intended fit.
 fn kinds() -> Vec<ShadowSettings> {
     let base = ShadowSettings { splits: Splits::Practical(0.8), ..ShadowSettings::DEFAULT };
     vec![
@@ -114,8 +114,7 @@ fn kinds() -> Vec<ShadowSettings> {
     ]
 }
 
-/// No acne and no light under what stands on the floor: farther than 5 cm, or 1 % of the distance, from where rays find an
-/// edge, at most one pixel in a thousand is lit or dark against them. At grazing light, too (hard case 42).
+/// No acne and no light leaks: at most 0.1 % of the pixels differ from the rays. Pixels within 5 cm, or 1 % of the view distance, of a shadow's edge are ignored. Also at grazing light (hard case 42).
 #[test]
 fn hard_case_42_a_field_of_100_m_agrees_with_rays() -> TestResult {
     let Some(gpu) = gpu("hard_case_42_a_field_of_100_m_agrees_with_rays") else { return Ok(()) };
@@ -134,15 +133,15 @@ fn hard_case_42_a_field_of_100_m_agrees_with_rays() -> TestResult {
             }
         }
     }
-    // Without any bias the floor shadows itself: the test can fail.
+    // Negative control: without bias, the floor shadows itself.
     let none = ShadowBias { constant_m: 0.0, normal: 0.0, slope: 0.0, steps: 0 };
     let acne = ShadowSettings { bias: none, ..ShadowSettings::DEFAULT };
     assert!(steep.judge(&gpu)?.wrong(acne, |distance_m| (0.01 * distance_m).max(0.05))? > 10.0);
     Ok(())
 }
 
-/// Shadows that end at a distance have faded there, over the last tenth of the way: what rays find dark all around is as
-/// light as the formula says.
+/// Shadows with an end distance fade over its last tenth: pixels that rays find in shadow have the brightness of the
+/// formula.
 #[test]
 fn shadows_fade_out_before_their_end() -> TestResult {
     const END_M: f64 = 13.0;
@@ -153,7 +152,7 @@ fn shadows_fade_out_before_their_end() -> TestResult {
     let judge = set.judge(&gpu)?;
     for cascades in [1, 4] {
         let settings = ShadowSettings { cascades, far_m: Some(END_M), ..ShadowSettings::DEFAULT };
-        // Not faded, fading, faded.
+        // Pixels before, within and after the fade.
         let mut counts = [0; 3];
         for (visibility, hit) in set.visibility_beside(&gpu, &judge.without, settings)?.iter().zip(&judge.seen) {
             let (Some(visibility), Some(hit)) = (visibility, hit) else { continue };
@@ -163,7 +162,7 @@ fn shadows_fade_out_before_their_end() -> TestResult {
             let ahead = (hit.point - set.camera.eye).dot(set.camera.forward()) / END_M;
             let share = (5.0 - 5.0 * ahead * ahead).clamp(0.0, 1.0);
             counts[if share == 1.0 { 0 } else { 1 + usize::from(share == 0.0) }] += 1;
-            // Filters are narrower than what rays find dark, and have eight bits of weight.
+            // Filters are narrower than the shadowed area and have 8-bit weights.
             assert!((1.0 - share - visibility).abs() < 0.01, "{cascades}, {ahead} of the way: {visibility}");
         }
         assert!(counts.iter().all(|count| *count > 10), "{counts:?}");
@@ -171,8 +170,8 @@ fn shadows_fade_out_before_their_end() -> TestResult {
     Ok(())
 }
 
-/// The colonnade, which had stripes on its plinths and a bright ring under its capitals: at most three pixels in a thousand
-/// are otherwise than rays say farther than 4 cm from an edge.
+/// The colonnade, a regression test for stripes on plinths and a bright ring under capitals. At most 0.3 % of the
+/// pixels differ from the rays at distances of more than 4 cm from an edge.
 #[test]
 fn columns_agree_with_rays() -> TestResult {
     let Some(gpu) = gpu("columns_agree_with_rays") else { return Ok(()) };
@@ -187,15 +186,15 @@ fn columns_agree_with_rays() -> TestResult {
     Ok(())
 }
 
-/// The helmet: thin straps over curved leather, seen from near. Farther than 3 mm from an edge, at most ten pixels in a
-/// thousand are otherwise than rays say; rays meet flat triangles where normals are interpolated.
+/// The helmet: thin straps over curved leather, from nearby. At most 1 % of the pixels differ from the rays at
+/// distances of more than 3 mm from an edge. Rays use flat triangles, shading interpolated normals.
 #[test]
 fn the_helmet_agrees_with_rays() -> TestResult {
     let test = "the_helmet_agrees_with_rays";
     let Some(file) = asset(test, "models/FlightHelmet/FlightHelmet.gltf") else { return Ok(()) };
     let Some(gpu) = gpu(test) else { return Ok(()) };
     let mut scene = Scene::open(&file.to_string_lossy(), &mut progress::silent)?;
-    // What blends casts no shadow. All else is clay, in which no highlight outshines what is dark.
+    // Blended surfaces cast no shadow. All other surfaces are clay, without highlights that outshine shadows.
     let materials = scene.materials.clone();
     scene.instances.retain(|i| materials[i.material.index()].alpha != AlphaMode::Blend);
     let clay = scene.add_material(Material::dielectric("clay", Vec3::splat(0.5), 1.0));
@@ -206,8 +205,8 @@ fn the_helmet_agrees_with_rays() -> TestResult {
     Ok(())
 }
 
-/// Spot and point lights: one map, and six whose edges cannot be seen (hard case 46). The box about the point light is the
-/// view's whole scene, so every face is looked at; the camera stands inside.
+/// Spot and point lights: one map, and six maps with invisible seams (hard case 46). The point light is inside the
+/// scene, so every face is visible; the camera is inside too.
 #[test]
 fn hard_case_46_local_lights_agree_with_rays() -> TestResult {
     let Some(gpu) = gpu("hard_case_46_local_lights_agree_with_rays") else { return Ok(()) };
@@ -245,8 +244,8 @@ fn hard_case_46_local_lights_agree_with_rays() -> TestResult {
     Ok(())
 }
 
-/// Scene 11 against the same shadows by a path tracer: at most one pixel in a thousand is on the other side of an edge
-/// (Filament: 0.06 to 0.22 %).
+/// Scene 11 compared with a path tracer: at most 0.1 % of the pixels are on the other side of an edge (Filament: 0.06
+/// to 0.22 %).
 #[test]
 fn the_clay_scene_has_the_path_tracers_mask() -> TestResult {
     let Some(gpu) = gpu("the_clay_scene_has_the_path_tracers_mask") else { return Ok(()) };
@@ -258,7 +257,7 @@ fn the_clay_scene_has_the_path_tracers_mask() -> TestResult {
     };
     let (with, without) = (picture("11_shadow_clay_pcf")?, picture("11_shadow_clay_none")?);
     let truth = Picture::read(&folder.join("mi_shadow_clay_hard.exr"))?;
-    // Lit is what has more than half the light that it has without shadows, in both.
+    // A pixel counts as lit if it has more than half of its light without shadows.
     let light = with.linear.iter().zip(&without.linear).zip(&truth.linear);
     let light = light.map(|((with, without), truth)| (with[0], 0.5 * without[0], truth[0]));
     let wrong = light.filter(|(with, half, truth)| *half > 0.01 && (with > half) != (truth > half)).count();

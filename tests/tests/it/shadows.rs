@@ -1,4 +1,4 @@
-//! Shadows of what is cut out by its mask, and of what is not; surfaces that nothing shades are lit in full.
+//! Shadows of masked and unmasked surfaces; surfaces without casters are fully lit.
 
 use crate::stage::{gpu, lighting};
 use framegraph_passes::Shading;
@@ -13,7 +13,7 @@ use tests::measure::board::{Board, card};
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Toward the sun: what hangs a meter in front of the board shades the next place to the right.
+/// Direction toward the sun: an object 1 m in front of the board casts its shadow on the next cell to the right.
 const TOWARD: DVec3 = DVec3::new(-1.0, 0.0, 1.0);
 
 fn chalk() -> Material {
@@ -21,7 +21,7 @@ fn chalk() -> Material {
     Material { specular, ..Material::dielectric("chalk", Vec3::ONE, 1.0) }
 }
 
-/// The floor in every other place, a caster before it in each of the others; what the floor shows of the sun.
+/// Creates floors in every other cell and a caster in front of each of the others; compares the floors' light.
 fn cast(name: &str, mut board: Board, casters: &[(&str, Material, Mesh, DMat4, f64)]) -> TestResult {
     let Some(gpu) = gpu(name) else { return Ok(()) };
     for (_, material, mesh, placed, _) in casters {
@@ -44,9 +44,9 @@ fn cast(name: &str, mut board: Board, casters: &[(&str, Material, Mesh, DMat4, f
 fn shadows_have_the_holes_of_their_masks() -> TestResult {
     let mut board = Board::default();
     let square = card(0.9, DVec3::Z, DVec3::X, 1.0);
-    // Alpha 0.4; the other channels say otherwise.
+    // Alpha 0.4; other channels have other values.
     let faint = board.texture(1, &[[255, 255, 255, 102]], TextureRole::Color, Sampler::default());
-    // The left half is there, the right half is not.
+    // The left half is opaque, the right half is transparent.
     let half = board.texture(2, &[[0, 0, 0, 255], [255, 255, 255, 0]], TextureRole::Color, Sampler::default());
     let mask = |cutoff, factor: f32, texture| Material {
         alpha: AlphaMode::Mask { cutoff },
@@ -72,10 +72,10 @@ fn shadows_have_the_holes_of_their_masks() -> TestResult {
         ("the half that is there", mask(0.5, 1.0, Some(half)), at(0.1), still, 0.0),
         ("the half that is not", mask(0.5, 1.0, Some(half)), at(0.9), still, 1.0),
         ("the second coordinates", mask(0.5, 1.0, Some(second)), two_sets, still, 1.0),
-        // Surfaces that blend cast none.
+        // Blended surfaces cast no shadow.
         ("blended", blended, square, still, 1.0),
     ];
-    // Twenty places a row, and shadows fall to the right: the last of a row would have none.
+    // Twenty cells per row, with shadows to the right: the last cell's would miss the board.
     for (part, casters) in casters.chunks(10).enumerate() {
         cast(&format!("shadows_have_the_holes_of_their_masks {part}"), board.clone(), casters)?;
     }
@@ -95,14 +95,14 @@ fn casters_of_all_sides_cast() -> TestResult {
         ("of two sides, from behind", both, square.clone(), around, 0.0),
         ("of one side, from behind", chalk(), square.clone(), around, 1.0),
         ("scaled", chalk(), small, stretched, 0.0),
-        // The shadow of this falls between two places.
+        // The shadow of this caster is between two cells.
         ("too near", chalk(), square, DMat4::from_translation(DVec3::NEG_Z * 0.9), 1.0),
     ];
     cast("casters_of_all_sides_cast", Board::default(), &casters)
 }
 
-/// A floor that the sun grazes, under a map of few texels: no texel of it shades itself, and the offsets that see to it
-/// do not light what a caster near the floor shades.
+/// A floor at grazing light with a low-resolution map: no texel shadows itself. The bias does not light the area under
+/// a caster near the floor.
 #[test]
 fn what_nothing_shades_is_lit_in_full() -> TestResult {
     let Some(gpu) = gpu("what_nothing_shades_is_lit_in_full") else { return Ok(()) };
@@ -122,13 +122,13 @@ fn what_nothing_shades_is_lit_in_full() -> TestResult {
     Ok(())
 }
 
-/// Cascades are seen by their colors: each number has one, and what lies beyond the last has none.
+/// Cascades in debug colors: each index has a color, and nothing beyond the last has one.
 #[test]
 fn each_cascade_has_its_color() -> TestResult {
     let Some(gpu) = gpu("each_cascade_has_its_color") else { return Ok(()) };
     let shading = Shading::default();
     let tints = [[1.0, 0.25, 0.25], [0.25, 1.0, 0.25], [0.25, 0.25, 1.0], [1.0, 1.0, 0.25], [1.0; 3]].map(DVec3::from);
-    // The board is five meters ahead of the eye, what is nearest two and what is farthest nine: about half the way.
+    // The board is 5 m from the eye, between 2 and 9 m: about half of the range.
     let splits = [[0.8, 0.85, 0.9], [0.2, 0.8, 0.9], [0.1, 0.2, 0.8], [0.1, 0.2, 0.3], [0.1, 0.2, 0.3]];
     for (number, (tint, splits)) in tints.into_iter().zip(splits).enumerate() {
         let settings = ShadowSettings {
@@ -145,14 +145,14 @@ fn each_cascade_has_its_color() -> TestResult {
         }
         board.scene.lights = vec![Light::directional("sun", Vec3::NEG_Z, PI as f32)];
         let seen = board.render_lit(&gpu, lighting(&gpu, &Environment::uniform(DVec3::ZERO)?, &shading)?, &shading)?;
-        // Half floats.
+        // Tolerance for half floats.
         assert!((seen[0].nits - tint).abs().max_element() < 2e-3, "cascade {number}: {} for {tint}", seen[0].nits);
     }
     Ok(())
 }
 
-/// The edge of a shadow is what a tent of three texels sees of the map: its weights, its texels and the offset along the
-/// normal (a texel along both axes of the map) written out again. The map's placement alone is taken from the view.
+/// A shadow's edge matches an independent implementation of the 3×3 tent: weights, texels and normal offset (one texel
+/// along both axes of the map). Only the map's placement is taken from the view.
 #[test]
 fn edges_are_blurred_by_a_tent_of_three_texels() -> TestResult {
     let Some(gpu) = gpu("edges_are_blurred_by_a_tent_of_three_texels") else { return Ok(()) };
@@ -165,7 +165,7 @@ fn edges_are_blurred_by_a_tent_of_three_texels() -> TestResult {
     for _ in 0..79 {
         board.hang(chalk(), card(1.0, DVec3::Z, DVec3::X, 1.0), DMat4::IDENTITY);
     }
-    // A square turned on its corner, so near the eye that it is not seen: what it shades is in the middle of the board.
+    // A square rotated onto its corner, too close to the eye to be visible; its shadow is in the center of the board.
     let caster = DMat4::from_translation(DVec3::new(-13.55, 3.75, 4.5)) * DMat4::from_quat(DQuat::from_rotation_z(0.6));
     board.hang(chalk(), card(3.0, DVec3::Z, DVec3::X, 1.0), caster);
     board.scene.lights = vec![Light::directional("sun", -toward.as_vec3(), PI as f32)];
@@ -175,7 +175,7 @@ fn edges_are_blurred_by_a_tent_of_three_texels() -> TestResult {
     let map = board.view(&lit)?.shadows.ok_or("a view with a map")?.maps[0].uniforms;
     let seen = board.render_lit(&gpu, lit, &shading)?;
     let clip_from_world = map.clip_from_world.as_dmat4();
-    // In texels of the map, which count rightward and down.
+    // Position in texels of the map, to the right and down.
     let texel_of = |world: DVec3| {
         let clip = clip_from_world.project_point3(world - board.camera_m());
         glam::DVec2::new(0.5 + 0.5 * clip.x, 0.5 - 0.5 * clip.y) * f64::from(TEXELS)
@@ -204,7 +204,7 @@ fn edges_are_blurred_by_a_tent_of_three_texels() -> TestResult {
         }
         partly += usize::from(visible > 0.05 && visible < 0.95);
         let expected = visible * toward.z;
-        // Filters have eight bits of weight.
+        // Filters have 8-bit weights.
         let apart = (seen.nits - expected).abs().max_element();
         assert!(apart < 0.015, "{index}: {} for {expected}", seen.nits);
     }

@@ -1,5 +1,5 @@
-//! Surfaces under a sky that grows brighter along x in red, along y in green and along z in blue: what a lobe gathers of it
-//! tells its direction, component by component.
+//! Surfaces under a sky that grows brighter along x in red, along y in green and along z in blue. The color of a lobe
+//! therefore shows its direction, component by component.
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Plan, Scratch, compile};
@@ -23,11 +23,11 @@ use truth::surface::{self, Coat, Grooves, Surface};
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// The sky: 1 + 0.8 x in red, and so on.
+/// Slope of the sky: 1 + 0.8 x in red, and so on.
 const SLOPE: f64 = 0.8;
 const NORMAL: DVec3 = DVec3::new(0.36, -0.48, 0.8);
 const TANGENT: DVec3 = DVec3::new(0.8, 0.6, 0.0);
-/// Of which level 3 of the five is made, so that nothing is interpolated.
+/// Roughness of level 3 of the five, so that nothing is interpolated.
 const ROUGHNESS: f64 = 0.5;
 
 fn sky() -> Environment {
@@ -35,12 +35,12 @@ fn sky() -> Environment {
     Environment { name: "slope".into(), map, sun: None, filtered: None, warnings: Vec::new() }
 }
 
-/// What a lobe gathers: a slope is dimmed by the lobe's mean cosine, by quadrature.
+/// Returns the color of a lobe: the slope is reduced by the lobe's mean cosine, by quadrature.
 fn of_lobe(direction: DVec3, roughness: f64) -> DVec3 {
     DVec3::ONE + direction * SLOPE * gathered(DVec3::Z, roughness, |l| DVec3::splat(l.z)).z
 }
 
-/// Irradiance over π: a cosine's mean cosine is 2/3.
+/// Returns irradiance over π; the mean cosine of a cosine lobe is 2/3.
 fn on_surface(normal: DVec3) -> DVec3 {
     DVec3::ONE + normal * (SLOPE * 2.0 / 3.0)
 }
@@ -112,10 +112,10 @@ fn every_lobe_gathers_from_where_it_points() -> TestResult {
     Ok(())
 }
 
-/// Radiance of what hangs on a board, by the finest shading.
+/// Returns the radiance of a board at the highest quality.
 fn under_sky(gpu: &Gpu, board: &Board) -> Result<Vec<DVec3>, Box<dyn Error>> {
     let shading = Quality::High.shading();
-    // A level of 32 texels: across a larger texel a slope is not straight.
+    // A level of 32 texels; larger texels would not represent the slope linearly.
     let settings = LightSettings {
         image: IblSettings { cube_texels: 256, ..IblSettings::default() },
         dfg: DfgSettings { texels: 64, visibility: shading.table },
@@ -131,8 +131,8 @@ fn near(name: &str, seen: DVec3, expected: DVec3) {
     assert!(apart < 1e-2, "{name}: {seen} for {expected}");
 }
 
-/// Over what is black and rough: a coat mirrors by the map of its own and not by the base's, and what an occlusion texture leaves
-/// of a coat or of sheen follows from the roughness of that layer.
+/// On a rough black base: a coat uses its own normal map, and occlusion of coat and sheen depends on the roughness of
+/// their own layer.
 #[test]
 fn layers_have_their_own_normal_and_occlusion() -> TestResult {
     let Some(gpu) = gpu("layers_have_their_own_normal_and_occlusion") else { return Ok(()) };
@@ -162,7 +162,7 @@ fn layers_have_their_own_normal_and_occlusion() -> TestResult {
         ("coat over a map", coated(coat), under(NORMAL)),
         ("coat with its map", coated(mapped(ROUGHNESS)), under(normal)),
     ];
-    // Of a roughness that is far from the base's.
+    // A roughness far from the base's.
     let sheen = Sheen { color: Vec3::ONE, roughness: 0.5, ..Sheen::default() };
     let fibers = Material { sheen: Some(sheen), normal_texture: None, roughness: 0.0, ..black.clone() };
     let hidden = [("hidden coat", coated(mapped(0.2)), normal, 0.04), ("hidden sheen", fibers, NORMAL, 0.25)];
@@ -185,10 +185,10 @@ fn layers_have_their_own_normal_and_occlusion() -> TestResult {
     Ok(())
 }
 
-/// Where the camera of the sky looks.
+/// Direction in which the sky's camera looks.
 const AHEAD: DVec3 = DVec3::new(1.0, 0.1, 0.2);
 
-/// The sky alone, a nit being 1.
+/// Draws the sky alone, at an exposure of 1.
 fn sky_seen_by(
     gpu: &Gpu,
     settings: &Settings,
@@ -210,24 +210,25 @@ fn sky_seen_by(
     Ok(read_texture(gpu, executor.texture(&plan, io.hdr).ok_or("the frame left no picture")?)?.rgba())
 }
 
-/// Every number of bands shows a slope as it is, which the first band holds: on all sides, for one sign wrong shows on one.
-/// The sky is the map itself, not a level of it that is for reflections: at a texel's middle it has that texel's radiance.
+/// Every number of bands represents the slope exactly, since the first band contains it; all directions are tested, as
+/// a wrong sign affects only some. The background is the map itself and not a blurred level: it has a texel's radiance
+/// at the texel's center.
 #[test]
 fn the_sky_is_shown_in_full() -> TestResult {
     let Some(gpu) = gpu("the_sky_is_shown_in_full") else { return Ok(()) };
-    // Every other texel is bright, and each is 22.5° wide.
+    // Texels alternate between bright and dark, each 22.5° wide.
     let texels = (0..16 * 8).map(|i: u32| [((i % 16 + i / 16) % 2) as f32; 4]).collect();
     let environment = Environment { map: EquirectMap::new(16, 8, texels), name: "checkered".into(), ..sky() };
     let settings = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
     let seen = sky_seen_by(&gpu, &settings, &environment, Projection::perspective(1.0, 0.1))?;
     let (least, most) = seen.iter().fold((f32::MAX, 0.0_f32), |(least, most), c| (least.min(c[0]), most.max(c[0])));
-    // A pixel is a thirty-fifth of a texel, so one is within a seventieth of a texel's middle along both axes. With a tenth of
-    // the next level, which is gray, it would be 0.05 to 0.95 at most.
+    // A pixel is 1/35 of a texel, so some pixel is within 1/70 of a texel's center along both axes. With a tenth of the
+    // next level, which is gray, the range would be 0.05 to 0.95.
     assert!(least < 0.035 && most > 0.965, "{least} to {most}");
     Ok(())
 }
 
-/// A parallel projection sees one direction in every pixel: that of the camera, which no axis of the world is.
+/// An orthographic camera sees the same direction in every pixel, here none of the world's axes.
 #[test]
 fn a_parallel_projection_shows_one_place_of_the_sky() -> TestResult {
     let Some(gpu) = gpu("a_parallel_projection_shows_one_place_of_the_sky") else { return Ok(()) };

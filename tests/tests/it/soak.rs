@@ -1,4 +1,4 @@
-//! A short long run: windows, effects and scenes that change from frame to frame, shaders that are replaced, devices that are lost.
+//! A short run of the soak test: changing windows, effects and scenes, replaced shaders, lost devices.
 
 use crate::stage::gpu;
 use framegraph_wgpu::{AdapterRequest, Gpu, OpenError};
@@ -6,17 +6,16 @@ use std::error::Error;
 use std::process::Command;
 use tests::soak::{Held, Soak, Trouble};
 
-/// How much more resident memory may be after the second half of a run on the adapter than after its first, in each of which two
-/// devices come and go. What was freed need not go back to the system: 8 to 29 MB were seen on Mesa's software driver, and 97 to 102
-/// MB where executors of lost devices were kept.
+/// Maximum growth of resident memory between the first and second half of a run on the adapter; two devices are lost in
+/// each half. Freed memory need not return to the system: 8 to 29 MB were measured on Mesa's software driver, and 97 to
+/// 102 MB with leaked executors.
 const MOST_GROWN_BYTES: u64 = 64 << 20;
 
 fn opened() -> Result<Gpu, OpenError> {
     Gpu::open(&AdapterRequest::from_env())
 }
 
-/// A hundred states on the device that validates everything: no frame fails, and the pool holds no more after many states than
-/// after some.
+/// A hundred states on the noop device: no frame fails, and the pool does not keep growing.
 #[test]
 fn a_run_leaves_nothing_behind() -> Result<(), Box<dyn Error>> {
     let mut held = Vec::new();
@@ -26,12 +25,12 @@ fn a_run_leaves_nothing_behind() -> Result<(), Box<dyn Error>> {
     Soak::new(&Gpu::noop()?, 300)?.with(trouble).run(160, 160, |now| ended = Some([now.reloaded, now.lost]))?;
     assert!(ended.is_some_and(|[reloaded, lost]| reloaded > 30 && lost == 2), "{ended:?}");
     assert!(made(5) > made(0) + 200, "the run made hardly anything: {held:?}");
-    // An idle texture is destroyed after 30 frames, which hold some ten states of at most forty textures.
+    // An idle texture is destroyed after 30 frames, which have about ten states of at most forty textures.
     assert!(held.iter().all(|now| now.objects < 400), "{held:?}");
     Ok(())
 }
 
-/// A process of its own, since resident memory is that of all tests in one; see
+/// Runs in its own process, since resident memory includes other tests; see
 /// `a_run_on_the_adapter_takes_no_more_memory_as_it_goes_on`.
 #[test]
 #[ignore = "a part of another test, which runs it alone"]
@@ -49,8 +48,8 @@ fn run_on_the_adapter() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The same on the adapter, with the plainest effects, whose shaders are soon compiled: memory stays flat, and the last frame is a
-/// fresh run's.
+/// A run on the adapter with the simplest effects, whose shaders compile quickly: memory does not grow, and the last
+/// frame equals a fresh run's.
 #[test]
 fn a_run_on_the_adapter_takes_no_more_memory_as_it_goes_on() -> Result<(), Box<dyn Error>> {
     if gpu("a_run_on_the_adapter_takes_no_more_memory_as_it_goes_on").is_none() {

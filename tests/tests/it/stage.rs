@@ -1,4 +1,4 @@
-//! The standard frame on a stage: settings to plan without a device, scene to picture with one.
+//! The standard frame in tests: planning without a device, drawing with one.
 
 use framegraph::{Caps, Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
 use framegraph_passes::ibl::{DfgSettings, IblSettings, ImageLight};
@@ -14,7 +14,7 @@ use std::error::Error;
 use tests::executors;
 use tests::stage::light_cache;
 
-/// The standard frame with its picture read back.
+/// Declares the standard frame with a readback of its picture.
 pub fn declared(settings: &Settings) -> (Frame<World>, FrameIo) {
     let mut frame = Frame::new();
     let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
@@ -23,7 +23,7 @@ pub fn declared(settings: &Settings) -> (Frame<World>, FrameIo) {
     (frame, io)
 }
 
-/// Its plan for a device.
+/// Plans the frame for a device.
 pub fn plan(settings: &Settings, caps: &Caps, options: &Options) -> Plan {
     let mut plan = Plan::new();
     let (frame, _) = declared(settings);
@@ -31,7 +31,7 @@ pub fn plan(settings: &Settings, caps: &Caps, options: &Options) -> Plan {
     plan
 }
 
-/// The best adapter, or the words for why there is none.
+/// Returns the best adapter, or reports `test` as skipped.
 pub fn gpu(test: &str) -> Option<Gpu> {
     match Gpu::open(&AdapterRequest::from_env()) {
         Ok(gpu) => {
@@ -45,7 +45,7 @@ pub fn gpu(test: &str) -> Option<Gpu> {
     }
 }
 
-/// Both precisions, where the device has them; what it has not counts as skipped.
+/// Returns the precisions that the device supports; reports a skip for the others.
 pub fn precisions(test: &str, gpu: &Gpu) -> Vec<Precision> {
     let has = |precision: &Precision| match precision.check(gpu) {
         Ok(()) => true,
@@ -57,7 +57,7 @@ pub fn precisions(test: &str, gpu: &Gpu) -> Vec<Precision> {
     Precision::ALL.into_iter().filter(has).collect()
 }
 
-/// What a picture is made with beside the scene.
+/// Settings of a picture other than the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Shot {
     pub size_px: [u32; 2],
@@ -67,26 +67,26 @@ pub struct Shot {
 }
 
 impl Shot {
-    /// A small picture in daylight.
+    /// Returns a small picture in daylight.
     pub fn small(settings: Settings) -> Self {
         let size_px = [160, 90];
         Self { size_px, ev100: 14.5, settings, options: Options::for_frame(size_px[0], size_px[1]) }
     }
 }
 
-/// A built-in scene under the default sky, on the GPU, to be rendered again and again.
+/// A scene under the default sky, on the GPU, which can be rendered repeatedly.
 pub struct Set {
     world: World,
     scene: Scene,
 }
 
 impl Set {
-    /// Loads a scene. Size, exposure and shadows are the shot's.
+    /// Loads a built-in scene with the shot's size, exposure and shadows.
     pub fn new(gpu: &Gpu, scene: &str, shot: &Shot, background: &Background) -> Result<Self, Box<dyn Error>> {
         Self::of(gpu, Scene::open(scene, &mut progress::silent)?, shot, background)
     }
 
-    /// The same of a scene of one's own.
+    /// Uploads a scene with the shot's size, exposure and shadows.
     pub fn of(gpu: &Gpu, scene: Scene, shot: &Shot, background: &Background) -> Result<Self, Box<dyn Error>> {
         let environment = Sky::default().environment(128)?;
         let lighting = lighting(gpu, &environment, &shot.settings.shading)?;
@@ -95,23 +95,23 @@ impl Set {
         Ok(Self { world, scene })
     }
 
-    /// What it is rendered with.
+    /// Returns the data that passes read.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// The same to be changed.
+    /// Returns the data that passes read, for changes.
     pub fn world_mut(&mut self) -> &mut World {
         &mut self.world
     }
 
-    /// Renders it; display codes, four bytes a texel.
+    /// Renders the scene. Returns 8-bit display values, four bytes per pixel, and the plan.
     pub fn shoot(&self, gpu: &Gpu, shot: &Shot) -> Result<(Vec<u8>, Plan), Box<dyn Error>> {
         let (frame, io) = declared(&shot.settings.for_scene(&self.scene, shot.size_px));
         self.render(gpu, &frame, io.output, &shot.options)
     }
 
-    /// Renders a frame and reads one of its pictures back. What is executed is what was planned.
+    /// Renders a frame and reads one of its pictures back. Checks that execution matches the plan.
     pub fn render(
         &self,
         gpu: &Gpu,
@@ -129,7 +129,7 @@ impl Set {
     }
 }
 
-/// Light as coarse as it may be.
+/// Computes image-based light at the lowest resolution.
 pub fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Result<Lighting, LightingError> {
     let settings = LightSettings {
         image: IblSettings {
@@ -143,7 +143,7 @@ pub fn lighting(gpu: &Gpu, environment: &Environment, shading: &Shading) -> Resu
     Lighting::new(gpu, environment, &settings, &light_cache(), &mut progress::silent)
 }
 
-/// The moment of a shot.
+/// Returns the view of a shot.
 pub fn view_of(scene: &Scene, light: &ImageLight, background: &Background, shot: &Shot) -> CameraView {
     let Shot { size_px: [width, height], ev100, settings, .. } = *shot;
     let camera = scene.default_camera(f64::from(width) / f64::from(height));
@@ -160,7 +160,7 @@ pub fn view_of(scene: &Scene, light: &ImageLight, background: &Background, shot:
     CameraView::new(scene, light, background, &moment)
 }
 
-/// Renders a built-in scene under the default sky; display codes, four bytes a texel.
+/// Renders a built-in scene under the default sky. Returns 8-bit display values, four bytes per pixel.
 pub fn picture(gpu: &Gpu, scene: &str, shot: &Shot) -> Result<Vec<u8>, Box<dyn Error>> {
     Ok(Set::new(gpu, scene, shot, &Background::Environment)?.shoot(gpu, shot)?.0)
 }

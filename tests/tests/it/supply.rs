@@ -1,6 +1,6 @@
-//! What the workspace is built from, held to `deny.toml`: licenses, versions beside each other, sources, known advisories.
+//! Dependencies of the workspace, checked against `deny.toml`: licenses, duplicate versions, sources, known advisories.
 //!
-//! `cargo deny check` does the same and more; this runs everywhere, from Cargo.lock and what cargo says of it.
+//! `cargo deny check` does more; this test runs everywhere, from Cargo.lock and cargo's metadata.
 
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -15,19 +15,19 @@ fn read(name: &str) -> String {
     std::fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// The texts in quotes behind `key = [`, up to `]`.
+/// Returns the quoted texts after `key = [`, up to `]`.
 fn list(deny: &str, key: &str) -> Vec<String> {
     let (_, after) = deny.split_once(&format!("\n{key} = [")).unwrap_or_else(|| panic!("{key} is not there"));
     let (inside, _) = after.split_once(']').expect("the list ends");
     inside.split('"').skip(1).step_by(2).map(str::to_owned).collect()
 }
 
-/// A package of the lock file, as cargo describes it.
+/// A package of the lock file, as described by cargo.
 struct Package {
     name: String,
     version: String,
     license: String,
-    /// None for a crate of the workspace.
+    /// Source of the package; `None` for a crate of the workspace.
     source: Option<String>,
 }
 
@@ -51,7 +51,8 @@ fn packages() -> Vec<Package> {
     packages
 }
 
-/// Whether an SPDX expression can be met with these licenses. `AND` binds closer than `OR`; an exception only adds.
+/// Returns true if an SPDX expression can be satisfied with these licenses. `AND` binds more tightly than `OR`; an
+/// exception only adds permissions.
 fn is_met(expression: &str, allowed: &[String]) -> bool {
     let spaced = expression.replace('/', " OR ").replace('(', " ( ").replace(')', " ) ");
     let words: Vec<&str> = spaced.split_whitespace().collect();
@@ -117,7 +118,7 @@ fn every_license_is_allowed() {
 #[test]
 fn a_crate_has_two_versions_only_with_a_reason() {
     let skip = list(&read("deny.toml"), "skip");
-    // Each entry is a crate and a reason.
+    // Each entry is a crate with a reason.
     assert!(skip.iter().skip(1).step_by(2).all(|reason| !reason.is_empty()));
     let skipped: Vec<&String> = skip.iter().step_by(2).collect();
     let mut versions: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
@@ -143,16 +144,17 @@ fn crates_come_from_the_registry_alone() {
     }
 }
 
-/// Crates that came after the snapshot and were not looked up when this list was begun, nor the two of `multiversion`, which came with it.
+/// Number of crates that were added after the snapshot and not looked up when this list was started. The two crates of
+/// `multiversion`, which came with the list, are not included.
 const OPEN: usize = 58;
 
-/// The three numbers of a version.
+/// Parses the three numbers of a version.
 fn numbers(version: &str) -> [u64; 3] {
     let mut parts = version.split(['.', '-', '+']).map(|part| part.parse().unwrap_or(0));
     std::array::from_fn(|_| parts.next().unwrap_or(0))
 }
 
-/// Whether a line of the snapshot speaks of this version of a crate.
+/// Returns true if a line of the snapshot applies to this version of a crate.
 fn concerns(line: &[&str], name: &str, version: &str) -> bool {
     let version = numbers(version);
     name == line[0] && version >= numbers(line[2]) && (line[3] == "-" || version < numbers(line[3]))
@@ -173,14 +175,14 @@ fn no_version_has_a_known_advisory() {
     assert_eq!(known("paste", "1.0.15"), 1, "it left with pulp, which newer versions of exr ask for");
 }
 
-/// The names under a head of the list, up to an empty line.
+/// Returns the names below a heading of the list, up to an empty line.
 fn names<'a>(list: &'a str, head: &str) -> BTreeSet<&'a str> {
     let (_, after) = list.split_once(&format!("\n{head}:\n")).unwrap_or_else(|| panic!("{head} is not there"));
     after.split("\n\n").next().unwrap_or_default().split_whitespace().collect()
 }
 
-/// The snapshot says nothing of a crate that nobody looked up. A new crate is noticed; that of the crates that came after the
-/// snapshot some were not looked up yet is said, and they become no more.
+/// Every crate was looked up in the snapshot, or is listed as not looked up. A new crate fails this test, and the list
+/// may not grow.
 #[test]
 fn every_crate_was_looked_up_or_is_said_not_to_be() {
     let (lock, list) = (read("Cargo.lock"), read("tests/advisories_looked_up.txt"));

@@ -1,4 +1,4 @@
-//! Anti-aliasing over time: what a frame with it loads and stores, how near its sum comes to the truth, and what it lets go.
+//! Temporal anti-aliasing: loads and stores of frames with it, convergence, and rejection of history.
 
 use crate::stage::{self, Set, Shot, declared, gpu};
 use framegraph::{Caps, Counts, Options, Plan, Scratch, compile};
@@ -26,8 +26,8 @@ fn taa(text: &str) -> Result<TaaSettings, Box<dyn Error>> {
 /// post                  ldr              don't care STORE
 /// fxaa                  output           don't care STORE
 ///
-/// With four samples depth is stored of each, and resolved by a step that stores one: 6, as Filament has it on a device
-/// that does not resolve depth. No load in either.
+/// With four samples, depth is stored per sample and resolved by a step that stores once: 6 stores, as in Filament on a
+/// device without depth resolves. There is no load in either.
 #[test]
 fn counts_are_filaments() {
     let counts = |settings: Settings| stage::plan(&settings, &Caps::wgpu(), &Options::for_frame(1280, 720)).counts();
@@ -53,7 +53,7 @@ fn counts_are_filaments() {
     }
 }
 
-/// The rows of `docs/taa.md`; a device that rounds otherwise may be half a decibel and a hundredth off.
+/// The rows of `docs/taa.md`, with a tolerance for other devices of half a decibel and 0.01.
 #[test]
 fn the_document_has_what_is_printed() -> TestResult {
     let Some(gpu) = gpu("the_document_has_what_is_printed") else { return Ok(()) };
@@ -75,8 +75,8 @@ fn the_document_has_what_is_printed() -> TestResult {
     Ok(())
 }
 
-/// Still light: the mean of 32 frames is within 40 dB of 256 places a pixel, a single frame is not, and Filament's sum, which
-/// never comes to rest, trembles more.
+/// Still light: the mean of 32 frames is within 40 dB of 256 samples per pixel, a single frame is not. Filament's
+/// accumulation, which never converges, has more temporal noise.
 #[test]
 fn still_light_comes_near_the_truth() -> TestResult {
     let Some(gpu) = gpu("still_light_comes_near_the_truth") else { return Ok(()) };
@@ -86,9 +86,9 @@ fn still_light_comes_near_the_truth() -> TestResult {
     Ok(())
 }
 
-/// Radiance of a built-in scene after so many frames.
+/// Returns the radiance of a built-in scene after several frames.
 fn shown(gpu: &Gpu, taa: Option<TaaSettings>, size_px: [u32; 2], frames: u32) -> Result<Vec<[f32; 4]>, Box<dyn Error>> {
-    // Highlights are not widened by the size of a pixel: that differs between the pictures.
+    // Specular anti-aliasing is off, since it depends on the size of a pixel, which differs between the pictures.
     let shading = Shading { specular_aa: None, ..Settings::DEFAULT.shading };
     let settings = Settings { taa, shading, fxaa: false, ..Settings::DEFAULT };
     let options = Options::for_frame(size_px[0], size_px[1]);
@@ -109,8 +109,7 @@ fn shown(gpu: &Gpu, taa: Option<TaaSettings>, size_px: [u32; 2], frames: u32) ->
     Ok(read_texture(gpu, texture)?.rgba())
 }
 
-/// A scene seen by the whole frame, against the same at sixteen times the width and height, of which each block of light is
-/// averaged.
+/// A scene rendered by the whole frame, compared with the linear average of sixteen times the width and height.
 #[test]
 fn a_still_scene_comes_near_supersampling() -> TestResult {
     let Some(gpu) = gpu("a_still_scene_comes_near_supersampling") else { return Ok(()) };
@@ -136,12 +135,12 @@ fn a_still_scene_comes_near_supersampling() -> TestResult {
     Ok(())
 }
 
-/// A still scene in the standard frame, whose window is made larger after 24 frames: the next frame goes on with the sum, so that
-/// it is nearer to what frames of the new size come to than their first one is. It is by 5.5 dB, less than in a sum of one size,
-/// since what was seen in fewer pixels is blurred; a sum that began anew would be by 0.
+/// A still scene whose window is enlarged after 24 frames. The next frame reuses the history, so it is closer to the
+/// converged picture at the new size than a first frame. The gain is 5.5 dB, less than at a constant size, since the
+/// history has fewer pixels. Without the history, it would be 0.
 #[test]
-fn a_resize_goes_on_with_the_sum() -> TestResult {
-    let Some(gpu) = gpu("a_resize_goes_on_with_the_sum") else { return Ok(()) };
+fn a_resize_keeps_the_history() -> TestResult {
+    let Some(gpu) = gpu("a_resize_keeps_the_history") else { return Ok(()) };
     let taa = taa("on:filter-input=off,jitter=halton16")?;
     let shading = Shading { specular_aa: None, ..Settings::DEFAULT.shading };
     let settings = Settings { taa: Some(taa), shading, fxaa: false, ..Settings::DEFAULT };
@@ -155,7 +154,7 @@ fn a_resize_goes_on_with_the_sum() -> TestResult {
     let mut set = Set::of(&gpu, scene.clone(), &small, &Background::Environment)?;
     let (mut frame, io) = declared(&settings);
     frame.graph_mut().readback(io.hdr)?;
-    // The last of so many frames of each of these sizes, one after another, by one executor.
+    // Returns the last of several frames at each of these sizes, drawn in sequence by one executor.
     let mut shown = |sizes: &[(Shot, u32)]| -> Result<Vec<[f32; 4]>, Box<dyn Error>> {
         let (mut executor, mut plan, mut index) = (Executor::new(&gpu), Plan::new(), 0);
         for (shot, frames) in sizes {
@@ -191,7 +190,7 @@ fn a_resize_goes_on_with_the_sum() -> TestResult {
     Ok(())
 }
 
-/// The first frame, one after a cut, and each where it counts whole are the frame itself, to the bit.
+/// The first frame, one after a camera cut, and frames with full weight equal the input, bit for bit.
 #[test]
 fn without_a_sum_a_frame_is_itself() -> TestResult {
     let Some(gpu) = gpu("without_a_sum_a_frame_is_itself") else { return Ok(()) };
@@ -209,8 +208,7 @@ fn without_a_sum_a_frame_is_itself() -> TestResult {
     Ok(())
 }
 
-/// Light that stays what it is, in a frame of half the exposure: the sum is half of what it was, and nothing of the exposure before
-/// is mixed in.
+/// Constant light with a halved exposure: the history is rescaled, and nothing of the previous exposure remains.
 #[test]
 fn sums_follow_the_exposure() -> TestResult {
     let Some(gpu) = gpu("sums_follow_the_exposure") else { return Ok(()) };
@@ -219,21 +217,21 @@ fn sums_follow_the_exposure() -> TestResult {
     stage.frame(&settings, even(0.4), size)?;
     stage.exposure *= 0.5;
     let [painted, sum] = stage.frame(&settings, even(0.2), size)?;
-    // A step of half floats; the exposure before would make it 0.38.
+    // One step of half floats; without rescaling, it would be 0.38.
     let off = |(a, b): (&[f32; 4], &[f32; 4])| (a[0] - b[0]).abs();
     let most = painted.iter().zip(&sum).map(off).fold(0.0, f32::max);
     assert!(most < 2e-4, "{most}");
     Ok(())
 }
 
-/// Sums that something has spoilt are let go of in one frame; so is what another size left, down to one texel (hard cases 51
-/// and 52). What is left lies between the least and the most light that there is.
+/// Invalid history is discarded within one frame, and so is the history of another size, down to one pixel (hard cases
+/// 51 and 52). The result stays between the minimum and maximum light of the picture.
 #[test]
 fn spoilt_sums_are_gone_after_a_frame() -> TestResult {
     let Some(gpu) = gpu("spoilt_sums_are_gone_after_a_frame") else { return Ok(()) };
     for text in ["on", "on:filter-history=off,clip=clamp", "on:box=both,ycocg=on,steady=on", "on:clip=none"] {
         let settings = taa(text)?;
-        // What is held to nothing keeps what the spline overshoots by, an eighth of an edge.
+        // Without clipping, the spline's overshoot of an eighth of an edge remains.
         let over = if settings.clipping == Clipping::None { 0.125 } else { 0.001 };
         let sound = |sum: &[[f32; 4]]| sum.iter().all(|texel| texel[0] > 0.05 - over && texel[0] < 0.9 + over);
         for number in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
@@ -249,7 +247,7 @@ fn spoilt_sums_are_gone_after_a_frame() -> TestResult {
             assert!(sound(&sum), "{text} at {size:?}");
         }
     }
-    // What the frame itself has broken is no light, and is gone in the next.
+    // Invalid pixels of the frame itself count as black, and are gone in the next frame.
     let mut stage = Stage::new(&gpu)?;
     let broken = Painted { ground: [f32::NAN, 0.0], ..PAINTED };
     let [_, sum] = stage.frame(&taa("on")?, broken, [24, 24])?;
@@ -257,14 +255,14 @@ fn spoilt_sums_are_gone_after_a_frame() -> TestResult {
     Ok(())
 }
 
-/// A ball that crosses even ground leaves nothing behind, and on stripes no more than a hundredth on average beyond what is near;
-/// a sum that is held to nothing keeps it.
+/// A moving ball leaves no ghost on a uniform background, and less than 0.01 on average on stripes. Negative control:
+/// without clipping, the ghost remains.
 #[test]
 fn moving_light_leaves_no_ghost() -> TestResult {
     let Some(gpu) = gpu("moving_light_leaves_no_ghost") else { return Ok(()) };
     let (even, stripes) = ([0.05, 0.0], [0.05, 0.4]);
     for text in ["on", "on:clip=clamp", "on:box=variance", "on:box=both,ycocg=on"] {
-        // Half a code of 255 at this light.
+        // Half an 8-bit step at this light.
         assert!(ghost(&gpu, &taa(text)?, even, 3.0)?[0] < 1e-3, "{text}");
         assert!(ghost(&gpu, &taa(text)?, stripes, 3.0)?[1] < 0.01, "{text}");
     }

@@ -1,4 +1,5 @@
-//! Compressed textures on the device: every format is sampled as the RGBA of the same file, and drawn as the source picture.
+//! Compressed textures on the device: every format is sampled like the RGBA version of the same file, and drawn like
+//! the source picture.
 
 use crate::stage::{Set, Shot, gpu};
 use framegraph::Options;
@@ -13,14 +14,14 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use wgpu::util::DeviceExt;
 
-/// The side of a square in the picture, in pixels: the side of the textures, so that each texel is one pixel.
+/// Width of a square in the picture, in pixels. It is the textures' width, so that a texel is one pixel.
 const SIDE: usize = 64;
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("textures")
 }
 
-/// `squares.gltf`, changed.
+/// Loads `squares.gltf` with a change.
 fn squares(formats: BlockFormats, change: impl FnOnce(&mut Value)) -> Result<Scene, Box<dyn Error>> {
     let mut document: Value = serde_json::from_slice(&std::fs::read(folder().join("squares.gltf"))?)?;
     change(&mut document);
@@ -33,7 +34,7 @@ fn squares(formats: BlockFormats, change: impl FnOnce(&mut Value)) -> Result<Sce
 
 const NONE: BlockFormats = BlockFormats { bc7: false, etc2: false, astc: false };
 
-/// The formats of blocks one by one, as far as the device samples them; what is missing counts as skipped.
+/// Returns the block formats that the device samples, one by one; reports a skip for the others.
 fn each_format(test: &str, gpu: &Gpu) -> Vec<(ImageFormat, BlockFormats)> {
     let device = block_formats(gpu);
     let of = [
@@ -50,23 +51,24 @@ fn each_format(test: &str, gpu: &Gpu) -> Vec<(ImageFormat, BlockFormats)> {
     sampled.map(|(format, _, formats)| (format, formats)).collect()
 }
 
-/// Peak signal-to-noise ratio of 8-bit channels, in dB; 100 for equal ones.
+/// Returns the peak signal-to-noise ratio of 8-bit channels in dB; 100 for equal ones.
 fn psnr_db(a: &[u8], b: &[u8]) -> f64 {
     assert!(a.len() == b.len() && !a.is_empty());
     let square: f64 = a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2)).sum();
     (10.0 * (255.0 * 255.0 * a.len() as f64 / square).log10()).min(100.0)
 }
 
-/// The pixels of a square of a picture with three in a row.
+/// Returns the pixels of one of three squares in a row.
 fn square(picture: &[u8], place: usize) -> Vec<u8> {
     let (left, top) = (place % 3 * SIDE, place / 3 * SIDE);
     let row = |y: usize| &picture[4 * (3 * SIDE * (top + y) + left)..][..4 * SIDE];
     (0..SIDE).flat_map(row).copied().collect()
 }
 
-/// Draws one picture from PNG, ETC1S, UASTC, WebP and plain KTX2 files side by side, 64 × 64 pixels each, in every format of
-/// the device. Each is at least 40 dB from the PNG. Equal texels differ by dither, and by antialiasing at the edges of squares:
-/// 52 dB. Another picture is far from it, and so is the same one a pixel off.
+/// Draws one picture from PNG, ETC1S, UASTC, WebP and uncompressed KTX2 files side by side, 64 × 64 pixels each, in
+/// every format of the device. Each has a PSNR of at least 40 dB to the PNG. Equal texels differ by dithering, and by
+/// anti-aliasing at the edges of squares: 52 dB. Negative controls: another picture, and the same one shifted by a
+/// pixel.
 #[test]
 fn compressed_textures_draw_their_source_picture() -> Result<(), Box<dyn Error>> {
     let test = "compressed_textures_draw_their_source_picture";
@@ -93,8 +95,8 @@ fn compressed_textures_draw_their_source_picture() -> Result<(), Box<dyn Error>>
     Ok(())
 }
 
-/// Compares every level in every format of blocks with the RGBA of the same file. Transcoded blocks have the error of another
-/// encoder: 40 dB. ETC1S in ETC2 and UASTC in ASTC are the same texels: one 255th.
+/// Compares every level in every block format with the RGBA version of the same file. Transcoded blocks have the error
+/// of another encoder: 40 dB. ETC1S in ETC2 and UASTC in ASTC have the same texels, to within 1/255.
 #[test]
 fn every_level_is_sampled_as_rgba() -> Result<(), Box<dyn Error>> {
     let test = "every_level_is_sampled_as_rgba";
@@ -121,7 +123,7 @@ fn every_level_is_sampled_as_rgba() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The texels of all levels of a texture as a shader reads them, in 255ths. The texture is read as it is, not as sRGB.
+/// Returns the texels of all levels as a shader reads them, times 255, without sRGB decoding.
 fn texels(gpu: &Gpu, name: &str, formats: BlockFormats, expected: ImageFormat) -> Result<Vec<u8>, Box<dyn Error>> {
     let scene = squares(formats, |document| {
         document["images"][1]["uri"] = json!(name);

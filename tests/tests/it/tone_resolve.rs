@@ -1,4 +1,4 @@
-//! Samples averaged as a display shows them: the shader against its statement, and what the frame stores for it.
+//! Tone-mapped resolve: the shader compared with its formula, and the stores of a frame with it.
 
 use crate::stage::{gpu, plan};
 use framegraph::{
@@ -21,7 +21,7 @@ type TestResult = Result<(), Box<dyn Error>>;
 static NOTHING: Interface = Interface { groups: &[], constants: &[] };
 static SHADER: Module<'static> = Module::new("samples.wgsl", include_str!("tone_resolve/samples.wgsl"));
 
-/// Radiance of four samples, each of its own.
+/// Draws four samples of different radiance.
 #[derive(Clone, Copy, Debug)]
 struct Samples;
 
@@ -40,7 +40,8 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for Samples {
     }
 }
 
-/// As the shader has it: dim, but for one sample in some texels, which is bright or too bright for a half float.
+/// Radiance as in the shader: dim, except for one sample in some texels that is bright or beyond the range of half
+/// floats.
 fn sample(x: u32, sample: u32) -> DVec3 {
     match (x, sample) {
         (1, 2) => DVec3::new(300.0, 20.0, 4.0),
@@ -66,10 +67,10 @@ fn a_bright_sample_does_not_rule_its_texel() -> TestResult {
         let colors = [0, 1, 2, 3].map(|s| sample(at as u32 % 5, s));
         let whole: f64 = colors.iter().map(|c| firefly_weight(*c)).sum();
         let expected = colors.iter().map(|c| *c * firefly_weight(*c)).sum::<DVec3>() / whole;
-        // Alpha is no radiance: all samples count alike.
+        // Alpha is averaged with equal weights.
         assert_eq!(found[3], [2.5, 2.0, 2.5, 1.0, 2.5][at % 5], "texel {at}");
         let found = DVec3::from_array([0, 1, 2].map(|c: usize| found[c].into()));
-        // Half floats keep eleven bits.
+        // Half floats have eleven bits.
         let off = (found - expected).abs().max_element() / expected.max_element();
         assert!(off < 1e-3, "texel {at}: {found} for {expected}");
         let mean = colors.iter().sum::<DVec3>() / 4.0;
@@ -78,7 +79,7 @@ fn a_bright_sample_does_not_rule_its_texel() -> TestResult {
     Ok(())
 }
 
-/// Samples that are read are stored, and the device's resolve of them is not made.
+/// Samples that a pass reads are stored, and the device's resolve is not used.
 #[test]
 fn a_resolve_by_a_pass_takes_the_place_of_the_devices() {
     let counts = |samples, tone_resolve, bloom: bool| {
@@ -91,10 +92,11 @@ fn a_resolve_by_a_pass_takes_the_place_of_the_devices() {
     let (devices, devices_bytes, _) = counts(4, false, true);
     let (own, own_bytes, declared) = counts(4, true, true);
     assert!(declared);
-    // The samples and what is made of them are stored, where the mean alone was.
+    // Samples and resolved picture are stored, instead of the resolved picture alone.
     assert_eq!((own.passes, own.steps, own.resolves), (devices.passes + 1, devices.steps + 1, devices.resolves + 1));
     assert_eq!((own.multisample_resolves, own.unresolves), (devices.multisample_resolves - 1, devices.unresolves));
-    // Half floats of four channels: four samples a texel are stored and loaded again, and the mean is stored as before.
+    // Half floats of four channels: four samples per pixel are stored and loaded, and the resolved picture is stored as
+    // before.
     let texels = 1280 * 720;
     assert_eq!(own_bytes.stored_bytes - devices_bytes.stored_bytes, 4 * 8 * texels);
     assert_eq!(devices_bytes.multisample_resolve_bytes - own_bytes.multisample_resolve_bytes, 8 * texels);

@@ -1,4 +1,4 @@
-//! Surfaces that let light through: what the plan makes of their passes, and what is seen through them.
+//! Transmissive surfaces: plans of their passes, and the light that passes through them.
 
 mod blended;
 mod layers;
@@ -57,8 +57,8 @@ fn one_sample() {
     }
 }
 
-/// With four samples color and depth are stored and loaded sample by sample, and averaged twice: for the copy, and at the
-/// end. The first average is a store more.
+/// With four samples, color and depth are stored and loaded per sample, and resolved twice: for the copy, and at the
+/// end. The first resolve is one more store.
 #[test]
 fn four_samples() {
     let one = counts(Settings { scene_levels: 4, ..Settings::default() });
@@ -76,7 +76,7 @@ fn levels_follow_the_size_of_the_frame() {
 const FOV_Y_RAD: f64 = 0.6;
 const EYE_M: f64 = 5.0;
 
-/// A floor and, if there is one, a pane over the middle of the picture; the camera looks straight down on both.
+/// Returns a floor with an optional pane over the center of the picture, seen from above.
 fn stage(pane: Option<Material>) -> Scene {
     let mut scene = Scene { name: "pane".into(), ..Scene::default() };
     let floor = scene.add_mesh(plane(Vec2::splat(40.0), 1, Vec2::ONE));
@@ -93,13 +93,13 @@ fn stage(pane: Option<Material>) -> Scene {
     scene
 }
 
-/// Pre-exposed radiance in the middle of the picture.
+/// Returns the pre-exposed radiance in the center of the picture.
 fn middle(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec3, Box<dyn Error>> {
     let row = middle_row(gpu, scene, settings)?;
     Ok(row[row.len() / 2])
 }
 
-/// Pre-exposed radiance along the middle row of the picture.
+/// Returns the pre-exposed radiance along the middle row of the picture.
 fn middle_row(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<Vec3>, Box<dyn Error>> {
     let [width, height] = Shot::small(settings).size_px;
     let texels = texels(gpu, scene, settings)?;
@@ -107,7 +107,7 @@ fn middle_row(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<Vec3>,
     Ok(row.to_vec())
 }
 
-/// Pre-exposed radiance of the whole picture.
+/// Returns the pre-exposed radiance of the whole picture.
 fn texels(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<Vec3>, Box<dyn Error>> {
     let shot = Shot::small(Settings { shadows: None, ..settings });
     let environment = Sky::default().environment(64)?;
@@ -125,7 +125,7 @@ fn texels(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<Vec3>, Box
     Ok(read_texture(gpu, texture)?.rgba().iter().map(|[r, g, b, _]| Vec3::new(*r, *g, *b)).collect())
 }
 
-/// A pane that reflects nothing, so that what is seen is what came through.
+/// Returns a pane without reflections, so that only transmitted light is visible.
 fn pane(tint: Vec3, volume: Option<Volume>) -> Material {
     Material {
         transmission: Some(Transmission { factor: 1.0, texture: None, volume }),
@@ -134,13 +134,13 @@ fn pane(tint: Vec3, volume: Option<Volume>) -> Material {
     }
 }
 
-/// Seen straight on, a pane shows the floor times its tint, times what the body under it leaves (Beer and Lambert); half
-/// transmission is half of that and half of a wall of its own color, which is the picture of an opaque pane.
+/// At normal incidence, a pane shows the floor times its tint times the absorption of its volume (Beer-Lambert law). A
+/// transmission of 0.5 mixes this equally with the color of an opaque pane.
 #[test]
 fn what_is_behind_is_tinted_and_absorbed() -> TestResult {
     let Some(gpu) = gpu("what_is_behind_is_tinted_and_absorbed") else { return Ok(()) };
     let tint = Vec3::new(0.9, 0.5, 0.2);
-    // OpenGL cannot, and says so: the last test.
+    // OpenGL does not support it and reports so; see the last test.
     let most = if gpu.info().backend == wgpu::Backend::Gl { 1 } else { 4 };
     for samples in [1, 4].into_iter().filter(|samples| *samples <= most) {
         let settings = Settings { samples, ..Settings::default() };
@@ -151,11 +151,11 @@ fn what_is_behind_is_tinted_and_absorbed() -> TestResult {
         };
         let floor = seen(None)?;
         assert!(floor.min_element() > 0.01, "the floor is lit: {floor}");
-        // Half floats, three times.
+        // Three roundings to half floats.
         let near = |found: Vec3, expected: Vec3| ((found - expected) / expected).abs().max_element() < 4e-3;
         let wall = seen(Some(pane(tint, None)))?;
         assert!(near(wall, floor * tint), "{wall} against {}", floor * tint);
-        // The control: a pane of another tint is told apart.
+        // Negative control: a pane with another tint.
         assert!(!near(seen(Some(pane(tint * 0.98, None)))?, floor * tint));
         let volume = Volume {
             thickness: 0.5,
@@ -175,7 +175,7 @@ fn what_is_behind_is_tinted_and_absorbed() -> TestResult {
     Ok(())
 }
 
-/// The integral of the Gaussian from −∞ to `x` deviations: Simpson's rule, good to 1e-6 here.
+/// Integrates the Gaussian from −∞ to `x` standard deviations by Simpson's rule, with an error of 1e-6 here.
 pub fn below(x: f64) -> f64 {
     let density = |t: f64| (-t * t / 2.0).exp() / std::f64::consts::TAU.sqrt();
     let (steps, from) = (200, -6.0);
@@ -184,8 +184,9 @@ pub fn below(x: f64) -> f64 {
     ((1..steps).map(at).sum::<f64>() + density(from) + density(x.clamp(from, 6.0))) * width / 3.0
 }
 
-/// Frosted glass a meter over the edge between a dark and a bright floor shows the edge blurred by a Gaussian: of 0.85 alpha
-/// (n − 1) meters, which is what the facets of the glass spread light by over a meter. Glass on the floor shows it sharp.
+/// Frosted glass 1 m above an edge between a dark and a bright floor shows the edge blurred by a Gaussian. Its standard
+/// deviation is 0.85 alpha (n − 1) m, by which the glass's facets spread light over 1 m. Glass on the floor shows the
+/// edge sharp.
 #[test]
 fn rough_glass_blurs_by_its_distance_from_what_is_behind() -> TestResult {
     let Some(gpu) = gpu("rough_glass_blurs_by_its_distance_from_what_is_behind") else { return Ok(()) };
@@ -237,9 +238,9 @@ fn rough_glass_blurs_by_its_distance_from_what_is_behind() -> TestResult {
         let sigma_m = 0.849 * f64::from(roughness * roughness) * 0.5;
         let row = over_an_edge(roughness, 1.0, turn)?;
         let off = worst(&row, sigma_m);
-        // Levels are powers of two, read with linear filters between their texels: a few percent of the step.
+        // Levels are powers of two, read with trilinear filters: an error of a few percent of the step.
         assert!(off < 0.06, "roughness {roughness}: {off:.3} of the step; {row:.2?}");
-        // The control: half the blur and twice the blur are told apart.
+        // Negative controls: half and twice the blur.
         let (half, twice) = (worst(&row, sigma_m / 2.0), worst(&row, sigma_m * 2.0));
         assert!(half > 0.09 && twice > 0.09, "roughness {roughness}: {half:.3}, {twice:.3}");
     }
@@ -251,7 +252,7 @@ fn rough_glass_blurs_by_its_distance_from_what_is_behind() -> TestResult {
     assert!(off < 0.06 && without > 0.07, "within the body: {off:.3}, {without:.3}; {row:.2?}");
     let near = over_an_edge(0.55, 0.02, still)?;
     assert!(worst(&near, 1e-3) < 0.06, "{near:.2?}");
-    // Filament's blur is an angle from the eye: r² / √10 radians, however near the floor is.
+    // Filament's blur is an angle from the eye, r² / √10 radians, for any distance to the floor.
     for height_m in [0.02, 1.0] {
         let sigma_m = 0.35_f64.powi(2) / 10.0_f64.sqrt() * EYE_M;
         let row = blurred(TransmissionBlur::Angle, 0.35, height_m, still, None)?;
@@ -261,12 +262,12 @@ fn rough_glass_blurs_by_its_distance_from_what_is_behind() -> TestResult {
     Ok(())
 }
 
-/// A rough pane close to a floor that ends shows the floor as it is up to two pixels from its end, behind which is nothing: what
-/// is there is no farther away for having nothing beside it, whether a pixel has one sample or four.
+/// A rough pane close to a floor shows it unchanged up to two pixels from its end. The empty background beside it does
+/// not change the distance that determines the blur, with one sample and with four.
 #[test]
 fn distance_is_that_of_what_is_seen() -> TestResult {
     let Some(gpu) = gpu("distance_is_that_of_what_is_seen") else { return Ok(()) };
-    // OpenGL cannot, and says so: the last test.
+    // OpenGL does not support it and reports so; see the last test.
     let most = if gpu.info().backend == wgpu::Backend::Gl { 1 } else { 4 };
     for samples in [1, 4].into_iter().filter(|samples| *samples <= most) {
         let settings = Settings { samples, ..Settings::default() };
@@ -283,7 +284,7 @@ fn distance_is_that_of_what_is_seen() -> TestResult {
             Ok(row[row.len() / 2..row.len() / 2 + 20].to_vec())
         };
         let (floor, through) = (seen(None)?, seen(Some(Material { roughness: 0.5, ..pane(Vec3::ONE, None) }))?);
-        // Half floats, three times. Nearer to the end the linear filter has the end in it.
+        // Three roundings to half floats. Closer to the end, the linear filter includes it.
         let off = |pixel: usize| ((through[pixel] - floor[pixel]) / floor[pixel]).abs().max_element();
         let worst = (2..20).map(off).fold(0.0, f32::max);
         assert!(worst < 4e-3, "{samples} samples: {worst}; {through:?} for {floor:?}");
@@ -291,8 +292,8 @@ fn distance_is_that_of_what_is_seen() -> TestResult {
     Ok(())
 }
 
-/// Through a body an edge of the floor is seen where refracted rays leave the body, by Snell's law: a ray goes on as far as the
-/// body is thick, times the cosine of its angle within.
+/// Through a volume, the floor's edge appears where refracted rays exit, by Snell's law: a ray travels the thickness
+/// times the cosine of its angle inside.
 #[test]
 fn a_body_shows_what_is_where_its_rays_leave_it() -> TestResult {
     let Some(gpu) = gpu("a_body_shows_what_is_where_its_rays_leave_it") else { return Ok(()) };
@@ -310,13 +311,13 @@ fn a_body_shows_what_is_where_its_rays_leave_it() -> TestResult {
     let mut told_apart = 0;
     for (index, seen) in row.iter().enumerate() {
         let tangent = ((2.0 * index as f64 + 1.0) / width - 1.0) * width / height * (FOV_Y_RAD / 2.0).tan();
-        // On the pane, a meter up, within its borders.
+        // On the pane, at a height of 1 m, within its border.
         let entered = (EYE_M - 1.0) * tangent;
         let sine = tangent / (1.0 + tangent * tangent).sqrt() / ior;
         let cosine = (1.0 - sine * sine).sqrt();
         let way = thickness * cosine;
         let left = (entered + way * sine) * EYE_M / (EYE_M - (1.0 - way * cosine));
-        // Texels are four centimeters wide, and the picture is read with a linear filter.
+        // Texels are 4 cm wide, and the picture is read with a linear filter.
         if entered.abs() < 0.95 && (left - edge).abs() > 0.05 {
             let (dark, lit) = (row[row.len() / 2].x, left > edge);
             assert!((seen.x > 4.0 * dark) == lit, "pixel {index}: {} beside {dark}, from {left:.3} m", seen.x);
@@ -327,12 +328,12 @@ fn a_body_shows_what_is_where_its_rays_leave_it() -> TestResult {
     Ok(())
 }
 
-/// With dispersion each channel shows the edge where its own ray leaves the body: red is bent least, by half of what the Abbe
-/// number says, and blue most.
+/// With dispersion, each channel shows the edge where its own ray exits. Red is refracted least and blue most, each by
+/// half of the spread given by the Abbe number.
 #[test]
 fn a_body_with_dispersion_parts_the_channels() -> TestResult {
     let Some(gpu) = gpu("a_body_with_dispersion_parts_the_channels") else { return Ok(()) };
-    // No glass has an Abbe number of a half, but it bends each channel by texels more than the next. Red goes straight on.
+    // An Abbe number of 0.5 is unphysical, but separates the channels by several texels. Red goes straight through.
     let (ior, abbe, thickness, edge) = (1.8, 0.5, 1.0, 1.0);
     let volume = Volume { thickness: thickness as f32, ..Volume::default() };
     let glass = Material { ior: ior as f32, dispersion: Some((20.0 / abbe) as f32), ..pane(Vec3::ONE, Some(volume)) };
@@ -345,7 +346,7 @@ fn a_body_with_dispersion_parts_the_channels() -> TestResult {
     let shot = Shot::small(Settings::default());
     let row = middle_row(&gpu, &scene, Settings::default().for_scene(&scene, shot.size_px))?;
     let [width, height] = shot.size_px.map(f64::from);
-    // (n_d - 1) / (n_F - n_C) is the Abbe number.
+    // The Abbe number is (n_d - 1) / (n_F - n_C).
     let spread = (ior - 1.0) / abbe;
     let mut parted = 0;
     for (index, seen) in row.iter().enumerate() {
@@ -359,7 +360,7 @@ fn a_body_with_dispersion_parts_the_channels() -> TestResult {
             let cosine = (1.0 - sine * sine).sqrt();
             let way = thickness * cosine;
             let left = (entered + way * sine) * EYE_M / (EYE_M - (1.0 - way * cosine));
-            // Texels are four centimeters wide, and the picture is read with a linear filter.
+            // Texels are 4 cm wide, and the picture is read with a linear filter.
             ((left - edge).abs() > 0.05).then_some(left > edge)
         });
         let dark = row[row.len() / 2];

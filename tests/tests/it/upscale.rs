@@ -1,4 +1,4 @@
-//! Frames that are drawn smaller than they are shown: what they load and store, and the filters against their mirrors.
+//! Upscaled frames: loads and stores, and filters compared with their mirrors.
 
 use crate::stage::{self, Shot, gpu, picture};
 use framegraph::{Caps, Counts, Extent, Options, Target};
@@ -15,7 +15,7 @@ use tests::filtered::filtered;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Codes of a picture with edges in many directions, four bytes a texel.
+/// Returns a picture with edges in many directions, four bytes per pixel.
 fn codes([width, height]: [u32; 2]) -> Vec<u8> {
     let texel = |i: u32| {
         let (x, y) = (i % width, i / width);
@@ -25,7 +25,7 @@ fn codes([width, height]: [u32; 2]) -> Vec<u8> {
     (0..width * height).flat_map(texel).collect()
 }
 
-/// A texel of codes, or the nearest at the border.
+/// Returns a pixel, clamped to the border.
 fn texel(codes: &[u8], [width, height]: [u32; 2], x: i64, y: i64) -> DVec3 {
     let (x, y) = (x.clamp(0, i64::from(width) - 1), y.clamp(0, i64::from(height) - 1));
     let at = 4 * (y as usize * width as usize + x as usize);
@@ -46,12 +46,12 @@ fn enlarged(
     filtered(gpu, codes, size, enlarge)
 }
 
-/// Each texel of what came is within a code and a half of the mirror, which is told the place in the given picture.
+/// Compares each pixel with `mirror`, which gets its position, to within 1.5 8-bit steps.
 fn compare(found: &[u8], to: [u32; 2], mirror: impl Fn(u32, u32) -> DVec3) {
     for (i, texel) in found.chunks_exact(4).enumerate() {
         let (x, y) = (i as u32 % to[0], i as u32 / to[0]);
         let found = DVec3::new(texel[0].into(), texel[1].into(), texel[2].into());
-        // Half a code by rounding; the rest where the weights of an edge turn at a share of a texel.
+        // Half a step is rounding. The rest occurs where the weights of an edge change within a fraction of a texel.
         let off = (found - 255.0 * mirror(x, y)).abs().max_element();
         assert!(off < 1.5, "{to:?}: ({x}, {y}) is off by {off} codes");
     }
@@ -87,10 +87,10 @@ fn filters_are_their_mirrors() -> TestResult {
     Ok(())
 }
 
-/// What is even keeps its code, every one of them.
+/// Uniform areas keep each 8-bit value.
 #[test]
-fn even_areas_keep_their_codes() -> TestResult {
-    let Some(gpu) = gpu("even_areas_keep_their_codes") else { return Ok(()) };
+fn uniform_areas_keep_their_values() -> TestResult {
+    let Some(gpu) = gpu("uniform_areas_keep_their_values") else { return Ok(()) };
     for code in (0..=255).step_by(15) {
         for filter in UpscaleFilter::ALL {
             let found = enlarged(&gpu, &[code; 4 * 12], [4, 3], [7, 8], filter)?;
@@ -100,8 +100,9 @@ fn even_areas_keep_their_codes() -> TestResult {
     Ok(())
 }
 
-/// A frame of half the width and height: the same steps of a quarter of the texels, then `upscale` and its sharpening, each of
-/// which stores its picture once and loads nothing. The picture is as large as without, and as bright.
+/// A frame of half the width and height has the same steps with a quarter of the texels. The passes `upscale` and its
+/// sharpening follow, which each store once and load nothing. The picture has the same size and brightness as without
+/// upscaling.
 #[test]
 fn a_smaller_frame_is_shown_as_large() -> TestResult {
     let counts = |settings: Settings| stage::plan(&settings, &Caps::wgpu(), &Options::for_frame(1280, 720)).counts();
@@ -129,8 +130,8 @@ fn a_smaller_frame_is_shown_as_large() -> TestResult {
     Ok(())
 }
 
-/// Where a frame's time has a part that follows its area, the share of the sides settles where the time is the wanted one, and
-/// comes to rest; it ends at its bounds where that cannot be, and a single late frame changes nothing.
+/// If a part of the frame time scales with the area, dynamic resolution settles at the target time. It stops at its
+/// limits if the target cannot be reached, and ignores a single late frame.
 #[test]
 fn the_size_follows_the_times() {
     let own = DynamicResolution { target_ms: 12.0, ..DynamicResolution::DEFAULT };

@@ -1,4 +1,4 @@
-//! Velocity of what moves: what it costs, where it says that surfaces were, and what sums over time gain by it.
+//! Velocity of moving objects: cost, accuracy, and effect on temporal anti-aliasing.
 
 use crate::stage::{self, gpu, lighting};
 use framegraph::{Caps, Counts, Options, Plan, Scratch, Target, Texture, compile};
@@ -18,8 +18,9 @@ type TestResult = Result<(), Box<dyn Error>>;
 const MOVING: Settings =
     Settings { taa: Some(TaaSettings::DEFAULT), moving: true, shadows: None, fxaa: false, ..Settings::DEFAULT };
 
-/// Between prepass and color pass, velocity shares their step: one clear and one store more, no load and no step; of four samples
-/// each is cleared and thrown away after the average, which is stored. A frame in which nothing moves has none of it.
+/// Velocity shares the step of prepass and color pass: one more clear and store, no load and no step. With four
+/// samples, each is cleared and discarded after the resolve, which is stored. A frame without moving objects has none
+/// of it.
 #[test]
 fn velocity_costs_one_store() {
     let counts = |settings: Settings| stage::plan(&settings, &Caps::wgpu(), &Options::for_frame(1280, 720)).counts();
@@ -43,12 +44,12 @@ fn velocity_costs_one_store() {
 
 const RADIUS_M: f64 = 0.6;
 
-/// A ball over a floor, and where the ball and the eye are in a frame.
+/// Returns the positions of a ball over a floor and of the eye in a frame.
 fn moment(frame: f64) -> (DVec3, DVec3) {
     (DVec3::new(-0.9 + 0.12 * frame, 0.7, 0.1 * frame), DVec3::new(0.02 * frame, 1.0, 4.0))
 }
 
-/// The same ball, going up.
+/// Returns the positions of a rising ball and of the eye in a frame.
 fn rising(frame: f64) -> (DVec3, DVec3) {
     let (ball, eye) = moment(frame);
     (ball + DVec3::Y * (0.25 * frame), eye)
@@ -58,7 +59,7 @@ fn camera(eye: DVec3) -> Result<Camera, Box<dyn Error>> {
     Ok(Camera::look_at(eye, eye - DVec3::new(0.0, 0.1, 1.0), DVec3::Y, Projection::perspective(0.8, 0.1))?)
 }
 
-/// Frames of the moving ball, one after another.
+/// Consecutive frames of the moving ball.
 struct Film<'g> {
     gpu: &'g Gpu,
     scene: Scene,
@@ -66,7 +67,7 @@ struct Film<'g> {
     frame: Frame<World>,
     executor: Executor,
     size_px: [u32; 2],
-    /// Where the ball and the eye are in a frame.
+    /// Positions of the ball and the eye in a frame.
     path: fn(f64) -> (DVec3, DVec3),
 }
 
@@ -82,7 +83,7 @@ impl<'g> Film<'g> {
         Self { gpu, scene, world: None, frame: Frame::new(), executor: Executor::new(gpu), size_px, path: moment }
     }
 
-    /// The ball is moved vertex by vertex, as joints and morph targets move a body, instead of as a whole.
+    /// Moves the ball by its vertices, as skinning and morph targets do, instead of by its transform.
     fn by_vertices(mut self) -> Self {
         let Mesh { positions, normals, tangents, .. } = self.scene.meshes[0].clone();
         let rest = Shape { positions, normals, tangents };
@@ -91,8 +92,8 @@ impl<'g> Film<'g> {
         self
     }
 
-    /// A mask leaves the ball whole: its texture has a hole, where the coordinates of this set are not, but the others are. Colors of
-    /// vertices have nothing but alpha.
+    /// Adds a mask that keeps the ball whole: its texture has a hole only where the other set of coordinates points.
+    /// Vertex colors affect only alpha.
     fn masked(mut self, uv_set: u32) -> Self {
         let sampler = Sampler { mag: Filter::Nearest, min: Filter::Nearest, mip: None, ..Sampler::default() };
         let texels = vec![255, 255, 255, 255, 255, 255, 255, 0];
@@ -108,7 +109,7 @@ impl<'g> Film<'g> {
         self
     }
 
-    /// One more frame; what is in the texture that is `wanted`.
+    /// Draws a frame. Returns the texture that `wanted` selects.
     fn shoot(
         &mut self,
         settings: Settings,
@@ -162,8 +163,8 @@ impl<'g> Film<'g> {
     }
 }
 
-/// Where a pixel's ray meets the ball of a frame, and where in the picture of the frame before that was; both in 0 to 1 from the
-/// top left.
+/// Returns where a pixel's ray hits the ball of a frame, and the position of that point in the previous picture. Both
+/// are in 0 to 1 from the top left.
 fn truth(path: fn(f64) -> (DVec3, DVec3), frame: f64, uv: DVec2, aspect: f64) -> Result<Option<DVec2>, Box<dyn Error>> {
     let [(ball, _), (earlier_ball, _)] = [path(frame), path(frame - 1.0)];
     let clip = |frame: f64| -> Result<DMat4, Box<dyn Error>> {
@@ -183,12 +184,12 @@ fn truth(path: fn(f64) -> (DVec3, DVec3), frame: f64, uv: DVec2, aspect: f64) ->
     Ok(Some(DVec2::new(0.5 + 0.5 * before.x, 0.5 - 0.5 * before.y)))
 }
 
-/// Velocity is the way of each place on the ball, of the eye's movement too, and nothing elsewhere; whether the ball moves as a
-/// whole or its vertices do.
+/// Velocity is the motion of each point on the ball, including the camera's, and zero elsewhere. Tested for motion by
+/// transform and by vertices.
 #[test]
 fn velocity_says_where_surfaces_were() -> TestResult {
     let Some(gpu) = gpu("velocity_says_where_surfaces_were") else { return Ok(()) };
-    // With one sample, what is told is that of the pixel's middle; of four it is that of one beside it.
+    // With one sample, the result is that of the pixel's center; with four, that of a sample beside it.
     type Case = (u8, bool, fn(f64) -> (DVec3, DVec3), f64);
     let cases: [Case; 6] = [
         (1, false, moment, 0.03),
@@ -205,20 +206,20 @@ fn velocity_says_where_surfaces_were() -> TestResult {
         let frame = Settings { samples, ..MOVING };
         let first = film.shoot(frame, 0, |handles| handles.find(Slot::VELOCITY))?;
         assert!(first.iter().all(|texel| *texel == [0.0; 4]), "no frame was before");
-        // Of the third frame too, whose vertices are the second ones' to move.
+        // Also the third frame, which reuses the vertices of the second one.
         for number in 1..=if samples == 1 { 2 } else { 1 } {
             let found = film.shoot(frame, number, |handles| handles.find(Slot::VELOCITY))?;
             let (mut on, mut worst) = (0, 0.0_f64);
             for (i, texel) in found.iter().enumerate() {
                 let uv = DVec2::new(f64::from(i as u32 % size[0]) + 0.5, f64::from(i as u32 / size[0]) + 0.5)
                     / DVec2::new(size[0].into(), size[1].into());
-                // The picture was moved by the jitter, so that uv shows what is aside.
+                // The jitter shifts the picture, so uv shows a neighboring point.
                 let jitter = TaaSettings::DEFAULT.jitter_px(number) / DVec2::new(size[0].into(), size[1].into());
                 let seen = uv - DVec2::new(jitter.x, -jitter.y);
                 let Some(before) = truth(path, number.into(), seen, 1.5)? else { continue };
                 if texel[3] == 1.0 {
                     let way = DVec2::new(texel[0].into(), texel[1].into());
-                    // Near the outline a mesh's flat sides are off by more than its middle.
+                    // Near the outline, the mesh's facets deviate more than in the center.
                     on += 1;
                     worst = worst.max((way - (before - seen)).length() * f64::from(size[0]));
                 }
@@ -232,7 +233,7 @@ fn velocity_says_where_surfaces_were() -> TestResult {
     Ok(())
 }
 
-/// What a mask keeps says where it was as what is opaque does, to the bit, with either set of coordinates.
+/// Masked surfaces have the same velocity as opaque ones, bit for bit, with either set of coordinates.
 #[test]
 fn what_a_mask_keeps_moves_as_a_whole() -> TestResult {
     let Some(gpu) = gpu("what_a_mask_keeps_moves_as_a_whole") else { return Ok(()) };
@@ -249,14 +250,15 @@ fn what_a_mask_keeps_moves_as_a_whole() -> TestResult {
     Ok(())
 }
 
-/// A ball that goes with the eye is summed as if both stood still: what is told of its way leads to the same place of the sum.
+/// A ball that moves with the eye accumulates as if both stood still: its velocity points to the same pixel of the
+/// history.
 #[test]
-fn what_goes_with_the_eye_is_summed_as_if_it_stood() -> TestResult {
-    let Some(gpu) = gpu("what_goes_with_the_eye_is_summed_as_if_it_stood") else { return Ok(()) };
+fn motion_with_the_eye_accumulates_like_no_motion() -> TestResult {
+    let Some(gpu) = gpu("motion_with_the_eye_accumulates_like_no_motion") else { return Ok(()) };
     const SIZE: [u32; 2] = [72, 48];
     let summed = |path| -> Result<_, Box<dyn Error>> {
         let mut film = Film { path, ..Film::new(&gpu, SIZE) };
-        // Bands of seven pixels, so that a sum that is moved shows.
+        // Bands of seven pixels, so that a shifted history is visible.
         let ball = &mut film.scene.meshes[0];
         let band = |at: &Vec3| Vec3::splat(0.5 + 0.45 * (12.0 * (at.x + at.y)).sin()).extend(1.0);
         ball.colors = ball.positions.iter().map(band).collect();
@@ -270,7 +272,7 @@ fn what_goes_with_the_eye_is_summed_as_if_it_stood() -> TestResult {
     const EYE: DVec3 = DVec3::new(0.0, 1.0, 4.0);
     let still = summed(|_| (BALL, EYE))?;
     let moved = summed(|frame| (BALL + DVec3::new(0.3, 0.1, 0.0) * frame, EYE + DVec3::new(0.3, 0.1, 0.0) * frame))?;
-    // Well within the outline, which is before a floor that moves.
+    // Pixels well inside the outline, which is in front of a moving floor.
     let middle = |at: usize| {
         let [x, y] = [at as u32 % SIZE[0], at as u32 / SIZE[0]].map(f64::from);
         (x + 0.5 - 36.0).hypot(y + 0.5 - 19.0) < 5.0
@@ -284,8 +286,8 @@ fn what_goes_with_the_eye_is_summed_as_if_it_stood() -> TestResult {
     Ok(())
 }
 
-/// Where the ball and the eye move, the sum is about twice as near to 64 places of each pixel with velocity as without, and
-/// nearer than a frame alone.
+/// If ball and eye move, the accumulated picture with velocity is closer to 64 samples per pixel than a single frame.
+/// It is about twice as close as without velocity.
 #[test]
 fn sums_follow_what_moves() -> TestResult {
     let Some(gpu) = gpu("sums_follow_what_moves") else { return Ok(()) };
@@ -296,7 +298,7 @@ fn sums_follow_what_moves() -> TestResult {
     let hdr = |handles: &Handles| handles.find(Slot::HDR);
     let alone = Settings { taa: None, moving: false, ..moving };
     let fine = Film::new(&gpu, [width * n, height * n]).shoot(alone, last, hdr)?;
-    // Sums hold bright colors back, which is no matter of motion: so are those that they are compared with.
+    // Accumulation compresses bright colors, regardless of motion, so the reference does too.
     let held = |texel: &[f32; 4]| {
         let [r, g, b] = [0, 1, 2].map(|c| f64::from(texel[c]));
         [r, g, b].map(|light| light / (1.0 + r.max(g).max(b)))

@@ -21,7 +21,7 @@ use tests::executors;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Width and height of a view; the frame is two of them side by side.
+/// Size of a view; the frame has two of them side by side.
 const VIEW: [u32; 2] = [120, 90];
 const HALF: Extent = Extent::absolute(VIEW[0], VIEW[1]);
 
@@ -54,7 +54,7 @@ impl<W: ?Sized> Record<W> for SideBySide {
     }
 }
 
-/// The scene from its own camera, and from 0.7 m to the left of it, with maps fitted to what both see.
+/// Returns the scene from its own camera, and from 0.7 m to the left, with shadow maps fitted to both.
 fn views(scene: &Scene, light: &ImageLight, settings: &Settings) -> Vec<CameraView> {
     let camera = scene.default_camera(f64::from(VIEW[0]) / f64::from(VIEW[1]));
     let seen = [0.0, 0.7].map(|left_m| {
@@ -74,7 +74,7 @@ fn views(scene: &Scene, light: &ImageLight, settings: &Settings) -> Vec<CameraVi
     CameraView::together(scene, light, &Background::Environment, &seen)
 }
 
-/// Both views with one shadow map, copied side by side.
+/// Declares both views with one shadow map, copied side by side.
 fn both(settings: &Settings) -> Result<(Frame<World>, Texture), StageError> {
     let mut frame = Frame::new();
     let stages = stages(settings);
@@ -88,7 +88,7 @@ fn both(settings: &Settings) -> Result<(Frame<World>, Texture), StageError> {
     Ok((frame, both))
 }
 
-/// One view alone, in a frame of its size; its shadow map is drawn with the placement of view `shadow`.
+/// Declares one view alone, with a shadow map placed for view `shadow`.
 fn alone(settings: &Settings, view: ViewId, shadow: ViewId) -> Result<(Frame<World>, Texture), StageError> {
     let mut frame = Frame::new();
     let maps = shadow_maps(&mut frame, shadow, &settings.shadows.unwrap_or_default())?;
@@ -115,14 +115,14 @@ fn render(
     Ok((read_texture(gpu, texture)?.rgba8(), plan))
 }
 
-/// The left or right half of a picture of two views.
+/// Returns the left or right half of a picture of two views.
 fn half(both: &[u8], index: usize) -> Vec<u8> {
     let row = 4 * VIEW[0] as usize;
     both.chunks_exact(2 * row).flat_map(|line| &line[index * row..(index + 1) * row]).copied().collect()
 }
 
-/// With inlining a view alone has two steps beside the shadow (prepass, color and post; fxaa) and two stores (ldr and
-/// picture). Two views have that twice, the shadow map once, and the copy.
+/// With inlining, a single view has two steps besides the shadow (prepass, color and post; fxaa) and two stores (ldr
+/// and picture). Two views have these twice, the shadow map once, and the copy.
 #[test]
 fn two_views_share_a_shadow_map_and_an_upload() -> TestResult {
     let Some(gpu) = gpu("two_views_share_a_shadow_map_and_an_upload") else { return Ok(()) };
@@ -131,7 +131,7 @@ fn two_views_share_a_shadow_map_and_an_upload() -> TestResult {
         let scene = Scene::open("columns", &mut progress::silent)?;
         let lighting = lighting(&gpu, &Sky::default().environment(128)?, &settings.shading)?;
         let views = views(&scene, &lighting.image, &settings);
-        // One upload of meshes, materials and textures: the world has one `GpuScene`, whatever views it has.
+        // Meshes, materials and textures are uploaded once: the world has one `GpuScene` for all views.
         let world = World::new(&gpu, &scene, lighting, views, &mut progress::silent)?;
 
         let (picture, plan) = render(&gpu, &world, &both(&settings)?, [2 * VIEW[0], VIEW[1]])?;
@@ -144,15 +144,15 @@ fn two_views_share_a_shadow_map_and_an_upload() -> TestResult {
         let maps = graph.pass_ids().filter(|pass| graph.pass_name(*pass).ends_with("shadow")).count();
         assert_eq!(maps, 1);
 
-        // Each half is the view's own frame to the bit, its shadow map drawn with the placement of the first view.
+        // Each half equals the view's own frame with the first view's shadow map, bit for bit.
         let halves = [half(&picture, 0), half(&picture, 1)];
         for (index, half) in halves.iter().enumerate() {
             let own = render(&gpu, &world, &alone(&settings, ViewId(index as u32), ViewId(0))?, VIEW)?.0;
             assert!(*half == own, "{samples} samples: view {index} differs from its own frame");
         }
         assert_ne!(halves[0], halves[1], "the cameras stand apart");
-        // Drawn with its own placement the map differs by the rounding of positions: at the edge of a shadow a texel of the
-        // map may be in or out. A thousandth of the picture is two such texels seen from near.
+        // With its own shadow map, positions are rounded differently, so a texel at a shadow's edge may change. A
+        // thousandth of the picture is two such texels seen from nearby.
         let own = render(&gpu, &world, &alone(&settings, ViewId(1), ViewId(1))?, VIEW)?.0;
         let differing = halves[1].chunks_exact(4).zip(own.chunks_exact(4)).filter(|(a, b)| a != b).count();
         println!("{samples} samples: {differing} texels differ: {:?}", compare(&halves[1], &own));
@@ -161,7 +161,7 @@ fn two_views_share_a_shadow_map_and_an_upload() -> TestResult {
     Ok(())
 }
 
-/// A pass of a view that the world does not have is an error in words.
+/// A pass of a missing view is an error that names it.
 #[test]
 fn a_view_that_is_missing_is_named() -> TestResult {
     let Some(gpu) = gpu("a_view_that_is_missing_is_named") else { return Ok(()) };

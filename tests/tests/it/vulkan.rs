@@ -1,6 +1,6 @@
-//! Another back end: streams of commands (`framegraph_queues::stream`) replayed on a device of Vulkan with synchronization
-//! validation on. The executor knows the tables of the plan and the stream; passes touch what they declare. The layers are silent
-//! about what the stream says, and not about streams with barriers left out.
+//! A second backend: command streams (`framegraph_queues::stream`) replayed on Vulkan with synchronization validation.
+//! The replayer knows only the plan's tables and the stream; passes access what they declare. The layers report nothing
+//! for the streams, and something for streams without some barriers.
 
 mod device;
 mod memory;
@@ -22,10 +22,10 @@ use framegraph_passes::shadow::ShadowSettings;
 use framegraph_queues::{Command, PlanStream, QueueId, QueueLayout, Schedule, SharedMemory, schedule, share_memory};
 use replay::Replay;
 
-/// Small, since layers take their time over texels too; shadow maps keep their size.
+/// Small, since the validation layers also cost time per texel; shadow maps keep their size.
 const FRAME: [u32; 2] = [160, 90];
 
-/// A device, or a skip that says why there is none.
+/// Opens a device, or reports a skip with the reason.
 fn device(test: &str) -> Option<Device> {
     match Device::open() {
         Ok(device) => {
@@ -39,13 +39,14 @@ fn device(test: &str) -> Option<Device> {
     }
 }
 
-/// What the executor does: no tiles, slots as they are, histories apart, textures and buffers in a heap each.
+/// Returns the replayer's capabilities: no tiles, fixed slots, separate histories, one heap for textures and one for
+/// buffers.
 fn caps() -> Caps {
     let base = Caps { slot_mapping: false, placed_histories: false, separate_heaps: true, ..Caps::desktop() };
     Caps { separate_planes: false, ..base }
 }
 
-/// The plan, with the bytes that the driver pads textures to.
+/// Plans a graph with the driver's sizes of textures.
 fn planned(device: &Device, graph: &Graph, options: &Options) -> Result<Plan, Trouble> {
     let (mut caps, mut plan) = (caps(), Plan::new());
     compile(graph, &caps, options, &mut Scratch::new(), &mut plan)?;
@@ -65,7 +66,8 @@ fn planned(device: &Device, graph: &Graph, options: &Options) -> Result<Plan, Tr
     Ok(plan)
 }
 
-/// The forward and the deferred frame, and the standard one with four samples, ambient occlusion and cascades.
+/// Returns the forward and the deferred frame, and the standard frame with four samples, ambient occlusion and
+/// cascades.
 fn frames() -> Vec<(String, Graph)> {
     let files = cases::files().into_iter().filter(|(path, _)| path == "forward.ron" || path == "deferred.ron");
     let mut frames: Vec<_> = files
@@ -86,7 +88,8 @@ fn frames() -> Vec<(String, Graph)> {
     frames
 }
 
-/// What the layers say of two frames of these commands, and what was replayed.
+/// Replays two frames of commands. Returns the layers' messages, and the counts of replayed passes, barriers and
+/// submissions.
 fn told(device: &Device, plan: &Plan, commands: &[Command]) -> Result<(Vec<String>, [usize; 3]), Trouble> {
     let mut replay = Replay::new(device, plan)?;
     let ran = (0..2).try_for_each(|_| replay.frame(commands));
@@ -117,8 +120,8 @@ fn streams_of_whole_frames_are_replayed_and_the_layers_are_silent() -> Result<()
 fn barriers_that_are_left_out_are_noticed() -> Result<(), Trouble> {
     let Some(device) = device("barriers_that_are_left_out_are_noticed") else { return Ok(()) };
     let (mut all, mut noticed) = (0, 0);
-    // Memory that is handed over is handed over with all that was written before, which covers other barriers: with memory shared,
-    // hand-overs alone are left out.
+    // An alias barrier also waits for all earlier writes, which would hide other missing barriers. With shared memory,
+    // only alias barriers are left out.
     for ((name, graph), alias) in frames().iter().flat_map(|frame| [(frame, Alias::Off), (frame, Alias::Heap)]) {
         let options = Options { alias, ..Options::for_frame(FRAME[0], FRAME[1]) };
         let plan = planned(&device, graph, &options)?;
@@ -134,7 +137,7 @@ fn barriers_that_are_left_out_are_noticed() -> Result<(), Trouble> {
         let apart = |barrier: &u32| alias == Alias::Off || !plan.barriers()[*barrier as usize].hand_over.is_none();
         for left in test_report::share((0..plan.barriers().len() as u32).filter(apart)) {
             let (messages, _) = told(&device, &plan, &without(&|barrier| barrier == left))?;
-            // Older layers let two accesses of storage, or to an attachment, follow each other in one layout.
+            // Older layers allow two accesses to storage, or to an attachment, in the same layout without a barrier.
             let row = &plan.barriers()[left as usize];
             assert!(row.from == row.to || !messages.is_empty(), "{name}: barrier {left} is not missed: {row:?}");
             (all, noticed) = (all + 1, noticed + usize::from(!messages.is_empty()));
@@ -175,7 +178,7 @@ fn streams_of_random_graphs_are_replayed_and_the_layers_are_silent() -> Result<(
     Ok(())
 }
 
-/// A frame's plan without aliasing, its schedule on two queues, and the memory that it shares.
+/// Returns a plan without aliasing, its schedule on two queues, and its shared memory.
 fn on_two_queues(device: &Device, graph: &Graph) -> Result<(Plan, Schedule, SharedMemory), Trouble> {
     let options = Options { alias: Alias::Off, ..Options::for_frame(FRAME[0], FRAME[1]) };
     let plan = planned(device, graph, &options)?;
@@ -206,7 +209,7 @@ fn streams_on_two_queues_are_replayed_and_the_layers_are_silent() -> Result<(), 
     Ok(())
 }
 
-/// Memory that a queue gets from itself is handed over: the layers miss what waits for nothing.
+/// Negative control: missing alias barriers within one queue are reported.
 #[test]
 fn memory_that_is_not_handed_over_is_noticed() -> Result<(), Trouble> {
     let Some(device) = device("memory_that_is_not_handed_over_is_noticed") else { return Ok(()) };

@@ -1,14 +1,14 @@
-//! Directional albedo of lobes, by a grid of half vectors.
+//! Directional albedo of lobes, integrated over a grid of half vectors.
 
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Which masking-shadowing goes with GGX.
+/// Masking-shadowing function of GGX.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Masking {
     /// Height-correlated Smith.
     Smith,
-    /// Hammon's approximation of it.
+    /// Hammon's approximation of height-correlated Smith.
     Hammon,
 }
 
@@ -16,7 +16,8 @@ pub enum Masking {
 const ROWS: u32 = 600;
 const COLUMNS: u32 = 300;
 
-/// ∫ f over half vectors of the upper hemisphere, f given (v·h, n·l, h); the grid is even in the fourth root of the angle.
+/// Integrates f over half vectors of the upper hemisphere; f gets (v·h, n·l, h). The grid is uniform in the fourth root
+/// of the angle.
 fn over_half_vectors(nov: f64, f: impl Fn(f64, f64, DVec3) -> [f64; 2]) -> [f64; 2] {
     let v = DVec3::new((1.0 - nov * nov).sqrt(), 0.0, nov);
     let mut sums = [0.0; 2];
@@ -25,14 +26,14 @@ fn over_half_vectors(nov: f64, f: impl Fn(f64, f64, DVec3) -> [f64; 2]) -> [f64;
         let (sin, cos) = (0.5 * PI * u.powi(4)).sin_cos();
         let area = sin * 2.0 * PI * u.powi(3) / f64::from(ROWS) * 2.0 * PI / f64::from(COLUMNS);
         for column in 0..COLUMNS {
-            // Half of the azimuths: the other half is its mirror image.
+            // Half of the azimuths; the other half is symmetric.
             let (s, c) = ((f64::from(column) + 0.5) / f64::from(COLUMNS) * PI).sin_cos();
             let h = DVec3::new(sin * c, sin * s, cos);
             let voh = v.dot(h);
             let nol = 2.0 * voh * h.z - nov;
             if voh > 0.0 && nol > 0.0 {
                 let [a, b] = f(voh, nol, h);
-                // From half vectors to directions of light.
+                // Conversion from half vectors to light directions.
                 sums[0] += a * area * 4.0 * voh;
                 sums[1] += b * area * 4.0 * voh;
             }
@@ -41,7 +42,7 @@ fn over_half_vectors(nov: f64, f: impl Fn(f64, f64, DVec3) -> [f64; 2]) -> [f64;
     sums
 }
 
-/// (∫ D·V·(1-v·h)⁵·cos, ∫ D·V·cos) of GGX.
+/// Returns (∫ D·V·(1-v·h)⁵·cos, ∫ D·V·cos) of GGX.
 pub fn ggx(nov: f64, roughness: f64, masking: Masking) -> [f64; 2] {
     let a = roughness * roughness;
     let tail = |c: f64| (a * a * (1.0 - c * c) + c * c).sqrt();
@@ -55,7 +56,7 @@ pub fn ggx(nov: f64, roughness: f64, masking: Masking) -> [f64; 2] {
     })
 }
 
-/// ∫ D·V·F·cos of GGX with height-correlated Smith masking, for a Fresnel term of v·h.
+/// Returns ∫ D·V·F·cos of GGX with height-correlated Smith masking, for a Fresnel term of v·h.
 pub fn ggx_of(nov: f64, roughness: f64, fresnel: impl Fn(f64) -> f64) -> f64 {
     let a = roughness * roughness;
     let tail = |c: f64| (a * a * (1.0 - c * c) + c * c).sqrt();
@@ -65,7 +66,7 @@ pub fn ggx_of(nov: f64, roughness: f64, fresnel: impl Fn(f64) -> f64) -> f64 {
     })[0]
 }
 
-/// ∫ D·V·cos of Charlie with Ashikhmin's visibility.
+/// Returns ∫ D·V·cos of the Charlie distribution with Ashikhmin's visibility.
 pub fn cloth(nov: f64, roughness: f64) -> f64 {
     let inverse = 1.0 / (roughness * roughness);
     over_half_vectors(nov, |_, nol, h| {
@@ -81,7 +82,7 @@ mod tests {
 
     #[test]
     fn known_albedos_are_met() {
-        // The roughest surface seen head-on: 1 - ln 2; a smooth one: everything.
+        // At normal incidence, the albedo is 1 - ln 2 at roughness 1, and 1 for a smooth surface.
         let rough = ggx(1.0, 1.0, Masking::Smith)[1];
         assert!((rough - (1.0 - 2.0_f64.ln())).abs() < 1e-4, "{rough}");
         let smooth = ggx(0.5, 0.1, Masking::Smith);

@@ -1,6 +1,6 @@
-//! Reflectance of a thin film over a base, by summing up every trip of the light and integrating over the spectrum.
+//! Reflectance of a thin film over a base, by summing all internal reflections and integrating over the spectrum.
 //!
-//! Airy's sum with Fresnel's amplitudes of both polarizations, and the color matching functions of 1931 as CIE tabulates them.
+//! Uses Airy's sum with Fresnel's amplitudes of both polarizations, and the CIE 1931 color matching functions.
 
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
@@ -50,7 +50,7 @@ const OBSERVER: [[f64; 3]; 41] = [
     [0.0000, 0.0000, 0.0000],
 ];
 
-/// Steps between two entries of the table.
+/// Interpolation steps between two entries of the table.
 const STEPS: usize = 5;
 
 /// XYZ to linear Rec.709 (IEC 61966-2-1).
@@ -60,7 +60,7 @@ const FROM_XYZ: DMat3 = DMat3::from_cols(
     DVec3::new(-0.498_531_4, 0.041_556_0, 1.057_225_2),
 );
 
-/// Linear Rec.709 of a spectrum in nm, an even one of 1 having the luminance 1.
+/// Converts a spectrum in nm to linear Rec.709; a constant spectrum of 1 has luminance 1.
 pub fn rec709(spectrum: impl Fn(f64) -> f64) -> DVec3 {
     let (mut sum, mut luminance) = (DVec3::ZERO, 0.0);
     for (row, pair) in OBSERVER.windows(2).enumerate() {
@@ -74,13 +74,13 @@ pub fn rec709(spectrum: impl Fn(f64) -> f64) -> DVec3 {
     FROM_XYZ * (sum / luminance)
 }
 
-/// Reflectance of a film of index `ior`, between air and a base of reflectance `base_f0` in air, at one wavelength. Nothing is
-/// absorbed.
+/// Returns the reflectance at one wavelength of a film with index `ior` between air and a base with reflectance
+/// `base_f0` in air. Nothing is absorbed.
 pub fn at_wavelength(wavelength_nm: f64, cosine: f64, ior: f64, thickness_nm: f64, base_f0: f64) -> f64 {
     let base = (1.0 + base_f0.sqrt()) / (1.0 - base_f0.sqrt());
     let bent = |index: f64| (1.0 - (1.0 - cosine * cosine) / (index * index)).sqrt();
     let (inside, below) = (bent(ior), bent(base));
-    // Phase of a trip to the bottom and back.
+    // Phase difference of one internal round trip.
     let (sin, cos) = (4.0 * PI * ior * thickness_nm * inside / wavelength_nm).sin_cos();
     let border = |a: f64, b: f64| (a - b) / (a + b);
     let polarizations = [
@@ -95,7 +95,7 @@ pub fn at_wavelength(wavelength_nm: f64, cosine: f64, ior: f64, thickness_nm: f6
     0.5 * (share(polarizations[0]) + share(polarizations[1]))
 }
 
-/// Reflectance of such a film as linear Rec.709, an even spectrum being white.
+/// Returns the reflectance of a film as linear Rec.709; a constant spectrum is white.
 pub fn reflectance(cosine: f64, ior: f64, thickness_nm: f64, base_f0: f64) -> DVec3 {
     rec709(|wavelength_nm| at_wavelength(wavelength_nm, cosine, ior, thickness_nm, base_f0)) / rec709(|_| 1.0)
 }
@@ -104,7 +104,7 @@ pub fn reflectance(cosine: f64, ior: f64, thickness_nm: f64, base_f0: f64) -> DV
 mod tests {
     use super::*;
 
-    /// A quarter of a wave of the index √n on glass of index n reflects nothing of it.
+    /// A quarter-wave film with index √n on glass with index n reflects nothing at that wavelength.
     #[test]
     fn a_quarter_wave_coat_is_dark() {
         let glass = 1.5_f64;

@@ -1,11 +1,11 @@
-//! FLIP, the difference that an observer notices who flips between two pictures: Andersson, Nilsson, Akenine-Möller,
-//! Oskarsson, Åström and Fairchild, "FLIP: A Difference Evaluator for Alternating Images", HPG 2020; for pictures of
-//! display light. The crates there are bind the C++ original, which a build of Rust alone cannot have.
+//! FLIP, an image difference metric: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, "FLIP: A
+//! Difference Evaluator for Alternating Images", HPG 2020; for display light. Existing crates bind the original in C++,
+//! which a Rust-only build cannot include.
 
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
-/// Pixels a degree of the authors' desk: a 4K monitor of 0.7 m at 0.7 m.
+/// Pixels per degree on the authors' desk: a 4K monitor 0.7 m wide at 0.7 m.
 pub const PIXELS_PER_DEGREE: f64 = 67.0;
 
 /// The contrast sensitivity of the eye as sums of Gaussians √(π/b) a exp(−π² d²/b), d in degrees (section 4.1.1): luminance,
@@ -14,7 +14,7 @@ const SENSITIVITY: [&[(f64, f64)]; 3] = [&[(1.0, 0.0047)], &[(1.0, 0.0053)], &[(
 /// Exponents of the color and the feature difference.
 const QC: f64 = 0.7;
 const QF: f64 = 0.5;
-/// The share of color differences that is compressed, and where it ends up.
+/// Share of the color difference range that is compressed, and its image.
 const PC: f64 = 0.4;
 const PT: f64 = 0.95;
 /// Width of the edges that are detected, in degrees.
@@ -23,10 +23,10 @@ const FEATURE_DEG: f64 = 0.082;
 /// One channel of a picture.
 type Plane = Vec<f32>;
 
-/// The difference of every pixel, 0 (none) to 1, of two pictures of sRGB-encoded light in 0…1.
+/// Returns the difference of every pixel, 0 (none) to 1, for two pictures of sRGB-encoded light in 0…1.
 ///
 /// # Panics
-/// When the pictures are not of that size.
+/// The number of pixels does not match the size.
 pub fn flip(ours: &[[f32; 3]], reference: &[[f32; 3]], size: [u32; 2], pixels_per_degree: f64) -> Vec<f32> {
     let [width, height] = size.map(|side| side as usize);
     assert!(ours.len() == width * height && reference.len() == ours.len());
@@ -49,7 +49,7 @@ pub fn flip(ours: &[[f32; 3]], reference: &[[f32; 3]], size: [u32; 2], pixels_pe
     (0..ours.len()).map(|i| color(i).powf(1.0 - feature(i)) as f32).collect()
 }
 
-/// A picture as it is seen.
+/// A picture as perceived by the eye.
 struct Perceived {
     /// Hunt-adjusted L*a*b*, blurred by the eye.
     lab: Vec<[f64; 3]>,
@@ -80,7 +80,7 @@ impl Perceived {
     }
 }
 
-/// A sum of Gaussians, each of which is a product of rows and columns; all weights sum to one.
+/// Convolves with a sum of separable Gaussians whose weights sum to 1.
 fn blur(plane: &Plane, width: usize, gaussians: &[(f64, f64)], radius: i32, pixels_per_degree: f64) -> Plane {
     let kernels: Vec<(f64, Vec<f64>)> = gaussians
         .iter()
@@ -101,7 +101,7 @@ fn blur(plane: &Plane, width: usize, gaussians: &[(f64, f64)], radius: i32, pixe
     out
 }
 
-/// First and second derivatives of a Gaussian as wide as an edge, in both directions; their lengths.
+/// Returns the magnitudes of first and second derivatives with Gaussians of an edge's width.
 fn features(light: &Plane, width: usize, pixels_per_degree: f64) -> (Plane, Plane) {
     let deviation = 0.5 * FEATURE_DEG * pixels_per_degree;
     let radius = (3.0 * deviation).ceil() as i32;
@@ -120,14 +120,14 @@ fn features(light: &Plane, width: usize, pixels_per_degree: f64) -> (Plane, Plan
     (strength(&edge), strength(&point))
 }
 
-/// Positive weights sum to one, and negative ones to minus one.
+/// Normalizes a kernel: positive weights sum to 1, negative ones to -1.
 fn balanced(kernel: Vec<f64>) -> Vec<f32> {
     let sum = |sign: f64| kernel.iter().map(|k| (k * sign).max(0.0)).sum::<f64>();
     let (up, down) = (sum(1.0), sum(-1.0));
     kernel.iter().map(|k| if *k > 0.0 { k / up } else { k / down } as f32).collect()
 }
 
-/// Convolution along rows, the border repeated.
+/// Convolves along rows, with the border repeated.
 fn rows(plane: &Plane, width: usize, kernel: &[f32]) -> Plane {
     let radius = kernel.len() / 2;
     let mut out = vec![0.0; plane.len()];
@@ -143,7 +143,7 @@ fn rows(plane: &Plane, width: usize, kernel: &[f32]) -> Plane {
     out
 }
 
-/// Convolution along columns, the border repeated.
+/// Convolves along columns, with the border repeated.
 fn columns(plane: &Plane, width: usize, kernel: &[f32]) -> Plane {
     let (radius, height) = (kernel.len() / 2, plane.len() / width);
     let mut out = vec![0.0; plane.len()];
@@ -156,7 +156,7 @@ fn columns(plane: &Plane, width: usize, kernel: &[f32]) -> Plane {
     out
 }
 
-/// Adds weighted texels, which is most of what FLIP takes.
+/// Adds weighted pixels, the most expensive part of FLIP.
 fn add(out: &mut [f32], texels: &[f32], weight: f32) {
     out.iter_mut().zip(texels).for_each(|(sum, texel)| *sum += texel * weight);
 }
@@ -166,7 +166,7 @@ fn linear(encoded: f64) -> f64 {
     if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 
-/// Linear Rec.709 to CIE XYZ, D65, with the primaries' fractions kept whole.
+/// Linear Rec.709 to CIE XYZ, D65, from the exact fractions of the primaries.
 const XYZ: [[f64; 3]; 3] = [
     [10_135_552.0 / 24_577_794.0, 8_788_810.0 / 24_577_794.0, 4_435_075.0 / 24_577_794.0],
     [2_613_072.0 / 12_288_897.0, 8_788_810.0 / 12_288_897.0, 887_015.0 / 12_288_897.0],
@@ -181,7 +181,7 @@ fn xyz_from_linear(rgb: [f64; 3]) -> [f64; 3] {
 const WHITE: [f64; 3] =
     [XYZ[0][0] + XYZ[0][1] + XYZ[0][2], XYZ[1][0] + XYZ[1][1] + XYZ[1][2], XYZ[2][0] + XYZ[2][1] + XYZ[2][2]];
 
-/// Y, C red–green and C blue–yellow: L*a*b* without its cube roots.
+/// Converts to Y, C red–green and C blue–yellow: L*a*b* without cube roots.
 fn opponent(xyz: [f64; 3]) -> [f64; 3] {
     let [xn, yn, zn] = WHITE;
     let [x, y, z] = [xyz[0] / xn, xyz[1] / yn, xyz[2] / zn];
@@ -194,7 +194,7 @@ fn xyz_from_opponent([l, a, b]: [f64; 3]) -> [f64; 3] {
     [(y + a / 500.0) * xn, y * yn, (y - b / 200.0) * zn]
 }
 
-/// L*a*b* of linear Rec.709, its chroma weakened where it is dark.
+/// Converts linear Rec.709 to L*a*b*, with chroma reduced in dark areas.
 fn hunt(rgb: [f64; 3]) -> [f64; 3] {
     let xyz = xyz_from_linear(rgb);
     let [x, y, z] = std::array::from_fn(|i| {
@@ -221,7 +221,8 @@ mod tests {
         assert!(flip(&green, &blue, [8, 8], PIXELS_PER_DEGREE).iter().all(|d| (d - 1.0).abs() < 1e-4));
     }
 
-    /// What the authors' own program (flip-evaluator 1.7 of the Python package index) says of the same two pictures.
+    /// The reference implementation (flip-evaluator 1.7 of the Python package index) gives the same value for these two
+    /// pictures.
     #[test]
     fn a_pattern_differs_as_the_original_says() {
         let picture = |shift: u32| -> Vec<[f32; 3]> {
@@ -236,6 +237,6 @@ mod tests {
         assert!((mean - ORIGINAL).abs() < 1e-4, "{mean}");
     }
 
-    /// Of the pattern above, at 67 pixels a degree.
+    /// Value for the pattern above at 67 pixels per degree.
     const ORIGINAL: f64 = 0.330_472;
 }

@@ -1,8 +1,8 @@
-//! What light really does, by brute force in f64, and what an observer sees of a difference: the judges of tables, filters
-//! and approximations.
+//! Reference results for light transport by brute force in f64, and for perceived differences: ground truth for tables,
+//! filters and approximations.
 //!
-//! Nothing here is shared with what it judges, and this package depends on none of it: the formulas are written anew,
-//! directions come from grids and not from importance sampling, and multiple scattering from a random walk.
+//! This package shares no code with what it tests and depends on none of it. Formulas are implemented independently,
+//! directions come from grids instead of importance sampling, and multiple scattering from a random walk.
 
 pub mod albedo;
 pub mod film;

@@ -1,4 +1,5 @@
-//! What a GGX lobe gathers from an environment when viewer, normal and reflection coincide: the split sum's first factor.
+//! Radiance gathered by a GGX lobe from an environment if viewer, normal and reflection coincide: the first factor of
+//! the split sum.
 
 use super::sphere::frame;
 use glam::DVec3;
@@ -8,9 +9,11 @@ use std::f64::consts::{PI, TAU};
 const ROWS: u32 = 320;
 const COLUMNS: u32 = 256;
 
-/// ∫ L(l)·D(h)·cos over the hemisphere about n, over the same without L; `radiance` in up to three channels.
+/// Returns ∫ L(l)·D(h)·cos over the hemisphere about n, divided by the integral without L; `radiance` has up to three
+/// channels.
 ///
-/// The grid is even in azimuth, and in the fourth root of the angle, so that lobes of any width get a third of its rows.
+/// The grid is uniform in azimuth, and in the fourth root of the angle. A third of its rows therefore cover the lobe,
+/// regardless of its width.
 pub fn gathered(n: DVec3, roughness: f64, radiance: impl Fn(DVec3) -> DVec3) -> DVec3 {
     let (t, b) = frame(n);
     let alpha2 = roughness.powi(4);
@@ -25,7 +28,7 @@ pub fn gathered(n: DVec3, roughness: f64, radiance: impl Fn(DVec3) -> DVec3) -> 
         let (sin, cos) = angle.sin_cos();
         let mut ring = DVec3::ZERO;
         for column in 0..COLUMNS {
-            // Rows are turned against each other, so that edges do not line up with the grid.
+            // Rows are rotated relative to each other, so that edges do not align with the grid.
             let turn = (f64::from(column) + 0.618_034 * f64::from(row)) / f64::from(COLUMNS);
             let (s, c) = (turn * TAU).sin_cos();
             ring += radiance(t * (sin * c) + b * (sin * s) + n * cos);
@@ -36,13 +39,13 @@ pub fn gathered(n: DVec3, roughness: f64, radiance: impl Fn(DVec3) -> DVec3) -> 
     sum / weights
 }
 
-/// The same for a disc of radiance one about `axis`, by a grid over the disc: small ones fall between the directions of
-/// [`gathered`].
+/// Returns the radiance gathered from a disc of radiance 1 around `axis`, by a grid over the disc. Small discs fall
+/// between the directions of [`gathered`].
 pub fn gathered_of_disc(n: DVec3, roughness: f64, axis: DVec3, radius_rad: f64) -> f64 {
     let (t, b) = frame(axis);
     let alpha2 = roughness.powi(4);
     let lobe = |cos: f64| {
-        // cos²(θ/2) = (1 + cos θ)/2; the sine of the difference for narrow lobes.
+        // cos²(θ/2) = (1 + cos θ)/2; the sine of the difference is precise for narrow lobes.
         let cos2 = 0.5 * (1.0 + cos);
         let d = alpha2 / (PI * (cos2 * alpha2 + 0.5 * (1.0 - cos)).powi(2));
         d * cos.max(0.0)
@@ -58,7 +61,7 @@ pub fn gathered_of_disc(n: DVec3, roughness: f64, axis: DVec3, radius_rad: f64) 
     let cap = 2.0 * (0.5 * radius_rad).sin().powi(2);
     let mut sum = 0.0;
     for ring in 0..rings {
-        // Even in the cosine, so that every point stands for the same solid angle.
+        // Uniform in the cosine, so that every point has the same solid angle.
         let cos = 1.0 - cap * (f64::from(ring) + 0.5) / f64::from(rings);
         let sin = (1.0 - cos * cos).sqrt();
         for column in 0..columns {
@@ -91,7 +94,7 @@ mod tests {
         for r in [0.1, 0.5, 1.0] {
             assert!((gathered(n, r, |_| DVec3::ONE) - DVec3::ONE).length() < 1e-12);
         }
-        // At roughness 1 the lobe is the cosine's: the mean of cos under it is 2/3.
+        // At roughness 1, the lobe is a cosine lobe, whose mean cosine is 2/3.
         let mean = gathered(n, 1.0, |l| DVec3::splat(l.dot(n))).x;
         assert!((mean - 2.0 / 3.0).abs() < 1e-4, "{mean}");
     }

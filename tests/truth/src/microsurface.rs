@@ -1,14 +1,14 @@
-//! Light bouncing on a rough conductor until it leaves: Heitz, Hanika, d'Eon and Dachsbacher, "Multiple-Scattering
-//! Microfacet BSDFs with the Smith Model", SIGGRAPH 2016, for GGX and heights uniform over [-1, 1].
+//! Random walk of light on a rough conductor, for GGX and heights uniform over [-1, 1]. Source: Heitz, Hanika, d'Eon
+//! and Dachsbacher, "Multiple-Scattering Microfacet BSDFs with the Smith Model", SIGGRAPH 2016.
 
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// SplitMix64 (Steele, Lea, Flood 2014), as numbers in [0, 1).
+/// SplitMix64 generator (Steele, Lea, Flood 2014) of numbers in [0, 1).
 pub struct Random(pub u64);
 
 impl Random {
-    /// The next number.
+    /// Returns the next number.
     pub fn uniform(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -18,7 +18,7 @@ impl Random {
     }
 }
 
-/// Smith's Λ, for directions up and down.
+/// Returns Smith's Λ, for directions up and down.
 fn lambda(w: DVec3, alpha: f64) -> f64 {
     if w.z > 0.999_999 {
         return 0.0;
@@ -30,12 +30,12 @@ fn lambda(w: DVec3, alpha: f64) -> f64 {
     0.5 * (w.z.signum() * (1.0 + alpha * alpha * tan2).sqrt() - 1.0)
 }
 
-/// The share of heights below h.
+/// Returns the share of heights below h.
 fn below(h: f64) -> f64 {
     (0.5 * (h + 1.0)).clamp(0.0, 1.0)
 }
 
-/// The height that light going along `w` from height `h` reaches before it hits; none when it leaves.
+/// Returns the height at which light along `w` from height `h` hits the surface; `None` if it leaves.
 fn next_height(w: DVec3, h: f64, alpha: f64, u: f64) -> Option<f64> {
     if w.z > 0.999_999 {
         return None;
@@ -47,7 +47,7 @@ fn next_height(w: DVec3, h: f64, alpha: f64, u: f64) -> Option<f64> {
         return Some(h);
     }
     let lambda = lambda(w, alpha);
-    // What goes down always hits.
+    // Downward light always hits.
     let leaves = if w.z > 0.0 { below(h).powf(lambda) } else { 0.0 };
     if u > 1.0 - leaves {
         return None;
@@ -55,8 +55,8 @@ fn next_height(w: DVec3, h: f64, alpha: f64, u: f64) -> Option<f64> {
     Some((2.0 * below(h) / (1.0 - u).powf(1.0 / lambda) - 1.0).clamp(-1.0, 1.0))
 }
 
-/// A normal of those that `w`, up or down, sees: points of the stretched hemisphere's silhouette, thrown again when they
-/// lie below.
+/// Returns a random normal visible from `w`, up or down: points on the silhouette of the stretched hemisphere, sampled
+/// again if below the surface.
 fn visible_normal(w: DVec3, alpha: f64, random: &mut Random) -> DVec3 {
     let stretched = DVec3::new(alpha * w.x, alpha * w.y, w.z).normalize();
     let (t, b) = super::sphere::frame(stretched);
@@ -69,8 +69,8 @@ fn visible_normal(w: DVec3, alpha: f64, random: &mut Random) -> DVec3 {
     }
 }
 
-/// The share of light from direction (n·v) that comes back, for each f0, with Schlick's Fresnel at each bounce; the mean of
-/// `paths` walks.
+/// Returns the share of light from direction (n·v) that is reflected, for each f0, with Schlick's Fresnel at each
+/// bounce; the mean of `paths` walks.
 pub fn albedo<const N: usize>(nov: f64, roughness: f64, f0: [f64; N], paths: u32, random: &mut Random) -> [f64; N] {
     let alpha = roughness * roughness;
     let mut sums = [0.0; N];
@@ -78,7 +78,7 @@ pub fn albedo<const N: usize>(nov: f64, roughness: f64, f0: [f64; N], paths: u32
         let mut w = DVec3::new(-(1.0 - nov * nov).sqrt(), 0.0, -nov);
         let mut height = 1.0;
         let mut weights = [1.0; N];
-        // Each bounce lets a share of the light go, so walks end; a thousand bounces never happen.
+        // A share of the light leaves at each bounce, so walks end long before 1000 bounces.
         for _ in 0..1000 {
             let Some(next) = next_height(w, height, alpha, random.uniform()) else { break };
             height = next;
@@ -120,7 +120,7 @@ mod tests {
             }
             let share = f64::from(left) / f64::from(paths);
             let single = ggx(nov, roughness, Masking::Smith)[1];
-            // Three standard errors of 40 000 throws.
+            // Three standard errors of 40,000 walks.
             assert!((share - single).abs() < 0.0075, "{nov} {roughness}: {share} for {single}");
         }
     }

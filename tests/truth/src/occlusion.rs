@@ -1,18 +1,18 @@
-//! Ambient occlusion of shapes that have a formula: the share of the cosine-weighted hemisphere that rays of a length leave
-//! unhindered.
+//! Ambient occlusion of shapes with an analytic solution: the cosine-weighted share of unoccluded rays of a limited
+//! length.
 
 use std::f64::consts::PI;
 
-/// On the floor of a corner of two infinite planes at right angles, `distance_m` from the other: what is farther than
-/// `radius_m` does not count. Seen along the normal, the hemisphere is a disc in which areas are shares; the wall takes the
-/// part beyond a chord.
+/// Returns the visibility on the floor of a corner of two infinite perpendicular planes, `distance_m` from the other
+/// plane. Surfaces beyond `radius_m` do not occlude. Projected along the normal, the hemisphere is a disc whose area is
+/// the cosine-weighted solid angle; the wall covers a segment of it.
 pub fn corner(distance_m: f64, radius_m: f64) -> f64 {
     let chord = (distance_m / radius_m).clamp(0.0, 1.0);
     1.0 - (chord.acos() - chord * (1.0 - chord * chord).sqrt()) / PI
 }
 
-/// How far the mean open direction there leans away from the wall, in radians: of all open directions, each by its cosine,
-/// added up on a grid.
+/// Returns the angle in radians by which the mean unoccluded direction leans away from the wall, from a cosine-weighted
+/// sum over a grid.
 pub fn corner_lean(distance_m: f64, radius_m: f64) -> f64 {
     let (rings, spokes) = (200, 400);
     let [mut along, mut up] = [0.0; 2];
@@ -33,7 +33,7 @@ pub fn corner_lean(distance_m: f64, radius_m: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Against a grid of directions.
+    /// Compares with a grid of directions.
     #[test]
     fn the_corner_is_what_counting_directions_gives() {
         for distance_m in [0.0, 0.02, 0.05, 0.1, 0.2, 0.29, 0.4] {

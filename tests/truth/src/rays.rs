@@ -1,8 +1,8 @@
-//! What rays meet in a scene: every triangle of every group that a ray's path comes near, in f64.
+//! Ray tracing in f64: tests every triangle of every group whose box the ray hits.
 
 use glam::DVec3;
 
-/// Triangles in groups of neighbors with a box about each.
+/// Triangles in spatial groups with bounding boxes.
 #[derive(Clone, Debug)]
 pub struct Triangles {
     groups: Vec<Group>,
@@ -15,20 +15,20 @@ struct Group {
     triangles: Vec<[DVec3; 3]>,
 }
 
-/// Triangles of a group at most.
+/// Maximum number of triangles in a group.
 const GROUP: usize = 64;
 
-/// Where a ray first meets a triangle.
+/// First intersection of a ray with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// The place, in meters.
+    /// Position, in m.
     pub point: DVec3,
-    /// Unit normal of the triangle, on the side that the ray came from.
+    /// Unit normal of the triangle, on the side of the ray's origin.
     pub normal: DVec3,
 }
 
 impl Triangles {
-    /// Triangles of meshes, those of a mesh near each other.
+    /// Groups the triangles of meshes.
     pub fn of(meshes: impl Iterator<Item = Vec<[DVec3; 3]>>) -> Self {
         let mut groups = Vec::new();
         for triangles in meshes {
@@ -37,7 +37,7 @@ impl Triangles {
         Self { groups }
     }
 
-    /// The first triangle that a ray from `from` along the unit vector `along` meets.
+    /// Returns the first intersection of a ray from `from` along the unit vector `along`.
     #[must_use]
     pub fn first(&self, from: DVec3, along: DVec3) -> Option<Hit> {
         let mut nearest = f64::INFINITY;
@@ -52,7 +52,7 @@ impl Triangles {
         nearest.is_finite().then(|| Hit { point: from + along * nearest, normal })
     }
 
-    /// Whether nothing lies between two points but within `slack` meters of the first.
+    /// Returns true if there is no triangle between two points, ignoring `slack` meters at the first.
     #[must_use]
     pub fn is_open(&self, from: DVec3, to: DVec3, slack: f64) -> bool {
         let way = (to - from).length();
@@ -65,7 +65,7 @@ impl Triangles {
     }
 }
 
-/// Halves triangles along the longest side of their box until few are left together.
+/// Splits triangles along the longest side of their box until the groups are small.
 fn group(mut triangles: Vec<[DVec3; 3]>, groups: &mut Vec<Group>) {
     let corners = || triangles.iter().flatten();
     let min = corners().fold(DVec3::INFINITY, |least, at| least.min(*at));
@@ -84,7 +84,7 @@ fn group(mut triangles: Vec<[DVec3; 3]>, groups: &mut Vec<Group>) {
 }
 
 impl Group {
-    /// Whether a ray passes through the box (Kay and Kajiya 1986), which is most of what rays take.
+    /// Returns true if a ray hits the box (Kay and Kajiya 1986), the most frequent operation.
     fn is_near(&self, from: DVec3, along: DVec3) -> bool {
         let (mut enter, mut leave) = (-1e-9_f64, f64::INFINITY);
         for axis in 0..3 {
@@ -104,7 +104,7 @@ impl Group {
     }
 }
 
-/// Distance along a ray to a triangle, above 0 (Möller and Trumbore 1997).
+/// Returns the distance along a ray to a triangle, above 0 (Möller and Trumbore 1997).
 fn meets(&[a, b, c]: &[DVec3; 3], from: DVec3, along: DVec3) -> Option<f64> {
     let (ab, ac) = (b - a, c - a);
     let across = along.cross(ac);
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn a_box_is_met_on_its_near_side() {
-        // Two triangles of each side of a box of two meters, from 4 to 6 meters ahead.
+        // Two triangles for each side of a box of 2 m, 4 to 6 m ahead.
         let sides = (0..3).flat_map(|axis| [-1.0, 1.0].map(|side| (axis, side))).flat_map(|(axis, side)| {
             let mut normal = DVec3::ZERO;
             normal[axis] = side;

@@ -1,48 +1,48 @@
-//! Where mirrors show what the picture shows: a floor and balls, by the formulas of school geometry.
+//! Exact reflections of a picture in a floor and balls, by elementary geometry.
 
 use glam::{DVec2, DVec3};
 
-/// A camera: an eye, where it looks, and half the tangents of its field of view.
+/// A camera: eye, target and field of view.
 #[derive(Clone, Copy, Debug)]
 pub struct Lens {
-    /// Where the eye is, in m.
+    /// Position of the eye, in m.
     pub eye: DVec3,
-    /// What is in the middle of the picture.
+    /// Point in the center of the picture, in m.
     pub target: DVec3,
-    /// Vertical field of view in radians.
+    /// Vertical field of view, in radians.
     pub fov_y_rad: f64,
-    /// Width over height of the picture.
+    /// Width divided by height of the picture.
     pub aspect: f64,
 }
 
-/// What there is.
+/// Objects of the room.
 #[derive(Clone, Debug)]
 pub struct Room {
-    /// Height of the floor, which has no end, in m.
+    /// Height of the infinite floor, in m.
     pub floor_m: f64,
-    /// Middle and radius of each ball, in m.
+    /// Center and radius of each ball, in m.
     pub balls: Vec<(DVec3, f64)>,
 }
 
-/// A place on a surface.
+/// A point on a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
-    /// Where, in m.
+    /// Position, in m.
     pub at: DVec3,
     /// Unit normal.
     pub normal: DVec3,
-    /// It is on the floor.
+    /// True for the floor.
     pub on_floor: bool,
 }
 
-/// What a pixel's mirrored ray comes to.
+/// Reflection at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mirrored {
-    /// Nothing within its reach.
+    /// Nothing within the range.
     Nothing,
-    /// Something that the picture does not show: it is hidden, turned away, or beyond the border.
+    /// A point that the picture does not show: it is hidden, faces away, or is outside of the border.
     Unseen,
-    /// What the picture shows at these texture coordinates.
+    /// A point that the picture shows at these texture coordinates.
     Seen(DVec2),
 }
 
@@ -53,7 +53,7 @@ impl Lens {
         [right, right.cross(ahead), ahead]
     }
 
-    /// Unit direction through texture coordinates, (0, 0) at the top left.
+    /// Returns the unit direction through texture coordinates; (0, 0) is the top left.
     pub fn along(&self, uv: DVec2) -> DVec3 {
         let [right, up, ahead] = self.axes();
         let tangent = (0.5 * self.fov_y_rad).tan();
@@ -61,7 +61,7 @@ impl Lens {
         (ahead + right * x + up * y).normalize()
     }
 
-    /// Texture coordinates of a place; none behind the eye.
+    /// Returns the texture coordinates of a point; `None` behind the eye.
     pub fn uv(&self, at: DVec3) -> Option<DVec2> {
         let [right, up, ahead] = self.axes();
         let (way, tangent) = (at - self.eye, (0.5 * self.fov_y_rad).tan());
@@ -72,7 +72,8 @@ impl Lens {
 }
 
 impl Room {
-    /// What a ray first meets, and after how many meters; what is nearer than a tenth of a millimeter is where it starts.
+    /// Returns the first intersection of a ray and its distance in m. Intersections closer than 0.1 mm count as the
+    /// start.
     pub fn first(&self, start: DVec3, along: DVec3) -> Option<(f64, Place)> {
         let mut best: Option<(f64, Place)> = None;
         let mut offer = |way: f64, normal_at: &dyn Fn(DVec3) -> DVec3, on_floor| {
@@ -95,8 +96,8 @@ impl Room {
         best
     }
 
-    /// What the mirror at a pixel of `lens` shows, at the place that is returned with it, of a picture that was taken by
-    /// `earlier`; none where the pixel shows nothing.
+    /// Returns the mirror's position at a pixel of `lens`, and its reflection in a picture taken by `earlier`. Returns
+    /// `None` if the pixel shows nothing.
     pub fn mirrored(&self, lens: &Lens, uv: DVec2, reach_m: f64, earlier: &Lens) -> Option<(Place, Mirrored)> {
         let along = lens.along(uv);
         let (_, place) = self.first(lens.eye, along)?;
@@ -136,12 +137,11 @@ mod tests {
         assert_eq!(LENS.uv(LENS.eye * 2.0), None, "behind the eye");
     }
 
-    /// In a flat mirror a thing stands as far behind the mirror as it is before it: its image is where its mirror image would
-    /// be seen.
+    /// A flat mirror shows an object at its mirror image.
     #[test]
     fn floors_show_mirror_images() -> Result<(), &'static str> {
         let room = Room { floor_m: 0.0, balls: vec![(DVec3::new(0.0, 0.5, 0.0), 0.3)] };
-        // The point of the ball nearest to the eye and a little lower.
+        // The point of the ball nearest to the eye, slightly lower.
         let shown = DVec3::new(0.0, 0.5, 0.0) + DVec3::new(0.0, -0.1, 1.0).normalize() * 0.3;
         let image = LENS.uv(shown * DVec3::new(1.0, -1.0, 1.0)).ok_or("before the eye")?;
         let (place, found) = room.mirrored(&LENS, image, 10.0, &LENS).ok_or("the floor")?;

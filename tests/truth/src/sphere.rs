@@ -1,9 +1,9 @@
-//! Directions and panoramas without the project's own conversions.
+//! Directions and panoramas, implemented independently of the project's own conversions.
 
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// `count` unit vectors spread evenly over the sphere (a Fibonacci lattice).
+/// Returns `count` unit vectors spread uniformly over the sphere (a Fibonacci lattice).
 pub fn directions(count: u32) -> Vec<DVec3> {
     let golden = PI * (3.0 - 5.0_f64.sqrt());
     let direction = |i: u32| {
@@ -15,8 +15,8 @@ pub fn directions(count: u32) -> Vec<DVec3> {
     (0..count).map(direction).collect()
 }
 
-/// Irradiance over π on a surface facing `normal`, by a grid of `rows`² directions about it that is even in the cosine's
-/// square: each stands for the same flux.
+/// Returns irradiance over π on a surface facing `normal`, by a grid of `rows`² directions. The grid is uniform in the
+/// squared cosine, so that each direction has the same weight.
 pub fn irradiance_over_pi(normal: DVec3, rows: u32, radiance: impl Fn(DVec3) -> f64) -> f64 {
     let (t, b) = frame(normal);
     let mut sum = 0.0;
@@ -31,25 +31,25 @@ pub fn irradiance_over_pi(normal: DVec3, rows: u32, radiance: impl Fn(DVec3) -> 
     sum / f64::from(2 * rows * rows)
 }
 
-/// Two unit vectors that make a right angle with n and each other.
+/// Returns two unit vectors that are perpendicular to n and to each other.
 pub fn frame(n: DVec3) -> (DVec3, DVec3) {
     let other = if n.x.abs() < 0.6 { DVec3::X } else { DVec3::Y };
     let t = (other - n * n.dot(other)).normalize();
     (t, n.cross(t))
 }
 
-/// A panorama of rows from +Y to -Y whose middle column looks along -Z, read bilinearly as a smooth picture.
+/// A panorama with rows from +Y to -Y, whose middle column looks along -Z, interpolated bilinearly.
 pub struct Panorama<'a> {
-    /// Width in texels.
+    /// Width, in texels.
     pub width: u32,
-    /// Height in texels.
+    /// Height, in texels.
     pub height: u32,
-    /// Rows of texels.
+    /// Texels, row by row.
     pub texels: &'a [[f32; 4]],
 }
 
 impl Panorama<'_> {
-    /// Radiance from a direction.
+    /// Returns the radiance from a direction.
     pub fn radiance(&self, d: DVec3) -> DVec3 {
         let x = (d.x.atan2(-d.z) / TAU + 0.5) * f64::from(self.width) - 0.5;
         let y = d.y.clamp(-1.0, 1.0).acos() / PI * f64::from(self.height) - 0.5;
@@ -76,7 +76,7 @@ mod tests {
         let lean = all.iter().sum::<DVec3>() / 1000.0;
         assert!(lean.length() < 1e-3);
         assert!((irradiance_over_pi(DVec3::new(0.6, 0.0, 0.8), 8, |_| 3.0) - 3.0).abs() < 1e-12);
-        // A sky that is bright above: E/π of the cosine lobe toward its own axis is 2/3.
+        // A sky that is bright above: E/π of the cosine lobe toward its axis is 2/3.
         let lobe = irradiance_over_pi(DVec3::Y, 200, |d| d.y.max(0.0));
         assert!((lobe - 2.0 / 3.0).abs() < 1e-4, "{lobe}");
     }

@@ -1,22 +1,22 @@
-//! What a surface with all its lobes reflects of one light or of a whole sky, in f64, for one point.
+//! Reflection of a surface with all lobes under one light or a whole sky, in f64, for one point.
 //!
-//! Written from the papers and glTF's specifications: Λ of Heitz instead of visibility terms, Fresnel's formula instead of
-//! what is left of it under a coat. Layers from the top: clear coat, sheen, then GGX over Lambert.
+//! Implemented from the papers and glTF's specifications: Heitz's Λ instead of visibility terms, and Fresnel's formula
+//! instead of an approximation under a coat. Layers from the top: clear coat, sheen, then GGX over Lambert.
 
 use super::albedo::{Masking, cloth, ggx};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Grooves of the base (KHR_materials_anisotropy).
+/// Anisotropy of the base (KHR_materials_anisotropy).
 #[derive(Clone, Copy, Debug)]
 pub struct Grooves {
     /// Unit direction of anisotropy, perpendicular to the normal: the lobe is wider along it.
     pub along: DVec3,
-    /// 0…1.
+    /// Strength of anisotropy, 0…1.
     pub strength: f64,
 }
 
-/// Fibers over the base (KHR_materials_sheen).
+/// Sheen over the base (KHR_materials_sheen).
 #[derive(Clone, Copy, Debug)]
 pub struct Sheen {
     /// Reflectance of the lobe.
@@ -25,10 +25,10 @@ pub struct Sheen {
     pub roughness: f64,
 }
 
-/// A coat over all (KHR_materials_clearcoat).
+/// Clear coat over all other layers (KHR_materials_clearcoat).
 #[derive(Clone, Copy, Debug)]
 pub struct Coat {
-    /// Its own unit normal.
+    /// Unit normal of the coat.
     pub normal: DVec3,
     /// Coverage, 0…1.
     pub factor: f64,
@@ -65,13 +65,13 @@ fn schlick(f0: f64, f90: f64, cos: f64) -> f64 {
     f0 + (f90 - f0) * (1.0 - cos).powi(5)
 }
 
-/// Reflectance at the border to glass of index 1.5 of what has `f0` at the border to air.
+/// Returns the reflectance at the interface with glass of index 1.5, for a material with `f0` in air.
 fn under_glass(f0: f64) -> f64 {
     let index = (1.0 + f0.sqrt()) / (1.0 - f0.sqrt()).max(1e-12);
     ((index - 1.5) / (index + 1.5)).powi(2)
 }
 
-/// `Surface` in the frame of its normal: what GGX with two roughnesses needs.
+/// `Surface` in the frame of its normal, for GGX with two roughness values.
 struct Microfacets {
     axes: [DVec3; 3],
     alpha: [f64; 2],
@@ -84,7 +84,7 @@ impl Microfacets {
         0.5 * ((1.0 + slope2 / w.dot(n).powi(2)).sqrt() - 1.0)
     }
 
-    /// D · G / (4 n·v): what GGX reflects of a light, cosine included, where Fresnel's term is one.
+    /// Returns D · G / (4 n·v): the reflection of GGX with the cosine, for a Fresnel term of 1.
     fn reflected(&self, view: DVec3, to_light: DVec3) -> f64 {
         let [t, b, n] = self.axes;
         let h = (view + to_light).normalize();
@@ -95,27 +95,27 @@ impl Microfacets {
 }
 
 impl Surface {
-    /// A Lambert surface that reflects nothing else.
+    /// Returns a Lambert surface without specular reflection.
     pub fn chalk(albedo: DVec3, normal: DVec3) -> Self {
         let (f0, grooves, sheen, coat) = (DVec3::ZERO, None, None, None);
         Self { normal, diffuse: albedo, f0, f90: 0.0, roughness: 1.0, grooves, sheen, coat }
     }
 
-    /// glTF's metallic-roughness surface over a dielectric of `f0`.
+    /// Returns glTF's metallic-roughness surface over a dielectric of `f0`.
     pub fn metal_rough(base_color: DVec3, metallic: f64, roughness: f64, f0: f64, normal: DVec3) -> Self {
         let f0 = DVec3::splat(f0).lerp(base_color, metallic);
         Self { f0, f90: 1.0, roughness, ..Self::chalk(base_color * (1.0 - metallic), normal) }
     }
 
-    /// f0 and perceptual roughness of the base under its coat.
+    /// Returns f0 and perceptual roughness of the base under its coat.
     fn coated(&self) -> (DVec3, f64) {
         let Some(coat) = self.coat else { return (self.f0, self.roughness) };
         let f0 = self.f0.to_array().map(|f0| mix(f0, under_glass(f0).min(f0), coat.factor));
         (DVec3::from(f0), mix(self.roughness, self.roughness.max(coat.roughness), coat.factor))
     }
 
-    /// BRDF · cosine toward a light, times π: radiance in nits per π lux.
-    pub fn per_lamp(&self, view: DVec3, to_light: DVec3) -> DVec3 {
+    /// Returns BRDF · cosine toward a light, times π: radiance in nits per π lux.
+    pub fn per_light(&self, view: DVec3, to_light: DVec3) -> DVec3 {
         let h = (view + to_light).normalize();
         let loh = to_light.dot(h);
         let (f0, roughness) = self.coated();
@@ -148,8 +148,8 @@ impl Surface {
         reflected
     }
 
-    /// Radiance under a sky: `gathered` is what a lobe about a direction with a roughness gathers of it, `irradiance` what
-    /// falls on a surface of a normal, over π. Energy lost between microfacets is given back (Turquin).
+    /// Returns the radiance under a sky. `gathered` returns the radiance of a lobe with a direction and roughness,
+    /// `irradiance` the irradiance over π for a normal. Energy lost between microfacets is compensated (Turquin).
     pub fn of_sky(
         &self,
         view: DVec3,
@@ -162,7 +162,7 @@ impl Surface {
         let [grazing, all] = ggx(nov, roughness, Masking::Smith);
         let albedo = DVec3::splat(self.f90 * grazing) + f0 * (all - grazing);
         let axis = self.grooves.map_or(self.normal, |grooves| {
-            // The normal that a ray across the grooves would meet, seen along them.
+            // Direction across the anisotropy; the bent normal is perpendicular to it.
             let across = self.normal.cross(grooves.along);
             let toward = (view - across * view.dot(across)).normalize();
             let bend = grooves.strength * (5.0 * roughness).min(1.0);

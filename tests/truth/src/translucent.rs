@@ -1,4 +1,4 @@
-//! A surface that scatters light to both of its sides, by a grid of directions over the whole sphere.
+//! Diffuse reflection and transmission of a surface, by a grid of directions over the whole sphere.
 
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -8,25 +8,26 @@ use std::f64::consts::PI;
 pub struct Sheet {
     /// Unit normal toward the viewer.
     pub normal: DVec3,
-    /// Albedo of what is scattered back.
+    /// Albedo of diffuse reflection.
     pub front: DVec3,
-    /// Albedo of what is scattered through.
+    /// Albedo of diffuse transmission.
     pub back: DVec3,
-    /// Share of the light that is scattered through, 0…1.
+    /// Share of the light that is transmitted, 0…1.
     pub factor: f64,
-    /// Share that the body leaves of the light that comes through.
+    /// Share of the transmitted light that the volume does not absorb.
     pub left: DVec3,
 }
 
 impl Sheet {
-    /// BSDF times cosine for light from the unit vector `to_light`.
+    /// Returns BSDF times cosine for light from the unit vector `to_light`.
     pub fn scattered(&self, to_light: DVec3) -> DVec3 {
         let cosine = self.normal.dot(to_light);
         let albedo = if cosine > 0.0 { self.front * (1.0 - self.factor) } else { self.back * self.left * self.factor };
         albedo * (cosine.abs() / PI)
     }
 
-    /// Radiance toward the viewer under light from everywhere; the grid has `rows` rows of latitude about the y axis.
+    /// Returns the radiance toward the viewer under an environment; the grid has `rows` rows of latitude about the y
+    /// axis.
     pub fn seen(&self, rows: u32, radiance: impl Fn(DVec3) -> DVec3) -> DVec3 {
         let mut sum = DVec3::ZERO;
         for row in 0..rows {
@@ -45,7 +46,7 @@ impl Sheet {
 mod tests {
     use super::*;
 
-    /// White on both sides gives back what it gets, and light of one side alone is parted by the factor.
+    /// A surface that is white on both sides preserves energy, and light from one side is split by the factor.
     #[test]
     fn nothing_is_lost() {
         let normal = DVec3::new(0.36, 0.48, 0.8);

@@ -1,4 +1,4 @@
-//! What the machine holds, read once, from a root folder and an environment that tests replace.
+//! Facts about this machine, read once. Tests replace the root folder and the environment.
 
 use std::ffi::OsString;
 use std::fs;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::manifest;
 
-/// Where facts come from: `/` and the process's environment, or a made-up tree.
+/// Source of the facts: `/` and the process's environment, or a made-up tree.
 pub struct Machine<'a> {
     /// The folder that stands for `/`.
     pub root: &'a Path,
@@ -14,32 +14,32 @@ pub struct Machine<'a> {
     pub variable: &'a dyn Fn(&str) -> Option<OsString>,
 }
 
-/// What decides whether something can render.
+/// Facts that decide whether rendering is possible.
 #[derive(Debug)]
 pub struct Graphics {
-    /// Where the Vulkan loader lies.
+    /// Path of the Vulkan loader.
     pub loader: Option<PathBuf>,
-    /// The drivers the loader would read, in its order.
+    /// Drivers that the loader would read, in its order.
     pub drivers: Vec<Driver>,
-    /// The devices they could drive.
+    /// Devices present on this machine.
     pub devices: Devices,
-    /// The environment variable that replaces the system's drivers, if one does.
+    /// Environment variable that replaces the system's drivers, if one is set.
     pub overridden_by: Option<&'static str>,
 }
 
 /// One driver manifest.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Driver {
-    /// The manifest's path.
+    /// Path of the manifest.
     pub manifest: PathBuf,
-    /// The library it names; `None` where the file cannot be read or names none.
+    /// Library that the manifest names; `None` if the file cannot be read or names none.
     pub library: Option<String>,
-    /// Whether the library lies where the dynamic linker would find it.
+    /// True if the dynamic linker would find the library.
     pub library_found: bool,
 }
 
 impl Driver {
-    /// The manifest's file name.
+    /// Returns the manifest's file name.
     pub fn name(&self) -> String {
         let name = self.manifest.file_name().unwrap_or(self.manifest.as_os_str());
         name.to_string_lossy().into_owned()
@@ -51,39 +51,39 @@ impl Driver {
 pub struct Devices {
     /// `/dev/dri/renderD*`, by name.
     pub render_nodes: Vec<RenderNode>,
-    /// Whether `/dev/nvidia0` or another numbered one exists.
+    /// True if a numbered device such as `/dev/nvidia0` exists.
     pub nvidia: bool,
-    /// Whether `/dev/dxg` exists.
+    /// True if `/dev/dxg` exists.
     pub dxg: bool,
 }
 
 /// A render node of the kernel's direct rendering manager.
 #[derive(Debug, PartialEq, Eq)]
 pub struct RenderNode {
-    /// The PCI vendor, where the kernel tells one.
+    /// PCI vendor, if the kernel reports one.
     pub vendor: Option<u32>,
-    /// Whether this user may open it for reading and writing.
+    /// True if this user may open the node for reading and writing.
     pub accessible: bool,
 }
 
-/// What decides how a package is installed.
+/// Facts that decide how a package is installed.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Packages {
     /// `ID` and then `ID_LIKE` of `/etc/os-release`.
     pub system_ids: Vec<String>,
     /// Programs found on `PATH`, among the package managers and `sudo`.
     pub programs: Vec<&'static str>,
-    /// Whether this user is root.
+    /// True if this user is root.
     pub root: bool,
-    /// Whether apt has package lists.
+    /// True if apt has package lists.
     pub apt_lists: bool,
-    /// Whether pacman has package databases.
+    /// True if pacman has package databases.
     pub pacman_databases: bool,
-    /// Whether somebody may be there to type a password.
+    /// True if a terminal is attached, so that a password can be typed.
     pub terminal: bool,
 }
 
-/// Reads what decides whether something can render.
+/// Reads the facts that decide whether rendering is possible.
 pub fn graphics(machine: &Machine<'_>) -> Graphics {
     let search = manifest::search(machine.variable);
     let linker = linker_cache(machine);
@@ -108,7 +108,7 @@ pub fn graphics(machine: &Machine<'_>) -> Graphics {
     }
 }
 
-/// What tests of streams and of windows ask for and the machine lacks, in words.
+/// Returns the names of missing tools that tests of Vulkan streams and of windows need.
 pub fn missing_checks(machine: &Machine<'_>) -> Vec<&'static str> {
     let given = (machine.variable)("VK_LAYER_PATH").unwrap_or_default();
     let usual = ["/usr/share", "/usr/local/share", "/etc"].map(|at| Path::new(at).join("vulkan/explicit_layer.d"));
@@ -121,7 +121,7 @@ pub fn missing_checks(machine: &Machine<'_>) -> Vec<&'static str> {
     wanted.into_iter().filter(|(there, _)| !there).map(|(_, what)| what).collect()
 }
 
-/// Reads what decides how a package is installed.
+/// Reads the facts that decide how a package is installed.
 pub fn packages(machine: &Machine<'_>) -> Packages {
     let release = fs::read_to_string(machine.at(Path::new("/etc/os-release"))).unwrap_or_default();
     let ids = |key: &str| -> Vec<String> {
@@ -144,12 +144,12 @@ pub fn packages(machine: &Machine<'_>) -> Packages {
 }
 
 impl Machine<'_> {
-    /// Where `path` really lies: absolute paths start at the root, relative ones stay as they are.
+    /// Maps a path into this machine's root folder; relative paths are unchanged.
     fn at(&self, path: &Path) -> PathBuf {
         path.strip_prefix("/").map_or_else(|_| path.to_owned(), |path| self.root.join(path))
     }
 
-    /// The names in `folder`, sorted; none where it cannot be read.
+    /// Returns the names in `folder`, sorted; empty if it cannot be read.
     fn names(&self, folder: &Path) -> Vec<String> {
         let entries = fs::read_dir(self.at(folder)).into_iter().flatten().flatten();
         let mut names: Vec<_> = entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
@@ -158,7 +158,7 @@ impl Machine<'_> {
     }
 }
 
-/// The manifests at `place`: itself if it is named as a file, those in it if it is a folder.
+/// Returns the manifests at `place`: the file itself, or the manifests in the folder.
 fn manifests(machine: &Machine<'_>, place: &Path) -> Vec<PathBuf> {
     let json = |path: &Path| path.extension().is_some_and(|extension| extension == "json");
     if machine.at(place).is_dir() {
@@ -171,8 +171,8 @@ fn manifests(machine: &Machine<'_>, place: &Path) -> Vec<PathBuf> {
     }
 }
 
-/// Where the dynamic linker would find `library`, a bare file name: `LD_LIBRARY_PATH`, its cache,
-/// then its usual folders (musl has no cache).
+/// Finds a library by its file name, as the dynamic linker does: `LD_LIBRARY_PATH`, the linker's cache, then the usual
+/// folders (musl has no cache).
 fn find_library(machine: &Machine<'_>, cache: &[PathBuf], library: &str) -> Option<PathBuf> {
     let given = (machine.variable)("LD_LIBRARY_PATH").unwrap_or_default();
     let triplet = format!("{}-linux-gnu", std::env::consts::ARCH);
@@ -187,8 +187,8 @@ fn find_library(machine: &Machine<'_>, cache: &[PathBuf], library: &str) -> Opti
     candidates.find(|path| machine.at(path).is_file())
 }
 
-/// The library paths in glibc's `/etc/ld.so.cache`: a table of offsets, then zero-ended strings, of
-/// which those that start with `/` are paths.
+/// Reads the library paths in glibc's `/etc/ld.so.cache`. The file is a table of offsets and zero-terminated strings;
+/// strings that start with `/` are paths.
 fn linker_cache(machine: &Machine<'_>) -> Vec<PathBuf> {
     let bytes = fs::read(machine.at(Path::new("/etc/ld.so.cache"))).unwrap_or_default();
     let strings = bytes.split(|&byte| byte == 0).filter(|string| string.starts_with(b"/"));
@@ -218,14 +218,14 @@ fn devices(machine: &Machine<'_>) -> Devices {
     }
 }
 
-/// Whether this process may install packages without `sudo`.
+/// Returns true if this process may install packages without `sudo`.
 #[cfg(unix)]
 fn is_root() -> bool {
     // The owner of a process's folder is its effective user; the standard library has no `geteuid`.
     fs::metadata("/proc/self").is_ok_and(|own| std::os::unix::fs::MetadataExt::uid(&own) == 0)
 }
 
-/// Whether this process may install packages without `sudo`: no package manager here needs it.
+/// Returns true: package managers on this system need no `sudo`.
 #[cfg(not(unix))]
 fn is_root() -> bool {
     false

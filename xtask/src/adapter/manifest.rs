@@ -1,4 +1,4 @@
-//! Vulkan driver manifests: where they lie, and which library each names.
+//! Vulkan driver manifests: search order, and the library each names.
 //!
 //! Search order and environment variables follow "Driver Discovery on Linux" of the Vulkan loader's
 //! `LoaderDriverInterface.md`.
@@ -6,16 +6,16 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// Which manifests the loader reads, as files or folders of files.
+/// Manifests that the loader reads, as files or folders of files.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Search {
     /// Files and folders, in the loader's order.
     pub places: Vec<PathBuf>,
-    /// The environment variable that replaces the system's places, if one does.
+    /// Environment variable that replaces the system's places, if one is set.
     pub overridden_by: Option<&'static str>,
 }
 
-/// Where the loader looks, given the environment.
+/// Returns the places where the loader looks for manifests.
 ///
 /// `VK_DRIVER_FILES`, or else the older `VK_ICD_FILENAMES`, replaces every other place;
 /// `VK_ADD_DRIVER_FILES` goes before the system's places.
@@ -49,11 +49,10 @@ pub fn search(variable: &dyn Fn(&str) -> Option<OsString>) -> Search {
     Search { places, overridden_by: None }
 }
 
-/// The value of `library_path` in a manifest's JSON: a file name for the dynamic linker to find, or
-/// a path, absolute or relative to the manifest. `None` where the text holds none.
+/// Returns the value of `library_path` in a manifest's JSON; `None` if there is none. The value is a file name for the
+/// dynamic linker, or a path, absolute or relative to the manifest.
 ///
-/// This reads the one string rather than the whole document: a manifest is written by a driver's
-/// package, and what else it holds does not matter here.
+/// Reads only this string and ignores the rest of the document.
 pub fn library_path(manifest: &str) -> Option<String> {
     let (_, rest) = manifest.split_once("\"library_path\"")?;
     let mut characters = rest.trim_start().strip_prefix(':')?.trim_start().strip_prefix('"')?.chars();
@@ -67,7 +66,7 @@ pub fn library_path(manifest: &str) -> Option<String> {
     }
 }
 
-/// Where `library` of the manifest at `manifest` lies if it is a path, `None` if it is a bare name.
+/// Returns the path of a manifest's library; `None` if it is a bare file name.
 pub fn explicit_path(manifest: &Path, library: &str) -> Option<PathBuf> {
     // `join` with an absolute path yields that path.
     library.contains('/').then(|| manifest.parent().unwrap_or(manifest).join(library))

@@ -1,4 +1,4 @@
-//! Which commands install Mesa's software Vulkan driver, or what checks ask for, with the system's package manager.
+//! Commands that install Mesa's software Vulkan driver, or tools for tests, with the system's package manager.
 
 use std::fmt;
 use std::process::Command;
@@ -24,11 +24,11 @@ impl fmt::Display for Line {
     }
 }
 
-/// How to install the driver: attempts, the next one tried where one fails; each attempt is a
-/// sequence of command lines that must all succeed. Neither list is ever empty.
+/// Steps that install a package. If an attempt fails, the next one is tried. An attempt is a sequence of command lines
+/// that must all succeed. Neither list is ever empty.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Install {
-    /// The attempts, likeliest first.
+    /// Attempts, the most promising first.
     pub attempts: Vec<Vec<Line>>,
 }
 
@@ -39,7 +39,7 @@ impl fmt::Display for Install {
     }
 }
 
-/// What is installed.
+/// Packages to install.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Want {
     /// Mesa's lavapipe and the Vulkan loader.
@@ -48,14 +48,14 @@ pub enum Want {
     Checks,
 }
 
-/// A package manager: what it is called, where it is at home, how it installs.
+/// A package manager: its name, its distributions and its commands.
 struct Manager {
     program: &'static str,
-    /// `ID` or `ID_LIKE` of the distributions whose own manager this is.
+    /// `ID` or `ID_LIKE` of the distributions that use this manager by default.
     systems: &'static [&'static str],
-    /// Fetches the package lists, for managers that do not do so by themselves.
+    /// Command that fetches package lists; none for managers that fetch them automatically.
     refresh: Option<&'static [&'static str]>,
-    /// Installs the packages behind it.
+    /// Command that installs packages; their names are appended.
     install: &'static [&'static str],
     /// Mesa's lavapipe and the Vulkan loader.
     driver: &'static [&'static str],
@@ -106,13 +106,13 @@ const MANAGERS: &[Manager] = &[
     },
 ];
 
-/// How to install something on a machine with these facts.
+/// Returns the steps to install a package on this machine.
 ///
-/// The manager of the distribution is preferred to one that merely happens to be installed. Lists
-/// are fetched first where there are none, and otherwise only after a first attempt has failed.
+/// The distribution's own manager is preferred. Lists are fetched first if there are none, and otherwise only after a
+/// failed attempt.
 ///
 /// # Errors
-/// Says why nothing can be installed, and what to do about it.
+/// Returns the reason nothing can be installed, and what to do about it.
 pub fn plan(packages: &Packages, want: Want) -> Result<Install, String> {
     let Packages { system_ids, programs, root, apt_lists, pacman_databases, terminal } = packages;
     let present = |manager: &&Manager| programs.contains(&manager.program);
@@ -131,7 +131,7 @@ pub fn plan(packages: &Packages, want: Want) -> Result<Install, String> {
     let prefix: &[&str] = match (root, sudo, terminal) {
         (true, _, _) | (false, false, _) => &[],
         (false, true, true) => &["sudo"],
-        // Nobody is there to type a password.
+        // No terminal: `sudo` must not ask for a password.
         (false, true, false) => &["sudo", "-n"],
     };
     let line = |words: &[&'static str]| Line([prefix, words].concat());
@@ -149,7 +149,7 @@ pub fn plan(packages: &Packages, want: Want) -> Result<Install, String> {
     };
     let install = Install { attempts };
     if !root && !sudo {
-        return Err(format!("run this as root, since there is no sudo here: {install}"));
+        return Err(format!("sudo is not installed; run as root: {install}"));
     }
     Ok(install)
 }
@@ -207,7 +207,7 @@ mod tests {
     fn the_distributions_own_manager_is_preferred() {
         let fedora = facts("fedora", &["apt-get", "dnf"]);
         assert!(shown(&fedora).starts_with("dnf install --assumeyes"));
-        // Known by its kin alone.
+        // A distribution that only its `ID_LIKE` identifies.
         let leap = facts("opensuse-leap suse opensuse", &["apt-get", "zypper"]);
         assert!(shown(&leap).starts_with("zypper --non-interactive install"));
         assert!(shown(&facts("unheard-of", &["apk"])).starts_with("apk add"));

@@ -1,47 +1,47 @@
-//! From facts to a verdict: which installed driver can really run here.
+//! Decides which installed driver can run on this machine.
 //!
-//! A manifest alone proves little. Distributions install the drivers of all vendors together, so the
-//! manifests of absent GPUs are common; the loader may be missing; a library may be gone. A driver
-//! counts only with its library and the device it drives.
+//! A manifest alone proves little. Distributions install the drivers of all vendors together, so manifests of absent
+//! GPUs are common. The loader or a library may be missing. A driver counts only together with its library and the
+//! device it drives.
 
 use super::facts::{Devices, Driver, Graphics};
 
-/// Whether something can render here.
+/// Verdict on whether rendering is possible.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Yes: the usable drivers in words, hardware first.
+    /// A driver can run: description of the usable drivers, hardware first.
     Usable(String),
-    /// No, and a software driver would help: why nothing is usable.
+    /// No driver can run, and installing a software driver would help: the reason.
     Missing(String),
-    /// No, and installing helps nothing, because a variable shuts out what is installed.
+    /// No driver can run, and installing one would not help, because an environment variable replaces the search path.
     Overridden {
-        /// The environment variable.
+        /// Name of the environment variable.
         variable: &'static str,
-        /// Why what it names is not usable.
+        /// Reason the drivers it names are not usable.
         reason: String,
     },
 }
 
-/// What a driver needs besides its library.
+/// Device that a driver needs besides its library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Needs {
-    /// Nothing: it renders on the CPU.
+    /// No device: the driver renders on the CPU.
     Cpu,
     /// A render node of this PCI vendor.
     Vendor(u32),
     /// NVIDIA's own device file.
     Nvidia,
-    /// The paravirtual device of Windows' Linux subsystem.
+    /// The paravirtual device of the Windows Subsystem for Linux.
     Dxg,
-    /// Any render node: GPUs on a system-on-chip and virtual ones have no vendor of their own.
+    /// Any render node: GPUs on a system-on-chip and virtual GPUs have no vendor id.
     RenderNode,
 }
 
-/// Judges the facts of a machine that needs a Vulkan driver.
+/// Judges the drivers of a machine.
 pub fn judge(graphics: &Graphics) -> Verdict {
     let Graphics { loader, drivers, devices, overridden_by } = graphics;
     let missing = |reason: String| match overridden_by {
-        // Without the loader a driver package helps even so: it brings the loader along.
+        // Without a loader, a driver package still helps: it brings the loader along.
         Some(variable) if loader.is_some() => Verdict::Overridden { variable, reason },
         _ => Verdict::Missing(reason),
     };
@@ -73,7 +73,7 @@ pub fn judge(graphics: &Graphics) -> Verdict {
     Verdict::Usable(format!("Vulkan, {}", found.join(", then ")))
 }
 
-/// What stands between `driver` and running here, in words; `None` if nothing.
+/// Returns the reason `driver` cannot run here; `None` if it can.
 fn lack(driver: &Driver, devices: &Devices) -> Option<&'static str> {
     let Some(_) = driver.library else {
         return Some("is not readable as a manifest");
@@ -100,7 +100,7 @@ fn lack(driver: &Driver, devices: &Devices) -> Option<&'static str> {
     }
 }
 
-/// What `driver` needs, told by the names of its library and manifest.
+/// Returns the device that `driver` needs, judged by the names of its library and manifest.
 fn needs(driver: &Driver) -> Needs {
     const NAMES: &[(&str, Needs)] = &[
         ("lvp", Needs::Cpu),
@@ -175,7 +175,7 @@ mod tests {
         assert!(refusal(&machine(mesa(), node(Some(0x10de), true))).contains("has no device"));
         let closed = refusal(&machine(mesa(), node(Some(0x8086), false)));
         assert!(closed.contains("intel_icd.x86_64.json may not open its device"), "{closed}");
-        // A kernel that does not tell the vendor leaves the question to the driver.
+        // If the kernel does not report the vendor, the driver counts as usable.
         assert!(found(&machine(mesa(), node(None, true))).contains("intel_icd.x86_64.json"));
     }
 

@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: what compiling costs, beside a peer, and what executing costs the CPU.
+//! `cargo xtask bench`: measures compilation, beside a peer, and the CPU time of execution.
 
 use super::{Command, frames};
 use crate::options::Options;
@@ -10,33 +10,32 @@ pub const COMMAND: Command = Command {
     summary: "measure the compiler, also beside a peer of the registry, and the back end",
     details: "\
 Stages:
-  compile  nanoseconds and, where valgrind is installed, instructions a declared
-           pass on the graphs that peers were measured on; heap aliasing; memory
+  compile  time per declared pass on the graphs that peers were measured on, and
+           instructions if valgrind is installed; heap aliasing; memory
   peers    the same chain compiled by framegraph and by zenfg 0.2, in one process
-  execute  the CPU's part of a frame, on wgpu's device that validates and draws
-           nothing, so that no driver is measured
-  overhead what executing adds to the same calls of wgpu made by hand, in time and,
-           where valgrind is installed, in instructions
-  scenes   frames of 10,000 to 1,000,000 nodes on the same device; culling
+  execute  CPU time of a frame on wgpu's noop device, which validates but does
+           not draw, so that no driver is measured
+  overhead cost of executing a plan, compared to the same wgpu calls by hand, in
+           time, and in instructions if valgrind is installed
+  scenes   frames of 10,000 to 1,000,000 nodes on the noop device; culling
 
-All print sections in Markdown, of which docs/performance.md is made. The peer
-asks for a newer compiler than the workspace and is built with
---ignore-rust-version. Nothing is asserted: times depend on the machine and on
-what else it does.
+Each stage prints a section of docs/performance.md. The peer needs a newer
+compiler than the workspace and is built with --ignore-rust-version. The command
+checks no limits, since times depend on the machine and its load.
 
-With --frames instead, whole frames: each preset over six built-in scenes at
-1280x720 and 1920x1080, as it is, with a depth prepass, and without dropping,
-merging, inlining and aliasing. Hours on a software driver; less of it by
+With --frames, measures whole frames instead: each preset over six built-in
+scenes at 1280x720 and 1920x1080, with default options, with a depth prepass, and
+without culling, merging, inlining and aliasing. This takes hours on a software
+driver. Options select a part:
   --scene NAME      one scene: a built-in one, or a file
   --preset NAME     one preset
   --size WxH        one size
-  --rounds N        runs of each, in turns (3)
-  --with ARGS       more arguments for `render`, with spaces between; of six
-                    frames each the median, unless `--frames N` is among them
-  --beside COMMAND  in turns with a command of another renderer, of whose output
-                    the last number before `ms` is its time; in it {scene}, {size}
-                    and {preset} are those of the row. The last column is what our
-                    frame takes of that
+  --rounds N        alternating runs per variant (3)
+  --with ARGS       additional arguments for `render`, separated by spaces; the
+                    default is `--frames 6`, whose median counts
+  --beside COMMAND  also run a command of another renderer; its time is the last
+                    number before `ms` in its output. {scene}, {size} and {preset}
+                    are replaced. The last column is our time divided by its time
 ",
     run,
 };
@@ -47,7 +46,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     }
     let own = ["--scene", "--preset", "--size", "--beside", "--with", "--rounds"];
     if let Some(name) = own.into_iter().find(|name| options.has(name)) {
-        return Err(Failure::Usage(format!("`{name}` goes together with `--frames` only")));
+        return Err(Failure::Usage(format!("`{name}` needs `--frames`")));
     }
     let compile = stage::run("compile", &mut workspace::cargo(&["bench", "--quiet", "--package", "framegraph"]));
     let peers = ["run", "--quiet", "--profile", "bench", "--ignore-rust-version", "-p", "peers", "-F", "peer"];
@@ -56,7 +55,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     let mut render =
         workspace::cargo(&["run", "--quiet", "--release", "--package", "examples", "--bin", "render", "--"]);
     let execute = stage::run("execute", render.args(frames).env("WGPU_BACKEND", "noop"));
-    // As a program that ships them: optimized, and not linked as a whole, which would take minutes.
+    // Builds optimized, as a shipped program, but without link-time optimization, which would take minutes.
     let of = |package: &str, bench: &'static str| {
         let arguments = ["bench", "--quiet", "--profile", "release", "--package", package, "--bench", bench];
         stage::run(bench, &mut workspace::cargo(&arguments))

@@ -1,4 +1,4 @@
-//! `cargo xtask circles`: files that use each other.
+//! `cargo xtask circles`: lists files that use each other.
 
 use super::Command;
 use crate::options::Options;
@@ -11,42 +11,43 @@ use std::path::{Path, PathBuf};
 /// The command.
 pub const COMMAND: Command = Command {
     name: "circles",
-    summary: "list circles of files in the rooms, and what closes them",
+    summary: "list cycles of files that use each other",
     details: "\
-Reads the product code of the viewer, framegraph, framegraph/pack, framegraph/queues,
-shaders, scene, renderer and passes, and lists files that use each other, straight or through others, with the names by
-which they do. Declaring a module and re-exporting its items is no use. A test
-of this program fails where there is a circle.
+Reads the product code of the viewer, framegraph, framegraph/pack,
+framegraph/queues, shaders, scene, renderer and passes. Lists cycles of files that
+use each other, directly or through others, with the names they use. Declaring a
+module and re-exporting its items does not count as a use. Exit code 1 if there
+is a cycle; a test of this program checks the same.
 ",
     run,
 };
 
-/// The rooms whose files may not go in circles.
+/// Packages whose files must not form cycles.
 const ROOMS: [&str; 8] =
     ["examples/viewer", "framegraph", "framegraph/pack", "framegraph/queues", "shaders", "scene", "renderer", "passes"];
 
-/// One circle.
+/// One cycle of files.
 struct Circle {
     /// The files, from the workspace's root.
     files: Vec<PathBuf>,
-    /// What closes it: a line for each pair of files.
+    /// Uses that close the cycle: one line for each pair of files.
     lines: Vec<String>,
 }
 
 fn run(_: &Options) -> Result<(), Failure> {
     let found = found(&workspace::root()).map_err(Failure::Failed)?;
     for Circle { files, lines } in &found {
-        program::line(format_args!("a circle of {} files:", files.len()));
+        program::line(format_args!("cycle of {} files:", files.len()));
         lines.iter().for_each(|line| program::line(format_args!("  {line}")));
     }
     if found.is_empty() {
-        program::line(format_args!("no circle of files in {}", ROOMS.join(", ")));
+        program::line(format_args!("no cycle of files in {}", ROOMS.join(", ")));
         return Ok(());
     }
-    Err(Failure::Failed(format!("{} circles of files", found.len())))
+    Err(Failure::Failed(format!("{} cycles of files", found.len())))
 }
 
-/// The circles of all rooms that there are.
+/// Returns the cycles of every package in [`ROOMS`] that exists.
 fn found(root: &Path) -> Result<Vec<Circle>, String> {
     let mut all = Vec::new();
     for room in ROOMS.iter().filter(|room| root.join(room).is_dir()) {
@@ -71,14 +72,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_file_goes_in_a_circle() {
+    fn no_files_form_a_cycle() {
         let found = found(&workspace::root()).expect("the rooms can be read");
         let told: Vec<String> = found.iter().map(|circle| circle.lines.join("\n")).collect();
         assert!(told.is_empty(), "files that use each other:\n\n{}", told.join("\n\n"));
     }
 
     #[test]
-    fn a_circle_is_told_with_what_closes_it() {
+    fn a_cycle_is_reported_with_its_uses() {
         let tree = crate::tree::Tree::new(&[
             ("passes/src/lib.rs", "mod a; mod b; pub use a::A;"),
             ("passes/src/a.rs", "use super::b::B; pub struct A;"),

@@ -1,4 +1,4 @@
-//! `cargo xtask demo`: render the built-in scenes, and say what was made.
+//! `cargo xtask demo`: renders the built-in scenes and lists the written files.
 
 use std::fs;
 use std::io::Read as _;
@@ -19,11 +19,11 @@ program. Each writes SCENE.png and its plan (text and DOT) into target/demo/.
     run,
 };
 
-/// The scenes, all built in: a demo needs no file. The first is the main job.
+/// Built-in scenes, which need no file. The first is the main example.
 const SCENES: [&str; 3] = ["spheres", "columns", "materials"];
 /// Picture size in pixels, width by height, as an option and as numbers.
 const SIZE: (&str, (u32, u32)) = ("1280x720", (1280, 720));
-/// Where everything goes, from the workspace's root.
+/// Output folder, relative to the workspace's root.
 const FOLDER: &str = "target/demo";
 
 fn run(options: &Options) -> Result<(), Failure> {
@@ -35,7 +35,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     stage::run("build", &mut workspace::cargo(&build)).result.map_err(|reason| failed("build", reason))?;
     let mut made = Vec::new();
     for scene in SCENES {
-        // What an earlier run left must not pass for this one's work.
+        // Files of an earlier run must not be mistaken for results of this one.
         for old in files_of(&folder, scene) {
             fs::remove_file(&old).map_err(|error| failed(&old.display().to_string(), error.to_string()))?;
         }
@@ -50,7 +50,7 @@ fn run(options: &Options) -> Result<(), Failure> {
         }
         made.extend(files_of(&folder, scene));
     }
-    program::line(format_args!("== made, in {FOLDER}:"));
+    program::line(format_args!("== written to {FOLDER}:"));
     for file in made {
         let length_bytes = fs::metadata(&file).map_or(0, |metadata| metadata.len());
         let name = file.file_name().unwrap_or_default().to_string_lossy();
@@ -59,7 +59,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The arguments of `cargo` that render `scene`.
+/// Returns the arguments of `cargo` that render `scene`.
 fn arguments(scene: &str) -> Vec<String> {
     let fixed = ["run", "--quiet", "--release", "--package", "examples", "--bin", "render", "--"].map(str::to_owned);
     let out = format!("{FOLDER}/{scene}.png");
@@ -68,7 +68,7 @@ fn arguments(scene: &str) -> Vec<String> {
     [fixed.as_slice(), &own].concat()
 }
 
-/// The files in `folder` that belong to `scene`: of its name, with any extension; sorted.
+/// Returns the files of `scene` in `folder`, with any extension, sorted.
 fn files_of(folder: &Path, scene: &str) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let files = entries.map(|entry| entry.path()).filter(|path| path.is_file());
@@ -77,7 +77,7 @@ fn files_of(folder: &Path, scene: &str) -> Vec<PathBuf> {
     files
 }
 
-/// Width and height of a PNG in pixels, from its header (PNG third edition, section 11.2.1).
+/// Reads the size of a PNG in pixels from its header (PNG third edition, section 11.2.1).
 fn png_size(path: &Path) -> Result<(u32, u32), String> {
     let mut header = [0; 24];
     fs::File::open(path).and_then(|mut file| file.read_exact(&mut header)).map_err(|error| error.to_string())?;

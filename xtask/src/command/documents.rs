@@ -1,4 +1,4 @@
-//! `cargo xtask documents`: whether the documents hold what the programs print that they name.
+//! `cargo xtask documents`: compares the tables in docs/ with the output of the programs that print them.
 
 use super::Command;
 use crate::options::Options;
@@ -8,28 +8,28 @@ use std::fs;
 /// The command.
 pub const COMMAND: Command = Command {
     name: "documents",
-    summary: "print every table of docs/ anew, the long runs too, and compare",
+    summary: "print every table of docs/ again, long runs too, and compare",
     details: "\
 Runs the programs that print the tables of docs/proofs.md, docs/image-light.md,
-docs/half-floats.md, docs/hard-cases.md, docs/occlusion.md, docs/reflections.md, docs/taa.md, docs/lights.md and
-docs/references.md, in release and in full, and says which printed rows the document does not have.
-Columns of times are left out. Tables of other documents that have a mark are
-compared by tests, and those of docs/performance.md are what `cargo xtask bench`
-prints: tests hold what follows from other figures of a row.
-It takes about a quarter of an hour. Figures that depend on how a device rounds
-are those of Mesa's software driver. Exit code 1 if a row is missing or a program fails.
+docs/half-floats.md, docs/hard-cases.md, docs/occlusion.md, docs/reflections.md,
+docs/taa.md, docs/lights.md and docs/references.md, in release and with all cases.
+Lists printed rows that the document lacks. Columns of times are ignored. Marked
+tables of other documents are compared by tests. `cargo xtask bench` prints the
+tables of docs/performance.md, and tests check that their figures are consistent.
+The command takes about 15 minutes. Figures that depend on rounding are those of
+Mesa's software driver. Exit code 1 if a row is missing or a program fails.
 ",
     run,
 };
 
-/// What prints a part of a document.
+/// A program whose output is part of a document.
 struct Printed {
     document: &'static str,
-    /// The program of the package `tests`, and its arguments.
+    /// Program of the package `tests`, then its arguments.
     program: &'static [&'static str],
-    /// The table behind this mark alone; all tables without one.
+    /// Mark in front of the table to compare; without one, all tables are compared.
     mark: Option<&'static str>,
-    /// The program may fail: rows that it prints say so themselves.
+    /// The program may fail: its rows then say what failed.
     may_fail: bool,
 }
 
@@ -75,7 +75,8 @@ fn run(_: &Options) -> Result<(), Failure> {
     for Printed { document, program, mark, may_fail } in PRINTED {
         let path = workspace::root().join(document);
         let text = fs::read_to_string(&path).map_err(|error| Failure::Failed(format!("{document}: {error}")))?;
-        let part = part_of(&text, mark).ok_or_else(|| Failure::Failed(format!("{document} has no such table")))?;
+        let part = part_of(&text, mark)
+            .ok_or_else(|| Failure::Failed(format!("{document}: the table `{}` is missing", mark.unwrap_or("-"))))?;
         let mut command =
             workspace::cargo(&["run", "--quiet", "--release", "--package", "tests", "--bin", program[0], "--"]);
         let mut lines = Vec::new();
@@ -88,24 +89,24 @@ fn run(_: &Options) -> Result<(), Failure> {
         }
         for row in missing(part, &lines) {
             left += 1;
-            program::line(format_args!("{document} has not: {row}"));
+            program::line(format_args!("{document}: missing row: {row}"));
         }
     }
     if left == 0 {
         Ok(())
     } else {
-        Err(Failure::Failed(format!("{left} rows are not in the documents, or programs failed")))
+        Err(Failure::Failed(format!("{left} rows missing from documents, or programs failed")))
     }
 }
 
-/// The lines behind a mark, up to the end of its table.
+/// Returns the lines between a mark and the end of its table.
 fn part_of<'a>(document: &'a str, mark: Option<&str>) -> Option<&'a str> {
     let Some(mark) = mark else { return Some(document) };
     let (_, after) = document.split_once(&format!("<!-- table: {mark} -->"))?;
     after.split_once("<!-- end -->").map(|(table, _)| table)
 }
 
-/// Rows of tables without their columns of times.
+/// Returns the rows of tables, with columns of times removed.
 fn rows<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut times: Vec<bool> = Vec::new();
     let mut inside = false;
@@ -123,7 +124,7 @@ fn rows<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<String> {
         }
         let kept = cells.iter().zip(times.iter().chain(std::iter::repeat(&false)));
         let kept: Vec<&str> = kept.map(|(cell, time)| if *time { "…" } else { cell }).collect();
-        // The line under the head is as wide as the table happens to be.
+        // The separator below the head varies with the width of the table.
         if !kept.iter().all(|cell| cell.chars().all(|c| c == '-' || c == '…')) {
             rows.push(kept.join(" | "));
         }
@@ -131,7 +132,7 @@ fn rows<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<String> {
     rows
 }
 
-/// Printed rows that do not stand in the document behind the one before them.
+/// Returns printed rows that the document lacks at or after the position of the previous row.
 fn missing(document: &str, printed: &[String]) -> Vec<String> {
     let documented = rows(document.lines());
     let mut from = 0;
@@ -172,7 +173,7 @@ mod tests {
         assert!(part_of(DOCUMENT, Some("z")).is_none());
     }
 
-    /// Marked tables that tests compare by themselves, each with a file that does.
+    /// Marked tables that tests compare, each with the file of its test.
     const TESTED: [(&str, &str); 13] = [
         ("extensions", "scene/src/import/extension.rs"),
         ("facts", "tests/tests/it/facts/table.rs"),

@@ -1,4 +1,5 @@
-//! `cargo xtask bench --frames`: whole frames of each preset over built-in scenes, with and without what a graph is for.
+//! `cargo xtask bench --frames`: measures whole frames of each preset over built-in scenes, with and without
+//! optimizations of the graph.
 
 use crate::options::Options;
 use crate::{Failure, workspace};
@@ -6,11 +7,11 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::Command;
 
-/// Scenes that differ in what they call for.
+/// Scenes with different workloads.
 const SCENES: [&str; 6] = ["spheres", "columns", "materials", "glass", "lobes", "lamps:100"];
 const PRESETS: [&str; 4] = ["low", "medium", "high", "ultra"];
 const SIZES: [&str; 2] = ["1280x720", "1920x1080"];
-/// What is left out of the frame, or kept in it that it would leave out, with the options that do so; the first changes nothing.
+/// Optimizations that are switched off, with the options that do so; the first row changes nothing.
 const WITHOUT: [(&str, &[&str]); 6] = [
     ("as it is", &[]),
     ("a prepass", &["--enable", "prepass"]),
@@ -19,26 +20,26 @@ const WITHOUT: [(&str, &[&str]); 6] = [
     ("no inlining", &["--inline", "off"]),
     ("no aliasing", &["--alias", "none"]),
 ];
-/// How often each is run unless it is said, in turns, so that all see the same machine.
+/// Default number of runs per variant. Variants alternate, so that all see the same state of the machine.
 const ROUNDS: usize = 3;
 
-/// Of how many frames the median is taken, unless `--with` says so.
+/// Default number of frames for the median; `--with` overrides it.
 const FRAMES: [&str; 2] = ["--frames", "6"];
 
-/// What a table is made with.
+/// Options of a table.
 struct Asked<'a> {
-    /// Runs of each.
+    /// Runs per variant.
     rounds: usize,
-    /// More arguments for `render`.
+    /// Additional arguments for `render`.
     with: Vec<String>,
-    /// Another renderer's command.
+    /// Command of another renderer to compare with.
     beside: Option<&'a OsString>,
 }
 
-/// Measures, and prints a table in Markdown.
+/// Measures frames and prints a table in Markdown.
 ///
 /// # Errors
-/// When an option has no meaning, when `render` cannot be built, when a run fails, and when another program prints no time.
+/// An invalid option, a failed build or run of `render`, or another program that prints no time.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let asked = asked(options)?;
     let build = ["build", "--quiet", "--release", "--package", "examples", "--bin", "render"];
@@ -54,7 +55,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     heads.extend(WITHOUT.iter().map(|(name, _)| *name));
     heads.extend(asked.beside.iter().flat_map(|_| ["the other", "ratio"]));
     program::print(format!(
-        "Medians of frames in ms, by the device's clock where it has one; {} of each in turns.\n\n| {} |\n|{}\n",
+        "Median frame times in ms: GPU times if the device has timestamps. Variants alternate; {} each.\n\n| {} |\n|{}\n",
         if asked.rounds == 1 { "one run".to_owned() } else { format!("{} runs", asked.rounds) },
         heads.join(" | "),
         " --- |".repeat(heads.len())
@@ -72,7 +73,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The median of each variant's rounds, and of the other program's.
+/// Returns the median time of each variant, then of the other program, in ms.
 fn row(frame: [&str; 3], asked: &Asked<'_>) -> Result<Vec<f64>, Failure> {
     let mut times = vec![Vec::new(); WITHOUT.len() + usize::from(asked.beside.is_some())];
     for _ in 0..asked.rounds {
@@ -90,7 +91,7 @@ fn row(frame: [&str; 3], asked: &Asked<'_>) -> Result<Vec<f64>, Failure> {
     Ok(times.into_iter().map(median).collect())
 }
 
-/// What the command line says beside scenes, presets and sizes.
+/// Reads the options other than scenes, presets and sizes.
 fn asked(options: &Options) -> Result<Asked<'_>, Failure> {
     let rounds = match options.value("--rounds").map(|text| text.to_string_lossy()) {
         None => ROUNDS,
@@ -98,14 +99,14 @@ fn asked(options: &Options) -> Result<Asked<'_>, Failure> {
             .parse()
             .ok()
             .filter(|rounds| *rounds > 0)
-            .ok_or_else(|| Failure::Usage(format!("`--rounds {text}`: a whole number of at least 1 is needed")))?,
+            .ok_or_else(|| Failure::Usage(format!("`--rounds {text}`: not a whole number of at least 1")))?,
     };
     let with = options.value("--with").map(|text| text.to_string_lossy().into_owned()).unwrap_or_default();
     let with = with.split_whitespace().map(str::to_owned).collect();
     Ok(Asked { rounds, with, beside: options.value("--beside") })
 }
 
-/// Another renderer's command for the frame of a row.
+/// Inserts scene, preset and size into the command of another renderer.
 fn filled(command: &str, [scene, preset, size]: [&str; 3]) -> String {
     command.replace("{scene}", scene).replace("{preset}", preset).replace("{size}", size)
 }
@@ -119,23 +120,23 @@ fn ours([scene, preset, size]: [&str; 3], more: &[&str], with: &[String]) -> Res
         command.args(FRAMES);
     }
     let text = output(command.args(more).args(with), &format!("render {scene} --preset {preset}"))?;
-    frame_ms(&text).ok_or_else(|| Failure::Failed(format!("render {scene}: no row of the frame was printed")))
+    frame_ms(&text).ok_or_else(|| Failure::Failed(format!("render {scene}: no row `frame` in its output")))
 }
 
-/// The median of the row `frame`: the GPU's where there is one.
+/// Returns the median of the row `frame` in ms: GPU time if it was measured, else CPU time.
 fn frame_ms(text: &str) -> Option<f64> {
     let row = text.lines().find(|line| line.starts_with("| frame |"))?;
     let cells: Vec<&str> = row.split('|').map(str::trim).collect();
     let number = |index: usize| cells.get(index).and_then(|cell| cell.parse::<f64>().ok());
-    // Step, passes, and least, quartile and median of both sides.
+    // Columns: step, passes, then minimum, quartile and median for CPU and GPU.
     number(8).or_else(|| number(5))
 }
 
-/// The time that another program prints: the last number before `ms`.
+/// Returns the time that another program prints: the last number before `ms`.
 fn others(command: &str) -> Result<f64, Failure> {
     let (shell, option) = if cfg!(windows) { ("cmd", "/C") } else { ("sh", "-c") };
     let text = output(Command::new(shell).arg(option).arg(command), command)?;
-    printed_ms(&text).ok_or_else(|| Failure::Failed(format!("{command}: it prints no number before `ms`")))
+    printed_ms(&text).ok_or_else(|| Failure::Failed(format!("{command}: its output has no number before `ms`")))
 }
 
 fn printed_ms(text: &str) -> Option<f64> {

@@ -1,4 +1,4 @@
-//! `cargo xtask gallery`: render the pictures of docs/gallery.md.
+//! `cargo xtask gallery`: renders the pictures of docs/gallery.md.
 
 use std::fs;
 use std::path::Path;
@@ -12,25 +12,24 @@ pub const COMMAND: Command = Command {
     name: "gallery",
     summary: "build in release and render the pictures of docs/gallery.md",
     details: "\
-Renders what docs/gallery.md shows into docs/gallery/, by the commands that it
-states. FlightHelmet is not part of the repository: where it is missing, its
-pictures stay as they are, and a line says so; tests/assets/README.md says where
-to find it.
+Renders the pictures of docs/gallery.md into docs/gallery/ by the commands listed
+there. FlightHelmet is not part of the repository; if it is missing, its pictures
+are kept and a message says so. tests/assets/README.md says where to find it.
 ",
     run,
 };
 
-/// Where the pictures go, from the workspace's root.
+/// Folder of the pictures, relative to the workspace's root.
 const FOLDER: &str = "docs/gallery";
-/// Where plans go: they are not shown.
+/// Folder of the plans, which the gallery does not show.
 const PLANS: &str = "target/gallery";
-/// The most a picture may take in bytes.
-const MOST_BYTES: u64 = 60_000;
+/// Maximum size of a picture, in bytes.
+const MAX_BYTES: u64 = 60_000;
 
 /// A model that is too large for the repository.
 const HELMET: &str = "tests/assets/models/FlightHelmet/FlightHelmet.gltf";
 
-/// The pictures: a name, what is rendered, and under which light.
+/// The pictures: name, model, and options for the light.
 const PICTURES: [(&str, Model, &str); 28] = [
     ("balls-studio", Model::Balls, "--environment tests/assets/hdri/studio.hdr"),
     ("balls-sunset", Model::Balls, "--environment tests/assets/hdri/sunset.hdr"),
@@ -66,7 +65,7 @@ const PICTURES: [(&str, Model, &str); 28] = [
     ("helmet-park", Model::Helmet, "--environment tests/assets/hdri/park.hdr"),
 ];
 
-/// What is rendered.
+/// Model to render.
 #[derive(Clone, Copy)]
 enum Model {
     Balls,
@@ -97,7 +96,7 @@ impl Model {
         }
     }
 
-    /// The file it is in; none if it is built in.
+    /// Returns the file of the model; `None` for built-in models.
     fn file(self) -> Option<&'static str> {
         match self {
             Self::Helmet => Some(HELMET),
@@ -106,10 +105,10 @@ impl Model {
     }
 }
 
-/// All words of `render` for a picture, as the document states them.
+/// Returns the arguments of `render` for a picture, as the document lists them.
 fn words((name, model, light): (&str, Model, &str)) -> String {
     let model = model.words();
-    // What is added up over frames is shown after some.
+    // Effects that accumulate over frames need several of them.
     let frames = if light.contains("--frames") { "" } else { " --frames 1" };
     format!("{model} {light} --dither 0{frames} --out {FOLDER}/{name}.png --plan {PLANS}/{name}.txt")
 }
@@ -141,20 +140,20 @@ fn run(options: &Options) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A repository keeps what it is given for ever.
+/// Checks the size of a picture: the history of a repository keeps every version.
 fn small(picture: &Path) -> Result<(), String> {
     let length = fs::metadata(picture).map_err(|error| format!("{}: {error}", picture.display()))?.len();
-    if length <= MOST_BYTES {
+    if length <= MAX_BYTES {
         return Ok(());
     }
-    Err(format!("{}: {length} bytes are more than {MOST_BYTES}; make the picture smaller", picture.display()))
+    Err(format!("{}: {length} bytes exceed the limit of {MAX_BYTES}; reduce the picture size", picture.display()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The document states the command of every picture, the pictures are there, and none is large.
+    /// The document lists the command of every picture, every picture exists, and none is too large.
     #[test]
     fn the_document_shows_every_picture_with_its_command() {
         let document = include_str!("../../../docs/gallery.md");

@@ -1,4 +1,4 @@
-//! `cargo xtask mutants`: which planted faults no test notices.
+//! `cargo xtask mutants`: mutation testing of shaders and passes.
 
 use super::Command;
 use crate::Failure;
@@ -16,22 +16,21 @@ pub const COMMAND: Command = Command {
     name: "mutants",
     summary: "plant faults one at a time, and list those that no test notices",
     details: "\
-Rooms, all of them if none is named, each after the other if several are:
-  wgsl       shaders/wgsl; texts are replaced when tests start, so that nothing
-             is built anew
-  occlusion  the passes of ambient occlusion; the same
+Sets of files, all of them by default:
+  wgsl       shaders/wgsl; replaced when a test starts, without a rebuild
+  occlusion  the shaders of ambient occlusion; replaced in the same way
   passes     upload, view, sun and drawing; built in a copy of the workspace
-  layout     shaders/src/layout; the same
+  layout     shaders/src/layout; built in a copy of the workspace
 
-Each room has a sample of its faults tried, the same ones each time. It takes
-up to an hour and tells how far it is; interrupted, it goes on where it was, as
-long as the tests are the same. Exit code 1 if a fault is neither
-noticed nor explained in xtask/src/mutant/explained.rs.
+Changes one line of the source at a time, and runs tests until one fails. Tries a
+fixed sample of each set, which takes up to an hour, and prints its progress. An
+interrupted run resumes if the tests are unchanged. Exit code 1 if a mutant is
+neither detected nor explained in xtask/src/mutant/explained.rs.
 
-  --all         every fault instead of a sample: hours
-  --count N     the first N of them instead
-  --list        print the faults that would be tried, and try none
-  --out FILE    write the document there instead of printing it:
+  --all         try every mutant instead of a sample, which takes hours
+  --count N     try the first N mutants instead of a sample
+  --list        print the mutants without running tests
+  --out FILE    write the document to FILE instead of printing it, usually
                 docs/mutants.md
 ",
     run,
@@ -43,7 +42,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     let out = options.value("--out").map(|file| crate::workspace::root().join(file));
     if options.has("--list") {
         if out.is_some() {
-            return Err(Failure::Usage("--out does not go together with --list: no document is made".to_owned()));
+            return Err(Failure::Usage("`--out` cannot be combined with `--list`, which makes no document".to_owned()));
         }
         for room in rooms {
             let mutants = room.mutants()?;
@@ -52,7 +51,7 @@ fn run(options: &Options) -> Result<(), Failure> {
         }
         return Ok(());
     }
-    // The work takes an hour: what cannot be written is better said before it.
+    // The run takes an hour, so an output file that cannot be written is reported first.
     out.as_deref().map_or(Ok(()), writable)?;
     let mut tried = Vec::new();
     for room in rooms {
@@ -61,7 +60,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     let text = document(&tried);
     match out {
         Some(file) => {
-            // Beside its place first: a full disk leaves the old document.
+            // Writes a temporary file first, so that a full disk keeps the old document.
             let part = file.with_extension("part");
             let written = fs::write(&part, text).and_then(|()| fs::rename(&part, &file));
             written.map_err(|error| unwritable(&file, &error))?;
@@ -70,14 +69,14 @@ fn run(options: &Options) -> Result<(), Failure> {
     }
     let left: usize =
         tried.iter().map(|t| t.fates.iter().filter(|(m, f)| *f == Fate::Survived && why(m).is_none()).count()).sum();
-    if left == 0 { Ok(()) } else { Err(Failure::Failed(format!("{left} faults are neither noticed nor explained"))) }
+    if left == 0 { Ok(()) } else { Err(Failure::Failed(format!("{left} mutants are neither detected nor explained"))) }
 }
 
 fn unwritable(file: &Path, error: &std::io::Error) -> Failure {
     Failure::Failed(format!("{}: cannot be written: {error}", file.display()))
 }
 
-/// Whether a file can be written; nothing is changed.
+/// Checks that a file can be written, without changing it.
 fn writable(file: &Path) -> Result<(), Failure> {
     let is_new = fs::symlink_metadata(file).is_err();
     let opened = fs::File::options().append(true).create(true).open(file);
@@ -85,11 +84,11 @@ fn writable(file: &Path) -> Result<(), Failure> {
     if is_new { fs::remove_file(file).map_err(|error| unwritable(file, &error)) } else { Ok(()) }
 }
 
-/// How many of the possible faults are tried.
+/// Returns the number of mutants to try.
 fn count(room: &Room, options: &Options, possible: usize) -> Result<usize, Failure> {
     let asked = match options.value("--count") {
         Some(text) => {
-            let wrong = || Failure::Usage(format!("`--count {}` is no number", text.to_string_lossy()));
+            let wrong = || Failure::Usage(format!("`--count {}` is not a number", text.to_string_lossy()));
             text.to_str().and_then(|text| text.parse().ok()).ok_or_else(wrong)?
         }
         None => room.sample,
@@ -97,7 +96,7 @@ fn count(room: &Room, options: &Options, possible: usize) -> Result<usize, Failu
     Ok(if options.has("--all") { possible } else { asked.min(possible) })
 }
 
-/// Where a fault is planted, and what it is.
+/// Formats a mutant: file, line, and the code before and after.
 fn shown(mutant: &Mutant) -> String {
     let Mutant { file, line, before, after, .. } = mutant;
     format!("{file}:{line}: {before}  ->  {after}")
@@ -107,7 +106,7 @@ fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
     let mutants = room.mutants()?;
     let possible = mutants.len();
     let count = count(room, options, possible)?;
-    program::note(format_args!("{}: the tests without a fault", room.name));
+    program::note(format_args!("{}: running the tests without a mutant", room.name));
     let bench = Bench::new(room)?;
     let asked: Vec<Mutant> = mutants.into_iter().take(count).collect();
     let told = |index: usize, fate: Fate, mutant: &Mutant| {
@@ -115,13 +114,13 @@ fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
             Fate::Left | Fate::Survived if why(mutant).is_some() => "explained",
             Fate::Survived => "SURVIVED",
             Fate::Left => "passes quick tests",
-            Fate::Refused => "refused",
-            Fate::Noticed => "noticed",
+            Fate::Refused => "invalid",
+            Fate::Noticed => "detected",
         };
         program::note(format_args!("{} {}/{count}: {word}: {}", room.name, index + 1, shown(mutant)));
     };
     let quick = bench.fates(&asked, false, |index, fate| told(index, fate, &asked[index]))?;
-    // Tests of seconds are not asked about what no test can see.
+    // Slow tests are not run for mutants that are known to be undetectable.
     let (mut fates, mut left) = (Vec::new(), Vec::new());
     for (mutant, fate) in asked.into_iter().zip(quick) {
         match fate {
@@ -130,7 +129,7 @@ fn try_room(room: &'static Room, options: &Options) -> Result<Tried, Failure> {
             _ => fates.push((mutant, fate)),
         }
     }
-    program::note(format_args!("{}: {} faults pass the quick tests", room.name, left.len()));
+    program::note(format_args!("{}: {} mutants pass the quick tests", room.name, left.len()));
     let found = bench.fates(&left, true, |index, fate| told(index, fate, &left[index]))?;
     fates.extend(left.into_iter().zip(found));
     fates.sort_by(|(a, _), (b, _)| (&a.file, a.line, &a.after).cmp(&(&b.file, b.line, &b.after)));

@@ -1,4 +1,4 @@
-//! `cargo xtask prove`: what the compiler claims, with the figures that prove it.
+//! `cargo xtask prove`: prints docs/proofs.md, the evidence for what the compiler claims.
 
 use super::Command;
 use crate::options::Options;
@@ -7,16 +7,17 @@ use crate::{Failure, stage, workspace};
 /// The command.
 pub const COMMAND: Command = Command {
     name: "prove",
-    summary: "print the proofs that docs/proofs.md holds",
+    summary: "print docs/proofs.md",
     details: "\
-Prints the document: memory beside its lower bound and beside brute force, the
-oracle on random graphs, mutants of good plans. It takes a few minutes, tells
-how far it is, and can be interrupted. Paths are from the workspace's root.
+Prints the document: memory compared to its lower bound and to brute force, an
+independent checker on random graphs, and mutants of valid plans. Takes a few
+minutes and prints its progress. Paths are relative to the workspace's root.
 
-  --quick       only what takes seconds; a test compares it with the document
-  --dsa DIR     with offset-assignment instances NAME.CAPACITY.csv; without,
-                their table says that it was skipped
-  --out FILE    write there instead of printing: docs/proofs.md
+  --quick       only the parts that take seconds; a test compares them
+  --dsa DIR     folder of offset-assignment instances NAME.CAPACITY.csv; without
+                it, the document says that their table was skipped
+  --out FILE    write the document to FILE instead of printing it, usually
+                docs/proofs.md
 ",
     run,
 };

@@ -1,4 +1,4 @@
-//! `cargo xtask rooms`: what each room costs who uses it: crates, lines, and time to build.
+//! `cargo xtask rooms`: counts the crates, lines and build time of each package.
 
 use super::Command;
 use crate::options::Options;
@@ -11,33 +11,34 @@ use std::path::{Path, PathBuf};
 /// The command.
 pub const COMMAND: Command = Command {
     name: "rooms",
-    summary: "print the table of docs/rooms.md: crates, lines and build time per room",
+    summary: "print the table of docs/rooms.md: crates, lines and build time per package",
     details: "\
-Prints, for each room, what it was before the rooms were split and what it is:
-the crates that its users compile, how many of them are not wgpu's own, lines of
-Rust without tests, and lines of WGSL. Crates are those of a Linux machine.
+Prints counts for each package at commit f6971f2, before the packages were split,
+and now: crates that a user compiles, crates that wgpu does not need itself, lines
+of Rust without tests, and lines of WGSL. Crates are counted for Linux.
 
-  --build       also build all rooms from nothing in release, in
-                target/rooms, and print the seconds of processor time that
-                rustc takes for each room with everything below it; Linux only
+  --build       also build all packages from scratch in release, in target/rooms,
+                and print rustc's processor time in seconds for each package with
+                its dependencies; Linux only
 ",
     run,
 };
 
-/// One row: a package with features.
+/// One row: a package with a set of features.
 struct Row {
-    /// What it is called.
+    /// Name of the row.
     name: &'static str,
     package: &'static str,
-    /// Options of cargo that choose features.
+    /// Options of cargo that select features.
     features: &'static [&'static str],
-    /// Its folder; none where lines are those of the row above.
+    /// Folder of the package; `None` if the row above counts its lines.
     folder: Option<&'static str>,
-    /// Crates, crates beyond wgpu, lines of Rust and of WGSL, and seconds at commit f6971f2, counted by the same rules.
+    /// Values at commit f6971f2, counted in the same way.
     before: Before,
 }
 
-/// What commit f6971f2 had; a dash where it had no such thing, or where another row has it.
+/// Crates, crates beyond wgpu, lines of Rust, lines of WGSL, and build time in seconds at commit f6971f2. A dash stands
+/// for a value that did not exist or that another row has.
 type Before = [&'static str; 5];
 
 const ROWS: &[Row] = &[
@@ -116,12 +117,12 @@ const ROWS: &[Row] = &[
 /// Crates are counted for one system, so that the table does not depend on where it is printed.
 const TARGET: &str = "x86_64-unknown-linux-gnu";
 
-/// What is counted of one row.
+/// Counts of one row.
 struct Counts {
     crates: BTreeSet<String>,
-    /// Without those that wgpu itself needs; none where wgpu is not among them.
+    /// Number of crates that wgpu does not need itself; `None` if wgpu is not among the crates.
     beyond_wgpu: Option<usize>,
-    /// Lines of Rust and of WGSL; none where the row above has them.
+    /// Lines of Rust and of WGSL; `None` if the row above has them.
     lines: Option<(usize, usize)>,
 }
 
@@ -147,7 +148,7 @@ fn head() -> String {
 fn line(row: &Row, counts: &Counts, seconds: Option<&BTreeMap<String, f64>>) -> String {
     let Counts { crates, beyond_wgpu, lines } = counts;
     let cell = |number: Option<usize>| number.map_or_else(|| "-".to_owned(), |number| number.to_string());
-    // Crates that only build scripts need are not in the tree that is counted, but they are built.
+    // Crates that only build scripts need are built, but are not in the counted tree.
     let seconds = seconds.map(|all| {
         let own = crates.iter().filter_map(|name| name.split(' ').next());
         own.filter_map(|name| all.get(&name.replace('-', "_"))).sum::<f64>().round() as usize
@@ -172,7 +173,7 @@ fn count(root: &Path, row: &Row) -> Result<Counts, String> {
     Ok(Counts { crates, beyond_wgpu, lines })
 }
 
-/// The crates that a row compiles, as a tree: how deep each stands, and its name with its version.
+/// Returns the crates of a row as a tree: depth, then name and version.
 fn tree(root: &Path, row: &Row) -> Result<Vec<(usize, String)>, String> {
     let fixed = ["tree", "--locked", "--edges", "normal", "--prefix", "depth", "--no-dedupe", "--target", TARGET];
     let mut command = workspace::cargo(&fixed);
@@ -180,7 +181,7 @@ fn tree(root: &Path, row: &Row) -> Result<Vec<(usize, String)>, String> {
     let output = command.output().map_err(|error| format!("cargo tree: {error}"))?;
     if !output.status.success() {
         let told = String::from_utf8_lossy(&output.stderr);
-        return Err(format!("cargo tree of {}: {}", row.package, told.trim()));
+        return Err(format!("{}: cargo tree: {}", row.package, told.trim()));
     }
     let parse = |line: &str| {
         let digits = line.find(|c: char| !c.is_ascii_digit())?;
@@ -190,7 +191,7 @@ fn tree(root: &Path, row: &Row) -> Result<Vec<(usize, String)>, String> {
     Ok(String::from_utf8_lossy(&output.stdout).lines().filter_map(parse).collect())
 }
 
-/// A crate and all that stands below it in the tree.
+/// Returns a crate and its dependencies in the tree.
 fn below(tree: &[(usize, String)], name: &str) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut inside = None;
@@ -208,8 +209,7 @@ fn below(tree: &[(usize, String)], name: &str) -> BTreeSet<String> {
     found
 }
 
-/// Lines of a room: of its library's Rust files, docs and comments included, without what only tests compile; and of its
-/// WGSL files.
+/// Counts the lines of a package: Rust files of its library, with comments and without tests, and WGSL files.
 fn lines(root: &Path, folder: &str) -> Result<(usize, usize), String> {
     let library = Crate::read(root, &Path::new(folder).join("src/lib.rs"))?;
     let mut wgsl = 0;
@@ -228,7 +228,7 @@ fn lines(root: &Path, folder: &str) -> Result<(usize, usize), String> {
     Ok((library.lines.iter().sum(), wgsl))
 }
 
-/// Builds all rooms from nothing; seconds of processor time for each crate, by its name.
+/// Builds all packages from scratch. Returns seconds of processor time by crate.
 fn build(root: &Path) -> Result<BTreeMap<String, f64>, Failure> {
     let folder: PathBuf = root.join("target/rooms");
     let failed = |error: std::io::Error| Failure::Failed(format!("{}: {error}", folder.display()));
@@ -252,8 +252,8 @@ mod tests {
 
     const DOCUMENT: &str = include_str!("../../../docs/rooms.md");
 
-    /// Counts of crates are exact, since Cargo.lock fixes them; lines may move by a fiftieth before the table is printed
-    /// again. Build times are as the document says they were measured.
+    /// Crate counts must match, since Cargo.lock fixes them. Lines may differ by 2 % before the table has to be printed
+    /// again. Build times are not compared.
     #[test]
     fn the_document_holds_what_the_command_prints() {
         let (_, after) = DOCUMENT.split_once("<!-- table: rooms -->").expect("the document has the table");
@@ -277,7 +277,7 @@ mod tests {
         assert_eq!(rows.next(), None);
     }
 
-    /// What rooms promise: the compiler alone needs next to nothing, the executor little that wgpu does not.
+    /// Checks the limits on dependencies: the compiler alone needs almost none, and the executor few beyond wgpu.
     fn promised(row: &Row, Counts { crates, beyond_wgpu, .. }: &Counts) {
         match (row.package, row.features) {
             ("framegraph", ["--no-default-features"]) => assert!(crates.len() <= 8, "{crates:?}"),

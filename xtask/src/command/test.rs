@@ -1,6 +1,6 @@
-//! `cargo xtask test`: everything that CI runs.
+//! `cargo xtask test`: runs everything that CI runs.
 //!
-//! All stages run, also after one has failed, so that one run shows everything there is to mend.
+//! A failed stage does not stop the run, so that one run shows every problem.
 
 use std::fs;
 use std::time::Duration;
@@ -14,38 +14,37 @@ use crate::{Failure, adapter, lints, workspace};
 /// The command.
 pub const COMMAND: Command = Command {
     name: "test",
-    summary: "run everything that CI runs: format, lints, documentation, tests",
+    summary: "run everything that CI runs: format, prose, lints, documentation, tests",
     details: "\
-Stages, all of which run even if one fails:
+Stages; a failed stage does not stop the others:
   format  cargo fmt --all -- --check
-  build   every target of the workspace, fuzz targets and the program beside a
-          peer too: each is linted by clippy, and each library documented with
-          its private items; warnings are errors
-  deny    deny.toml but for advisories, where cargo-deny is installed
+  prose   cargo xtask prose: the style of docs, comments and messages
+  build   every target of the workspace, with fuzz targets and benches/peers;
+          clippy lints each, and rustdoc documents each library with private
+          items; warnings are errors
+  deny    deny.toml without advisories, if cargo-deny is installed
   tests   unit, integration and documentation tests
 
-Tests that replay streams under Vulkan's validation layers and tests that open
-windows want those layers and Xvfb, which are installed like a driver; where
-they cannot be, such tests are skipped.
+Some tests need Vulkan's validation layers, or Xvfb to open windows. The command
+installs both like a driver; if that fails, these tests are skipped.
 
-Tests of many cases that draw for long run a third of them, each of which stands
-for its neighbors; docs/time.md lists them.
+Slow tests with many cases run every third case; docs/time.md lists them.
 
-Every pair of effects, options and parts of scenes is drawn by a `render` process
-of its own; --all draws every triple. The summary has the counts of verdicts.
+Every pair of effects, options and scene parts is rendered by its own `render`
+process; --all renders every triple. The summary counts the verdicts.
 
-  --all         all of their cases, in release, and rustdoc of programs too
+  --all         run all cases, build in release, and document programs too
 
-The summary counts the tests, what those that share leave out, and repeats every
-test that skipped, with its reason. Exit code 1 if a stage failed, if no test ran, if none found an adapter,
-or if one skipped for a reason that is not among the known ones.
+The summary counts tests, cases that did not run, and skipped tests with their
+reasons. Exit code 1 if a stage failed, if no test ran, if no test found an
+adapter, or if a test skipped for a reason that is not in xtask/src/tally.rs.
 ",
     run,
 };
 
-/// Features without which what needs more than the workspace does is not built.
+/// Features that enable targets with additional requirements.
 ///
-/// With the same features everywhere, what the packages depend on is compiled once for all commands.
+/// Every command uses the same features, so that dependencies are compiled only once.
 const ON_DEMAND: &str = "framegraph-fuzz/fuzzer,tests-fuzz/fuzzer,peers/peer";
 
 fn run(options: &Options) -> Result<(), Failure> {
@@ -54,12 +53,14 @@ fn run(options: &Options) -> Result<(), Failure> {
     let all = options.has("--all");
     let wrapper = lints::Wrapper::new(&workspace::scratch()?)?;
     let building = |command: &[&str]| building(&wrapper, all, command);
+    let own = std::env::current_exe().map_err(|error| Failure::Failed(format!("own path: {error}")))?;
     let mut outcomes = vec![
         stage::run("format", &mut workspace::cargo(&["fmt", "--all", "--", "--check"])),
+        stage::run("prose", std::process::Command::new(own).arg("prose")),
         stage::run("build", &mut building(&["build", "--keep-going", "--all-targets"])),
     ];
-    // Where the tool is not at hand, a test reads the same lists. Advisories are that test's alone: the tool fetches theirs, and
-    // a run without a network, or on a day with new ones, would say nothing of this commit.
+    // Without cargo-deny, a test reads the same lists. Advisories are left to that test: cargo-deny downloads them, so
+    // its result would depend on the network and the date.
     if stage::is_there(&mut workspace::cargo(&["deny", "--version"])) {
         let check = ["deny", "--all-features", "check", "bans", "licenses", "sources"];
         outcomes.push(stage::run("deny", &mut workspace::cargo(&check)));
@@ -70,11 +71,11 @@ fn run(options: &Options) -> Result<(), Failure> {
     verdict(&outcomes)
 }
 
-/// A command of cargo for the whole workspace that lints and documents what it compiles; in release, and with the
-/// documentation of programs, for all cases.
+/// Returns a cargo command for the whole workspace that also lints and documents. With `all`, it builds in release mode
+/// and documents programs too.
 fn building(wrapper: &lints::Wrapper, all: bool, command: &[&str]) -> std::process::Command {
     let mut cargo = workspace::cargo(command);
-    // What is built on demand may ask for a newer compiler than the workspace does.
+    // Optional targets may need a newer compiler than the workspace.
     cargo.args(["--workspace", "--ignore-rust-version", "--features", ON_DEMAND]);
     if all {
         cargo.arg("--release");
@@ -83,7 +84,7 @@ fn building(wrapper: &lints::Wrapper, all: bool, command: &[&str]) -> std::proce
     cargo
 }
 
-/// Runs the tests, in all cases or with a share of some, with a file for what they have to report.
+/// Runs the tests, all cases or a subset, and collects their reports from a file.
 fn tests(mut command: std::process::Command, all: bool) -> Result<(Outcome, Totals, Reported), Failure> {
     let log = workspace::scratch()?.join("skips.log");
     fs::write(&log, "").map_err(|error| Failure::Failed(format!("{}: {error}", log.display())))?;
@@ -104,7 +105,7 @@ fn tests(mut command: std::process::Command, all: bool) -> Result<(Outcome, Tota
     Ok((outcome, totals, reported))
 }
 
-/// What the command prints last.
+/// Returns the summary that the command prints last.
 fn summary(outcomes: &[Outcome], totals: Totals, reported: &Reported, expected: &str) -> String {
     let Totals { runs, passed, failed, ignored } = totals;
     let Reported { skips, shares, results, adapters } = reported;
@@ -119,7 +120,7 @@ fn summary(outcomes: &[Outcome], totals: Totals, reported: &Reported, expected: 
     text += &format!("  tests: {passed} passed, {failed} failed, {ignored} ignored, in {runs} runs\n");
     let [ran, all] = reported.cases();
     if ran < all {
-        text += &format!("  cases: {ran} of {all} run in tests that share; --all runs all\n");
+        text += &format!("  cases: {ran} of {all} in tests that run a part; --all runs all\n");
         for (test, [ran, all]) in shares {
             text += &format!("    {test}: {ran} of {all}\n");
         }
@@ -127,7 +128,7 @@ fn summary(outcomes: &[Outcome], totals: Totals, reported: &Reported, expected: 
     for result in results {
         text += &format!("  {result}\n");
     }
-    text += &format!("  skips: {}, known ones allowed: {}\n", skips.len(), tally::known_skips());
+    text += &format!("  skips: {}, allowed: {}\n", skips.len(), tally::known_skips());
     for skip in skips {
         text += &format!("    SKIP: {skip}\n");
     }
@@ -140,7 +141,7 @@ fn summary(outcomes: &[Outcome], totals: Totals, reported: &Reported, expected: 
     text
 }
 
-/// Success, or the stages that failed.
+/// Returns an error that names the failed stages.
 fn verdict(outcomes: &[Outcome]) -> Result<(), Failure> {
     let failed: Vec<_> =
         outcomes.iter().filter(|outcome| outcome.result.is_err()).map(|outcome| outcome.name).collect();
@@ -181,9 +182,9 @@ mod tests {
             "clippy   FAILED     1.5 s     2.5 s of processor time  (exit status: 101)",
             "  8 s of processor time",
             "7 passed, 1 failed, 0 ignored, in 2 runs",
-            "cases: 3 of 9 run in tests that share; --all runs all\n    looks: 3 of 9\n",
+            "cases: 3 of 9 in tests that run a part; --all runs all\n    looks: 3 of 9\n",
             "\n  pairs: 44 ok\n",
-            "skips: 1, known ones allowed: ",
+            "skips: 1, allowed: ",
             "\n    SKIP: image: no f16",
             "adapter: llvmpipe (Vulkan)\n",
         ] {

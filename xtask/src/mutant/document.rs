@@ -1,14 +1,14 @@
-//! `docs/mutants.md`, as `cargo xtask mutants` prints it.
+//! Text of `docs/mutants.md`.
 
 use crate::mutant::explained::why;
 use crate::mutant::judge;
 use crate::mutant::plant::{Kind, Mutant};
 use crate::mutant::run::Fate;
 
-/// A room's faults and what became of them.
+/// Mutants of a room with their results.
 pub struct Tried {
     pub name: &'static str,
-    /// How many faults can be planted.
+    /// Number of possible mutants.
     pub possible: usize,
     pub fates: Vec<(Mutant, Fate)>,
 }
@@ -18,7 +18,7 @@ impl Tried {
         self.fates.iter().filter(|(mutant, fate)| of(mutant, *fate)).count()
     }
 
-    /// Share of the faults that compile and are neither noticed nor explained, in percent.
+    /// Percentage of compiled mutants that are neither detected nor explained.
     pub fn unexplained_percent(&self) -> f64 {
         let valid = self.count(|_, fate| fate != Fate::Refused).max(1);
         100.0 * self.survivors(false).count() as f64 / valid as f64
@@ -30,43 +30,43 @@ impl Tried {
     }
 }
 
-/// The document.
+/// Returns the document.
 pub fn document(rooms: &[Tried]) -> String {
     let mut text = format!(
-        "# Planted faults\n\n\
-         Printed by `cargo xtask mutants{named} --out docs/mutants.md`: operators, comparisons, constants and channels\n\
-         are changed and statements left out, one at a time, and tests run: each alone, those alone that compile the faulty line, the likeliest\n\
-         first, until one falls: those of up to {quick} seconds of processor time, and where all of those pass longer ones, each\n\
-         kind for up to {asked} seconds. A fault that the compiler refuses does not count. Faults are tried in the order of a\n\
-         hash of file, line and faulty line (FNV-1a), so that a sample is even, and the same one each time; `--all` tries every\n\
-         one, `--count N` as many as that. A room that is not here was not asked about; `cargo xtask mutants --help` has all.\n",
+        "# Mutation testing\n\n\
+         Printed by `cargo xtask mutants{named} --out docs/mutants.md`. A mutant changes an operator, comparison, constant or\n\
+         vector component, or removes a statement. Tests run one at a time until one fails, the most likely first, and only tests\n\
+         that compile the changed line. Tests of up to {quick} s of processor time run first, then longer ones, each group for up to\n\
+         {asked} s. Mutants that do not compile are invalid and not counted.\n\n\
+         Mutants are drawn in the order of a hash (FNV-1a) of file, line and changed line, so a sample is uniform and reproducible.\n\
+         `--all` tries every mutant, `--count N` the first N. `cargo xtask mutants --help` lists all sets of files.\n",
         named = rooms.iter().map(|room| format!(" {}", room.name)).collect::<String>(),
         quick = judge::QUICK,
         asked = judge::ASKED,
     );
     for room in rooms {
         text += &format!(
-            "\n## {}\n\n{} of {} possible faults; {:.1} % are neither noticed nor explained.\n\n",
+            "\n## {}\n\n{} of {} possible mutants; {:.1} % are neither detected nor explained.\n\n",
             room.name,
             room.fates.len(),
             room.possible,
             room.unexplained_percent()
         );
         text +=
-            "| fault | tried | refused | noticed | explained | unexplained |\n| --- | --- | --- | --- | --- | --- |\n";
+            "| kind | tried | invalid | detected | explained | unexplained |\n| --- | --- | --- | --- | --- | --- |\n";
         for kind in Kind::ALL {
             text += &row(room, kind.name(), |mutant| mutant.kind == kind);
         }
         text += &row(room, "all", |_| true);
         if room.survivors(true).next().is_some() {
-            text += "\n| where | the line | with the fault | why no test can see it |\n| --- | --- | --- | --- |\n";
+            text += "\n| file | line | mutant | why no test can detect it |\n| --- | --- | --- | --- |\n";
             for mutant in room.survivors(true) {
                 let why = why(mutant).unwrap_or_default();
                 text += &format!("| {} | {} | {} | {why} |\n", mutant.file, cell(&mutant.before), cell(&mutant.after));
             }
         }
         if room.survivors(false).next().is_some() {
-            text += "\nUnexplained:\n\n| where | the line | with the fault |\n| --- | --- | --- |\n";
+            text += "\nUnexplained:\n\n| file | line | mutant |\n| --- | --- | --- |\n";
             for mutant in room.survivors(false) {
                 text += &format!("| {} | {} | {} |\n", mutant.file, cell(&mutant.before), cell(&mutant.after));
             }
@@ -84,7 +84,7 @@ fn row(room: &Tried, name: &str, of: impl Fn(&Mutant) -> bool) -> String {
     format!("| {name} | {tried} | {refused} | {noticed} | {explained} | {unexplained} |\n")
 }
 
-/// A line of code in a cell of a table.
+/// Formats a line of code for a table cell.
 fn cell(code: &str) -> String {
     if code.is_empty() { "(left out)".to_owned() } else { format!("`{}`", code.replace('|', "\\|")) }
 }

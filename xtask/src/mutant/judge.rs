@@ -1,5 +1,5 @@
-//! Tests as judges: each runs alone in a process, so that the first that falls ends a fault, and is known by the lines of WGSL
-//! that it compiles, so that it runs for faults in those alone.
+//! Tests that judge mutants. Each test runs alone in a process, so the first failure ends the run of a mutant. A test
+//! runs only for mutants in lines of WGSL that it compiles.
 
 use crate::Failure;
 use crate::mutant::plant::Mutant;
@@ -12,56 +12,56 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// One test of a program.
+/// One test of a test program.
 #[derive(Debug, Default)]
 pub struct Test {
-    /// Its program, as the index of it among the room's.
+    /// Index of the test program among the room's programs.
     pub program: usize,
-    /// The package that the program is of.
+    /// Package of the test program.
     pub package: String,
     pub name: String,
-    /// Processor time that it takes without a fault, where the system tells it.
+    /// Processor time without a mutant, in seconds; wall-clock time if the system does not report it.
     pub seconds: f64,
-    /// Lines of WGSL that it compiles: `lib/ggx.wgsl:12`.
+    /// Lines of WGSL that the test compiles, such as `lib/ggx.wgsl:12`.
     lines: BTreeSet<String>,
-    /// How many faults of each file it was asked about, and how many it noticed.
+    /// Mutants per file: how many the test ran for, and how many it detected.
     seen: Mutex<BTreeMap<String, [u32; 2]>>,
-    /// It was seen to pass without a fault.
+    /// True once the test has passed without a mutant.
     sound: AtomicBool,
 }
 
-/// Tests of no more processor time than this are asked about all faults before others are asked about any, in seconds.
+/// Maximum processor time of a quick test, in seconds. Quick tests run for all mutants before slow tests run for any.
 pub const QUICK: f64 = 4.0;
 
-/// Processor time for which quick tests are asked about a fault at the most, and others again, in seconds: a line that all
-/// of them compile would else be asked about for minutes.
+/// Maximum processor time per mutant, in seconds, for the quick tests and again for the slow ones. Without it, a line
+/// that every test compiles would take minutes.
 pub const ASKED: f64 = 45.0;
 
-/// What a test says.
+/// Result of a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Says {
     Passed,
-    /// It falls, or comes to no end.
+    /// The test fails or does not terminate.
     Fell,
-    /// It falls because a replaced text does not compile.
+    /// The test fails because the replaced shader does not compile.
     Refused,
 }
 
-/// A text of WGSL in the place of another: the folder in which it lies, and its path there.
+/// Replacement of a WGSL file: the folder with the replaced text, and the path of the file in it.
 pub type Replaced<'a> = Option<(&'a Path, &'a str)>;
 
 impl Test {
-    /// What one noticed fault of a file is likely to cost: what was seen of that file counts for more than the rest, and of
-    /// much that is compiled a test judges less.
+    /// Estimates the cost of detecting one mutant of a file. Results for the same file weigh most, and a test that
+    /// compiles much code detects less per line.
     fn cost(&self, file: &str) -> f64 {
         let seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         let weighted = seen.iter().map(|(of, counts)| (if of == file { 8 } else { 1 }, counts));
         let [asked, noticed] = weighted.fold([2, 1], |sum, (by, counts)| [0, 1].map(|i| sum[i] + by * counts[i]));
-        // What every process takes.
+        // The constant 0.2 is the start-up time of a process in seconds.
         (0.2 + self.seconds) * self.lines.len().max(1) as f64 * f64::from(asked) / f64::from(noticed)
     }
 
-    /// Counts a fault of a file.
+    /// Counts a mutant of a file.
     pub fn count(&self, file: &str, noticed: bool) {
         let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         let counts = seen.entry(file.to_owned()).or_default();
@@ -69,16 +69,16 @@ impl Test {
         counts[1] += u32::from(noticed);
     }
 
-    /// Whether it compiles the line of a fault.
+    /// Returns true if the test compiles the mutant's line.
     fn reaches(&self, mutant: &Mutant) -> bool {
         let path = mutant.file.trim_start_matches("shaders/wgsl/");
         self.lines.contains(&format!("{path}:{}", mutant.line))
     }
 
-    /// Runs it with a fault in `file`.
+    /// Runs the test with a mutant in `file`.
     ///
     /// # Errors
-    /// When the program cannot be started.
+    /// The program cannot be started.
     pub fn run(&self, program: &Path, folder: &Path, file: &str, replaced: Replaced<'_>) -> Result<Says, Failure> {
         let (says, _) = run(program, folder, &self.name, self.seconds, replaced, None)?;
         if says != Says::Refused {
@@ -89,10 +89,11 @@ impl Test {
 }
 
 impl Test {
-    /// Whether it passes without a fault, which it is asked once: else it would notice everything.
+    /// Returns true if the test passes without a mutant; it is run once. A test that always fails would detect
+    /// everything.
     ///
     /// # Errors
-    /// When the program cannot be started.
+    /// The program cannot be started.
     pub fn is_sound(&self, program: &Path, folder: &Path) -> Result<bool, Failure> {
         let passes =
             || run(program, folder, &self.name, self.seconds, None, None).map(|(says, _)| says == Says::Passed);
@@ -102,13 +103,13 @@ impl Test {
     }
 }
 
-/// What there is to say of a test that is not.
+/// Returns the error for a test that fails without a mutant.
 pub fn unsound(name: &str) -> Failure {
-    Failure::Failed(format!("`{name}` falls without any fault"))
+    Failure::Failed(format!("test `{name}` fails without a mutant"))
 }
 
-/// The tests to ask about a fault: `first` before all others, then what is likely to tell soonest. In Rust, whose lines are
-/// not known, all of them.
+/// Returns the tests to run for a mutant: `first`, then the ones most likely to fail soon. For Rust, whose compiled
+/// lines are unknown, all tests are returned.
 pub fn asked<'t>(tests: &'t [Test], mutant: &Mutant, first: Option<&str>) -> Vec<&'t Test> {
     let known = |test: &&Test| !mutant.file.ends_with(".wgsl") || test.reaches(mutant);
     let mut asked: Vec<&Test> = tests.iter().filter(known).collect();
@@ -120,10 +121,10 @@ pub fn asked<'t>(tests: &'t [Test], mutant: &Mutant, first: Option<&str>) -> Vec
     asked
 }
 
-/// The names of the tests of a program that begin with one of `filters`, but for those that begin with one of `without`.
+/// Returns the names of tests that start with one of `filters` and with none of `without`.
 ///
 /// # Errors
-/// When the program cannot be started.
+/// The program cannot be started.
 pub fn names(program: &Path, filters: &[&str], without: &[&str]) -> Result<Vec<String>, Failure> {
     let output = Command::new(program).args(["--list", "--format", "terse"]).output();
     let output = output.map_err(|error| unstarted(program, &error))?;
@@ -133,10 +134,10 @@ pub fn names(program: &Path, filters: &[&str], without: &[&str]) -> Result<Vec<S
     Ok(names.filter(|name| begins(name, filters) && !begins(name, without)).map(str::to_owned).collect())
 }
 
-/// Runs a test without a fault to learn what it takes and compiles.
+/// Runs a test without a mutant to measure its time and the lines it compiles.
 ///
 /// # Errors
-/// When it falls, or cannot be started.
+/// The test fails, or cannot be started.
 pub fn learn(program: &Path, folder: &Path, name: String, notes: &Path) -> Result<Test, Failure> {
     let _ = fs::remove_file(notes);
     let (says, seconds) = run(program, folder, &name, f64::INFINITY, None, Some(notes))?;
@@ -148,9 +149,9 @@ pub fn learn(program: &Path, folder: &Path, name: String, notes: &Path) -> Resul
     Ok(Test { name, seconds, lines, sound: AtomicBool::new(true), ..Test::default() })
 }
 
-/// Runs one test of a program, and tells how much processor time it took, where the system tells it, or else how long. One
-/// that takes half a minute of it and twenty times what it took without a fault has no end, nor has one that takes two minutes
-/// and a hundred times that long by the clock.
+/// Runs one test and returns its processor time, or wall-clock time if the system does not report that. A test counts
+/// as endless after 30 s of processor time and 20 times its normal time. It also does after 120 s and 100 times its
+/// normal time by the clock.
 fn run(
     program: &Path,
     folder: &Path,
@@ -161,7 +162,7 @@ fn run(
 ) -> Result<(Says, f64), Failure> {
     let mut command = Command::new(program);
     command.args(["--exact", name]).current_dir(folder).env("NODEVICE_SELECT", "1").env("RUST_BACKTRACE", "0");
-    // Mesa's software driver compiles a shader of a fault once: without optimization that takes half of the time.
+    // Mesa's software driver compiles each mutant's shader only once: without optimization that takes half the time.
     command.env("GALLIVM_PERF", "nopt").env("FRAMEGRAPH_TESTS", "all");
     if let Some((folder, _)) = replaced {
         command.env("FRAMEGRAPH_WGSL", folder);
@@ -197,7 +198,7 @@ fn run(
     if status.success() {
         return Ok((Says::Passed, took));
     }
-    // A text that does not compile is refused with its place.
+    // A shader that does not compile is reported with its location.
     let placed = |path: &str| {
         let path = format!("{path}:");
         text.split(&path).skip(1).any(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
@@ -210,7 +211,7 @@ fn unstarted(path: &Path, error: &std::io::Error) -> Failure {
     Failure::Failed(format!("{}: {error}", path.display()))
 }
 
-/// What was learned of tests with texts of this hash, as a file keeps it.
+/// Formats measurements of tests for a file; `texts` is the hash of the shaders.
 pub fn written<'t>(texts: u64, tests: impl IntoIterator<Item = &'t Test>) -> String {
     let line = |test: &Test| {
         let lines: Vec<&str> = test.lines.iter().map(String::as_str).collect();
@@ -219,7 +220,7 @@ pub fn written<'t>(texts: u64, tests: impl IntoIterator<Item = &'t Test>) -> Str
     tests.into_iter().fold(format!("{texts:016x}\n"), |text, test| text + &line(test))
 }
 
-/// What a file kept of tests; nothing if the texts are others.
+/// Reads measurements of tests from a file; empty if the hash of the shaders differs.
 pub fn read(texts: u64, text: &str) -> Vec<Test> {
     let test = |line: &str| {
         let mut words = line.split(' ');
@@ -244,13 +245,13 @@ mod tests {
     }
 
     #[test]
-    fn tests_that_compile_the_line_are_asked_the_likeliest_first() {
+    fn tests_that_compile_the_line_run_with_the_likeliest_first() {
         let tests = [test("slow", 9.0, &["a.wgsl:1"]), test("quick", 1.0, &["a.wgsl:1"]), test("other", 0.1, &[])];
         let fault = &mutants("shaders/wgsl/a.wgsl", "a = b + c;", Language::Wgsl)[0];
         let names = |first| asked(&tests, fault, first).iter().map(|test| test.name.as_str()).collect::<Vec<_>>();
         assert_eq!(names(None), ["quick", "slow"]);
         assert_eq!(names(Some("slow")), ["slow", "quick"]);
-        // Twenty faults that the quick one did not see, and the slow one saw them all.
+        // The quick test missed twenty mutants that the slow one detected.
         (0..20).for_each(|_| tests[1].count("a.wgsl", false));
         (0..20).for_each(|_| tests[0].count("a.wgsl", true));
         assert_eq!(names(None), ["slow", "quick"]);

@@ -1,5 +1,6 @@
-//! What became of faults, kept in `target/mutants` for as long as the tests are the same: an interrupted run goes on where it
-//! was. Of other tests it is kept which of them noticed a fault, since that one is likely to notice it again.
+//! Results of mutants, stored in `target/mutants` while the test programs are unchanged, so that an interrupted run
+//! resumes. If the tests change, only the name of the test that detected each mutant is kept, since it is likely to
+//! detect it again.
 
 use crate::mutant::plant::Mutant;
 use crate::mutant::run::Fate;
@@ -11,17 +12,18 @@ use std::path::{Path, PathBuf};
 const WORDS: [(Fate, &str); 4] =
     [(Fate::Refused, "refused"), (Fate::Noticed, "noticed"), (Fate::Left, "left"), (Fate::Survived, "survived")];
 
-/// The fates of a room's faults by their rank.
+/// Results of a room's mutants by rank.
 #[derive(Default)]
 pub struct Kept {
     file: PathBuf,
     fates: BTreeMap<u64, Fate>,
-    /// Which test noticed a fault last, and in which file.
+    /// Last test that detected each mutant, with the mutant's file.
     noticed_by: BTreeMap<u64, (String, String)>,
 }
 
 impl Kept {
-    /// Those in `file` if they were judged by programs of this hash, else only what is likely: then the file begins anew.
+    /// Reads stored results if the hash of the test programs matches. Otherwise keeps only the detecting tests, and
+    /// starts the file anew.
     pub fn read(file: &Path, judge: u64) -> Self {
         let text = fs::read_to_string(file).unwrap_or_default();
         let head = format!("judge {judge:016x}");
@@ -39,28 +41,28 @@ impl Kept {
         }
         if !same {
             let likely = noticed_by.iter().map(|(rank, (test, file))| format!("{rank:016x} likely {test} {file}\n"));
-            // A file that cannot be written costs the next run its time, and no more.
+            // If the file cannot be written, only time is lost on the next run.
             let _ = fs::write(file, format!("{head}\n{}", likely.collect::<String>()));
         }
         Self { file: file.to_owned(), fates, noticed_by }
     }
 
-    /// What is known of a fault.
+    /// Returns the stored result of a mutant.
     pub fn of(&self, mutant: &Mutant) -> Option<Fate> {
         self.fates.get(&mutant.rank()).copied()
     }
 
-    /// The test that is likely to notice a fault.
+    /// Returns the test that is likely to detect a mutant.
     pub fn likely(&self, mutant: &Mutant) -> Option<&str> {
         self.noticed_by.get(&mutant.rank()).map(|(test, _)| test.as_str())
     }
 
-    /// The files of the faults that a test noticed.
+    /// Returns the files of the mutants that a test detected.
     pub fn noticed_by<'k>(&'k self, test: &'k str) -> impl Iterator<Item = &'k str> {
         self.noticed_by.values().filter(move |(by, _)| by == test).map(|(_, file)| file.as_str())
     }
 
-    /// Keeps what became of a fault, and the test that noticed it.
+    /// Stores the result of a mutant, and the test that detected it.
     pub fn keep(&self, mutant: &Mutant, fate: Fate, test: &str) {
         let word = WORDS.iter().find(|(other, _)| *other == fate).map_or("", |(_, word)| word);
         if let Ok(mut file) = OpenOptions::new().append(true).open(&self.file) {

@@ -1,28 +1,28 @@
-//! Where faults can be planted in a text of WGSL or Rust, a line at a time.
+//! Generation of mutants from lines of WGSL or Rust.
 //!
-//! Sources are formatted, so an operator between operands has a blank on either side and a generic bracket has none. What the
-//! compiler refuses is found out later and not counted.
+//! Sources are formatted, so a binary operator has a space on either side and a generic bracket has none. Mutants that
+//! do not compile are discarded later.
 
-/// What kind of fault it is.
+/// Kind of a mutant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    /// `+` for `-`, `*` for `/`, `min` for `max`, and the other way round.
+    /// `+` and `-`, `*` and `/`, `min` and `max` are exchanged.
     Operator,
-    /// A comparison or a connective turned round.
+    /// A comparison or logical operator is inverted.
     Comparison,
-    /// A number a tenth larger, or one more of a whole one.
+    /// A number is increased by a tenth, an integer by 1.
     Constant,
-    /// Another component of a vector, or components in another order.
+    /// A vector component is replaced, or components are reordered.
     Channel,
-    /// A statement that is left out.
+    /// A statement is removed.
     Statement,
 }
 
 impl Kind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 5] = [Self::Operator, Self::Comparison, Self::Constant, Self::Channel, Self::Statement];
 
-    /// In words.
+    /// Returns the name of the kind.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Operator => "operator",
@@ -37,18 +37,18 @@ impl Kind {
 /// One fault in one file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mutant {
-    /// The file, from the workspace's root.
+    /// Path of the file, from the workspace's root.
     pub file: String,
-    /// Counted from 1.
+    /// Line number, from 1.
     pub line: usize,
     pub kind: Kind,
-    /// The line as it stands, and with the fault, without the blanks around them.
+    /// The line before and after the change, trimmed.
     pub before: String,
     pub after: String,
 }
 
 impl Mutant {
-    /// The file's text with the fault in it.
+    /// Returns the file's text with the mutant in it.
     pub fn planted(&self, text: &str) -> String {
         let line = |(i, line): (usize, &str)| {
             if i + 1 == self.line { line.replace(&self.before, &self.after) } else { line.to_owned() }
@@ -56,10 +56,10 @@ impl Mutant {
         text.lines().enumerate().map(line).fold(String::new(), |text, line| text + &line + "\n")
     }
 
-    /// By which samples are drawn: it depends on the fault alone, so that other lines may move.
+    /// Rank by which samples are drawn. It depends only on the mutant, so that inserted lines do not change it.
     pub fn rank(&self) -> u64 {
         let words = [&self.file, &self.before, &self.after];
-        // FNV-1a of 64 bits, and a last multiplication to spread it.
+        // FNV-1a of 64 bits, with a final multiplication to spread the bits.
         let bytes = words.into_iter().flat_map(|word| word.bytes().chain([0]));
         let hash =
             bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
@@ -67,7 +67,7 @@ impl Mutant {
     }
 }
 
-/// Which of the two languages a text is in.
+/// Language of a source text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Language {
     Wgsl,
@@ -100,9 +100,9 @@ const COMPARISONS: [(&str, &str); 8] = [
     (" || ", " && "),
 ];
 
-/// Every fault that can be planted in a text.
+/// Returns every possible mutant of a text.
 pub fn mutants(file: &str, text: &str, language: Language) -> Vec<Mutant> {
-    // Tests stand at the end of a file.
+    // Unit tests are at the end of a file.
     let text = match language {
         Language::Rust => text.split("#[cfg(test)]").next().unwrap_or_default(),
         Language::Wgsl => text,
@@ -137,12 +137,12 @@ pub fn mutants(file: &str, text: &str, language: Language) -> Vec<Mutant> {
     found
 }
 
-/// A line without the comment at its end.
+/// Returns a line without its trailing comment.
 fn code_of(line: &str) -> &str {
     line.split("//").next().unwrap_or_default().trim_end()
 }
 
-/// Lines that compute something. Attributes, imports, declarations of types and of bindings do not.
+/// Returns true for lines that compute something, unlike attributes, imports and declarations of types and bindings.
 fn is_code(code: &str, language: Language) -> bool {
     let code = code.trim();
     let never = ["import", "use ", "pub use", "@group", "@if", "@else", "struct", "#[", "assert", "debug_assert", "}"];
@@ -153,14 +153,14 @@ fn is_code(code: &str, language: Language) -> bool {
         && (language == Language::Wgsl || !code.contains('"') && !rust.iter().any(|start| code.starts_with(start)))
 }
 
-/// An assignment or call that stands on one line of its own.
+/// Returns true for an assignment or call on a single line.
 fn is_statement(code: &str) -> bool {
     let code = code.trim();
     let declares = ["let ", "var ", "const ", "return", "override ", "static ", "break", "continue"];
     code.ends_with(';')
         && !declares.iter().any(|start| code.starts_with(start))
         && (code == "discard;" || code.contains("= ") || code.contains('('))
-        // The last line of a statement of several has more brackets closed than opened.
+        // The last line of a multi-line statement closes more brackets than it opens.
         && code.matches(['(', '[', '{']).count() == code.matches([')', ']', '}']).count()
         && code.starts_with(|c: char| c.is_ascii_alphabetic() || c == '*')
 }
@@ -179,8 +179,8 @@ fn replaced(code: &str, at: usize, length: usize, by: &str) -> String {
     format!("{}{by}{}", &code[..at], &code[at + length..])
 }
 
-/// Numbers with what they become. Floors that keep a division finite, below a thousandth, are left alone: a tenth more of
-/// them shows nowhere.
+/// Returns the numbers of a line with their replacements. Constants below 0.001, which guard divisions, are left alone:
+/// changing them has no visible effect.
 fn numbers(code: &str) -> Vec<(usize, usize, String)> {
     let bytes = code.as_bytes();
     let mut found = Vec::new();
@@ -213,7 +213,8 @@ fn other_number(text: &str) -> Option<String> {
     }
 }
 
-/// Components of vectors: the next one of a single component, several in the opposite order.
+/// Returns vector components with their replacements: the next one for a single component, the reverse order for
+/// several.
 fn channels(code: &str) -> Vec<(usize, usize, String)> {
     let mut found = Vec::new();
     for (dot, _) in code.match_indices('.') {

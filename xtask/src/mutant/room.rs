@@ -1,31 +1,31 @@
-//! What faults are planted in, and which tests judge them.
+//! Files that are mutated, and the tests that judge the mutants.
 
 use crate::mutant::plant::{Language, Mutant, mutants};
 use crate::{Failure, workspace};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Some files with the tests that hold them.
+/// A set of files with their tests.
 #[derive(Debug)]
 pub struct Room {
-    /// What is typed after `cargo xtask mutants`.
+    /// Name on the command line, after `cargo xtask mutants`.
     pub name: &'static str,
     pub language: Language,
-    /// Files and folders, from the workspace's root, and beginnings of files in them that are another room's.
+    /// Files and folders from the workspace's root, and prefixes of files in them that belong to another room.
     pub paths: &'static [&'static str],
     pub without: &'static [&'static str],
-    /// How many faults are tried where not all are asked for.
+    /// Default number of mutants to try.
     pub sample: usize,
-    /// The programs of tests that judge its faults.
+    /// Test programs that judge the mutants.
     pub judges: &'static [Judge],
 }
 
 /// Tests of one program.
 #[derive(Debug)]
 pub struct Judge {
-    /// Options of `cargo test` that choose the program.
+    /// Options of `cargo test` that select the program.
     pub binary: &'static [&'static str],
-    /// Beginnings of names of tests, and of those among them that are left out.
+    /// Prefixes of the names of tests to run, and of those to leave out.
     pub filters: &'static [&'static str],
     pub without: &'static [&'static str],
 }
@@ -33,7 +33,7 @@ pub struct Judge {
 const PASSES: Judge = Judge { binary: &["--package", "framegraph-passes", "--lib"], filters: &[""], without: &[] };
 const SHADERS: Judge =
     Judge { binary: &["--package", "framegraph-shaders", "--lib"], filters: &["layout::"], without: &[] };
-/// The tests across rooms, but for those of plans, documents and programs, and those that take a minute.
+/// Tests across packages, except tests of plans, documents and programs, and tests that take a minute.
 const IT: Judge = Judge {
     binary: &["--package", "tests", "--test", "it"],
     filters: &[
@@ -52,7 +52,7 @@ const IT: Judge = Judge {
         "inputs::",
         "instances::",
         "kept_shadows::",
-        "lamps::",
+        "punctual_lights::",
         "lens::",
         "levels::",
         "light::",
@@ -82,8 +82,8 @@ const IT: Judge = Judge {
     without: &[],
 };
 
-/// Those of them that tell how scenes are uploaded, placed and drawn: of a fault in Rust nobody knows which tests it reaches, so that all
-/// are asked.
+/// Tests of uploading, placing and drawing scenes. It is unknown which tests a line of Rust affects, so all of them
+/// run.
 const DRAWN: Judge = Judge {
     binary: IT.binary,
     filters: &[
@@ -91,7 +91,7 @@ const DRAWN: Judge = Judge {
         "inputs::",
         "instances::",
         "kept_shadows::",
-        "lamps::",
+        "punctual_lights::",
         "levels::",
         "lights::",
         "parts::",
@@ -107,7 +107,7 @@ const DRAWN: Judge = Judge {
     without: &[],
 };
 
-/// The passes of ambient occlusion.
+/// Passes of ambient occlusion.
 const OCCLUSION: &[&str] =
     &["shaders/wgsl/pass/occlusion.wgsl", "shaders/wgsl/pass/structure.wgsl", "shaders/wgsl/pass/bilateral.wgsl"];
 
@@ -141,20 +141,20 @@ pub const ROOMS: &[Room] = &[
 ];
 
 impl Room {
-    /// The room of that name.
+    /// Returns the room with a name.
     ///
     /// # Errors
-    /// [`Failure::Usage`] with those that there are.
+    /// [`Failure::Usage`], which lists the valid names.
     pub fn named(name: &str) -> Result<&'static Self, Failure> {
         let names = || ROOMS.iter().map(|room| room.name).collect::<Vec<_>>().join(", ");
-        let unknown = || Failure::Usage(format!("there is no room `{name}` to plant faults in; there are {}", names()));
+        let unknown = || Failure::Usage(format!("unknown set of files `{name}`; known are {}", names()));
         ROOMS.iter().find(|room| room.name == name).ok_or_else(unknown)
     }
 
-    /// Its files' texts by their names from the workspace's root.
+    /// Returns the texts of the files by path from the workspace's root.
     ///
     /// # Errors
-    /// When a file cannot be read.
+    /// A file cannot be read.
     pub fn sources(&self) -> Result<BTreeMap<String, String>, Failure> {
         let root = workspace::root();
         let mut found = BTreeMap::new();
@@ -168,10 +168,10 @@ impl Room {
         Ok(found)
     }
 
-    /// Every fault that can be planted in it, in the order in which samples are drawn.
+    /// Returns every possible mutant, in sampling order.
     ///
     /// # Errors
-    /// When a file cannot be read.
+    /// A file cannot be read.
     pub fn mutants(&self) -> Result<Vec<Mutant>, Failure> {
         let sources = self.sources()?;
         let mut found: Vec<Mutant> =
@@ -181,10 +181,10 @@ impl Room {
     }
 }
 
-/// The files of a language in `open`, files and folders, but for tests; in alphabetical order.
+/// Returns the files of a language in `open`, a list of files and folders, without tests, sorted.
 ///
 /// # Errors
-/// When a folder cannot be read.
+/// A folder cannot be read.
 pub fn files(open: &[PathBuf], language: Language) -> Result<Vec<PathBuf>, Failure> {
     let (mut open, mut files) = (open.to_vec(), Vec::new());
     let ending = if language == Language::Wgsl { "wgsl" } else { "rs" };

@@ -1,5 +1,5 @@
-//! Faults tried one after the other. WGSL is replaced when tests start, so that nothing is built anew; Rust is built in a copy of
-//! the workspace, which the sources of this one never leave.
+//! Runs the mutants. WGSL is replaced when a test starts, so nothing is rebuilt. Rust is built in a copy of the
+//! workspace; this workspace is never changed.
 
 use crate::mutant::judge::{self, Replaced, Says, Test};
 use crate::mutant::kept::Kept;
@@ -13,39 +13,38 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 
-/// What became of a fault.
+/// Result of a mutant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Fate {
-    /// The compiler refuses it; it does not count.
+    /// It does not compile and is not counted.
     Refused,
-    /// A test falls.
+    /// A test failed.
     Noticed,
-    /// All quick tests pass, and no others were asked.
+    /// All quick tests passed; slow tests have not run.
     Left,
-    /// All tests pass, or those that there was time to ask.
+    /// All tests passed, or as many as the time limit allowed.
     Survived,
 }
 
-/// Where faults are tried.
+/// Environment in which mutants run.
 pub struct Bench<'a> {
     room: &'a Room,
-    /// The workspace that is built: this one, or its copy.
+    /// Workspace that is built: this one, or a copy.
     tree: PathBuf,
     build: PathBuf,
-    /// The tests' programs where no fault has them built anew, in the order of the room's judges.
+    /// Test programs that no mutant rebuilds, in the order of the room's judges.
     built: Vec<PathBuf>,
     tests: Vec<Test>,
     kept: Kept,
-    /// The room's files as they were at first: the workspace may go on meanwhile.
+    /// Original texts of the room's files; the workspace may change during the run.
     sources: BTreeMap<String, String>,
 }
 
 impl<'a> Bench<'a> {
-    /// A bench for the faults of a room.
+    /// Creates a bench for the mutants of a room.
     ///
     /// # Errors
-    /// When the copy of the workspace cannot be made, or the tests do not compile or fail without any fault: then every fault
-    /// would count as noticed.
+    /// The copy of the workspace cannot be written, or the tests fail or do not compile without a mutant.
     pub fn new(room: &'a Room) -> Result<Self, Failure> {
         let root = workspace::root();
         if room.language == Language::Wgsl {
@@ -56,13 +55,13 @@ impl<'a> Bench<'a> {
         let listed = listed.map_err(|error| Failure::Failed(format!("`git ls-files`: {error}")))?;
         for file in String::from_utf8_lossy(&listed.stdout).split('\0').filter(|file| !file.is_empty()) {
             let (from, to) = (root.join(file), tree.join(file));
-            // A file that is as it was keeps its time, and is not built anew.
+            // An unchanged file keeps its time stamp and is not rebuilt.
             let same = fs::read(&from).ok().is_some_and(|bytes| fs::read(&to).is_ok_and(|other| other == bytes));
             if !same && from.exists() {
                 write(&to, &fs::read(&from).map_err(|error| told(&from, &error))?)?;
             }
         }
-        // A folder of its own: cargo names what it builds by paths within a workspace, so the copy's would take the place of ours.
+        // Cargo identifies artifacts by paths within a workspace, so the copy needs its own target folder.
         Self::checked(room, root.join("target/mutants/build"), tree)
     }
 
@@ -72,7 +71,8 @@ impl<'a> Bench<'a> {
         let kept_in = folder.join(format!("{}.fates", room.name));
         let (kept, sources) = (Kept::default(), room.sources()?);
         let mut bench = Self { room, tree, build, built: Vec::new(), tests: Vec::new(), kept, sources };
-        let built = bench.programs()?.ok_or_else(|| Failure::Failed("the tests do not compile".into()))?;
+        let built =
+            bench.programs()?.ok_or_else(|| Failure::Failed("the tests do not compile without a mutant".into()))?;
         let copies = built.iter().enumerate().map(|(judge, program)| bench.copied(judge, program));
         bench.built = copies.collect::<Result<_, _>>()?;
         let mut judges = 0;
@@ -88,15 +88,15 @@ impl<'a> Bench<'a> {
         Ok(bench)
     }
 
-    /// What lines are known by: the texts that they are of.
+    /// Returns the hash of the texts that line numbers refer to.
     fn lines_of(&self) -> u64 {
         let shaders = workspace::root().join("shaders/wgsl");
         let texts = room::files(&[shaders], Language::Wgsl).unwrap_or_default().into_iter().map(fs::read);
         texts.flatten().fold(0, |known, text| hash(known, &text))
     }
 
-    /// Every test with what it takes and compiles: as `file` has it, which all rooms share, or else as a run without a fault
-    /// tells.
+    /// Returns every test with its time and compiled lines, from `file`, which all rooms share, or from a run without a
+    /// mutant.
     fn learned(&self, file: &Path) -> Result<Vec<Test>, Failure> {
         let texts = self.lines_of();
         let known = Mutex::new(judge::read(texts, &fs::read_to_string(file).unwrap_or_default()));
@@ -125,16 +125,16 @@ impl<'a> Bench<'a> {
         Ok(learned)
     }
 
-    /// The folder that a judge runs in: that of its package.
+    /// Returns the working folder of a judge: the folder of its package.
     fn folder(&self, judge: usize) -> PathBuf {
         self.tree.join(self.room.judges[judge].binary[1].trim_start_matches("framegraph-"))
     }
 
-    /// Plants faults one by one and runs the tests: the quick ones, and the others only once those are `done`. Tells what
-    /// became of each, by its index. Texts that are replaced are tried on as many threads as there are processors.
+    /// Runs the quick tests for each mutant, and the slow ones if the quick tests are `done`. Reports each result by
+    /// index. WGSL mutants run on one thread per processor.
     ///
     /// # Errors
-    /// When a file cannot be written, a program cannot be started, or a test falls without a fault.
+    /// A file cannot be written, a program cannot be started, or a test fails without a mutant.
     pub fn fates(
         &self,
         mutants: &[Mutant],
@@ -160,13 +160,13 @@ impl<'a> Bench<'a> {
         Ok(fate)
     }
 
-    /// What became of a fault, and the test that noticed it.
+    /// Returns the result of a mutant, and the test that detected it.
     fn tried(&self, mutant: &Mutant, done: bool, worker: usize) -> Result<(Fate, &str), Failure> {
         let source = self.sources.get(&mutant.file).map_or("", String::as_str);
         let planted = mutant.planted(source);
         if self.room.language == Language::Wgsl {
             let folder = workspace::root().join(format!("target/mutants/{}{worker}", self.room.name));
-            // What an earlier fault has left.
+            // Removes the replaced file of an earlier mutant.
             let _ = fs::remove_dir_all(&folder);
             let path = mutant.file.trim_start_matches("shaders/wgsl/");
             write(&folder.join(path), planted.as_bytes())?;
@@ -183,12 +183,12 @@ impl<'a> Bench<'a> {
         fate
     }
 
-    /// The programs of the judges in their order; none if the sources do not compile.
+    /// Builds the test programs, in the order of the judges; `None` if the sources do not compile.
     fn programs(&self) -> Result<Option<Vec<PathBuf>>, Failure> {
         let mut programs = Vec::new();
         for Judge { binary, .. } in self.room.judges {
             let mut cargo = workspace::cargo(&["test", "--quiet", "--no-run", "--message-format=json"]);
-            // What is built once may take longer to build: the tests then take half of the time.
+            // Programs that are built once use an optimized build, which halves the time of the tests.
             if self.room.language == Language::Wgsl {
                 cargo.arg("--release");
             }
@@ -198,33 +198,32 @@ impl<'a> Bench<'a> {
                 return Ok(None);
             }
             let messages = String::from_utf8_lossy(&output.stdout);
-            // The program that is built as a test, as cargo's JSON names it; others are what the test runs.
+            // Cargo's JSON also lists programs that the test starts; the one built as a test is wanted.
             let is_test = |line: &&str| {
                 let profile = line.split_once("\"profile\":{").and_then(|(_, rest)| rest.split_once('}'));
                 profile.is_some_and(|(profile, _)| profile.contains("\"test\":true"))
             };
             let tests = messages.lines().filter(is_test);
             let mut named = tests.filter_map(|line| line.split_once("\"executable\":\"")?.1.split('"').next());
-            let program = named.next_back().ok_or_else(|| Failure::Failed("cargo names no program of tests".into()))?;
+            let program = named.next_back().ok_or_else(|| Failure::Failed("cargo reported no test program".into()))?;
             programs.push(PathBuf::from(program.replace("\\\\", "\\")));
         }
         Ok(Some(programs))
     }
 
-    /// A copy of a program of tests without a fault: whoever builds in this workspace meanwhile, or a fault that is built where
-    /// it was, does not change the judge.
+    /// Copies a test program without a mutant, so that later builds in this workspace do not replace it.
     fn copied(&self, judge: usize, program: &Path) -> Result<PathBuf, Failure> {
         let folder = self.build.join("mutants/judges");
         let copy = folder.join(format!("{}{judge}", self.room.name));
-        // One that an interrupted run has left running cannot be written over.
+        // A running copy of an interrupted run cannot be overwritten.
         let _ = fs::remove_file(&copy);
         let made = fs::create_dir_all(&folder).and_then(|()| fs::copy(program, &copy));
         made.map_err(|error| told(&copy, &error))?;
         Ok(copy)
     }
 
-    /// Runs test after test until one falls: the quick tests, or when they are `done` the others, as long as
-    /// [`judge::ASKED`] says.
+    /// Runs tests until one fails: quick tests, or slow ones if the quick tests are `done`, within the time of
+    /// [`judge::ASKED`].
     fn judged(
         &self,
         programs: &[PathBuf],
@@ -252,7 +251,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// FNV-1a of 64 bits, going on from `hash`.
+/// Continues an FNV-1a hash of 64 bits.
 fn hash(hash: u64, bytes: &[u8]) -> u64 {
     bytes.iter().fold(hash, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
 }

@@ -1,18 +1,18 @@
-//! Work that several threads share.
+//! Distribution of work over threads.
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Threads that this machine runs at once.
+/// Returns the number of threads that run at the same time.
 pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// What `work` makes of the numbers below `count`, in their order. It is called with the number of its thread, from 0, and
-/// with the number of the item.
+/// Calls `work` for every number below `count` and returns the results in order. Its arguments are the number of the
+/// thread, from 0, and the number of the item.
 ///
 /// # Errors
-/// The first that `work` tells; nothing is begun after it.
+/// The first error of `work`; remaining items are not started.
 pub fn share<T: Send, E: Send>(
     workers: usize,
     count: usize,

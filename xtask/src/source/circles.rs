@@ -1,15 +1,14 @@
-//! Circles: files that use each other, straight or through others.
+//! Cycles of files that use each other, directly or through others.
 
 use super::uses::Uses;
 
-/// Groups of two files or more in which each uses every other, straight or through others (strongly connected
-/// components); files are indices below `count`, sorted.
+/// Returns the strongly connected components of two or more files. Files are indices below `count`, sorted.
 pub fn circles(count: usize, uses: &Uses) -> Vec<Vec<usize>> {
     let reached: Vec<Vec<bool>> = (0..count).map(|file| reachable(file, count, uses)).collect();
     let mut found: Vec<Vec<usize>> = Vec::new();
     for (file, from_here) in reached.iter().enumerate() {
         let circle: Vec<usize> = (0..count).filter(|other| from_here[*other] && reached[*other][file]).collect();
-        // Each is found from its first file.
+        // Each cycle is reported at its first file.
         if circle.len() > 1 && circle[0] == file {
             found.push(circle);
         }
@@ -17,7 +16,7 @@ pub fn circles(count: usize, uses: &Uses) -> Vec<Vec<usize>> {
     found
 }
 
-/// Which files a file leads to.
+/// Marks the files that a file uses, directly or through others.
 fn reachable(from: usize, count: usize, uses: &Uses) -> Vec<bool> {
     let mut reached = vec![false; count];
     let mut open = vec![from];

@@ -1,4 +1,4 @@
-//! The modules of a crate, as its files declare them: what each defines, imports and names.
+//! Modules of a crate as its files declare them: definitions, imports and names.
 
 use super::product::Product;
 use std::collections::{BTreeMap, BTreeSet};
@@ -7,47 +7,47 @@ use std::path::{Path, PathBuf};
 /// One module.
 #[derive(Debug)]
 pub struct Module {
-    /// The file it stands in: index into [`Crate::files`].
+    /// File of the module: index into [`Crate::files`].
     pub file: usize,
-    /// The module around it: index into [`Crate::modules`]; the root's is itself.
+    /// Enclosing module: index into [`Crate::modules`]; the root is its own parent.
     pub parent: usize,
-    /// Modules inside, by name: indices into [`Crate::modules`].
+    /// Child modules by name: indices into [`Crate::modules`].
     pub children: BTreeMap<String, usize>,
-    /// Items that stand in it.
+    /// Items that the module defines.
     pub defines: BTreeSet<String>,
-    /// Its `use` declarations, a name each.
+    /// Imports, one for each name of a `use` declaration.
     pub imports: Vec<Import>,
-    /// Paths and single names in its code, outside of `use`.
+    /// Paths and single names in the code, outside of `use`.
     pub names: BTreeSet<Vec<String>>,
 }
 
 /// One name of a `use` declaration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Import {
-    /// The name it gets here; `*` for all names of the path.
+    /// Imported name; `*` for all names of the path.
     pub name: String,
-    /// The path.
+    /// Imported path.
     pub path: Vec<String>,
-    /// Whether others see it: a re-export.
+    /// True for a re-export.
     pub public: bool,
 }
 
 /// One crate: a library or a program.
 #[derive(Debug)]
 pub struct Crate {
-    /// Its product files, from the crate's folder; the root is the first.
+    /// Product files, relative to the crate's folder; the root comes first.
     pub files: Vec<PathBuf>,
-    /// Lines of each file without those of test items.
+    /// Lines of each file without tests.
     pub lines: Vec<usize>,
-    /// Its product modules; the root is the first.
+    /// Product modules; the root comes first.
     pub modules: Vec<Module>,
 }
 
 impl Crate {
-    /// Reads the crate whose root file is `root`, from `folder`.
+    /// Reads a crate from its root file, relative to `folder`.
     ///
     /// # Errors
-    /// The file that cannot be read, or the module without a file.
+    /// A file that cannot be read, or a module without a file.
     pub fn read(folder: &Path, root: &Path) -> Result<Self, String> {
         let mut found = Self { files: Vec::new(), lines: Vec::new(), modules: Vec::new() };
         let inside = root.parent().unwrap_or(Path::new("")).to_owned();
@@ -55,7 +55,7 @@ impl Crate {
         Ok(found)
     }
 
-    /// Reads `file`, whose child modules stand in the folder `inside`, and returns its module.
+    /// Reads `file`, whose child modules are in the folder `inside`. Returns the index of its module.
     fn add_file(&mut self, folder: &Path, file: &Path, inside: &Path, parent: usize) -> Result<usize, String> {
         let path = folder.join(file);
         let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
@@ -66,7 +66,7 @@ impl Crate {
         self.add_module(folder, (self.files.len() - 1, inside), &words, &mut 0, parent)
     }
 
-    /// Reads the words of one module up to the brace that closes it.
+    /// Reads the tokens of a module up to its closing brace.
     fn add_module(
         &mut self,
         folder: &Path,
@@ -133,7 +133,7 @@ impl Crate {
     }
 }
 
-/// Whether the words before an item end with `pub`, `pub(crate)` or the like.
+/// Returns true if the tokens before an item end with `pub`, `pub(crate)` or similar.
 fn is_public(before: &[&str]) -> bool {
     match before {
         [.., "pub"] => true,
@@ -142,7 +142,7 @@ fn is_public(before: &[&str]) -> bool {
     }
 }
 
-/// Reads one tree of a `use` declaration, after `prefix`.
+/// Reads one tree of a `use` declaration after `prefix`.
 fn import(words: &[&str], at: &mut usize, prefix: &[String], public: bool, found: &mut Vec<Import>) {
     let mut path = prefix.to_vec();
     while let Some(word) = words.get(*at) {
@@ -183,7 +183,7 @@ fn is_name(word: &str) -> bool {
     word.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
-/// The words of code: names, `::`, and other signs one by one. Lifetimes are dropped.
+/// Splits code into names, `::` and single signs. Lifetimes are dropped.
 fn words(code: &str) -> Vec<&str> {
     let mut found = Vec::new();
     let mut rest = code.trim_start();

@@ -1,20 +1,22 @@
-//! The product code of a Rust file: what a user of the crate compiles, without comments, strings and tests.
+//! Product code of a Rust file: code without comments, literals and tests.
 
 use std::ops::Range;
 
-/// A file's code, of the text's length: what is not product code is blank, line breaks stay.
+use super::literals::literals;
+
+/// Code of a file. It has the length of the text; removed parts are blank, and line breaks remain.
 #[derive(Debug)]
 pub struct Product {
-    /// The code, in which comments, the contents of literals and test items are blank.
+    /// Code with comments, contents of literals, and tests replaced by blanks.
     pub code: String,
-    /// Lines of the file, docs and comments included, less those of test items.
+    /// Number of lines with documentation and comments, without tests.
     pub lines: usize,
 }
 
 impl Product {
     /// Reads a file's text.
     pub fn of(text: &str) -> Self {
-        let mut code = without_literals(text.as_bytes());
+        let mut code = without_literals(text);
         let tests = test_items(&code, text);
         let test_lines: usize = tests.iter().map(|range| text[range.clone()].lines().count()).sum();
         tests.into_iter().for_each(|range| blank(&mut code[range]));
@@ -23,7 +25,7 @@ impl Product {
     }
 }
 
-/// Whether a condition of `cfg` holds only in tests or with the feature `testing`.
+/// Returns true if a `cfg` condition holds only in tests or with the feature `testing`.
 fn is_test(condition: &str) -> bool {
     let plain: String = condition.split_whitespace().collect();
     !plain.contains("not(")
@@ -35,96 +37,14 @@ fn blank(bytes: &mut [u8]) {
     bytes.iter_mut().filter(|byte| **byte != b'\n').for_each(|byte| *byte = b' ');
 }
 
-/// The text with comments and the contents of string and character literals blank.
-fn without_literals(text: &[u8]) -> Vec<u8> {
-    let mut code = text.to_vec();
-    let mut at = 0;
-    while at < text.len() {
-        let rest = &text[at..];
-        let in_word = at > 0 && (text[at - 1].is_ascii_alphanumeric() || text[at - 1] == b'_');
-        let length = if rest.starts_with(b"//") {
-            rest.iter().position(|byte| *byte == b'\n').unwrap_or(rest.len())
-        } else if rest.starts_with(b"/*") {
-            block_comment(rest)
-        } else if let Some(length) = raw_string(rest).filter(|_| !in_word) {
-            length
-        } else if rest[0] == b'"' {
-            quoted(rest)
-        } else if rest[0] == b'\'' {
-            character(rest)
-        } else {
-            at += 1;
-            continue;
-        };
-        if length > 1 {
-            blank(&mut code[at..at + length]);
-        }
-        at += length;
-    }
+/// Replaces comments and literals with blanks.
+fn without_literals(text: &str) -> Vec<u8> {
+    let mut code = text.as_bytes().to_vec();
+    literals(text).into_iter().for_each(|(_, range)| blank(&mut code[range]));
     code
 }
 
-fn block_comment(rest: &[u8]) -> usize {
-    let (mut depth, mut at) = (0, 0);
-    while at < rest.len() {
-        match &rest[at..] {
-            [b'/', b'*', ..] => (depth, at) = (depth + 1, at + 2),
-            [b'*', b'/', ..] => (depth, at) = (depth - 1, at + 2),
-            _ => at += 1,
-        }
-        if depth == 0 {
-            break;
-        }
-    }
-    at
-}
-
-/// The length of the raw string that stands here, if one does.
-fn raw_string(rest: &[u8]) -> Option<usize> {
-    let prefix =
-        rest.iter().position(|byte| *byte == b'r').filter(|at| *at == 0 || (*at == 1 && b"bc".contains(&rest[0])))?;
-    let hashes = rest[prefix + 1..].iter().take_while(|byte| **byte == b'#').count();
-    let start = prefix + 1 + hashes;
-    if rest.get(start) != Some(&b'"') {
-        return None;
-    }
-    let end: Vec<u8> = std::iter::once(b'"').chain(std::iter::repeat_n(b'#', hashes)).collect();
-    let inside = &rest[start + 1..];
-    let length = inside.windows(end.len()).position(|window| window == end).map_or(inside.len(), |at| at + end.len());
-    Some(start + 1 + length)
-}
-
-fn quoted(rest: &[u8]) -> usize {
-    let mut at = 1;
-    while at < rest.len() {
-        match rest[at] {
-            b'\\' => at += 2,
-            b'"' => return at + 1,
-            _ => at += 1,
-        }
-    }
-    rest.len()
-}
-
-/// The length of a character literal; 1 where the quote starts a lifetime.
-fn character(rest: &[u8]) -> usize {
-    match rest {
-        [_, b'\\', _, after @ ..] => after.iter().position(|byte| *byte == b'\'').map_or(1, |at| at + 4),
-        [_, b'\'', ..] => 1,
-        [_, first, ..] => {
-            let width = match first {
-                0..0x80 => 1,
-                0x80..0xe0 => 2,
-                0xe0..0xf0 => 3,
-                0xf0.. => 4,
-            };
-            if rest.get(1 + width) == Some(&b'\'') { width + 2 } else { 1 }
-        }
-        _ => 1,
-    }
-}
-
-/// Where items stand that only tests compile, their attributes included.
+/// Returns the ranges of items that only tests compile, with their attributes.
 fn test_items(code: &[u8], text: &str) -> Vec<Range<usize>> {
     let mut found: Vec<Range<usize>> = Vec::new();
     let starts = code.windows(2).enumerate().filter(|(_, pair)| *pair == b"#[" || *pair == b"#!").map(|(at, _)| at);
@@ -143,7 +63,7 @@ fn test_items(code: &[u8], text: &str) -> Vec<Range<usize>> {
     found
 }
 
-/// One past the bracket that closes the one at `open`.
+/// Returns the position after the bracket that closes the one at `open`.
 fn closing(code: &[u8], open: usize) -> usize {
     let mut depth = 0_usize;
     for (at, byte) in code.iter().enumerate().skip(open) {
@@ -159,7 +79,7 @@ fn closing(code: &[u8], open: usize) -> usize {
     code.len()
 }
 
-/// One past the item that follows an attribute which ends at `from`: an item, a field, a variant or a statement.
+/// Returns the position after the item, field, variant or statement that follows an attribute ending at `from`.
 fn item_end(code: &[u8], from: usize) -> usize {
     let blanks = |at: usize| at + code[at..].iter().take_while(|byte| byte.is_ascii_whitespace()).count();
     let mut at = blanks(from);

@@ -1,20 +1,19 @@
-//! Which file of a crate uses which.
+//! Uses between the files of a crate.
 
 use super::module::{Crate, Import, Module};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// For each pair of files, the one that uses and the one that is used (indices into [`Crate::files`]), the names used.
+/// Names used, for each pair of a using and a used file (indices into [`Crate::files`]).
 pub type Uses = BTreeMap<(usize, usize), BTreeSet<String>>;
 
-/// How many re-exports are followed before a name is taken for one from outside.
+/// Maximum number of re-exports to follow before a name counts as external.
 const DEEPEST: usize = 16;
 
-/// Which file uses which, by the paths and imported names in its code.
+/// Returns the uses between files, found by paths and imported names in the code.
 ///
-/// - A declaration (`mod a;`) and a re-export (`pub use a::B;`) are no use; they are one if the same module also names `B`.
-/// - A name counts for the file that defines it, and for those that re-export it on the way: who takes `B` from a module
-///   that re-exports it also depends on that module.
-/// - A private `use` of an item is a use. That of a module is none: the paths through it are.
+/// - A declaration (`mod a;`) or a re-export (`pub use a::B;`) counts as a use only if the same module also names `B`.
+/// - A name counts as a use of the file that defines it and of every file that re-exports it on the way.
+/// - A private `use` of an item counts as a use. A `use` of a module does not; the paths through it do.
 pub fn uses(of: &Crate) -> Uses {
     let mut found = Uses::new();
     for (own, module) in of.modules.iter().enumerate() {
@@ -38,18 +37,18 @@ pub fn uses(of: &Crate) -> Uses {
     found
 }
 
-/// What a path leads to.
+/// Target of a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Place {
     /// A module: index into [`Crate::modules`].
     Module(usize),
-    /// An item by its name, and the files that lead to it: the one that defines it, and those that re-export it on the
-    /// way (indices into [`Crate::files`]).
+    /// An item by name, with the files that lead to it: the defining file, then re-exporting files (indices into
+    /// [`Crate::files`]).
     Item(Vec<usize>, String),
 }
 
 impl Place {
-    /// The same, re-exported by another file.
+    /// Adds a file that re-exports the item.
     fn through(mut self, file: usize) -> Self {
         if let Self::Item(files, _) = &mut self {
             files.push(file);
@@ -68,7 +67,8 @@ fn imported_by_glob(of: &Crate, own: usize, name: &str) -> bool {
     through_globs(of, own, name, 0).is_some()
 }
 
-/// Where a path leads that stands in the module `origin`, read from the module `from` on; `None` where it leads out of the crate.
+/// Resolves a path that occurs in the module `origin`, starting in the module `from`. Returns `None` if it leaves the
+/// crate.
 fn resolve(of: &Crate, (origin, from): (usize, usize), path: &[String], depth: usize) -> Option<Place> {
     let mut at = from;
     for (index, name) in path.iter().enumerate() {
@@ -78,7 +78,7 @@ fn resolve(of: &Crate, (origin, from): (usize, usize), path: &[String], depth: u
             "self" => {}
             "super" => at = module.parent,
             name => {
-                // At a path's end an item of the name comes before a module of the name.
+                // At the end of a path, an item takes precedence over a module with the same name.
                 let item = index + 1 == path.len()
                     && (module.defines.contains(name) || module.imports.iter().any(|import| import.name == name));
                 if let Some(child) = module.children.get(name).filter(|_| !item) {
@@ -92,8 +92,8 @@ fn resolve(of: &Crate, (origin, from): (usize, usize), path: &[String], depth: u
                     Some(Place::Module(next)) => resolve(of, (origin, next), &path[index + 1..], depth + 1),
                     Some(item) if at == origin => Some(item),
                     Some(item) => Some(item.through(module.file)),
-                    // The module names it by means that are not followed, such as a macro; the first name of a path may
-                    // be another crate's.
+                    // The name is introduced in a way that is not followed, such as a macro, or is the name of another
+                    // crate.
                     None => (index > 0 && !module.imports.iter().any(|i| i.name == name)).then_some(here),
                 };
             }
@@ -106,7 +106,7 @@ fn imported(of: &Crate, at: usize, name: &str, depth: usize) -> Option<Place> {
     let module = &of.modules[at];
     let named = module.imports.iter().find(|import| import.name == name);
     named
-        // A path that starts with the name it imports is another crate's: `use wgpu;`.
+        // A path that starts with the name it imports refers to another crate: `use wgpu;`.
         .filter(|import| import.path.first().is_some_and(|first| first != name || module.children.contains_key(first)))
         .and_then(|import| resolve(of, (at, at), &import.path, depth + 1))
         .or_else(|| through_globs(of, at, name, depth))

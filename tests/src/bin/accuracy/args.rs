@@ -1,84 +1,84 @@
-//! The command line of `accuracy`.
+//! Command line of `accuracy`.
 
 use framegraph_passes::budget::Bound;
 use framegraph_scene::builtin;
 use lexopt::prelude::*;
 use std::path::PathBuf;
 
-/// What `--help` prints.
+/// Text of `--help`.
 pub const HELP: &str = "\
-Measures what each approximation of the frame errs by and costs on this adapter.
+Measures the error and cost of each approximation of the frame on this adapter.
 
     accuracy [--quick] [--technique NAME]… [--scene NAME] [--again] [--out DIR]
-    accuracy [--out DIR] --budget-ms MS | --max-error CODES | --verify N
+    accuracy [--out DIR] --budget-ms MS | --max-error X | --verify N
     accuracy [--out DIR] --document | --presets FILE.rs
 
-Writes accuracy.json after each technique (an interrupted run goes on where it
-was), then accuracy.md and accuracy.html. Each option is timed 31 times after 10
-that do not count. Times say something about this adapter alone; nothing else
-should run beside it.
+Writes accuracy.json after each technique, so that an interrupted run can resume,
+then accuracy.md and accuracy.html. Each option is timed in 31 frames after 10
+warm-up frames. Times are valid for this adapter only, on an otherwise idle machine.
 
-  --quick            pictures of 96 × 64 pixels instead of 192 × 128, each
-                     option timed 11 times after 3 that do not count
-  --technique NAME   only this one, measured anew; may be given several times.
-                     `budget` is what options take as parts of one frame
-  --scene NAME       a built-in scene for all pictures, instead of one that calls
-                     for what is compared
-  --again            measure all anew
-  --out DIR          where to; target/accuracy without it
-  --budget-ms MS     of what was measured, the most accurate frame in that time
-  --max-error CODES  the fastest frame that is no farther from the reference,
-                     root mean square in codes of 255
-  --verify N         choose for N random budgets, draw and time what was chosen,
-                     and each swap of one option: must the chosen frames fit?
-  --document         print accuracy.md of the accuracy.json that is there
-  --presets FILE.rs  write what presets have, chosen from the record, as the source
-                     text that `framegraph-passes` is built with
-  -h, --help         print this
+  --quick            pictures of 96 × 64 pixels instead of 192 × 128, 11 timed
+                     frames after 3 warm-up frames
+  --technique NAME   measure only this technique again; can be repeated.
+                     `budget` measures options as parts of one frame
+  --scene NAME       use this built-in scene for all pictures, instead of a scene
+                     that shows the technique
+  --again            measure everything again
+  --out DIR          output folder (target/accuracy)
+  --budget-ms MS     print the most accurate settings within this time, by the
+                     record
+  --max-error X      print the fastest settings whose root mean square error is at
+                     most X 8-bit steps, by the record
+  --verify N         choose settings for N random budgets, then draw and time them
+                     and each change of one option; fails if budgets are missed
+  --document         print accuracy.md from the existing accuracy.json
+  --presets FILE.rs  write the presets chosen from the record as the source file
+                     that `framegraph-passes` is built with
+  -h, --help         print this help
 ";
 
-/// What says how and what is measured.
+/// Options that apply only to measuring.
 const MEASURING: [&str; 4] = ["quick", "technique", "scene", "again"];
 
-/// What to do.
+/// Action to perform.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wanted {
-    /// Print how it is called.
+    /// Print the help.
     Help,
-    /// Measure.
+    /// Measure techniques.
     Measure,
-    /// Print the document of the record.
+    /// Print the record as a document.
     Document,
-    /// Write what presets have, as source text.
+    /// Write the presets as Rust source.
     Presets(PathBuf),
-    /// Choose within a time or an error.
+    /// Choose settings within a budget of time or error.
     Budget(Bound),
-    /// Choose for so many random budgets, and draw what was chosen.
+    /// Choose settings for this many random budgets, and draw them.
     Verify(usize),
 }
 
-/// What was asked for.
+/// Parsed options.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Args {
-    /// What to do.
+    /// Action to perform.
     pub wanted: Wanted,
-    /// The short run.
+    /// True for the short run.
     pub quick: bool,
-    /// Whether what is there is measured anew.
+    /// True to measure recorded techniques again.
     pub again: bool,
-    /// Names; all where there are none.
+    /// Names of techniques; all if empty.
     pub techniques: Vec<String>,
-    /// Scene of all pictures; none for that of each technique.
+    /// Scene of all pictures; if `None`, each technique uses its own.
     pub scene: Option<&'static str>,
-    /// Folder.
+    /// Output folder.
     pub out: PathBuf,
 }
 
 impl Args {
-    /// From the command line.
+    /// Parses the command line.
     ///
     /// # Errors
-    /// In a sentence.
+    /// The option that is wrong, as one sentence.
     pub fn parse() -> Result<Self, lexopt::Error> {
         Self::of(lexopt::Parser::from_env())
     }
@@ -123,10 +123,10 @@ impl Args {
         match (&kinds[..], &of_measuring[..]) {
             _ if args.wanted == Wanted::Help => {}
             ([kind, second, ..], _) => {
-                return Err(format!("--{second} does not go together with --{kind}: a run does one of both").into());
+                return Err(format!("--{second} cannot be combined with --{kind}: a run does one of them").into());
             }
             ([kind], [option, ..]) => {
-                return Err(format!("--{option} does not go together with --{kind}: nothing is measured anew").into());
+                return Err(format!("--{option} cannot be combined with --{kind}, which measures nothing").into());
             }
             _ => {}
         }
@@ -136,14 +136,12 @@ impl Args {
 
 fn positive(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|x| *x >= 0.0 && x.is_finite());
-    number.ok_or_else(|| format!("{text:?} is no number from 0 on"))
+    number.ok_or_else(|| format!("{text:?} is not a number of at least 0"))
 }
 
 fn scene(name: &str) -> Result<&'static str, String> {
     let known = builtin::NAMES.into_iter().find(|known| *known == name);
-    known.ok_or_else(|| {
-        format!("--scene {name}: there is no such built-in scene; there are {}", builtin::NAMES.join(", "))
-    })
+    known.ok_or_else(|| format!("--scene {name}: unknown built-in scene; known are {}", builtin::NAMES.join(", ")))
 }
 
 #[cfg(test)]
@@ -154,10 +152,10 @@ mod tests {
     fn options_that_would_do_nothing_are_refused() {
         let parsed = |line: &str| Args::of(lexopt::Parser::from_args(line.split_whitespace()));
         for (line, named) in [
-            ("--document --presets a.rs", "--presets does not go together with --document"),
-            ("--max-error 3 --budget-ms 9", "--budget-ms does not go together with --max-error"),
-            ("--document --quick", "--quick does not go together with --document"),
-            ("--scene glass --verify 3", "--scene does not go together with --verify"),
+            ("--document --presets a.rs", "--presets cannot be combined with --document"),
+            ("--max-error 3 --budget-ms 9", "--budget-ms cannot be combined with --max-error"),
+            ("--document --quick", "--quick cannot be combined with --document"),
+            ("--scene glass --verify 3", "--scene cannot be combined with --verify"),
         ] {
             let told = parsed(line).map_err(|told| told.to_string());
             assert!(told.as_ref().is_err_and(|told| told.starts_with(named)), "{line}: {told:?}");

@@ -1,4 +1,4 @@
-//! Frames within a budget: what the record would choose, and how what it chooses turns out.
+//! Budgets: chooses settings from a record, and verifies the choice.
 
 use framegraph_passes::Facts;
 use framegraph_passes::budget::{Bound, Measured};
@@ -10,30 +10,32 @@ use tests::lab::record::Record;
 use tests::lab::studio::Studio;
 use tests::lab::technique::Outcome;
 
-/// The share of budgets that chosen frames must be within.
+/// Share of budgets that the chosen frames must meet.
 const ENOUGH: f64 = 0.95;
 
-/// What the record has for it.
+/// Returns the measurements for budgets in a record.
 pub fn measured(record: &Record) -> Outcome<&Measured> {
-    record.budget.as_ref().ok_or_else(|| "the record has no `budget` yet: run it to the end".into())
+    record.budget.as_ref().ok_or_else(|| "accuracy.json: no measurements for budgets; run `accuracy` to the end".into())
 }
 
-/// Prints the set that the record chooses, of a frame that calls for everything.
+/// Prints the settings that the record chooses for a frame that uses every effect.
 pub fn chosen(record: &Record, bound: Bound) -> Outcome<()> {
     let measured = measured(record)?;
     let choices = measured.choices(&Facts::default(), |_| true)?;
     let offers = measured.offers(&choices, measured.fastest_ms, measured.reference_ms);
     let set = match bound {
         Bound::Ms(ms) => offers.within_ms(ms).ok_or_else(|| {
-            format!("--budget-ms {ms}: the fastest frame takes {} ms; give more", number(offers.fastest_ms))
+            format!("--budget-ms {ms}: the fastest frame takes {} ms; use a larger budget", number(offers.fastest_ms))
         })?,
-        Bound::Codes(codes) => offers.within_codes(codes).ok_or("--max-error: no set is as accurate")?,
+        Bound::Codes(codes) => {
+            offers.within_codes(codes).ok_or("--max-error: no set of options is as accurate; use a larger error")?
+        }
     };
     for ((group, options), index) in choices.iter().zip(&set.options) {
         program::line(format_args!("{}: {}", group.name, options[*index].name));
     }
     program::line(format_args!(
-        "{} ms, {} codes from the reference, on {}",
+        "{} ms, error {} 8-bit steps, on {}",
         number(set.ms),
         number(set.codes()),
         record.adapter
@@ -41,7 +43,7 @@ pub fn chosen(record: &Record, bound: Bound) -> Outcome<()> {
     Ok(())
 }
 
-/// Chooses for random budgets, draws and times what was chosen, and every swap of one option.
+/// Chooses settings for random budgets, then draws and times them and every change of one option.
 pub fn verified(record: &Record, count: usize) -> Outcome<()> {
     program::interrupt::watch();
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
@@ -58,8 +60,8 @@ pub fn verified(record: &Record, count: usize) -> Outcome<()> {
     let share = found.within as f64 / found.budgets.max(1) as f64;
     found.better.iter().for_each(program::line);
     program::line(format_args!(
-        "{} of {} frames within their budgets ({:.0} %, {:.0} % asked); {} sets, {} swaps of one option within the budget, of \
-         which {} err less by more than a twentieth",
+        "{} of {} frames met their budgets ({:.0} %, {:.0} % required). Of {} sets with {} changes of one option within \
+         the budget, {} changes reduce the error by more than 5 %.",
         found.within,
         found.budgets,
         100.0 * share,
@@ -69,7 +71,7 @@ pub fn verified(record: &Record, count: usize) -> Outcome<()> {
         found.better.len()
     ));
     if share < ENOUGH || !found.better.is_empty() {
-        return Err("frames are not what they should be".into());
+        return Err("chosen frames miss their budgets, or are not the most accurate".into());
     }
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! `accuracy`: what each approximation of the frame errs by and costs on this adapter, as JSON, as a document and as a page.
+//! `accuracy`: measures the error and cost of each approximation of the frame on this adapter, and writes JSON,
+//! Markdown and HTML.
 
 mod args;
 mod budget;
@@ -19,7 +20,7 @@ use tests::lab::studio::Studio;
 use tests::lab::technique::Outcome;
 use tests::lab::{html, markdown, techniques};
 
-/// What options take and err by as parts of one frame, measured after the techniques.
+/// Name of the measurement of options as parts of one frame, which runs after the techniques.
 const BUDGET: &str = "budget";
 
 fn main() -> ExitCode {
@@ -60,7 +61,7 @@ fn run(args: &Args) -> Outcome<()> {
     }
 }
 
-/// Measures what the record does not have yet, and writes it after each technique.
+/// Measures techniques that the record lacks, and writes the record after each.
 fn measured(args: &Args, file: &Path) -> Outcome<()> {
     interrupt::watch();
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
@@ -82,7 +83,7 @@ fn measured(args: &Args, file: &Path) -> Outcome<()> {
         techniques: Vec::new(),
         budget: None,
     };
-    // A run that was interrupted goes on, where it was of the same kind.
+    // An interrupted run of the same kind is resumed.
     let mut record = match Record::read(file) {
         Ok(found) if !args.again && found.is_of_the_kind_of(&fresh) => found,
         _ => fresh,
@@ -100,7 +101,7 @@ fn measured(args: &Args, file: &Path) -> Outcome<()> {
     let known = |name: &str| name == BUDGET || all.iter().any(|t| t.name == name);
     if let Some(unknown) = args.techniques.iter().find(|name| !known(name)) {
         let names: Vec<_> = all.iter().map(|t| t.name.as_str()).chain([BUDGET]).collect();
-        return Err(format!("there is no technique {unknown}; there are {}", names.join(", ")).into());
+        return Err(format!("--technique {unknown}: unknown technique; known are {}", names.join(", ")).into());
     }
     let wanted = |name: &str| args.techniques.is_empty() || args.techniques.iter().any(|own| own == name);
     let mut progress = Shown::default();
@@ -134,7 +135,7 @@ fn measured(args: &Args, file: &Path) -> Outcome<()> {
     Ok(())
 }
 
-/// Tasks that wanted a processor, a mean over a minute; 0 where the system does not say.
+/// Returns the load average over one minute; 0 if the system does not report it.
 fn load() -> f64 {
     let text = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
     text.split(' ').next().and_then(|word| word.parse().ok()).unwrap_or(0.0)

@@ -1,8 +1,8 @@
-//! `facts`: what facts leave out of six scenes under four presets, and what that saves.
+//! `facts`: effects that feature culling drops from six scenes under four presets, and the time saved.
 //!
-//! `cargo run --release -p tests --bin facts` prints the tables of `docs/facts.md`; with `--every-mask` it draws all 4096
-//! combinations of twelve effects in each of six small scenes, as asked for and as decided, and compares; with `--masks N`
-//! N of them, spread over all; with `--scene NAME` behind either, in that scene alone.
+//! `cargo run --release -p tests --bin facts` prints the tables of `docs/facts.md`. `--every-mask` draws all 4096
+//! combinations of twelve effects in each of six small scenes, with and without feature culling, and compares them.
+//! `--masks N` draws N evenly spread combinations instead. `--scene NAME` selects one scene.
 
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use program::progress::Shown;
@@ -69,7 +69,7 @@ fn print(gpu: &Gpu) -> Outcome {
     Ok(())
 }
 
-/// Combinations of what may be left out.
+/// Number of combinations of effects.
 const ALL_MASKS: u32 = 1 << MASKED.len();
 
 fn draw_masks(gpu: &Gpu, count: u32, scene: Option<&str>) -> Outcome {
@@ -81,7 +81,8 @@ fn draw_masks(gpu: &Gpu, count: u32, scene: Option<&str>) -> Outcome {
         let (mut shown, begun) = (Shown::default(), Instant::now());
         let (mut differ, mut largest, mut beyond) = (0, 0, 0);
         for number in 0..count {
-            // Odd, so that all masks come once; and near the golden ratio of their number, so that few are spread evenly.
+            // The step is odd, so that every mask occurs once. It is near the golden ratio of the count, so that a few
+            // masks are spread evenly.
             let mask = number * 2531 % ALL_MASKS;
             let found = compare_mask(&mut easel, &mut drawn, mask)?;
             differ += u32::from(found.largest_codes > 0);

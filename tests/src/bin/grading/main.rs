@@ -1,7 +1,7 @@
-//! `grading`: how far tables of grading are from what they are made of.
+//! `grading`: error of color grading tables against the exact functions.
 //!
-//! `cargo run --release -p tests --bin grading` prints the table of `docs/grading.md`. It is computed on the CPU, in f64, so
-//! it is the same on every machine.
+//! `cargo run --release -p tests --bin grading` prints the table of `docs/grading.md`. It is computed on the CPU in
+//! f64, so it is the same on every machine.
 
 use std::error::Error;
 use std::process::ExitCode;

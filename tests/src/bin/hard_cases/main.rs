@@ -1,7 +1,7 @@
-//! `hard_cases`: where hard inputs are tested, and which case each guard of the shader library is for.
+//! `hard_cases`: tests of hard inputs, and the test case that needs each guard of the shader library.
 //!
-//! `cargo run -p tests --bin hard_cases` prints the tables of `docs/hard-cases.md`. The exit code is 1 when an invariant
-//! does not hold, or a guard is neither missed by a case nor explained.
+//! `cargo run -p tests --bin hard_cases` prints the tables of `docs/hard-cases.md`. The exit code is 1 if an invariant
+//! fails, or if a guard is neither covered by a test case nor explained.
 
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::error::Error;
@@ -23,7 +23,7 @@ fn main() -> ExitCode {
 
 fn print(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     program::line(format_args!("Adapter: {}\n", gpu.describe()));
-    program::line("| row | input | held by |\n| --- | --- | --- |");
+    program::line("| row | input | tested by |\n| --- | --- | --- |");
     rows().iter().for_each(program::line);
     let mut sound = true;
     let mut asked = [0; 2];
@@ -46,7 +46,7 @@ fn print(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
             (None, Some((.., why))) => (*why).to_owned(),
             (Some(_), Some(_)) | (None, None) => {
                 sound = false;
-                format!("NOT AS STATED: {:?}", guard.by)
+                format!("NOT AS DOCUMENTED: {:?}", guard.by)
             }
         };
         program::line(format_args!("| {} | `{}` | {verdict} |", guard.function, guard.guard.replace('|', "\\|")));

@@ -1,9 +1,8 @@
-//! `ibl_errors`: what image-based light costs in accuracy and time, on the adapter that there is.
+//! `ibl_errors`: error and cost of image-based lighting on the default adapter.
 //!
-//! `cargo run --release -p tests --bin ibl_errors [-- SECTION…]` prints tables beside the values that the design states;
-//! sections are `mirrors`, `harmonics`, `specular`, `dfg`, `furnace`,
-//! `frame`, `load`. Each has a control: something wrong on
-//! purpose that its comparison must notice. The exit code is 1 when one is not noticed.
+//! `cargo run --release -p tests --bin ibl_errors [-- SECTION…]` prints measured values next to the design's values.
+//! Sections are `mirrors`, `harmonics`, `specular`, `dfg`, `furnace`, `frame`, `load`. Each section has a negative
+//! control, an error made on purpose that its comparison must detect. The exit code is 1 if it does not.
 
 mod sections;
 

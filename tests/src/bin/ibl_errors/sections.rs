@@ -1,4 +1,4 @@
-//! The tables. Each function prints one and says whether its control was noticed.
+//! Tables of the program. Each function prints one and returns whether its negative control was detected.
 
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight};
@@ -20,7 +20,7 @@ use truth::albedo::Masking;
 
 type Section = fn(&Gpu) -> Result<bool, Box<dyn Error>>;
 
-/// All sections by name, in the order in which they are printed.
+/// All sections by name, in the order of the output.
 pub const ALL: &[(&str, Section)] = &[
     ("mirrors", mirrors),
     ("harmonics", harmonics_table),
@@ -62,7 +62,7 @@ fn mirrors(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
             }
         }
         count += 1;
-        // Every result off by a tenth and a bit: what no bound may let pass.
+        // Negative control: every result is off by a tenth and an offset, which no bound may accept.
         let spoilt: Vec<f32> = results.iter().map(|y| y * 1.1 + 0.3).collect();
         noticed &= case.check(&inputs, &spoilt).is_err();
     }
@@ -97,7 +97,7 @@ fn harmonics_table(_: &Gpu) -> Result<bool, Box<dyn Error>> {
             percent(e.clamped)
         ));
     }
-    // A third band of the wrong strength: 2/3 of the cosine's, as if it were the second.
+    // Negative control: the third band has 2/3 of the cosine's strength, as if it were the second.
     let spoil = |sh: Sh| {
         let scale = |(i, c): (usize, &glam::DVec3)| if i >= 4 { *c * (8.0 / 3.0) } else { *c };
         Sh::from_coefficients(sh.bands(), sh.radiance_coefficients().iter().enumerate().map(scale).collect())
@@ -231,8 +231,8 @@ fn frame_table(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
     let low = row("low", Quality::Low.shading())?;
     let filament = Shading { table: Visibility::Exact, ..Quality::Low.shading() };
     row("low with the exact term's table, as Filament", filament)?;
-    // Image-based light is looked up with the table alone, so only the lights show its mismatch; what a furnace shows is
-    // the table itself.
+    // Image-based light uses the table alone, so only direct lights show a mismatch; the furnace test shows the table
+    // itself.
     program::line(format_args!("\ncontrol: without compensation a perfect conductor loses up to {}", percent(high[1])));
     Ok(high[0] < 0.002 && low[0] < 0.002 && high[1] > 0.5 && low[1] > 0.5)
 }

@@ -1,7 +1,7 @@
-//! `lights`: what many lights cost by froxels and by looking at all of them, on the adapter that there is.
+//! `lights`: cost of many lights with froxels and with a loop over all lights, on the default adapter.
 //!
-//! `cargo run --release -p tests --bin lights` prints the tables of `docs/lights.md`. Times are the least of several frames;
-//! they say what this device takes, and nothing of another.
+//! `cargo run --release -p tests --bin lights` prints the tables of `docs/lights.md`. Each time is the minimum of
+//! several frames, and valid for this device only.
 
 use framegraph_passes::punctual::{Found, FroxelSettings, LightSearch};
 use framegraph_passes::{CameraView, Settings};
@@ -13,13 +13,13 @@ use tests::measure::lights::Night;
 
 type Outcome = Result<(), Box<dyn Error>>;
 
-/// Width and height of the pictures in pixels.
+/// Width and height of the pictures, in pixels.
 const SIZE_PX: [u32; 2] = [640, 360];
-/// Frames that a time is the least of.
+/// Number of frames per time; the minimum counts.
 const FRAMES: u32 = 3;
-/// Views that a time is the least of.
+/// Number of views per time; the minimum counts.
 const VIEWS: u32 = 9;
-/// Places in each light that the second table looks for.
+/// Sample points in each light for the second table.
 const SAMPLES: u32 = 20_000;
 
 fn main() -> ExitCode {
@@ -41,7 +41,7 @@ fn night(gpu: &Gpu, name: &str) -> Result<Night, Box<dyn Error>> {
     Night::new(gpu, scene, camera, SIZE_PX, Settings { shadows: None, ..Settings::DEFAULT })
 }
 
-/// Frames by froxels and by all lights, and what making the lists adds to making a view.
+/// Measures frames with froxels and with all lights, and the CPU time of building the lists.
 fn times(gpu: &Gpu) -> Outcome {
     program::line("\n| lamps | a list | longest list | lists, ms | froxels, ms | all, ms | largest difference |");
     program::line("| --- | --- | --- | --- | --- | --- | --- |");
@@ -63,17 +63,17 @@ fn times(gpu: &Gpu) -> Outcome {
     Ok(())
 }
 
-/// Mean and greatest length of a view's lists.
+/// Returns the mean and maximum length of a view's lists.
 fn length(view: &CameraView) -> Result<(f64, usize), Box<dyn Error>> {
     match view.light_report.found {
         Found::ByFroxels { counts, entries, longest, .. } => {
             Ok((entries as f64 / f64::from(counts.iter().product::<u32>()), longest))
         }
-        Found::All(_) => Err("there are no lists".into()),
+        Found::All(_) => Err("the view has no light lists".into()),
     }
 }
 
-/// How many entries lists have beside how many they need.
+/// Compares the number of list entries with the number needed.
 fn lists(gpu: &Gpu) -> Outcome {
     program::line("\n| lamps | froxels | entries | needed | entries for each needed | lists, ms |");
     program::line("| --- | --- | --- | --- | --- | --- |");
@@ -89,7 +89,7 @@ fn lists(gpu: &Gpu) -> Outcome {
         for cut in cuts {
             let search = LightSearch::Froxels(cut);
             let view = night.view(search);
-            let lists = view.light_lists.as_ref().ok_or("there are no lists")?;
+            let lists = view.light_lists.as_ref().ok_or("the view has no light lists")?;
             let [x, y, z] = lists.uniforms.counts;
             let entries = lists.words.len() - (x * y * z) as usize - 1;
             let needed = night.touched(lists, [cut.near_m, cut.far_m].map(f64::from), SAMPLES);

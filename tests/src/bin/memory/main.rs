@@ -1,6 +1,6 @@
-//! `memory`: the bytes that a device's allocator gives for the standard frame, with each way of sharing memory.
+//! `memory`: bytes that the device allocates for the standard frame under each aliasing mode.
 //!
-//! `cargo run --release -p tests --bin memory` prints the table of `docs/performance.md`, of one frame in each size.
+//! `cargo run --release -p tests --bin memory` prints the table of `docs/performance.md`: one frame per size.
 
 use framegraph::{Alias, Options};
 use framegraph_passes::bloom::BloomSettings;
@@ -30,7 +30,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     for size_px in SIZES_PX {
         let mut apart = None;
         for (name, alias) in WAYS {
-            // A device of its own, so that nothing of another way is counted.
+            // A new device keeps allocations of other modes out of the count.
             let (planned, frame) = measured(&open()?, size_px, alias)?;
             let together = frame.by_wgpu + frame.placed;
             let share = together as f64 / *apart.get_or_insert(together) as f64;
@@ -48,7 +48,7 @@ fn mib(bytes: u64) -> f64 {
     bytes as f64 / f64::from(1 << 20)
 }
 
-/// What the plan of the frame says it takes, and what was allocated for it beside what its scene takes.
+/// Returns the bytes that the plan reports, and the bytes allocated in addition to the scene.
 fn measured(gpu: &Gpu, size_px: [u32; 2], alias: Alias) -> Result<(u64, Allocated), Box<dyn Error>> {
     let settings = Settings {
         fog: Some(FogSettings::DEFAULT),
@@ -64,7 +64,7 @@ fn measured(gpu: &Gpu, size_px: [u32; 2], alias: Alias) -> Result<(u64, Allocate
     gpu.wait()?;
     let behind = frames.executor().allocated();
     if let Some(why) = frames.executor().not_placed() {
-        return Err(format!("nothing is placed: {why}").into());
+        return Err(format!("no texture is placed: {why}").into());
     }
     let memory = frames.plan().memory();
     Ok((memory.bytes + memory.own_bytes, Allocated { by_wgpu: behind.by_wgpu - before.by_wgpu, ..behind }))

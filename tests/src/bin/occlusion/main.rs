@@ -1,8 +1,8 @@
-//! `occlusion`: what ambient occlusion costs in accuracy and time, on the adapter that there is.
+//! `occlusion`: error and cost of ambient occlusion on the default adapter.
 //!
-//! `cargo run --release -p tests --bin occlusion` prints the tables of `docs/occlusion.md`. Times are the least of several
-//! frames with nothing in them but the structure's levels, ambient occlusion and its blur; they say what this device takes,
-//! and nothing of another.
+//! `cargo run --release -p tests --bin occlusion` prints the tables of `docs/occlusion.md`. Each time is the minimum of
+//! several frames that only contain the structure's levels, ambient occlusion and its blur. Times are valid for this
+//! device only.
 
 mod tables;
 

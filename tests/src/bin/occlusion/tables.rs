@@ -1,4 +1,4 @@
-//! The tables.
+//! Tables of the program.
 
 use framegraph_passes::Precision;
 use framegraph_passes::occlusion::{Gtao, Method, Occluders, OcclusionSettings};
@@ -14,18 +14,18 @@ use truth::occlusion as truth;
 
 type Outcome = Result<(), Box<dyn Error>>;
 
-/// How far occluders count in all of them, in m.
+/// Radius of ambient occlusion in all tables, in m.
 const RADIUS_M: f64 = 0.3;
-/// Frames that a time is the least of.
+/// Number of frames per time; the minimum counts.
 const FRAMES: u32 = 6;
-/// Taps and turns of the spiral, as the design has them.
+/// Numbers of taps and turns of the spiral, as in the design.
 const SPIRALS: [[u32; 2]; 7] = [[3, 1], [5, 2], [7, 5], [11, 6], [16, 7], [32, 13], [64, 25]];
 
 fn settings(text: &str) -> Result<OcclusionSettings, Box<dyn Error>> {
-    OcclusionSettings::from_text(text)?.ok_or_else(|| format!("{text}: it is off").into())
+    OcclusionSettings::from_text(text)?.ok_or_else(|| format!("{text}: ambient occlusion is off").into())
 }
 
-/// Means of blocks of 4×4 texels: what a blur may do at most without knowing more.
+/// Averages blocks of 4×4 texels: the most that a blur can do without additional information.
 fn blocks(stage: &Stage, texels: &[f32]) -> Vec<f32> {
     let [width, height] = stage.size_px.map(|side| side as usize);
     let mean = |x: usize, y: usize| {
@@ -35,7 +35,7 @@ fn blocks(stage: &Stage, texels: &[f32]) -> Vec<f32> {
     (0..width * height).map(|i| mean(i % width, i / width)).collect()
 }
 
-/// Noise, and what of it is left in blocks; then the mean of what each column is off from `converged`.
+/// Returns the noise before and after averaging blocks, then the mean deviation of columns from `converged`.
 fn noise_and_bias(stage: &Stage, texels: &[f32], converged: &[f32]) -> [f64; 3] {
     let blocked = blocks(stage, texels);
     let columns = corner_columns(stage, RADIUS_M);
@@ -46,7 +46,7 @@ fn noise_and_bias(stage: &Stage, texels: &[f32], converged: &[f32]) -> [f64; 3] 
     [variance(texels), variance(&blocked), apart]
 }
 
-/// Noise, bias and time of SAO by taps, unblurred, in a picture and in one of a quarter of its texels.
+/// Prints noise, bias and time of unblurred SAO by number of taps, at full and half resolution.
 pub fn taps(gpu: &Gpu) -> Outcome {
     program::line("\n| taps (turns) | σ | σ of 4×4 | off converged | ms | half: σ | σ of 4×4 | off converged | ms |");
     program::line("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
@@ -72,7 +72,7 @@ pub fn taps(gpu: &Gpu) -> Outcome {
     Ok(())
 }
 
-/// Each method as it is used, with its blur, against the truths of the corner and of the columns.
+/// Compares each method, with its blur, to the references of the corner and the columns.
 pub fn methods(gpu: &Gpu) -> Outcome {
     program::line("\n| method | corner RMS | columns RMS | bias | as shaded | at half | ms |");
     program::line("| --- | --- | --- | --- | --- | --- | --- |");
@@ -105,13 +105,13 @@ pub fn methods(gpu: &Gpu) -> Outcome {
     Ok(())
 }
 
-/// The same at half the resolution.
+/// Returns the text of a method with half resolution.
 fn halved(text: &str) -> String {
     let joint = if text.contains(':') { "," } else { ":" };
     format!("{text}{joint}resolution=half")
 }
 
-/// The least and the mean visibility of ground without occluders.
+/// Prints the minimum and mean visibility of ground without occluders.
 pub fn open_ground(gpu: &Gpu) -> Outcome {
     program::line("\n| open ground, tilted by | 0° | 45° | 70° | 85° |");
     program::line("| --- | --- | --- | --- | --- |");
@@ -130,7 +130,7 @@ pub fn open_ground(gpu: &Gpu) -> Outcome {
     Ok(())
 }
 
-/// What the methods converge to beside the truth.
+/// Compares the converged result of each method with the reference.
 pub fn corner(gpu: &Gpu) -> Outcome {
     program::line("\n| from the edge | 0.02 m | 0.05 m | 0.1 m | 0.15 m | 0.2 m |");
     program::line("| --- | --- | --- | --- | --- | --- |");

@@ -1,4 +1,4 @@
-//! How much memory heaps take, beside the peak of live bytes below which no sharing can go.
+//! Memory of heaps compared to the peak of live bytes, which is a lower bound.
 
 use crate::document::Document;
 use crate::frames::{self, FRAME, Shape};
@@ -6,19 +6,19 @@ use crate::table::{Table, excess, percent};
 use framegraph::{Alias, Caps, Effort, Options, Placement, Plan, Scratch, check, compile};
 use std::time::Instant;
 
-/// Graphs of each shape in the run that a test repeats.
+/// Graphs of each shape in the quick run.
 pub const QUICK: usize = 25;
 
 /// Graphs of each shape in the long run.
 pub const LONG: usize = 500;
 
-/// Of the graphs, so many percent at least are packed to the peak, and proved so.
+/// Minimum percentage of graphs that must be packed to the peak, and proven optimal.
 const SHARE: usize = 97;
 
-/// Fewest and most resources.
+/// Minimum and maximum number of resources.
 const RESOURCES: (usize, usize) = (10, 60);
 
-/// What the plans of many graphs come to.
+/// Sums over the plans of many graphs.
 #[derive(Debug, Default)]
 struct Sum {
     plans: usize,
@@ -42,8 +42,8 @@ impl Sum {
     }
 }
 
-/// The largest sum of bytes alive in one step, each resource rounded up to the device's alignment as the heap does; worked
-/// out from the lifetimes alone.
+/// Returns the largest sum of live bytes in one step. Each resource is rounded up to the device's alignment, as in the
+/// heap. Only lifetimes are used.
 fn peak(plan: &Plan) -> u64 {
     let placed = |p| matches!(p, Placement::Heap { .. } | Placement::Slot(_));
     let rows: Vec<_> = plan.resources().iter().filter(|r| placed(r.placement)).collect();
@@ -56,21 +56,21 @@ fn peak(plan: &Plan) -> u64 {
     plan.step_ids().map(alive).max().unwrap_or(0)
 }
 
-/// The ways to take memory, from the plainest on.
+/// Aliasing modes, the simplest first.
 const WAYS: [(&str, Alias, Effort); 3] = [
     ("pool", Alias::Pool, Effort::Greedy),
     ("heap, greedy", Alias::Heap, Effort::Greedy),
     ("heap, exact search", Alias::Heap, Effort::Exact),
 ];
 
-/// A graph of which every plan of the section is made.
+/// Returns the graph from which all plans of the section are made.
 fn graph(shape: Shape, seed: usize) -> framegraph::Graph {
     let (least, most) = RESOURCES;
     let resources = least + seed * 7919 % (most - least + 1);
     frames::graph(shape, seed as u64, resources).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The table over all graphs.
+/// Prints the table over all graphs.
 pub fn section(document: &mut Document, graphs: usize, note: &str) {
     let columns =
         ["shape", "device", "memory", "plans", "at the peak", "proved optimal", "mean excess", "largest excess"];
@@ -112,13 +112,13 @@ pub fn section(document: &mut Document, graphs: usize, note: &str) {
     }
     let (least, most) = RESOURCES;
     let count = graphs * Shape::ALL.len();
-    document.claim(wrong == 0, || format!("the oracle finds fault with {wrong} plans of {count} graphs"));
+    document.claim(wrong == 0, || format!("the oracle rejects {wrong} plans of {count} graphs"));
     document.section(
         &format!("Memory of {count} random graphs{note}"),
         &format!(
-            "Graphs of {least} to {most} resources, each planned for two devices. The peak is the largest sum of bytes \
-             alive\nin one step, rounded up to the device's alignment, worked out anew from the lifetimes; no heap takes \
-             less. A pool is\nproved optimal among pools. The oracle finds fault with {wrong} of the plans.\n\n{}",
+            "Graphs of {least} to {most} resources, each planned for two devices. The peak is the largest sum of live \
+             bytes\nin one step, aligned as on the device, computed from the lifetimes alone. No heap can be smaller. A pool \
+             is\nproved optimal among pools. The independent checker (the oracle) rejects {wrong} plans.\n\n{}",
             table.text()
         ),
     );
@@ -127,10 +127,10 @@ pub fn section(document: &mut Document, graphs: usize, note: &str) {
 /// Graphs of each shape and size in the table of times.
 const LARGE_GRAPHS: usize = 250;
 
-/// Runs of each, of which the fastest counts: what else the machine does is not the compiler's.
+/// Number of runs; the minimum time counts, to exclude other load.
 const RUNS: usize = 3;
 
-/// How long large graphs take, compiled whole.
+/// Measures the compile time of large graphs.
 pub fn large(document: &mut Document) {
     let mut table =
         Table::new(&["shape", "device", "resources", "plans", "at the peak", "proved", "median ms", "longest ms"]);
@@ -170,8 +170,8 @@ pub fn large(document: &mut Document) {
     document.section(
         "Graphs of 160 resources, long run",
         &format!(
-            "All phases, heap with exact search, default budget; the fastest of {RUNS} runs. The aim is the peak within \
-             100 ms.\nWhere the budget ends the search, the plan says that it is not proved.\n\n{}",
+            "All phases, heap with exact search, default budget; the minimum of {RUNS} runs. The goal is to reach the \
+             peak within 100 ms.\nIf the budget ends the search, the plan is not marked as proved.\n\n{}",
             table.text()
         ),
     );

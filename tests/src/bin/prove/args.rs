@@ -1,33 +1,33 @@
-//! The command line.
+//! Command line of `prove`.
 
 use std::path::PathBuf;
 
-/// What `--help` prints.
+/// Text of `--help`.
 pub const HELP: &str = "\
-Prints docs/proofs.md: what the compiler claims, with the figures that prove it.
+Verifies the compiler's claims and prints docs/proofs.md.
 
 usage: prove [--quick] [--dsa DIR] [--out FILE]
 
-  --quick    only what takes seconds and is the same on every machine
-  --dsa DIR  offset-assignment instances NAME.CAPACITY.csv; skipped when not given
-  --out FILE where to write; default: standard output
+  --quick    only the parts that take seconds and are machine-independent
+  --dsa DIR  folder of offset-assignment instances NAME.CAPACITY.csv
+  --out FILE output file; default: standard output
 ";
 
-/// What was asked for.
+/// Parsed options.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Args {
-    /// Only what takes seconds.
+    /// True to run only the parts that take seconds.
     pub quick: bool,
-    /// The instances.
+    /// Folder of the offset-assignment instances.
     pub dsa: Option<PathBuf>,
-    /// Where to write.
+    /// Output file; standard output if `None`.
     pub out: Option<PathBuf>,
 }
 
-/// Reads the command line; none when help is asked for.
+/// Parses the command line; returns `None` if help is requested.
 ///
 /// # Errors
-/// One line that names the option.
+/// One line that names the wrong option.
 pub fn parse(words: impl Iterator<Item = String>) -> Result<Option<Args>, String> {
     let mut args = Args::default();
     let mut words = words;
@@ -38,14 +38,14 @@ pub fn parse(words: impl Iterator<Item = String>) -> Result<Option<Args>, String
             "--quick" => args.quick = true,
             "--dsa" => args.dsa = Some(value()?),
             "--out" => args.out = Some(value()?),
-            _ => return Err(format!("there is no option `{word}`; see --help")),
+            _ => return Err(format!("unknown option `{word}`; see --help")),
         }
     }
     if args.quick && args.dsa.is_some() {
-        return Err("--dsa takes longer than --quick allows; give one of them".into());
+        return Err("--dsa cannot be combined with --quick, which skips long runs".into());
     }
     if let Some(folder) = args.dsa.as_deref().filter(|f| !f.is_dir()) {
-        return Err(format!("--dsa: there is no folder {}", folder.display()));
+        return Err(format!("--dsa: {}: no such folder", folder.display()));
     }
     Ok(Some(args))
 }

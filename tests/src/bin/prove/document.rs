@@ -1,21 +1,21 @@
-//! The document in the making, what speaks against a claim, and how far the work is.
+//! Document under construction, with refuted claims and progress.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
-/// What is printed, and what was found wrong.
+/// Printed text and refuted claims.
 #[derive(Debug)]
 pub struct Document {
-    /// The text so far.
+    /// Text so far.
     pub text: String,
-    /// Claims that do not hold, a sentence each.
+    /// Refuted claims, one sentence each.
     pub faults: Vec<String>,
     last: Instant,
     pause: Duration,
 }
 
 impl Document {
-    /// A document that begins so. Progress is told often where somebody watches, seldom in a log.
+    /// Creates a document with initial text. Progress is reported often on a terminal, seldom in a log.
     pub fn new(text: &str) -> Self {
         let seconds = if std::io::stderr().is_terminal() { 1 } else { 10 };
         Self { text: text.to_owned(), faults: Vec::new(), last: Instant::now(), pause: Duration::from_secs(seconds) }
@@ -26,14 +26,14 @@ impl Document {
         self.text += &format!("\n## {head}\n\n{body}");
     }
 
-    /// Notes that a claim does not hold, unless it does.
+    /// Records a refuted claim if `holds` is false.
     pub fn claim(&mut self, holds: bool, otherwise: impl FnOnce() -> String) {
         if !holds {
             self.faults.push(otherwise());
         }
     }
 
-    /// So much of `what` is done.
+    /// Reports progress: `done` of `of` items of `what`.
     pub fn at(&mut self, what: &str, done: usize, of: usize) {
         if self.last.elapsed() >= self.pause {
             self.last = Instant::now();

@@ -1,18 +1,19 @@
-//! Random graphs of a wanted number of resources, to measure memory on: the frame is full of things that live at once.
+//! Random graphs with a given number of resources, for measuring memory. Many resources live at the same time.
 
 use framegraph::testing::generate::Entropy;
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Graph, Intent, PassBuilder, Texture, TextureDesc};
 
-/// The frame, in texels.
+/// Frame size, in texels.
 pub const FRAME: [u32; 2] = [1920, 1080];
 
-/// What the graphs look like.
+/// Shape of a random graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
-    /// Raster and compute passes over textures of a few sizes and formats; what is read was mostly written just before.
+    /// Raster and compute passes over textures of a few sizes and formats. Passes mostly read recently written
+    /// textures.
     Frame,
-    /// Compute passes that each write two textures of 64 KiB to 16 MiB and read three of the last 64: the
-    /// shape of the workloads on which compilers are timed.
+    /// Compute passes that each write two textures of 64 KiB to 16 MiB and read three of the last 64. Compile times of
+    /// peers are measured on this shape.
     Dag,
 }
 
@@ -20,7 +21,7 @@ impl Shape {
     /// Every shape.
     pub const ALL: [Self; 2] = [Self::Frame, Self::Dag];
 
-    /// What tables call it.
+    /// Name of the shape in tables.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Frame => "frames",
@@ -29,10 +30,10 @@ impl Shape {
     }
 }
 
-/// A graph of `resources` textures beside the screen. All of them are read, so that nothing is culled.
+/// Creates a graph of `resources` textures in addition to the screen. All of them are read, so nothing is culled.
 ///
 /// # Errors
-/// None but for a fault in here.
+/// Only on a bug in this function.
 pub fn graph(shape: Shape, seed: u64, resources: usize) -> Result<Graph, DeclareError> {
     let mut entropy = Entropy::seeded(seed);
     let mut graph = Graph::new();
@@ -74,7 +75,7 @@ fn below(entropy: &mut Entropy<'_>, bound: usize) -> usize {
     entropy.below(bound as u32) as usize
 }
 
-/// One to four of `count` textures: three times of four one of the last four, else any.
+/// Picks one to four of `count` textures: the last four with a probability of 3/4, otherwise any.
 fn recent(entropy: &mut Entropy<'_>, count: usize) -> Vec<usize> {
     if count == 0 {
         return Vec::new();
@@ -87,7 +88,7 @@ fn recent(entropy: &mut Entropy<'_>, count: usize) -> Vec<usize> {
     (0..reads).map(one).collect()
 }
 
-/// The outputs of one pass, `left` at most.
+/// Declares the outputs of one pass, at most `left`.
 fn write(
     shape: Shape,
     entropy: &mut Entropy<'_>,
@@ -96,7 +97,7 @@ fn write(
 ) -> Result<Vec<Texture>, DeclareError> {
     if shape == Shape::Dag {
         let two = (0..left.min(2)).map(|_| {
-            // 1 to 256 times 64 KiB, four steps an octave.
+            // 1 to 256 times 64 KiB, in four steps per octave.
             let size = entropy.below(33);
             let extent = Extent::absolute(1024, [16, 19, 23, 27][size as usize % 4] << (size / 4));
             let texture = pass.texture("t", TextureDesc::new(extent, Format::Rgba8Unorm));

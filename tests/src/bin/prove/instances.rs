@@ -1,4 +1,4 @@
-//! Published instances of static memory planning, solved by the exact search.
+//! Published instances of static memory planning, solved by exact search.
 
 use crate::document::Document;
 use crate::table::Table;
@@ -8,13 +8,13 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Steps of the search at most.
+/// Maximum number of search steps.
 const BUDGET_STEPS: u64 = 100_000_000;
 
-/// Every instance of the folder, by name; without a folder, the sentence that they were left out.
+/// Solves every instance in the folder, sorted by name. Without a folder, notes that they were skipped.
 ///
 /// # Errors
-/// A line that names the file and what is wrong with it.
+/// One line that names the file and the problem.
 pub fn section(document: &mut Document, folder: Option<&Path>) -> Result<(), String> {
     let head = "Published instances, long run";
     let Some(folder) = folder else {
@@ -27,7 +27,7 @@ pub fn section(document: &mut Document, folder: Option<&Path>) -> Result<(), Str
     files.retain(|path| path.extension().is_some_and(|e| e == "csv"));
     files.sort();
     if files.is_empty() {
-        return Err(format!("{}: no instance NAME.CAPACITY.csv in it", folder.display()));
+        return Err(format!("{}: the folder has no instance NAME.CAPACITY.csv", folder.display()));
     }
     let columns =
         ["instance", "items", "peak", "top", "lower bound", "capacity in the name", "proved", "steps", "seconds"];
@@ -64,15 +64,15 @@ pub fn section(document: &mut Document, folder: Option<&Path>) -> Result<(), Str
     document.section(
         head,
         &format!(
-            "The \"challenging\" instances of minimalloc (Apache-2.0) that were given with `--dsa`, on one thread; the name \
-             holds a\ncapacity that is known to be enough. Offsets are checked pair by pair.\n\n{}",
+            "The \"challenging\" instances of minimalloc (Apache-2.0) from `--dsa`, solved on one thread. The name contains \
+             a\ncapacity that is known to be feasible. Offsets are checked pair by pair.\n\n{}",
             table.text()
         ),
     );
     Ok(())
 }
 
-/// Whether two items that are alive together share a byte.
+/// Returns true if two items with overlapping lifetimes share a byte.
 pub fn overlaps(items: &[framegraph::pack::Interval], offsets: &[u64]) -> bool {
     items.iter().zip(offsets).enumerate().any(|(index, (a, at))| {
         let others = items.iter().zip(offsets).skip(index + 1);

@@ -1,4 +1,4 @@
-//! The frames of 22 and 46 resources on which peers' allocators are measured.
+//! Frames of 22 and 46 resources on which peers' allocators are measured.
 
 use crate::document::Document;
 use crate::table::{Table, mebibytes};
@@ -8,10 +8,10 @@ use framegraph::{Alias, Caps, Options, Plan, Scratch, compile};
 const FORWARD: &str = include_str!("../../../cases/forward.ron");
 const DEFERRED: &str = include_str!("../../../cases/deferred.ron");
 
-/// Each frame, with and without merging and memoryless attachments.
+/// Plans each frame with and without merging and memoryless attachments.
 ///
 /// # Errors
-/// When a frame cannot be read or planned.
+/// A frame that cannot be read or planned.
 pub fn section(document: &mut Document) -> Result<(), String> {
     let columns =
         ["frame", "resources", "size", "steps", "nothing shared, MiB", "pool, MiB", "heap, B", "lower bound, B"];
@@ -53,8 +53,8 @@ pub fn section(document: &mut Document) -> Result<(), String> {
     document.section(
         "The frames of 22 and 46 resources",
         &format!(
-            "`tests/cases/forward.ron` and `deferred.ron`; {all} their lower bound. Passes apart: a desktop device without \
-             merging,\nas peers count; tiler: as planned for a tiler.\n\n{}",
+            "`tests/cases/forward.ron` and `deferred.ron`; {all} their lower bound. Passes apart: for a desktop device \
+             without\nmerging, as peers count. Tiler: as planned for a tiler.\n\n{}",
             table.text()
         ),
     );

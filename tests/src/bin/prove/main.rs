@@ -1,10 +1,10 @@
-//! Proves what the compiler claims, and prints it as a document: how near to the least its memory is, that its plans are
-//! right, and that the oracle which says so is awake.
+//! `prove`: verifies the compiler's claims and prints the results as a document. It measures how close memory is to the
+//! optimum, checks plans for correctness, and tests the checker itself.
 //!
-//! Everything but seconds is the same on every machine. `--quick` prints what a test compares with `docs/proofs.md`;
-//! without it the long tables follow. Standard output gets the document, standard error the progress; nothing is written
-//! before it is whole, so it can be interrupted at any time. Exit codes: 0 every claim holds, 1 some do not, which are
-//! named, 2 bad input.
+//! Apart from times, the output is the same on every machine. `--quick` prints only the parts that a test compares with
+//! `docs/proofs.md`. The document goes to standard output, progress to standard error. The document is written once it
+//! is complete, so the program can be interrupted at any time. Exit codes: 0 every claim holds, 1 a claim is refuted
+//! and named, 2 invalid input.
 
 mod aliasing;
 mod args;
@@ -48,8 +48,7 @@ fn fail(code: u8, errors: &[String]) -> ExitCode {
     program::exit(code)
 }
 
-/// Proves, and writes the document to the file, whole or not at all, or to standard output when there is none. Returns what
-/// does not hold.
+/// Runs all proofs, and writes the document to a file atomically, or to standard output. Returns refuted claims.
 fn run(args: &Args) -> Result<Vec<String>, String> {
     let mut outputs = Outputs::default();
     if let Some(out) = &args.out {
@@ -66,12 +65,12 @@ fn run(args: &Args) -> Result<Vec<String>, String> {
     Ok(faults)
 }
 
-/// The whole document; without the long tables where it is to be quick.
+/// Creates the document, without the long tables if `quick` is set.
 fn document(args: &Args) -> Result<Document, String> {
     let mut document = Document::new(
-        "# Proofs\n\nPrinted by `cargo xtask prove`. A test compares all tables but those of long runs, which say so;\n\
-         `cargo xtask documents` compares those too; that sums and proofs of a row agree, a test asks of all.\n\
-         Figures that are no times are the same on every machine. Peak memory and speed stand in [performance.md](performance.md).\n",
+        "# Proofs\n\nPrinted by `cargo xtask prove`. A test compares all tables except those of long runs, which\n\
+         `cargo xtask documents` compares. Another test checks that the figures of each row are consistent. Apart from times,\n\
+         the figures are the same on every machine. Peak memory and speed are in [performance.md](performance.md).\n",
     );
     aliasing::section(&mut document, aliasing::QUICK, "");
     pools::section(&mut document, aliasing::QUICK, "");

@@ -1,4 +1,4 @@
-//! Mutants of good plans: is the oracle awake?
+//! Mutants of valid plans, which the checker must reject.
 
 use crate::document::Document;
 use crate::table::{Table, percent};
@@ -6,13 +6,13 @@ use framegraph::testing::generate::{self, Entropy, Profile, options_of};
 use framegraph::testing::mutation::MutationReport;
 use framegraph::{Caps, Plan, Scratch, compile};
 
-/// Plans of the run that a test repeats.
+/// Plans in the quick run.
 pub const QUICK: usize = 9;
 
-/// Plans of the long run.
+/// Plans in the long run.
 pub const LONG: usize = 2_000;
 
-/// The count over that many plans, and what lives, with the proof of each.
+/// Counts rejected mutants over many plans, and lists accepted ones with the proof that they are valid.
 pub fn section(document: &mut Document, plans: usize, note: &str) {
     let mut report = MutationReport::default();
     let profile = Profile { max_passes: 6, ..Profile::default() };
@@ -21,32 +21,32 @@ pub fn section(document: &mut Document, plans: usize, note: &str) {
         document.at("mutants", seed, plans);
         let graph = generate::graph(&mut Entropy::seeded(seed as u64), &profile);
         let caps = Caps::preset(Caps::PRESETS[seed % Caps::PRESETS.len()]).unwrap_or_default();
-        // Prime to the number of combinations, so that all are met.
+        // Coprime to the number of combinations, so that every combination occurs.
         let options = options_of(seed as u32 * 7);
         compile(&graph, &caps, &options, &mut scratch, &mut plan)
             .unwrap_or_else(|errors| panic!("seed {seed}: {errors}"));
         report.take(&plan);
     }
     let MutationReport { plans, mutants, caught, fields, excused, alive } = report;
-    let mut table = Table::new(&["field", "mutants as good as the plan", "proof that the change does not matter"]);
+    let mut table = Table::new(&["field", "equivalent mutants", "proof of equivalence"]);
     for ((field, proof), count) in &excused {
         table.row(vec![(*field).to_owned(), count.to_string(), (*proof).to_owned()]);
     }
     let mut text = format!(
-        "Each field of each row of good plans is changed, one at a time: {mutants} mutants. The oracle reports {caught} of \
-         them ({});\n{} are as good as the plan, which is proved of each; {} live without a proof.\n\n{}",
+        "One field of one row of a valid plan is changed at a time: {mutants} mutants. The oracle rejects {caught} of \
+         them ({}).\n{} are equivalent to the plan, with a proof for each; {} survive without a proof.\n\n{}",
         percent(caught, mutants),
         mutants - caught - alive.len(),
         alive.len(),
         table.text()
     );
     if plans >= LONG {
-        let mut table = Table::new(&["field", "mutants", "reported", "as good as the plan"]);
+        let mut table = Table::new(&["field", "mutants", "rejected", "equivalent"]);
         for (field, (mutants, caught)) in fields {
             table.row(vec![field.to_owned(), mutants.to_string(), caught.to_string(), (mutants - caught).to_string()]);
         }
         text += &format!("\n{}", table.text());
     }
     document.section(&format!("Mutants of {plans} plans{note}"), &text);
-    document.faults.extend(alive.iter().map(|line| format!("a mutant lives: {line}")));
+    document.faults.extend(alive.iter().map(|line| format!("a mutant survives: {line}")));
 }

@@ -1,17 +1,17 @@
-//! The independent oracle on random graphs: every plan is right and wastes nothing.
+//! Independent checker on random graphs: every plan is correct and wastes nothing.
 
 use crate::document::Document;
 use crate::table::Table;
 use framegraph::testing::generate::{self, Entropy, OPTIONS, Profile, options_of};
 use framegraph::{Caps, Options, Order, Plan, Scratch, check, compile};
 
-/// Graphs of the run that a test repeats.
+/// Graphs in the quick run.
 pub const QUICK: usize = 100;
 
-/// Graphs of the long run.
+/// Graphs in the long run.
 pub const LONG: usize = 100_000;
 
-/// The table over that many graphs, under each preset.
+/// Prints the table over many graphs, for each preset.
 pub fn section(document: &mut Document, graphs: usize, note: &str) {
     let columns =
         ["device", "graphs", "plans", "steps", "merged passes", "barriers", "decisions", "violations", "wastes"];
@@ -24,7 +24,7 @@ pub fn section(document: &mut Document, graphs: usize, note: &str) {
         for seed in 0..graphs {
             document.at(&format!("oracle, {name}"), seed, graphs);
             let graph = generate::graph(&mut Entropy::seeded(seed as u64), &Profile::default());
-            // Over the seeds every combination of switches is met; the defaults and the optimising order always are.
+            // Over all seeds, every combination of options occurs; the defaults and the optimizing order always do.
             let any = options_of((seed as u32).wrapping_mul(3).wrapping_add(index as u32) % OPTIONS);
             for options in [options_of(0), Options { order: Order::Optimized, ..options_of(0) }, any] {
                 compile(&graph, &caps, &options, &mut scratch, &mut plan)
@@ -46,15 +46,15 @@ pub fn section(document: &mut Document, graphs: usize, note: &str) {
             }
         }
         let told = first.unwrap_or_default();
-        document.claim(told.is_empty(), || format!("the oracle finds fault with plans for {name}: {told}"));
+        document.claim(told.is_empty(), || format!("the oracle rejects plans for {name}: {told}"));
         let cells = counts.map(|n| n.to_string());
         table.row([vec![(*name).to_owned(), graphs.to_string()], cells.to_vec()].concat());
     }
     document.section(
         &format!("The oracle on {graphs} random graphs{note}"),
         &format!(
-            "Each graph is planned with the defaults, with the optimising order, and with one of all {OPTIONS} combinations \
-             of switches.\n\n{}",
+            "Each graph is planned with the defaults, with the optimizing order, and with one of all {OPTIONS} combinations \
+             of options.\n\n{}",
             table.text()
         ),
     );

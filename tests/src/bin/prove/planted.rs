@@ -1,4 +1,4 @@
-//! Packings whose lowest top is known: how near to it the searches come.
+//! Packings with a known optimum: distance of the searches from it.
 
 use crate::document::Document;
 use crate::instances::overlaps;
@@ -8,14 +8,14 @@ use framegraph::testing::planted::{Cuts, Planted};
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-/// One rectangle, and how far above its height the top may be, in percent.
+/// A rectangle, and the maximum excess of the top over its height, in percent.
 #[derive(Clone, Copy, Debug)]
 struct Row(Planted, u64);
 
-/// Steps of the search in the run that a test repeats.
+/// Search steps in the quick run.
 const QUICK_STEPS: u64 = 3 << 20;
 
-/// Steps in the long run, about a minute.
+/// Search steps in the long run, about one minute.
 const LONG_STEPS: u64 = 450_000_000;
 
 const fn row(items: usize, [times, units]: [u32; 2], cuts: Cuts, most: u64) -> Row {
@@ -49,12 +49,12 @@ const LONG: [Row; 16] = [
     row(10000, [1024, 65536], Cuts::Long, 10),
 ];
 
-/// The run that a test repeats.
+/// Prints the table of the quick run.
 pub fn quick(document: &mut Document) -> Result<(), String> {
     section(document, &QUICK, QUICK_STEPS, "")
 }
 
-/// The run with seconds.
+/// Prints the table of the long run, with times.
 pub fn long(document: &mut Document) -> Result<(), String> {
     section(document, &LONG, LONG_STEPS, ", long run")
 }
@@ -99,9 +99,9 @@ fn section(document: &mut Document, rows: &[Row], budget_steps: u64, note: &str)
     document.section(
         &format!("Planted packings{note}"),
         &format!(
-            "A rectangle of so many times and units of bytes is cut into items, which then fill it: its height is the lowest \
-             top.\nWhere pieces are left out, the height can still be reached, and the bound may be lower. At most {budget_steps} \
-             steps; offsets\nare checked pair by pair.\n\n{}",
+            "A rectangle, `times` wide and `units` bytes high, is cut into items that fill it, so its height is the optimal \
+             top.\nIf pieces are left out, the height is still reachable, and the lower bound may be lower. The search has at \
+             most\n{budget_steps} steps; offsets are checked pair by pair.\n\n{}",
             table.text()
         ),
     );

@@ -1,17 +1,18 @@
-//! Pools beside brute force: within each class of shapes, no sharing takes fewer textures.
+//! Pools compared to brute force: within each class of shapes, no assignment uses fewer textures.
 
 use crate::document::Document;
 use crate::frames::{self, FRAME, Shape};
 use crate::table::Table;
 use framegraph::{Alias, Caps, Desc, Extent, Format, Options, Placement, Plan, ResourceId, Scratch, StepId, compile};
 
-/// Classes with more members than this are judged by how many are alive at once, which no sharing can go below.
+/// Maximum number of members of a class for brute force. Larger classes are compared to the maximum number alive at the
+/// same time, a lower bound.
 const MOST: usize = 9;
 
 /// First and last step of a resource.
 type Life = (StepId, StepId);
 
-/// What must be equal for two textures to take turns.
+/// Properties that must be equal for two textures to share memory.
 type Class = ([u32; 2], Format, u32, u8, u16);
 
 fn class(plan: &Plan, resource: ResourceId) -> Option<Class> {
@@ -25,7 +26,7 @@ fn class(plan: &Plan, resource: ResourceId) -> Option<Class> {
     Some(([width, height], plan.format(resource)?.without_srgb(), t.mip_count(FRAME), t.samples, t.layers))
 }
 
-/// The fewest textures over all ways to share them, tried one by one.
+/// Finds the minimum number of textures by trying all assignments.
 fn fewest(lives: &[Life], textures: &mut Vec<Vec<Life>>, best: &mut usize) {
     if textures.len() >= *best {
         return;
@@ -46,13 +47,13 @@ fn fewest(lives: &[Life], textures: &mut Vec<Vec<Life>>, best: &mut usize) {
     textures.pop();
 }
 
-/// How many are alive at once at most.
+/// Returns the maximum number of resources alive at the same time.
 fn at_once(lives: &[Life]) -> usize {
     let alive = |step: StepId| lives.iter().filter(|l| l.0 <= step && step <= l.1).count();
     lives.iter().map(|l| alive(l.0)).max().unwrap_or(0)
 }
 
-/// The table over that many graphs of each shape.
+/// Prints the table over many graphs of each shape.
 pub fn section(document: &mut Document, graphs: usize, note: &str) {
     let columns = ["shape", "device", "classes", "shared", "by brute force", "by the most alive", "with one too many"];
     let mut table = Table::new(&columns);
@@ -81,23 +82,23 @@ pub fn section(document: &mut Document, graphs: usize, note: &str) {
                     worse += usize::from(slots != least);
                 }
             }
-            document.claim(worse == 0, || format!("{worse} classes of {} take too many textures", shape.word()));
+            document.claim(worse == 0, || format!("{worse} classes of {} use too many textures", shape.word()));
             let counts = [classes, shared, forced, counted, worse].map(|n: usize| n.to_string());
             table.row([vec![shape.word().to_owned(), caps.name.clone()], counts.to_vec()].concat());
         }
     }
     document.section(
-        &format!("Pools beside brute force{note}"),
+        &format!("Pools compared to brute force{note}"),
         &format!(
-            "On the same graphs: textures of one size, format (the transfer function aside), levels, samples and layers are \
-             a class.\nIn classes of up to {MOST} members all ways to share are tried; larger ones cannot take fewer than \
-             are alive at once.\n\n{}",
+            "These are the graphs of the table above. Textures with equal size, format (ignoring the transfer function), \
+             levels, samples and layers are a class.\nIn classes of up to {MOST} members, all assignments are tried. The lower bound of larger classes \
+             is the number alive at the same time.\n\n{}",
             table.text()
         ),
     );
 }
 
-/// For each class, the lives of its members and the slots that they have.
+/// Returns the lifetimes of each class's members, and the number of slots they use.
 fn by_class(plan: &Plan) -> Vec<(Vec<Life>, usize)> {
     let mut classes: Vec<(Class, Vec<Life>, Vec<usize>)> = Vec::new();
     for (resource, row) in plan.graph().resource_ids().zip(plan.resources()) {

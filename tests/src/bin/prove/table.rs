@@ -1,13 +1,13 @@
 //! Tables in Markdown.
 
-/// A head and rows of as many cells.
+/// A table: header and rows.
 #[derive(Debug)]
 pub struct Table {
     rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// A table with these columns.
+    /// Creates a table with these columns.
     pub fn new(columns: &[&str]) -> Self {
         let head = columns.iter().map(|c| (*c).to_owned()).collect();
         Self { rows: vec![head, vec!["---".to_owned(); columns.len()]] }
@@ -19,24 +19,24 @@ impl Table {
         self.rows.push(cells);
     }
 
-    /// The table as text.
+    /// Returns the table as text.
     pub fn text(&self) -> String {
         self.rows.iter().map(|row| format!("| {} |\n", row.join(" | "))).collect()
     }
 }
 
-/// A share in percent, rounded down, so that 100 % means all.
+/// Returns a share in percent, rounded down, so that 100 % means all.
 pub fn percent(part: usize, of: usize) -> String {
     let tenths = part * 1000 / of.max(1);
     format!("{}.{} %", tenths / 10, tenths % 10)
 }
 
-/// A ratio above 1 as the excess in percent.
+/// Formats a ratio above 1 as an excess in percent.
 pub fn excess(ratio: f64) -> String {
     format!("{:.2} %", (ratio - 1.0) * 100.0)
 }
 
-/// Bytes in units of 2^20.
+/// Formats bytes in MiB.
 pub fn mebibytes(bytes: u64) -> String {
     format!("{:.1}", bytes as f64 / f64::from(1 << 20))
 }

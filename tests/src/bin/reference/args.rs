@@ -1,66 +1,65 @@
-//! The command line of `reference`.
+//! Command line of `reference`.
 
 use ::tests::files::references;
 use ::tests::reference::studio::Shade;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// What `reference --help` prints.
+/// Text of `--help`.
 pub const HELP: &str = "\
-Renders the scenes that a folder states, and compares with the pictures beside them.
+Renders the scenes described in a folder, and compares them with reference pictures.
 
 usage: reference [DIR [ID...]] [options]
 
-DIR holds statements (.json) with their pictures (.exr or .png) and charts (.csv); tests/references/filament of this
-repository where none is named. An ID is the name of a statement without its ending, and selects.
+DIR has statements (.json) with their pictures (.exr or .png) and charts (.csv). The default is
+tests/references/filament of this repository. An ID selects a statement by its name without extension.
 
-  --assets DIR         where models are that a statement names with their SHA-256
-  --out DIR            write what was rendered (ID.png, ID.exr) and by how much it is off (ID.difference.png: codes
-                       times 8)
-  --json FILE          the table as JSON
-  --quality maker|low|high|ultra  how surfaces are shaded: as the maker of Filament's references did, which is our low
-                       quality with the table of the exact visibility term and without occlusion of reflections, or by
-                       a preset (maker)
-  --compare-quality    compare nothing with the references, but the high quality with the low one: how far each scene
-                       moves
-  --help               this text
+  --assets DIR         folder of models that statements name by their SHA-256
+  --out DIR            write rendered pictures (ID.png, ID.exr) and differences (ID.difference.png: 8-bit
+                       differences times 8)
+  --json FILE          write the table as JSON
+  --quality maker|low|high|ultra
+                       shading quality: that of Filament's references, which is our low quality with the exact
+                       DFG table and without occlusion of reflections, or a preset (maker)
+  --compare-quality    compare the high quality with the low one, instead of with the references
+  --help               print this help
 
-Exit codes: 0 every rule holds, 1 one does not, or would let a picture pass that is a tenth too bright; 2 bad input or output;
-128 and its number after a signal.
-Scenes that ask for what is not built are skipped, and the keys named.";
+Exit codes: 0 if every rule holds; 1 if one does not, or accepts a picture that is a tenth too bright; 2 on
+invalid input or output; 128 and its number after a signal.
+Scenes with features that are not implemented are skipped, and their keys are listed.";
 
-/// What was asked for.
+/// Parsed options.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Args {
-    /// Where the statements are.
+    /// Folder of the statements.
     pub folder: PathBuf,
-    /// Which of them; all if none is named.
+    /// Identifiers of the statements to compare; all if empty.
     pub ids: Vec<String>,
-    /// Where models are.
+    /// Folder of the models.
     pub assets: Option<PathBuf>,
-    /// Where pictures go.
+    /// Output folder of the pictures.
     pub out: Option<PathBuf>,
-    /// How surfaces are shaded.
+    /// Shading quality and precision.
     pub shade: Shade,
-    /// Compare the two qualities.
+    /// True to compare the two shading qualities.
     pub compare_quality: bool,
-    /// Where the table goes.
+    /// Output file of the table as JSON.
     pub json: Option<PathBuf>,
 }
 
-/// What the command line comes to.
+/// Action that the command line requests.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Command {
     /// Print the help.
     Help,
-    /// Compare.
+    /// Compare pictures.
     Run(Args),
 }
 
-/// Reads the command line; `args` without the program's name.
+/// Parses the command line, without the program's name.
 ///
 /// # Errors
-/// One line that names the option and what it takes.
+/// One line that names the option and the values it takes.
 pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String> {
     use lexopt::prelude::*;
     let mut parser = lexopt::Parser::from_args(args);
@@ -76,17 +75,19 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     let mut folder = None;
     while let Some(arg) = parser.next().map_err(|error| error.to_string())? {
         let path = |parser: &mut lexopt::Parser, option: &str| {
-            parser.value().map(PathBuf::from).map_err(|_| format!("{option}: a value is missing"))
+            parser.value().map(PathBuf::from).map_err(|_| format!("{option}: missing value"))
         };
         match arg {
             Long("help") | Short('h') => return Ok(Command::Help),
             Long("assets") => found.assets = Some(path(&mut parser, "--assets")?),
             Long("out") => found.out = Some(path(&mut parser, "--out")?),
             Long("quality") => {
-                let given = parser.value().map_err(|_| "--quality: maker, low, high or ultra is missing".to_owned())?;
+                let given =
+                    parser.value().map_err(|_| "--quality: missing value; use maker, low, high or ultra".to_owned())?;
                 let named = given.to_str().and_then(Shade::from_name);
-                found.shade = named
-                    .ok_or_else(|| format!("--quality {}: maker, low, high or ultra is needed", given.display()))?;
+                found.shade = named.ok_or_else(|| {
+                    format!("--quality {}: unknown quality; use maker, low, high or ultra", given.display())
+                })?;
             }
             Long("compare-quality") => found.compare_quality = true,
             Long("json") => found.json = Some(path(&mut parser, "--json")?),
@@ -94,8 +95,8 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Value(value) => {
                 found.ids.push(value.into_string().map_err(|v| format!("ID {v:?}: the name is not Unicode"))?);
             }
-            Long(name) => return Err(format!("--{name}: unknown option; `reference --help` lists them")),
-            Short(name) => return Err(format!("-{name}: unknown option; `reference --help` lists them")),
+            Long(name) => return Err(format!("--{name}: unknown option; see `reference --help`")),
+            Short(name) => return Err(format!("-{name}: unknown option; see `reference --help`")),
         }
     }
     found.folder = folder.unwrap_or_else(references);
@@ -135,7 +136,7 @@ mod tests {
     #[test]
     fn wrong_words_are_named() {
         for (words, named) in [
-            (&["refs", "--out"][..], "--out: a value is missing"),
+            (&["refs", "--out"][..], "--out: missing value"),
             (&["refs", "--fast"], "--fast: unknown option"),
             (&["refs", "--quality", "best"], "--quality best"),
             (&["refs", "-x"], "-x: unknown option"),

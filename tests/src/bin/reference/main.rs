@@ -1,6 +1,6 @@
-//! `reference`: renders the scenes that a folder states, and compares with the pictures beside them.
+//! `reference`: renders the scenes described in a folder, and compares them with reference pictures.
 //!
-//! `cargo run --release -p tests --bin reference -- [DIR [ID…]]`; `--help` has the options and exit codes.
+//! `cargo run --release -p tests --bin reference -- [DIR [ID…]]`; `--help` lists options and exit codes.
 
 mod args;
 
@@ -34,7 +34,7 @@ fn refuse(told: &str) -> ExitCode {
     program::exit(interrupt::check().map_or_else(interrupt::Stopped::code, |()| 2))
 }
 
-/// The statements of a folder, by name; `ids` selects.
+/// Returns the statements of a folder, sorted by name; `ids` selects some of them.
 fn statements(folder: &Path, ids: &[String]) -> Result<Vec<PathBuf>, String> {
     let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let is_json = |path: &PathBuf| path.extension().is_some_and(|e| e == "json");
@@ -43,10 +43,10 @@ fn statements(folder: &Path, ids: &[String]) -> Result<Vec<PathBuf>, String> {
     let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     if let Some(unknown) = ids.iter().find(|id| !files.iter().any(|file| stem(file) == **id)) {
         let known: Vec<String> = files.iter().map(|file| stem(file)).collect();
-        return Err(format!("{unknown}: {} states no such scene; there are {}", folder.display(), known.join(", ")));
+        return Err(format!("{unknown}: not a statement in {}; known are {}", folder.display(), known.join(", ")));
     }
     files.retain(|file| ids.is_empty() || ids.contains(&stem(file)));
-    if files.is_empty() { Err(format!("{}: no .json states a scene", folder.display())) } else { Ok(files) }
+    if files.is_empty() { Err(format!("{}: no statement (.json) found", folder.display())) } else { Ok(files) }
 }
 
 fn run(args: &Args) -> Result<u8, String> {
@@ -56,12 +56,12 @@ fn run(args: &Args) -> Result<u8, String> {
         let same =
             |folder: &Path| folder.canonicalize().is_ok_and(|folder| out.canonicalize().is_ok_and(|out| out == folder));
         if same(&args.folder) || args.assets.as_deref().is_some_and(same) {
-            return Err(format!("--out {}: files of this folder are read; name another", out.display()));
+            return Err(format!("--out {}: the folder contains the references; choose another", out.display()));
         }
         check_folder(out).map_err(|error| format!("--out {error}"))?;
     }
     let mut outputs = Outputs::default();
-    // Pictures and charts beside the statements are read as well.
+    // Pictures and charts of the statements are protected from being overwritten too.
     for entry in std::fs::read_dir(&args.folder).into_iter().flatten().flatten() {
         outputs.reads(&entry.path()).map_err(|error| error.to_string())?;
     }
@@ -94,7 +94,7 @@ fn run(args: &Args) -> Result<u8, String> {
     Ok(summary(&outcomes, errors.len()))
 }
 
-/// How far each scene moves between the qualities.
+/// Prints the difference of each scene between the two qualities.
 fn compare(gpu: &Gpu, files: &[PathBuf], how: How<'_>) -> Result<u8, String> {
     let mut rows = Vec::new();
     for (index, file) in files.iter().enumerate() {
@@ -109,7 +109,7 @@ fn compare(gpu: &Gpu, files: &[PathBuf], how: How<'_>) -> Result<u8, String> {
     Ok(0)
 }
 
-/// The last line, and the exit code.
+/// Prints the last line, and returns the exit code.
 fn summary(outcomes: &[Outcome], errors: usize) -> u8 {
     let names = |wanted: fn(&Outcome) -> bool| -> Vec<&str> {
         outcomes.iter().filter(|outcome| wanted(outcome)).map(|outcome| outcome.id.as_str()).collect()

@@ -1,7 +1,7 @@
-//! `reflections`: where rays find what mirrors show, on the adapter that there is.
+//! `reflections`: accuracy of screen-space reflections on the default adapter.
 //!
-//! `cargo run --release -p tests --bin reflections` prints the table of `docs/reflections.md`: three balls over a floor, all of
-//! them mirrors, against the formulas of `truth::reflection`.
+//! `cargo run --release -p tests --bin reflections` prints the table of `docs/reflections.md`: three mirror balls over
+//! a mirror floor, compared with the formulas of `truth::reflection`.
 
 use framegraph_passes::ReflectionSettings;
 use framegraph_passes::structure::Resolution;
@@ -11,7 +11,7 @@ use std::error::Error;
 use std::process::ExitCode;
 use tests::measure::reflection::{Found, Stage};
 
-/// Width and height of the picture.
+/// Width and height of the picture, in pixels.
 const SIZE: [u32; 2] = [320, 240];
 
 fn main() -> ExitCode {

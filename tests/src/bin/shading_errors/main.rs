@@ -1,7 +1,7 @@
-//! `shading_errors`: what half floats cost the shading library in accuracy, on the adapter that there is.
+//! `shading_errors`: error of half floats in the shading library on the default adapter.
 //!
-//! `cargo run -p tests --bin shading_errors` prints the tables of `docs/half-floats.md`. Each has a control: something
-//! wrong on purpose that its comparison must notice. The exit code is 1 when one is not noticed.
+//! `cargo run -p tests --bin shading_errors` prints the tables of `docs/half-floats.md`. Each has a negative control,
+//! an error made on purpose that its comparison must detect. The exit code is 1 if it does not.
 
 use framegraph_shaders::reference::cases;
 use framegraph_wgpu::{AdapterRequest, Gpu};
@@ -30,12 +30,12 @@ fn print(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
 }
 
 fn told(noticed: bool) -> bool {
-    program::line(format_args!("\ncontrol: {}", if noticed { "noticed" } else { "NOT NOTICED" }));
+    program::line(format_args!("\nnegative control: {}", if noticed { "detected" } else { "NOT DETECTED" }));
     noticed
 }
 
 fn functions(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
-    program::line(format_args!("\n## Functions against their f64 mirrors: {POINTS} points each\n"));
+    program::line(format_args!("\n## Functions compared with their f64 mirrors: {POINTS} points each\n"));
     program::line("| function | f32: largest difference | of its bound | f16: largest difference | of its bound |");
     program::line("| --- | --- | --- | --- | --- |");
     for row in mirrors(gpu)? {
@@ -64,20 +64,20 @@ fn distribution(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
 }
 
 fn pictures(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
-    program::line("\n## Pictures in f16 against f32, roughness from 0.089 on in both\n");
-    program::line("| scene | PSNR | off by more than 2 codes | largest difference |");
+    program::line("\n## Pictures in f16 compared with f32, roughness of at least 0.089 in both\n");
+    program::line("| scene | PSNR | pixels that differ by more than 2 steps | largest difference |");
     program::line("| --- | --- | --- | --- |");
     let mut noticed = true;
     for scene in SCENES {
         let studio = Studio::new(gpu, scene)?;
         let d = studio.difference(gpu, 0.089)?;
         program::line(format_args!(
-            "| {scene} | {:.1} dB | {:.3} % | {} codes |",
+            "| {scene} | {:.1} dB | {:.3} % | {} steps |",
             d.psnr_db,
             100.0 * d.share_off,
             d.largest_codes
         ));
-        // Highlights that are wider than they should be.
+        // Negative control: highlights that are too wide.
         noticed &= scene != "spheres" || studio.difference(gpu, 0.12)?.psnr_db < d.psnr_db - 3.0;
     }
     Ok(told(noticed))

@@ -1,7 +1,7 @@
-//! `soak`: the standard frame for hours, with its window, effects and scene changing all the time.
+//! `soak`: long-running test of the standard frame with changing window size, effects and scene.
 //!
-//! `WGPU_BACKEND=noop cargo run --release -p tests --bin soak -- --frames 100000` prints what the run holds as it goes on, and at its end
-//! whether the last frame is that of a fresh run. Any error of any frame ends it.
+//! `WGPU_BACKEND=noop cargo run --release -p tests --bin soak -- --frames 100000` prints the resources in use during
+//! the run. At the end, it compares the last frame with one of a fresh run. Any error ends the run.
 
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::error::Error;
@@ -63,7 +63,7 @@ fn run() -> Result<(), Box<dyn Error>> {
         ));
     })?;
     if last != Soak::fresh(&open()?)? {
-        return Err("the last frame is not that of a fresh run".into());
+        return Err("the last frame differs from that of a fresh run".into());
     }
     program::line("\nThe last frame is that of a fresh run.");
     Ok(())

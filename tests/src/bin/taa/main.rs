@@ -1,4 +1,4 @@
-//! `taa`: how near anti-aliasing over time comes to the truth, and what it leaves behind, on the adapter that there is.
+//! `taa`: error and ghosting of temporal anti-aliasing on the default adapter.
 //!
 //! `cargo run --release -p tests --bin taa` prints the table of `docs/taa.md`.
 

@@ -3,7 +3,7 @@
 use super::{Domain, Probe, RADIANCE, SHARE, Values, both, is_any, is_positive, is_share};
 use Domain::Count;
 
-/// Around what a curve ends at (49).
+/// Values around the end of a curve (row 49).
 const CODE: Domain = Values(&[-1e9, -1e-3, -0.0, 0.0, 1e-6, 0.0031308, 0.04045, 1.0, 1.0001, 1e9, f64::NAN]);
 
 pub(super) const PROBES: &[Probe] = &[
@@ -40,7 +40,7 @@ pub(super) const PROBES: &[Probe] = &[
     both(47, "map_into_gamut", &[Values(&[-1.0, 0.0, 1.0, 10.0]), Values(&[-1.0, 0.0, 1.0, 10.0]), SHARE], |_, y| {
         y.iter().all(|y| (-0.04..=1.04).contains(y))
     }),
-    // What is inside stays what it is.
+    // Colors inside the gamut are unchanged.
     both(47, "map_into_gamut", &[SHARE, SHARE, SHARE], |x, y| x.iter().zip(y).all(|(x, y)| x.to_bits() == y.to_bits())),
     both(47, "oklab_from_rec709", &[Values(&[-1.0, -0.0, 0.0, 1e-30]), Values(&[-1.0, 0.0]), SHARE], is_any),
     both(

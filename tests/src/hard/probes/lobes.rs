@@ -1,4 +1,4 @@
-//! The lobes beyond the standard one.
+//! Material lobes other than the standard one.
 
 use super::{
     COMPONENT, COSINE, Domain, LOW_ALPHA, NONE, ONE, Probe, SHARE, Values, both, bounded, in_half, is_any, is_positive,
@@ -6,13 +6,13 @@ use super::{
 };
 use Domain::Vector;
 
-/// Strengths of grooves and beyond (11).
+/// Strengths of anisotropy, and values outside the range (row 11).
 const ANISOTROPY: Domain = Values(&[-1.5, -1.0, 0.0, 1.0, 1.5]);
 const FLOOR: Domain = Values(&[0.007_921]);
 const HELD: Domain = Values(&[0.007_921, 0.1, 1.0]);
-/// Reflectances of the base under a film, up to and beyond all.
+/// Reflectances of the base under a thin film, and values outside 0…1.
 const BASE_F0: Domain = Values(&[-0.1, 0.0, 0.04, 1.0, 1.5]);
-/// Thicknesses and ways within a film in nm: none, one wave, more than any wave lasts, more than a number holds.
+/// Film thicknesses and path lengths in nm: zero, one wavelength, beyond coherence, near the largest f32.
 const THICKNESS_NM: Domain = Values(&[0.0, 1e-3, 380.0, 1e5, 3e38]);
 
 pub(super) const PROBES: &[Probe] = &[
@@ -29,7 +29,7 @@ pub(super) const PROBES: &[Probe] = &[
         &[LOW_ALPHA, LOW_ALPHA, COMPONENT, COMPONENT, COSINE, COMPONENT, COMPONENT, COSINE],
         in_half,
     ),
-    // The viewer along the smooth direction.
+    // The viewer looks along the smooth direction.
     both(
         11,
         "anisotropic_bent_normal",
@@ -53,7 +53,7 @@ pub(super) const PROBES: &[Probe] = &[
         (0.0..=400.0).contains(&y[0])
     }),
     bounded(12, "v_neubelt", &[COSINE, COSINE], |x, y| {
-        // Cosines less than none make the denominator negative: its floor keeps what is left finite.
+        // Negative cosines make the denominator negative; its lower limit keeps the result finite.
         in_half(x, y)
     }),
     both(12, "sheen_attenuation", &[Vector(3, 0.0, 2.0), Values(&[0.0, 1.0, 4.0])], is_share),
@@ -61,12 +61,12 @@ pub(super) const PROBES: &[Probe] = &[
         y.iter().all(|f| *f <= 1.0)
     }),
     both(15, "f0_under_clear_coat_fast", &[Values(&[-0.1, 0.0, 1.0, 2.0]), SHARE, SHARE], is_share),
-    // An index below that of air.
+    // An index of refraction below that of air.
     both(15, "refracted_path", &[NONE, NONE, COSINE, NONE, NONE, ONE, Values(&[0.0, 0.5, 1.0, 1.5]), ONE], is_any),
     both(15, "transmission_spread", &[SHARE, Values(&[0.0, 0.5, 1.0, 2.5])], is_positive),
     both(15, "seen_transmission_spread", &[SHARE, Values(&[0.0, 0.5, 1.0, 2.5])], |_, y| (0.0..=0.317).contains(&y[0])),
     both(15, "pyramid_lod", &[Values(&[-1.0, 0.0, 1e-30, 1e-3, 1.0, 1e30])], is_positive),
-    // Films of no thickness and of more than there is room for, on everything, at every angle.
+    // Films of zero and extreme thickness, on any base, at every angle.
     both(
         15,
         "thin_film_reflectance",
@@ -89,7 +89,7 @@ pub(super) const PROBES: &[Probe] = &[
     both(2, "subsurface_roughness", &[SHARE, SHARE], is_share),
     both(2, "wrapped_cosine", &[Values(&[-1.002, -0.5, 0.0, 1.0, 1.002])], is_share),
     both(2, "cloth_tint", &[Vector(3, -0.1, 1.1), Values(&[-1.002, 0.0, 1.002])], is_share),
-    // Light from the front does not come through.
+    // Light from the front is not transmitted.
     both(2, "fd_transmitted", &[Values(&[0.0, -0.0, 0.1, 1.0, 1.002, -1.002])], |x, y| {
         y.iter().all(|through| (0.0..0.3185).contains(through) && (x[0] < 0.0 || *through == 0.0))
     }),

@@ -1,14 +1,14 @@
-//! What a picture is made with: stored formats, edges, noise, froxels, vignettes.
+//! Picture processing: stored formats, edges, noise, froxels, vignettes.
 
 use super::{Domain, Probe, RADIANCE, Values, both, bounded, is_any, is_positive, is_share};
 
-/// Luma of a flat place, of an edge, and of a picture that no tone curve has seen (50).
+/// Luma of a flat area, of an edge, and of a picture before the tone curve (row 50).
 const LUMA: Domain = Values(&[0.0, 1e-8, 0.25, 1.0, 50.0, 65504.0]);
-/// Pixels far out (55).
+/// Large pixel coordinates (row 55).
 const PIXEL: Domain = Values(&[0.5, 2000.5, 1e4, 1e5, 1e6]);
 
 pub(super) const PROBES: &[Probe] = &[
-    // A sun in the middle of the sky: rounding carries its cosine past one.
+    // A sun in the view direction: rounding makes the cosine exceed 1.
     both(
         35,
         "perez",

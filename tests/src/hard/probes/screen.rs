@@ -1,12 +1,12 @@
-//! What looks around in depth: ambient occlusion, rays over the picture.
+//! Screen-space effects: ambient occlusion, reflections, contact shadows.
 
 use super::{COMPONENT, Domain, NONE, ONE, Probe, SHARE, Values, both, is_any, is_share};
 use Domain::{Direction, Vector};
 use std::f64::consts::FRAC_PI_2;
 
-/// Cosines that rounding has carried past one (35).
+/// Cosines that rounding moved beyond 1 (row 35).
 const BEYOND: Domain = Values(&[-1.001, -1.000_000_1, -1.0, 0.0, 1.0, 1.000_000_1, 1.001, 2.0]);
-/// Albedos that no surface has (29).
+/// Albedos outside 0…1 (row 29).
 const ALBEDO: Domain = Values(&[-0.5, 0.0, 0.5, 1.0, 2.0, 4.0]);
 
 pub(super) const PROBES: &[Probe] = &[
@@ -22,14 +22,14 @@ pub(super) const PROBES: &[Probe] = &[
     both(35, "spherical_caps_overlap", &[BEYOND, BEYOND, BEYOND], is_any),
     both(35, "specular_occlusion_cones", &[Direction, Direction, Values(&[-0.1, 0.0, 1.0, 1.1]), SHARE], is_share),
     both(35, "horizon_occlusion", &[COMPONENT, NONE, COMPONENT, COMPONENT, NONE, COMPONENT], is_share),
-    // No depth, no radius, no distance.
+    // Zero depth, radius and distance.
     both(
         32,
         "sao_term",
         &[Direction, Values(&[0.0, 1e-30, 1e-4, 0.3, 1e6]), Direction, Values(&[0.0, 0.01, 1.0]), Values(&[0.0, 0.1])],
         |_, y| (0.0..=6.0).contains(&y[0]),
     ),
-    // What barely rises from the plane is of the surface itself.
+    // Points slightly above the plane belong to the surface itself.
     both(
         33,
         "sao_term",
@@ -62,7 +62,7 @@ pub(super) const PROBES: &[Probe] = &[
         is_share,
     ),
     both(33, "bilateral_weight", &[Values(&[-1e6, 0.0, 0.1, 1e6]), Values(&[0.01])], is_share),
-    // Rays that begin at or behind the eye's plane, and that go along it.
+    // Rays that start at or behind the eye plane, or run parallel to it.
     both(
         31,
         "ray_length_m",
@@ -97,7 +97,7 @@ pub(super) const PROBES: &[Probe] = &[
     }),
     both(30, "roughness_fade", &[Values(&[0.0, 1.0]), Values(&[0.0, 1e-12, 0.5])], is_share),
     both(30, "reach_fade", &[Values(&[-1e30, 0.0, 1.0, 1e30])], is_share),
-    // What lies in the eye's plane and behind it.
+    // Points in the eye plane and behind it.
     both(
         30,
         "ndc_from_view",

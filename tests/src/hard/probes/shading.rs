@@ -1,4 +1,4 @@
-//! What lights surfaces: D, V, F, compensation, punctual lights, normals, harmonics.
+//! Surface lighting: D, V, F, energy compensation, punctual lights, normals, harmonics.
 
 use super::{
     ALPHA, Build, COMPONENT, COSINE, Domain, LOW_ALPHA, MOST, NONE, NOV, ONE, Probe, SHARE, Values, both, bounded,
@@ -6,24 +6,24 @@ use super::{
 };
 use Domain::{Direction, Vector};
 
-/// Components that tilt a vector by next to nothing.
+/// Components that tilt a vector very slightly.
 const TILT: Domain = Values(&[0.0, 6e-8, 6.1e-5, -1e-4, 0.001]);
-/// Table entries of a broken table, and of none (13).
+/// Entries of an invalid and of an empty table (row 13).
 const ALBEDO: Domain = Values(&[0.0, -0.0, -1.0, 6e-8, 0.3, 1.0, 161.0, f64::NAN]);
-/// Squared distances, and one over squared ranges (16, 17).
+/// Squared distances, and inverse squared ranges (rows 16, 17).
 const DISTANCE2: Domain = Values(&[0.0, 1e-12, 1e-6, 1e-4, 1.0, 1e12, 1e30, f64::INFINITY]);
 const INV_RANGE2: Domain = Values(&[0.0, 1e-6, 1.0, 1e12, 1e30]);
-/// Lengths from which no direction comes, and from which one must (8, 38).
+/// Vectors without a usable direction, and short vectors with one (rows 8, 38).
 const TINY: Domain = Values(&[0.0, -0.0, 1e-38, 1e-31, 1e-20, -1e-13, 1e-7, 1.0, -1.0, 1e30]);
 const RADIANCE: Domain = Values(&[0.0, -65504.0, 65504.0, 1e30, f64::INFINITY, f64::NEG_INFINITY, f64::NAN]);
 const COLOR: Domain = Vector(3, 0.0, 1.0);
 const FAST: Domain = Values(&[0.0, 1.0]);
-/// A light at and behind the horizon of a surface that looks along z (2).
+/// A light at and below the horizon of a surface that faces +z (row 2).
 const BEHIND: Domain = Values(&[0.0, -0.0, -1e-8, -6e-8, -1e-4, -1.0]);
-/// A sine and a cosine beside it, near a mirrored view.
+/// A sine and a cosine near the mirror direction.
 const SIDE: Domain = Values(&[-1.0, -0.001, 0.0, 0.001, 0.9995]);
 
-/// The peak of D, but for a few roundings of f32 or of f16.
+/// Returns true if D is at most its peak, to within a few roundings of f32 or f16.
 fn below_peak(x: &[f32], y: &[f32], alpha: f32) -> bool {
     let alpha = f64::from(alpha.max(if x.is_empty() { 0.0 } else { 0.002 }));
     y[0] >= 0.0 && f64::from(y[0]) <= 1.01 / (std::f64::consts::PI * alpha * alpha)
@@ -33,7 +33,7 @@ pub(super) const PROBES: &[Probe] = &[
     both(1, "clamp_nov", &[COSINE], |_, y| y[0] >= 1e-4 - 3e-8),
     bounded(1, "v_smith_ggx_correlated", &[NOV, COSINE, LOW_ALPHA], in_half),
     bounded(1, "v_smith_ggx_correlated_fast", &[NOV, COSINE, LOW_ALPHA], in_half),
-    // Exactly nothing, to the sign of zero.
+    // Exactly zero, of either sign.
     both(
         2,
         "reflect_light",
@@ -64,7 +64,7 @@ pub(super) const PROBES: &[Probe] = &[
         holds: |x, y| below_peak(x, y, x[1]),
         mirrored: true,
     },
-    // Vectors a little longer than one.
+    // Vectors slightly longer than 1.
     both(
         3,
         "reflect_light",
@@ -92,7 +92,7 @@ pub(super) const PROBES: &[Probe] = &[
         "d_ggx_cross",
         &[NONE, NONE, ONE, TILT, TILT, Values(&[0.9995, 1.0, 1.000_000_2, 1.002]), LOW_ALPHA],
         |x, y| {
-            // The floor of half floats; in f32 the largest half float is the bound.
+            // The minimum alpha of half floats; in f32, the largest half float is the bound.
             below_peak(x, y, x[6].max(if x[6] < 0.002 { 0.0079 } else { 0.0 })) || (y[0] <= MOST && x[6] < 0.002)
         },
     ),
@@ -109,7 +109,7 @@ pub(super) const PROBES: &[Probe] = &[
     }),
     both(6, "f_schlick_scalar", &[SHARE, ONE, COSINE], |x, y| (x[0] - 5e-4..=1.0).contains(&y[0])),
     both(6, "f90_from_f0", &[SHARE, SHARE, SHARE], |_, y| (0.0..=1.0).contains(&y[0])),
-    // Opposite to the viewer no half vector is left.
+    // A light opposite the viewer has no half vector.
     bounded(
         7,
         "reflect_light",
@@ -160,9 +160,9 @@ pub(super) const PROBES: &[Probe] = &[
     both(8, "vertex_normal", &[TINY, TINY, TINY, ONE], is_unit),
     bounded(8, "normalize_or", &[TINY, TINY, TINY, ONE], is_unit),
     bounded(8, "normalize_or", &[Direction, Values(&[0.0, 1e-38, 1e-30, 1e-20, 1e20])], is_unit),
-    // What lies half way between opposite normals.
+    // The mean of opposite normals.
     both(9, "vertex_normal", &[NONE, NONE, Values(&[1e-9, -1e-9, 1e-7, -1e-7, 0.0, 1.0, -1.0]), ONE], is_unit),
-    // Tangents that are missing or lie along the normal; texels that stand for no direction.
+    // Tangents that are missing or parallel to the normal; texels without a direction.
     both(
         10,
         "apply_normal_map",
@@ -180,17 +180,17 @@ pub(super) const PROBES: &[Probe] = &[
         ],
         is_unit,
     ),
-    // A right angle to the normal, and a length of one.
+    // The result is perpendicular to the normal and has length 1.
     both(10, "duff_tangent", &[TILT, TILT, Values(&[-1.0, -0.999_999_94, 1.0])], |x, y| {
         let along: f32 = x.iter().zip(y).map(|(n, t)| n * t).sum();
         is_unit(x, y) && along.abs() < 2e-3
     }),
     both(10, "duff_tangent", &[Values(&[1.0, -1.0]), NONE, Values(&[0.0, -0.0])], is_unit),
     both(13, "energy_compensation", &[SHARE, SHARE, SHARE, ALBEDO], |x, y| {
-        // 1/0.3 - 1, and a rounding.
+        // 1/0.3 - 1, plus rounding.
         y.iter().zip(x).all(|(c, f0)| (1.0..=1.001 + 2.34 * f0).contains(c))
     }),
-    // Half a texel from the border at least.
+    // At least half a texel from the border.
     both(14, "dfg_uv", &[COSINE, COSINE, Values(&[16.0, 64.0, 128.0])], |x, y| {
         y.iter().all(|uv| (0.5 / x[2] - 1e-6..=1.0 - 0.5 / x[2] + 1e-6).contains(uv))
     }),
@@ -204,11 +204,11 @@ pub(super) const PROBES: &[Probe] = &[
     both(
         18,
         "spot_attenuation",
-        // An inner angle that is the outer one: the CPU's scale is a thousand at most, and the cosine is one.
+        // Equal inner and outer angles: the CPU limits the scale to 1000, and the cosine is 1.
         &[COSINE, Values(&[1.0, 1000.0]), Values(&[-1000.0, -999.0, 0.0])],
         |_, y| (0.0..=1.0).contains(&y[0]),
     ),
-    // Sunlight times an exposure meant for the dark, where it goes into half floats.
+    // Sunlight with the exposure of a dark scene, converted to half floats.
     bounded(19, "to_real3", &[Values(&[2.797, 91667.0, 1e30, -1e30]), Values(&[110_000.0]), NONE], |x, y| {
         y.iter().zip(x).all(|(y, x)| y.abs() <= MOST || (y == x && *x > MOST) || (y == x && *x < -MOST))
     }),
@@ -230,7 +230,7 @@ pub(super) const PROBES: &[Probe] = &[
     both(27, "irradiance_sh2", &[Vector(12, -1.0, 1.0), Direction], is_positive),
     both(27, "irradiance_sh5", &[Vector(54, -1.0, 1.0), Direction], is_positive),
     both(27, "specular_sh", &[Vector(27, -1.0, 1.0), Direction, SHARE], is_positive),
-    // No value of a coefficient means anything else than light.
+    // Any coefficients must give non-negative light.
     bounded(28, "irradiance_sh", &[Vector(27, -65504.0, 65504.0), Direction], is_positive),
     both(56, "pow5", &[Values(&[1e-7, 6e-8, 6e-5, 0.01])], |x, y| y[0] >= 0.0 && y[0] <= x[0]),
     both(56, "specular_albedo", &[SHARE, SHARE, SHARE, SHARE, SHARE, SHARE], is_any),

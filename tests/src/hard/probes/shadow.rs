@@ -1,12 +1,12 @@
-//! What deals in shadow maps.
+//! Shadow maps.
 
 use super::{COMPONENT, Domain, Probe, SHARE, Values, both, bounded, in_half, is_any, is_share};
 
-/// Stored depths, and beyond (43).
+/// Stored depths, and values outside 0…1 (row 43).
 const DEPTH: Domain = Values(&[-0.1, 0.0, 1e-7, 0.5, 0.9999, 1.0, 1.1]);
 
 pub(super) const PROBES: &[Probe] = &[
-    // An edge-on receiver: its slope is taken for none.
+    // An edge-on receiver: its slope counts as zero.
     bounded(42, "receiver_plane_slope", &[COMPONENT, COMPONENT, COMPONENT, COMPONENT, COMPONENT, COMPONENT], |_, y| {
         y.iter().all(|slope| slope.abs() < 1e6)
     }),
@@ -27,14 +27,14 @@ pub(super) const PROBES: &[Probe] = &[
     both(44, "warp_depth", &[DEPTH], |_, y| (0.003..=255.0).contains(&y[0])),
     both(44, "depth_moments", &[DEPTH, Values(&[-1e6, 0.0, 1e6]), Values(&[0.0, 1e6])], in_half),
     both(45, "moment_visibility", &[SHARE, SHARE, SHARE, Values(&[1e-6, 1e-3]), Values(&[0.0, 0.2, 0.9])], is_share),
-    // The edge of a texel that a receiver is seen along would make any variance.
+    // A receiver seen along the edge of a texel would have unlimited variance.
     both(
         45,
         "least_variance",
         &[Values(&[0.0039, 254.0]), Values(&[1e-3]), Values(&[0.0, 1e6]), Values(&[0.0, 1e6])],
         |x, y| y[0] >= 0.0 && y[0] <= x[0] * x[0] * (1e-3 + 0.35),
     ),
-    // Ties go to the first axis, and no direction at all has a face.
+    // Ties select the first axis, and the zero vector selects a face.
     both(46, "cube_face_of", &[COMPONENT, COMPONENT, COMPONENT], |x, y| {
         let a = [x[0].abs(), x[1].abs(), x[2].abs()];
         let axis = if a[0] >= a[1] && a[0] >= a[2] {

@@ -1,4 +1,4 @@
-//! Terms that are formulas against what they stand for.
+//! Techniques of formulas, compared with what they approximate.
 
 use super::{Choice, Technique, formula, number};
 use crate::lab::technique::Measured;
@@ -23,7 +23,7 @@ pub(super) fn techniques() -> Vec<Technique> {
     ]
 }
 
-/// Root mean square, signed mean and so on of numbers.
+/// Creates an option from differences: root mean square and signed mean.
 fn rms(name: &str, apart: impl Fn() -> Vec<f64> + 'static) -> Choice {
     number(name, move |_: &Gpu| {
         let apart = apart();
@@ -33,7 +33,7 @@ fn rms(name: &str, apart: impl Fn() -> Vec<f64> + 'static) -> Choice {
     })
 }
 
-/// Cosines toward viewer and light, and alpha: 0.02 … 1 and roughness 0.089 … 1.
+/// Returns cosines toward viewer and light in 0.02 … 1, and alpha for roughness 0.089 … 1.
 fn angles() -> impl Iterator<Item = [f64; 3]> {
     let cosine = |i: u32| 0.02 + 0.98 * f64::from(i) / 19.0;
     let alpha = |i: u32| (0.089 + 0.911 * f64::from(i) / 14.0_f64).powi(2);
@@ -62,11 +62,11 @@ fn visibility_term() -> Technique {
         rms("separable Smith", against(separable)),
         rms("Schlick, k = α/2", against(schlick)),
     ];
-    let what = "The visibility term as a formula, over cosines 0.02 … 1 and roughness 0.089 … 1: relative error.";
+    let what = "Formula of the visibility term, over cosines 0.02 … 1 and roughness 0.089 … 1: relative error.";
     formula("visibility-term", what, "the height-correlated Smith term in f64.", "share, RMS", choices)
 }
 
-/// Fresnel's reflectance of a dielectric, unpolarised.
+/// Returns Fresnel reflectance of a dielectric for unpolarized light.
 fn dielectric(cosine: f64, ior: f64) -> f64 {
     let g = (ior * ior - 1.0 + cosine * cosine).sqrt();
     let a = ((g - cosine) / (g + cosine)).powi(2);
@@ -89,12 +89,12 @@ fn fresnel() -> Technique {
             .found_in(|_| true),
         rms("none: f0", over(|_, ior| ((ior - 1.0) / (ior + 1.0)).powi(2))),
     ];
-    let what = "Reflectance by angle, of water, glass, sapphire and diamond.";
-    formula("fresnel", what, "Fresnel's equations for unpolarised light.", "reflectance, RMS", choices)
+    let what = "Reflectance by angle for water, glass, sapphire and diamond.";
+    formula("fresnel", what, "Fresnel's equations for unpolarized light.", "reflectance, RMS", choices)
 }
 
 fn coat_visibility() -> Technique {
-    // At the mirrored direction, where a coat's lobe is: l·h is the cosine of both.
+    // In the mirror direction, where the lobe of a coat is, l·h is the cosine of both angles.
     let over = |most_roughness: f64| {
         move || {
             let grid = (0..20).flat_map(move |r| (1..=20).map(move |c| (r, f64::from(c) / 20.0)));
@@ -110,7 +110,7 @@ fn coat_visibility() -> Technique {
         rms("Kelemen, roughness to 0.3", over(0.3)),
         rms("Kelemen, roughness to 0.6", over(0.6)),
     ];
-    let what = "Kelemen's visibility of a clear coat, in the mirrored direction: relative error, for glossy and for rough coats.";
+    let what = "Kelemen's visibility term of a clear coat in the mirror direction: relative error, for glossy and rough coats.";
     formula("coat-visibility", what, "the height-correlated Smith term.", "share, RMS", choices)
 }
 
@@ -134,22 +134,24 @@ fn coat_base() -> Technique {
         rms("left as in air", over(|f0| f0)),
     ];
     let what = "Reflectance of a base under a clear coat of index 1.5, for f0 of 0 … 0.95.";
-    formula("coat-base", what, "Fresnel at the inner face, by indices.", "reflectance, RMS", choices)
+    formula("coat-base", what, "Fresnel's equations at the inner interface.", "reflectance, RMS", choices)
 }
 
 fn transmission_blur() -> Technique {
-    /// Tangent of the angle at which light that met a facet of this tilt leaves the flat far face, by Snell's law at both.
+    /// Returns the tangent of the exit angle of light that meets a facet of this tilt and leaves the flat far side, by
+    /// Snell's law at both.
     fn bent(tilt: f64, ior: f64) -> f64 {
         let inside = tilt - (tilt.sin() / ior).asin();
         (ior * inside.sin()).asin().tan()
     }
-    // Half of the facets of GGX's distribution have a slope below alpha, and half of a Gaussian is within 1.1774 deviations.
+    // Half of the facets of GGX's distribution have a slope below alpha, and half of a Gaussian is within 1.1774
+    // standard deviations.
     let half = (2.0 * 2.0_f64.ln()).sqrt();
     let over = move |sigma_rad: fn(f64, f64, f64) -> f64| {
         move || {
             let roughness = (2..=7).map(|i| 0.1 * f64::from(i));
             let grid = roughness.flat_map(|r| [1.2, 1.33, 1.5, 1.8].map(|ior| (r, ior)));
-            // Share of the distance from the eye to the thing seen that lies behind the glass.
+            // Share of the distance from the eye to the visible surface that lies behind the glass.
             let grid = grid.flat_map(|(r, ior)| [0.02, 0.1, 0.3, 0.6, 0.9].map(|behind| (r, ior, behind)));
             let apart = grid.map(|(r, ior, behind)| {
                 let truth = (bent((r * r).atan(), ior) * behind).atan();
@@ -167,9 +169,8 @@ fn transmission_blur() -> Technique {
             .found_in(|f| f.settings.shading.transmission_blur == TransmissionBlur::Angle),
         rms("none", over(|_, _, _| 0.0)),
     ];
-    let what = "Blur of things behind a rough pane, seen straight on: the angle from the eye that holds half of the light. Over \
-                roughness 0.2 … 0.7, index 1.2 … 1.8, and from close behind the pane to far.";
-    let truth = "Snell's law at the facet that half of GGX's facets tilt less than, and at the flat far face.";
+    let what = "Blur of objects behind a rough pane at normal incidence: the angle from the eye that contains half of the light. Tested over roughness 0.2 … 0.7, index 1.2 … 1.8, and near and far distances behind the pane.";
+    let truth = "Snell's law at GGX's median facet, and at the flat far side.";
     formula("transmission-blur", what, truth, "degrees, RMS", choices)
 }
 
@@ -194,13 +195,12 @@ fn depth_format() -> Technique {
         rms("standard, 24 bits", over(|z| back((standard(z) * 16_777_215.0).round() / 16_777_215.0))),
         rms("standard, 16 bits", over(|z| back((standard(z) * 65_535.0).round() / 65_535.0))),
     ];
-    let what = "What depth is stored as: distances about 10 m away, read back, with a near plane of 0.1 m and a far one of 1 km.";
-    formula("depth-format", what, "the distance.", "m, RMS", choices)
+    let what = "Depth format: error of distances around 10 m, with a near plane of 0.1 m and a far plane of 1 km.";
+    formula("depth-format", what, "the exact distance.", "m, RMS", choices)
 }
 
 fn depth_normals() -> Technique {
-    /// Distance in m at a column a centimeter wide: a wall that leans back, a step of half a meter, a wall that leans
-    /// forward, a crease, and a strip two columns wide.
+    /// Returns the distance in m at a column 1 cm wide. The profile is a wall that leans back, a step of 0.5 m, a wall that leans forward, a crease, and a strip two columns wide.
     fn distance(column: i32) -> f64 {
         let x = 0.01 * f64::from(column);
         match column {
@@ -211,7 +211,7 @@ fn depth_normals() -> Technique {
             _ => 5.9 + 0.2 * x,
         }
     }
-    /// What the surface at a column rises by a column, in m.
+    /// Returns the slope of the surface at a column, in m per column.
     fn rise(column: i32) -> f64 {
         0.01 * match column {
             ..40 => 0.6,
@@ -239,6 +239,6 @@ fn depth_normals() -> Technique {
             .counted("continues_ahead", false)
             .found_in(|f| f.settings.occlusion.is_some_and(|o| o.fine_normals)),
     ];
-    let what = "Slopes from depth, across steps, a crease and a strip of two pixels: the angle they are off.";
+    let what = "Normals from depth across steps, a crease and a strip of two pixels: error of the angle.";
     formula("depth-normals", what, "the slope of the surface.", "degrees, RMS", choices)
 }

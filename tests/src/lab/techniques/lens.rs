@@ -1,4 +1,4 @@
-//! What lies between scene and sensor, and frames that are added up or made larger.
+//! Techniques between scene and sensor, and frames that are accumulated or upscaled.
 
 use super::{Choice, Technique, base, formula, nowhere, number, pictures};
 use crate::lab::studio::{Setup, Truth};
@@ -24,9 +24,8 @@ fn temporal() -> Technique {
     }
     pictures(
         "taa",
-        "Frames added up over time, each seen through another place of its pixels: the picture after 32 frames of a still \
-         scene, and as noise how much the 16 frames after that differ from their mean.",
-        ("eight by eight times the pixels, averaged as light of the display.", Truth::Supersampled(one, 8)),
+        "Temporal anti-aliasing: the picture after 32 frames of a still scene. The noise is the deviation of the next 16 frames from their mean.",
+        ("8×8 supersampling, averaged as linear display light.", Truth::Supersampled(one, 8)),
         one,
         &[
             ("none", |_| (), |f| f.settings.taa.is_none()),
@@ -47,16 +46,15 @@ fn temporal() -> Technique {
 
 fn upscaling() -> Technique {
     let mut whole = base("columns");
-    // What is made larger should have no steps at its edges: those would be the most of what differs.
+    // Upscaled pictures are anti-aliased, since aliasing would dominate the difference.
     whole.settings.samples = 4;
     fn drawn(setup: &mut Setup, percent: u16, filter: UpscaleFilter) {
         setup.settings.upscale = Some(Upscale { percent, filter, ..Upscale::DEFAULT });
     }
     pictures(
         "upscaling",
-        "Frames of four samples drawn smaller than they are shown: percent of the width and height, and how they are made \
-         larger.",
-        ("the frame drawn as large as it is shown.", Truth::Frame(whole)),
+        "Upscaling of frames with four samples per pixel: percentage of the width and height, and filter.",
+        ("the frame at full resolution.", Truth::Frame(whole)),
         whole,
         &[
             ("100 %", |_| (), |f| f.settings.upscale.is_none()),
@@ -77,7 +75,7 @@ fn bloom_levels() -> Technique {
     glowing(&mut truth, BloomSettings::MOST_LEVELS);
     pictures(
         "bloom-levels",
-        "Levels of the pyramid that spreads what glows, at a strength of 0.3 without a threshold.",
+        "Levels of bloom's pyramid, at a strength of 0.3 without a threshold.",
         ("as many levels as the picture has.", Truth::Frame(truth)),
         truth,
         &[
@@ -90,7 +88,7 @@ fn bloom_levels() -> Technique {
     )
 }
 
-/// A lens that is wide open, so that most of the columns are out of focus.
+/// Returns a wide-open lens, so that most columns are out of focus.
 fn open_lens(rings: u8, resolution: Resolution) -> DofSettings {
     DofSettings {
         focus_m: 3.0,
@@ -107,14 +105,14 @@ fn open_lens(rings: u8, resolution: Resolution) -> DofSettings {
 fn out_of_focus() -> (Setup, (&'static str, Truth)) {
     let mut truth = base("columns");
     truth.settings.dof = Some(open_lens(17, Resolution::Full));
-    (truth, ("17 rings at full size, the most that the frame takes.", Truth::Frame(truth)))
+    (truth, ("17 rings at full resolution, the most that the frame allows.", Truth::Frame(truth)))
 }
 
 fn dof_rings() -> Technique {
     let (setup, truth) = out_of_focus();
     pictures(
         "dof-rings",
-        "Rings of taps that circles of confusion are gathered with, eight more taps a ring, at full size.",
+        "Rings of samples in depth of field's gather pass, each with eight more samples, at full resolution.",
         truth,
         setup,
         &[
@@ -130,7 +128,7 @@ fn dof_resolution() -> Technique {
     let (setup, truth) = out_of_focus();
     pictures(
         "dof-resolution",
-        "The size that circles of confusion are gathered at against the picture's, with five rings.",
+        "Resolution of depth of field's gather pass relative to the picture, with five rings.",
         truth,
         setup,
         &[
@@ -140,7 +138,8 @@ fn dof_resolution() -> Technique {
     )
 }
 
-/// Opacity of a way through air whose density falls off along it, of which the first meters are clear: by steps.
+/// Returns the opacity along a ray through exponentially decreasing density with a clear start, by numerical
+/// integration.
 fn marched(density: f64, decay: f64, start_m: f64, way_m: f64) -> f64 {
     const STEPS: u32 = 4096;
     let reached = (way_m - start_m).max(0.0);
@@ -152,7 +151,7 @@ fn marched(density: f64, decay: f64, start_m: f64, way_m: f64) -> f64 {
 }
 
 fn fog() -> Technique {
-    /// Ways of 1 to 100 m that rise, go level and fall, through fog that begins after 5 m.
+    /// Compares rays of 1 to 100 m that rise, run level and fall, through fog that starts at 5 m.
     fn apart(opacity: impl Fn(f64, f64, f64, f64) -> f64) -> Measured {
         let grid = (0..20).flat_map(|w| (0..9).map(move |d| (100.0_f64.powf(f64::from(w) / 19.0), f64::from(d) - 4.0)));
         let off = grid.map(|(way, decay)| opacity(0.03, decay, 5.0, way) - marched(0.03, decay, 5.0, way));
@@ -178,9 +177,8 @@ fn fog() -> Technique {
         of("the mean of the whole way, Filament's", false),
         of("the mean of what is in fog, the default", true),
     ];
-    let what =
-        "Opacity of fog whose density falls with height and that begins 5 m from the eye, over ways of 1 to 100 m.";
-    formula("fog", what, "the way in 4,096 steps, in f64.", "opacity, RMS", choices)
+    let what = "Opacity of height fog that starts 5 m from the eye, over distances of 1 to 100 m.";
+    formula("fog", what, "integration in 4,096 steps, in f64.", "opacity, RMS", choices)
 }
 
 fn froxels() -> Technique {
@@ -191,8 +189,8 @@ fn froxels() -> Technique {
     }
     pictures(
         "froxel-resolution",
-        "Tiles of the picture and slices of distance that 250 lamps are listed for; coarser lists are longer.",
-        ("every lamp looked at everywhere.", Truth::Frame(truth)),
+        "Froxel resolution in tiles and depth slices for 250 punctual lights; coarser froxels have longer lists.",
+        ("a loop over all lights.", Truth::Frame(truth)),
         truth,
         &[
             ("24 tiles, 4 slices", |s| cut(s, 24, 4), nowhere),

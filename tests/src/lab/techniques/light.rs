@@ -1,4 +1,4 @@
-//! Surfaces and the light on them.
+//! Techniques of surfaces and lighting.
 
 use super::{Technique, base, formula, nowhere, number, pictures};
 use crate::lab::studio::Truth;
@@ -15,9 +15,9 @@ use framegraph_shaders::reference::dfg::Visibility;
 use framegraph_wgpu::Gpu;
 use truth::albedo::Masking;
 
-/// Which of [`furnace::F0`] is looked at: at 1 the table is right by its making.
+/// Index into [`furnace::F0`]. At f0 = 1, the table is exact by construction.
 const METAL: usize = 2;
-/// Walks a point of the furnace.
+/// Random walks per point of the furnace.
 const PATHS: u32 = 2000;
 
 pub(super) fn techniques(gpu: &Gpu) -> Vec<Technique> {
@@ -34,7 +34,7 @@ fn visibility() -> Technique {
     let truth = Truth::Frame(base("materials"));
     pictures(
         "visibility",
-        "The visibility term V of the specular lobe, with the table of albedos that belongs to it: the two are a pair.",
+        "Visibility term V of the specular lobe, and the DFG table made for it.",
         ("the exact height-correlated Smith term with its own table.", truth),
         base("materials"),
         &[
@@ -54,11 +54,13 @@ fn visibility() -> Technique {
 
 fn precision(name: &str, scene: &'static str) -> Technique {
     let mut full = base(scene);
-    // What half floats hold: the floor is no part of the choice.
+    // Both precisions use the roughness limit of half floats, which is not part of the comparison.
     full.settings.shading.roughness_floor = 0.089;
     pictures(
         name,
-        &format!("Shading of the scene `{scene}` in half floats against f32, roughness from 0.089 on in both."),
+        &format!(
+            "Shading of the scene `{scene}` in half floats compared to f32, with a roughness of at least 0.089 in both."
+        ),
         ("shading in f32.", Truth::Frame(full)),
         full,
         &[
@@ -77,8 +79,8 @@ fn roughness_floor() -> Technique {
     truth.settings.shading.specular_aa = None;
     pictures(
         "roughness-floor",
-        "The least perceptual roughness that highlights are made with.",
-        ("a floor of 0.045, the least that the frame takes.", Truth::Frame(truth)),
+        "Minimum perceptual roughness.",
+        ("a minimum of 0.045, the lowest that the frame allows.", Truth::Frame(truth)),
         truth,
         &[
             ("0.045", |_| (), |f| f.settings.shading.roughness_floor == 0.045),
@@ -93,8 +95,8 @@ fn specular_aa() -> Technique {
     sharp.settings.shading.specular_aa = None;
     pictures(
         "specular-aa",
-        "Roughness that is widened by how much the normal turns within a pixel.",
-        ("eight by eight times the pixels without it, averaged as light.", Truth::Supersampled(sharp, 8)),
+        "Specular anti-aliasing, which increases roughness by the variance of normals within a pixel.",
+        ("8×8 supersampling without it, averaged as linear light.", Truth::Supersampled(sharp, 8)),
         sharp,
         &[
             ("none", |_| (), |f| f.settings.shading.specular_aa.is_none()),
@@ -117,7 +119,7 @@ fn cube_levels() -> Technique {
     (truth.light.image.cube_texels, truth.light.image.levels) = (512, 8);
     pictures(
         "prefilter-levels",
-        "Levels of roughness of the prefiltered environment, of a cube of 256 texels.",
+        "Roughness levels of the prefiltered environment, a cube of 256 texels.",
         ("eight levels of a cube of 512 texels.", Truth::Frame(truth)),
         truth,
         &[
@@ -141,7 +143,7 @@ fn cube_size() -> Technique {
     truth.light.image.cube_texels = 512;
     pictures(
         "prefilter-size",
-        "Texels of the prefiltered environment, six levels.",
+        "Cube size of the prefiltered environment, with six levels.",
         ("a cube of 512 texels.", Truth::Frame(truth)),
         truth,
         &[
@@ -172,7 +174,7 @@ fn table_size() -> Technique {
         choice(64).found_in(|f| f.settings.shading.light(f.quality).dfg.texels == 64),
         choice(128).found_in(|f| f.settings.shading.light(f.quality).dfg.texels == 128),
     ];
-    let what = "Texels of the table of directional albedo; the root mean square of its error at f0 = 1.";
+    let what = "Size of the DFG table: root mean square error of the directional albedo at f0 = 1.";
     formula("table-size", what, "the lobe's integral by quadrature.", "albedo, RMS", choices)
 }
 
@@ -182,7 +184,7 @@ fn compensation() -> Technique {
             let settings = DfgSettings { texels: 64, visibility: Visibility::Exact };
             let table = DfgTable::new(gpu, settings, &Cache::off(), &mut progress::silent)?;
             let of_metal = furnace::errors(gpu, &table, compensation, PATHS)?[METAL];
-            // Binomial at its widest.
+            // Standard error of a binomial distribution at its widest.
             let truth_error = 0.5 / f64::from(PATHS * 60).sqrt();
             Ok(Measured { error: of_metal.mean, bias: None, noise: None, truth_error })
         };
@@ -197,9 +199,8 @@ fn compensation() -> Technique {
             .counted("energy_compensation", false)
             .found_in(|f| f.settings.shading.compensate_image),
     ];
-    let what = "Light that rough metal scatters more than once, in a white furnace at f0 = 0.6: mean relative error over 60 \
-                roughnesses and angles.";
-    formula("energy-compensation", what, "random walks over a microsurface, 2000 a point.", "share", choices)
+    let what = "Compensation for multiple scattering in rough metal, in a white furnace at f0 = 0.6: mean relative error over 60 roughnesses and angles.";
+    formula("energy-compensation", what, "random walks over a microsurface, 2000 per point.", "share", choices)
 }
 
 fn harmonics_bands() -> Technique {
@@ -221,8 +222,7 @@ fn harmonics_bands() -> Technique {
             .counted("irradiance_sh5", false)
             .found_in(|f| f.settings.shading.bands == ShBands::Five),
     ];
-    let what = "Bands of the spherical harmonics of irradiance, under a bright disc of 30°: the largest error, and as bias \
-                the lowest value, both as shares of the peak.";
+    let what = "Bands of the spherical harmonics of irradiance, under a bright disc with a radius of 30°. The error is the largest, and the bias is the lowest value, both relative to the peak.";
     formula("harmonics-bands", what, "irradiance by quadrature over the sphere.", "share of the peak", choices)
 }
 
@@ -239,8 +239,7 @@ fn harmonics_window() -> Technique {
         choice("sinc", ShWindow::Sinc),
         choice("Laplacian, .01", ShWindow::Laplacian { lambda: 0.01 }),
     ];
-    let what = "Weakening of high bands against ringing, three bands, a sun alone: the largest error, and as bias the lowest \
-                value, both as shares of the peak.";
+    let what = "Window that attenuates high bands against ringing, with three bands and only a sun. The error is the largest, and the bias is the lowest value, both relative to the peak.";
     formula("harmonics-window", what, "the cosine of the sun.", "share of the peak", choices)
 }
 
@@ -265,7 +264,6 @@ fn distribution(has_half: bool) -> Technique {
         choices.push(choice(half::Form::HalfTextbook, None, true));
         choices.push(choice(half::Form::HalfCross, Some("d_ggx_cross"), true));
     }
-    let what = "How the GGX distribution comes by its angle, at roughness 0.089 over the lobe: the relative error that a \
-                hundredth of half vectors exceeds.";
-    formula("distribution", what, "the distribution of the true angle in f64.", "share, 99th percentile", choices)
+    let what = "Formula for the angle in the GGX distribution, at roughness 0.089 over the lobe: the relative error that 1 % of the half vectors exceed.";
+    formula("distribution", what, "the distribution at the exact angle in f64.", "share, 99th percentile", choices)
 }

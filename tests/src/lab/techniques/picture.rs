@@ -1,4 +1,4 @@
-//! What becomes of radiance: formats, tone curves in tables, codes.
+//! Techniques of the picture: formats, tone curves in tables, quantization.
 
 use super::{Technique, base, formula, nowhere, number, pictures};
 use crate::lab::studio::Truth;
@@ -18,7 +18,7 @@ pub(super) fn techniques(_: &Gpu) -> Vec<Technique> {
     vec![format(), tone_mapper(), tone_fit(), tone_table(), table_coordinates(), oetf(), dither(), post_passes()]
 }
 
-/// Colors from nine stops below grey to seven above, each channel by itself.
+/// Returns colors from nine stops below gray to seven above, independent per channel.
 fn colors() -> Vec<DVec3> {
     let golden = |i: u32, by: f64| 0.18 * (16.0 * (f64::from(i) * by).fract() - 9.0).exp2();
     (0..4096).map(|i| DVec3::new(golden(i, 0.819_172_5), golden(i, 0.671_043_6), golden(i, 0.549_700_5))).collect()
@@ -35,7 +35,7 @@ fn format() -> Technique {
         };
         let mut setup = base("spheres");
         setup.settings.hdr_format = format;
-        // A pass of its own reads what was stored.
+        // A separate pass reads the stored picture.
         setup.settings.split_post = true;
         number(name, measure).timed(setup)
     };
@@ -46,9 +46,8 @@ fn format() -> Technique {
             .found_in(|f| f.settings.hdr_format == Format::Rg11b10Ufloat),
         choice("Rg11b10Ufloat, truncated", Format::Rg11b10Ufloat, |c| quantize_rg11b10ufloat(c, true).truncate()),
     ];
-    let what =
-        "What radiance is stored in between shading and grading: relative error of luminance, over sixteen stops.";
-    formula("radiance-format", what, "the number that is stored.", "share, RMS", choices)
+    let what = "Format of radiance between shading and grading: relative error of luminance, over sixteen stops.";
+    formula("radiance-format", what, "the stored number.", "share, RMS", choices)
 }
 
 fn tone_table() -> Technique {
@@ -69,11 +68,11 @@ fn tone_table() -> Technique {
         of("32³, half floats", half(32)),
         of("64³, half floats", half(64)),
     ];
-    let what = "The ACES curve in a table over logarithmic coordinates: root mean square over random colors.";
-    formula("tone-table", what, "the curve itself.", "codes, RMS", choices)
+    let what = "ACES curve in a table with logarithmic coordinates: root mean square error over random colors.";
+    formula("tone-table", what, "the curve itself.", "8-bit steps, RMS", choices)
 }
 
-/// A look without grading.
+/// Returns a look without grading.
 fn curve(tone_map: ToneMap) -> Look {
     Look { tone_map, ..Look::default() }
 }
@@ -97,8 +96,9 @@ fn tone_mapper() -> Technique {
         choice("Khronos neutral", ToneMap::Neutral),
         choice("mobile, with the encoding in it", ToneMap::Mobile),
     ];
-    let what = "The tone curve, over random colors of sixteen stops; one that is meant to look otherwise errs by what it means.";
-    formula("tone-mapper", what, "Filament's ACES curve in f64.", "codes, RMS", choices)
+    let what =
+        "Tone curve, over random colors of sixteen stops. The error of other curves is their intended difference.";
+    formula("tone-mapper", what, "Filament's ACES curve in f64.", "8-bit steps, RMS", choices)
 }
 
 fn tone_fit() -> Technique {
@@ -129,9 +129,9 @@ fn tone_fit() -> Technique {
 
 fn table_coordinates() -> Technique {
     const ENTRIES: usize = 32;
-    /// The brightest light that a table over plain light holds: seven stops above grey.
+    /// Maximum light in a table over linear light: seven stops above gray.
     const BRIGHTEST: f64 = 0.18 * 128.0;
-    // Greys: each of a table's axes by itself.
+    // Grays exercise each axis of a table alone.
     let choice = |name: &str, place: fn(f64) -> f64, light: fn(f64) -> f64, stretched: bool| {
         number(name, move |_: &Gpu| {
             let extras = Extras::default();
@@ -140,7 +140,7 @@ fn table_coordinates() -> Technique {
             let table: Vec<f64> = (0..ENTRIES).map(|i| shown(DVec3::splat(light(i as f64 / last))).x).collect();
             let sample = |grey: f64| {
                 let x = place(grey).clamp(0.0, 1.0);
-                // Without the remapping of half a texel the first and the last texel's middles are missed.
+                // Without the remapping by half a texel, the centers of the first and last texel are missed.
                 let at = if stretched { x * last } else { (x * ENTRIES as f64 - 0.5).clamp(0.0, last) };
                 let below = (at as usize).min(ENTRIES - 2);
                 table[below] + (table[below + 1] - table[below]) * (at - below as f64)
@@ -157,9 +157,8 @@ fn table_coordinates() -> Technique {
         choice("logarithmic, half a texel off", log, light, false),
         choice("linear", |grey| grey / BRIGHTEST, |x| x * BRIGHTEST, true),
     ];
-    let what =
-        "What the axes of a table of 32 colors a side are even in: the default look of greys over sixteen stops.";
-    formula("table-coordinates", what, "the look itself.", "codes, RMS", choices)
+    let what = "Coordinates of a color table with 32 entries per axis: the default look of grays over sixteen stops.";
+    formula("table-coordinates", what, "the look itself.", "8-bit steps, RMS", choices)
 }
 
 fn oetf() -> Technique {
@@ -183,9 +182,9 @@ fn oetf() -> Technique {
     ];
     formula(
         "transfer",
-        "The display's transfer function: its largest error.",
+        "Transfer function of the display: largest error.",
         "sRGB, IEC 61966-2-1.",
-        "codes, largest",
+        "8-bit steps, largest",
         choices,
     )
 }
@@ -194,7 +193,7 @@ fn dither() -> Technique {
     const SIDE: usize = 128;
     let choice = |name: &str, offset: fn(usize, usize) -> f64| {
         number(name, move |_: &Gpu| {
-            // A ramp of four codes, rounded, and what is left of the difference after a blur.
+            // A ramp over four 8-bit steps, rounded, and the difference that remains after a blur.
             let ramp = |x: usize| 100.0 + 4.0 * (x as f64 + 0.5) / SIDE as f64;
             let apart = |x: usize, y: usize| (ramp(x) + offset(x, y)).round() - ramp(x);
             let weight = |d: i32| (-f64::from(d * d) / 8.0).exp();
@@ -223,16 +222,16 @@ fn dither() -> Technique {
         .counted("dither_offset", false)
         .found_in(|f| f.settings.post.dither > 0.0),
     ];
-    let what = "Noise against bands: a ramp of four codes, rounded and blurred by σ = 2 pixels, root mean square.";
-    formula("dither", what, "the ramp.", "codes, RMS", choices)
+    let what = "Dithering against banding: root mean square error of a ramp over four 8-bit steps, rounded and blurred by σ = 2 pixels.";
+    formula("dither", what, "the ramp.", "8-bit steps, RMS", choices)
 }
 
 fn post_passes() -> Technique {
     let one = base("spheres");
     pictures(
         "post-passes",
-        "Post-processing in the color pass's shader, or a pass an effect with radiance stored in between.",
-        ("all of it in the color pass, which stores no radiance.", Truth::Frame(one)),
+        "Post-processing in the color pass's shader, or in one pass per effect with radiance stored in between.",
+        ("all effects in the color pass, which stores no radiance.", Truth::Frame(one)),
         one,
         &[
             ("in the color pass", |_| (), |f| !f.settings.split_post),

@@ -1,4 +1,4 @@
-//! What is made of the picture's depth, and shadows.
+//! Screen-space techniques and shadows.
 
 use super::{Choice, Technique, base, formula, nowhere, number, pictures};
 use crate::lab::studio::{Setup, Truth};
@@ -13,7 +13,7 @@ use framegraph_wgpu::Gpu;
 use glam::Vec3;
 use truth::occlusion as truth;
 
-/// How far occluders count, in m.
+/// Radius of ambient occlusion, in m.
 const RADIUS_M: f64 = 0.3;
 
 pub(super) fn techniques() -> Vec<Technique> {
@@ -38,7 +38,8 @@ fn taps_of(f: &FrameSettings) -> Option<u32> {
     }
 }
 
-/// Visibility of a corner, against its formula: root mean square, signed mean, and deviation along the edge.
+/// Creates an option that is compared with the visibility of a corner: root mean square, signed mean, and standard
+/// deviation along the edge.
 fn corner(name: &str, settings: OcclusionSettings) -> Choice {
     let measure = move |gpu: &Gpu| {
         let stage = corner_stage(128)?;
@@ -69,9 +70,8 @@ fn taps() -> Technique {
         choice(16, 7).found_in(|f| taps_of(f) == Some(16)),
         choice(32, 13),
     ];
-    let what = "Taps of scalable ambient obscurance, before any blur, in the corner of two walls: root mean square of \
-                visibility; its bias is the method's, its noise the taps'.";
-    formula("ao-taps", what, "the corner's closed form, for rays of 0.3 m.", "visibility, RMS", choices)
+    let what = "Samples (taps) of scalable ambient obscurance before any blur, in a corner of two walls: root mean square error of visibility. The bias comes from the method, the noise from sampling.";
+    formula("ao-taps", what, "the analytic solution of the corner, for rays of 0.3 m.", "visibility, RMS", choices)
 }
 
 fn method() -> Technique {
@@ -94,9 +94,8 @@ fn method() -> Technique {
             .found_in(|f| f.settings.occlusion.is_some_and(|o| o.method == OcclusionSettings::GTAO.method)),
         corner("GTAO, 4 slices of 8 steps", gtao(4, 8)),
     ];
-    let what = "How ambient occlusion is estimated, each with its blur, in the corner of two walls: root mean square of \
-                visibility.";
-    formula("ao-method", what, "the corner's closed form, for rays of 0.3 m.", "visibility, RMS", choices)
+    let what = "Method of ambient occlusion, each with its blur, in a corner of two walls: root mean square error of visibility.";
+    formula("ao-method", what, "the analytic solution of the corner, for rays of 0.3 m.", "visibility, RMS", choices)
 }
 
 fn resolution() -> Technique {
@@ -104,8 +103,8 @@ fn resolution() -> Technique {
     full.settings.occlusion = Some(OcclusionSettings::SAO);
     pictures(
         "ao-resolution",
-        "The size of ambient occlusion against the picture's.",
-        ("the same ambient occlusion at full size.", Truth::Frame(full)),
+        "Resolution of ambient occlusion relative to the picture.",
+        ("ambient occlusion at full resolution.", Truth::Frame(full)),
         full,
         &[
             ("full", |_| (), |f| f.settings.occlusion.is_some_and(|o| o.resolution == Resolution::Full)),
@@ -138,8 +137,7 @@ fn bounces() -> Technique {
             .counted("gtao_multi_bounce", false)
             .found_in(|f| f.settings.shading.multi_bounce),
     ];
-    let what =
-        "Light that reaches an occluded place after several bounces, over visibility 0.05 … 1 and albedo 0 … 0.9.";
+    let what = "Interreflections at occluded points, over visibility 0.05 … 1 and albedo 0 … 0.9.";
     formula("ao-bounces", what, "a spherical cavity, V / (1 − ρ (1 − V)).", "visibility, RMS", choices)
 }
 
@@ -148,8 +146,8 @@ fn glass_layers() -> Technique {
     truth.settings.glass_layers = 4;
     pictures(
         "glass-layers",
-        "Layers of glass that is seen through glass.",
-        ("four layers, the most that the frame takes.", Truth::Frame(truth)),
+        "Layers of glass seen through glass.",
+        ("four layers, the most that the frame allows.", Truth::Frame(truth)),
         truth,
         &[
             ("1", |s| s.settings.glass_layers = 1, |f| f.settings.glass_layers == 1),
@@ -159,7 +157,7 @@ fn glass_layers() -> Technique {
     )
 }
 
-/// Columns under a sun of 2° across, in one map.
+/// Returns columns under a sun with a diameter of 2°, in one shadow map.
 fn sunlit() -> Setup {
     let mut setup = base("columns");
     setup.sun = Some((Vec3::new(0.5, 0.7, 0.5).normalize(), 0.0175));
@@ -173,13 +171,13 @@ fn shadows(setup: &mut Setup) -> &mut ShadowSettings {
     setup.settings.shadows.get_or_insert(ShadowSettings::DEFAULT)
 }
 
-/// Sharp shadows of a fine map, of many suns.
+/// Returns the reference: hard shadows of a high-resolution map, averaged over many suns.
 fn suns() -> (&'static str, Truth) {
     let mut setup = sunlit();
     *shadows(&mut setup) =
         ShadowSettings { cascades: 4, splits: Splits::Practical(0.8), ..ShadowSettings::texels(2048) };
     (
-        "the mean of 32 frames, each with a sharp sun elsewhere on the disc, in four maps of 2048² texels.",
+        "the mean of 32 frames with hard shadows from different points of the sun's disc, in four maps of 2048² texels.",
         Truth::Suns(setup, 32),
     )
 }
@@ -187,7 +185,7 @@ fn suns() -> (&'static str, Truth) {
 fn shadow_filter() -> Technique {
     pictures(
         "shadow-filter",
-        "How the sun's shadow map is read, under a sun of 2° across.",
+        "Filter of the sun's shadow map, under a sun with a diameter of 2°.",
         suns(),
         sunlit(),
         &[
@@ -212,7 +210,7 @@ fn shadow_filter() -> Technique {
 fn shadow_cascades() -> Technique {
     pictures(
         "shadow-cascades",
-        "Maps that the sun's shadows are divided among by distance, of 512² texels, PCF.",
+        "Number of shadow cascades of the sun, with 512² texels each and PCF.",
         suns(),
         sunlit(),
         &[
@@ -231,7 +229,7 @@ fn cascades(f: &FrameSettings) -> Option<u8> {
 fn shadow_size() -> Technique {
     pictures(
         "shadow-size",
-        "Texels of each of two maps of the sun, PCF.",
+        "Size of each of two shadow cascades of the sun, with PCF.",
         suns(),
         sunlit(),
         &[
@@ -247,8 +245,8 @@ fn antialiasing() -> Technique {
     let one = base("columns");
     pictures(
         "antialiasing",
-        "Edges: samples a pixel, the edge filter, both.",
-        ("eight by eight times the pixels, averaged as light of the display.", Truth::Supersampled(one, 8)),
+        "Anti-aliasing by samples per pixel, FXAA, or both.",
+        ("8×8 supersampling, averaged as linear display light.", Truth::Supersampled(one, 8)),
         one,
         &[
             ("none", |_| (), |f| f.settings.samples == 1 && !f.settings.fxaa),
@@ -264,8 +262,8 @@ fn light_search() -> Technique {
     (all.lights, all.ev100) = (LightSearch::All, 8.0);
     pictures(
         "light-search",
-        "How shading finds those of 250 lamps that reach a place.",
-        ("every lamp looked at everywhere.", Truth::Frame(all)),
+        "Method by which shading finds the lights in range, for 250 punctual lights.",
+        ("a loop over all lights.", Truth::Frame(all)),
         all,
         &[
             ("all", |_| (), |f| f.lights == LightSearch::All),

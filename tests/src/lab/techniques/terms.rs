@@ -1,4 +1,4 @@
-//! Fits, samples and curves that stand for what would take longer.
+//! Techniques of fits, sampling and curves that replace expensive terms.
 
 use super::{Choice, Technique, formula, number};
 use crate::lab::technique::Measured;
@@ -22,7 +22,7 @@ pub(super) fn techniques() -> Vec<Technique> {
     vec![diffuse(), table_fit(), prefilter_samples(), split_sum()]
 }
 
-/// Root mean square and mean of numbers that should be none.
+/// Returns root mean square and mean of differences.
 fn off(apart: &[f64]) -> Measured {
     let count = apart.len() as f64;
     let error = (apart.iter().map(|d| d * d).sum::<f64>() / count).sqrt();
@@ -30,17 +30,17 @@ fn off(apart: &[f64]) -> Measured {
 }
 
 fn diffuse() -> Technique {
-    /// π times the lobe: Burley's, with perceptual roughness as he has it.
+    /// Returns π times Burley's diffuse lobe, with his perceptual roughness.
     fn burley(nov: f64, nol: f64, loh: f64, roughness: f64) -> f64 {
         let f90 = 0.5 + 2.0 * roughness * loh * loh;
         let to = |cosine: f64| 1.0 + (f90 - 1.0) * (1.0 - cosine).powi(5);
         to(nov) * to(nol)
     }
-    /// What white gives back of even light, less one, over 10 angles and 10 roughnesses.
+    /// Returns the albedo of white under uniform light minus one, over 10 angles and 10 roughnesses.
     fn furnace(lobe: fn(f64, f64, f64, f64) -> f64) -> Vec<f64> {
         let albedo = |nov: f64, roughness: f64| {
             let view = DVec3::new((1.0 - nov * nov).sqrt(), 0.0, nov);
-            // Places even in the area of the disc under the hemisphere: each stands for as much of the cosine.
+            // Points are uniform in the disc below the hemisphere, which gives cosine weighting.
             let at = |i: u32| {
                 let (radius2, turn) = ((f64::from(i / 64) + 0.5) / 64.0, (f64::from(i % 64) + 0.5) / 64.0 * TAU);
                 let light =
@@ -58,12 +58,12 @@ fn diffuse() -> Technique {
             .found_in(|_| true),
         number("Burley", |_: &Gpu| Ok(off(&furnace(burley)))),
     ];
-    let what = "The diffuse lobe: what white gives back of even light, over angles and roughnesses.";
-    formula("diffuse", what, "all of it.", "albedo, RMS", choices)
+    let what = "Diffuse lobe: albedo of white under uniform light, over angles and roughnesses.";
+    formula("diffuse", what, "an albedo of 1.", "albedo, RMS", choices)
 }
 
 fn table_fit() -> Technique {
-    /// Karis's fit for phones, at f0 = 1.
+    /// Returns Karis's fit for mobile GPUs at f0 = 1.
     fn karis(nov: f64, roughness: f64) -> f64 {
         let r = [1.0 - roughness, 0.0425 - 0.0275 * roughness, 1.04 - 0.572 * roughness, 0.022 * roughness - 0.04];
         let a004 = (r[0] * r[0]).min((-9.28 * nov).exp2()) * r[0] + r[1];
@@ -81,14 +81,14 @@ fn table_fit() -> Technique {
     };
     let choices =
         vec![number("a table of 64² texels", table).found_in(|_| true), number("Karis's fit for phones", fit)];
-    let what = "Directional albedo at f0 = 1 from a table or from a fit, which was made for another masking and for dielectrics.";
+    let what = "Directional albedo at f0 = 1 from a table or from a fit. The fit was made for another masking function and for dielectrics.";
     formula("table-fit", what, "the lobe's integral by quadrature.", "albedo, RMS", choices)
 }
 
 fn prefilter_samples() -> Technique {
     const ROUGHNESS: f64 = 0.4;
     const DISC: f64 = 3.0;
-    // Directions of light by importance of the lobe, alone: view, normal and reflection coincide.
+    // Directions are importance sampled from the lobe, with equal view, normal and reflection.
     let plain = |samples: u32| {
         number(&format!("{samples} samples by importance"), move |_: &Gpu| {
             let axis = DVec3::new(0.36, 0.48, 0.8);
@@ -120,17 +120,16 @@ fn prefilter_samples() -> Technique {
         Ok(Measured::exact(errors(gpu, &light, feature, ROUGHNESS, Mapping::Lod, 21)?.rms))
     });
     let choices = vec![plain(16), plain(64), plain(256), plain(1024), kernel.found_in(|_| true)];
-    let what = "Light of a disc of 3° gathered at roughness 0.4, as a share of the peak. Of samples: at the peak, and nearly all \
-                of it is noise; of the kernel: across the disc, and of it most is interpolation between levels.";
+    let what = "Light of a disc of 3° prefiltered at roughness 0.4, relative to the peak. Samples are compared at the peak, where the error is mostly noise. The kernel is compared across the disc, where it is mostly interpolation between levels.";
     formula("prefilter-samples", what, "the lobe's integral by quadrature.", "share of the peak, RMS", choices)
 }
 
 fn split_sum() -> Technique {
-    /// Light from the side: more of it toward x.
+    /// Returns the radiance of a sky that is brighter toward x.
     fn sky(d: DVec3) -> f64 {
         1.0 + d.x
     }
-    /// What a metal of f0 = 1 that looks along z reflects of it toward a viewer, by half vectors.
+    /// Returns the light that a metal with f0 = 1 and normal z reflects toward a viewer, by integrating half vectors.
     fn exact(nov: f64, roughness: f64) -> f64 {
         let view = DVec3::new((1.0 - nov * nov).sqrt(), 0.0, nov);
         let alpha2 = roughness.powi(4);
@@ -173,7 +172,6 @@ fn split_sum() -> Technique {
         along("toward the normal by alpha", |n, r, alpha| r + (n - r) * alpha),
         along("along the normal", |n, _, _| n),
     ];
-    let what = "Where the prefiltered environment is looked up, under light that grows to one side, over roughness 0.2 … 1 and \
-                angles: relative error of a white metal.";
+    let what = "Lookup direction in the prefiltered environment, under light that increases to one side, over roughness 0.2 … 1 and angles: relative error of a white metal.";
     formula("split-sum-direction", what, "the lobe's integral by quadrature.", "share, RMS", choices)
 }

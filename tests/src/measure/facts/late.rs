@@ -1,4 +1,4 @@
-//! Frames in a row whose facts are decided by what frames before were measured to have.
+//! Consecutive frames whose feature culling uses measurements of earlier frames.
 
 use super::{Case, Drawn, Easel};
 use framegraph::{Extent, Format, Options, Plan, Target, TextureDesc, recompile};
@@ -9,12 +9,12 @@ use framegraph_passes::{CameraView, FrameIo, Settings, ViewId, World, standard};
 use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use std::error::Error;
 
-/// A case that is drawn frame after frame.
+/// A case that is drawn repeatedly.
 #[derive(Debug)]
 pub struct InARow {
     drawn: Drawn,
     easel: Easel,
-    /// What is on its way.
+    /// Pending measurements.
     pub measuring: Measuring,
     memory: FactMemory,
     plan: Plan,
@@ -22,26 +22,26 @@ pub struct InARow {
 }
 
 impl InARow {
-    /// The case before its first frame.
+    /// Creates the sequence before its first frame.
     pub fn new(gpu: &Gpu, drawn: Drawn) -> Self {
         let (measuring, memory) = (Measuring::new(), FactMemory::default());
         Self { drawn, easel: Easel::new(gpu), measuring, memory, plan: Plan::new(), last: None }
     }
 
-    /// What is drawn.
+    /// Returns the case.
     pub fn case(&self) -> &Case {
         &self.drawn.case
     }
 
-    /// Forgets what was decided, so that the next frame decides at once.
+    /// Discards earlier decisions, so that the next frame decides anew.
     pub fn forget(&mut self) {
         self.memory = FactMemory::default();
     }
 
-    /// Declares, decides and executes a frame, and begins to read back what it measures. Never waits.
+    /// Declares, culls and executes a frame, and starts the readback of its measurements. Never waits.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// The device fails.
     pub fn next(&mut self, asked: &Settings, seen: &ViewSettings) -> Result<(Facts, Measurement), Box<dyn Error>> {
         let Self { drawn: Drawn { case, survey, world, .. }, easel, measuring, memory, plan, last } = self;
         let measured = measuring.known(&easel.gpu)?;
@@ -75,10 +75,10 @@ impl InARow {
         Ok((facts, measured))
     }
 
-    /// Lets the device come so near that at most two frames are on their way, as showing frames does; asks, and never waits.
+    /// Polls the device until at most two frames are pending, as presentation does, without waiting.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// The device is lost.
     pub fn show(&mut self) -> Result<(), Box<dyn Error>> {
         while self.measuring.counts().come + 2 < self.measuring.counts().begun {
             self.measuring.known(&self.easel.gpu)?;
@@ -87,10 +87,10 @@ impl InARow {
         Ok(())
     }
 
-    /// The picture of the last frame, waited for.
+    /// Waits for the picture of the last frame, and returns it.
     ///
     /// # Errors
-    /// When there was none, or the device fails.
+    /// No frame was drawn, or the device fails.
     pub fn picture(&self) -> Result<Vec<u8>, Box<dyn Error>> {
         let io = self.last.ok_or("no frame was drawn")?;
         let texture = self.easel.executor.texture(&self.plan, io.output).ok_or("the frame left no picture")?;

@@ -1,4 +1,4 @@
-//! Random scenes with random settings: planes, boxes and spheres of all kinds of materials, lights, fog and lens.
+//! Random scenes with random settings: planes, boxes and spheres with all kinds of materials, lights, fog and lens.
 
 use super::{Case, every_effect, matt, scene, sun};
 use framegraph_passes::fog::FogSettings;
@@ -11,16 +11,16 @@ use framegraph_scene::{ClearCoat, Light, LightKind, Material, Scene, Sheen, Tran
 use framegraph_shaders::layout::ToneMap;
 use glam::{DMat4, DQuat, DVec3, EulerRot, Vec2, Vec3};
 
-/// Width and height of the pictures.
+/// Width and height of the pictures, in pixels.
 pub const SMALL_PX: [u32; 2] = [48, 32];
 
-/// Numbers that are random and the same on every machine (Steele, Lea and Flood, "Fast splittable pseudorandom number
-/// generators", 2014).
+/// Pseudo-random numbers that are the same on every machine (Steele, Lea and Flood, "Fast splittable pseudorandom
+/// number generators", 2014).
 #[derive(Debug)]
 pub struct Dice(u64);
 
 impl Dice {
-    /// The numbers of a seed.
+    /// Creates a generator from a seed.
     pub const fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
     }
@@ -33,27 +33,27 @@ impl Dice {
         z ^ z >> 31
     }
 
-    /// In 0…1.
+    /// Returns a number in 0…1.
     pub fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Between two numbers.
+    /// Returns a number between two others, uniformly.
     pub fn between(&mut self, from: f64, to: f64) -> f64 {
         from + (to - from) * self.unit()
     }
 
-    /// Between two numbers above 0, at equal ratios.
+    /// Returns a number between two positive numbers, uniform in the logarithm.
     pub fn scaled(&mut self, from: f64, to: f64) -> f64 {
         from * (to / from).powf(self.unit())
     }
 
-    /// True with this probability.
+    /// Returns true with a given probability.
     pub fn chance(&mut self, probability: f64) -> bool {
         self.unit() < probability
     }
 
-    /// Picks one element.
+    /// Returns a random element.
     pub fn pick<T: Copy>(&mut self, of: &[T]) -> T {
         of[(self.next() % of.len() as u64) as usize]
     }
@@ -92,7 +92,7 @@ fn thing(dice: &mut Dice, scene: &mut Scene) {
     let mesh = match dice.pick(&[0, 1, 2, 3]) {
         0 => plane(Vec2::splat(2.0 * size as f32), dice.pick(&[1, 3]), Vec2::ONE),
         1 => cuboid((Vec3::new(0.2, 0.2, 0.2) + dice.color()) * size as f32),
-        // Thin.
+        // A thin box.
         2 => cuboid(Vec3::new(size as f32, dice.scaled(1e-4, 0.02) as f32, size as f32)),
         _ => sphere(0.5 * size as f32, 16, 8),
     };
@@ -164,7 +164,7 @@ fn settings(dice: &mut Dice) -> Settings {
     asked
 }
 
-/// The scene of a number, with the settings of another: scenes that share settings share most shaders.
+/// Creates the scene `number` with the settings `of_settings`. Scenes with the same settings share most shaders.
 pub fn random_case(number: u64, of_settings: u64) -> Case {
     let mut dice = Dice::new(number);
     let eye = DVec3::new(dice.between(-2.0, 2.0), dice.between(0.3, 4.0), dice.between(2.0, 5.0));
@@ -178,7 +178,7 @@ pub fn random_case(number: u64, of_settings: u64) -> Case {
         thing(&mut dice, &mut made);
     }
     lights(&mut dice, &mut made);
-    // Three skies, whose light is filtered once.
+    // Three skies, so that environments are filtered only three times.
     let nits = DVec3::splat(dice.pick(&[0.0, 1000.0, 2000.0]));
     let background =
         if dice.chance(0.5) { Background::Environment } else { Background::Constant(dice.color() * 1000.0) };

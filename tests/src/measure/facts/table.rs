@@ -1,4 +1,4 @@
-//! The table of six scenes under four presets: what is dropped, and what the frame costs forced and decided.
+//! Table of six scenes under four presets: culled effects, and the cost with and without feature culling.
 
 use super::{Case, Drawn, Easel, SIZE_PX, cases};
 use framegraph::{Caps, Options, Scratch};
@@ -11,18 +11,19 @@ use framegraph_wgpu::Gpu;
 use std::error::Error;
 use std::time::Instant;
 
-/// Width and height of the frames that are planned; times are of frames of [`SIZE_PX`].
+/// Size of the planned frames, in pixels. Times are of frames of [`SIZE_PX`].
 pub const PLANNED_PX: [u32; 2] = [1920, 1080];
-/// Frames that a time is the least of.
+/// Number of frames per time; the minimum counts.
 const FRAMES: u32 = 12;
 
-/// The head of the table.
+/// Returns the head of the table.
 pub fn heads() -> String {
     let names = ["scene", "preset", "asked for", "dropped", "passes", "loads", "stores", "MiB moved", "MiB held", "ms"];
     format!("| {} |\n|{}", names.join(" | "), " --- |".repeat(names.len()))
 }
 
-/// A preset over a case, before facts: as many maps of shadows as the scene has lights for, wherever they are.
+/// Returns the settings of a preset for a case before feature culling, with enough shadow maps for all of the scene's
+/// lights.
 fn asked(case: &Case, preset: Preset, size_px: [u32; 2]) -> Settings {
     let mut settings = preset.frame().settings.for_scene(&case.scene, size_px);
     if let Some(shadows) = &mut settings.shadows {
@@ -32,21 +33,21 @@ fn asked(case: &Case, preset: Preset, size_px: [u32; 2]) -> Settings {
     }
     settings.shadows = settings.shadows.filter(|shadows| shadows.layers() > 0);
     let post = PostSettings { look: case.asked.post.look, ..settings.post };
-    // The case's light has one table of albedo.
+    // All settings share the case's albedo table.
     let shading = framegraph_passes::Shading { table: case.asked.shading.table, ..settings.shading };
     Settings { post, shading, ..settings }
 }
 
-/// The rows, with times if asked; each cell has the frame as it is forced, and as it is decided.
+/// Returns the rows, with times if `timed`. Each cell has the value without and with feature culling.
 ///
 /// # Errors
-/// What the device refuses.
+/// The device fails.
 pub fn rows(gpu: &Gpu, timed: bool) -> Result<Vec<String>, Box<dyn Error>> {
     let mut found = Vec::new();
     for case in cases() {
         let mut drawn = Drawn::new(gpu, case)?;
         for preset in Preset::ALL {
-            // Shaders of one preset are no other's: an executor of their own forgets them.
+            // Presets share no shaders, so each uses an executor of its own.
             let mut easel = Easel::new(gpu);
             let planned = asked(&drawn.case, preset, PLANNED_PX);
             let facts = drawn.facts(&planned, EffectSet::NONE, &mut FactMemory::default());
@@ -87,11 +88,11 @@ pub fn rows(gpu: &Gpu, timed: bool) -> Result<Vec<String>, Box<dyn Error>> {
     Ok(found)
 }
 
-/// Least time in ms of a frame that has nothing, and of the finest preset over a scene that needs nothing: facts are decided
-/// anew for each of its frames, and that counts.
+/// Returns the minimum time in ms of an empty frame, and of the finest preset in a scene that needs no effect. The
+/// latter includes the time of feature culling in every frame.
 ///
 /// # Errors
-/// What the device refuses.
+/// The device fails.
 pub fn bare(gpu: &Gpu) -> Result<(f64, f64), Box<dyn Error>> {
     let [mut case, ..] = cases();
     case.background = Background::None;
@@ -112,7 +113,7 @@ pub fn bare(gpu: &Gpu) -> Result<(f64, f64), Box<dyn Error>> {
     let (mut drawn, mut easel) = (Drawn::new(gpu, case)?, Easel::new(gpu));
     let size_px = [512, 512];
     let (mut bare_ms, mut decided_ms) = (f64::INFINITY, f64::INFINITY);
-    // In turns, so that both see the same machine.
+    // Frames alternate, so that both see the same load.
     for _ in 0..FRAMES {
         bare_ms = bare_ms.min(drawn.frames(&mut easel, &nothing, size_px, 3)?.2);
         let begun = Instant::now();

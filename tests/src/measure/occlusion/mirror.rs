@@ -1,4 +1,4 @@
-//! The pass of ambient occlusion in double precision, texel by texel: what `shaders/wgsl/pass/occlusion.wgsl` is held to.
+//! The ambient occlusion pass in f64, texel by texel, as a reference for `shaders/wgsl/pass/occlusion.wgsl`.
 
 use super::Stage;
 use framegraph_passes::occlusion::{ConeTrace, Gtao, Method, Occluders, OcclusionSettings};
@@ -16,7 +16,7 @@ use framegraph_shaders::reference::unproject::{Projection, ndc_from_view, view_p
 use glam::{DVec2, DVec3, DVec4};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A stage with its levels of depth, and what it is asked for.
+/// A stage with its mip levels of depth, and settings.
 #[derive(Debug)]
 pub struct Mirror<'a> {
     settings: &'a OcclusionSettings,
@@ -26,7 +26,7 @@ pub struct Mirror<'a> {
 }
 
 impl<'a> Mirror<'a> {
-    /// Of a stage.
+    /// Creates the mirror of a stage.
     pub fn new(stage: &Stage, settings: &'a OcclusionSettings) -> Self {
         let size = stage.size_px.map(|side| side as i32);
         let mut levels = vec![(size, stage.depth.iter().map(|depth| f64::from(*depth)).collect::<Vec<_>>())];
@@ -52,7 +52,7 @@ impl<'a> Mirror<'a> {
         Self { settings, levels, projection, toward_sun: stage.toward_sun.map(DVec3::normalize) }
     }
 
-    /// Visibility, and the mean open direction in view space; of all texels.
+    /// Returns visibility and the mean open direction in view space, for all texels.
     pub fn texels(&self) -> Vec<[f64; 4]> {
         let [width, height] = self.levels[0].0;
         (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).map(|texel| self.texel(texel)).collect()
@@ -119,7 +119,7 @@ impl<'a> Mirror<'a> {
         normalize_or(along([0, 1]).cross(along([1, 0])), DVec3::Z)
     }
 
-    /// What is at a point in texels; none where nothing is.
+    /// Returns the position at texel coordinates; `None` without a surface.
     fn tap(&self, at: DVec2, away: f64) -> Option<DVec3> {
         let level = pyramid_level(away, self.levels.len() as i32 - 1);
         let [width, height] = self.levels[level as usize].0;
@@ -194,7 +194,7 @@ impl<'a> Mirror<'a> {
         ((f64::from(self.settings.intensity) * (1.0 - visible)).clamp(0.0, 1.0), bent)
     }
 
-    /// Both horizons of a slice, and how many of its 32 sectors are closed.
+    /// Computes both horizons of a slice, and the number of occluded sectors out of 32.
     fn slice(
         &self,
         texel: [i32; 2],
@@ -207,7 +207,7 @@ impl<'a> Mirror<'a> {
         let (radius_m, jitter) = (f64::from(self.settings.radius_m), slice_offset(texel));
         let min_sin2 = f64::from(self.settings.min_horizon_rad).sin().powi(2);
         let (mut low, mut high, mut closed) = (n - FRAC_PI_2, n + FRAC_PI_2, 0_u32);
-        // A sample that rises to an angle, against the horizon so far; both without sign.
+        // Merges a sample's angle into the current horizon; both are unsigned.
         let lowered = |horizon: f64, found: f64, v: DVec3| match gtao.occluders {
             Occluders::Fading => {
                 let (before, found) = (horizon.cos(), found.cos());

@@ -1,50 +1,50 @@
-//! Ambient occlusion as Filament states it.
+//! Ambient occlusion options in Filament's terms.
 
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
-/// Ambient occlusion; what is not given is as Filament has it.
+/// Ambient occlusion; missing options have Filament's defaults.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Ao {
-    /// On.
+    /// True if enabled.
     #[serde(default)]
     pub enabled: bool,
-    /// In m.
+    /// Radius, in m.
     pub radius: Option<f64>,
-    /// Exponent.
+    /// Exponent of the visibility.
     pub power: Option<f64>,
-    /// Share of the distance.
+    /// Bias, relative to the distance.
     pub bias: Option<f64>,
-    /// Factor.
+    /// Factor on occlusion.
     pub intensity: Option<f64>,
-    /// Share of the picture's width: 1 or 0.5.
+    /// Resolution relative to the picture: 1 or 0.5.
     pub resolution: Option<f64>,
-    /// Distance between surfaces in m.
+    /// Depth threshold of the blur, in m.
     pub bilateral_threshold: Option<f64>,
-    /// Taps.
+    /// Quality, which selects the number of samples.
     pub quality: Option<AoQuality>,
-    /// The blur.
+    /// Quality of the blur.
     pub low_pass_filter: Option<AoQuality>,
-    /// How a smaller picture is read: by depth from high on.
+    /// Quality of upsampling from a lower resolution; depth-aware at `High` and `Ultra`.
     pub upsampling: Option<AoQuality>,
-    /// In radians.
+    /// Minimum horizon angle, in radians.
     pub min_horizon_angle_rad: Option<f64>,
-    /// Reflections look along the mean open direction.
+    /// True if reflections use bent normals.
     pub bent_normals: Option<bool>,
-    /// Cone tracing toward the sun.
+    /// Screen-space cone tracing toward the sun.
     pub ssct: Option<Ssct>,
-    /// Horizons in slices.
+    /// Options of GTAO.
     pub gtao: Option<Gtao>,
-    /// Which of the two.
+    /// Method.
     #[serde(alias = "aoType")]
     pub ao_type: Option<AoType>,
-    /// Options that are not known.
+    /// Unknown options.
     #[serde(flatten)]
     pub unknown: Map<String, Value>,
 }
 
-/// Cone tracing toward the sun; the angle is at the tip.
+/// Options of screen-space cone tracing toward the sun; the cone angle is the full angle at the tip.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "camelCase")]
 #[allow(missing_docs, reason = "Filament's names; lengths in m, angles in radians")]
@@ -62,7 +62,7 @@ pub struct Ssct {
     pub ray_count: Option<u32>,
 }
 
-/// Horizons in slices.
+/// Options of GTAO.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "camelCase")]
 #[allow(missing_docs, reason = "Filament's names")]
@@ -75,7 +75,7 @@ pub struct Gtao {
     pub linear_thickness: Option<bool>,
 }
 
-/// Filament's levels of quality.
+/// Filament's quality levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum AoQuality {
@@ -90,13 +90,13 @@ pub enum AoQuality {
     Ultra,
 }
 
-/// The method.
+/// Method of ambient occlusion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum AoType {
     /// Scalable ambient obscurance.
     #[default]
     Sao,
-    /// Horizons in slices.
+    /// Ground-truth ambient occlusion.
     Gtao,
 }

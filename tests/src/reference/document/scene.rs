@@ -1,4 +1,4 @@
-//! What to render: models, camera, lights, exposure.
+//! Scene of a statement: models, camera, lights, exposure.
 
 use super::View;
 use serde::{Deserialize, Deserializer};
@@ -6,38 +6,38 @@ use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// What to render.
+/// Scene to render.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Models.
     pub assets: Vec<Asset>,
-    /// Width and height in pixels.
+    /// Width and height of the picture, in pixels.
     pub resolution: [u32; 2],
-    /// Where from.
+    /// Camera.
     pub camera: Camera,
     /// Lights.
     #[serde(default, deserialize_with = "or_default")]
     pub lights: Vec<Light>,
-    /// Light from all around.
+    /// Image-based light.
     pub ibl: Option<Ibl>,
-    /// How light becomes numbers.
+    /// Exposure.
     #[serde(default, deserialize_with = "or_default")]
     pub exposure: Exposure,
-    /// What is behind the scene, in exposed light, linear Rec.709.
+    /// Background, as linear Rec.709 after exposure.
     #[serde(default = "black")]
     pub clear_color: [f64; 4],
-    /// Variance and threshold of the filter of normals.
+    /// Variance and threshold of specular anti-aliasing.
     #[serde(default)]
     pub specular_aa: [f64; 2],
-    /// Which numbers the picture holds.
+    /// Kind of values in the picture.
     pub output: Output,
-    /// What becomes of the light.
+    /// Processing of the picture.
     #[serde(default, deserialize_with = "or_default")]
     pub view: View,
 }
 
-/// `null` is as good as nothing.
+/// Deserializes `null` as the default value.
 fn or_default<'de, T: Default + Deserialize<'de>, D: Deserializer<'de>>(value: D) -> Result<T, D::Error> {
     Option::deserialize(value).map(Option::unwrap_or_default)
 }
@@ -46,46 +46,46 @@ const fn black() -> [f64; 4] {
     [0.0, 0.0, 0.0, 1.0]
 }
 
-/// A model.
+/// A model or environment.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(untagged, expecting = "a path, or an object of entry, source and sha256, is needed")]
 pub enum Asset {
-    /// A path beside the statement.
+    /// Path relative to the statement.
     Beside(PathBuf),
-    /// A file that is kept elsewhere.
+    /// A file in the folder of assets.
     Elsewhere(Kept),
 }
 
-/// A file that is kept elsewhere.
+/// A file in the folder of assets.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Kept {
-    /// Its path in the folder of assets.
+    /// Path in the folder of assets.
     pub entry: PathBuf,
-    /// Where it comes from, for people.
+    /// Origin of the file, for readers.
     #[serde(default)]
     pub source: Value,
-    /// Its hash, or those of all files that it consists of.
+    /// Hash of the file, or of each of its files.
     pub sha256: Hashes,
 }
 
-/// SHA-256 of one file or of several, 64 hexadecimal digits each.
+/// SHA-256 hashes with 64 hexadecimal digits.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(untagged)]
 pub enum Hashes {
-    /// That of the entry.
+    /// Hash of the entry.
     One(String),
-    /// Each under the path of its file, beside the entry or in the folder of assets.
+    /// Hash of each file, by path relative to the entry or to the folder of assets.
     Each(BTreeMap<PathBuf, String>),
 }
 
-/// Kind of a projection.
+/// Kind of projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CameraType {
-    /// Central.
+    /// Perspective.
     Perspective,
-    /// Parallel.
+    /// Orthographic.
     Ortho,
 }
 
@@ -93,29 +93,29 @@ pub enum CameraType {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Camera {
-    /// Its projection.
+    /// Projection.
     pub r#type: CameraType,
-    /// Full vertical field of view in degrees.
+    /// Vertical field of view, in degrees.
     pub fov_y_deg: Option<f64>,
-    /// Left, right, bottom and top of what is seen, in meters.
+    /// Left, right, bottom and top of an orthographic view, in m.
     pub ortho: Option<[f64; 4]>,
-    /// In meters.
+    /// Position of the eye, in m.
     pub eye: [f64; 3],
-    /// In meters.
+    /// Point that the camera looks at, in m.
     pub center: [f64; 3],
-    /// Upward.
+    /// Up direction.
     pub up: [f64; 3],
-    /// In meters.
+    /// Distance of the near plane, in m.
     pub near: f64,
-    /// In meters.
+    /// Distance of the far plane, in m.
     pub far: f64,
 }
 
-/// Kind of a light.
+/// Kind of light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum LightType {
-    /// Parallel.
+    /// Directional.
     Directional,
 }
 
@@ -123,66 +123,66 @@ pub enum LightType {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Light {
-    /// Its kind.
+    /// Kind.
     pub r#type: LightType,
-    /// Linear Rec.709.
+    /// Color, linear Rec.709.
     pub color: [f64; 3],
-    /// In lux.
+    /// Illuminance, in lux.
     pub intensity: f64,
-    /// The way it travels; any length.
+    /// Direction in which the light travels; any length.
     pub direction: [f64; 3],
-    /// It casts shadows.
+    /// True if the light casts shadows.
     #[serde(default)]
     pub cast_shadows: bool,
-    /// How.
+    /// Shadow options.
     #[serde(default)]
     pub shadow_options: ShadowOptions,
 }
 
-/// How a light casts shadows.
+/// Shadow options of a light.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ShadowOptions {
-    /// Width of the map in texels; 1024 where it is not given.
+    /// Size of the shadow map in texels; 1024 by default.
     pub map_size: Option<u32>,
-    /// Maps by distance.
+    /// Number of cascades.
     pub shadow_cascades: Option<u32>,
-    /// Toward the light, in meters.
+    /// Bias toward the light, in m.
     pub constant_bias: Option<f64>,
-    /// Along the normal, in texels.
+    /// Bias along the normal, in texels.
     pub normal_bias: Option<f64>,
-    /// The map stands still as the camera moves.
+    /// True if the map does not move with the camera.
     pub stable: Option<bool>,
-    /// Perspective of the map follows the camera's.
+    /// True for light-space perspective shadow maps (LiSPSM).
     pub lispsm: Option<bool>,
-    /// Where cascades end, as shares of the range.
+    /// Ends of cascades, relative to the range.
     pub cascade_split_positions: Option<[f64; 3]>,
-    /// Where shadows end, in meters; 0: where the camera's view does.
+    /// Distance at which shadows end, in m; 0 for the camera's far plane.
     pub shadow_far: Option<f64>,
-    /// Short rays through the picture's depth complete the maps.
+    /// True for screen-space contact shadows.
     pub screen_space_contact_shadows: Option<bool>,
-    /// How many steps they have.
+    /// Number of steps of contact shadows.
     pub step_count: Option<u32>,
-    /// How long they are, in meters.
+    /// Length of contact shadow rays, in m.
     pub max_shadow_distance: Option<f64>,
-    /// Radius of the bulb in meters, for penumbrae.
+    /// Radius of the light source for penumbrae, in m.
     pub shadow_bulb_radius: Option<f64>,
-    /// Options that are not known.
+    /// Unknown options.
     #[serde(flatten)]
     pub unknown: Map<String, Value>,
 }
 
-/// Light from all around.
+/// Image-based light.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ibl {
-    /// Irradiance / π in spherical harmonics, nine colors; three numbers are the first, and the others zero.
+    /// Irradiance / π in spherical harmonics, nine colors. With three numbers, only the first color is set.
     pub sh: Option<Vec<f64>>,
-    /// Radiance of an even environment.
+    /// Radiance of a uniform environment.
     pub uniform_cube: Option<[f64; 3]>,
-    /// A filtered cube with its harmonics in a Khronos texture.
+    /// Prefiltered cube with harmonics, as a Khronos texture.
     pub ktx1: Option<Asset>,
-    /// Factor on all of it.
+    /// Factor on all of the light.
     #[serde(default = "one")]
     pub intensity: f64,
 }
@@ -191,7 +191,7 @@ const fn one() -> f64 {
     1.0
 }
 
-/// How light becomes numbers.
+/// Exposure of the picture.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Exposure {
@@ -205,12 +205,12 @@ impl Default for Exposure {
     }
 }
 
-/// Which numbers a picture holds.
+/// Kind of values in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Output {
-    /// Light.
+    /// Linear light.
     Linear,
-    /// Codes.
+    /// 8-bit display values.
     Ldr,
 }

@@ -1,38 +1,38 @@
-//! What becomes of the light: antialiasing, color, effects, in Filament's terms.
+//! Processing of the picture in Filament's terms: anti-aliasing, color, effects.
 
 use super::occlusion::Ao;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
-/// What becomes of the light. Effects that are not built are kept as they are.
+/// Processing of the picture. Options of effects that are not implemented are kept unparsed.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct View {
-    /// Anything at all.
+    /// True if any processing is enabled.
     #[serde(default)]
     pub post_processing: bool,
-    /// Softens edges of the finished picture.
+    /// Anti-aliasing of the final picture.
     #[serde(default)]
     pub anti_aliasing: AntiAliasing,
-    /// Samples of each pixel.
+    /// Multisampling.
     pub msaa: Option<Msaa>,
-    /// Samples of former frames.
+    /// Temporal anti-aliasing.
     pub taa: Option<Taa>,
-    /// Color.
+    /// Color grading.
     pub color_grading: Option<ColorGrading>,
     /// Ambient occlusion.
     pub ao: Option<Ao>,
-    /// Reflections of what the picture shows.
+    /// Screen-space reflections.
     pub ssr: Option<Ssr>,
-    /// Glare.
+    /// Bloom.
     pub bloom: Option<Bloom>,
-    /// Haze.
+    /// Fog.
     pub fog: Option<Fog>,
-    /// Darker corners.
+    /// Vignette.
     pub vignette: Option<Vignette>,
 }
 
-/// Reflections of what the picture shows.
+/// Screen-space reflections.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase")]
 #[allow(missing_docs, reason = "Filament's names; lengths in m, the stride in texels")]
@@ -43,49 +43,49 @@ pub struct Ssr {
     pub bias: Option<f64>,
     pub max_distance: Option<f64>,
     pub stride: Option<f64>,
-    /// Options that are not known.
+    /// Unknown options.
     #[serde(flatten)]
     pub unknown: Map<String, Value>,
 }
 
-/// Softens edges of the finished picture.
+/// Anti-aliasing of the final picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum AntiAliasing {
-    /// Nothing does.
+    /// No anti-aliasing.
     #[default]
     None,
     /// FXAA.
     Fxaa,
 }
 
-/// Samples of each pixel.
+/// Multisampling.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(untagged)]
 pub enum Msaa {
-    /// Four, or one.
+    /// Four samples if true, otherwise one.
     On(bool),
-    /// So many.
+    /// Number of samples.
     Samples(u32),
     /// Filament's options.
     Options(MsaaOptions),
 }
 
-/// Filament's options.
+/// Filament's multisampling options.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "camelCase")]
 pub struct MsaaOptions {
-    /// On.
+    /// True if enabled.
     #[serde(default)]
     pub enabled: bool,
-    /// How many.
+    /// Number of samples.
     pub sample_count: Option<u32>,
-    /// A resolve of its own.
+    /// True for a custom resolve.
     pub custom_resolve: Option<bool>,
 }
 
 impl Msaa {
-    /// How many.
+    /// Returns the number of samples.
     pub fn samples(&self) -> u32 {
         match self {
             Self::On(on) => 1 + 3 * u32::from(*on),
@@ -96,7 +96,7 @@ impl Msaa {
     }
 }
 
-/// Samples of former frames.
+/// Temporal anti-aliasing.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase")]
 #[allow(missing_docs, reason = "Filament's names; widths in pixels")]
@@ -119,12 +119,12 @@ pub struct Taa {
     pub variance_gamma: Option<f64>,
     pub prevent_flickering: Option<bool>,
     pub history_reprojection: Option<bool>,
-    /// Options that are not known.
+    /// Unknown options.
     #[serde(flatten)]
     pub unknown: Map<String, Value>,
 }
 
-/// The box that former frames are held to.
+/// Shape of the color box that limits the history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "SCREAMING_SNAKE_CASE")]
 #[allow(missing_docs, reason = "Filament's names")]
@@ -134,7 +134,7 @@ pub enum TaaBox {
     AabbVariance,
 }
 
-/// How they are held to it.
+/// Method of limiting the history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "SCREAMING_SNAKE_CASE")]
 #[allow(missing_docs, reason = "Filament's names")]
@@ -144,7 +144,7 @@ pub enum TaaClipping {
     None,
 }
 
-/// Places within pixels.
+/// Sequence of jitter positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[allow(missing_docs, reason = "Filament's names")]
 pub enum TaaJitter {
@@ -160,85 +160,85 @@ pub enum TaaJitter {
     Halton32,
 }
 
-/// A tone curve.
+/// Tone curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "SCREAMING_SNAKE_CASE")]
 pub enum ToneMapping {
-    /// Cut off.
+    /// Clamped linear values.
     Linear,
     /// ACES 1.0.
     Aces,
-    /// The same, brighter by 1/0.6: what Filament does if not told.
+    /// ACES 1.0, brighter by 1/0.6: Filament's default.
     #[default]
     AcesLegacy,
     /// Narkowicz' curve.
     Filmic,
-    /// A color for each stop.
+    /// Display range: one color per stop.
     DisplayRange,
 }
 
-/// Size of the table that colors are looked up in.
+/// Size of the color grading table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum GradingQuality {
-    /// 16 entries a side, of ten bits.
+    /// 16 entries per axis, 10 bits.
     Low,
-    /// 32, of ten bits: what Filament does if not told.
+    /// 32 entries per axis, 10 bits: Filament's default.
     Medium,
-    /// 32, of half floats.
+    /// 32 entries per axis, half floats.
     High,
-    /// 64, of half floats.
+    /// 64 entries per axis, half floats.
     Ultra,
 }
 
-/// Numbers of that table.
+/// Number format of the color grading table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum GradingFormat {
-    /// Ten bits.
+    /// 10-bit integers.
     Integer,
-    /// Half floats.
+    /// Tolerance for half floats.
     Float,
 }
 
-/// Color.
+/// Color grading.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "camelCase")]
 pub struct ColorGrading {
-    /// The curve.
+    /// Tone curve.
     #[serde(default, rename = "tone_mapping")]
     pub tone_mapping: ToneMapping,
-    /// Size and numbers of the table.
+    /// Size and format of the table.
     pub quality: Option<GradingQuality>,
-    /// Numbers of the table, whatever its size.
+    /// Format of the table, which overrides the quality's.
     pub format: Option<GradingFormat>,
-    /// In EV.
+    /// Exposure compensation, in EV.
     pub exposure: Option<f64>,
-    /// Loss of color in the dark, 0…1.
+    /// Desaturation in the dark, 0…1.
     pub night_adaptation: Option<f64>,
     /// Temperature and tint, −1…1.
     pub white_balance: Option<[f64; 2]>,
-    /// Rows of a matrix: what red, green and blue become.
+    /// Matrix rows for the contributions of red, green and blue.
     pub channel_mixer: Option<[[f64; 3]; 3]>,
-    /// Colors by brightness, and in the last place where they begin and end.
+    /// Colors of shadows, midtones and highlights, then their ranges.
     pub shadows_midtones_highlights: Option<[[f64; 4]; 4]>,
-    /// Of the logarithm.
+    /// Slope, offset and power, applied to the logarithm.
     pub slope_offset_power: Option<[[f64; 3]; 3]>,
-    /// About grey, 0…2.
+    /// Contrast around middle gray, 0…2.
     pub contrast: Option<f64>,
-    /// Saturation of reds more than of others, 0…2.
+    /// Saturation that affects red less, 0…2.
     pub vibrance: Option<f64>,
-    /// 0…2.
+    /// Saturation, 0…2.
     pub saturation: Option<f64>,
-    /// By channel: exponent of shadows, middle, slope of highlights.
+    /// Shadow gamma, midpoint and highlight slope per channel.
     pub curves: Option<[[f64; 3]; 3]>,
-    /// Of the tone curve.
+    /// True if the tone curve scales luminance instead of each channel.
     pub luminance_scaling: Option<bool>,
-    /// Of the tone curve.
+    /// True for gamut mapping after the tone curve.
     pub gamut_mapping: Option<bool>,
 }
 
-/// Glare.
+/// Bloom.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "camelCase")]
 #[allow(missing_docs, reason = "Filament's names; thresholds in exposed light, lengths in shares of the picture")]
@@ -261,21 +261,21 @@ pub struct Bloom {
     pub halo_thickness: Option<f64>,
     pub halo_radius: Option<f64>,
     pub halo_threshold: Option<f64>,
-    /// There is no texture in a statement: a factor on nothing.
+    /// Strength of lens dirt; ignored, since statements have no dirt texture.
     pub dirt_strength: Option<f64>,
 }
 
-/// How glare is laid over the picture.
+/// Blending of bloom and picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum BlendMode {
-    /// Added.
+    /// Adds bloom to the picture.
     Add,
-    /// In the picture's place.
+    /// Interpolates between picture and bloom.
     Interpolate,
 }
 
-/// How the picture is made smaller for glare.
+/// Quality of bloom's downsampling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 #[allow(missing_docs, reason = "Filament's names")]
@@ -286,7 +286,7 @@ pub enum BloomQuality {
     Ultra,
 }
 
-/// Haze.
+/// Fog.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "camelCase")]
 #[allow(missing_docs, reason = "Filament's names; lengths in m, density and falloff in 1/m")]
@@ -305,19 +305,19 @@ pub struct Fog {
     pub fog_color_from_ibl: Option<bool>,
 }
 
-/// The picture fades toward its edges.
+/// Vignette.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "camelCase")]
 pub struct Vignette {
-    /// On.
+    /// True if enabled.
     #[serde(default)]
     pub enabled: bool,
-    /// How far from the middle it begins, 0…1.
+    /// Distance from the center at which it starts, 0…1.
     pub mid_point: Option<f64>,
-    /// From a rectangle to a circle, 0…1.
+    /// Roundness from a rectangle to a circle, 0…1.
     pub roundness: Option<f64>,
     /// Softness, 0…1.
     pub feather: Option<f64>,
-    /// What the edges become; the fourth number is not used.
+    /// Color of the edges; the fourth number is ignored.
     pub color: Option<[f64; 4]>,
 }

@@ -1,4 +1,4 @@
-//! A picture of radiance on the device, what passes make of it, and what comes back.
+//! A radiance picture on the device, processed by passes and read back.
 
 use crate::parts::Parts;
 use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Texture, TextureDesc, compile};
@@ -11,7 +11,7 @@ use tests::executors;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
 
-/// Rows from the top.
+/// Pixels, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     pub size: [u32; 2],
@@ -24,13 +24,13 @@ impl Image {
         Self { size, texels }
     }
 
-    /// The nearest texel.
+    /// Returns the nearest pixel.
     pub fn at(&self, x: i64, y: i64) -> DVec3 {
         let [width, height] = self.size.map(i64::from);
         self.texels[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize]
     }
 
-    /// Linear between the middles of texels; coordinates in 0…1.
+    /// Interpolates linearly between pixel centers; coordinates are in 0…1.
     pub fn sample(&self, u: f64, v: f64) -> DVec3 {
         let (x, y) = (u * f64::from(self.size[0]) - 0.5, v * f64::from(self.size[1]) - 0.5);
         let (fx, fy) = (x - x.floor(), y - y.floor());
@@ -39,7 +39,7 @@ impl Image {
         row(y).lerp(row(y + 1), fy)
     }
 
-    /// The largest difference, as a share of the brightest channel of the other.
+    /// Returns the largest difference, relative to the brightest channel of `truth`.
     pub fn off(&self, truth: &Self) -> f64 {
         assert_eq!(self.size, truth.size);
         let most = truth.texels.iter().map(|c| c.max_element()).fold(1e-9, f64::max);
@@ -51,7 +51,7 @@ impl Image {
         self.texels.iter().sum::<DVec3>() / self.texels.len() as f64
     }
 
-    /// As half floats hold it.
+    /// Rounds the picture to half floats.
     pub fn rounded(&self) -> Self {
         let round = |c: DVec3| DVec3::from_array(c.to_array().map(|x| f16::from_f64(x).to_f64()));
         Self { size: self.size, texels: self.texels.iter().map(|c| round(*c)).collect() }
@@ -75,7 +75,7 @@ impl Image {
     }
 }
 
-/// What `declare` makes of pictures: the first level of the texture that it returns, and the plan.
+/// Runs declared passes on pictures. Returns level 0 of the resulting texture, and the plan.
 pub fn made<const N: usize>(
     gpu: &Gpu,
     parts: &Parts,

@@ -1,4 +1,4 @@
-//! Bloom and flare on the CPU, as their sources state them: sums over texels in f64, without the shader's tricks.
+//! Bloom and flare on the CPU in f64, from the published formulas, without the shader's optimizations.
 
 use super::stage::Image;
 use framegraph_passes::bloom::{BloomChain, BloomSettings, FlareSettings, Threshold};
@@ -9,12 +9,12 @@ fn picture(size: [u32; 2], color: impl Fn(f64, f64) -> DVec3) -> Image {
     Image::from_fn(size, |x, y| color((f64::from(x) + 0.5) / width, (f64::from(y) + 0.5) / height))
 }
 
-/// A tent that is 0 two texels away.
+/// Returns a tent filter that is 0 at a distance of two texels.
 fn tent(distance: f64) -> f64 {
     (2.0 - distance.abs()).max(0.0) / 4.0
 }
 
-/// What glows of a picture, in `size`: a tent about each place, in groups of two by two texels where fireflies count less.
+/// Downsamples the picture by a tent filter over groups of 2×2 texels, with reduced weights for very bright pixels.
 fn first(source: &Image, size: [u32; 2], settings: Option<&BloomSettings>) -> Image {
     let multiple = settings.map_or(1, |own| own.multiple_px);
     let span = source.size.map(|side| side.next_multiple_of(multiple));
@@ -54,19 +54,19 @@ fn first(source: &Image, size: [u32; 2], settings: Option<&BloomSettings>) -> Im
     made.rounded()
 }
 
-/// A level from the one above.
+/// Computes a level from the one above.
 fn down(above: &Image, size: [u32; 2]) -> Image {
     let [width, height] = above.size.map(f64::from);
     let even = above.size.iter().all(|side| side % 2 == 0);
     let tap = |u: f64, v: f64, dx: f64, dy: f64| above.sample(u + dx / width, v + dy / height);
     let made = picture(size, |u, v| {
         if even {
-            // Three taps a side, of 0.2333, 0.5334 and 0.2333.
+            // Three samples per side, with weights 0.2333, 0.5334 and 0.2333.
             let side = [(-1.761629, 7.46602 / 32.0), (0.0, 1.0 - 7.46602 / 16.0), (1.761629, 7.46602 / 32.0)];
             let pairs = side.iter().flat_map(|x| side.iter().map(move |y| (x, y)));
             return pairs.map(|(x, y)| tap(u, v, x.0, y.0) * x.1 * y.1).sum();
         }
-        // Five boxes of four taps: one in the middle counts half, and four about it an eighth each.
+        // Five boxes of four samples: the central one has weight 1/2, the others 1/8 each.
         let corners = |x: f64, y: f64| {
             let all = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
             all.iter().map(|(dx, dy)| tap(u, v, x + dx, y + dy)).sum::<DVec3>() / 4.0
@@ -77,7 +77,7 @@ fn down(above: &Image, size: [u32; 2]) -> Image {
     made.rounded()
 }
 
-/// A level with what comes from below.
+/// Adds the upsampled lower level to a level.
 fn up(own: &Image, below: &Image, narrow: bool) -> Image {
     let sizes = [own.size, below.size].map(|size| size.map(f64::from));
     let made = picture(own.size, |u, v| {
@@ -95,7 +95,7 @@ fn up(own: &Image, below: &Image, narrow: bool) -> Image {
     made.rounded()
 }
 
-/// What glows before it is added up, all levels.
+/// Returns all levels of bloom before they are summed.
 pub fn levels(source: &Image, settings: &BloomSettings) -> Vec<Image> {
     let chain = BloomChain::new(settings, source.size);
     let (mut sifted, mut from) = (Some(settings), source.clone());
@@ -110,7 +110,7 @@ pub fn levels(source: &Image, settings: &BloomSettings) -> Vec<Image> {
     levels
 }
 
-/// All levels added up.
+/// Returns the sum of all levels.
 pub fn glow(source: &Image, settings: &BloomSettings) -> Image {
     let mut levels = levels(source, settings);
     let mut sum = levels.pop().expect("there is a level");
@@ -120,11 +120,11 @@ pub fn glow(source: &Image, settings: &BloomSettings) -> Image {
     sum
 }
 
-/// Ghosts and halo of what glows in a picture of `size_px`, blurred; without rays. The glow covers the picture.
+/// Returns blurred ghosts and halo without rays; the bloom covers a picture of `size_px`.
 pub fn flare(glow: &Image, size_px: [u32; 2], settings: &FlareSettings) -> Image {
     let own = DVec2::new(size_px[0].into(), size_px[1].into());
     let multiple = f64::from(settings.multiple_px);
-    // The picture lies at the bottom left of the span.
+    // The picture is at the bottom left of the padded area.
     let span = (own / multiple).ceil() * multiple;
     let above = DVec2::new(0.0, span.y - own.y);
     let aspect = f64::from(glow.size[0]) / f64::from(glow.size[1]) * (span.x / own.x) / (span.y / own.y);

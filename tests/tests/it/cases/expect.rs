@@ -1,13 +1,13 @@
-//! The `expect` section of a case, and what a plan has in its place.
+//! The `expect` section of a case, and the actual values of a plan.
 
 use framegraph::{Alias, Order, Placement, Plan};
 use serde::Deserialize;
 
-/// One plan that is asked for, and the figures that it must come to.
+/// Expected figures of one plan.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// A preset.
+    /// Preset of device capabilities.
     pub caps: String,
     /// Features that differ from the file's: `"a !b"`.
     #[serde(default)]
@@ -16,10 +16,10 @@ pub struct Case {
     pub order: Order,
     #[serde(default)]
     pub alias: Alias,
-    /// The frame in texels, where it differs from the file's.
+    /// Size of the frame in texels, if it differs from the file's.
     #[serde(default)]
     pub size: Option<(u32, u32)>,
-    /// No merging, inlining and memoryless attachments, so that steps are passes.
+    /// Disables merging, inlining and memoryless attachments, so that each pass is one step.
     #[serde(default)]
     pub plain: bool,
     pub loads: u64,
@@ -42,27 +42,27 @@ pub struct Case {
     heap_bytes: Option<u64>,
     #[serde(default)]
     lower_bound_bytes: Option<u64>,
-    /// Bytes of each resource are rounded up to a multiple of this for the fields below.
+    /// Alignment of resources in bytes, for the fields below.
     #[serde(default)]
     granularity: Option<u64>,
-    /// Sum over transient resources that take memory.
+    /// Sum over transient resources that take memory, in bytes.
     #[serde(default)]
     rounded_bytes: Option<u64>,
     /// Peak of live bytes.
     #[serde(default)]
     rounded_peak_bytes: Option<u64>,
-    /// Name, bytes, first and last step.
+    /// Name, bytes, first and last step of resources.
     #[serde(default)]
     resources: Vec<(String, u64, u64, u64)>,
     /// Loads and stores of Filament for the same passes.
     #[serde(default)]
     pub filament: Option<(u64, u64)>,
-    /// Why the figures are as they are.
+    /// Explanation of the figures.
     #[serde(default)]
     pub note: String,
 }
 
-/// One figure that a case states.
+/// One expected figure of a case.
 #[derive(Clone, Debug)]
 pub struct Field {
     pub what: String,
@@ -71,7 +71,7 @@ pub struct Field {
 }
 
 impl Case {
-    /// The features to switch.
+    /// Returns the features to switch.
     pub fn switches(&self) -> Vec<(String, bool)> {
         let switch = |word: &str| match word.strip_prefix('!') {
             Some(name) => (name.to_owned(), false),
@@ -80,13 +80,13 @@ impl Case {
         self.set.split_whitespace().map(switch).collect()
     }
 
-    /// How errors call it.
+    /// Returns the name of the case for errors.
     pub fn label(&self) -> String {
         let size = self.size.map(|(w, h)| format!(" at {w}x{h}")).unwrap_or_default();
         format!("caps {}, set `{}`, {:?}{size}", self.caps, self.set, self.order)
     }
 
-    /// Every figure that is stated, with the plan's.
+    /// Returns every expected figure with the plan's.
     pub fn fields(&self, plan: &Plan) -> Vec<Field> {
         let totals = framegraph::dump::totals(plan);
         let total = |what: &str| totals.iter().find(|(name, _)| *name == what).map(|(_, v)| *v);
@@ -131,7 +131,7 @@ impl Case {
         bytes.next_multiple_of(self.granularity.unwrap_or(1))
     }
 
-    /// Sum and peak of rounded bytes over the resources that take shared memory.
+    /// Returns sum and peak of aligned sizes over resources that take shared memory, in bytes.
     fn rounded(&self, plan: &Plan) -> (u64, u64) {
         let shared = |p| matches!(p, Placement::Slot(_) | Placement::Heap { .. });
         let rows = || plan.resources().iter().filter(|r| shared(r.placement));
@@ -141,7 +141,7 @@ impl Case {
         (sum, plan.step_ids().map(live).max().unwrap_or(0))
     }
 
-    /// The same with the figure of [`Case::fields`] at `at` off by one.
+    /// Returns the case with one field of [`Case::fields`] changed by 1.
     pub fn mutated(&self, at: usize) -> Self {
         let mut case = self.clone();
         let mut left = at;

@@ -1,5 +1,5 @@
-//! The steps of depth of field once more, on the CPU in `f64`: what a device makes of any picture is what they make of it, but
-//! for the half floats that textures between steps hold, which are rounded here too.
+//! Depth of field on the CPU in f64, step by step. The device must match it, apart from the rounding of intermediate
+//! textures to half floats, which is applied here too.
 
 use crate::bloom::stage::Image;
 use framegraph_passes::DofSettings;
@@ -12,7 +12,7 @@ const TILE_PX: usize = 16;
 const MOST_PX: f64 = 32.0;
 const LEVELS: usize = 4;
 
-/// Rows from the top, rounded to half floats.
+/// Texels rounded to half floats, rows from the top.
 struct Texels {
     size: [usize; 2],
     texels: Vec<DVec4>,
@@ -25,19 +25,19 @@ impl Texels {
         Self { size, texels: places.map(|(x, y)| halves(texel(x, y))).collect() }
     }
 
-    /// The nearest texel.
+    /// Returns the nearest texel.
     fn at(&self, x: i64, y: i64) -> DVec4 {
         let [x, y] = [(x, self.size[0]), (y, self.size[1])].map(|(at, side)| at.clamp(0, side as i64 - 1) as usize);
         self.texels[y * self.size[0] + x]
     }
 
-    /// The texel around a place, in 0…1.
+    /// Returns the texel at a point in 0…1.
     fn tap(&self, uv: DVec2) -> DVec4 {
         let at = (uv * self.sides()).floor();
         self.at(at.x as i64, at.y as i64)
     }
 
-    /// Linear between the middles of texels.
+    /// Interpolates linearly between texel centers.
     fn linear(&self, uv: DVec2) -> DVec4 {
         let at = uv * self.sides() - 0.5;
         let (first, part) = (at.floor(), at - at.floor());
@@ -50,8 +50,8 @@ impl Texels {
     }
 }
 
-/// A picture through a lens: `radius_px` is the radius of what is infinitely far away, `per_focus` of a place says how much
-/// nearer it is than what is in focus.
+/// A picture through a lens. `radius_px` is the circle's radius at infinity, and `per_focus` returns focus distance
+/// divided by distance at a pixel.
 pub struct Shot<'a> {
     pub image: &'a Image,
     pub per_focus: &'a dyn Fn(i64, i64) -> f64,
@@ -83,7 +83,7 @@ impl Shot<'_> {
         Image { size: self.image.size, texels: combined.texels.iter().map(|t| t.xyz()).collect() }
     }
 
-    /// Radiance, bright places counting less, and the radius of the nearest place.
+    /// Returns radiance, with lower weights for bright pixels, and the radius of the nearest pixel.
     fn field(&self, size: [usize; 2], texel_px: i64) -> Texels {
         Texels::new(size, |x, y| {
             let places = (0..texel_px * texel_px)
@@ -109,7 +109,7 @@ fn halved(field: &Texels) -> Texels {
     })
 }
 
-/// The least and the largest radius of each tile.
+/// Returns the minimum and maximum radius of each tile.
 fn tiles(field: &Texels, side: usize) -> Texels {
     let within = |at: usize, most: usize| at * side..((at + 1) * side).min(most);
     Texels::new(field.size.map(|most| most.div_ceil(side)), |x, y| {
@@ -142,18 +142,18 @@ fn median(of: &Texels, x: i64, y: i64) -> DVec4 {
     DVec4::from_array([0, 1, 2, 3].map(middle))
 }
 
-/// Jimenez's noise of a pixel, as of 64 frames.
+/// Returns Jimenez's interleaved gradient noise of a pixel, for one of 64 frames.
 fn noise(pixel: DVec2, frame: f64) -> f64 {
     let p = (pixel + 5.588238 * frame).as_vec2();
     f64::from((52.982_918 * (p.x * 0.067_110_56 + p.y * 0.005_837_15).fract()).fract())
 }
 
-/// Of light in a disc of that radius, what a place gets.
+/// Returns the density of light in a disc with a radius.
 fn density(radius: f64, texel_px: f64) -> f64 {
     1024.0 / (radius * radius).max(2.0 * texel_px)
 }
 
-/// Whether a disc of that radius reaches a place, 0…1.
+/// Returns how much a disc of a radius covers a pixel, 0…1.
 fn reach(radius: f64, distance: f64, texel_px: f64) -> f64 {
     ((radius - distance) / texel_px + 0.5).clamp(0.0, 1.0)
 }
@@ -163,7 +163,7 @@ fn smoothstep(from: f64, to: f64, x: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// A sum with weights: color, radius and the weights themselves.
+/// Weighted sums of color and radius, and the weights.
 #[derive(Clone, Copy, Default)]
 struct Sum {
     color: DVec3,
@@ -218,21 +218,21 @@ impl Gather<'_> {
         before + behind * (1.0 - before.w)
     }
 
-    /// The level for that many rings, pixels of one of its texels, pixels from ring to ring.
+    /// Returns the level for a number of rings, the pixels per texel, and the pixels between rings.
     fn rings(&self, rings: u8, radius: f64) -> (&Texels, f64, f64) {
         let step = radius / (f64::from(rings) - 0.5);
         let level = ((step / self.texel_px as f64).max(1e-6).log2() + 0.5).floor().clamp(0.0, (LEVELS - 1) as f64);
         (&self.field[level as usize], self.texel_px as f64 * level.exp2(), step)
     }
 
-    /// Places of a ring, in rings from the middle.
+    /// Returns the points of a ring, in units of the ring distance.
     fn ring(ring: u8) -> impl Iterator<Item = DVec2> {
         let count = (8 * u32::from(ring)).max(1);
         let turned = if ring % 2 == 1 { 0.5 } else { 0.0 };
         (0..count).map(move |i| DVec2::from_angle(TAU * (f64::from(i) + turned) / f64::from(count)) * f64::from(ring))
     }
 
-    /// Pixels to coordinates.
+    /// Converts pixels to texture coordinates.
     fn uv(&self, px: DVec2) -> DVec2 {
         px / (self.field[0].sides() * self.texel_px as f64)
     }
@@ -255,7 +255,7 @@ impl Gather<'_> {
         let (mut front, mut back, mut count) = (Sum::default(), Sum::default(), 0.0);
         for ring in 0..rings {
             let own: Vec<DVec2> = Self::ring(ring).collect();
-            // Of two opposite one another the nearer speaks for both.
+            // The nearer of two opposite samples counts for both.
             for place in &own[..own.len().div_ceil(2)] {
                 let pair = [jitter + *place, jitter - *place].map(|at| level.tap(uv + self.uv(at * step)));
                 let nearest = pair[0].w.min(pair[1].w);

@@ -1,4 +1,4 @@
-//! Facts that only the GPU knows: they come some frames late, no frame waits for them, and nothing flickers.
+//! Measurements of the GPU: they arrive some frames later, no frame waits for them, and nothing flickers.
 
 use super::TestResult;
 use crate::stage::{gpu, plan};
@@ -13,7 +13,7 @@ use framegraph_wgpu::Gpu;
 use tests::measure::facts::late::InARow;
 use tests::measure::facts::{Drawn, SIZE_PX, cases};
 
-/// A frame of one effect.
+/// A frame with one effect.
 const BARE: Settings = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
 
 fn row(gpu: &Gpu, name: &str) -> Result<InARow, Box<dyn std::error::Error>> {
@@ -21,7 +21,7 @@ fn row(gpu: &Gpu, name: &str) -> Result<InARow, Box<dyn std::error::Error>> {
     Ok(InARow::new(gpu, Drawn::new(gpu, case)?))
 }
 
-/// The ball under light from all around that is so many times as bright; at 1 the sky is 1.15 before grading.
+/// Returns a view of the ball under light scaled by `times`; at 1, the sky is 1.15 before grading.
 fn lit(row: &InARow, times: f32) -> ViewSettings {
     ViewSettings { environment_intensity: times, ..row.case().view(&BARE, SIZE_PX) }
 }
@@ -30,8 +30,8 @@ fn glowing() -> Settings {
     Settings { bloom: Some(BloomSettings::DEFAULT), ..BARE }
 }
 
-/// The sky and the ball are measured as bright as they are, and as near; the sky is infinitely far away. The picture is not
-/// of a size that eight divides.
+/// Sky and ball are measured with their brightness and distance; the sky is infinitely far away. The picture's size is
+/// not a multiple of eight.
 #[test]
 fn light_and_distances_are_measured() -> TestResult {
     let Some(gpu) = gpu("light_and_distances_are_measured") else { return Ok(()) };
@@ -48,10 +48,10 @@ fn light_and_distances_are_measured() -> TestResult {
         gpu.wait()?;
         let Measurement::Known(found) = row.measuring.known(&gpu)? else { return Err("nothing has come".into()) };
         let (nits, [near, far]) = (found.most_nits.ok_or("light")?, found.distances_m.ok_or("depth")?);
-        // Half floats hold radiance to a 2048th; the sky of 2000 nits is the brightest.
+        // Half floats round radiance to 1/2048; the sky of 2000 nits is the brightest.
         assert!((nits / 2000.0 - 1.0).abs() < 2e-3, "{size_px:?}: {nits} nits");
         assert_eq!(far, f64::INFINITY, "{size_px:?}");
-        // The camera is 3.3 m from the middle of the ball, whose radius is half a meter, of 24 segments.
+        // The camera is 3.3 m from the center of the ball, which has a radius of 0.5 m and 24 segments.
         let expected = 3.306 - 0.5;
         let nearest = if size_px == [7, 1] { 0.05 } else { 0.01 };
         assert!((near - expected).abs() < nearest, "{size_px:?}: {near} m");
@@ -59,7 +59,7 @@ fn light_and_distances_are_measured() -> TestResult {
     Ok(())
 }
 
-/// What was measured counts its frames, and is unknown once it is older than eight, or forgotten.
+/// Measurements carry the number of their frame. They expire after eight frames, and when discarded.
 #[test]
 fn what_is_old_or_forgotten_is_unknown() -> TestResult {
     let Some(gpu) = gpu("what_is_old_or_forgotten_is_unknown") else { return Ok(()) };
@@ -86,8 +86,8 @@ fn what_is_old_or_forgotten_is_unknown() -> TestResult {
     Ok(())
 }
 
-/// Bloom that has no threshold or takes the picture's place glows in the dark too, and through a parallel projection
-/// depth is no distance from the eye.
+/// Bloom without a threshold, or that interpolates, is visible in the dark too. In an orthographic projection, depth is
+/// not a distance from the eye.
 #[test]
 fn what_no_measure_decides_is_kept() -> TestResult {
     let Some(gpu) = gpu("what_no_measure_decides_is_kept") else { return Ok(()) };
@@ -119,7 +119,7 @@ fn what_no_measure_decides_is_kept() -> TestResult {
     Ok(())
 }
 
-/// What is copied to the CPU is a 64th as wide and high.
+/// The copied picture is 1/64 as wide and high.
 #[test]
 fn what_is_read_back_is_small() -> TestResult {
     let settings = Settings { measure: Measure { light: true, depth: true }, ..glowing() };
@@ -136,10 +136,10 @@ fn what_is_read_back_is_small() -> TestResult {
     Ok(())
 }
 
-/// Bloom goes where twice the light is below its threshold, and the picture keeps every bit; it stays where it is not.
+/// Bloom is culled if twice the light is below its threshold, which changes no bit; otherwise it is kept.
 #[test]
-fn bloom_goes_where_nothing_was_bright() -> TestResult {
-    let Some(gpu) = gpu("bloom_goes_where_nothing_was_bright") else { return Ok(()) };
+fn bloom_is_culled_if_nothing_was_bright() -> TestResult {
+    let Some(gpu) = gpu("bloom_is_culled_if_nothing_was_bright") else { return Ok(()) };
     // Twice 1.15 times the factor reaches 1 at 0.434.
     for (times, decision) in [(0.42, Decision::Dropped), (0.45, Decision::Kept), (2.0, Decision::Kept)] {
         let mut row = row(&gpu, "ball")?;
@@ -164,15 +164,16 @@ fn bloom_goes_where_nothing_was_bright() -> TestResult {
     Ok(())
 }
 
-/// The floor fills the picture: by its box and the sky behind it nothing is known, by its depth all is in focus, or is not.
+/// The floor fills the picture. Its box and the sky do not bound the distances, but measured depths show whether all is
+/// in focus.
 #[test]
-fn depth_of_field_goes_where_all_was_in_focus() -> TestResult {
-    let Some(gpu) = gpu("depth_of_field_goes_where_all_was_in_focus") else { return Ok(()) };
+fn depth_of_field_is_culled_if_all_was_in_focus() -> TestResult {
+    let Some(gpu) = gpu("depth_of_field_is_culled_if_all_was_in_focus") else { return Ok(()) };
     for (f_number, decision) in [(64.0, Decision::Dropped), (1.0, Decision::Kept)] {
         let mut row = row(&gpu, "floor")?;
-        // Eight divides neither side: what is beyond the edge is no depth.
+        // Neither side is a multiple of eight; texels beyond the edge must not count as depth.
         let seen = row.case().view(&BARE, [75, 41]);
-        // Close to what is seen, so that the sky, by its bound, is out of focus at either aperture.
+        // A close view, so that by bounds alone the sky is out of focus at either aperture.
         let focal_length_m = Some(0.2);
         let own = DofSettings { focus_m: 2.1, f_number, focal_length_m, ..DofSettings::DEFAULT };
         let asked = Settings { dof: Some(own), ..BARE };
@@ -190,8 +191,8 @@ fn depth_of_field_goes_where_all_was_in_focus() -> TestResult {
     Ok(())
 }
 
-/// Light that grows over 64 frames and trembles by 5 % on its way: bloom goes once, comes once, and does not come and go with
-/// every tremor as it does if nothing is remembered. No frame waits for the device.
+/// Light grows over 64 frames with 5 % of noise. Bloom is culled once and restored once; without hysteresis, it toggles
+/// with the noise. No frame waits for the device.
 #[test]
 fn a_slow_crossing_neither_flickers_nor_waits() -> TestResult {
     let Some(gpu) = gpu("a_slow_crossing_neither_flickers_nor_waits") else { return Ok(()) };
@@ -224,7 +225,7 @@ fn a_slow_crossing_neither_flickers_nor_waits() -> TestResult {
     Ok(())
 }
 
-/// A light that goes on at once has its bloom within four frames.
+/// A light that is switched on has its bloom within four frames.
 #[test]
 fn what_comes_suddenly_glows_some_frames_late() -> TestResult {
     let Some(gpu) = gpu("what_comes_suddenly_glows_some_frames_late") else { return Ok(()) };

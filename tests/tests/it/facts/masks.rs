@@ -1,4 +1,4 @@
-//! Combinations of effects: each frame as it is asked for against the frame as it is decided.
+//! Combinations of effects: each frame with and without feature culling.
 
 use super::TestResult;
 use crate::stage::gpu;
@@ -7,7 +7,7 @@ use framegraph_scene::{Light, LightKind};
 use glam::{DMat4, DVec3};
 use tests::measure::facts::{Case, Drawn, Easel, MASKED, cases, compare_mask, some_masks};
 
-/// Any two effects are there together, each without the other, and both not.
+/// Each pair of effects occurs together, separately and not at all.
 #[test]
 fn some_masks_have_every_pair_in_every_state() {
     let masks = some_masks(false);
@@ -20,13 +20,14 @@ fn some_masks_have_every_pair_in_every_state() {
     }
 }
 
-/// `cargo run --release -p tests --bin facts -- --every-mask` goes through all 4096.
+/// `cargo run --release -p tests --bin facts -- --every-mask` tests all 4096 combinations.
 #[test]
 fn what_is_dropped_changes_no_more_than_its_class_says() -> TestResult {
     let Some(gpu) = gpu("what_is_dropped_changes_no_more_than_its_class_says") else { return Ok(()) };
     let mut easel = Easel::new(&gpu);
     for case in cases() {
-        // Each alone where that is cheapest to draw; the two scenes that keep most are drawn with all and with none.
+        // Single effects are tested in the cheapest scenes; the two most expensive scenes are drawn with all effects
+        // and with none.
         let masks = match case.name {
             "nothing" => some_masks(true),
             "ball" | "full" => vec![0, some_masks(false).into_iter().max().unwrap_or(0)],
@@ -46,8 +47,7 @@ fn what_is_dropped_changes_no_more_than_its_class_says() -> TestResult {
     Ok(())
 }
 
-/// What no light falls on, no camera sees or no area has changes no bit: the facts and the frame are the same, or what facts
-/// drop for it is exact.
+/// Effects of unlit, invisible or empty objects: culling them changes no bit, or nothing is culled.
 #[test]
 fn what_adds_nothing_changes_no_bit() -> TestResult {
     let Some(gpu) = gpu("what_adds_nothing_changes_no_bit") else { return Ok(()) };

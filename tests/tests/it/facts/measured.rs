@@ -1,4 +1,4 @@
-//! The most and the least of a picture, as the shader finds them and as the CPU does.
+//! Maximum and minimum of a picture, computed by the shader and on the CPU.
 
 use super::TestResult;
 use crate::stage::gpu;
@@ -9,7 +9,7 @@ use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use half::f16;
 use tests::executors;
 
-/// What a step makes of texels of half floats, `channels` of them each, row by row.
+/// Returns the output of a step for half-float texels with `channels` channels, row by row.
 fn measured(
     gpu: &Gpu,
     step: fn(Texture) -> MeasureStep,
@@ -53,15 +53,15 @@ fn measured(
     Ok(found.rgba().iter().map(|found| [found[0], found[1]]).collect())
 }
 
-/// Every texel of a picture that eight does not divide counts for the eight by eight that it is among, whatever channel is the
-/// brightest, and nothing that the shader begins with is left: all are far below it, or far above.
+/// Every texel counts in its 8×8 block, in any channel, also at the border of pictures whose sizes are not multiples of
+/// eight. The initial values of the shader do not influence the result.
 #[test]
 fn every_texel_counts_for_the_most_and_the_least() -> TestResult {
     let Some(gpu) = gpu("every_texel_counts_for_the_most_and_the_least") else { return Ok(()) };
     let size @ [width, height] = [29_u32, 13];
-    // No two texels alike, in no order, from 2^-14 to 2^-5 with all bits of a half float.
+    // All texels differ, in random order, from 2^-14 to 2^-5 with all bits of a half float.
     let value = |texel: usize, channel: usize| f16::from_bits(0x0400 + ((texel * 2477 + channel * 3331) % 9001) as u16);
-    // Which channels of a texel the most is of, and which the least: of light the brightest of three is both.
+    // Channels of which the maximum and the minimum are taken; for light, both use the brightest of three.
     type Case = (fn(Texture) -> MeasureStep, usize, [std::ops::Range<usize>; 2]);
     let steps: [Case; 3] = [
         (|hdr| MeasureStep::Light { hdr }, 4, [0..3, 0..3]),
@@ -88,7 +88,7 @@ fn every_texel_counts_for_the_most_and_the_least() -> TestResult {
     Ok(())
 }
 
-/// A NaN counts as black, an infinity as the most that half floats hold, as for bloom.
+/// NaN counts as black, infinity as the largest half float, as in bloom.
 #[test]
 fn what_is_no_number_is_measured_as_bloom_takes_it() -> TestResult {
     let Some(gpu) = gpu("what_is_no_number_is_measured_as_bloom_takes_it") else { return Ok(()) };

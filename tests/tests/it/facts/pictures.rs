@@ -1,5 +1,5 @@
-//! Fog, depth of field and bloom on both sides of their thresholds, in pictures: what facts drop changes no more than they say,
-//! and what they keep is seen.
+//! Fog, depth of field and bloom on both sides of their thresholds: culling stays within its bounds, and kept effects
+//! are visible.
 
 use super::TestResult;
 use crate::stage::gpu;
@@ -7,19 +7,19 @@ use framegraph_passes::facts::{Decision, Effect, EffectSet, FactMemory, Proof};
 use framegraph_passes::{BloomSettings, DofSettings, FogSettings, Settings};
 use tests::measure::facts::{Drawn, Easel, SIZE_PX, cases};
 
-/// A frame of one effect; what is not seen is black, so that what is seen has an end.
+/// A frame with one effect and a black background, so that visible distances are bounded.
 const BARE: Settings = Settings { shadows: None, fxaa: false, sky: false, ..Settings::DEFAULT };
 
-/// What becomes of an effect, and of the picture without it.
+/// Expected decision and difference without the effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Expected {
-    /// It is dropped, and no bit changes.
+    /// Culled, and no bit changes.
     SameBits,
-    /// It is dropped, and no code changes by more than one.
+    /// Culled, and no 8-bit value changes by more than one.
     SameCodes,
-    /// It is kept, though the picture may be the same: it is near the threshold.
+    /// Kept, close to the threshold; the picture may be equal.
     Kept,
-    /// It is kept, and is seen.
+    /// Kept, and visible.
     Seen,
 }
 

@@ -1,4 +1,4 @@
-//! Random scenes: each frame as it is asked for against the frame as it is decided, within the bounds of what is dropped.
+//! Random scenes with and without feature culling: differences stay within the bounds of the culled effects.
 
 use super::TestResult;
 use crate::stage::gpu;
@@ -6,11 +6,11 @@ use framegraph_passes::facts::{Decision, Effect, EffectSet, FactMemory, Proof};
 use tests::measure::facts::random::random_case;
 use tests::measure::facts::{Drawn, Easel, compare};
 
-/// Scenes of a short run, and of one with `FRAMEGRAPH_TESTS=all`.
+/// Number of scenes in a short run, and with `FRAMEGRAPH_TESTS=all`.
 const SCENES: [u64; 2] = [150, 2000];
-/// Different settings of a short run: most of its time is spent on making shaders.
+/// Number of settings in a short run, which mostly compiles shaders.
 const SETTINGS: u64 = 12;
-/// Scenes that are drawn without an effect that is needed.
+/// Number of scenes that are drawn without a needed effect.
 const BROKEN: u64 = 24;
 
 fn apart(a: &[u8], b: &[u8]) -> u8 {
@@ -33,7 +33,7 @@ fn random_scenes_keep_within_the_bounds_of_what_is_dropped() -> TestResult {
         if found.holds() {
             continue;
         }
-        // Each effect of its own: which rule is at fault.
+        // Test each effect alone, to name the faulty rule.
         let facts = drawn.facts(&asked, EffectSet::NONE, &mut FactMemory::default());
         let with = drawn.picture(&mut easel, &asked)?;
         let mut alone = Vec::new();
@@ -48,12 +48,12 @@ fn random_scenes_keep_within_the_bounds_of_what_is_dropped() -> TestResult {
     }
     println!("{changed} pictures differ; dropped: {:?}", dropped.iter().map(Effect::name).collect::<Vec<_>>());
     assert!(failures.is_empty(), "{} scenes:\n{}", failures.len(), failures.join("\n"));
-    // Most rules have had their turn.
+    // Most rules must have applied.
     assert!(dropped.iter().count() >= 8, "{dropped:?}");
     Ok(())
 }
 
-/// A rule that calls the sun's shadows unneeded where they are not is found, as one that changes no more than a code.
+/// Negative control: a rule that wrongly culls the sun's shadows, with a bound of one 8-bit step, is detected.
 #[test]
 fn a_broken_rule_is_found_by_random_scenes() -> TestResult {
     let Some(gpu) = gpu("a_broken_rule_is_found_by_random_scenes") else { return Ok(()) };

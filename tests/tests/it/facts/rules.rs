@@ -17,7 +17,7 @@ use framegraph_shaders::layout::{EdgeFade, ToneMap};
 use glam::{DMat4, DVec3, Vec3, Vec4};
 use tests::measure::facts::{Case, SIZE_PX, cases, every_effect};
 
-/// What the facts of a case say of an effect, with the light's coefficients.
+/// Returns the decision for an effect, given the light's coefficients.
 struct Stage {
     case: Case,
     sh: [Vec4; 18],
@@ -65,7 +65,7 @@ impl Stage {
         self.facts_with(self.case.view(&self.case.asked, SIZE_PX), &mut FactMemory::default())
     }
 
-    /// Whether it is dropped.
+    /// Returns true if an effect is culled.
     fn drops(&self, effect: Effect) -> bool {
         let facts = self.facts();
         let row = facts.of(effect).unwrap_or_else(|| panic!("{effect:?} is not asked for"));
@@ -93,8 +93,8 @@ fn matt() -> Material {
     Material::dielectric("matt", Vec3::splat(0.5), 0.6)
 }
 
-/// Below a floor the sun's maps are left out with nothing above it; a block that is seen, one beside the picture whose shadow
-/// falls into it, and one behind the camera bring them back; one far off, whose shadow does not, leaves them out.
+/// A floor alone has no shadow maps of the sun. They are kept for a visible block, one beside the picture whose shadow
+/// enters it, and one behind the camera. They are culled for a distant block whose shadow stays outside.
 #[test]
 fn shadows_follow_casters_in_the_swept_view() {
     let with = |at: Option<DVec3>| {
@@ -106,13 +106,13 @@ fn shadows_follow_casters_in_the_swept_view() {
     };
     assert!(with(None));
     assert!(!with(Some(DVec3::new(0.0, 0.3, 0.0))), "seen");
-    // The sun stands toward (0.5, 1, 0.3): what is there and high casts into the picture from outside of it.
+    // The sun is in direction (0.5, 1, 0.3), so high objects on that side cast shadows into the picture.
     assert!(!with(Some(DVec3::new(2.6, 5.0, 1.6))), "above and behind the camera");
     assert!(with(Some(DVec3::new(-4.0, 0.3, -4.0))), "beside, its shadow falls away");
 }
 
-/// A depth prepass draws no triangle more for lines and points, and saves no shading behind their boxes. They count as not convex,
-/// so ambient occlusion stays.
+/// A depth prepass draws no triangles for lines and points, and saves no shading behind their boxes. They count as not
+/// convex, so ambient occlusion is kept.
 #[test]
 fn lines_and_points_have_no_area() {
     let rows = |topology| {
@@ -145,7 +145,7 @@ fn suns_that_light_nothing_need_no_maps() {
     assert!(below.decision == Decision::Dropped && below.reason.contains("1.1° below the horizon"), "{below:?}");
     assert_eq!(below.proof, Proof::Exact);
     assert!(!toward(Vec3::new(-1.0, -0.02, 0.0)).reason.contains("horizon"), "it grazes the floor from above");
-    // Through a sheet the sun shines from below.
+    // The sun shines through a sheet from below.
     let from_below = |scattered: Option<DiffuseTransmission>| {
         let mut floor = Stage::of("floor");
         floor.material(|m| m.diffuse_transmission = scattered).case.scene.instances.truncate(1);
@@ -172,7 +172,7 @@ fn one_map_replaces_cascades_over_a_short_range() {
 }
 
 #[test]
-fn lamps_have_maps_for_what_they_reach_and_find() {
+fn punctual_lights_have_maps_for_casters_in_range() {
     let mut night = Stage::of("night");
     assert!(!night.drops(Effect::LampShadows));
     night.case.asked.shadows = Some(ShadowSettings { local_maps: 7, ..ShadowSettings::texels(64) });
@@ -193,7 +193,7 @@ fn occlusion_and_reflections_need_neighbours_and_light() {
         (ball.drops(Effect::Occlusion), ball.drops(Effect::Reflections))
     };
     assert_eq!(with(None, block()), (true, true), "alone");
-    // The ball's box ends at 0.5 m, the block's begins 0.3 m before its middle; rays reach 3 m, occlusion 0.3 m.
+    // The ball's box ends at 0.5 m, and the block's starts 0.3 m before its center. Rays reach 3 m, occlusion 0.3 m.
     assert_eq!(with(Some(0.9), block()), (false, false), "0.1 m apart");
     assert_eq!(with(Some(1.2), block()), (true, false), "0.4 m apart");
     assert_eq!(with(Some(4.0), block()), (true, true), "3.2 m apart");
@@ -270,7 +270,7 @@ fn irradiance_has_the_bands_that_show() {
         floor.sh[4] = floor.sh[0] * share;
         floor.drops(Effect::ShBands)
     };
-    // Half a code is a share of 0.0043; the polynomial xy is 0.5 at most.
+    // Half an 8-bit step is a share of 0.0043; the polynomial xy is at most 0.5.
     assert!(share(0.0) && share(0.0085) && !share(0.0088) && !share(1.0));
     let mut black = Stage::of("floor");
     (black.sh[0], black.sh[5]) = (Vec4::ZERO, Vec4::ONE);
@@ -317,7 +317,7 @@ fn air_and_lens_are_left_out_where_they_do_nothing() {
         floor.drops(Effect::Fog)
     };
     let thin = |density| FogSettings { density, falloff: 0.0, ..FogSettings::DEFAULT };
-    // The floor's farthest corner is some 7 m away: 1/512 is hidden at a density of 0.00028.
+    // The floor's farthest corner is about 7 m away: fog hides 1/512 of it at a density of 0.00028.
     assert!(fog(thin(0.0), true) && fog(thin(0.0002), false));
     assert!(!fog(thin(0.0004), false) && !fog(thin(0.0002), true), "the sky has no end");
     assert!(fog(FogSettings { cut_off_m: 5.0, ..thin(0.0002) }, true));
@@ -337,8 +337,8 @@ fn air_and_lens_are_left_out_where_they_do_nothing() {
     assert!(glow(BloomSettings { strength: 0.0, ..BloomSettings::DEFAULT }, "full"));
 }
 
-/// What is forced stays, and a drop that is bounded by more than the tolerance is not made.
-/// What was measured counts for one view, unless the effect is forced, and the nearest counts as well as the farthest.
+/// Forced effects are kept, and an effect whose bound exceeds the tolerance is not culled. Measurements apply to one
+/// view only, unless the effect is forced, and include the nearest and the farthest distance.
 #[test]
 fn measures_are_of_one_view_and_of_both_ends() {
     let mut stage = Stage::of("ball");
@@ -382,7 +382,7 @@ fn forced_effects_stay() {
     };
     let facts = decide(&input, &mut FactMemory::default());
     assert_eq!((facts.dropped(), facts.apply(&floor.case.asked)), (EffectSet::NONE, floor.case.asked));
-    // Nothing is occluded where ambient occlusion goes, and something may be where that is forced.
+    // Culled ambient occlusion occludes nothing; forced ambient occlusion may.
     let ao = EffectSet::NONE.with(Effect::Occlusion);
     let held = decide(&FactInput { forced: ao, ..input }, &mut FactMemory::default());
     assert!(!held.dropped().contains(Effect::OcclusionShading), "{}", held.text(&[]));
@@ -392,8 +392,8 @@ fn forced_effects_stay() {
     assert!(strict.dropped().contains(Effect::OcclusionShading), "{}", strict.text(&[]));
 }
 
-/// A camera that goes up over 64 frames and trembles by 5 % on its way: cascades go once, and do not come and go with every
-/// tremor, as they do if nothing is remembered.
+/// A camera rises over 64 frames with 5 % of noise. Cascades are culled once; without hysteresis, they toggle with the
+/// noise.
 #[test]
 fn a_slow_crossing_does_not_flicker() {
     let mut floor = Stage::of("floor");
@@ -415,7 +415,7 @@ fn a_slow_crossing_does_not_flicker() {
     assert!(changes(false) > 1);
 }
 
-/// Every effect has a row that the tests above can see: none is missing from what the cases ask for.
+/// Every effect is covered: the cases request all of them.
 #[test]
 fn the_cases_ask_for_every_effect() {
     let asked = every_effect();

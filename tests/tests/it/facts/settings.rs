@@ -1,4 +1,4 @@
-//! Settings as files: what their document says, and frames as graphs.
+//! Settings as files: the document's description, and frames as graphs.
 
 use super::TestResult;
 use crate::stage::declared;
@@ -21,7 +21,7 @@ fn the_examples_of_the_document_load() -> TestResult {
     Ok(())
 }
 
-/// Every field that a complete file has stands in the document.
+/// The document lists every field of a complete file.
 #[test]
 fn the_document_names_every_field() -> TestResult {
     let text = Preset::Ultra.frame().to_ron()?;
@@ -35,7 +35,7 @@ fn the_document_names_every_field() -> TestResult {
     Ok(())
 }
 
-/// A preset's row of the document is what the code chooses.
+/// The document's row of each preset matches the code.
 #[test]
 fn the_document_has_the_presets() {
     let row = |name: &str| {
@@ -67,7 +67,7 @@ fn frames_load_as_graphs_with_the_same_plan() -> TestResult {
             let mut plan = Plan::new();
             let options = Options::for_frame(640, 360);
             compile(graph, &Caps::wgpu(), &options, &mut Scratch::new(), &mut plan).map(|()| {
-                // Why an effect is there is no part of a file.
+                // Files do not contain the reasons for effects.
                 let text = dump::text(&plan);
                 text.lines().filter(|line| !line.starts_with("  effect `")).map(String::from).collect::<Vec<_>>()
             })

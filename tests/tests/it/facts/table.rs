@@ -1,4 +1,4 @@
-//! The table of `docs/facts.md` is what the program prints, but for its times.
+//! The table of `docs/facts.md` is the program's output, without times.
 
 use super::TestResult;
 use framegraph_wgpu::Gpu;
@@ -10,7 +10,7 @@ fn cells(row: &str) -> Vec<&str> {
     row.trim_matches('|').split('|').map(str::trim).collect()
 }
 
-/// Plans are made without a device, and so is what facts look at.
+/// Plans and feature culling need no device.
 #[test]
 fn the_table_is_what_the_program_prints() -> TestResult {
     let (_, after) = DOCUMENT.split_once("<!-- table: facts -->\n").ok_or("the mark")?;
@@ -23,7 +23,7 @@ fn the_table_is_what_the_program_prints() -> TestResult {
         let printed = cells(printed);
         let counts = printed.len() - 1;
         assert_eq!(found[..counts], printed[..counts]);
-        // What is decided costs no more than what is forced, in any column.
+        // Culling increases no cost, in any column.
         for cell in &printed[4..counts] {
             let numbers: Vec<f64> = cell.split(" → ").map(str::parse).collect::<Result<_, _>>()?;
             assert!(numbers[1] <= numbers[0], "{printed:?}");

@@ -1,13 +1,13 @@
-//! Light in half floats that no half float holds, and from where nothing comes: what the probes of single functions do not
-//! reach. Those are in `tests/src/hard`.
+//! Light outside the range of half floats, and degenerate directions, beyond the probes of single functions in
+//! `tests/src/hard`.
 
 use super::{Case, Domain, TestResult, case, gpu, mirror};
 use Domain::{Direction, Values, Vector};
 
-/// The largest half float.
+/// Largest finite half float.
 const MOST: f32 = 65504.0;
 
-/// D · V is more than a half float holds, at angles that occur: each is a half float and their product is not (4, 19).
+/// D and V each fit half floats at common angles, but their product does not (rows 4, 19).
 #[test]
 fn highlights_beyond_half_floats_are_kept() -> TestResult {
     let Some(gpu) = gpu("highlights_beyond_half_floats_are_kept") else { return Ok(()) };
@@ -37,7 +37,7 @@ fn highlights_beyond_half_floats_are_kept() -> TestResult {
     Ok(())
 }
 
-/// Colors that no half float holds become the largest that one holds, at the border where they come in.
+/// Colors outside the range of half floats are clamped on conversion.
 #[test]
 fn colors_beyond_half_floats_are_held() -> TestResult {
     let Some(gpu) = gpu("colors_beyond_half_floats_are_held") else { return Ok(()) };
@@ -47,7 +47,7 @@ fn colors_beyond_half_floats_are_held() -> TestResult {
     Ok(())
 }
 
-/// A light that is exactly opposite to the viewer leaves no half vector.
+/// A light exactly opposite the viewer has no half vector.
 #[test]
 fn opposite_light_is_finite() -> TestResult {
     let Some(gpu) = gpu("opposite_light_is_finite") else { return Ok(()) };

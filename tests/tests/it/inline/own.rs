@@ -1,4 +1,4 @@
-//! Point-wise passes of an application's own, inlined with those of the standard frame.
+//! Point-wise passes of an application, inlined together with those of the standard frame.
 
 use super::{TestResult, differing, rounding_of};
 use crate::stage::{Set, Shot, gpu};
@@ -18,7 +18,7 @@ use framegraph_wgpu::{Frame, Record};
 
 static POST: Module<'static> = library::pass("pass/post.wgsl").unwrap();
 
-/// Lifts black and turns everything brown: nothing of it can be mistaken for the scene.
+/// An effect that lifts black and turns everything brown, unlike any scene.
 const SEPIA: Effect = Effect {
     name: "sepia",
     wgsl: "import package::lib::luminance::luminance;\n\
@@ -28,14 +28,14 @@ const SEPIA: Effect = Effect {
                return vec4<f32>(grey * vec3<f32>(1.0, 0.8, 0.5), color.a);\n}\n",
 };
 
-/// What a pass says of itself where it is inlined.
+/// Description of the effect that a pass provides for inlining.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Says {
-    /// What it does.
+    /// The complete effect.
     All,
-    /// That it does nothing: the fault that the tests above must see.
+    /// An effect that does nothing, as a negative control.
     Nothing,
-    /// No word.
+    /// No description.
     No,
 }
 
@@ -62,7 +62,7 @@ impl Pass for Sepia {
     }
 }
 
-/// What the pass provides to its shader.
+/// Resources that the pass provides to its shader.
 static INTERFACE: Interface = Interface { groups: &[&["hdr"]], constants: &[] };
 
 impl<W: AsRef<Programs>> Record<W> for Sepia {
@@ -89,7 +89,7 @@ impl<W: AsRef<Programs>> Record<W> for Sepia {
     }
 }
 
-/// Prepass, color, sepia, post.
+/// Declares prepass, color, sepia and post-processing.
 fn declared(settings: &Settings, says: Says) -> Result<(Frame<World>, Texture), DeclareError> {
     let Settings { samples, stored, .. } = *settings;
     let mut frame = Frame::new();
@@ -118,10 +118,10 @@ fn a_pass_of_ones_own_is_inlined_like_any_other() -> TestResult {
     assert_eq!((plan.counts().inlined, plan.counts().steps), (2, 1));
     assert_eq!((two.counts().inlined, two.counts().steps), (0, 3));
     assert_eq!(differing(&inlined, &expected), 0);
-    // Black is lifted where nothing was drawn, too: the clear value went through the effect.
+    // The clear value also went through the effect, so the background is not black.
     assert!(inlined.chunks_exact(4).all(|texel| texel[0] > 50), "a texel is as dark as the clear value");
 
-    // The control: an effect that is left out is seen in every texel.
+    // Negative control: a missing effect changes every texel.
     let (forgetful, _) = render(Says::Nothing, true)?;
     assert_eq!(differing(&forgetful, &expected), forgetful.len() / 4);
     Ok(())

@@ -1,5 +1,5 @@
-//! The judge of inlining with four samples: a frame that stores every sample, reads them back one by one, grades each,
-//! rounds it to a code of the target, and averages.
+//! Reference for inlining with four samples: stores every sample, reads each back, grades it, rounds it to the target's
+//! 8 bits, and averages.
 
 use super::{TestResult, apart, graded, rounding_of};
 use crate::stage::{Set, Shot, gpu};
@@ -16,7 +16,7 @@ use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Constants, Cx, Raster, RecordError, Shader};
 use tests::compare::{Difference, compare};
 
-/// The target's transfer function is undone for the average, as a device does for an sRGB target.
+/// The target's transfer function is inverted for the average, as on a device with an sRGB target.
 const PER_SAMPLE: &str = "
 import package::effect::expose::expose;
 import package::effect::vignette::vignette;
@@ -55,7 +55,7 @@ fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 }
 ";
 
-/// The frame up to the samples, then what `end` makes of hdr and samples.
+/// Declares the frame up to the samples, then the passes of `end`.
 fn declared(
     end: impl FnOnce(&mut Frame<World>, Texture, Texture) -> Result<Texture, DeclareError>,
 ) -> Result<(Frame<World>, Texture), DeclareError> {
@@ -108,9 +108,8 @@ fn judge(post: PostSettings, target: Format) -> Result<(Frame<World>, Texture), 
     Ok(frame?)
 }
 
-/// The device may round the average of four codes up or down: one code. Where it encodes sRGB itself it may be off by 0.6
-/// codes (Vulkan's allowance) when it stores a sample, so a sample may be off by one code, and by one more when it stores
-/// the average.
+/// The average of four values may round up or down: one step. An sRGB target may have an encoding error of 0.6 steps
+/// (Vulkan's tolerance): one step per stored sample, and one for the stored average.
 const fn most_codes(target: Format) -> u8 {
     if target.is_srgb() { 2 } else { 1 }
 }
@@ -141,7 +140,7 @@ fn with_four_samples_each_is_graded_before_the_average() -> TestResult {
         println!("{scene}: each sample graded: {inlined:?}");
         assert_eq!(count, 1);
         assert!(inlined.largest_codes <= most_codes(target), "{scene}: {inlined:?}");
-        // The control: graded after the average, edges of surfaces that differ in brightness are others.
+        // Negative control: grading after the average changes edges between surfaces of different brightness.
         let (two, count) = against(&apart(&shot).options)?;
         println!("{scene}: graded after the average: {two:?}");
         assert_eq!(count, 0);

@@ -1,7 +1,7 @@
-//! The inputs of the lobes: which channel of which texture, and which way grooves and coats lie.
+//! Inputs of material lobes: channels of textures, and directions of anisotropy and coats.
 
 use super::{
-    HALF_FLOATS, NORMAL, TANGENT, TEXEL, TestResult, compare, linear_color, lit, mesh, no_specular, shown, under_lamps,
+    HALF_FLOATS, NORMAL, TANGENT, TEXEL, TestResult, compare, linear_color, lit, mesh, no_specular, shown, under_lights,
 };
 use crate::stage::{gpu, lighting};
 use framegraph_passes::Shading;
@@ -25,13 +25,14 @@ fn nothing() -> Surface {
     Surface::chalk(DVec3::ZERO, NORMAL)
 }
 
-/// By glTF 2.0, from a texel whose x and y are scaled.
+/// Decodes a glTF 2.0 normal whose x and y are scaled.
 fn mapped(texel: [u8; 4], scale: f64) -> DVec3 {
     let [x, y, z] = [texel[0], texel[1], texel[2]].map(|c| f64::from(c) / 255.0 * 2.0 - 1.0);
     (TANGENT * (x * scale) + NORMAL.cross(TANGENT) * (y * scale) + NORMAL * z).normalize()
 }
 
-/// Coverage in red, roughness in green, a normal of its own; a coat has the index 1.5 and takes its share of what is below.
+/// Coverage is in red, roughness in green, with a normal map of its own. A coat has index 1.5 and attenuates the layers
+/// below.
 #[test]
 fn a_coat_is_its_channels_over_what_is_below() -> TestResult {
     let Some(gpu) = gpu("a_coat_is_its_channels_over_what_is_below") else { return Ok(()) };
@@ -41,7 +42,7 @@ fn a_coat_is_its_channels_over_what_is_below() -> TestResult {
     let (bump, dent) = ([200, 90, 220, 0], [100, 150, 230, 0]);
     let own_normal = shown(&mut board, 8, TextureRole::Normal, bump);
     let base_normal = shown(&mut board, 11, TextureRole::Normal, dent);
-    // Away from the red lamp and the green one, which light what is below.
+    // A normal away from the red and green light, which illuminate the base.
     let steep = [13, 128, 153, 0];
     let steep_normal = shown(&mut board, 4, TextureRole::Normal, steep);
     let base = Vec3::new(0.9, 0.5, 0.3);
@@ -52,28 +53,28 @@ fn a_coat_is_its_channels_over_what_is_below() -> TestResult {
     let under = |material: &Material, coat: ClearCoat| Material { clear_coat: Some(coat), ..material.clone() };
     let coated = |normal, factor, roughness| Some(Coat { normal, factor, roughness });
     let cases = vec![
-        // Without a map of its own a coat does not follow the base's.
-        ("factors", under(&bare, plain), under_lamps(&Surface { coat: coated(NORMAL, 0.9, 0.7), ..below })),
+        // A coat without a normal map does not use the base's.
+        ("factors", under(&bare, plain), under_lights(&Surface { coat: coated(NORMAL, 0.9, 0.7), ..below })),
         (
             "textures",
             under(&bare, textured),
-            under_lamps(&Surface { coat: coated(mapped(bump, 0.5), 0.9 * 0.8, 0.7 * 0.6), ..below }),
+            under_lights(&Surface { coat: coated(mapped(bump, 0.5), 0.9 * 0.8, 0.7 * 0.6), ..below }),
         ),
         (
             "turned away",
             under(&black(), ClearCoat { normal_texture: steep_normal, normal_scale: 1.0, ..plain }),
-            under_lamps(&Surface { coat: coated(mapped(steep, 1.0), 0.9, 0.7), ..nothing() }),
+            under_lights(&Surface { coat: coated(mapped(steep, 1.0), 0.9, 0.7), ..nothing() }),
         ),
         (
             "over nothing",
             under(&black(), textured),
-            under_lamps(&Surface { coat: coated(mapped(bump, 0.5), 0.9 * 0.8, 0.7 * 0.6), ..nothing() }),
+            under_lights(&Surface { coat: coated(mapped(bump, 0.5), 0.9 * 0.8, 0.7 * 0.6), ..nothing() }),
         ),
     ];
     compare(&gpu, board, &Environment::uniform(DVec3::ZERO)?, &punctual(), HALF_FLOATS, cases)
 }
 
-/// Color in red, green and blue of one texture, roughness in alpha of another.
+/// Color is in red, green and blue of one texture, roughness in alpha of another.
 #[test]
 fn sheen_is_its_channels() -> TestResult {
     let Some(gpu) = gpu("sheen_is_its_channels") else { return Ok(()) };
@@ -84,7 +85,7 @@ fn sheen_is_its_channels() -> TestResult {
     let plain = Sheen { color, roughness: 0.75, ..Sheen::default() };
     let sheen = |sheen: Sheen| Material { sheen: Some(sheen), ..black() };
     let expected =
-        |color, roughness| under_lamps(&Surface { sheen: Some(surface::Sheen { color, roughness }), ..nothing() });
+        |color, roughness| under_lights(&Surface { sheen: Some(surface::Sheen { color, roughness }), ..nothing() });
     let textured_color = color.as_dvec3() * linear_color([230, 150, 200, 0]);
     let cases = vec![
         ("factors", sheen(plain), expected(color.as_dvec3(), 0.75)),
@@ -95,7 +96,7 @@ fn sheen_is_its_channels() -> TestResult {
     compare(&gpu, board, &Environment::uniform(DVec3::ZERO)?, &punctual(), HALF_FLOATS, cases)
 }
 
-/// The factor is in alpha, the tint in red, green and blue of another texture; the tint is held at full reflection.
+/// The factor is in alpha, the tint in red, green and blue of another texture; the tint is clamped to full reflection.
 #[test]
 fn specular_is_its_channels() -> TestResult {
     let Some(gpu) = gpu("specular_is_its_channels") else { return Ok(()) };
@@ -111,7 +112,7 @@ fn specular_is_its_channels() -> TestResult {
     };
     let expected = |factor: f64, color: DVec3, f0: f64| {
         let f0 = (color * f0).min(DVec3::ONE) * factor;
-        under_lamps(&Surface { f0, f90: factor, roughness: 0.4, ..nothing() })
+        under_lights(&Surface { f0, f90: factor, roughness: 0.4, ..nothing() })
     };
     let (plain_color, tinted) = (color.as_dvec3(), color.as_dvec3() * linear_color([230, 150, 200, 0]));
     let dense = (9.0_f64 / 11.0).powi(2);
@@ -124,15 +125,16 @@ fn specular_is_its_channels() -> TestResult {
     compare(&gpu, board, &Environment::uniform(DVec3::ZERO)?, &punctual(), HALF_FLOATS, cases)
 }
 
-/// Direction in red and green, strength in blue, turned by the rotation; a mirrored object mirrors its grooves.
+/// The direction is in red and green, the strength in blue, rotated by the rotation. A mirrored object mirrors its
+/// anisotropy.
 #[test]
-fn grooves_run_as_texture_rotation_and_object_have_them() -> TestResult {
-    let Some(gpu) = gpu("grooves_run_as_texture_rotation_and_object_have_them") else { return Ok(()) };
+fn anisotropy_follows_texture_rotation_and_object() -> TestResult {
+    let Some(gpu) = gpu("anisotropy_follows_texture_rotation_and_object") else { return Ok(()) };
     let mut board = lit();
-    // (0.8, -0.6) all but a code, and a strength of 0.8.
+    // (0.8, -0.6) to within one 8-bit step, and a strength of 0.8.
     let texel = [230, 51, 204, 0];
     let texture = shown(&mut board, 13, TextureRole::Linear, texel);
-    // No direction, which leaves that of the tangent.
+    // A zero direction, which selects the tangent.
     let none = board.texture(1, &[[128, 128, 204, 0]], TextureRole::Linear, Default::default());
     let stored = DVec2::new(f64::from(texel[0]), f64::from(texel[1])) / 127.5 - 1.0;
     let turn = |rotation_rad: f64, direction: DVec2| {
@@ -148,7 +150,7 @@ fn grooves_run_as_texture_rotation_and_object_have_them() -> TestResult {
     let expected = |placed: DMat4, along: DVec3, strength: f64| {
         let carry = DMat3::from_mat4(placed);
         let grooves = Some(Grooves { along: carry * along, strength });
-        under_lamps(&Surface { normal: carry * NORMAL, grooves, ..metal })
+        under_lights(&Surface { normal: carry * NORMAL, grooves, ..metal })
     };
     let still = DMat4::IDENTITY;
     let mirror = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
@@ -187,8 +189,8 @@ fn grooves_run_as_texture_rotation_and_object_have_them() -> TestResult {
     Ok(())
 }
 
-/// Transmission is in red, thickness in green. Seen straight on, light goes through the thickness in meters, which is that of
-/// the mesh times the mean scale of the object.
+/// Transmission is in red, thickness in green. At normal incidence, light passes through the thickness in m, which is
+/// the mesh's times the object's mean scale.
 #[test]
 fn what_goes_through_a_body_is_its_channels_by_its_scale() -> TestResult {
     let Some(gpu) = gpu("what_goes_through_a_body_is_its_channels_by_its_scale") else { return Ok(()) };
@@ -233,14 +235,14 @@ fn what_goes_through_a_body_is_its_channels_by_its_scale() -> TestResult {
     let even = lighting(&gpu, &Environment::uniform(light)?, &shading)?;
     let seen = board.render_lit(&gpu, even, &shading)?;
     for ((name, .., expected), seen) in cases.iter().zip(&seen) {
-        // The picture behind is of half floats, too.
+        // The picture behind has half floats, too.
         let apart = ((seen.nits - expected) / expected).abs().max_element();
         assert!(apart < 3e-3, "{name}: {} for {expected}", seen.nits);
     }
     Ok(())
 }
 
-/// What glows under layers is dimmed by them: by the coat's reflectance, and by what sheen takes.
+/// Emission is attenuated by the layers above: by the coat's reflectance, and by the sheen's albedo.
 #[test]
 fn emission_leaves_through_the_layers() -> TestResult {
     let Some(gpu) = gpu("emission_leaves_through_the_layers") else { return Ok(()) };
@@ -248,7 +250,7 @@ fn emission_leaves_through_the_layers() -> TestResult {
     let glowing = Material { emissive: glow.as_vec3(), emissive_unit: EmissiveUnit::Nits, ..black() };
     let coat = ClearCoat { factor: 0.8, roughness: 0.5, normal_scale: 1.0, ..ClearCoat::default() };
     let sheen = Sheen { color: Vec3::new(0.3, 0.9, 0.6), roughness: 0.6, ..Sheen::default() };
-    // The normal leans away from the viewer by its z.
+    // The normal is tilted away from the viewer by its z.
     let kept = 1.0 - 0.8 * (0.04 + 0.96 * (1.0 - NORMAL.z).powi(5));
     let under_sheen = 1.0 - 0.9 * cloth(NORMAL.z, 0.6);
     let both = Material { clear_coat: Some(coat), sheen: Some(sheen), ..glowing.clone() };

@@ -1,6 +1,6 @@
-//! Distances that have no slice: the design's hard case 57, of the shader's functions themselves, in both builds.
+//! Distances without a slice: the design's hard case 57, for the shader's functions in both builds.
 
-use super::{PLAIN, TestResult, lamps};
+use super::{PLAIN, TestResult, punctual_lights};
 use crate::stage::{gpu, precisions};
 use framegraph_passes::Precision;
 use framegraph_passes::punctual::{FroxelSettings, LightSearch};
@@ -8,10 +8,10 @@ use framegraph_shaders::reference::cases::{Case, Domain, all};
 use tests::measure::lights::Night;
 use tests::mirror;
 
-/// Distance, scale and offset of slices, their number; then pixel, tiles a pixel, tiles across and down.
+/// Distance, scale and offset of slices, their number; then pixel, tiles per pixel, tiles across and down.
 const WORDS: &[Domain] = &[Domain::Vector(9, 0.0, 1.0)];
 
-/// Before every slice, and not a number, whatever its sign and payload.
+/// Distances before every slice, and NaN of any sign and payload.
 const NOWHERE: [f32; 9] = [
     0.0,
     -0.0,
@@ -24,15 +24,16 @@ const NOWHERE: [f32; 9] = [
     f32::from_bits(0x7f80_0001),
 ];
 
-/// Past every slice.
+/// Distances beyond every slice.
 const BEYOND: [f32; 3] = [1e20, f32::MAX, f32::INFINITY];
 
-/// 57: what is at, behind or before the eye, or nowhere, is in the first slice; what has no end is in the last; and every pixel,
-/// beyond the picture too, has a froxel that has a list. In pictures down to one pixel, with one slice and many.
+/// Case 57: points at, behind or directly before the eye, and NaN, are in the first slice; infinity is in the last.
+/// Every pixel, even outside of the picture, has a froxel with a list. Tested in pictures down to one pixel, with one
+/// slice and many.
 #[test]
 fn hard_case_57_every_distance_has_a_froxel() -> TestResult {
     let Some(gpu) = gpu("hard_case_57_every_distance_has_a_froxel") else { return Ok(()) };
-    let scene = lamps(8)?;
+    let scene = punctual_lights(8)?;
     let camera = scene.cameras[1].clone();
     let mut night = Night::new(&gpu, scene, camera, [1, 1], PLAIN)?;
     let (mut rows, mut expected) = (Vec::new(), Vec::new());
@@ -69,7 +70,7 @@ fn hard_case_57_every_distance_has_a_froxel() -> TestResult {
         for ((row, found), expected) in rows.chunks_exact(9).zip(&found).zip(&expected) {
             assert_eq!(found, expected, "{precision:?}: {row:?}");
         }
-        // The check sees what it looks for: the logarithm without its bounds.
+        // Negative control: the logarithm without its bounds.
         let naive = Case {
             call: "f32(froxel_number(v2(4u), x[6], log2(x[0]) * x[1] + x[2], \
                    vec3<u32>(u32(x[7]), u32(x[8]), 4294967295u)))",

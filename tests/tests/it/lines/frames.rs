@@ -1,4 +1,4 @@
-//! Frames of every kind draw lines and points: presets, effects over time and around, long lists, shadows.
+//! Every kind of frame draws lines and points: presets, temporal and screen-space effects, long lists, shadows.
 
 use super::{SIZE, TestResult, mesh, plain, put, radiance, scene, unlit};
 use crate::stage::{Shot, gpu, lighting, view_of};
@@ -17,7 +17,7 @@ use tests::measure::facts::{Case, Drawn, Easel, SIZE_PX};
 
 const BOTH: [Topology; 2] = [Topology::Lines, Topology::Points];
 
-/// A zigzag over the picture.
+/// Returns a zigzag across the picture.
 fn zigzag(topology: Topology) -> Mesh {
     let side = SIZE as f64;
     let places: Vec<DVec2> =
@@ -29,7 +29,7 @@ fn with_normals(own: Mesh) -> Mesh {
     Mesh { normals: vec![Vec3::Z; own.positions.len()], ..own }
 }
 
-/// Lines or points of every kind of material, alone or with triangles.
+/// Returns lines or points with every kind of material, with or without triangles.
 fn every_kind(topology: Topology, triangles: bool) -> Scene {
     let mut scene = scene();
     let clay = Material::dielectric("clay", Vec3::new(0.8, 0.4, 0.2), 0.7);
@@ -45,7 +45,7 @@ fn every_kind(topology: Topology, triangles: bool) -> Scene {
     scene
 }
 
-/// Every preset draws points alone and lines with triangles, with what its facts leave: they are seen.
+/// Every preset draws points alone, and lines with triangles, after feature culling.
 #[test]
 fn every_preset_draws_lines_and_points() -> TestResult {
     let Some(gpu) = gpu("every_preset_draws_lines_and_points") else { return Ok(()) };
@@ -86,7 +86,7 @@ fn every_preset_draws_lines_and_points() -> TestResult {
     Ok(())
 }
 
-/// Passes that look around in depth, and those that add frames up, take lines and points: what is lit stays where it is.
+/// Screen-space and temporal effects work with lines and points: lit pixels stay where they are.
 #[test]
 fn effects_around_and_over_time_draw_lines_and_points() -> TestResult {
     let Some(gpu) = gpu("effects_around_and_over_time_draw_lines_and_points") else { return Ok(()) };
@@ -106,7 +106,7 @@ fn effects_around_and_over_time_draw_lines_and_points() -> TestResult {
             },
             Settings { reflections: Some(ReflectionSettings::DEFAULT), ..plain(1, true, false) },
         ] {
-            // The filter of frames that are added up reaches a pixel far.
+            // The filter of temporal anti-aliasing spreads by one pixel.
             let found = lit(settings)?;
             let near = |lit: &[bool], at: usize| {
                 let [x, y] = [at % SIZE, at / SIZE].map(|c| c.saturating_sub(1)..(c + 2).min(SIZE));
@@ -120,7 +120,7 @@ fn effects_around_and_over_time_draw_lines_and_points() -> TestResult {
     Ok(())
 }
 
-/// Lines and points cast no shadow: the wall behind them is as without them where they are not.
+/// Lines and points cast no shadow: the wall behind them is unchanged where it is visible.
 #[test]
 fn lines_and_points_cast_no_shadow() -> TestResult {
     let Some(gpu) = gpu("lines_and_points_cast_no_shadow") else { return Ok(()) };
@@ -129,7 +129,7 @@ fn lines_and_points_cast_no_shadow() -> TestResult {
             let mut scene = scene();
             let clay = Material::dielectric("clay", Vec3::splat(0.5), 0.7);
             put(&mut scene, cuboid(Vec3::new(20.0, 20.0, 1.0)), clay.clone(), DVec3::NEG_Z * 5.0);
-            // A block that does cast, so that there are maps.
+            // A block that casts a shadow, so that there are maps.
             put(&mut scene, cuboid(Vec3::splat(2.0)), clay.clone(), DVec3::new(15.0, 15.0, 0.0));
             if drawn {
                 put(&mut scene, with_normals(zigzag(topology)), clay, DVec3::ZERO);
@@ -145,14 +145,14 @@ fn lines_and_points_cast_no_shadow() -> TestResult {
     Ok(())
 }
 
-/// Long lists are drawn by indirect calls, a run of them for each topology: the picture is that of a call for each instance.
+/// Long lists use indirect draws, grouped by topology: the picture equals that of one draw per instance.
 #[test]
 fn long_lists_of_all_topologies_are_drawn_indirectly() -> TestResult {
     let Some(gpu) = gpu("long_lists_of_all_topologies_are_drawn_indirectly") else { return Ok(()) };
     let mut scene = scene();
     let mut places = Vec::new();
     let material = scene.add_material(unlit(Vec3::ONE));
-    // A mesh each, so that none share a draw.
+    // One mesh each, so that no draws are shared.
     for i in 0..LEAST_BATCHES + 30 {
         let (x, y) = ((i * 7 % 45) as f64 + 1.5, (i * 11 % 45) as f64 + 1.5);
         let at = DVec2::new(x, y);
@@ -176,7 +176,7 @@ fn long_lists_of_all_topologies_are_drawn_indirectly() -> TestResult {
     Ok(())
 }
 
-/// Velocity of lines and points that move is their way, where they are.
+/// Moving lines and points have the correct velocity.
 #[test]
 fn lines_and_points_that_move_have_velocity() -> TestResult {
     let Some(gpu) = gpu("lines_and_points_that_move_have_velocity") else { return Ok(()) };
@@ -211,7 +211,7 @@ fn lines_and_points_that_move_have_velocity() -> TestResult {
     let found = read_texture(&gpu, executor.texture(&plan, velocity).ok_or("there is no velocity")?)?.rgba();
     for (x, y, moves) in [(20, 10, true), (15, 20, true), (9, 20, false), (20, 11, false), (6, 10, false)] {
         let [right, down, _, samples] = found[y * SIZE + x];
-        // From here to where it was: six pixels to the left; half floats.
+        // Velocity to the previous position: six pixels to the left; half floats.
         let way = if moves { -6.0 / SIZE as f32 } else { 0.0 };
         assert!((right - way).abs() < 1e-4 && down.abs() < 1e-4, "pixel {x}, {y}: {right} {down}");
         assert_eq!(samples > 0.0, moves, "pixel {x}, {y}");
@@ -219,7 +219,8 @@ fn lines_and_points_that_move_have_velocity() -> TestResult {
     Ok(())
 }
 
-/// Lit lines and points that lie on a wall, with its normal, are lit as it is: they step out of its shadow map along that normal.
+/// Lines and points on a wall, with its normal, are lit like the wall: the normal bias moves them out of its shadow
+/// map.
 #[test]
 fn lines_and_points_on_a_wall_are_lit_as_the_wall_is() -> TestResult {
     let Some(gpu) = gpu("lines_and_points_on_a_wall_are_lit_as_the_wall_is") else { return Ok(()) };
@@ -247,7 +248,7 @@ fn lines_and_points_on_a_wall_are_lit_as_the_wall_is() -> TestResult {
         let found = picture(Some(topology))?;
         let lit = |at: &usize| wall[*at].x > 0.1;
         let darker = (0..wall.len()).filter(lit).filter(|at| found[*at].x < 0.9 * wall[*at].x).count();
-        // The control: their own albedo is seen.
+        // Negative control: their own albedo is visible.
         let brighter = (0..wall.len()).filter(lit).filter(|at| found[*at].x > 1.4 * wall[*at].x).count();
         assert!(darker == 0 && brighter > 15, "{}: {darker} darker, {brighter} brighter", topology.name());
     }

@@ -1,5 +1,4 @@
-//! Inputs that ambient occlusion does not survive unless the passes see to it: the design's hard cases, by their numbers
-//! there, in both precisions.
+//! Hard inputs of ambient occlusion: the design's hard cases, by number, in both precisions.
 
 use super::{TestResult, gpu, least_and_mean, settings};
 use crate::stage::{self, precisions};
@@ -12,7 +11,7 @@ use glam::DVec3;
 use std::error::Error;
 use tests::measure::occlusion::{Stage, ground};
 
-/// All ways of estimating, without a blur that would hide a texel.
+/// All methods, without a blur that would hide single texels.
 const METHODS: [&str; 4] = [
     "sao:quality=high,blur=off",
     "gtao:blur=off",
@@ -21,7 +20,7 @@ const METHODS: [&str; 4] = [
 ];
 const SIZE: [u32; 2] = [128, 96];
 
-/// Runs every method in every precision over a stage.
+/// Runs every method in every precision on a stage.
 fn each(test: &str, gpu: &Gpu, stage: &Stage, mut look: impl FnMut(&str, &[[f32; 4]]) -> TestResult) -> TestResult {
     for precision in precisions(test, gpu) {
         for text in METHODS {
@@ -35,7 +34,7 @@ fn each(test: &str, gpu: &Gpu, stage: &Stage, mut look: impl FnMut(&str, &[[f32;
     Ok(())
 }
 
-/// 30: depth 0 is no place. Sky is open, and next to it nothing is darker.
+/// Case 30: depth 0 is not a surface. Sky is unoccluded and occludes nothing.
 #[test]
 fn hard_30_sky_is_open() -> TestResult {
     let Some(gpu) = gpu("hard_30_sky_is_open") else { return Ok(()) };
@@ -51,7 +50,7 @@ fn hard_30_sky_is_open() -> TestResult {
     })
 }
 
-/// 31: what touches the eye spans any number of pixels.
+/// Case 31: near the eye, the radius covers any number of pixels.
 #[test]
 fn hard_31_what_is_before_the_eye_is_open() -> TestResult {
     let Some(gpu) = gpu("hard_31_what_is_before_the_eye_is_open") else { return Ok(()) };
@@ -67,7 +66,7 @@ fn hard_31_what_is_before_the_eye_is_open() -> TestResult {
     Ok(())
 }
 
-/// 32: without a radius there is no pass.
+/// Case 32: without a radius, there is no pass.
 #[test]
 fn hard_32_a_radius_of_nothing_leaves_the_passes_out() -> TestResult {
     let options = Options::for_frame(256, 256);
@@ -81,12 +80,12 @@ fn hard_32_a_radius_of_nothing_leaves_the_passes_out() -> TestResult {
     Ok(())
 }
 
-/// 33: along a step of half a meter, and on a strip of two pixels, normals are those of the surface: a surface with a wrong
-/// one would occlude itself.
+/// Case 33: along a step of 0.5 m and on a strip of two pixels, normals are those of the surface. A surface with a
+/// wrong normal would occlude itself.
 #[test]
 fn hard_33_normals_hold_at_edges_and_on_strips() -> TestResult {
     let Some(gpu) = gpu("hard_33_normals_hold_at_edges_and_on_strips") else { return Ok(()) };
-    // Columns of pixels 0…47 are near, 48… are far, and 80 and 81 are near again; all tilted by 30°.
+    // Columns 0…47 are near, 48… are far, and 80 and 81 are near again; all are tilted by 30°.
     let (near, far) = (ground(3.0, 30.0), ground(3.5, 30.0));
     let projection = Projection::perspective(0.8, 0.1);
     let column = |direction: DVec3| {
@@ -110,7 +109,7 @@ fn hard_33_normals_hold_at_edges_and_on_strips() -> TestResult {
     Ok(())
 }
 
-/// 34: positions far away keep their bits.
+/// Case 34: distant positions keep their precision.
 #[test]
 fn hard_34_far_ground_is_open() -> TestResult {
     let Some(gpu) = gpu("hard_34_far_ground_is_open") else { return Ok(()) };
@@ -127,7 +126,7 @@ fn hard_34_far_ground_is_open() -> TestResult {
     Ok(())
 }
 
-/// 35: the arc cosine of what rounding has taken past one.
+/// Case 35: arc cosine of values that rounding moved beyond 1.
 #[test]
 fn hard_35_collinear_vectors_have_an_angle() -> TestResult {
     let Some(gpu) = gpu("hard_35_collinear_vectors_have_an_angle") else { return Ok(()) };
@@ -139,7 +138,7 @@ fn hard_35_collinear_vectors_have_an_angle() -> TestResult {
         let expected = f64::from(x.clamp(-1.0, 1.0)).acos();
         assert!((f64::from(angle) - expected).abs() < 1e-4, "{x}: {angle}");
     }
-    // Ground that faces the eye: its normal is the view's axis to the bit.
+    // Ground that faces the eye: its normal equals the view axis bit for bit.
     let stage = Stage::new(Projection::perspective(0.8, 0.1), SIZE, ground(2.0, 0.0))?;
     each("hard_35", &gpu, &stage, |text, texels| {
         let open = texels.iter().filter(|texel| texel[0] >= 0.98).count();
@@ -148,12 +147,12 @@ fn hard_35_collinear_vectors_have_an_angle() -> TestResult {
     })
 }
 
-/// 36: nothing leaks from one border of the picture to the other.
+/// Case 36: samples do not wrap around at the borders of the picture.
 #[test]
 fn hard_36_borders_do_not_wrap() -> TestResult {
     let Some(gpu) = gpu("hard_36_borders_do_not_wrap") else { return Ok(()) };
     let floor = ground(3.0, 40.0);
-    // A wall stands out of the ground at the right border, and nothing at the left.
+    // A wall at the right border of the ground, and nothing at the left.
     let stage = Stage::new(Projection::perspective(0.8, 0.1), SIZE, move |start, direction| {
         let way = floor(start, direction)?;
         Some(if direction.x > 0.5 { 0.95 * way } else { way })

@@ -1,4 +1,4 @@
-//! What the color pass makes of ambient occlusion that is handed to it.
+//! Shading with given ambient occlusion.
 
 use super::TestResult;
 use crate::stage::{Set, Shot, gpu};
@@ -11,7 +11,7 @@ use framegraph_scene::{Scene, progress};
 use framegraph_wgpu::{Frame, Raster, Shader};
 use glam::{DMat4, DQuat, DVec3};
 
-/// A frame whose ambient occlusion is the same everywhere, of that format.
+/// Declares a frame with constant ambient occlusion in a given format.
 fn frame(settings: &Settings, given: Option<(Format, [f64; 4])>) -> Result<(Frame<World>, Texture), StageError> {
     let mut frame = Frame::new();
     let mut stages = stages::<World>(settings);
@@ -31,12 +31,12 @@ fn frame(settings: &Settings, given: Option<(Format, [f64; 4])>) -> Result<(Fram
     Ok((frame, picture))
 }
 
-/// Visibility 1 changes no bit, less of it darkens, and none leaves only the sun's light. Bent normals that point along a
-/// surface take its reflections and leave its diffuse light.
+/// Visibility 1 changes no bit, lower values darken, and 0 leaves only direct sunlight. Bent normals along a surface
+/// reduce its reflections but not its diffuse light.
 #[test]
 fn handed_on_occlusion_is_shaded() -> TestResult {
     let Some(gpu) = gpu("handed_on_occlusion_is_shaded") else { return Ok(()) };
-    // At this size the filter of normals makes every sphere rough, and rough lobes see up and down alike.
+    // At this size, specular anti-aliasing makes every sphere rough, and rough lobes hardly depend on direction.
     let shading = framegraph_passes::Shading { specular_aa: None, ..Settings::DEFAULT.shading };
     let settings = Settings { shading, shadows: None, fxaa: false, ..Settings::DEFAULT };
     let shot = Shot::small(settings);
@@ -51,16 +51,17 @@ fn handed_on_occlusion_is_shaded() -> TestResult {
     let (none, open, half, closed) = (none?, open?, half?, closed?);
     assert!(none == open, "visibility 1 changes nothing");
     assert!(sum(&none) > sum(&half) && sum(&half) > sum(&closed), "less visibility is darker");
-    // Half open: up into the sky, where reflections come from, or down into the ground.
+    // Half open: toward the sky, where reflections come from, or toward the ground.
     let bent = |y: f64| Some((Format::Rgba16Float, [0.5, 0.0, y, 0.0]));
     let (up, down) = (picture(bent(1.0))?, picture(bent(-1.0))?);
     assert!(sum(&up) > sum(&down), "reflections of what is open are seen, and of what is closed not");
-    // Filament takes the lesser of cone and scalar occlusion: mirrors, whose cone has no width, keep contact shadows.
+    // Filament takes the minimum of cone and scalar occlusion, so mirrors, whose cone has no width, keep contact
+    // shadows.
     assert!(up.iter().zip(&half).all(|(bent, plain)| bent <= plain), "bent normals only take");
     Ok(())
 }
 
-/// Makes a picture of the structure: 1 for what is nearer than a depth, 0 for what is farther.
+/// Draws the structure as a picture: 1 where it is nearer than a depth, 0 where it is farther.
 const NEAR: &str = "
      @group(0) @binding(0) var structure: texture_2d<f32>;
      @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
@@ -70,7 +71,7 @@ const NEAR: &str = "
          return vec4f(f32(textureLoad(structure, vec2<i32>(at.xy), 0).r > 0.0055));
      }";
 
-/// The frame with such a picture as its ambient occlusion.
+/// Declares the frame with such a picture as its ambient occlusion.
 fn pictured(
     settings: &Settings,
     resolution: Resolution,
@@ -108,14 +109,14 @@ fn pictured(
     Ok((frame, picture))
 }
 
-/// Half a picture is read by depth: near columns that are open do not light the far ones behind them that are closed, nor are
-/// they darkened by them, but for pixels that a quarter of the texels has no texel of.
+/// A half-resolution picture is upsampled by depth. Near columns with visibility 1 do not brighten the far ones with
+/// visibility 0 behind them, and the reverse. Exceptions are pixels for which no low-resolution texel has their depth.
 #[test]
 fn half_resolution_keeps_to_surfaces() -> TestResult {
     let Some(gpu) = gpu("half_resolution_keeps_to_surfaces") else { return Ok(()) };
     let settings = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
     let shot = Shot::small(settings);
-    // Turned so that the view is along an axis of the world: a distance along another axis is then of no use.
+    // Rotated so that the view is along a world axis, where distances along another axis are useless.
     let mut scene = Scene::open("columns", &mut progress::silent)?;
     let back = scene.cameras[0].world_from_view * DVec3::Z;
     let turn = DQuat::from_rotation_y(-back.x.atan2(back.z));
@@ -135,12 +136,12 @@ fn half_resolution_keeps_to_surfaces() -> TestResult {
     let off = full.chunks_exact(4).zip(half.chunks_exact(4)).filter(|(a, b)| a[1].abs_diff(b[1]) > 12).count();
     let share = off as f64 / (full.len() / 4) as f64;
     println!("{:.3} % of the pixels are not of their surface", 100.0 * share);
-    // It is 0.59 %; without a look at depth 1.1 %.
+    // The share is 0.59 %, and 1.1 % without comparing depths.
     assert!((1e-4..0.008).contains(&share), "{share}");
     Ok(())
 }
 
-/// A slope from texel to texel that begins anew every eight texels of half a picture.
+/// Draws a slope that restarts every eight texels at half resolution.
 const SLOPE: &str = "
     @group(0) @binding(0) var structure: texture_2d<f32>;
     @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
@@ -152,12 +153,12 @@ const SLOPE: &str = "
     @fragment fn of_half(@builtin(position) at: vec4f) -> @location(0) vec4f {
         return slope(at.xy - 0.5) + 0.0 * textureLoad(structure, vec2<i32>(at.xy), 0).r;
     }
-    // Two pixels a texel, whose middle is their border.
+    // Two pixels per texel, whose center is their border.
     @fragment fn of_full(@builtin(position) at: vec4f) -> @location(0) vec4f {
         return slope(at.xy / 2.0 - 0.5) + 0.0 * textureLoad(structure, vec2<i32>(at.xy), 0).r;
     }";
 
-/// Four texels of half a picture are read in the shares of a bilinear filter: what they hold as a slope is seen as one.
+/// Half-resolution texels are interpolated bilinearly: a slope stays a slope.
 #[test]
 fn half_resolution_is_read_bilinearly() -> TestResult {
     let Some(gpu) = gpu("half_resolution_is_read_bilinearly") else { return Ok(()) };
@@ -169,7 +170,7 @@ fn half_resolution_is_read_bilinearly() -> TestResult {
         Ok::<_, Box<dyn std::error::Error>>(set.render(&gpu, &frame, picture, &shot.options)?.0)
     };
     let (full, half) = (picture(Resolution::Full, "of_full")?, picture(Resolution::Half, "of_half")?);
-    // Where the slope begins anew the filter blurs a step.
+    // The filter blurs the step where the slope restarts.
     let whole = |at: usize| (2..14).contains(&(at % 16));
     let inside = |index: &usize| whole(index % shot.size_px[0] as usize) && whole(index / shot.size_px[0] as usize);
     let codes = (0..full.len() / 4).filter(inside).map(|index| (full[4 * index + 1], half[4 * index + 1]));
@@ -178,7 +179,7 @@ fn half_resolution_is_read_bilinearly() -> TestResult {
         (sum, count) = (sum + f64::from(half) - f64::from(full), count + 1.0);
     }
     println!("half a picture is brighter by {:.3} codes", sum / count);
-    // A texel that is left out is 0.22 codes, and what is rounded a thousandth.
+    // A missing texel changes the mean by 0.22 8-bit steps, and rounding by a thousandth.
     assert!((sum / count).abs() < 0.02, "{} codes", sum / count);
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Thin films: the model against Airy's sum over the spectrum, and pictures against the model.
+//! Thin films: the model compared with Airy's sum over the spectrum, and pictures compared with the model.
 
 use super::{TestResult, black, near};
 use crate::stage::gpu;
@@ -17,7 +17,8 @@ use truth::film;
 const NOV: [f64; 4] = [0.15, 0.4, 0.7, 1.0];
 const TOWARD: DVec3 = DVec3::new(0.36, 0.48, 0.8);
 
-/// Root mean square of what the model misses of the truth, over indices and thicknesses of films, its thickness off by a factor.
+/// Returns the model's root mean square error over indices and thicknesses of films. `thicker` scales the model's
+/// thickness.
 fn model_error(f0s: &[f64], cosines: &[f64], thicker: f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0);
     for f0 in f0s {
@@ -36,8 +37,9 @@ fn model_error(f0s: &[f64], cosines: &[f64], thicker: f64) -> f64 {
     (sum / f64::from(count)).sqrt()
 }
 
-/// The model has Schlick's curve instead of Fresnel's, two trips of the light, and Gaussians for the eye. Its error is bounded
-/// within 26°, within 60° and beyond 72°, where Schlick's curve is far from both sides of the film.
+/// The model uses Schlick's curve instead of Fresnel's, two internal reflections, and Gaussians for color matching. Its
+/// error is bounded within 26°, within 60° and beyond 72°, where Schlick's curve is inaccurate on both sides of the
+/// film.
 #[test]
 fn the_model_is_near_airys_sum() {
     let (dielectrics, metals) = ([0.02, 0.04, 0.17], [0.5, 0.9]);
@@ -53,13 +55,13 @@ fn the_model_is_near_airys_sum() {
         let error = model_error(f0s, &cosines, 1.0);
         assert!(error < most, "{f0s:?} at {cosines:?}: {error:.4}");
     }
-    // The control: films thicker by 15 % are told apart.
+    // Negative control: films that are 15 % thicker.
     assert!(model_error(&dielectrics, &steep, 1.15) > 0.05);
     assert!(model_error(&metals, &tilted, 1.15) > 0.1);
 }
 
-/// Waves in the spectrum of paths up to 2.6 µm, through the eye's tabulated functions and through their Gaussians, which miss a
-/// fifth of a wave in red at most.
+/// Spectral waves for optical paths up to 2.6 µm, integrated with tabulated color matching functions and with their
+/// Gaussian fits. The fits are off by at most a fifth of a wave's amplitude, in red.
 #[test]
 fn the_fits_of_the_eye_are_near_its_tables() {
     let mut worst = 0.0_f64;
@@ -79,7 +81,7 @@ fn film(ior: f32, thickness_nm: f32) -> Option<Iridescence> {
     Some(Iridescence { ior, max_thickness_nm: thickness_nm, ..Iridescence::default() })
 }
 
-/// Reflectance of the model for a film that the shader has in f32.
+/// Returns the model's reflectance of a film, with the shader's f32 parameters.
 fn model(cosine: f64, ior: f32, thickness_nm: f32, f0: Vec3) -> DVec3 {
     thin_film_reflectance(cosine, ior.into(), thickness_nm.into(), f0.as_dvec3())
 }
@@ -92,7 +94,8 @@ fn cards(materials: &[Material]) -> Vec<Card> {
     materials.iter().flat_map(|material| NOV.map(|nov| Card { material: material.clone(), nov })).collect()
 }
 
-/// One light: GGX written out again, with the film's reflectance at v·h for Fresnel's term; what is scattered gets the rest.
+/// One light: GGX implemented independently, with the film's reflectance at v·h as the Fresnel term; diffuse gets the
+/// rest.
 #[test]
 fn films_in_one_light_are_their_formula() -> TestResult {
     let Some(gpu) = gpu("films_in_one_light_are_their_formula") else { return Ok(()) };
@@ -136,13 +139,13 @@ fn films_in_one_light_are_their_formula() -> TestResult {
         let name = format!("{} {} at {}", index / NOV.len(), card.material.name, card.nov);
         near(&name, seen, fresnel * lobe + DVec3::splat(diffuse * nol), 4e-3, 1e-4);
     }
-    // The control: films are not what is under them.
+    // Negative control: films differ from their base.
     assert!((seen[0].nits - seen[16].nits).abs().max_element() > 0.02);
     Ok(())
 }
 
-/// In even light a smooth film reflects its reflectance at n·v, and a rough one the mean over its facets. The shader takes the mean
-/// of Schlick's curve through the reflectance at n·v.
+/// In uniform light, a smooth film reflects its reflectance at n·v, and a rough one the mean over its facets. The
+/// shader approximates this mean by Schlick's curve through the reflectance at n·v.
 #[test]
 fn films_in_even_light_reflect_the_mean_of_their_facets() -> TestResult {
     let Some(gpu) = gpu("films_in_even_light_reflect_the_mean_of_their_facets") else { return Ok(()) };
@@ -159,16 +162,17 @@ fn films_in_even_light_reflect_the_mean_of_their_facets() -> TestResult {
             let truth = DVec3::new(mean(0), mean(1), mean(2));
             worst[row] = worst[row].max((seen[row * 4 + index].nits - truth).abs().max_element());
         }
-        // A furnace: white under a film gives back no more than it gets, and no less than its darkest channel leaves.
+        // Furnace: white under a film reflects no more than it receives, and no less than its darkest channel
+        // transmits.
         let back = seen[12 + index].nits;
         assert!(back.max_element() < 1.01 && back.min_element() > 0.6, "white at {nov}: {back}");
     }
-    // Half floats and the table; then what Schlick's curve misses of the film's over wider and wider lobes.
+    // Half floats and the table; then the error of Schlick's curve over increasingly wide lobes.
     assert!(worst[0] < 2e-3 && worst[1] < 0.045 && worst[2] < 0.065, "{worst:?}");
     Ok(())
 }
 
-/// The share under the film is in red, and its thickness between two bounds in green of another texture.
+/// The film's share is in red, and its thickness between two limits in green of another texture.
 #[test]
 fn films_are_their_channels() -> TestResult {
     let Some(gpu) = gpu("films_are_their_channels") else { return Ok(()) };
@@ -197,13 +201,14 @@ fn films_are_their_channels() -> TestResult {
     }
     let seen = board.render(&gpu, &Environment::uniform(DVec3::ONE)?, &Shading::default())?;
     for ((name, _, expected), seen) in cases.into_iter().zip(&seen) {
-        // The table of a smooth lobe, and that light is gathered a little about the mirrored view.
+        // The table of a smooth lobe, which gathers light around the mirror direction.
         near(name, seen, expected, 0.02, 2e-3);
     }
     Ok(())
 }
 
-/// Films that no one can make, seen from every angle under a light and in half floats, are numbers from dark to the light's own.
+/// Impossible films, seen from every angle under a light and in half floats, reflect between nothing and all of the
+/// light.
 #[test]
 fn impossible_films_are_finite() -> TestResult {
     let Some(gpu) = gpu("impossible_films_are_finite") else { return Ok(()) };

@@ -1,4 +1,4 @@
-//! Light scattered through surfaces, against a grid of directions over the whole sphere.
+//! Diffuse transmission, compared with a grid of directions over the whole sphere.
 
 use super::{TestResult, gradient, near};
 use crate::stage::gpu;
@@ -17,7 +17,7 @@ const NORMAL: DVec3 = DVec3::new(0.36, -0.48, 0.8);
 const FRONT: Vec3 = Vec3::new(0.2, 0.5, 0.1);
 const BACK: Vec3 = Vec3::new(0.9, 0.8, 0.3);
 
-/// A surface that reflects nothing but what it scatters.
+/// Returns a surface without specular reflection.
 fn leaf(scattered: DiffuseTransmission) -> Material {
     Material {
         specular: Some(Specular { factor: 0.0, ..Specular::default() }),
@@ -39,13 +39,13 @@ fn leaning() -> framegraph_scene::Mesh {
     card(1.0, NORMAL, DVec3::new(0.8, 0.6, 0.0), 1.0)
 }
 
-/// A body half a meter deep in the mesh, which leaves a color of what goes a meter.
+/// Returns a volume 0.5 m thick in the mesh, with an attenuation color at 1 m.
 fn body(color: Vec3) -> Volume {
     Volume { thickness: 0.5, attenuation_color: color, attenuation_distance_m: 1.0, ..Volume::default() }
 }
 
-/// Each factor, a body, and both textures, under light that differs by direction: what a grid over the sphere makes of it. A body
-/// is as deep as the mesh says times the scale of the object, and what it absorbs is taken along its depth.
+/// Each factor, a volume, and both textures, under light that depends on direction, compared with a grid over the
+/// sphere. The depth of a volume is the mesh's thickness times the object's scale, and absorption is applied along it.
 #[test]
 fn light_from_all_around_is_scattered_through() -> TestResult {
     let Some(gpu) = gpu("light_from_all_around_is_scattered_through") else { return Ok(()) };
@@ -69,7 +69,7 @@ fn light_from_all_around_is_scattered_through() -> TestResult {
         ("metal", metal, unit, Sheet { front: DVec3::ZERO, back: DVec3::ZERO, ..sheet(1.0) }),
     ];
     for (_, material, placed, _) in &cases {
-        // The shaded normal is that of the mesh: a scale along the view leaves it leaning otherwise.
+        // The shading normal is the mesh's, so a scale along the view changes its tilt.
         let mesh = if *placed == unit {
             leaning()
         } else {
@@ -81,13 +81,13 @@ fn light_from_all_around_is_scattered_through() -> TestResult {
     let seen = board.render(&gpu, &gradient(light)?, &Shading::default())?;
     for ((name, _, placed, sheet), seen) in cases.iter().zip(&seen) {
         let scale = if *placed == unit { "" } else { " (a mean scale of 2)" };
-        // Half floats, and a map of 128 texels; a black metal has an edge.
+        // Half floats, and a map of 128 texels; a black metal reflects at grazing angles.
         near(&format!("{name}{scale}"), seen, sheet.seen(64, light), 6e-3, 3e-3);
     }
-    // The control: from the front there is less light of some channels than from behind.
+    // Negative control: some channels are darker from the front than from behind.
     let (front, back) = (sheet(0.0).seen(64, light), sheet(1.0).seen(64, light));
     assert!((front / FRONT.as_dvec3() - back / BACK.as_dvec3()).abs().max_element() > 0.3);
-    // Transmission takes its share from the light scattered to both sides.
+    // Transmission reduces the diffuse light of both sides.
     let mut board = Board::default();
     board.hang(Material { transmission: glass, ..leaf(scattered(0.5, None)) }, leaning(), unit);
     let shown = board.render(&gpu, &Environment::uniform(DVec3::ONE)?, &Shading::default())?;
@@ -95,7 +95,8 @@ fn light_from_all_around_is_scattered_through() -> TestResult {
     Ok(())
 }
 
-/// White on both sides gives back what falls on it, whatever part goes through; and with a specular layer no more than that.
+/// A surface that is white on both sides reflects and transmits all light, for any factor; with a specular layer, no
+/// more than that.
 #[test]
 fn nothing_is_lost_in_a_white_furnace() -> TestResult {
     let Some(gpu) = gpu("nothing_is_lost_in_a_white_furnace") else { return Ok(()) };
@@ -110,13 +111,13 @@ fn nothing_is_lost_in_a_white_furnace() -> TestResult {
     let seen = board.render(&gpu, &Environment::uniform(DVec3::ONE)?, &Shading::default())?;
     for (factor, pair) in factors.into_iter().zip(seen.chunks_exact(2)) {
         near(&format!("chalk of {factor}"), &pair[0], DVec3::ONE, 4e-3, 0.0);
-        // Compensation adds a little to glossy white, as it does without light that goes through.
+        // Compensation brightens glossy white slightly, as without diffuse transmission.
         near(&format!("glossy of {factor}"), &pair[1], DVec3::ONE, 0.02, 0.0);
     }
     Ok(())
 }
 
-/// A directional light, a point light and a spot light on either side: Lambert's law of the side that is lit.
+/// A directional, a point and a spot light on either side: Lambert's law for the lit side.
 #[test]
 fn lights_from_behind_shine_through() -> TestResult {
     let Some(gpu) = gpu("lights_from_behind_shine_through") else { return Ok(()) };
@@ -144,8 +145,8 @@ fn lights_from_behind_shine_through() -> TestResult {
     Ok(())
 }
 
-/// With shadows a sheet lit from behind does not shadow itself, and what is before the light on the other side does. A closed body
-/// is lit on its far side, which is its depth away.
+/// With shadows, a sheet lit from behind does not shadow itself, but an occluder on the other side does. A closed body
+/// is lit on its far side, at the distance of its thickness.
 #[test]
 fn a_sheet_does_not_shadow_itself_from_behind() -> TestResult {
     let Some(gpu) = gpu("a_sheet_does_not_shadow_itself_from_behind") else { return Ok(()) };
@@ -187,7 +188,7 @@ fn a_sheet_does_not_shadow_itself_from_behind() -> TestResult {
     Ok(())
 }
 
-/// Bodies that no one can make are numbers, in half floats too.
+/// Impossible volumes give finite results, also in half floats.
 #[test]
 fn impossible_bodies_are_finite() -> TestResult {
     let Some(gpu) = gpu("impossible_bodies_are_finite") else { return Ok(()) };

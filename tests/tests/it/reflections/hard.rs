@@ -1,4 +1,4 @@
-//! Inputs that following rays does not survive unless the shader sees to it.
+//! Hard inputs of ray marching.
 
 use super::TestResult;
 use crate::stage::gpu;
@@ -11,7 +11,8 @@ use truth::reflection::{Lens, Room};
 
 const SIZE: [u32; 2] = [96, 64];
 
-/// Every texel is finite, counts between nothing and once, and is coordinates of the picture times that.
+/// Checks that every texel is finite, has a weight in 0…1, and has coordinates within the picture, multiplied by the
+/// weight.
 fn sound(what: &str, texels: &[[f32; 4]]) {
     for (index, [u, v, one, counts]) in texels.iter().enumerate() {
         let finite = [u, v, one, counts].iter().all(|x| (x.to_bits() & 0x7fff_ffff) < 0x7f80_0000);
@@ -27,8 +28,7 @@ fn lens(eye: DVec3, target: DVec3) -> Lens {
     Lens { eye, target, fov_y_rad: 0.8, aspect: f64::from(SIZE[0]) / f64::from(SIZE[1]) }
 }
 
-/// Rays along the view and against it, along surfaces, through the near plane, from before it; of pictures of hardly any
-/// texels; by a parallel projection. Fields of view that see nothing but the sky.
+/// Tests rays along and against the view, along surfaces, through the near plane and from in front of it. Also tests tiny pictures, an orthographic projection, and views of only the sky.
 #[test]
 fn rays_of_every_kind_end() -> TestResult {
     let Some(gpu) = gpu("rays_of_every_kind_end") else { return Ok(()) };
@@ -36,12 +36,12 @@ fn rays_of_every_kind_end() -> TestResult {
     let room = |balls| Room { floor_m: 0.0, balls };
     let front = DVec3::new(0.0, 0.5, 3.0);
     let mut stages = vec![
-        // Straight down: the ray comes back to the eye, a point in the picture.
+        // Straight down: the ray returns to the eye, a point in the picture.
         ("down", Stage::new(room(vec![]), lens(DVec3::new(0.0, 2.0, 1e-4), DVec3::ZERO), SIZE)),
         ("down on a ball", Stage::new(room(ball()), lens(DVec3::new(0.0, 2.0, 1e-4), DVec3::ZERO), SIZE)),
-        // A millimeter over the floor: rays leave it as flat as they come.
+        // A millimeter above the floor: all rays are grazing.
         ("grazing", Stage::new(room(ball()), lens(DVec3::new(0.0, 1e-3, 3.0), DVec3::new(0.0, 1e-3, 0.0)), SIZE)),
-        // Closer to a ball than rays begin from their surface: they begin before the near plane, or beyond the eye.
+        // Closer to a ball than the rays' starting offset, so they start before the near plane or behind the eye.
         ("at a ball", Stage::new(room(ball()), lens(DVec3::new(0.0, 0.5, 0.403), DVec3::new(0.0, 0.5, 0.0)), SIZE)),
         ("sky", Stage::new(room(vec![]), lens(front, DVec3::new(0.0, 9.0, 0.0)), SIZE)),
         ("far away", Stage::new(room(ball()), lens(front * 1e4, DVec3::ZERO), SIZE)),
@@ -71,7 +71,7 @@ fn rays_of_every_kind_end() -> TestResult {
     Ok(())
 }
 
-/// What is broken in the frame before is not read: the rest of the picture is as before, to the bit.
+/// Invalid radiance in the previous frame is not read: the rest of the picture is unchanged, bit for bit.
 #[test]
 fn broken_radiance_does_not_spread() -> TestResult {
     let Some(gpu) = gpu("broken_radiance_does_not_spread") else { return Ok(()) };
@@ -82,7 +82,7 @@ fn broken_radiance_does_not_spread() -> TestResult {
         sound(&format!("{broken:#x}"), &texels);
         let mut left_out = 0;
         for (found, before) in texels.iter().zip(&whole) {
-            // A linear filter reads half a texel beyond the broken half.
+            // A linear filter reads half a texel beyond the invalid half.
             let [u, _, _, counts] = before;
             let far = (u / counts.max(1e-6) - 0.5).abs() * SIZE[0] as f32 > 1.5;
             let in_it = *u < 0.5 * counts;
@@ -96,7 +96,7 @@ fn broken_radiance_does_not_spread() -> TestResult {
     Ok(())
 }
 
-/// Rough surfaces trace nothing, and as much as they fade before.
+/// Rough surfaces trace no rays, and the reflections of less rough ones fade.
 #[test]
 fn rough_mirrors_fade() -> TestResult {
     let Some(gpu) = gpu("rough_mirrors_fade") else { return Ok(()) };
@@ -110,7 +110,7 @@ fn rough_mirrors_fade() -> TestResult {
     };
     let smooth = sum(0.0)?;
     let share = |roughness| Ok::<_, Box<dyn std::error::Error>>(sum(roughness)? / smooth);
-    // √½ is the end, three quarters of it the beginning.
+    // The fade ends at √½ and starts at three quarters of it.
     assert_eq!([share(0.5)?, share(0.7072)?, share(1.0)?], [1.0, 0.0, 0.0]);
     let half = share(std::f32::consts::FRAC_1_SQRT_2 * 0.875)?;
     assert!((half - 0.5).abs() < 2e-3, "{half}");

@@ -1,4 +1,4 @@
-//! What the color pass makes of reflections.
+//! Shading with reflections.
 
 use super::TestResult;
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
@@ -14,15 +14,15 @@ use std::error::Error;
 use tests::executors;
 use truth::reflection::Lens;
 
-/// Radiance of the light from everywhere, in nits.
+/// Radiance of the uniform light, in nits.
 const NITS: f64 = 1000.0;
 /// Color of the wall.
 const WALL: Vec3 = Vec3::new(0.7, 0.2, 0.05);
-/// Where the eye is, and what it looks at.
+/// Positions of the eye and of the point it looks at.
 const EYE: [DVec3; 2] = [DVec3::new(0.0, 1.0, 2.0), DVec3::new(0.0, 0.2, -1.0)];
 const FOV_Y_RAD: f64 = 0.7;
 
-/// A floor before a wall at z = -1 m, matt and colored, whose right half may have a color of its own.
+/// Creates a floor in front of a matte wall at z = -1 m, whose right half can have another color.
 fn room(floor: Material, right: Vec3) -> Scene {
     let mut scene = Scene { name: "room".into(), ..Scene::default() };
     let floor = scene.add_material(floor);
@@ -42,12 +42,12 @@ fn mirror(roughness: f32) -> Material {
     Material { metallic: 1.0, ..Material::dielectric("mirror", Vec3::ONE, roughness) }
 }
 
-/// Pre-exposed radiance of each of so many frames.
+/// Returns the pre-exposed radiance of several frames.
 fn frames(gpu: &Gpu, scene: &Scene, settings: Settings, count: usize) -> Result<Vec<Vec<Vec3>>, Box<dyn Error>> {
     exposed(gpu, scene, settings, &vec![10.0; count])
 }
 
-/// The same of a frame for each EV100.
+/// Returns the pre-exposed radiance of one frame per EV100.
 fn exposed(gpu: &Gpu, scene: &Scene, settings: Settings, ev100: &[f32]) -> Result<Vec<Vec<Vec3>>, Box<dyn Error>> {
     let shot = Shot::small(Settings { shadows: None, ..settings });
     let environment = Environment::uniform(DVec3::splat(NITS))?;
@@ -81,14 +81,12 @@ fn with_reflections() -> Settings {
     Settings { reflections: Some(ReflectionSettings::DEFAULT), ..Settings::default() }
 }
 
-/// Where a pixel is among those of [`Shot::small`].
+/// Returns the index of a pixel in a picture of [`Shot::small`].
 fn at(x: usize, y: usize) -> usize {
     y * 160 + x
 }
 
-/// Under light from everywhere a mirror shows white where it reflects the environment, and where it reflects the wall, the
-/// wall: its radiance to the last few bits, in each precision and with each number of samples. The first frame is that without
-/// reflections.
+/// Under uniform light, a mirror shows white for the environment and the wall's radiance for the wall, to within a few bits. Tested in each precision and with each number of samples. The first frame has no reflections.
 #[test]
 fn mirrors_show_the_wall() -> TestResult {
     let Some(gpu) = gpu("mirrors_show_the_wall") else { return Ok(()) };
@@ -108,35 +106,35 @@ fn mirrors_show_the_wall() -> TestResult {
         let near = |a: Vec3, b: Vec3, most: f32| ((a - b) / b).abs().max_element() < most;
         let apart = off[0].iter().zip(&on[0]).filter(|(a, b)| !near(**b, **a, 1e-3)).count();
         assert_eq!(apart, 0, "the first frame has no earlier one");
-        // In the middle, above and below the edge between wall and floor.
+        // The center column, above and below the edge between wall and floor.
         let edge = (0..90).find(|y| off[0][at(80, *y)].y > 2.0 * off[0][at(80, 30)].y).ok_or("there is a floor")?;
         let (wall, floor) = (on[2][at(80, edge - 6)], on[2][at(80, edge + 6)]);
-        // A hundredth of the environment's radiance: of what is a texel below the wall's foot.
+        // A hundredth of the environment's radiance, the size of a texel below the wall's foot.
         let environment = off[0][at(80, edge + 6)];
         let shows = |found: Vec3| (found - wall).abs().max_element() < 0.01 * environment.max_element();
         assert!(shows(floor), "{samples} samples, {precision:?}: {floor} shows {wall}");
         assert!(!shows(environment), "without, it shows the environment: {environment}");
-        // Mirrors show mirrors as they were a frame ago, and theirs; a hundredth in all.
+        // Multiple reflections show earlier frames, and converge to within a hundredth.
         let apart = on[1].iter().zip(&on[2]).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
         assert!(apart < 0.01 * environment.max_element(), "what stands still does not flicker: {apart}");
     }
     Ok(())
 }
 
-/// A frame that is exposed otherwise than the one before shows the same scene: mirrors too, of what the one before had.
+/// If the exposure changes between frames, reflections are rescaled to match.
 #[test]
 fn mirrors_follow_the_exposure() -> TestResult {
     let Some(gpu) = gpu("mirrors_follow_the_exposure") else { return Ok(()) };
     let pictures = exposed(&gpu, &room(mirror(0.0), WALL), with_reflections(), &[10.0, 10.0, 11.0])?;
     let most = |of: fn((&Vec3, &Vec3)) -> f32| pictures[1].iter().zip(&pictures[2]).map(of).fold(0.0, f32::max);
-    // A hundredth of the brightest, as above.
+    // A hundredth of the brightest pixel.
     let most = most(|(a, b)| (*a - 2.0 * *b).abs().max_element()) / most(|(a, _)| a.max_element());
     assert!(most < 0.01, "{most}");
     Ok(())
 }
 
-/// A rough mirror blurs an edge by the spread of its lobe over the way to it; at the wall's foot the way is short, and the wall
-/// is as sharp as in a smooth one.
+/// A rough mirror blurs an edge by the width of its lobe times the ray's length. At the wall's foot rays are short, and
+/// the reflection is as sharp as in a smooth mirror.
 #[test]
 fn rough_mirrors_blur_by_the_way() -> TestResult {
     let Some(gpu) = gpu("rough_mirrors_blur_by_the_way") else { return Ok(()) };
@@ -145,7 +143,7 @@ fn rough_mirrors_blur_by_the_way() -> TestResult {
     for roughness in [0.25_f32, 0.3] {
         let pictures = frames(&gpu, &room(mirror(roughness), right), with_reflections(), 2)?;
         for y in [64, 70] {
-            // The middle of the row, on the floor; its ray rises to the wall.
+            // The center of the row, on the floor; its reflected ray hits the wall.
             let along = lens.along(DVec2::new(0.5, (y as f64 + 0.5) / 90.0));
             let place = EYE[0] - along * (EYE[0].y / along.y);
             let way_m = (-1.0 - place.z) / along.z;
@@ -161,8 +159,8 @@ fn rough_mirrors_blur_by_the_way() -> TestResult {
                 };
                 row.iter().enumerate().map(off).fold(0.0, f64::max)
             };
-            // Levels are powers of two, read with linear filters between their texels: a few percent of the step. The
-            // controls: half the blur and twice the blur are told apart.
+            // Levels are powers of two, read with trilinear filters: an error of a few percent of the step. Negative
+            // controls: half and twice the blur.
             let [off, half, twice] = [1.0, 0.5, 2.0].map(|factor| worst(factor * sigma_px));
             assert!(
                 off < 0.06 && half > 0.09 && twice > 0.09,
@@ -182,7 +180,7 @@ fn rough_mirrors_blur_by_the_way() -> TestResult {
     Ok(())
 }
 
-/// A mirror rougher than the limit is as without; so is what transmits.
+/// A mirror above the roughness limit, and a transmissive one, are shaded as without reflections.
 #[test]
 fn what_traces_nothing_is_as_without() -> TestResult {
     let Some(gpu) = gpu("what_traces_nothing_is_as_without") else { return Ok(()) };
@@ -195,7 +193,7 @@ fn what_traces_nothing_is_as_without() -> TestResult {
         let scene = room(floor, WALL);
         let [with, without] = [with_reflections(), Settings::default()].map(|s| frames(&gpu, &scene, s, 2));
         let (with, without) = (with?, without?);
-        // A few bits: shaders that differ elsewhere are rounded otherwise.
+        // A few bits: different shaders round differently.
         let off = |(a, b): (&Vec3, &Vec3)| ((*a - *b) / *b).abs().max_element() > 2e-3;
         assert_eq!(with[1].iter().zip(&without[1]).filter(|pair| off(*pair)).count(), 0, "{name}");
     }

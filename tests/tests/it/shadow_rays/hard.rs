@@ -1,5 +1,5 @@
-//! Inputs that shadow maps do not survive unless fit and filters see to it: the design's hard cases, by their numbers there,
-//! as pictures in both precisions. That no light is other than finite is asked of every picture, by its bits.
+//! Hard inputs of shadow maps: the design's hard cases, by number, as pictures in both precisions. Every pixel must
+//! also be finite, tested by its bits.
 
 use super::{JUDGED, Set, TestResult, camera, field, scene_of};
 use crate::stage::{gpu, precisions};
@@ -9,7 +9,8 @@ use glam::DVec3;
 
 const FITS: [Fit; 3] = [Fit::Tight { lispsm: true }, Fit::Tight { lispsm: false }, Fit::Stable];
 
-/// Every fit in every precision: as many pixels in a thousand as rays may contradict, and the least that they find in shadow.
+/// Tests every fit in every precision. `most` is the allowed difference from rays in thousandths of the pixels,
+/// `least_dark` the minimum number of shadowed pixels.
 fn each_fit(test: &str, gpu: &Gpu, set: &Set, most: u32, least_dark: u32) -> TestResult {
     for precision in precisions(test, gpu) {
         let set = Set { precision, ..set.clone() };
@@ -24,14 +25,14 @@ fn each_fit(test: &str, gpu: &Gpu, set: &Set, most: u32, least_dark: u32) -> Tes
     Ok(())
 }
 
-/// 40: light along the view, straight down, and nearly so.
+/// Case 40: light along the view, straight down, and nearly so.
 #[test]
 fn hard_case_40_light_along_the_view_shades_as_rays_do() -> TestResult {
     let test = "hard_case_40_light_along_the_view_shades_as_rays_do";
     let Some(gpu) = gpu(test) else { return Ok(()) };
     let Set { scene, camera: ahead, .. } = field()?;
     let down = camera([0.5, 14.0, 0.0], [0.5, 0.0, -0.001], 50.0)?;
-    // What the eye sees along the light is lit, so that nothing is dark there.
+    // Surfaces seen along the light are lit, so no dark pixels are required.
     for (camera, toward) in
         [(&ahead, DVec3::Y), (&ahead, -ahead.forward()), (&down, -down.forward()), (&down, DVec3::new(1e-9, 1.0, 0.0))]
     {
@@ -40,7 +41,7 @@ fn hard_case_40_light_along_the_view_shades_as_rays_do() -> TestResult {
     Ok(())
 }
 
-/// 41: a slab behind the eye shades the picture's middle.
+/// Case 41: a slab behind the eye casts a shadow on the center of the picture.
 #[test]
 fn hard_case_41_a_caster_behind_the_eye_shades_the_picture() -> TestResult {
     let test = "hard_case_41_a_caster_behind_the_eye_shades_the_picture";
@@ -50,13 +51,13 @@ fn hard_case_41_a_caster_behind_the_eye_shades_the_picture() -> TestResult {
     each_fit(test, &gpu, &Set::new(scene_of(&[floor, slab]), eye, DVec3::new(0.5, 0.6, 0.3)), 4, 1000)
 }
 
-/// 43, 44, 45: a floor with nothing above it, in a map that something else is drawn into: no blocker is found, and light is
-/// that without shadows, to the bit where depth is compared; moments leave a hundredth to rounding.
+/// Cases 43, 44, 45: a floor without occluders, in a map with another object. No blocker is found, and the light equals
+/// that without shadows: bit for bit with depth comparison, to within 1 % with moments.
 #[test]
 fn hard_cases_43_to_45_a_floor_without_blockers_is_lit() -> TestResult {
     let test = "hard_cases_43_to_45_a_floor_without_blockers_is_lit";
     let Some(gpu) = gpu(test) else { return Ok(()) };
-    // The box shades what is outside of the picture.
+    // The box casts its shadow outside of the picture.
     let scene = scene_of(&[([0.0, -0.5, 0.0], [20.0, 0.5, 20.0]), ([-9.0, 1.0, 0.0], [0.3, 1.0, 0.3])]);
     let eye = camera([3.0, 3.0, 4.0], [3.0, 0.0, 0.0], 40.0)?;
     for precision in precisions(test, &gpu) {
@@ -78,7 +79,7 @@ fn hard_cases_43_to_45_a_floor_without_blockers_is_lit() -> TestResult {
     Ok(())
 }
 
-/// 43: a blocker at the map's near end, and one that touches the receiver, under a wide sun.
+/// Case 43: blockers at the near end of the map and touching the receiver, under a wide sun.
 #[test]
 fn hard_case_43_blockers_at_both_ends_shade_as_rays_do() -> TestResult {
     let test = "hard_case_43_blockers_at_both_ends_shade_as_rays_do";
@@ -96,7 +97,8 @@ fn hard_case_43_blockers_at_both_ends_shade_as_rays_do() -> TestResult {
     Ok(())
 }
 
-/// Moments have no bias: a lit floor is lit, and what is under a box is dark where no second box is above (hard case 45).
+/// Moments need no bias: a lit floor stays lit, and the area under a box is dark if no second box is above it (hard
+/// case 45).
 #[test]
 fn hard_case_45_moments_agree_with_rays() -> TestResult {
     let Some(gpu) = gpu("hard_case_45_moments_agree_with_rays") else { return Ok(()) };
@@ -107,7 +109,7 @@ fn hard_case_45_moments_agree_with_rays() -> TestResult {
         let judge = set.judge(&gpu)?;
         for filter in filters {
             let mut settings = ShadowSettings { filter, cascades: 2, ..ShadowSettings::DEFAULT };
-            // Sixteen bits let some light through near the feet of what casts: a hundredth of the pixels.
+            // Sixteen bits leak light near the base of casters, at up to 1 % of the pixels.
             let most = if filter == ShadowFilter::Vsm { 30.0 } else { 10.0 };
             let plain = judge.wrong(settings, |distance_m| (0.01 * distance_m).max(0.1))?;
             settings.moments.blur_texels = 5.0;

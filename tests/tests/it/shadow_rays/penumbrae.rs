@@ -1,4 +1,4 @@
-//! Penumbrae against the exact one of a disc.
+//! Penumbrae compared with the exact penumbra of a disc.
 
 use super::{Lamp, Set, TestResult, camera, scene_of};
 use crate::stage::gpu;
@@ -8,14 +8,14 @@ use framegraph_wgpu::Gpu;
 use glam::{DVec3, Vec3};
 use std::error::Error;
 
-/// Share of a disc that a straight edge leaves open, `t` radii from its middle.
+/// Returns the visible share of a disc behind a straight edge, `t` radii from its center.
 fn open_share(t: f64) -> f64 {
     let t = t.clamp(-1.0, 1.0);
     0.5 + (t * (1.0 - t * t).sqrt() + t.asin()) / std::f64::consts::PI
 }
 
-/// RMS and mean of what the floor about a plate's edge over x = 0 shows, less the exact visibility of a light whose penumbra
-/// there is so wide to either side.
+/// Returns root mean square and mean error of visibility on a floor around the edge of a plate at x = 0. The exact
+/// penumbra extends `radius_m` to either side.
 fn error(gpu: &Gpu, set: &Set, settings: ShadowSettings, radius_m: f64) -> Result<[f64; 2], Box<dyn Error>> {
     let seen = set.seen(&set.triangles());
     let (mut squares, mut sum, mut count) = (0.0, 0.0, 0.0);
@@ -31,7 +31,7 @@ fn error(gpu: &Gpu, set: &Set, settings: ShadowSettings, radius_m: f64) -> Resul
     Ok([(squares / count).sqrt(), sum / count])
 }
 
-/// What was found with the software driver; another one places edges and weighs texels otherwise, by thousandths of the light.
+/// Compares with measurements of the software driver. Other drivers differ by thousandths of the light.
 #[allow(clippy::print_stdout, reason = "shown with --nocapture")]
 fn stated(name: &str, found: [f64; 2], stated: [f64; 2]) {
     let near = found.iter().zip(stated).all(|(found, stated)| (found - stated).abs() < 0.003);
@@ -39,8 +39,8 @@ fn stated(name: &str, found: [f64; 2], stated: [f64; 2]) {
     assert!(near, "{name}: RMS and mean {found:.4?} for {stated:?}");
 }
 
-/// The penumbra of a plate's edge under a sun of two degrees, against the exact one of a disc: PCSS errs by its sixteen taps
-/// (accuracy.md: .037) and the blocker search; a tent of three texels by what a hard edge does.
+/// Penumbra at a plate's edge under a sun of 2°. The error of PCSS comes from its sixteen samples (accuracy.md: 0.037)
+/// and the blocker search; that of the 3×3 tent is that of a hard edge.
 fn under_the_sun(gpu: &Gpu, floors: &[([f64; 3], [f32; 3])], pcss: [f64; 2], dpcf: [f64; 2]) -> TestResult {
     let (radius_rad, height) = (2.0_f32.to_radians(), 4.0);
     let plate = ([-6.0, height + 0.05, 0.0], [6.0, 0.05, 8.0]);
@@ -64,7 +64,7 @@ fn penumbrae_are_those_of_a_disc() -> TestResult {
     under_the_sun(&gpu, &[([0.0, -0.5, 0.0], [14.0, 0.5, 8.0])], [0.0303, 0.0005], [0.0475, -0.0001])
 }
 
-/// The same in the middle of the map's depth: beside the floor another one is seen, twelve meters down.
+/// The same penumbra in the middle of the map's depth: another floor is visible twelve meters below.
 #[test]
 fn penumbrae_are_as_wide_in_the_middle_of_the_depth() -> TestResult {
     let Some(gpu) = gpu("penumbrae_are_as_wide_in_the_middle_of_the_depth") else { return Ok(()) };
@@ -72,7 +72,8 @@ fn penumbrae_are_as_wide_in_the_middle_of_the_depth() -> TestResult {
     under_the_sun(&gpu, &floors, [0.0286, 0.0033], [0.0569, 0.0033])
 }
 
-/// A bulb of 12 cm four meters up, and the plate's edge 2.5 m up under it: a penumbra of 20 cm to either side.
+/// A light of 12 cm radius is at a height of 4 m, above the plate's edge at 2.5 m. The penumbra extends 20 cm to either
+/// side.
 #[test]
 fn penumbrae_of_a_spot_are_those_of_its_bulb() -> TestResult {
     let Some(gpu) = gpu("penumbrae_of_a_spot_are_those_of_its_bulb") else { return Ok(()) };

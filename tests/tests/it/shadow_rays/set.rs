@@ -1,4 +1,4 @@
-//! A scene with a light, as a picture shows its shadows and as rays find them.
+//! A scene with a light, whose shadows are rendered and ray traced.
 
 use crate::stage::lighting;
 use framegraph::{Options, Plan, Scratch, Target, compile};
@@ -15,21 +15,21 @@ use std::error::Error;
 use tests::executors;
 use truth::rays::{Hit, Triangles};
 
-/// Pixels across and down.
+/// Width and height of the pictures, in pixels.
 pub const SIZE: [u32; 2] = [128, 72];
-/// Pixels that rays must be able to judge, a sixth of a picture: a camera that sees the sky, or a margin about edges that leaves
-/// next to nothing, would agree with any map.
+/// Minimum number of pixels for which rays give a verdict, a sixth of a picture. With fewer, as when the camera sees
+/// the sky, any shadow map would pass.
 pub const JUDGED: u32 = SIZE[0] * SIZE[1] / 6;
 
-/// Cosine to the light under which a pixel says nothing: 6°. The grazing sun of these tests stands at 8°.
+/// Cosine below which a pixel is ignored: 6°. The grazing sun of these tests is at 8°.
 pub const GRAZING: f64 = 0.1;
 
-/// Light on a scene, which nothing else lights.
+/// The only light of a scene.
 #[derive(Clone, Debug)]
 pub enum Lamp {
-    /// The sun, toward it.
+    /// The sun, with the direction toward it.
     Sun { toward: DVec3, radius_rad: f32 },
-    /// A light of the scene.
+    /// A punctual light.
     Local(Light),
 }
 
@@ -39,11 +39,11 @@ pub struct Set {
     pub scene: Scene,
     pub camera: Camera,
     pub lamp: Lamp,
-    /// Numbers that surfaces are shaded in.
+    /// Precision of shading.
     pub precision: Precision,
-    /// Ambient occlusion, which contact shadows share their depth with; nothing lights what it darkens.
+    /// Ambient occlusion, which shares its depth with contact shadows; no light depends on it.
     pub occlusion: Option<OcclusionSettings>,
-    /// Texels by which every map is moved from where it was fitted.
+    /// Offset of every shadow map from its fit, in texels.
     pub moved_texels: Vec2,
 }
 
@@ -53,7 +53,7 @@ impl Set {
         Self { scene, camera, lamp, precision: Precision::Full, occlusion: None, moved_texels: Vec2::ZERO }
     }
 
-    /// The picture's red channel, before the tone curve.
+    /// Returns the red channel of the radiance.
     pub fn radiance(&self, gpu: &Gpu, shadows: Option<ShadowSettings>) -> Result<Vec<f32>, Box<dyn Error>> {
         let mut scene = self.scene.clone();
         let mut environment = Environment::uniform(DVec3::ZERO)?;
@@ -96,12 +96,12 @@ impl Set {
         Ok(read_texture(gpu, texture)?.rgba().into_iter().map(|[red, ..]| red).collect())
     }
 
-    /// Visibility of the light at each pixel by its shadow map: none where it would not light the surface anyway.
+    /// Returns the visibility of the light at each pixel by its shadow map; `None` for surfaces that face away.
     pub fn visibility(&self, gpu: &Gpu, shadows: ShadowSettings) -> Result<Vec<Option<f64>>, Box<dyn Error>> {
         self.visibility_beside(gpu, &self.radiance(gpu, None)?, shadows)
     }
 
-    /// The same, with what [`Set::radiance`] is without shadows.
+    /// Returns the visibility at each pixel, given [`Set::radiance`] without shadows.
     pub fn visibility_beside(
         &self,
         gpu: &Gpu,
@@ -117,7 +117,7 @@ impl Set {
         Ok(with.iter().zip(without).map(share).collect())
     }
 
-    /// All triangles, whatever they are made of.
+    /// Returns all triangles, regardless of material.
     pub fn triangles(&self) -> Triangles {
         Triangles::of(self.scene.instances.iter().map(|instance| {
             let mesh = &self.scene.meshes[instance.mesh.index()];
@@ -126,7 +126,7 @@ impl Set {
         }))
     }
 
-    /// What each pixel's middle shows.
+    /// Returns the surface at the center of each pixel.
     pub fn seen(&self, triangles: &Triangles) -> Vec<Option<Hit>> {
         let aspect = f64::from(SIZE[0]) / f64::from(SIZE[1]);
         let Projection::Perspective { fov_y_rad, .. } = self.camera.projection else { return Vec::new() };
@@ -140,7 +140,7 @@ impl Set {
         (0..SIZE[0] * SIZE[1]).map(|i| triangles.first(self.camera.eye, ray(i))).collect()
     }
 
-    /// The light's place as seen from a point, and the direction there.
+    /// Returns the light's position, or a point in the sun's direction, and the direction toward it.
     pub fn toward(&self, from: DVec3) -> (DVec3, DVec3) {
         match &self.lamp {
             Lamp::Sun { toward, .. } => (from + *toward * 1e4, *toward),
@@ -154,7 +154,7 @@ impl Set {
         hit.normal.dot(toward) > 0.0 && triangles.is_open(from, to, 1e-4)
     }
 
-    /// What rays and light without shadows say of the picture.
+    /// Traces rays and renders the picture without shadows.
     pub fn judge<'a>(&'a self, gpu: &'a Gpu) -> Result<Judge<'a>, Box<dyn Error>> {
         let triangles = self.triangles();
         let seen = self.seen(&triangles);
@@ -162,26 +162,27 @@ impl Set {
     }
 }
 
-/// What the shadows of a set are judged by.
+/// Reference for the shadows of a set.
 pub struct Judge<'a> {
     set: &'a Set,
     gpu: &'a Gpu,
     pub triangles: Triangles,
     pub seen: Vec<Option<Hit>>,
-    /// The picture without shadows.
+    /// Picture without shadows.
     pub without: Vec<f32>,
 }
 
 impl Judge<'_> {
-    /// Pixels, in thousandths, that a shadow map lights or darkens where rays say otherwise all around within
-    /// `blur_m(distance)`: acne and light that leaks in.
+    /// Returns the number of pixels, in thousandths, whose shadow map contradicts all rays within `blur_m(distance)`:
+    /// acne and light leaks.
     pub fn wrong(&self, shadows: ShadowSettings, blur_m: impl Fn(f64) -> f64) -> Result<f64, Box<dyn Error>> {
         let [wrong, count, dark] = self.compared(shadows, blur_m)?;
         assert!(count >= JUDGED && dark > 50, "{count} pixels, {dark} in shadow");
         Ok(1000.0 * f64::from(wrong) / f64::from(count))
     }
 
-    /// Whether what a pixel shows is lit, if all is or nothing within `off_m` of it.
+    /// Returns whether the neighborhood of a surface within `off_m` is entirely lit or entirely in shadow; `None` if it
+    /// is mixed.
     pub fn lit_around(&self, hit: &Hit, off_m: f64) -> Option<bool> {
         let (u, v) = hit.normal.any_orthonormal_pair();
         let is_lit = |way: DVec3| self.set.is_lit(&self.triangles, hit, hit.point + way * off_m);
@@ -189,7 +190,7 @@ impl Judge<'_> {
         [u, -u, v, -v].into_iter().all(|way| is_lit(way) == lit).then_some(lit)
     }
 
-    /// Such pixels, pixels in all, and those that rays find in shadow.
+    /// Returns the number of wrong pixels, of judged pixels, and of those in shadow.
     #[allow(clippy::print_stdout, reason = "shown with --nocapture")]
     pub fn compared(&self, shadows: ShadowSettings, blur_m: impl Fn(f64) -> f64) -> Result<[u32; 3], Box<dyn Error>> {
         let Self { set, gpu, seen, without, .. } = self;
@@ -197,7 +198,7 @@ impl Judge<'_> {
         let (mut wrong, mut count, mut dark) = (0, 0, 0);
         for (visibility, hit) in found.iter().zip(seen) {
             let (Some(visibility), Some(hit)) = (visibility, hit) else { continue };
-            // Where light grazes, an interpolated normal is lit and the flat triangle is not.
+            // At grazing angles, interpolated normals may be lit where the flat triangle is not.
             if hit.normal.dot(set.toward(hit.point).1).abs() < GRAZING {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! Shimmer: how much a shadow changes on the same place of a surface while the camera turns and moves.
+//! Shimmer: changes of shadows at fixed points while the camera turns and moves.
 
 use super::{SIZE, Set, TestResult, field};
 use crate::stage::gpu;
@@ -9,10 +9,10 @@ use glam::{DQuat, DVec2, DVec3, Vec2};
 use std::error::Error;
 use truth::rays::Hit;
 
-/// Pictures of a path.
+/// Number of pictures along a camera path.
 const FRAMES: u32 = 7;
 
-/// What a picture says: visibility and the place of each pixel.
+/// Visibility and surface of each pixel.
 struct Seen {
     camera: Camera,
     visibility: Vec<Option<f64>>,
@@ -20,7 +20,7 @@ struct Seen {
 }
 
 impl Seen {
-    /// Visibility of a place, weighted from the four pixels around it; none where one of them shows another surface.
+    /// Returns the visibility of a point, interpolated from four pixels; `None` if one of them shows another surface.
     fn at(&self, place: &Hit) -> Option<f64> {
         let [width, height] = SIZE.map(f64::from);
         let clip = self.camera.clip_from_view(width / height) * self.camera.view_from_world() * place.point.extend(1.0);
@@ -43,8 +43,8 @@ impl Seen {
     }
 }
 
-/// Root mean square of the difference between pictures of a path and those before them, place by place on what both show.
-/// The camera goes on by `step` and turns by `turn_rad` from picture to picture; maps are moved by so many texels.
+/// Returns the root mean square difference of visibility between consecutive pictures, at points visible in both. The
+/// camera moves by `step` and turns by `turn_rad` per picture; maps are offset by `moved` texels.
 fn shimmer(
     gpu: &Gpu,
     settings: ShadowSettings,
@@ -72,17 +72,18 @@ fn shimmer(
     Ok((squares / count).sqrt())
 }
 
-/// Stable cascades change no shadow while the camera turns and moves, but for what the pictures' own pixels do to its edges. Maps
-/// that are not moved in whole texels, and those fitted anew each time, change it several times as much.
+/// Stable cascades change no shadow during camera motion, apart from the sampling of edges by the picture's own pixels.
+/// Negative controls: maps offset by fractions of texels, and maps that are fitted to each view, change several times
+/// as much.
 #[test]
 fn stable_cascades_do_not_shimmer() -> TestResult {
     let Some(gpu) = gpu("stable_cascades_do_not_shimmer") else { return Ok(()) };
-    // Texels wider than pixels, so that edges are smooth in the picture and what is left is of the map.
+    // Texels are wider than pixels, so that edges are smooth and only the map's effect remains.
     let stable =
         ShadowSettings { fit: Fit::Stable, cascades: 1, map_texels: 128, far_m: Some(30.0), ..ShadowSettings::DEFAULT };
     let tight = ShadowSettings { fit: Fit::Tight { lispsm: false }, ..stable };
     let stands = |_| Vec2::ZERO;
-    // As centers that are not rounded fall: somewhere in a texel, by the additive sequence of the plastic number.
+    // Offsets as of unrounded centers: uniform within a texel, by the additive recurrence of the plastic number.
     let falls = |frame: u32| (Vec2::new(0.754_878, 0.569_840) * frame as f32).fract() - 0.5;
     let turning = (DVec3::ZERO, 0.02);
     let moving = (DVec3::new(0.03, 0.005, -0.045), 0.0);

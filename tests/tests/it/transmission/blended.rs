@@ -1,5 +1,5 @@
-//! Surfaces that transmit and blend: alpha covers, and what is covered shows what is transmitted (glTF 2.0, section 3.9.4, and
-//! KHR_materials_transmission).
+//! Surfaces that transmit and blend: alpha is the coverage, and covered parts show the transmitted light (glTF 2.0,
+//! section 3.9.4, and KHR_materials_transmission).
 
 use super::{TestResult, middle, pane, stage};
 use crate::stage::{Shot, gpu};
@@ -16,14 +16,14 @@ use tests::measure::facts::{Case, Drawn, Easel, SIZE_PX};
 
 const ALPHAS: [AlphaMode; 3] = [AlphaMode::Opaque, AlphaMode::Mask { cutoff: 0.25 }, AlphaMode::Blend];
 
-/// A transmissive material of an alpha mode, which covers half.
+/// Returns a transmissive material with an alpha mode and a coverage of 0.5.
 fn glass(alpha: AlphaMode, volume: bool, double_sided: bool) -> Material {
     let tint = Vec3::new(0.9, 0.5, 0.2);
     let volume = volume.then(|| Volume { thickness: 0.2, ..Volume::default() });
     Material { alpha, base_color: tint.extend(0.5), double_sided, ..pane(tint, volume) }
 }
 
-/// A case that looks down on a floor.
+/// Returns a case that looks down on a floor.
 fn case(scene: Scene, asked: Settings) -> Case {
     let asked = asked.for_scene(&scene, SIZE_PX);
     Case {
@@ -37,7 +37,7 @@ fn case(scene: Scene, asked: Settings) -> Case {
     }
 }
 
-/// Decisions about the effects of a case.
+/// Returns the feature culling of a case.
 fn facts(case: &Case) -> Facts {
     let sh = [Vec4::ONE; 18];
     let around = Around { irradiance: &sh, bands: ShBands::Three, luminance_nits: 2000.0, sun: None };
@@ -55,7 +55,7 @@ fn facts(case: &Case) -> Facts {
     decide(&input, &mut FactMemory::default())
 }
 
-/// A transmissive surface in view keeps the picture of what is behind it, whatever its alpha mode is. Out of view it does not.
+/// A visible transmissive surface keeps the picture behind it, in any alpha mode. Outside of the view it does not.
 #[test]
 fn the_picture_behind_is_kept_for_every_alpha_mode() {
     for alpha in ALPHAS {
@@ -83,8 +83,8 @@ fn the_picture_behind_is_kept_for_every_alpha_mode() {
     }
 }
 
-/// Seen straight on, a pane of alpha a mixes its transmitted light into the floor's by a. Other glass beside it, layers of glass
-/// and samples change nothing about that.
+/// At normal incidence, a pane of alpha a blends its transmitted light over the floor by a, regardless of other glass
+/// beside it, layers and samples.
 #[test]
 fn alpha_covers_with_what_is_transmitted() -> TestResult {
     let Some(gpu) = gpu("alpha_covers_with_what_is_transmitted") else { return Ok(()) };
@@ -109,18 +109,18 @@ fn alpha_covers_with_what_is_transmitted() -> TestResult {
         let covered = Material { alpha: AlphaMode::Blend, base_color: tint.extend(alpha), ..pane(tint, None) };
         let found = seen(Some(covered))?;
         let expected = floor.lerp(floor * tint, alpha);
-        // Half floats, four times.
+        // Four roundings to half floats.
         let off = ((found - expected) / expected).abs().max_element();
         assert!(off < 5e-3, "{samples} samples, {glass_layers} layers: {found} against {expected}");
-        // The control: another coverage is another color.
+        // Negative control: another coverage.
         let other = floor.lerp(floor * tint, 1.0 - alpha);
         assert!(((found - other) / other).abs().max_element() > 0.1);
     }
     Ok(())
 }
 
-/// Panes and balls of one alpha mode beside each other: thin and with a volume, single- and double-sided, one of them a body
-/// that joints could move.
+/// Returns panes and balls of one alpha mode: thin and with a volume, single- and double-sided, one of them with
+/// skinning.
 fn shelf(alpha: AlphaMode) -> Scene {
     let mut scene = stage(None);
     let (mesh, ball) = (scene.add_mesh(plane(Vec2::splat(0.7), 1, Vec2::ONE)), scene.add_mesh(sphere(0.35, 12, 8)));
@@ -142,8 +142,8 @@ fn shelf(alpha: AlphaMode) -> Scene {
     scene
 }
 
-/// Every preset draws glass of every alpha mode, with what its facts leave; glass that blends is seen, and is not what opaque
-/// glass is.
+/// Every preset draws glass of every alpha mode, after feature culling. Blended glass is visible, and differs from
+/// opaque glass.
 #[test]
 fn every_preset_draws_glass_of_every_alpha_mode() -> TestResult {
     let Some(gpu) = gpu("every_preset_draws_glass_of_every_alpha_mode") else { return Ok(()) };
@@ -165,7 +165,7 @@ fn every_preset_draws_glass_of_every_alpha_mode() -> TestResult {
             pairs.filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > 4)).count()
         };
         let [opaque, blended, apart, cut] = [differ(0, 3), differ(2, 3), differ(0, 2), differ(0, 1)];
-        // Opaque and masked glass of more alpha than the cutoff is the same.
+        // Masked glass with alpha above the cutoff equals opaque glass.
         assert!(opaque > 300 && blended > 300 && apart > 200, "{}: {opaque} {blended} {apart}", preset.name());
         assert_eq!(cut, 0, "{}: masked glass", preset.name());
     }

@@ -1,4 +1,4 @@
-//! Glass that is seen through glass.
+//! Transmissive surfaces seen through others.
 
 use super::{EYE_M, FOV_Y_RAD, TestResult, counts, middle_row, pane, stage};
 use crate::stage::{Shot, gpu};
@@ -11,7 +11,7 @@ use framegraph_wgpu::Gpu;
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use std::error::Error;
 
-/// A further layer:
+/// Passes of an additional layer:
 ///
 /// step             attachment    load       store
 /// transparent      hdr           LOAD       STORE   (the next layer's copy samples it)
@@ -19,7 +19,7 @@ use std::error::Error;
 /// scene/copy       scene level 0 don't care STORE
 /// scene/level      scene level 1 don't care STORE   (and so on)
 ///
-/// Filament has no such thing. One layer is the frame that it was.
+/// Filament has no such layers. With one layer, the frame is unchanged.
 #[test]
 fn a_layer_costs_its_picture_and_color_and_depth_once_more() {
     for samples in [1, 4] {
@@ -29,7 +29,7 @@ fn a_layer_costs_its_picture_and_color_and_depth_once_more() {
         assert_eq!(one, counts(Settings { samples, scene_levels: 4, ..Settings::default() }));
         for layers in 2..=MOST_GLASS_LAYERS {
             let further = u32::from(layers) - 1;
-            // Each layer is averaged for the copy.
+            // Each layer is resolved for the copy.
             let averages = if samples > 1 { further } else { 0 };
             let expected = Counts {
                 unresolves: one.unresolves + 2 * further,
@@ -45,11 +45,11 @@ fn a_layer_costs_its_picture_and_color_and_depth_once_more() {
     }
 }
 
-/// A stack of panes of these tints, the first the lowest, over the middle of the floor.
+/// Returns a stack of panes with these tints, from bottom to top, over the center of the floor.
 fn stack(tints: &[Vec3]) -> Scene {
     let mut scene = stage(None);
     let mesh = scene.add_mesh(plane(Vec2::splat(2.0), 1, Vec2::ONE));
-    // Not in the order of their heights: the view sorts them.
+    // The order differs from the order of heights, so the view must sort them.
     for index in (0..tints.len()).step_by(2).chain((1..tints.len()).step_by(2)) {
         let material = scene.add_material(pane(tints[index], None));
         let height = DVec3::Y * (0.5 + 0.25 * index as f64);
@@ -64,14 +64,14 @@ fn middle(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec3, Box<dyn 
     Ok(row[row.len() / 2])
 }
 
-/// A floor through panes is the floor times the tint of each that has a layer: of one layer that is the uppermost, and of more
-/// panes than layers the last layer's uppermost hides those below.
+/// A floor through panes is multiplied by the tint of each pane with a layer. One layer shows the uppermost pane; with
+/// more panes than layers, the uppermost pane of the last layer hides those below.
 #[test]
 fn tints_of_panes_behind_panes_multiply() -> TestResult {
     let Some(gpu) = gpu("tints_of_panes_behind_panes_multiply") else { return Ok(()) };
     let tints =
         [(0.9, 0.5, 0.4), (0.5, 0.9, 0.6), (0.7, 0.6, 0.95), (0.95, 0.8, 0.55), (0.6, 0.7, 0.8)].map(Vec3::from);
-    // OpenGL reads no depth of several samples.
+    // OpenGL does not read multisampled depth.
     let most = if gpu.info().backend == wgpu::Backend::Gl { 1 } else { 4 };
     for samples in [1, 4].into_iter().filter(|samples| *samples <= most) {
         let floor = middle(&gpu, &stack(&[]), Settings { samples, ..Settings::default() })?;
@@ -79,10 +79,10 @@ fn tints_of_panes_behind_panes_multiply() -> TestResult {
             let settings = Settings { samples, glass_layers: layers, ..Settings::default() };
             let found = middle(&gpu, &stack(&tints[..panes]), settings)?;
             let through = tints[..panes].iter().rev().take(layers.into()).fold(floor, |light, tint| light * *tint);
-            // Half floats, three times a layer.
+            // Three roundings to half floats per layer.
             let off = ((found - through) / through).abs().max_element();
             assert!(off < 4e-3 * f32::from(layers), "{panes} panes, {layers} layers: {found}, not {through}");
-            // The control: one tint more or less is told apart.
+            // Negative control: one tint more or less.
             let other = through * tints[panes - 1];
             assert!(((found - other) / other).abs().max_element() > 0.05);
         }
@@ -90,7 +90,7 @@ fn tints_of_panes_behind_panes_multiply() -> TestResult {
     Ok(())
 }
 
-/// Layers are of what lies over one another: a view that has glass side by side alone is as with one layer, to the bit.
+/// Layers apply only to overlapping surfaces: glass side by side needs one layer, bit for bit.
 #[test]
 fn panes_side_by_side_need_one_layer() -> TestResult {
     let Some(gpu) = gpu("panes_side_by_side_need_one_layer") else { return Ok(()) };
@@ -108,9 +108,9 @@ fn panes_side_by_side_need_one_layer() -> TestResult {
     Ok(())
 }
 
-/// A ball of glass shows the edge of a checker behind it as one edge, without a break, row by row; and where refraction puts it:
-/// a ray that enters at x leaves at 2 / 1.5 − 1 times that, so the edge is seen three times as far from the ball's middle as it
-/// lies.
+/// A ball of glass shows the edge of a checkerboard behind it as a continuous edge in every row. Its position follows
+/// from refraction: a ray that enters at x exits at 2 / 1.5 − 1 times x. The edge therefore appears three times as far
+/// from the ball's center.
 #[test]
 fn balls_bend_an_edge_and_do_not_break_it() -> TestResult {
     let Some(gpu) = gpu("balls_bend_an_edge_and_do_not_break_it") else { return Ok(()) };
@@ -132,7 +132,7 @@ fn balls_bend_an_edge_and_do_not_break_it() -> TestResult {
     let width = size_px[0] as usize;
     let rows: Vec<&[Vec3]> = texels.chunks_exact(width).collect();
     let middle = 0.5 * (rows[0][8].y + rows[0][width - 8].y);
-    // Of the rows that the ball covers, without its rim, where it mirrors the sky.
+    // Rows covered by the ball, without its rim, which reflects the sky.
     let pixels_per_m = 0.5 * f64::from(size_px[1]) / ((EYE_M - 1.0) * (FOV_Y_RAD / 2.0).tan());
     let off_px = OFF_M * pixels_per_m;
     let (center, reach) = (width as f64 / 2.0 + off_px, 0.7 * 0.5 * pixels_per_m);
@@ -151,7 +151,7 @@ fn balls_bend_an_edge_and_do_not_break_it() -> TestResult {
         assert!(before.is_none_or(|before| (before - at).abs() <= 2.0), "row {y}: from {before:?} to {at}");
         before = Some(at);
     }
-    // To a pixel, of which one to the left or right are a fifth each.
+    // To within one pixel; one pixel left or right is a fifth.
     let bent = before.map(|at| (center - at) / off_px);
     assert!(bent.is_some_and(|bent| (2.3..4.0).contains(&bent)), "{bent:?}");
     Ok(())

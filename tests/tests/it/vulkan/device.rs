@@ -1,4 +1,4 @@
-//! A device of Vulkan with the validation layers on, and what is made on it until it is dropped.
+//! A Vulkan device with validation layers, and the objects created on it.
 
 #![allow(unsafe_code, reason = "Vulkan has no safe calls")]
 
@@ -6,13 +6,13 @@ use ash::vk;
 use std::ffi::{CStr, c_void};
 use std::sync::Mutex;
 
-/// What goes wrong on the way to the device; what the layers say is told apart.
+/// Error of a Vulkan call; messages of the layers are separate.
 pub type Trouble = Box<dyn std::error::Error>;
 
-/// What the layers said that is an error.
+/// Error messages of the layers.
 type Told = Mutex<Vec<String>>;
 
-/// Something that is destroyed with the device, last made first.
+/// An object that is destroyed with the device, in reverse order of creation.
 #[derive(Clone, Copy, Debug)]
 pub enum Object {
     Memory(vk::DeviceMemory),
@@ -30,7 +30,7 @@ pub enum Object {
     Semaphore(vk::Semaphore),
 }
 
-/// An open device, one queue, and the layers.
+/// An open device with one queue, and the layers.
 pub struct Device {
     _entry: ash::Entry,
     instance: ash::Instance,
@@ -42,14 +42,14 @@ pub struct Device {
     pub memory: vk::PhysicalDeviceMemoryProperties,
     pub name: String,
     pub formats: Box<dyn Fn(vk::Format) -> vk::FormatFeatureFlags>,
-    /// Behind a box of its own, to which the messenger points.
+    /// A leaked box to which the messenger points.
     told: *mut Told,
     made: Mutex<Vec<Object>>,
 }
 
 const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
-/// Keeps the errors.
+/// Stores error messages.
 unsafe extern "system" fn keep(
     _: vk::DebugUtilsMessageSeverityFlagsEXT,
     _: vk::DebugUtilsMessageTypeFlagsEXT,
@@ -67,10 +67,10 @@ unsafe extern "system" fn keep(
 }
 
 impl Device {
-    /// The first device that has what a replay asks for, hardware before software.
+    /// Opens the first suitable device, hardware before software.
     ///
     /// # Errors
-    /// Why there is none: as a reason to skip.
+    /// Reason that no device is suitable, for a skip.
     pub fn open() -> Result<Self, Trouble> {
         // SAFETY: the loader of the system is a library that may be loaded; everything made is destroyed in `drop`, in an order
         // that Vulkan allows, and every structure lives as long as the call that reads it.
@@ -140,12 +140,12 @@ impl Device {
         }
     }
 
-    /// Destroys `object` with the device, or when it is told to clear.
+    /// Destroys `object` with the device, or on `clear`.
     pub fn keep(&self, object: Object) {
         self.made.lock().expect("nothing panics with it").push(object);
     }
 
-    /// Destroys everything made so far, when the queue is done.
+    /// Waits for the queue, and destroys all objects created so far.
     pub fn clear(&self) {
         let mut made = self.made.lock().expect("nothing panics with it");
         // SAFETY: each object is of this device and here once, no command uses it, and what was made of others goes first.
@@ -172,14 +172,14 @@ impl Device {
         }
     }
 
-    /// What the layers said since this was asked last.
+    /// Returns the layers' messages since the last call.
     pub fn told(&self) -> Vec<String> {
         // SAFETY: it is freed in `drop` alone.
         let told = unsafe { &*self.told };
         std::mem::take(&mut *told.lock().expect("nothing panics with it"))
     }
 
-    /// Memory of the device's own of one of these types.
+    /// Allocates device memory of one of these types.
     pub fn allocate(&self, bytes: u64, types: u32) -> Result<vk::DeviceMemory, Trouble> {
         let known = self.memory.memory_types_as_slice().iter().enumerate();
         let own = |flags: vk::MemoryPropertyFlags| {

@@ -11,27 +11,27 @@ use framegraph::{
 use framegraph_queues::Memory;
 use std::collections::BTreeMap;
 
-/// What a resource is on the device.
+/// Vulkan object of a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Thing {
     Image(vk::Image),
     Buffer(vk::Buffer),
 }
 
-/// Everything that the stream has made.
+/// Objects created by the stream.
 #[derive(Debug, Default)]
 pub struct Objects {
-    /// Memory and bytes of the heap of textures and of that of buffers.
+    /// Memory of the heaps of textures and of buffers.
     heaps: [Option<vk::DeviceMemory>; 2],
     slots: BTreeMap<SlotId, Thing>,
-    /// The images of each history, by the one that the frame writes.
+    /// Images of each history, by the resource that the frame writes.
     rings: BTreeMap<ResourceId, Vec<Thing>>,
     things: BTreeMap<ResourceId, Thing>,
-    /// Frames so far: histories turn by one each.
+    /// Number of frames so far, by which histories rotate.
     pub frame: usize,
 }
 
-/// Heaps end on a page, so that the last tenant has the bytes that its driver rounds it up to.
+/// Heaps end at a page, so that the last resource has the size its driver rounds up to.
 const PAGE: u64 = 65536;
 
 impl Objects {
@@ -78,7 +78,7 @@ impl Objects {
         Ok(())
     }
 
-    /// The images of the history that `id` is one of.
+    /// Creates the images of the history that `id` belongs to.
     fn ring(&mut self, device: &Device, plan: &Plan, id: ResourceId) -> Result<(), Trouble> {
         let graph = plan.graph();
         let current = current(plan, id);
@@ -102,7 +102,7 @@ impl Objects {
         Ok(())
     }
 
-    /// What `id` is in this frame.
+    /// Returns the object of `id` in this frame.
     pub fn of(&self, plan: &Plan, id: ResourceId) -> Result<Thing, Trouble> {
         let age = match plan.graph().resources()[id.index()].kind {
             Kind::HistoryPrevious { age, .. } => usize::from(age),
@@ -116,7 +116,7 @@ impl Objects {
     }
 }
 
-/// The resource that a history writes, or the resource itself.
+/// Returns the resource that a history writes, or the resource itself.
 fn current(plan: &Plan, id: ResourceId) -> ResourceId {
     match plan.graph().resources()[id.index()].kind {
         Kind::HistoryPrevious { current, .. } => current,
@@ -124,7 +124,7 @@ fn current(plan: &Plan, id: ResourceId) -> ResourceId {
     }
 }
 
-/// The shape with the format and the extent that it is made in.
+/// Returns the description with resolved format and size.
 pub fn shaped(plan: &Plan, id: ResourceId) -> Desc {
     match (plan.graph().resources()[id.index()].desc, plan.format(id)) {
         (Desc::Texture(desc), Some(format)) => Desc::Texture(desc.format(format)),
@@ -134,7 +134,7 @@ pub fn shaped(plan: &Plan, id: ResourceId) -> Desc {
 
 fn make(device: &Device, plan: &Plan, id: ResourceId) -> Result<Thing, Trouble> {
     let row = &plan.resources()[id.index()];
-    // The owner of an import made it for what it does with it, too.
+    // The owner of an imported resource declared its own usage too.
     let left = match plan.graph().resources()[id.index()].kind {
         Kind::Imported { entry: Entry::Left { state, .. }, .. } => state,
         _ => State::Undefined,
@@ -156,7 +156,7 @@ fn described(device: &Device, plan: &Plan, desc: Desc, usage: Usage, views: bool
         Desc::Texture(desc) => return Ok(Thing::Image(image(device, plan, &desc, usage, views)?)),
         Desc::Buffer(desc) => desc,
     };
-    // What nothing uses still is made.
+    // Unused resources are created too.
     let more = if buffer_usage(usage).is_empty() { vk::BufferUsageFlags::TRANSFER_DST } else { buffer_usage(usage) };
     let info = vk::BufferCreateInfo::default().size(desc.bytes(plan.frame()).max(4)).usage(more);
     // SAFETY: the size is not 0 and the uses are not none.
@@ -209,12 +209,12 @@ fn image(
     Ok(image)
 }
 
-/// The format in Vulkan.
+/// Returns the format in Vulkan.
 pub fn known(of: Format) -> Result<vk::Format, Trouble> {
     Ok(format(of).ok_or_else(|| format!("{of:?} is not replayed"))?)
 }
 
-/// What the driver asks for the memory of a resource.
+/// Returns the driver's memory requirements of a resource.
 pub fn asked(device: &Device, plan: &Plan, id: ResourceId) -> Result<vk::MemoryRequirements, Trouble> {
     Ok(needs(device, make(device, plan, id)?))
 }
@@ -240,7 +240,7 @@ fn bind(device: &Device, thing: Thing, memory: vk::DeviceMemory, offset: u64) ->
     Ok(())
 }
 
-/// Gives it memory of its own.
+/// Allocates separate memory for an object.
 fn apart(device: &Device, thing: Thing) -> Result<(), Trouble> {
     let needs = needs(device, thing);
     bind(device, thing, device.allocate(needs.size, needs.memory_type_bits)?, 0)

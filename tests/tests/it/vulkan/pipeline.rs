@@ -9,7 +9,7 @@ use crate::vulkan::states::{color_slot, load, planes, store};
 use ash::vk;
 use framegraph::{AccessKind, Aspect, PassId, PassKind, Plan, Role, StepId};
 
-/// A pipeline, with how it is bound.
+/// A pipeline with its layouts.
 #[derive(Clone, Copy, Debug)]
 pub struct Pipeline {
     pub raw: vk::Pipeline,
@@ -17,7 +17,8 @@ pub struct Pipeline {
     pub set: vk::DescriptorSetLayout,
 }
 
-/// The render pass of a step, whose attachments are in these layouts before, in and behind it: the stream's barriers alone move them.
+/// Creates the render pass of a step. Attachments keep these layouts before, in and after it, since only the stream's
+/// barriers change them.
 pub fn render_pass(
     device: &Device,
     plan: &Plan,
@@ -77,7 +78,7 @@ pub fn render_pass(
     Ok(made)
 }
 
-/// The pipeline of a pass: raster with the render pass of its step.
+/// Creates the pipeline of a pass; raster passes use the render pass of their step.
 pub fn pipeline(
     device: &Device,
     plan: &Plan,
@@ -141,7 +142,7 @@ fn raster(
         input = input.vertex_binding_descriptions(&bindings).vertex_attribute_descriptions(&attributes);
     }
     let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(vk::PrimitiveTopology::TRIANGLE_LIST);
-    // A few texels: what is waited for does not depend on how many are drawn.
+    // A few texels, since synchronization does not depend on their number.
     let side = 4;
     let viewports = [vk::Viewport { width: side as f32, height: side as f32, max_depth: 1.0, ..Default::default() }];
     let scissors = [vk::Rect2D { extent: vk::Extent2D { width: side, height: side }, ..Default::default() }];

@@ -1,4 +1,4 @@
-//! An executor that knows a plan's tables and its stream, and nothing of graphs: each command becomes calls of Vulkan.
+//! A replayer that knows a plan's tables and its stream, but no graph: each command becomes Vulkan calls.
 
 #![allow(unsafe_code, reason = "Vulkan has no safe calls")]
 
@@ -11,29 +11,29 @@ use framegraph::{Barrier, Desc, Dimension, Entry, Format, Kind, Plan, ResourceId
 use framegraph_queues::{Command, QueueId};
 use std::collections::BTreeMap;
 
-/// Commands that are being recorded for one queue.
+/// Commands being recorded for one queue.
 struct Lane {
     commands: vk::CommandBuffer,
     waits: Vec<vk::Semaphore>,
-    /// Nothing is recorded yet.
+    /// True if nothing is recorded yet.
     fresh: bool,
 }
 
-/// A stream on its way to the device. All queues of the plan are the device's one: what is ordered by semaphores alone is still
-/// submitted, signalled and waited for as the stream says.
+/// A stream being executed. All queues of the plan map to one device queue; semaphores are still submitted, signaled
+/// and waited for as in the stream.
 pub struct Replay<'a> {
     device: &'a Device,
     plan: &'a Plan,
     objects: Objects,
     works: Works,
-    /// The layout of each part of each image, as the stream has left it.
+    /// Current layout of each part of each image.
     layouts: BTreeMap<(Thing, u32), vk::ImageLayout>,
     lanes: BTreeMap<QueueId, Lane>,
     semaphores: BTreeMap<u32, vk::Semaphore>,
     pool: vk::CommandPool,
-    /// The step that is open, by queue.
+    /// Open step of each queue.
     open: BTreeMap<QueueId, usize>,
-    /// Passes, barriers and submissions so far.
+    /// Numbers of passes, barriers and submissions so far.
     pub passes: usize,
     pub barriers: usize,
     pub submissions: usize,
@@ -61,7 +61,7 @@ impl<'a> Replay<'a> {
         })
     }
 
-    /// Runs a frame to its end. What the stream makes is made by the first.
+    /// Executes a frame and waits for it. The first frame creates the stream's objects.
     pub fn frame(&mut self, commands: &[Command]) -> Result<(), Trouble> {
         let is_made = |command: &Command| matches!(command, Command::Heap { .. } | Command::Create { .. });
         if self.objects.frame == 0 {
@@ -81,7 +81,7 @@ impl<'a> Replay<'a> {
     fn run(&mut self, command: &Command) -> Result<(), Trouble> {
         match *command {
             Command::Heap { of_buffers, bytes } => self.objects.heap(self.device, self.plan, of_buffers, bytes),
-            // All queues are of one family, so that concurrent use asks for nothing.
+            // All queues belong to one family, so concurrent use needs nothing.
             Command::Create { resource, memory, concurrent: _ } => {
                 self.objects.create(self.device, self.plan, resource, memory)
             }
@@ -99,7 +99,7 @@ impl<'a> Replay<'a> {
                 self.lanes.entry(queue).and_modify(|lane| lane.waits.push(wait));
                 Ok(())
             }
-            // All queues are of one family, which owns everything.
+            // All queues belong to one family, so ownership needs no transfer.
             Command::Release { .. } | Command::Acquire { .. } => Ok(()),
             Command::HandOver { queue, .. } => self.wait_for_all(queue),
             Command::Barrier { queue, barrier, behind_semaphore } => {
@@ -132,7 +132,7 @@ impl<'a> Replay<'a> {
         }
     }
 
-    /// The owner's part before a frame: what is defined on entry is in a layout, that which is said where one is.
+    /// Acts as the owner of imported resources: puts defined contents into the layout that the plan expects on entry.
     fn enter(&mut self) -> Result<(), Trouble> {
         let graph = self.plan.graph();
         for id in graph.resource_ids() {
@@ -169,7 +169,7 @@ impl<'a> Replay<'a> {
         Ok(())
     }
 
-    /// The level, layer and plane of a part.
+    /// Returns level, layer and plane of a part.
     fn part(&self, id: ResourceId, part: u32) -> Result<vk::ImageSubresourceRange, Trouble> {
         let Desc::Texture(desc) = self.plan.graph().resources()[id.index()].desc else {
             return Err("a buffer has no parts in a layout".into());
@@ -194,7 +194,7 @@ impl<'a> Replay<'a> {
         let to_stages = stages(row.to_stages, vk::PipelineStageFlags::BOTTOM_OF_PIPE);
         let (reads, writes) = accesses(row.to_stages, row.to);
         let from = if row.hand_over.is_none() { row.from } else { State::Undefined };
-        // A semaphore has waited for the other queue, in front of all stages: the barrier follows on those that it names.
+        // A semaphore wait at all stages precedes, so the barrier depends on the stages that it names.
         let (from_stages, (_, from_writes)) = match behind_semaphore {
             true => (to_stages, Default::default()),
             false => (stages(row.from_stages, vk::PipelineStageFlags::TOP_OF_PIPE), accesses(row.from_stages, from)),
@@ -216,7 +216,7 @@ impl<'a> Replay<'a> {
             let change = vk::BufferMemoryBarrier::default().buffer(buffer).size(vk::WHOLE_SIZE);
             buffers.push(change.src_access_mask(from_writes).dst_access_mask(reads | writes));
         }
-        // What others wrote into this memory.
+        // Writes of other resources in this memory.
         let memory = [vk::MemoryBarrier::default().src_access_mask(from_writes).dst_access_mask(reads | writes)];
         let memory = if row.hand_over.is_none() { &[] } else { &memory[..] };
         let commands = self.record(queue)?;
@@ -228,7 +228,7 @@ impl<'a> Replay<'a> {
         Ok(())
     }
 
-    /// Everything that the queue was given is over, and written, before it goes on.
+    /// Waits until the queue has finished and its writes are visible.
     fn wait_for_all(&mut self, queue: QueueId) -> Result<(), Trouble> {
         let all = vk::PipelineStageFlags::ALL_COMMANDS;
         let (reads, writes) = (vk::AccessFlags::MEMORY_READ, vk::AccessFlags::MEMORY_WRITE);
@@ -253,7 +253,7 @@ impl<'a> Replay<'a> {
         Ok(made)
     }
 
-    /// The commands of a queue, to record into.
+    /// Returns the command buffer of a queue.
     fn record(&mut self, queue: QueueId) -> Result<vk::CommandBuffer, Trouble> {
         let commands = self.lane(queue)?;
         self.lanes.entry(queue).and_modify(|lane| lane.fresh = false);
@@ -276,7 +276,7 @@ impl<'a> Replay<'a> {
         Ok(commands)
     }
 
-    /// Submits what was recorded for a queue.
+    /// Submits the recorded commands of a queue.
     fn submit(&mut self, queue: QueueId, signal: Option<vk::Semaphore>) -> Result<(), Trouble> {
         let lane = self.lanes.remove(&queue).ok_or("nothing was recorded")?;
         let (commands, signals): (_, Vec<_>) = ([lane.commands], signal.into_iter().collect());
@@ -296,7 +296,7 @@ impl<'a> Replay<'a> {
     }
 }
 
-/// A transition of some parts that waits for nothing by itself.
+/// Records a layout transition of some parts, without dependencies of its own.
 fn moved(
     image: vk::Image,
     range: vk::ImageSubresourceRange,

@@ -1,4 +1,4 @@
-//! A shader that does to each resource what its pass says: reads what is read, writes what is written.
+//! Shaders that perform the declared accesses of a pass: they read and write its resources.
 
 use crate::vulkan::device::Trouble;
 use ash::vk;
@@ -8,25 +8,25 @@ use framegraph::{
 use naga::back::spv;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-/// What one binding shows of which resource.
+/// Resource and subresource of a binding.
 #[derive(Clone, Debug)]
 pub struct Bound {
     pub kind: vk::DescriptorType,
     pub resource: ResourceId,
-    /// The levels, layers and planes, or the bytes: exactly what is touched.
+    /// Exactly the accessed levels, layers and planes, or bytes.
     pub range: Range,
-    /// A view of layers, even of one.
+    /// True for an array view, even of one layer.
     pub arrayed: bool,
 }
 
-/// A shader, and what it is bound to: binding numbers are indices.
+/// A shader with its bindings; binding numbers are indices.
 #[derive(Debug)]
 pub struct PassShader {
     pub text: String,
     pub bound: Vec<Bound>,
 }
 
-/// The shader of a raster or compute pass. `colors` are the formats of the step's color attachments by slot.
+/// Creates the shader of a raster or compute pass. `colors` has the formats of the step's color attachments by slot.
 pub fn shader(plan: &Plan, pass: PassId) -> Result<PassShader, Trouble> {
     let (graph, kind) = (plan.graph(), plan.graph().passes()[pass.index()].kind);
     let mut shader = PassShader { text: String::new(), bound: Vec::new() };
@@ -60,7 +60,7 @@ pub fn shader(plan: &Plan, pass: PassId) -> Result<PassShader, Trouble> {
                 });
             }
             (AccessKind::StorageRead | AccessKind::StorageWrite, Some(texture)) => {
-                // A view of a storage texture has one level.
+                // A storage texture view has one level.
                 for mip in access.range.mip_range(texture.mip_count(plan.frame())) {
                     let (number, written) = (shader.bound.len(), access.kind == AccessKind::StorageWrite);
                     let (ty, at, value) = stored(plan, access, texture, written);
@@ -120,7 +120,7 @@ fn raster(reads: &str, writes: &str, outputs: &str, colors: &str, vertices: bool
     )
 }
 
-/// Layers that an access sees: 1 of a three-dimensional texture.
+/// Returns the number of layers of an access; 1 for three-dimensional textures.
 pub fn layers(access: &Access, texture: &TextureDesc) -> u32 {
     match texture.dimension {
         Dimension::D2 => access.range.layer_range(texture.layers.into()).len() as u32,
@@ -151,7 +151,7 @@ fn sampled(plan: &Plan, access: &Access, texture: &TextureDesc, number: usize) -
     Ok((ty + &of, format!("f32(textureLoad(t{number}, {at}, 0){first})")))
 }
 
-/// The type of a storage texture, a place in it, and what is stored there.
+/// Returns the type of a storage texture, a coordinate in it, and a value to store.
 fn stored(plan: &Plan, access: &Access, texture: &TextureDesc, written: bool) -> (String, &'static str, &'static str) {
     let format = plan.format(access.resource).unwrap_or(texture.format);
     let word = if written { "write" } else { "read" };
@@ -168,13 +168,13 @@ fn stored(plan: &Plan, access: &Access, texture: &TextureDesc, written: bool) ->
     (format!("texture_storage_{dimension}<{}, {word}>", format!("{format:?}").to_lowercase()), at, value)
 }
 
-/// The words of SPIR-V of a text.
+/// Compiles a WGSL text to SPIR-V.
 pub fn spirv(text: &str) -> Result<Vec<u32>, Trouble> {
     let module = naga::front::wgsl::parse_str(text).map_err(|e| format!("{}\n{text}", e.emit_to_string(text)))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::all())
         .validate(&module)
         .map_err(|e| format!("{}\n{text}", e.emit_to_string(text)))?;
-    // Clip space is turned over otherwise, which is of no matter here.
+    // The vertical flip of clip space is irrelevant here.
     let options = spv::Options { lang_version: (1, 3), flags: spv::WriterFlags::empty(), ..spv::Options::default() };
     Ok(spv::write_vec(&module, &info, &options, None).map_err(|e| format!("{e}\n{text}"))?)
 }

@@ -1,9 +1,9 @@
-//! What the words of a plan are in Vulkan: formats, layouts, stages and accesses.
+//! Conversion of a plan's enumerations to Vulkan: formats, layouts, stages and accesses.
 
 use ash::vk;
 use framegraph::{Aspect, Format, LoadOp, Role, Stages, State, StoreOp, Usage};
 
-/// The format of the same name; none where these tests need none.
+/// Returns the corresponding format; `None` if these tests do not need it.
 pub fn format(format: Format) -> Option<vk::Format> {
     Some(match format {
         Format::R8Unorm => vk::Format::R8_UNORM,
@@ -32,7 +32,7 @@ pub fn format(format: Format) -> Option<vk::Format> {
     })
 }
 
-/// The planes of `aspect`.
+/// Returns the planes of `aspect`.
 pub fn planes(format: Format, aspect: Aspect) -> vk::ImageAspectFlags {
     let depth = format.has_depth() && aspect != Aspect::Stencil;
     let stencil = format.has_stencil() && aspect != Aspect::Depth;
@@ -44,7 +44,7 @@ pub fn planes(format: Format, aspect: Aspect) -> vk::ImageAspectFlags {
     }
 }
 
-/// The layout of an image in a state. `Entry` is whatever the executor knows.
+/// Returns the layout of an image in a state; `Entry` depends on the replayer.
 pub fn layout(state: State) -> vk::ImageLayout {
     match state {
         State::Undefined => vk::ImageLayout::UNDEFINED,
@@ -81,14 +81,14 @@ const STAGES: [(Stages, vk::PipelineStageFlags); 7] = [
     (Stages::INDIRECT, vk::PipelineStageFlags::DRAW_INDIRECT),
 ];
 
-/// The stages; `none` where there are none.
+/// Converts stages; an empty set becomes `none`.
 pub fn stages(stages: Stages, none: vk::PipelineStageFlags) -> vk::PipelineStageFlags {
     let known = STAGES.iter().filter(|(stage, _)| stages.contains(*stage));
     let all = known.fold(vk::PipelineStageFlags::empty(), |all, (_, flags)| all | *flags);
     if all.is_empty() { none } else { all }
 }
 
-/// What stages may do to a resource in a state, as readers and as writers.
+/// Returns the read and write accesses of stages for a resource in a state.
 pub fn accesses(stages: Stages, state: State) -> (vk::AccessFlags, vk::AccessFlags) {
     let (mut reads, mut writes) = (vk::AccessFlags::empty(), vk::AccessFlags::empty());
     let has = |stage| stages.contains(stage);
@@ -128,7 +128,7 @@ pub fn accesses(stages: Stages, state: State) -> (vk::AccessFlags, vk::AccessFla
     (reads, writes)
 }
 
-/// The uses of an image.
+/// Converts the usage of an image.
 pub fn image_usage(usage: Usage, format: Format) -> vk::ImageUsageFlags {
     let attachment = match format.is_depth_stencil() {
         true => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
@@ -148,7 +148,7 @@ pub fn image_usage(usage: Usage, format: Format) -> vk::ImageUsageFlags {
         .fold(vk::ImageUsageFlags::empty(), |all, (_, flag)| all | *flag)
 }
 
-/// The uses of a buffer.
+/// Converts the usage of a buffer.
 pub fn buffer_usage(usage: Usage) -> vk::BufferUsageFlags {
     let table = [
         (Usage::STORAGE, vk::BufferUsageFlags::STORAGE_BUFFER),
@@ -165,7 +165,7 @@ pub fn buffer_usage(usage: Usage) -> vk::BufferUsageFlags {
         .fold(vk::BufferUsageFlags::empty(), |all, (_, flag)| all | *flag)
 }
 
-/// How a load is said.
+/// Converts a load operation.
 pub fn load(op: LoadOp) -> vk::AttachmentLoadOp {
     match op {
         LoadOp::Load => vk::AttachmentLoadOp::LOAD,
@@ -174,7 +174,7 @@ pub fn load(op: LoadOp) -> vk::AttachmentLoadOp {
     }
 }
 
-/// How a store is said.
+/// Converts a store operation.
 pub fn store(op: StoreOp) -> vk::AttachmentStoreOp {
     match op {
         StoreOp::Store => vk::AttachmentStoreOp::STORE,
@@ -183,7 +183,7 @@ pub fn store(op: StoreOp) -> vk::AttachmentStoreOp {
     }
 }
 
-/// The slot of a color attachment.
+/// Returns the slot of a color attachment.
 pub fn color_slot(role: Role) -> Option<u8> {
     match role {
         Role::Color(slot) => Some(slot),

@@ -1,4 +1,5 @@
-//! Steps and passes: render passes as the plan's attachments say, and draws, dispatches and copies that touch what passes declare.
+//! Execution of steps and passes: render passes by the plan's attachments, and draws, dispatches and copies that
+//! perform the declared accesses.
 
 #![allow(unsafe_code, reason = "Vulkan has no safe calls")]
 
@@ -14,19 +15,19 @@ use framegraph::{
 };
 use std::collections::BTreeMap;
 
-/// What was made for steps and passes, once.
+/// Cached objects of steps and passes.
 #[derive(Debug, Default)]
 pub struct Works {
     render_passes: BTreeMap<usize, vk::RenderPass>,
     pipelines: BTreeMap<PassId, (pipeline::Pipeline, Vec<Bound>)>,
 }
 
-/// The layout that a part of an image is in.
+/// Function that returns the current layout of an image's part.
 pub trait Layouts: Fn(Thing, u32) -> vk::ImageLayout {}
 impl<F: Fn(Thing, u32) -> vk::ImageLayout> Layouts for F {}
 
 impl Works {
-    /// Whether the step is a render pass.
+    /// Returns true if the step is a render pass.
     pub fn ends(&self, plan: &Plan, step: StepId) -> bool {
         plan.steps()[step.index()].kind == PassKind::Raster
     }
@@ -240,7 +241,7 @@ fn clear(plan: &Plan, attachment: &Attachment) -> vk::ClearValue {
     }
 }
 
-/// A view of exactly these parts. Attachments have every plane, and what is sampled one.
+/// Creates a view of exactly these parts. Attachments include every plane, sampled views one.
 fn view(
     device: &Device,
     plan: &Plan,
@@ -278,7 +279,7 @@ fn view(
     Ok(made)
 }
 
-/// Reads what a copy reads into bytes of their own, and fills what it writes.
+/// Copies a pass's sources into a scratch buffer, and fills its destinations.
 fn copy(
     device: &Device,
     plan: &Plan,

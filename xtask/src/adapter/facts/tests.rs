@@ -83,7 +83,7 @@ fn a_manifest_found_twice_counts_once() {
 }
 
 #[test]
-fn device_files_are_told_apart() {
+fn device_files_are_distinguished() {
     let devices = |files| read(files, &[]).devices;
     assert!(devices(&[("/dev/nvidia0", "")]).nvidia);
     // The control files exist without any card.

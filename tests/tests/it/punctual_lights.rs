@@ -1,4 +1,4 @@
-//! Lights that stand somewhere: cones, ranges, distances, and an eye that is far from the world's origin.
+//! Punctual lights: cones, ranges, distances, and an eye far from the world's origin.
 
 use crate::stage::{gpu, lighting};
 use framegraph_passes::Shading;
@@ -17,10 +17,11 @@ const ALBEDO: DVec3 = DVec3::new(0.9, 0.7, 0.5);
 const NORMAL: DVec3 = DVec3::new(0.36, -0.48, 0.8);
 const TANGENT: DVec3 = DVec3::new(0.8, 0.6, 0.0);
 const COLOR: DVec3 = DVec3::new(1.0, 0.5, 0.25);
-/// A spot's half angles in radians, which no other number here is near.
+/// Half angles of a spot light in radians, unlike any other number here.
 const CONES: [f64; 2] = [0.5, 0.9];
 
-/// Illuminance of a lamp over π on a surface that faces it, by KHR_lights_punctual; `axis` is a spot's.
+/// Returns the illuminance of a light over π on a surface that faces it, by KHR_lights_punctual; `axis` is that of a
+/// spot light.
 fn over_pi(candela: f64, range_m: Option<f64>, axis: Option<DVec3>, to_lamp: DVec3) -> f64 {
     let distance = to_lamp.length();
     let window = range_m.map_or(1.0, |range| (1.0 - (distance / range).powi(4)).clamp(0.0, 1.0));
@@ -53,7 +54,7 @@ impl Lamp {
     }
 }
 
-/// Cards of chalk and of metal in a row, so that a lamp over the middle of it has them under every angle.
+/// Creates a row of white and metal cards below a light, which sees them at every angle.
 fn row(eye: Eye, origin: DVec3) -> (Board, Vec<Surface>) {
     let mut board = Board { eye, origin, ..Board::default() };
     let none = Some(Specular { factor: 0.0, ..Specular::default() });
@@ -70,7 +71,7 @@ fn row(eye: Eye, origin: DVec3) -> (Board, Vec<Surface>) {
     (board, surfaces)
 }
 
-/// Every card under every lamp alone is what the formulas say, seen from an eye at `origin`.
+/// Compares each card under each light with the formulas, seen from an eye at `origin`.
 fn check(name: &str, eye: Eye, origin: DVec3) -> TestResult {
     let Some(gpu) = gpu(name) else { return Ok(()) };
     let shading = Shading { compensate_punctual: false, ..Shading::default() };
@@ -93,13 +94,13 @@ fn check(name: &str, eye: Eye, origin: DVec3) -> TestResult {
         for (index, surface) in surfaces.iter().enumerate() {
             let to_lamp = origin + lamp.at - board.middle(index);
             let share = over_pi(lamp.candela, lamp.range_m, lamp.axis, to_lamp);
-            let expected = COLOR * surface.per_lamp(board.toward_viewer(index), to_lamp.normalize()) * share;
-            // Half floats, and where an edge of a cone or range lies within a card the middle alone is seen.
+            let expected = COLOR * surface.per_light(board.toward_viewer(index), to_lamp.normalize()) * share;
+            // Half floats; at the edge of a cone or range, only the center of a card is exact.
             let apart = (seen[index].nits - expected).abs() - 3e-3 * expected;
             assert!(apart.max_element() < 3e-4, "{what}, card {index}: {} for {expected}", seen[index].nits);
             lit += usize::from(expected.x > 0.01);
         }
-        // Some lie within the cone and range, and some outside of them.
+        // Some cards are inside the cone and range, and some outside.
         assert!(lit > 4 && (lamp.range_m.is_none() && lamp.axis.is_none() || lit < 20), "{what}: {lit} are lit");
     }
     Ok(())
@@ -110,18 +111,18 @@ fn cones_and_ranges_are_those_of_the_specification() -> TestResult {
     check("cones_and_ranges_are_those_of_the_specification", Eye::Parallel, DVec3::ZERO)
 }
 
-/// In single precision a hundred kilometers have steps of eight millimeters; what is sent is relative to the eye.
+/// At 100 km, f32 has steps of 8 mm; uploaded positions are relative to the eye.
 #[test]
 fn a_hundred_kilometers_from_the_origin_nothing_changes() -> TestResult {
     let origin = DVec3::new(1e5 + 0.123, -7e4 - 0.371, 9e4 + 0.777);
     check("a_hundred_kilometers_from_the_origin_nothing_changes", Eye::Perspective, origin)
 }
 
-/// Filament's choices: the range window squared, and lights that fade with the distance from the eye.
+/// Filament's options: squared range window, and lights that fade with the distance from the eye.
 #[test]
 fn filaments_window_and_far_fade_are_options() -> TestResult {
     let Some(gpu) = gpu("filaments_window_and_far_fade_are_options") else { return Ok(()) };
-    // Cards are five to eleven meters from the eye: the fade is over within the row.
+    // Cards are 5 to 11 m from the eye, so the fade ends within the row.
     let (range_m, far_m) = (9.0_f64, 9.6_f64);
     let plain = Shading { compensate_punctual: false, ..Shading::default() };
     let shading = Shading { light_window: LightWindow::Filament, light_fade_m: Some(far_m as f32), ..plain };
@@ -137,8 +138,8 @@ fn filaments_window_and_far_fade_are_options() -> TestResult {
         let window = (1.0 - (to_lamp.length() / range_m).powi(4)).clamp(0.0, 1.0);
         let fade = (5.0 - 5.0 * ((middle - board.camera_m()).length() / far_m).powi(2)).clamp(0.0, 1.0);
         let share = over_pi(lamp.candela, lamp.range_m, None, to_lamp) * window * fade;
-        let expected = COLOR * surface.per_lamp(board.toward_viewer(index), to_lamp.normalize()) * share;
-        // Half floats, and the middle of a card stands for all of it where the fade is steep.
+        let expected = COLOR * surface.per_light(board.toward_viewer(index), to_lamp.normalize()) * share;
+        // Half floats; the center of a card is compared, which is imprecise where the fade is steep.
         let apart = (seen[index].nits - expected).abs() - 3e-3 * expected;
         assert!(apart.max_element() < 2e-3, "card {index}: {} for {expected}, fade {fade}", seen[index].nits);
         full += usize::from(fade == 1.0 && window > 0.0 && expected.x > 0.01);
@@ -149,10 +150,10 @@ fn filaments_window_and_far_fade_are_options() -> TestResult {
     Ok(())
 }
 
-/// Lamps add up; a directional lamp beside the sun is one of them, and color is theirs.
+/// Lights add up, also a directional light beside the sun, and colors are applied.
 #[test]
-fn lamps_add_up() -> TestResult {
-    let Some(gpu) = gpu("lamps_add_up") else { return Ok(()) };
+fn lights_add_up() -> TestResult {
+    let Some(gpu) = gpu("lights_add_up") else { return Ok(()) };
     let shading = Shading { compensate_punctual: false, ..Shading::default() };
     let (mut board, surfaces) = row(Eye::Perspective, DVec3::new(3.0, 4.0, -5.0));
     let toward = [DVec3::new(0.6, 0.0, 0.8), DVec3::new(-0.48, 0.36, 0.8)];
@@ -166,9 +167,9 @@ fn lamps_add_up() -> TestResult {
     for (index, surface) in surfaces.iter().enumerate() {
         let view = board.toward_viewer(index);
         let to_point = board.origin + point.at - board.middle(index);
-        let expected = surface.per_lamp(view, toward[0]) * DVec3::Y * 2.0
-            + surface.per_lamp(view, toward[1]) * DVec3::X
-            + COLOR * surface.per_lamp(view, to_point.normalize()) * over_pi(30.0, None, None, to_point);
+        let expected = surface.per_light(view, toward[0]) * DVec3::Y * 2.0
+            + surface.per_light(view, toward[1]) * DVec3::X
+            + COLOR * surface.per_light(view, to_point.normalize()) * over_pi(30.0, None, None, to_point);
         let apart = (seen[index].nits - expected).abs() - 3e-3 * expected;
         assert!(apart.max_element() < 3e-4, "card {index}: {} for {expected}", seen[index].nits);
     }
