@@ -11,7 +11,7 @@
 //! | `prepass` | `prepass`, `velocity`, where they are drawn | | depth, velocity |
 //! | `color` | `color` | depth if it was drawn, shadow maps, structure, ambient occlusion, reflections | radiance, depth |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
-//! | `transparent` | `transparent` | all of these | radiance, depth |
+//! | `transparent` | `transparent`; `blended/…` where blended surfaces need no order | all of these | radiance, depth |
 //! | `resolve` | `tone_resolve` | samples of radiance | radiance |
 //! | `taa` | `depth_resolve`, `taa`, `taa_sharpen` | radiance, depth, what the frames before came to | radiance |
 //! | `measure` | `measure/light`, `measure/depth`, `measure/smaller` | radiance, depth | what is read back of them |
@@ -24,6 +24,7 @@
 //! All stages are there whatever the settings are; one that a frame does not need declares nothing.
 
 mod before;
+mod blended;
 mod glass;
 mod lens;
 mod picture;
@@ -49,12 +50,14 @@ use crate::surface::HDR_FORMAT;
 use crate::taa::{TaaSettings, temporal};
 use crate::tone_resolve::ToneResolve;
 use crate::transmission::{MOST_GLASS_LAYERS, scene_levels};
+use crate::transparency::Transparency;
 use crate::upload::GpuScene;
 use crate::upscale::{Upscale, enlarge};
 use crate::view::Views;
 use before::{occlusion, prepass, reflection};
+use blended::blended;
 use framegraph::{Extent, Format, Target, Texture};
-use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
+use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene, TransparencyMode};
 use framegraph_wgpu::{Frame, StoreRounding};
 use glass::{Glass, scene, transparent};
 use lens::{bloom, dof, mix_of};
@@ -118,6 +121,11 @@ pub struct Settings {
     /// Some surface blends: the color pass then says so, and cannot be graded in place.
     #[cfg_attr(feature = "files", serde(skip))]
     pub blended: bool,
+    /// Some blended surface writes depth ([`TransparencyMode::TwoPassesOneSide`](framegraph_scene::TransparencyMode)).
+    #[cfg_attr(feature = "files", serde(skip))]
+    pub blended_depth: bool,
+    /// How blended surfaces are put in order.
+    pub transparency: Transparency,
     /// Levels of the picture that transmissive surfaces show what is behind them with, at most as many as
     /// [`scene_levels`] of the frame's size; 0: no surface transmits.
     #[cfg_attr(feature = "files", serde(skip))]
@@ -179,6 +187,8 @@ impl Settings {
         bloom: None,
         size_texels: [1280, 720],
         blended: false,
+        blended_depth: false,
+        transparency: Transparency::Sorted,
         scene_levels: 0,
         glass_layers: 1,
         moving: false,
@@ -200,6 +210,7 @@ impl Settings {
         let transmits = scene.lobes().contains(Lobe::Transmission);
         Self {
             blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
+            blended_depth: scene.materials.iter().any(|m| m.transparency == TransparencyMode::TwoPassesOneSide),
             scene_levels: if transmits { scene_levels(size_texels) } else { 0 },
             glass_layers: self.glass_layers.min(glass_instances(scene)),
             size_texels,
@@ -235,6 +246,16 @@ impl Settings {
     /// Whether depth is drawn before the color pass.
     fn draws_prepass(&self) -> bool {
         self.prepass || self.draws_velocity()
+    }
+
+    /// Whether blended surfaces have passes of their own.
+    fn draws_blended_apart(&self) -> bool {
+        self.blended && self.transparency.is_unordered()
+    }
+
+    /// How blended surfaces are put in order, where there are any.
+    fn declared_transparency(&self) -> Transparency {
+        if self.blended { self.transparency } else { Transparency::Sorted }
     }
 
     /// Size and levels of the structure: those that ambient occlusion wants, which shares it with what needs any.
@@ -288,7 +309,8 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         None => Stage::new("upscale", |_, _| Ok(())),
     };
     let Settings { samples, scene_levels, glass_layers, shading, fog, .. } = s;
-    let glass = Glass { levels: scene_levels, layers: glass_layers, samples, shading, fog };
+    let transparency = s.declared_transparency();
+    let glass = Glass { levels: scene_levels, layers: glass_layers, samples, shading, fog, transparency };
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, s.shadows, s.structure())),
         // Before the prepass, so that nothing comes between that and the color pass: they share a step.
@@ -303,7 +325,10 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         }),
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, s.scene_levels)),
-        Stage::new("transparent", move |frame, handles| transparent(frame, handles, &glass)),
+        Stage::new("transparent", move |frame, handles| {
+            transparent(frame, handles, &glass)?;
+            blended(frame, handles, &s)
+        }),
         Stage::new("resolve", move |frame, handles| resolve(frame, handles, s.tone_resolve && s.samples > 1)),
         Stage::new("taa", move |frame, handles| s.taa.as_ref().map_or(Ok(()), |own| temporal(frame, handles, own))),
         Stage::new("measure", move |frame, handles| measure(frame, handles, s.measure)),
@@ -336,10 +361,16 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         contact_shadows,
         samples,
         blended,
+        transparency: settings.declared_transparency(),
+        blended_depth: settings.blended_depth,
         opaque_only: scene_levels > 0,
         sky,
         format: hdr_format,
-        into: handles.find(Slot::HDR_HISTORY).map_or(Target::New, Target::from),
+        into: match handles.find(Slot::HDR_HISTORY) {
+            // The last pass over blended surfaces draws into it.
+            Some(history) if !settings.draws_blended_apart() => history.into(),
+            _ => Target::New,
+        },
         shading,
         fog,
     };

@@ -1,9 +1,10 @@
 //! Depth prepass: the depth of the visible surfaces, so that the color pass shades each pixel once.
 
 use crate::draw::{DepthDraw, SurfaceDraw};
+use crate::indirect::DrawList;
 use crate::program::{Interface, Programs};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS};
-use crate::view::{ViewId, Views};
+use crate::view::{GpuView, ViewId, Views};
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Record, RecordError};
@@ -11,7 +12,8 @@ use framegraph_wgpu::{Cx, Depth, Record, RecordError};
 /// Format of the depth attachment: 32-bit float, in which reversed Z spreads precision evenly over distance.
 pub const DEPTH_FORMAT: Format = Format::Depth32Float;
 
-static SHADER: Module<'static> = library::pass("pass/prepass.wgsl").unwrap();
+/// Draws depth.
+pub(crate) static PREPASS_SHADER: Module<'static> = library::pass("pass/prepass.wgsl").unwrap();
 
 static INTERFACE: Interface =
     Interface { groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &[SurfaceDraw::TRAITS] };
@@ -61,12 +63,28 @@ where
 {
     let views: &Views = world.as_ref();
     let view = views.get(view)?;
-    let draw = DepthDraw {
-        shader: &SHADER,
-        interface: &INTERFACE,
-        frame: &[Some(cx.uniform(&view.view.frame))],
-        depth: Depth::NEARER,
-        batches: &view.view.draws.depth,
-    };
-    draw.draw(view.instances(world.as_ref()), world.as_ref(), cx)
+    draw_batches(&view.view.draws.depth, view, world.as_ref(), world.as_ref(), cx)
+}
+
+/// Draws the depth of a list of a view's instances, whatever their alpha is.
+pub(crate) fn draw_depth_of(
+    list: &DrawList,
+    view: &GpuView,
+    scene: &GpuScene,
+    programs: &Programs,
+    cx: &mut Cx<'_>,
+) -> Result<(), RecordError> {
+    draw_batches(&[list.clone(), DrawList::default()], view, scene, programs, cx)
+}
+
+fn draw_batches(
+    batches: &[DrawList; 2],
+    view: &GpuView,
+    scene: &GpuScene,
+    programs: &Programs,
+    cx: &mut Cx<'_>,
+) -> Result<(), RecordError> {
+    let frame = &[Some(cx.uniform(&view.view.frame))];
+    let draw = DepthDraw { shader: &PREPASS_SHADER, interface: &INTERFACE, frame, depth: Depth::NEARER, batches };
+    draw.draw(view.instances(scene), programs, cx)
 }

@@ -79,7 +79,7 @@ pub use levels::InstanceLevels;
 pub use light::{Light, LightKind};
 pub use material::{
     AlphaMode, Anisotropy, ClearCoat, DiffuseTransmission, EmissiveUnit, Iridescence, Lobe, Lobes, Material,
-    MaterialId, Sheen, Specular, Transmission, Volume,
+    MaterialId, Sheen, Specular, Transmission, TransparencyMode, Volume,
 };
 pub use memory::Memory;
 pub use mesh::{Mesh, MeshError, MeshId, MeshLevel, Topology};

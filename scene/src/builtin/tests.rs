@@ -108,6 +108,6 @@ fn lobes_and_glass_call_for_what_they_show() {
 #[test]
 fn an_unknown_name_lists_the_known_ones() {
     let error = builtin("sphere\n").expect_err("no such scene").to_string();
-    assert!(error.contains("balls, columns, glass, lamps, lobes, materials, optics, spheres"), "{error}");
+    assert!(error.contains("balls, columns, glass, lamps, lobes, materials, optics, panes, spheres"), "{error}");
     assert!(!error.contains('\n'));
 }

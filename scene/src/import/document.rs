@@ -14,7 +14,8 @@ use crate::error::{SceneError, Unsupported};
 pub(super) struct Document {
     /// The document as schema types. Indices in it are unchecked.
     pub root: Root,
-    /// The document as JSON, for extensions that the schema types leave out.
+    /// The document as JSON, for extensions that the schema types leave out. Materials have the member `framegraph` of their
+    /// `extras` as a member of their own.
     pub json: Value,
 }
 
@@ -33,6 +34,7 @@ pub(super) fn parse(file: &Path, text: &[u8]) -> Result<Document, SceneError> {
     if let Some(version) = old_version(&json) {
         return Err(SceneError::Unsupported { file: file.into(), feature: Unsupported::GltfVersion(version) });
     }
+    let extras = own_extras(&json);
     tidy(&mut json);
     fill_in(&mut json);
     // The schema types would read a list as the fields of an object.
@@ -43,7 +45,19 @@ pub(super) fn parse(file: &Path, text: &[u8]) -> Result<Document, SceneError> {
         let path = error.path().to_string();
         malformed(if path == "." { error.inner().to_string() } else { format!("{path}: {}", error.inner()) })
     })?;
+    for (material, own) in objects(json.get_mut("materials")).zip(extras) {
+        if let Some(own) = own {
+            material.insert("framegraph".into(), own);
+        }
+    }
     Ok(Document { root, json })
+}
+
+/// What materials have for this renderer: the member `framegraph` of their `extras`, of each material in order.
+fn own_extras(json: &Value) -> Vec<Option<Value>> {
+    let materials = json.get("materials").and_then(Value::as_array);
+    let own = |material: &Value| Some(material.get("extras")?.get("framegraph")?.clone());
+    materials.into_iter().flatten().filter(|material| material.is_object()).map(own).collect()
 }
 
 /// The version of a document of glTF 1, which stores dictionaries where glTF 2 stores arrays.

@@ -15,7 +15,7 @@ use super::spec_gloss;
 use super::texture::{Reference, Roughness, Textures, TransformSource};
 use crate::error::{SceneError, one_line};
 use crate::material::MaterialId;
-use crate::material::{AlphaMode, EmissiveUnit, Material};
+use crate::material::{AlphaMode, EmissiveUnit, Material, TransparencyMode};
 use crate::texture::{Sampler, Texture, TextureRole, TextureSlot};
 
 /// The materials of a scene as primitives ask for them, each once.
@@ -154,6 +154,7 @@ impl<'a> Materials<'a> {
             normal_scale,
             occlusion_strength,
             alpha,
+            transparency: transparency_mode(source, index, &at, warnings),
             double_sided: json.double_sided,
             unlit,
             base_color_texture,
@@ -166,6 +167,22 @@ impl<'a> Materials<'a> {
         lobes::read(source, &at, json, &mut self.textures, warnings, &mut material)?;
         spec_gloss::read(source, &at, json, &mut self.textures, warnings, &mut material)?;
         Ok(material)
+    }
+}
+
+/// The mode that `extras.framegraph.transparency` of a material names.
+fn transparency_mode(source: &Source<'_>, index: usize, at: &str, warnings: &mut Warnings) -> TransparencyMode {
+    let material = source.json.get("materials").and_then(|all| all.get(index));
+    let own = material.and_then(|material| material.get("framegraph")).and_then(|own| own.get("transparency"));
+    match own.map(|own| own.as_str().unwrap_or_default()) {
+        None | Some("default") => TransparencyMode::Default,
+        Some("two-passes-one-side") => TransparencyMode::TwoPassesOneSide,
+        Some("two-passes-two-sides") => TransparencyMode::TwoPassesTwoSides,
+        Some(_) => {
+            let known = "`default`, `two-passes-one-side` and `two-passes-two-sides`";
+            warnings.push(format!("{at}: its extras name an unknown transparency and are ignored; there are {known}"));
+            TransparencyMode::Default
+        }
     }
 }
 

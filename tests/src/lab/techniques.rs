@@ -1,5 +1,6 @@
 //! The choices of the standard frame, as techniques of the lab.
 
+mod blending;
 mod formulas;
 mod lens;
 mod light;
@@ -15,7 +16,13 @@ use framegraph_wgpu::Gpu;
 
 /// All of them. Half floats in shaders are measured where the device has them.
 pub fn all(gpu: &Gpu) -> Vec<Technique> {
-    let own = [light::techniques(gpu), terms::techniques(), screen::techniques(), lens::techniques()];
+    let own = [
+        light::techniques(gpu),
+        terms::techniques(),
+        screen::techniques(),
+        blending::techniques(gpu),
+        lens::techniques(),
+    ];
     own.into_iter().flatten().chain(picture::techniques(gpu)).chain(formulas::techniques()).collect()
 }
 

@@ -37,7 +37,7 @@ const OPTIONS: [&str; 19] = [
 ];
 
 /// Fields that are one of some variants.
-const VARIANTS: [(&str, &[&str]); 29] = [
+const VARIANTS: [(&str, &[&str]); 30] = [
     ("quality", &["Low", "High", "Ultra"]),
     ("settings.samples", &["1", "4"]),
     ("settings.shadows.moments.samples", &["1", "4"]),
@@ -58,6 +58,10 @@ const VARIANTS: [(&str, &[&str]); 29] = [
     ("settings.occlusion.method.occluders", &["Solid", "Fading", "Thick(0.2)"]),
     ("settings.occlusion.resolution", &["Full", "Half"]),
     ("settings.fog.color", &["Radiance(2000.0, 2500.0, 3000.0)", "Environment(tint: (1.0, 1.0, 1.0), sharp_m: 100.0)"]),
+    (
+        "settings.transparency",
+        &["Sorted", "TwoPasses", "Weighted", "Moments(precision: Half, overestimation: 0.25)", "Peeled(layers: 4)"],
+    ),
     ("settings.dof.resolution", &["Full", "Half"]),
     ("settings.bloom.quality", &["Low", "Medium", "High"]),
     ("settings.bloom.blend", &["Add", "Interpolate"]),
