@@ -42,7 +42,10 @@ fn triangles(scene: &Scene) -> Vec<Triangle> {
         let alpha = if material.alpha == AlphaMode::Opaque { 1.0 } else { f64::from(material.base_color.w) };
         let color = material.base_color.truncate().as_dvec3();
         let corner = |i: usize| instance.world_from_model.transform_point3(mesh.positions[i].as_dvec3());
-        mesh.triangles().map(|corners| (corners.map(corner), color, alpha)).collect::<Vec<_>>()
+        // A face has one color.
+        let paint = |i: usize| mesh.colors.get(i).map_or(DVec3::ONE, |color| color.truncate().as_dvec3());
+        let triangle = |corners: [usize; 3]| (corners.map(corner), color * paint(corners[0]), alpha);
+        mesh.triangles().map(triangle).collect::<Vec<_>>()
     };
     scene.instances.iter().flat_map(of).collect()
 }
