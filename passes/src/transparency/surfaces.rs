@@ -88,13 +88,10 @@ pub(super) const ADDED: Output = {
     Output { blend: Some(BlendState { color: add, alpha: add }), ..Output::REPLACE }
 };
 
-/// What is there is multiplied by one minus the fragment's red.
-pub(super) const LET_THROUGH: Output = {
-    let through = BlendComponent {
-        src_factor: BlendFactor::Zero,
-        dst_factor: BlendFactor::OneMinusSrc,
-        operation: BlendOperation::Add,
-    };
+/// What is there is multiplied by the fragment.
+pub(super) const MULTIPLIED: Output = {
+    let through =
+        BlendComponent { src_factor: BlendFactor::Dst, dst_factor: BlendFactor::Zero, operation: BlendOperation::Add };
     Output { blend: Some(BlendState { color: through, alpha: through }), ..Output::REPLACE }
 };
 

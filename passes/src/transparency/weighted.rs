@@ -2,7 +2,7 @@
 //!
 //! Exact for one layer, and for layers of one color. Where colors differ, near ones count more (`shaders/wgsl/lib/weighted_blending.wgsl`).
 
-use super::surfaces::{ADDED, BlendedDraw, BlendedInputs, BlendedSurfaces, LET_THROUGH, TESTED};
+use super::surfaces::{ADDED, BlendedDraw, BlendedInputs, BlendedSurfaces, MULTIPLIED, TESTED};
 use crate::lighting::Lighting;
 use crate::program::Programs;
 use crate::surface::{HDR_FORMAT, SurfaceWorld};
@@ -58,7 +58,7 @@ where
         let own = BlendedDraw {
             fragment: "fs_weighted",
             depth: TESTED,
-            colors: &[Output::REPLACE, ADDED, LET_THROUGH],
+            colors: &[Output::REPLACE, ADDED, MULTIPLIED],
             inputs: Some(io.inputs),
             moments: None,
         };

@@ -12,7 +12,7 @@ use crate::material::{AlphaMode, Material};
 use crate::scene::Scene;
 
 /// How many panes cross each other in `panes`.
-pub(super) const COUNT: u32 = 3;
+pub(super) const COUNT: u32 = 5;
 /// The most that `panes:N` takes.
 pub(super) const MOST: u32 = 64;
 

@@ -18,7 +18,7 @@ fn absorbance(alpha: f32) -> f32 {
 }
 
 /// What is let through by surfaces of this absorbance in total.
-fn transmittance(total: f32) -> f32 {
+fn transmittance_of(total: f32) -> f32 {
     return select(exp(-max(total, 0.0)), 0.0, total >= OPAQUE_ABSORBANCE);
 }
 
@@ -83,5 +83,5 @@ fn moment_transmittance(
     let f012 = (f12 - f01) / divisor(smaller - at, 1e-6);
     let slope = f01 - f012 * larger;
     let share = f0 - slope * at + (slope - f012 * at) * b.x + f012 * b.y;
-    return saturate(exp(-total * clamp(share, 0.0, 1.0)));
+    return exp(-total * clamp(share, 0.0, 1.0));
 }

@@ -5,7 +5,7 @@
 
 import package::interface::epilogue::epilogue;
 import package::lib::fullscreen::fullscreen_position;
-import package::lib::moment_transparency::transmittance;
+import package::lib::moment_transparency::transmittance_of;
 import package::lib::numerics::{saturate_half, saturate_half3};
 
 /// What the sums are. 0: weighted colors, and what is let through in red. 1: weighted colors, and
@@ -35,7 +35,7 @@ fn composed(behind: vec4<f32>, sums: vec4<f32>, red: f32) -> vec4<f32> {
     }
     var through = saturate(red);
     if SUMS == 1u {
-        through = transmittance(red);
+        through = transmittance_of(red);
     }
     // Least half float above zero: weights that vanish leave no color.
     let mean = colors / max(saturate_half(sums.a), 6e-8);

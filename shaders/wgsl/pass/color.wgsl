@@ -362,8 +362,8 @@ fn fs_main(
 struct WeightedFragment {
     /// Color and alpha, both times the weight.
     @location(1) accumulated: vec4<f32>,
-    /// Alpha: blending multiplies the target by what it leaves.
-    @location(2) alpha: f32,
+    /// What the surface lets through: blending multiplies the target by it.
+    @location(2) transmittance: f32,
 }
 
 /// Weighted blended transparency (lib/weighted_blending.wgsl).
@@ -374,7 +374,7 @@ fn fs_weighted(
 ) -> WeightedFragment {
     let seen = seen_color(vertex, front_facing);
     let sum = weighted_color(seen, distance_ahead(vertex.world));
-    return WeightedFragment(sum, seen.a);
+    return WeightedFragment(sum, 1.0 - seen.a);
 }
 
 /// What `fs_absorbance` adds up.

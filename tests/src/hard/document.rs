@@ -23,6 +23,7 @@ pub struct Kept {
 /// Why taking a guard out changes no result on Mesa's software driver.
 const LOGARITHM: &str = "this driver's logarithm of zero and of less is finite; WGSL leaves it open";
 const SWALLOWED: &str = "the limit around it makes a number of what is none on this driver; WGSL leaves it open";
+const ROUNDED_SUMS: &str = "sums in half floats need not be those of any surfaces; tests of the mirror ask for such";
 const ROUNDING: &str = "for what rounding may carry past the limit; no input is known that it does so to here";
 const TWICE: &str = "what follows holds the same values, by WGSL's rules; the guard says it without them";
 const UNCHOSEN: &str = "a select behind it does not choose what is computed from it";
@@ -54,6 +55,12 @@ pub const UNNOTICED: &[(&str, &str, &str)] = &[
     ("gt7::nits_from_pq", "max(x - 0.8359375, vec3<f32>(0.0))", LOGARITHM),
     ("gtao::sector_bits", "clamp(floor(32.0 * low + jitter), 0.0, 32.0)", TWICE),
     ("gtao::slice_share", "saturate(below / slice_whole(n))", ROUNDING),
+    ("moment_transparency::moment_transmittance", "max(b.y - b.x * b.x, 1e-7)", ROUNDED_SUMS),
+    ("moment_transparency::moment_transmittance", "max(b.w - b.y * b.y - skew * l, 1e-8)", ROUNDED_SUMS),
+    ("moment_transparency::moment_transmittance", "max(half_p * half_p - q, 0.0)", ROUNDING),
+    ("moment_transparency::moment_transmittance", "select(-half_p - root, -half_p + root, half_p < 0.0)", ROUNDING),
+    ("moment_transparency::moment_transmittance", "clamp(share, 0.0, 1.0)", ROUNDED_SUMS),
+    ("weighted_blending::blend_weight", "clamp(abs(distance_m), 0.0, 1e4)", SWALLOWED),
     ("numerics::normalize_or", "max(largest, 1e-30)", SWALLOWED),
     ("numerics::saturate_half", "select(min(x, HALF_MAX), HALF_MAX, magnitude >= 0x7f800000u)", TWICE),
     ("occlusion::specular_occlusion", "max(nov + visibility, 0.0)", LOGARITHM),

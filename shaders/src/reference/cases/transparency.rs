@@ -33,11 +33,11 @@ pub(super) const CASES: &[Case] = &[
         bound(1e-4, 1e-5),
     ),
     case(
-        ["moment_transparency", "transmittance"],
+        ["moment_transparency", "transmittance_of"],
         &[Linear(-1.0, 9.9)],
-        "transmittance(x[0])",
+        "transmittance_of(x[0])",
         SCALAR,
-        |x| vec![moment_transparency::transmittance(x[0])],
+        |x| vec![moment_transparency::transmittance_of(x[0])],
         bound(1e-7, 1e-5),
     ),
     case(

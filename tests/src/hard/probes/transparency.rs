@@ -10,7 +10,7 @@ const CHANNEL: super::Domain = Values(&[0.0, 1.0, 65504.0]);
 
 pub(super) const PROBES: &[Probe] = &[
     both(58, "absorbance", &[Values(&[0.0, 0.5, 1.0, 1.000_000_2])], |_, y| (0.0..=10.0).contains(&y[0])),
-    both(58, "transmittance", &[Values(&[-1.0, 0.0, 0.5, 9.999, 10.0, 640.0, 65504.0])], |x, y| {
+    both(58, "transmittance_of", &[Values(&[-1.0, 0.0, 0.5, 9.999, 10.0, 640.0, 65504.0])], |x, y| {
         is_share(x, y) && (x[0] < 10.0 || y[0] == 0.0)
     }),
     both(58, "warped_distance", &[Values(&[-1.0, 0.0, 1e-30, 1.0, 1e30]), Values(&[0.05, 2000.0]), NONE], |_, y| {
