@@ -85,6 +85,6 @@ pub(super) const CASES: &[Case] = &[
             let moments = own(0) + own(1) + own(2);
             vec![moment_transparency::moment_transmittance(x[3] + x[4] + x[5], moments, x[6], 1e-3, 0.25)]
         },
-        bound(2e-3, 0.0),
+        bound(1e-5, 0.0),
     ),
 ];
