@@ -6,6 +6,7 @@
 //! A frame may have several views ([`Views`]). Each has buffers of its own for what depends on its eye and for what it draws;
 //! meshes, materials and textures are the scene's and shared.
 
+mod blended;
 mod gpu;
 mod levels;
 mod motion;
@@ -20,10 +21,11 @@ use crate::shadow::{FitCamera, ShadowSettings, ViewShadows};
 use crate::stand::Stand;
 use crate::sun::{angular_radius_rad, illuminance_lux, sun_of};
 use crate::upload::pack::light_uniforms;
+use crate::view::blended::blended_range;
 use crate::view::motion::Moment;
 use framegraph_scene::camera::exposure_from_ev100;
 use framegraph_scene::environment::{Sky, sun_light};
-use framegraph_scene::{Camera, DrawLists, Light, Projection, Renderables, Scene};
+use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene};
 use framegraph_shaders::layout::{FrameUniforms, LightUniforms, MotionUniforms, SkyUniforms};
 use framegraph_shaders::reference::sky::Preetham;
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec2, Vec3, Vec4};
@@ -366,24 +368,6 @@ impl CameraView {
 /// What its camera may see.
 fn seen(prepared: &PreparedScene, settings: &ViewSettings) -> DrawLists {
     DrawLists::seen(prepared.renderables(), &settings.camera, aspect(settings), prepared.pool())
-}
-
-/// Scale and offset that take the binary logarithm of a distance ahead of the eye, in m, to −1…1 over the boxes of these
-/// instances. Boxes reach a little farther, so that nothing lies at the ends.
-fn blended_range(renderables: &Renderables, blended: &[u32], camera: &Camera) -> Vec4 {
-    let forward = camera.forward();
-    let nearest = camera.projection.near_m().max(1e-4);
-    let (mut near, mut far) = (f64::INFINITY, nearest);
-    for number in blended {
-        let bounds = renderables.bounds()[*number as usize];
-        let middle = (bounds.center() - camera.eye).dot(forward);
-        let reach = bounds.half_extent().dot(forward.abs());
-        near = near.min((middle - reach) / 1.02);
-        far = far.max((middle + reach) * 1.02);
-    }
-    let near = near.clamp(nearest, far.min(1e6)).log2();
-    let length = (far.min(1e6).log2() - near).max(1e-3);
-    Vec4::new((2.0 / length) as f32, (-1.0 - 2.0 * near / length) as f32, 0.0, 0.0)
 }
 
 fn aspect(settings: &ViewSettings) -> f64 {

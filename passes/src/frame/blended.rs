@@ -61,7 +61,7 @@ where
     let mut moments = moments;
     if samples > 1 && moments.precision == MomentPrecision::Full {
         let told = format_args!("moments of {samples} samples a texel are half floats: no device averages 32 bits");
-        frame.graph_mut().note("blended", told);
+        frame.graph_mut().note("moments", told);
         moments.precision = MomentPrecision::Half;
     }
     let sums = frame.add("absorbance", Absorbance { surfaces, depth, precision: moments.precision })?.sums;

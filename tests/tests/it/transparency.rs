@@ -3,7 +3,7 @@
 mod counts;
 mod rays;
 
-use crate::stage::{Shot, declared, gpu, lighting, view_of};
+use crate::stage::{Set, Shot, declared, gpu, lighting, view_of};
 use framegraph::{Options, Plan, Scratch, compile};
 use framegraph_passes::fog::{FogColor, FogSettings};
 use framegraph_passes::transparency::{MomentPrecision, MomentTransparency};
@@ -174,6 +174,22 @@ fn techniques_against_rays() -> TestResult {
             }
         }
     }
+    Ok(())
+}
+
+/// Post-processing that ends the pass that composes grades what a pass of its own would, to a code.
+#[test]
+fn post_processing_is_inlined_into_the_pass_that_composes() -> TestResult {
+    let Some(gpu) = gpu("post_processing_is_inlined_into_the_pass_that_composes") else { return Ok(()) };
+    let mut own = shot(Settings { transparency: Transparency::Weighted, ..Settings::DEFAULT });
+    own.settings.post.dither = 0.0;
+    let set = Set::of(&gpu, crossing(), &own, &Background::None)?;
+    let (inlined, plan) = set.shoot(&gpu, &own)?;
+    own.options.inline = false;
+    let (apart, plan_apart) = set.shoot(&gpu, &own)?;
+    assert_eq!([plan.counts().inlined, plan_apart.counts().inlined], [1, 0]);
+    let most = inlined.iter().zip(&apart).map(|(a, b)| a.abs_diff(*b)).max();
+    assert!(most <= Some(1) && inlined.iter().any(|code| *code > 100), "{most:?} codes");
     Ok(())
 }
 

@@ -37,7 +37,7 @@ const OPTIONS: [&str; 19] = [
 ];
 
 /// Fields that are one of some variants.
-const VARIANTS: [(&str, &[&str]); 30] = [
+const VARIANTS: [(&str, &[&str]); 31] = [
     ("quality", &["Low", "High", "Ultra"]),
     ("settings.samples", &["1", "4"]),
     ("settings.shadows.moments.samples", &["1", "4"]),
@@ -62,6 +62,7 @@ const VARIANTS: [(&str, &[&str]); 30] = [
         "settings.transparency",
         &["Sorted", "TwoPasses", "Weighted", "Moments(precision: Half, overestimation: 0.25)", "Peeled(layers: 4)"],
     ),
+    ("settings.transparency.precision", &["Half", "Full"]),
     ("settings.dof.resolution", &["Full", "Half"]),
     ("settings.bloom.quality", &["Low", "Medium", "High"]),
     ("settings.bloom.blend", &["Add", "Interpolate"]),
@@ -174,6 +175,11 @@ mod tests {
                 if path == "settings.occlusion.method.occluders" {
                     *whole.at_mut("settings.occlusion.method").expect("a method") =
                         super::super::parse(&alternatives("settings.occlusion.method").expect("methods")[1])
+                            .expect("a value");
+                }
+                if path == "settings.transparency.precision" {
+                    *whole.at_mut("settings.transparency").expect("a technique") =
+                        super::super::parse(&alternatives("settings.transparency").expect("techniques")[3])
                             .expect("a value");
                 }
                 if path == "settings.post.by.format" {
