@@ -55,7 +55,7 @@ use crate::upload::GpuScene;
 use crate::upscale::{Upscale, enlarge};
 use crate::view::Views;
 use before::{occlusion, prepass, reflection};
-use blended::blended;
+use blended::{Blended, blended};
 use framegraph::{Extent, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene, TransparencyMode};
 use framegraph_wgpu::{Frame, StoreRounding};
@@ -310,6 +310,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     };
     let Settings { samples, scene_levels, glass_layers, shading, fog, .. } = s;
     let transparency = s.declared_transparency();
+    let apart = Blended { transparency, samples, shading, fog };
     let glass = Glass { levels: scene_levels, layers: glass_layers, samples, shading, fog, transparency };
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, s.shadows, s.structure())),
@@ -327,7 +328,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("scene", move |frame, handles| scene(frame, handles, s.scene_levels)),
         Stage::new("transparent", move |frame, handles| {
             transparent(frame, handles, &glass)?;
-            blended(frame, handles, &s)
+            blended(frame, handles, &apart)
         }),
         Stage::new("resolve", move |frame, handles| resolve(frame, handles, s.tone_resolve && s.samples > 1)),
         Stage::new("taa", move |frame, handles| s.taa.as_ref().map_or(Ok(()), |own| temporal(frame, handles, own))),

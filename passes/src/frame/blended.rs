@@ -1,10 +1,11 @@
 //! Blended surfaces that need no order: passes of their own, behind those of what transmits.
 
 use super::shadows::maps_of;
-use super::{Declared, Settings};
+use crate::fog::FogSettings;
 use crate::lighting::Lighting;
 use crate::program::Programs;
-use crate::stages::{Handles, Slot};
+use crate::shading::Shading;
+use crate::stages::{Handles, Slot, StageError};
 use crate::transparency::{
     Absorbance, BlendedComposite, BlendedSums, BlendedSurfaces, MAX_PEEL_LAYERS, MomentPrecision, MomentShade,
     MomentTransparency, PeelDepth, PeelLayer, Transparency, Weighted,
@@ -14,15 +15,28 @@ use crate::view::Views;
 use framegraph::{Target, Texture};
 use framegraph_wgpu::Frame;
 
-/// Declares the passes of the technique, where a surface blends.
-pub(super) fn blended<W>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared
+/// How blended surfaces are drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Blended {
+    /// How they are put in order; those of a sorted technique are drawn elsewhere.
+    pub transparency: Transparency,
+    /// Samples per texel of the color pass.
+    pub samples: u8,
+    /// How surfaces are shaded.
+    pub shading: Shading,
+    /// Fog before them.
+    pub fog: Option<FogSettings>,
+}
+
+/// Declares the passes of a technique that needs no order.
+pub(super) fn blended<W>(frame: &mut Frame<W>, handles: &mut Handles, own: &Blended) -> Result<(), StageError>
 where
     W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized + 'static,
 {
-    if !settings.draws_blended_apart() {
+    let Blended { transparency, samples, shading, fog } = *own;
+    if !transparency.is_unordered() {
         return Ok(());
     }
-    let Settings { samples, shading, fog, transparency, .. } = *settings;
     let (shadow, scene) = (maps_of(handles), handles.find(Slot::SCENE_LEVELS));
     let surfaces = BlendedSurfaces { view: handles.view(), shadow, scene, shading, fog };
     let depth = handles.get(Slot::DEPTH)?;

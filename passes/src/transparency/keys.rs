@@ -1,6 +1,6 @@
 //! Transparency by name, as options of programs have it.
 
-use super::{MAX_PEEL_LAYERS, MomentPrecision, MomentTransparency, Transparency};
+use super::settings::{MAX_PEEL_LAYERS, MomentPrecision, MomentTransparency, Transparency};
 use crate::choice::{Choice, ChoiceError, choices};
 
 impl Transparency {

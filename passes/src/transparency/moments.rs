@@ -3,8 +3,8 @@
 //! `shaders/wgsl/lib/moment_transparency.wgsl` has the arithmetic. Distances are warped to the range that blended surfaces in
 //! view lie in, so that no depth of a scene is too large.
 
+use super::settings::{MomentPrecision, MomentTransparency};
 use super::surfaces::{ADDED, BlendedDraw, BlendedInputs, BlendedSurfaces, TESTED};
-use super::{MomentPrecision, MomentTransparency};
 use crate::lighting::Lighting;
 use crate::program::Programs;
 use crate::surface::{HDR_FORMAT, SurfaceWorld};

@@ -1,6 +1,6 @@
 //! Blended surfaces sorted by object, with two passes where a material or the frame asks for them.
 
-use super::Transparency;
+use super::settings::Transparency;
 use crate::draw::{Faces, SurfaceDraw};
 use crate::indirect::DrawList;
 use crate::prepass::draw_depth_of;
