@@ -253,6 +253,12 @@ impl Settings {
         self.blended && self.transparency.is_unordered()
     }
 
+    /// Whether blended surfaces are drawn over the picture that depth of field has blurred.
+    fn blends_after_blur(&self) -> bool {
+        let wanted = self.dof.is_some_and(|dof| dof.blended_after && dof.is_seen());
+        wanted && self.draws_blended_apart() && self.samples == 1 && self.taa.is_none()
+    }
+
     /// How blended surfaces are put in order, where there are any.
     fn declared_transparency(&self) -> Transparency {
         if self.blended { self.transparency } else { Transparency::Sorted }
@@ -310,7 +316,8 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     };
     let Settings { samples, scene_levels, glass_layers, shading, fog, .. } = s;
     let transparency = s.declared_transparency();
-    let apart = Blended { transparency, samples, shading, fog };
+    let after_blur = s.blends_after_blur();
+    let apart = Blended { transparency, samples, shading, fog, after_blur };
     let glass = Glass { levels: scene_levels, layers: glass_layers, samples, shading, fog, transparency };
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, s.shadows, s.structure())),
@@ -328,12 +335,15 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("scene", move |frame, handles| scene(frame, handles, s.scene_levels)),
         Stage::new("transparent", move |frame, handles| {
             transparent(frame, handles, &glass)?;
-            blended(frame, handles, &apart)
+            if after_blur { Ok(()) } else { blended(frame, handles, &apart) }
         }),
         Stage::new("resolve", move |frame, handles| resolve(frame, handles, s.tone_resolve && s.samples > 1)),
         Stage::new("taa", move |frame, handles| s.taa.as_ref().map_or(Ok(()), |own| temporal(frame, handles, own))),
         Stage::new("measure", move |frame, handles| measure(frame, handles, s.measure)),
-        Stage::new("dof", move |frame, handles| dof(frame, handles, s.dof, s.size_texels)),
+        Stage::new("dof", move |frame, handles| {
+            dof(frame, handles, s.dof, s.size_texels)?;
+            if after_blur { blended(frame, handles, &apart) } else { Ok(()) }
+        }),
         Stage::new("bloom", move |frame, handles| bloom(frame, handles, s.bloom, (s.size_texels, s.taa.is_some()))),
         Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
         fxaa,
@@ -369,7 +379,7 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         format: hdr_format,
         into: match handles.find(Slot::HDR_HISTORY) {
             // The last pass over blended surfaces draws into it.
-            Some(history) if !settings.draws_blended_apart() => history.into(),
+            Some(history) if !settings.draws_blended_apart() || settings.blends_after_blur() => history.into(),
             _ => Target::New,
         },
         shading,

@@ -26,6 +26,8 @@ pub(super) struct Blended {
     pub shading: Shading,
     /// Fog before them.
     pub fog: Option<FogSettings>,
+    /// They lie over a picture that depth of field has blurred, which the next frame does not read.
+    pub after_blur: bool,
 }
 
 /// Declares the passes of a technique that needs no order.
@@ -33,7 +35,7 @@ pub(super) fn blended<W>(frame: &mut Frame<W>, handles: &mut Handles, own: &Blen
 where
     W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized + 'static,
 {
-    let Blended { transparency, samples, shading, fog } = *own;
+    let Blended { transparency, samples, shading, fog, after_blur } = *own;
     if !transparency.is_unordered() {
         return Ok(());
     }
@@ -41,7 +43,7 @@ where
     let surfaces = BlendedSurfaces { view: handles.view(), shadow, scene, shading, fog };
     let depth = handles.get(Slot::DEPTH)?;
     let behind = handles.get(if samples > 1 { Slot::HDR_SAMPLES } else { Slot::HDR })?;
-    let into = handles.find(Slot::HDR_HISTORY).map_or(Target::New, Target::from);
+    let into = handles.find(Slot::HDR_HISTORY).filter(|_| !after_blur).map_or(Target::New, Target::from);
     frame.graph_mut().note("blended", format_args!("surfaces blend in any order: {}", transparency.name()));
     let io = frame.scope("blended", |frame| {
         let sums = match transparency {

@@ -1,6 +1,7 @@
 //! Blended surfaces in any order: pictures against rays that gather every layer, and what the plan makes of the passes.
 
 mod counts;
+mod lens;
 mod rays;
 
 use crate::stage::{Set, Shot, declared, gpu, lighting, view_of};

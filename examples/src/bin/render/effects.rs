@@ -39,7 +39,8 @@ pub const HELP: &str = "
   --dof off|on[:KEY=X,...]  what is out of focus is blurred as by a lens (off). focus=M (5), aperture=F (f-number, 2.8),
                        focal=M|view (length, of the view's angle on film of 24 mm), scale=X (of circles, 1),
                        resolution=full|half (half), before=PX, behind=PX (largest radii, 32), rings-before=N, rings-behind=N,
-                       rings-even=N (of taps, 5), median=on|off (on)
+                       rings-even=N (of taps, 5), median=on|off (on), blended=before|after (the blur are blended surfaces drawn
+                       that --transparency draws in any order; at --msaa 1 without --taa; before)
   --taa off|on[:KEY=X,...]  anti-aliasing over frames, of which --frames says how many there are (off): feedback=X (share of a
                        new frame, 0.12), width=X (of its filter, 1), jitter=rgss4|helix4|halton8|halton16|halton32,
                        box=bounds|variance|both (of colors that the sum is held to), clip=accurate|clamp|none, gamma=X

@@ -101,7 +101,7 @@ fn extras_are_ignored() {
 #[test]
 fn extras_of_materials_say_how_triangles_are_put_in_order() {
     use crate::material::TransparencyMode;
-    let read = |extras: serde_json::Value| {
+    let read = |extras: Value| {
         let mut fixture = Fixture::triangle();
         fixture.set("/materials", json!([{"extras": extras}]));
         fixture.set("/meshes/0/primitives/0/material", json!(0));

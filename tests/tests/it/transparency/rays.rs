@@ -34,6 +34,34 @@ pub fn picture(scene: &Scene, size_px: [u32; 2], samples: u8) -> Vec<Vec3> {
     (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| of_pixel(x, y)).collect()
 }
 
+/// Radiance of every pixel through a lens of this radius that is focused on a distance, in m: the mean of `count` rays from places of
+/// the lens.
+pub fn through_lens(scene: &Scene, size_px: [u32; 2], (focus_m, radius_m): (f64, f64), count: u32) -> Vec<Vec3> {
+    let [width, height] = size_px;
+    let camera = &scene.cameras[0];
+    let world_from_clip =
+        (camera.clip_from_view(f64::from(width) / f64::from(height)) * camera.view_from_world()).inverse();
+    let (triangles, forward) = (triangles(scene), camera.forward());
+    let (right, up) = forward.any_orthonormal_pair();
+    let of_pixel = |x: u32, y: u32| {
+        let at = (DVec2::new(f64::from(x), f64::from(y)) + 0.5) / DVec2::new(f64::from(width), f64::from(height));
+        let ndc = DVec3::new(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y, 0.5);
+        let toward = world_from_clip.project_point3(ndc) - camera.eye;
+        let sharp = camera.eye + toward * (focus_m / toward.dot(forward));
+        let sum: DVec3 = (0..count)
+            .map(|i| {
+                // A sunflower over the lens.
+                let share = ((f64::from(i) + 0.5) / f64::from(count)).sqrt();
+                let place = DVec2::from_angle(f64::from(i) * 2.399_963_2) * (radius_m * share);
+                let eye = camera.eye + right * place.x + up * place.y;
+                seen(&triangles, eye, (sharp - eye).normalize())
+            })
+            .sum();
+        (sum / f64::from(count)).as_vec3()
+    };
+    (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| of_pixel(x, y)).collect()
+}
+
 type Triangle = ([DVec3; 3], DVec3, f64);
 
 fn triangles(scene: &Scene) -> Vec<Triangle> {
