@@ -57,7 +57,9 @@ import package::lib::dfg::energy_compensation;
 import package::lib::dfg::specular_albedo;
 import package::lib::fresnel::f90_from_f0;
 import package::lib::ggx::alpha_from_roughness;
-import package::interface::moments::{total_absorbance, absorbance_moments};
+import package::interface::blended::{
+    AbsorbanceFragment, WeightedFragment, absorbance_moments, total_absorbance,
+};
 import package::interface::scene::distance_ahead;
 import package::lib::metal_rough::{diffuse_from_base_color, f0_from_base_color};
 import package::lib::moment_transparency::{
@@ -358,14 +360,6 @@ fn fs_main(
     return epilogue(seen_color(vertex, front_facing), vertex.position.xy);
 }
 
-/// What `fs_weighted` adds up.
-struct WeightedFragment {
-    /// Color and alpha, both times the weight.
-    @location(1) accumulated: vec4<f32>,
-    /// What the surface lets through: blending multiplies the target by it.
-    @location(2) transmittance: f32,
-}
-
 /// Weighted blended transparency (lib/weighted_blending.wgsl).
 @fragment
 fn fs_weighted(
@@ -375,13 +369,6 @@ fn fs_weighted(
     let seen = seen_color(vertex, front_facing);
     let sum = weighted_color(seen, distance_ahead(vertex.world));
     return WeightedFragment(sum, 1.0 - seen.a);
-}
-
-/// What `fs_absorbance` adds up.
-struct AbsorbanceFragment {
-    @location(1) absorbance: f32,
-    /// Absorbance times the first four powers of the warped distance.
-    @location(2) moments: vec4<f32>,
 }
 
 /// The first pass of moment-based transparency (lib/moment_transparency.wgsl): how much a surface
