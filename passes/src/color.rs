@@ -15,7 +15,8 @@ use crate::prepass::new_depth;
 use crate::program::Programs;
 use crate::shading::{AlphaUse, Shading};
 use crate::shadow::ShadowInput;
-use crate::surface::{HDR_FORMAT, OcclusionInput, SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
+use crate::surface::{HDR_FORMAT, OcclusionInput, SurfaceBindings, SurfaceInputs, SurfaceWorld};
+use crate::transparency::{Transparency, draw_sorted};
 use crate::upload::GpuScene;
 use crate::view::{ViewId, Views};
 use framegraph::{
@@ -49,6 +50,10 @@ pub struct Color {
     pub stencil: bool,
     /// Some surface blends.
     pub blended: bool,
+    /// How blended surfaces are put in order: those of an unordered technique are left to later passes.
+    pub transparency: Transparency,
+    /// A blended surface writes depth ([`TransparencyMode::TwoPassesOneSide`](framegraph_scene::TransparencyMode)).
+    pub blended_depth: bool,
     /// A later pass draws what transmits and blends ([`Transparent`](crate::transmission::Transparent)): this one leaves it
     /// out.
     pub opaque_only: bool,
@@ -88,6 +93,8 @@ impl Color {
             samples: 1,
             stencil: false,
             blended: false,
+            transparency: Transparency::Sorted,
+            blended_depth: false,
             opaque_only: false,
             sky: true,
             format: HDR_FORMAT,
@@ -121,6 +128,9 @@ impl Pass for Color {
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<ColorIo, DeclareError> {
         pass.takes_epilogue();
         let (extent, depth) = match self.depth {
+            ColorDepth::Prepass(depth) if self.blended_depth && self.draws_blended() => {
+                (pass.desc(depth)?.extent, pass.depth(depth, Intent::Modify)?)
+            }
             ColorDepth::Prepass(depth) => {
                 let TextureDesc { extent, format, .. } = pass.desc(depth)?;
                 // Blended surfaces may write stencil.
@@ -141,7 +151,7 @@ impl Pass for Color {
             Some([picture, ways]) => Some([pass.sampled(picture)?, pass.sampled(ways)?]),
             None => None,
         };
-        if self.blended && !self.opaque_only {
+        if self.blended && self.draws_blended() {
             pass.blends();
         }
         let desc = TextureDesc::new(extent, self.format);
@@ -170,6 +180,11 @@ where
 }
 
 impl Color {
+    /// Whether no later pass draws blended surfaces.
+    fn draws_blended(&self) -> bool {
+        !self.opaque_only && !self.transparency.is_unordered()
+    }
+
     fn occlusion_input(
         &self,
         picture: Texture,
@@ -195,7 +210,7 @@ impl Color {
             return Err(PassError::TransmissionUndeclared.into());
         }
         let epilogue = epilogue(cx)?;
-        if !epilogue.effects.is_empty() && !visible.blend.is_empty() {
+        if !epilogue.effects.is_empty() && !visible.blend.is_empty() && self.draws_blended() {
             return Err(PassError::BlendingUndeclared.into());
         }
         let ColorIo { shadow, contact, occlusion, reflections, stencil, .. } = *io;
@@ -229,10 +244,7 @@ impl Color {
         if self.sky {
             draw_background(world, &bindings, cx)?;
         }
-        if self.opaque_only {
-            return Ok(());
-        }
-        draw_blended(world, &bindings, cx)
+        if self.draws_blended() { draw_sorted(world, &bindings, self.transparency, cx) } else { Ok(()) }
     }
 }
 

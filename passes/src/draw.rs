@@ -82,6 +82,17 @@ pub struct SurfaceDraw<'a> {
     pub colors: &'a [Output],
 }
 
+/// Which faces of triangles are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Faces {
+    /// Front faces, and back faces where the material is double-sided.
+    OfMaterial,
+    /// Back faces alone.
+    Back,
+    /// Front faces alone.
+    Front,
+}
+
 /// How depth alone is drawn.
 pub struct DepthDraw<'a> {
     /// Entry points `vs_opaque`, and `vs_mask` with `fs_mask`.
@@ -222,6 +233,20 @@ impl SurfaceDraw<'_> {
     /// # Errors
     /// What the shader or the device refuses.
     pub fn draw(&self, list: &DrawList, from: InstanceSource<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        self.draw_faces(list, Faces::OfMaterial, from, cx)
+    }
+
+    /// Draws these faces of a list, as [`SurfaceDraw::draw`] does.
+    ///
+    /// # Errors
+    /// What the shader or the device refuses.
+    pub fn draw_faces(
+        &self,
+        list: &DrawList,
+        faces: Faces,
+        from: InstanceSource<'_>,
+        cx: &mut Cx<'_>,
+    ) -> Result<(), RecordError> {
         let InstanceSource { scene, instances, arguments, .. } = from;
         if list.is_empty() {
             return Ok(());
@@ -248,7 +273,7 @@ impl SurfaceDraw<'_> {
                     let state = match states.iter().position(|state| state.key == key) {
                         Some(state) => state,
                         None => {
-                            states.push(self.pipeline(key, instance.material, from, cx)?);
+                            states.push(self.pipeline((key, faces), instance.material, from, cx)?);
                             states.len() - 1
                         }
                     };
@@ -313,7 +338,7 @@ impl SurfaceDraw<'_> {
     /// The pipeline of a kind of surface, made for the first `material` that asks for it.
     fn pipeline(
         &self,
-        key: PipelineKey,
+        (key, faces): (PipelineKey, Faces),
         material: MaterialId,
         from: InstanceSource<'_>,
         cx: &mut Cx<'_>,
@@ -334,7 +359,11 @@ impl SurfaceDraw<'_> {
             constants: Constants(&program.constants(&constants)),
             buffers: &buffers,
             primitive: PrimitiveState {
-                cull_mode: if key.surface.traits & 1 << TRAIT_DOUBLE_SIDED != 0 { None } else { Some(Face::Back) },
+                cull_mode: match faces {
+                    Faces::OfMaterial if key.surface.traits & 1 << TRAIT_DOUBLE_SIDED != 0 => None,
+                    Faces::OfMaterial | Faces::Front => Some(Face::Back),
+                    Faces::Back => Some(Face::Front),
+                },
                 front_face: if key.mirrored { FrontFace::Cw } else { FrontFace::Ccw },
                 topology: match key.topology {
                     Topology::Triangles => PrimitiveTopology::TriangleList,

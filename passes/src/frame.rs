@@ -11,7 +11,7 @@
 //! | `prepass` | `prepass`, `velocity`, where they are drawn | | depth, velocity |
 //! | `color` | `color` | depth if it was drawn, shadow maps, structure, ambient occlusion, reflections | radiance, depth |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
-//! | `transparent` | `transparent` | all of these | radiance, depth |
+//! | `transparent` | `transparent`; `blended/…` where blended surfaces need no order | all of these | radiance, depth |
 //! | `resolve` | `tone_resolve` | samples of radiance | radiance |
 //! | `taa` | `depth_resolve`, `taa`, `taa_sharpen` | radiance, depth, what the frames before came to | radiance |
 //! | `measure` | `measure/light`, `measure/depth`, `measure/smaller` | radiance, depth | what is read back of them |
@@ -24,6 +24,7 @@
 //! All stages are there whatever the settings are; one that a frame does not need declares nothing.
 
 mod before;
+mod blended;
 mod glass;
 mod lens;
 mod picture;
@@ -49,12 +50,14 @@ use crate::surface::HDR_FORMAT;
 use crate::taa::{TaaSettings, temporal};
 use crate::tone_resolve::ToneResolve;
 use crate::transmission::{MOST_GLASS_LAYERS, scene_levels};
+use crate::transparency::Transparency;
 use crate::upload::GpuScene;
 use crate::upscale::{Upscale, enlarge};
 use crate::view::Views;
 use before::{occlusion, prepass, reflection};
+use blended::{Blended, blended};
 use framegraph::{Extent, Format, Target, Texture};
-use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene};
+use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene, TransparencyMode};
 use framegraph_wgpu::{Frame, StoreRounding};
 use glass::{Glass, scene, transparent};
 use lens::{bloom, dof, mix_of};
@@ -121,6 +124,11 @@ pub struct Settings {
     /// Some material tests or writes stencil: depth then has it. Filament's `View::setStencilBufferEnabled`.
     #[cfg_attr(feature = "files", serde(skip))]
     pub stencil: bool,
+    /// Some blended surface writes depth ([`TransparencyMode::TwoPassesOneSide`](framegraph_scene::TransparencyMode)).
+    #[cfg_attr(feature = "files", serde(skip))]
+    pub blended_depth: bool,
+    /// How blended surfaces are put in order.
+    pub transparency: Transparency,
     /// Levels of the picture that transmissive surfaces show what is behind them with, at most as many as
     /// [`scene_levels`] of the frame's size; 0: no surface transmits.
     #[cfg_attr(feature = "files", serde(skip))]
@@ -183,6 +191,8 @@ impl Settings {
         size_texels: [1280, 720],
         blended: false,
         stencil: false,
+        blended_depth: false,
+        transparency: Transparency::Sorted,
         scene_levels: 0,
         glass_layers: 1,
         moving: false,
@@ -205,6 +215,7 @@ impl Settings {
         Self {
             blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
             stencil: scene.uses_stencil(),
+            blended_depth: scene.materials.iter().any(|m| m.transparency == TransparencyMode::TwoPassesOneSide),
             scene_levels: if transmits { scene_levels(size_texels) } else { 0 },
             glass_layers: self.glass_layers.min(glass_instances(scene)),
             size_texels,
@@ -240,6 +251,22 @@ impl Settings {
     /// Whether depth is drawn before the color pass.
     fn draws_prepass(&self) -> bool {
         self.prepass || self.draws_velocity()
+    }
+
+    /// Whether blended surfaces have passes of their own.
+    fn draws_blended_apart(&self) -> bool {
+        self.blended && self.transparency.is_unordered()
+    }
+
+    /// Whether blended surfaces are drawn over the picture that depth of field has blurred.
+    fn blends_after_blur(&self) -> bool {
+        let wanted = self.dof.is_some_and(|dof| dof.blended_after && dof.is_seen());
+        wanted && self.draws_blended_apart() && self.samples == 1 && self.taa.is_none()
+    }
+
+    /// How blended surfaces are put in order, where there are any.
+    fn declared_transparency(&self) -> Transparency {
+        if self.blended { self.transparency } else { Transparency::Sorted }
     }
 
     /// Size and levels of the structure: those that ambient occlusion wants, which shares it with what needs any.
@@ -293,7 +320,10 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         None => Stage::new("upscale", |_, _| Ok(())),
     };
     let Settings { samples, scene_levels, glass_layers, shading, fog, .. } = s;
-    let glass = Glass { levels: scene_levels, layers: glass_layers, samples, shading, fog };
+    let transparency = s.declared_transparency();
+    let after_blur = s.blends_after_blur();
+    let apart = Blended { transparency, samples, shading, fog, after_blur };
+    let glass = Glass { levels: scene_levels, layers: glass_layers, samples, shading, fog, transparency };
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, s.shadows, s.structure())),
         // Before the prepass, so that nothing comes between that and the color pass: they share a step.
@@ -308,11 +338,17 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         }),
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, s.scene_levels)),
-        Stage::new("transparent", move |frame, handles| transparent(frame, handles, &glass)),
+        Stage::new("transparent", move |frame, handles| {
+            transparent(frame, handles, &glass)?;
+            if after_blur { Ok(()) } else { blended(frame, handles, &apart) }
+        }),
         Stage::new("resolve", move |frame, handles| resolve(frame, handles, s.tone_resolve && s.samples > 1)),
         Stage::new("taa", move |frame, handles| s.taa.as_ref().map_or(Ok(()), |own| temporal(frame, handles, own))),
         Stage::new("measure", move |frame, handles| measure(frame, handles, s.measure)),
-        Stage::new("dof", move |frame, handles| dof(frame, handles, s.dof, s.size_texels)),
+        Stage::new("dof", move |frame, handles| {
+            dof(frame, handles, s.dof, s.size_texels)?;
+            if after_blur { blended(frame, handles, &apart) } else { Ok(()) }
+        }),
         Stage::new("bloom", move |frame, handles| bloom(frame, handles, s.bloom, (s.size_texels, s.taa.is_some()))),
         Stage::picture("post", move |frame, handles| post(frame, handles, &s)),
         fxaa,
@@ -342,10 +378,16 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         samples,
         stencil,
         blended,
+        transparency: settings.declared_transparency(),
+        blended_depth: settings.blended_depth,
         opaque_only: scene_levels > 0,
         sky,
         format: hdr_format,
-        into: handles.find(Slot::HDR_HISTORY).map_or(Target::New, Target::from),
+        into: match handles.find(Slot::HDR_HISTORY) {
+            // The last pass over blended surfaces draws into it.
+            Some(history) if !settings.draws_blended_apart() || settings.blends_after_blur() => history.into(),
+            _ => Target::New,
+        },
         shading,
         fog,
     };

@@ -20,7 +20,8 @@
 //! shadow ─────────────────┐
 //! structure ─> occlusion ─┤
 //! prepass ────────────────┼─> color (opaque, sky, blended) ──> post ──> fxaa ──> output
-//!                         └─> or, where the scene transmits: color ──> scene/… ──> transparent ──> post
+//!                         ├─> or, where the scene transmits: color ──> scene/… ──> transparent ──> post
+//!                         └─> or, where blended surfaces need no order: color ──> blended/… ──> post
 //! ```
 
 #[cfg(test)]
@@ -74,6 +75,7 @@ pub mod surface;
 pub mod taa;
 pub mod tone_resolve;
 pub mod transmission;
+pub mod transparency;
 pub mod upload;
 pub mod upscale;
 pub mod velocity;
@@ -100,6 +102,7 @@ pub use reflection::ReflectionSettings;
 pub use shading::{Quality, Shading};
 pub use stages::{Handles, Slot, Stage, StageError};
 pub use taa::TaaSettings;
+pub use transparency::Transparency;
 pub use upscale::Upscale;
 pub use view::{CameraView, ViewId, ViewSettings};
 pub use world::World;

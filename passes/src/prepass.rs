@@ -1,9 +1,10 @@
 //! Depth prepass: the depth of the visible surfaces, so that the color pass shades each pixel once.
 
 use crate::draw::{DepthDraw, SurfaceDraw};
+use crate::indirect::DrawList;
 use crate::program::{Interface, Programs};
 use crate::upload::{GpuScene, MATERIAL_BINDINGS};
-use crate::view::{ViewId, Views};
+use crate::view::{GpuView, ViewId, Views};
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Record, RecordError};
@@ -13,7 +14,8 @@ pub const DEPTH_FORMAT: Format = Format::Depth32Float;
 /// Format of the depth attachment where a material uses stencil.
 pub const DEPTH_STENCIL_FORMAT: Format = Format::Depth32FloatStencil8;
 
-static SHADER: Module<'static> = library::pass("pass/prepass.wgsl").unwrap();
+/// Draws depth.
+pub(crate) static PREPASS_SHADER: Module<'static> = library::pass("pass/prepass.wgsl").unwrap();
 
 static INTERFACE: Interface =
     Interface { groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &[SurfaceDraw::TRAITS] };
@@ -71,12 +73,30 @@ where
 {
     let views: &Views = world.as_ref();
     let view = views.get(view)?;
-    let draw = DepthDraw {
-        shader: &SHADER,
-        interface: &INTERFACE,
-        frame: &[Some(cx.uniform(&view.view.frame))],
-        depth: Depth::NEARER,
-        batches: &view.view.draws.depth,
-    };
-    draw.draw(view.instances(world.as_ref()).with_stencil(stencil), world.as_ref(), cx)
+    draw_batches(&view.view.draws.depth, view, stencil, world.as_ref(), world.as_ref(), cx)
+}
+
+/// Draws the depth of a list of a view's instances, whatever their alpha is.
+pub(crate) fn draw_depth_of(
+    list: &DrawList,
+    view: &GpuView,
+    stencil: bool,
+    scene: &GpuScene,
+    programs: &Programs,
+    cx: &mut Cx<'_>,
+) -> Result<(), RecordError> {
+    draw_batches(&[list.clone(), DrawList::default()], view, stencil, scene, programs, cx)
+}
+
+fn draw_batches(
+    batches: &[DrawList; 2],
+    view: &GpuView,
+    stencil: bool,
+    scene: &GpuScene,
+    programs: &Programs,
+    cx: &mut Cx<'_>,
+) -> Result<(), RecordError> {
+    let frame = &[Some(cx.uniform(&view.view.frame))];
+    let draw = DepthDraw { shader: &PREPASS_SHADER, interface: &INTERFACE, frame, depth: Depth::NEARER, batches };
+    draw.draw(view.instances(scene).with_stencil(stencil), programs, cx)
 }

@@ -4,6 +4,7 @@ mod lens;
 
 use crate::frame_settings::FrameSettings;
 use crate::occlusion::Method;
+use crate::transparency::{MAX_PEEL_LAYERS, Transparency};
 use framegraph::Format;
 use framegraph::file::{FileErrors, document, to_document};
 use std::fmt::Debug;
@@ -117,6 +118,15 @@ impl FrameSettings {
             ("settings.post.vignette_ev", s.post.vignette_ev.into(), 0.0, 16.0),
             ("settings.post.dither", s.post.dither.into(), 0.0, 1.0),
         ];
+        match s.transparency {
+            Transparency::Peeled { layers } => {
+                all.push(("settings.transparency.layers", layers.into(), 1.0, MAX_PEEL_LAYERS.into()));
+            }
+            Transparency::Moments(moments) => {
+                all.push(("settings.transparency.overestimation", moments.overestimation.into(), 0.0, 1.0));
+            }
+            Transparency::Sorted | Transparency::TwoPasses | Transparency::Weighted => {}
+        }
         if let Some(aa) = s.shading.specular_aa {
             all.push(("settings.shading.specular_aa.variance", aa.variance.into(), 1e-6, 1.0));
             all.push(("settings.shading.specular_aa.threshold", aa.threshold.into(), 0.0, 1.0));
@@ -221,6 +231,10 @@ mod tests {
             ("(version: 1, frame: (settings: (sample: 4)))", "did you mean `samples`?"),
             ("(version: 1, frame: (settings: (shading: (micro_shadow: true))))", "did you mean `micro_shadows`?"),
             ("(version: 1, frame: (quality: Hgih))", "did you mean `High`?"),
+            (
+                "(version: 1, frame: (settings: (transparency: Peeled(layers: 33))))",
+                "settings.transparency.layers is 33; a number from 1 to 32",
+            ),
             ("(version: 1, frame: (settings: (samples: 3)))", "settings.samples is 3; 1 or 4 is needed"),
             (
                 "(version: 1, frame: (settings: (post: (dither: NaN))))",

@@ -15,10 +15,10 @@ use framegraph::{Format, View};
 use framegraph_scene::Lobe;
 use framegraph_scene::environment::ShBands;
 use framegraph_shaders::{Feature, Features, Module, library};
-use framegraph_wgpu::{Binding, Cx, Depth, Epilogue, Output, RecordError, SamplerDesc};
+use framegraph_wgpu::{Binding, Cx, Epilogue, RecordError, SamplerDesc};
 use glam::Vec3;
 use std::sync::Arc;
-use wgpu::{AddressMode, BlendState};
+use wgpu::AddressMode;
 
 /// Format of scene-referred radiance: half floats, since the eleven bits of Rg11b10Ufloat tint greys by a code of 255.
 pub const HDR_FORMAT: Format = Format::Rgba16Float;
@@ -76,6 +76,8 @@ const FRAME_BINDINGS: &[&str] = &[
     "reflections",
     "reflection_ways",
     "fog",
+    "total_absorbance",
+    "absorbance_moments",
     ShadowBindings::NAMES[0],
     ShadowBindings::NAMES[1],
     ShadowBindings::NAMES[2],
@@ -126,6 +128,9 @@ pub(crate) struct SurfaceInputs {
     pub fog: Option<FogSettings>,
     /// The pass draws into depth with stencil.
     pub stencil: bool,
+    /// Sums of absorbance and of its moments, for surfaces that are shaded by them; with the bias and the overestimation of the
+    /// estimate.
+    pub moments: Option<([View; 2], [f32; 2])>,
 }
 
 /// Ambient occlusion as shading reads it.
@@ -188,8 +193,13 @@ impl SurfaceBindings {
         let lists = view.view.light_lists.as_ref().filter(|_| LightLists::can_be_bound(&cx.gpu().device.limits()));
         let fog = inputs.fog.filter(FogSettings::is_seen);
         let structure = inputs.occlusion.and_then(|input| input.structure).or(inputs.contact);
+        let mut frame = view.view.frame;
+        if let Some((_, [bias, overestimation])) = inputs.moments {
+            (frame.blended.z, frame.blended.w) = (bias, overestimation);
+        }
+        let sums = inputs.moments.map(|(sums, _)| sums);
         let own: [Option<Binding>; FRAME_BINDINGS.len() - ShadowBindings::NAMES.len()] = [
-            Some(cx.uniform(&view.view.frame)),
+            Some(cx.uniform(&frame)),
             Some(view.lights.clone().into()),
             lists.map(|lists| cx.uniform(&lists.uniforms)),
             lists.map(|_| view.light_lists.clone().into()),
@@ -205,6 +215,8 @@ impl SurfaceBindings {
             inputs.reflections.map(|[found, _]| cx.view(found)).transpose()?.map(Binding::from),
             inputs.reflections.map(|[_, ways]| cx.view(ways)).transpose()?.map(Binding::from),
             fog.map(|fog| cx.uniform(&fog.uniforms(&view.view))),
+            sums.map(|[total, _]| cx.view(total)).transpose()?.map(Binding::from),
+            sums.map(|[_, moments]| cx.view(moments)).transpose()?.map(Binding::from),
         ];
         let shadows = ShadowBindings::new(inputs.shadow, view, cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
@@ -239,6 +251,16 @@ impl SurfaceBindings {
 
     /// The program of a variant of surfaces.
     pub fn program(&self, programs: &Programs, variant: SurfaceVariant) -> Result<Arc<Program>, PassError> {
+        self.program_with(programs, variant, "fs_main")
+    }
+
+    /// The program of a variant of surfaces with a fragment entry point of `pass/color.wgsl`.
+    pub fn program_with(
+        &self,
+        programs: &Programs,
+        variant: SurfaceVariant,
+        fragment: &'static str,
+    ) -> Result<Arc<Program>, PassError> {
         let SurfaceVariant { lobes, material_table, .. } = variant;
         if lobes.contains(Lobe::Transmission) && !self.transmits {
             return Err(PassError::TransmissionUndeclared);
@@ -246,7 +268,8 @@ impl SurfaceBindings {
         let vertices = variant.vertex_features();
         let features = features_of(lobes).iter().chain(vertices.iter()).fold(self.features.clone(), Features::with);
         let features = &features.with_if(Feature::MATERIAL_TABLE, material_table);
-        programs.get(&ProgramDesc { features, epilogue: &self.epilogue, ..ProgramDesc::new(&SURFACE_SHADER, &SURFACE) })
+        let desc = ProgramDesc { fragment: Some(fragment), ..ProgramDesc::new(&SURFACE_SHADER, &SURFACE) };
+        programs.get(&ProgramDesc { features, epilogue: &self.epilogue, ..desc })
     }
 
     /// The features of the shader of the background, which is seen through the same fog.
@@ -266,22 +289,6 @@ impl SurfaceBindings {
         let shading = self.shading.constants(alpha, self.bands).into_iter();
         shading.chain(self.light).chain(self.shadows).chain(effects).collect()
     }
-}
-
-/// Draws the blended surfaces of the world's view, from back to front, over what is there.
-pub(crate) fn draw_blended(
-    world: &SurfaceWorld<'_>,
-    bindings: &SurfaceBindings,
-    cx: &mut Cx<'_>,
-) -> Result<(), RecordError> {
-    let blended = SurfaceDraw {
-        program: &|variant| bindings.program(world.programs, variant),
-        frame: &bindings.frame,
-        constants: &bindings.constants(AlphaUse::Blend),
-        depth: Depth { write: false, ..Depth::NEARER },
-        colors: &[Output { blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING), ..Output::REPLACE }],
-    };
-    blended.draw(&world.view.view.draws.blend, world.instances().with_stencil(bindings.stencil), cx)
 }
 
 #[cfg(test)]

@@ -21,7 +21,8 @@ use crate::lighting::Lighting;
 use crate::program::{Interface, ProgramDesc, Programs};
 use crate::shading::{AlphaUse, Shading};
 use crate::shadow::ShadowInput;
-use crate::surface::{SurfaceBindings, SurfaceInputs, SurfaceWorld, draw_blended};
+use crate::surface::{SurfaceBindings, SurfaceInputs, SurfaceWorld};
+use crate::transparency::{Transparency, draw_sorted};
 use crate::upload::GpuScene;
 use crate::view::{CameraView, ViewId, Views};
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
@@ -175,6 +176,8 @@ pub struct Transparent {
     pub shadow: Option<Texture>,
     /// Which of the transmissive surfaces.
     pub layer: Layer,
+    /// How blended surfaces are put in order: those of an unordered technique are left to later passes.
+    pub transparency: Transparency,
     /// How surfaces are shaded.
     pub shading: Shading,
     /// Fog before all that is drawn.
@@ -240,6 +243,9 @@ impl Transparent {
         };
         let instances = world.instances().with_stencil(io.stencil);
         transmissive.draw(&self.layer.of(&world.view.view), instances, cx)?;
-        if self.layer.before > 0 { Ok(()) } else { draw_blended(world, &bindings, cx) }
+        match self.layer.before > 0 || self.transparency.is_unordered() {
+            true => Ok(()),
+            false => draw_sorted(world, &bindings, self.transparency, cx),
+        }
     }
 }

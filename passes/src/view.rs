@@ -6,6 +6,7 @@
 //! A frame may have several views ([`Views`]). Each has buffers of its own for what depends on its eye and for what it draws;
 //! meshes, materials and textures are the scene's and shared.
 
+mod blended;
 mod gpu;
 mod levels;
 mod motion;
@@ -20,6 +21,7 @@ use crate::shadow::{FitCamera, ShadowSettings, ViewShadows};
 use crate::stand::Stand;
 use crate::sun::{angular_radius_rad, halo_of, illuminance_lux, sun_of};
 use crate::upload::pack::light_uniforms;
+use crate::view::blended::blended_range;
 use crate::view::motion::Moment;
 use framegraph_scene::camera::exposure_from_ev100;
 use framegraph_scene::environment::{Sky, sun_light};
@@ -206,6 +208,7 @@ impl CameraView {
             },
             || renderables.origins().iter().map(from_eye).collect(),
         );
+        self.frame.blended = blended_range(renderables, &visible.blend, &settings.camera);
         let placements = prepared.placements().clone();
         let streams_objects = placements.count() <= MOST_STREAMED;
         Self { draws, visible, origins, placements, streams_objects, ..self }

@@ -10,6 +10,7 @@ mod lobes;
 mod materials;
 mod metal;
 mod optics;
+mod panes;
 mod pattern;
 mod spheres;
 
@@ -19,7 +20,7 @@ use super::error::SceneError;
 use super::scene::Scene;
 
 /// The names [`builtin`] knows, sorted.
-pub const NAMES: [&str; 8] = ["balls", "columns", "glass", "lamps", "lobes", "materials", "optics", "spheres"];
+pub const NAMES: [&str; 9] = ["balls", "columns", "glass", "lamps", "lobes", "materials", "optics", "panes", "spheres"];
 
 /// Returns a scene made in code.
 ///
@@ -30,6 +31,7 @@ pub const NAMES: [&str; 8] = ["balls", "columns", "glass", "lamps", "lobes", "ma
 /// - `lobes`: the lobes beside the metal-rough base, a row of balls each.
 /// - `materials`: one object for each material feature.
 /// - `optics`: thin films, dispersion and diffuse transmission, a row each.
+/// - `panes`: blended panes that cross each other, and a ball within a ball; `panes:N` has N panes, at most 64.
 /// - `spheres`: metallic × roughness on a ground plane.
 ///
 /// The scenes have a camera each and, but for `lamps`, no lights or environment of their own: they are meant to stand
@@ -48,14 +50,20 @@ pub fn builtin(name: &str) -> Result<Scene, SceneError> {
         "lobes" => Ok(lobes::scene()),
         "materials" => Ok(materials::scene()),
         "optics" => Ok(optics::scene()),
+        "panes" => Ok(panes::scene(panes::COUNT)),
         "spheres" => Ok(spheres::scene()),
-        _ => match name.strip_prefix("lamps:") {
-            Some(count) => {
+        _ => match name.split_once(':') {
+            Some(("lamps", count)) => {
                 let number = count.parse().ok().filter(|number| *number <= lamps::MOST);
                 let wrong = || SceneError::LampCount { count: count.into(), most: lamps::MOST };
                 number.map(lamps::scene).ok_or_else(wrong)
             }
-            None => Err(SceneError::UnknownScene { name: name.into(), known: &NAMES }),
+            Some(("panes", count)) => {
+                let number = count.parse().ok().filter(|number| *number <= panes::MOST);
+                let wrong = || SceneError::PaneCount { count: count.into(), most: panes::MOST };
+                number.map(panes::scene).ok_or_else(wrong)
+            }
+            _ => Err(SceneError::UnknownScene { name: name.into(), known: &NAMES }),
         },
     }
 }

@@ -127,6 +127,14 @@ pub enum SceneError {
         /// The names there are.
         known: Vec<String>,
     },
+    /// A scene of panes has too many, or no number of them.
+    #[error("panes:{}: a whole number from 0 to {most} is needed", one_line(count))]
+    PaneCount {
+        /// The word after the colon.
+        count: String,
+        /// The most that the scene takes.
+        most: u32,
+    },
     /// The built-in scene of lamps has no such number of them.
     #[error("lamps:{}: a whole number from 0 to {most} is needed", one_line(count))]
     LampCount {

@@ -81,7 +81,7 @@ pub use levels::InstanceLevels;
 pub use light::{Light, LightKind, SunHalo};
 pub use material::{
     AlphaMode, Anisotropy, ClearCoat, DiffuseTransmission, EmissiveUnit, Iridescence, Lobe, Lobes, Material,
-    MaterialId, Sheen, Specular, Transmission, Volume,
+    MaterialId, Sheen, Specular, Transmission, TransparencyMode, Volume,
 };
 pub use memory::Memory;
 pub use mesh::{Mesh, MeshError, MeshId, MeshLevel, Topology};

@@ -32,6 +32,28 @@ pub enum AlphaMode {
     Blend,
 }
 
+/// How triangles of one blended object are put in order (Filament's `TransparencyMode`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TransparencyMode {
+    /// In the order of the mesh (`DEFAULT`).
+    #[default]
+    Default,
+    /// The nearest surfaces alone: depth is drawn first, then what has that depth (`TWO_PASSES_ONE_SIDE`). Objects drawn
+    /// later are hidden behind it.
+    TwoPassesOneSide,
+    /// Back faces first, then front faces, whatever [`Material::double_sided`] says (`TWO_PASSES_TWO_SIDES`).
+    TwoPassesTwoSides,
+}
+
+impl TransparencyMode {
+    /// Modes by their names in files.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("default", Self::Default),
+        ("two-passes-one-side", Self::TwoPassesOneSide),
+        ("two-passes-two-sides", Self::TwoPassesTwoSides),
+    ];
+}
+
 /// What the numbers of an emission mean.
 ///
 /// glTF calls both nits "where a physical light unit is needed" (section 3.9.3), but a factor of at
@@ -75,6 +97,8 @@ pub struct Material {
     pub occlusion_strength: f32,
     /// Whether alpha is ignored, tested or blended.
     pub alpha: AlphaMode,
+    /// How triangles of an object are put in order, where it blends and blended surfaces are sorted.
+    pub transparency: TransparencyMode,
     /// Draw back faces too, with their normals turned towards the viewer.
     pub double_sided: bool,
     /// The base color is shown without shading (KHR_materials_unlit). Lines and points add the emission (glTF 2.0, section 3.9.7).
@@ -148,6 +172,7 @@ impl Default for Material {
             normal_scale: 1.0,
             occlusion_strength: 1.0,
             alpha: AlphaMode::Opaque,
+            transparency: TransparencyMode::Default,
             double_sided: false,
             unlit: false,
             base_color_texture: None,

@@ -6,7 +6,7 @@ use crate::structure::Resolution;
 
 impl DofSettings {
     /// Names accepted by [`DofSettings::set`].
-    pub const KEYS: [&str; 11] = [
+    pub const KEYS: [&str; 12] = [
         "focus",
         "aperture",
         "focal",
@@ -18,6 +18,7 @@ impl DofSettings {
         "rings-behind",
         "rings-even",
         "median",
+        "blended",
     ];
 
     /// Parses `off`, or `on` with changes such as `on:focus=3,aperture=1.4`. Returns `None` for `off`.
@@ -54,6 +55,13 @@ impl DofSettings {
             "rings-behind" => self.rings_behind = rings()?,
             "rings-even" => self.rings_even = rings()?,
             "median" => self.median = choice.switch()?,
+            "blended" => {
+                self.blended_after = match value {
+                    "before" => false,
+                    "after" => true,
+                    _ => return Err(choice.wrong("`before` or `after`")),
+                }
+            }
             _ => return Err(choice.unknown(&Self::KEYS)),
         }
         Ok(())
@@ -69,7 +77,7 @@ mod tests {
         assert_eq!(DofSettings::from_text("off")?, None);
         assert_eq!(DofSettings::from_text("on:focal=view")?, Some(DofSettings::DEFAULT));
         let own = "on:focus=2,aperture=1.4,focal=0.05,scale=3,resolution=full,before=8,behind=16,rings-before=3,\
-                   rings-behind=4,rings-even=17,median=off";
+                   rings-behind=4,rings-even=17,median=off,blended=after";
         let expected = DofSettings {
             focus_m: 2.0,
             f_number: 1.4,
@@ -82,6 +90,7 @@ mod tests {
             rings_behind: 4,
             rings_even: 17,
             median: false,
+            blended_after: true,
         };
         assert_eq!(DofSettings::from_text(own)?, Some(expected));
         assert!(DofSettings::KEYS.iter().all(|key| own.contains(&format!("{key}="))));
@@ -93,6 +102,7 @@ mod tests {
             ("on:before=33", "before=33"),
             ("on:rings-even=2", "rings-even=2"),
             ("on:resolution=quarter", "resolution=quarter"),
+            ("on:blended=on", "blended=on"),
         ] {
             let told = DofSettings::from_text(text).expect_err("that is no choice").to_string();
             assert!(told.contains(named) && !told.contains('\n'), "{text}: {told}");

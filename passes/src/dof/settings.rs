@@ -34,6 +34,10 @@ pub struct DofSettings {
     pub rings_even: u8,
     /// Removes noise of the taps with a 3×3 median.
     pub median: bool,
+    /// Blended surfaces that need no order ([`Transparency`](crate::Transparency)) are drawn over the blurred picture: they are
+    /// sharp, at every distance. Off, they are blurred like what is behind them. Asks for one sample per texel and no
+    /// anti-aliasing over time; otherwise it has no effect.
+    pub blended_after: bool,
 }
 
 impl Default for DofSettings {
@@ -57,6 +61,7 @@ impl DofSettings {
         rings_behind: 5,
         rings_even: 5,
         median: true,
+        blended_after: false,
     };
 
     /// Returns true if anything can be out of focus.

@@ -7,6 +7,7 @@ use crate::program::Programs;
 use crate::shading::Shading;
 use crate::stages::{Handles, Slot, StageError};
 use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent};
+use crate::transparency::Transparency;
 use crate::upload::GpuScene;
 use crate::view::Views;
 use framegraph::{AccessKind, Texture};
@@ -25,6 +26,8 @@ pub(super) struct Glass {
     pub shading: Shading,
     /// Fog before them.
     pub fog: Option<FogSettings>,
+    /// How blended surfaces are put in order.
+    pub transparency: Transparency,
 }
 
 /// The picture of what is behind transmissive surfaces: a pass a level.
@@ -78,6 +81,7 @@ where
             samples,
             shadow: maps_of(handles),
             layer,
+            transparency: glass.transparency,
             shading: glass.shading,
             fog: glass.fog,
         };

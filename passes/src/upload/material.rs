@@ -1,6 +1,8 @@
 //! A material in the terms of the shaders: the names of what it binds, the features that it calls for, its factors.
 
-use framegraph_scene::material::{AlphaMode, EmissiveUnit, Lobe, Lobes, Material, SLOT_COUNT, Subsurface};
+use framegraph_scene::material::{
+    AlphaMode, EmissiveUnit, Lobe, Lobes, Material, SLOT_COUNT, Subsurface, TransparencyMode,
+};
 use framegraph_scene::texture::{TextureSlot, UvTransform};
 use framegraph_shaders::layout::{
     AnisotropyUniforms, ClearCoatUniforms, DiffuseTransmissionUniforms, IridescenceUniforms, MATERIAL_SLOTS,
@@ -96,9 +98,10 @@ pub fn material_traits(material: &Material) -> u32 {
     let plain = |slot: &TextureSlot| slot.uv_set == 0 && slot.transform == UvTransform::default();
     let packed =
         material.occlusion_texture.is_some() && material.occlusion_texture == material.metallic_roughness_texture;
+    let two_sides = material.alpha == AlphaMode::Blend && material.transparency == TransparencyMode::TwoPassesTwoSides;
     let others = [
         (material.emissive != Vec3::ZERO, TRAIT_EMITS),
-        (material.double_sided, TRAIT_DOUBLE_SIDED),
+        (material.double_sided || two_sides, TRAIT_DOUBLE_SIDED),
         (material.unlit, TRAIT_UNLIT),
         (slots.iter().any(Option::is_some) && slots.iter().flatten().all(plain), TRAIT_PLAIN_UV),
         (packed, TRAIT_PACKED_OCCLUSION),

@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::num::NonZeroU64;
 
 use framegraph_scene::material::SLOT_COUNT;
-use framegraph_scene::{Image, Lobes, Material, MaterialId, Memory, MeshId, ProgressFn, Scene};
-use framegraph_shaders::layout::MaterialUniforms;
+use framegraph_scene::{Image, Lobes, Material, MaterialId, Memory, MeshId, ProgressFn, Scene, TransparencyMode};
+use framegraph_shaders::layout::{MaterialUniforms, TRAIT_DOUBLE_SIDED};
 use framegraph_wgpu::{Binding, Gpu};
 use wgpu::StencilState;
 
@@ -54,12 +54,15 @@ struct Surface {
     lobes: Lobes,
     traits: u32,
     stencil: Option<(StencilState, u32)>,
+    transparency: TransparencyMode,
 }
 
 impl Surface {
     fn of(material: &Material) -> Self {
         let stencil = material.stencil.as_deref().map(|own| (stencil_state(own), own.reference.into()));
-        Self { name: material.name.clone(), lobes: material.lobes(), traits: material_traits(material), stencil }
+        let Material { name, transparency, .. } = material;
+        let (lobes, traits) = (material.lobes(), material_traits(material));
+        Self { name: name.clone(), lobes, traits, stencil, transparency: *transparency }
     }
 }
 
@@ -165,6 +168,26 @@ impl GpuScene {
     #[must_use]
     pub(crate) fn stencil(&self, material: MaterialId) -> Option<&(StencilState, u32)> {
         self.surfaces[material.index()].stencil.as_ref()
+    }
+
+    /// Transparency mode of a blended material.
+    ///
+    /// # Panics
+    ///
+    /// For a material of another, larger scene.
+    #[must_use]
+    pub fn transparency(&self, material: MaterialId) -> TransparencyMode {
+        self.surfaces[material.index()].transparency
+    }
+
+    /// Whether back faces of a material are drawn too.
+    ///
+    /// # Panics
+    ///
+    /// For a material of another, larger scene.
+    #[must_use]
+    pub fn is_double_sided(&self, material: MaterialId) -> bool {
+        self.traits(material) & 1 << TRAIT_DOUBLE_SIDED != 0
     }
 
     /// Whether a material can be taken from the [table](Self::material_table): there is one, and it has no textures.

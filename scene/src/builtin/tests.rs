@@ -89,6 +89,20 @@ fn there_are_as_many_lamps_as_asked_for() {
     }
 }
 
+#[test]
+fn there_are_as_many_panes_as_asked_for() {
+    for (name, count) in [("panes", 5), ("panes:0", 0), ("panes:7", 7)] {
+        let scene = builtin(name).expect(name);
+        let blended = scene.materials.iter().filter(|m| m.alpha == AlphaMode::Blend && m.double_sided).count();
+        assert_eq!((blended, scene.name.as_str()), (count + 2, "panes"));
+        assert_eq!(scene.check(), Ok(()));
+    }
+    for name in ["panes:", "panes:65", "panes:x\n"] {
+        let told = builtin(name).expect_err(name).to_string();
+        assert!(told.starts_with("panes:") && told.contains("64") && !told.contains('\n'), "{told}");
+    }
+}
+
 /// Between them, the scenes show every lobe of glTF; those that tell of the base alone call for none.
 #[test]
 fn lobes_and_glass_call_for_what_they_show() {
@@ -109,6 +123,6 @@ fn lobes_and_glass_call_for_what_they_show() {
 #[test]
 fn an_unknown_name_lists_the_known_ones() {
     let error = builtin("sphere\n").expect_err("no such scene").to_string();
-    assert!(error.contains("balls, columns, glass, lamps, lobes, materials, optics, spheres"), "{error}");
+    assert!(error.contains("balls, columns, glass, lamps, lobes, materials, optics, panes, spheres"), "{error}");
     assert!(!error.contains('\n'));
 }

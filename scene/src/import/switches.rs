@@ -11,7 +11,9 @@ use super::document::{Document, SWITCHES};
 use super::source::{Repair, Warnings};
 use crate::draw_options::{DrawOptions, MAX_PRIORITY};
 use crate::light::{Light, SunHalo};
-use crate::material::{AlphaMode, Material, Stencil, StencilCompare, StencilFace, StencilOp, Subsurface};
+use crate::material::{
+    AlphaMode, Material, Stencil, StencilCompare, StencilFace, StencilOp, Subsurface, TransparencyMode,
+};
 
 /// The switches of one object of the file.
 pub(super) struct Switches<'a> {
@@ -142,6 +144,8 @@ impl<'a> Switches<'a> {
             stated.finish();
             subsurface
         });
+        let transparency = self.word("transparency", &TransparencyMode::NAMES);
+        material.transparency = transparency.unwrap_or(material.transparency);
         material.cloth_subsurface = self.color("clothSubsurface");
         if let Some(strength) = self.number("shadowCatcher", [0.0, 1.0]) {
             (material.shadow_catcher, material.unlit, material.alpha) = (Some(strength), true, AlphaMode::Blend);

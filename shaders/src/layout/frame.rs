@@ -41,6 +41,9 @@ pub struct FrameUniforms {
     /// Pre-exposed irradiance / π in 18 coefficients; w is unused. See
     /// [`irradiance_sh5`](crate::reference::sh::irradiance_sh5).
     pub sh: [Vec4; 18],
+    /// Scale and offset that take the binary logarithm of a blended surface's distance ahead, in m, to −1…1; then bias and
+    /// overestimation of moments ([`moment_transmittance`](crate::reference::moment_transparency::moment_transmittance)).
+    pub blended: Vec4,
 }
 
 #[cfg(test)]
@@ -61,5 +64,6 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
         specular_scale,
         roughness_one_lod,
         sh,
+        blended,
     })]
 }

@@ -26,6 +26,7 @@ mod space;
 mod table;
 mod temporal;
 mod transmission;
+mod transparency;
 
 pub use case::{Bound, Case, Deviation, Disagreement, Domain, HalfCase};
 
@@ -33,6 +34,7 @@ pub use case::{Bound, Case, Deviation, Disagreement, Domain, HalfCase};
 pub fn all() -> impl Iterator<Item = &'static Case> {
     let lit = shading::CASES.iter().chain(lobes::CASES).chain(ambient::CASES).chain(froxels::CASES);
     lit.chain(transmission::CASES)
+        .chain(transparency::CASES)
         .chain(space::CASES)
         .chain(screen::CASES)
         .chain(lens::CASES)

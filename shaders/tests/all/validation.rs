@@ -11,8 +11,9 @@ use crate::variants;
 const ENTRY_POINTS: &[(&str, &[&str])] = &[
     ("shadow", &["vs_far", "vs_opaque", "vs_mask", "fs_mask", "fs_opaque_moments", "fs_mask_moments"]),
     ("shadow_blur", &["vs_main", "fs_blur", "fs_halve"]),
-    ("prepass", &["vs_opaque", "vs_mask", "fs_mask"]),
-    ("color", &["vs_main", "fs_main"]),
+    ("prepass", &["vs_opaque", "vs_mask", "fs_mask", "fs_peel", "fs_peel_samples"]),
+    ("color", &["vs_main", "fs_main", "fs_weighted", "fs_absorbance", "fs_moments"]),
+    ("blended", &["vs_main", "fs_main", "fs_samples"]),
     ("reflection", &["vs_main", "fs_main"]),
     ("structure", &["vs_main", "fs_level"]),
     ("occlusion", &["vs_main", "fs_sao", "fs_gtao"]),
@@ -45,7 +46,7 @@ fn every_entry_point_is_valid_core_wgsl() {
         let module = naga::front::wgsl::parse_str(&variant.shader.wgsl);
         // `resolve` allows what a device might; here nothing beyond the core is allowed.
         let checked = module.map_err(|e| e.to_string()).and_then(|module| {
-            let mut core = Validator::new(ValidationFlags::all(), Capabilities::empty());
+            let mut core = Validator::new(ValidationFlags::all(), Capabilities::MULTISAMPLED_SHADING);
             let with = Validator::new(ValidationFlags::all(), variant.capabilities()).validate(&module);
             match core.validate(&module) {
                 Ok(_) if variant.in_half() => Err("it is said to use half floats and does not".to_owned()),

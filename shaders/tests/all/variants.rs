@@ -31,7 +31,9 @@ impl Variant {
 
     /// What a device must have beyond core WGSL.
     pub fn capabilities(&self) -> Capabilities {
-        if self.in_half() { Capabilities::SHADER_FLOAT16 } else { Capabilities::empty() }
+        // What is composed sample by sample says which one it is, as WebGPU lets every shader do.
+        let core = Capabilities::MULTISAMPLED_SHADING;
+        if self.in_half() { core.union(Capabilities::SHADER_FLOAT16) } else { core }
     }
 }
 

@@ -42,6 +42,9 @@ struct FrameUniforms {
     /// Pre-exposed irradiance / π of the environment; xyz of each, in the order that
     /// `irradiance_sh5` of lib/sh.wgsl states. Bands that were not projected are zero.
     sh: array<vec4<f32>, 18>,
+    /// Distances that blended surfaces lie in: scale and offset that take the binary logarithm of
+    /// a distance ahead in m to -1…1. In z and w bias and overestimation of moments.
+    blended: vec4<f32>,
 }
 
 /// A punctual light. Mirrored by `layout::LightUniforms`.

@@ -6,7 +6,9 @@
 // exposure, ready for a half-float target. What a quality preset chooses is in
 // shading/quality.wgsl.
 //
-// The color goes through the epilogue (interface/epilogue.wgsl) before it is written.
+// The color goes through the epilogue (interface/epilogue.wgsl) before it is written. Blended
+// surfaces that are drawn in any order end with `fs_weighted`, or with `fs_absorbance` and then
+// `fs_moments`.
 //
 // Features: SHADOWS, SHADOW_SOFT or SHADOW_MOMENTS (how shadow maps are read), CONTACT_SHADOWS (a
 // ray through the scene's structure completes them), AMBIENT_OCCLUSION or OCCLUSION_UPSAMPLED (a
@@ -56,13 +58,21 @@ import package::lib::dfg::energy_compensation;
 import package::lib::dfg::specular_albedo;
 import package::lib::fresnel::f90_from_f0;
 import package::lib::ggx::alpha_from_roughness;
+import package::interface::blended::{
+    AbsorbanceFragment, WeightedFragment, absorbance_moments, total_absorbance,
+};
+import package::interface::scene::distance_ahead;
 import package::lib::metal_rough::{diffuse_from_base_color, f0_from_base_color};
+import package::lib::moment_transparency::{
+    absorbance, moment_transmittance, power_moments, warped_distance,
+};
 import package::lib::numerics::{normalize_or, saturate_half3};
 import package::lib::real::{real, real2, real3, to_real3};
 import package::lib::specular_aa::normal_filtering;
 import package::lib::standard_surface::{StandardSurface, clamp_nov};
 @if(IRIDESCENCE)
 import package::lib::thin_film::f0_from_reflectance;
+import package::lib::weighted_blending::weighted_color;
 import package::shading::ambient::directional_albedo;
 import package::shading::contact_shadow::contact_visibility;
 import package::shading::direct::reflect_surface;
@@ -341,11 +351,8 @@ fn caught_shadow(vertex: SurfaceVertex, geometric: vec3<f32>) -> f32 {
     return (1.0 - visible) * material.catcher_strength;
 }
 
-@fragment
-fn fs_main(
-    vertex: SurfaceVertex,
-    @builtin(front_facing) front_facing: bool,
-) -> @location(0) vec4<f32> {
+/// The color of a fragment, multiplied by its alpha, as it is seen through fog.
+fn seen_color(vertex: SurfaceVertex, front_facing: bool) -> vec4<f32> {
     @if(MATERIAL_TABLE) material = materials[vertex.material];
     // Derivatives need every lane of the quad, so the discard comes last.
     let geometric = geometric_normal(vertex);
@@ -373,5 +380,50 @@ fn fs_main(
     @if(FOG) seen = in_fog(
         seen, normalize_or(vertex.world, vec3<f32>(0.0, 0.0, 1.0)), length(vertex.world),
     );
-    return epilogue(seen, vertex.position.xy);
+    return seen;
+}
+
+@fragment
+fn fs_main(
+    vertex: SurfaceVertex,
+    @builtin(front_facing) front_facing: bool,
+) -> @location(0) vec4<f32> {
+    return epilogue(seen_color(vertex, front_facing), vertex.position.xy);
+}
+
+/// Weighted blended transparency (lib/weighted_blending.wgsl).
+@fragment
+fn fs_weighted(
+    vertex: SurfaceVertex,
+    @builtin(front_facing) front_facing: bool,
+) -> WeightedFragment {
+    let seen = seen_color(vertex, front_facing);
+    let sum = weighted_color(seen, distance_ahead(vertex.world));
+    return WeightedFragment(sum, 1.0 - seen.a);
+}
+
+/// The first pass of moment-based transparency (lib/moment_transparency.wgsl): how much a surface
+/// hides, and where. Nothing is shaded.
+@fragment
+fn fs_absorbance(vertex: SurfaceVertex) -> AbsorbanceFragment {
+    @if(MATERIAL_TABLE) material = materials[vertex.material];
+    let alpha = base_color(texture_uv(vertex), vertex_color(vertex)).a;
+    let absorbed = absorbance(saturate(alpha));
+    let at = warped_distance(distance_ahead(vertex.world), frame.blended.xy);
+    return AbsorbanceFragment(absorbed, absorbed * power_moments(at));
+}
+
+/// The second pass: color and alpha, both times what surfaces in front let through.
+@fragment
+fn fs_moments(
+    vertex: SurfaceVertex,
+    @builtin(front_facing) front_facing: bool,
+) -> @location(3) vec4<f32> {
+    let seen = seen_color(vertex, front_facing);
+    let at = warped_distance(distance_ahead(vertex.world), frame.blended.xy);
+    let texel = vec2<i32>(vertex.position.xy);
+    let total = textureLoad(total_absorbance, texel, 0).r;
+    let moments = textureLoad(absorbance_moments, texel, 0);
+    let bias = frame.blended.zw;
+    return seen * moment_transmittance(total, moments, at, bias.x, bias.y);
 }

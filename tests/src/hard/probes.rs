@@ -7,13 +7,22 @@ mod picture;
 mod screen;
 mod shading;
 mod shadow;
+mod transparency;
 
 use super::probe::{Build, Probe};
 use framegraph_shaders::reference::cases::Domain;
 use framegraph_shaders::reference::cases::Domain::Values;
 
-pub(super) const ALL: [&[Probe]; 7] =
-    [shading::PROBES, lobes::PROBES, lens::PROBES, screen::PROBES, shadow::PROBES, picture::PROBES, color::PROBES];
+pub(super) const ALL: [&[Probe]; 8] = [
+    shading::PROBES,
+    lobes::PROBES,
+    lens::PROBES,
+    screen::PROBES,
+    shadow::PROBES,
+    picture::PROBES,
+    color::PROBES,
+    transparency::PROBES,
+];
 
 /// Largest finite half float.
 const MOST: f32 = 65504.0;

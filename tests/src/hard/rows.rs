@@ -38,6 +38,7 @@ const LEVELS: &str = "passes/src/bloom/chain.rs";
 const FOG: &str = "shaders/src/reference/fog.rs";
 const LENS: &str = "passes/src/dof/settings.rs";
 const DOF: &str = "tests/tests/it/dof.rs";
+const BLENDED: &str = "shaders/src/reference/moment_transparency.rs";
 const HALF: &str = "tests/tests/it/half.rs";
 const HALF_HARD: &str = "tests/tests/it/half/hard.rs";
 
@@ -46,7 +47,7 @@ const fn row(number: u8, what: &'static str, places: &'static [Place]) -> Row {
 }
 
 /// All rows, in order.
-pub const ROWS: [Row; 57] = [
+pub const ROWS: [Row; 58] = [
     row(1, "n·v of 0, negative, 1e-4: V fits half floats", &[]),
     row(2, "n·l of 0, −0, negative: exactly no light", &[]),
     row(3, "n·h above 1: D at most its peak", &[]),
@@ -212,6 +213,16 @@ pub const ROWS: [Row; 57] = [
         &[
             Test("passes/src/punctual/tests.rs", "no_light_is_missed_by_other_cuts_and_far_away"),
             Test("tests/tests/it/lights/hard.rs", "hard_case_57_every_distance_has_a_froxel"),
+        ],
+    ),
+    row(
+        58,
+        "blended surfaces at one distance, of alpha 1, over any range",
+        &[
+            Test(BLENDED, "hard_case_58_one_distance_hides_what_is_behind_it_and_nothing_in_front"),
+            Test(BLENDED, "hard_case_58_a_layer_that_hides_everything_hides_it"),
+            Test(BLENDED, "hard_case_58_nothing_makes_it_other_than_a_share"),
+            Test("tests/tests/it/transparency.rs", "hard_stacks"),
         ],
     ),
 ];

@@ -1,5 +1,6 @@
 //! Techniques of the standard frame.
 
+mod blending;
 mod environment;
 mod formulas;
 mod lens;
@@ -21,6 +22,7 @@ pub fn all(gpu: &Gpu) -> Vec<Technique> {
         environment::techniques(),
         terms::techniques(),
         screen::techniques(),
+        blending::techniques(gpu),
         lens::techniques(),
     ];
     own.into_iter().flatten().chain(picture::techniques(gpu)).chain(formulas::techniques()).collect()

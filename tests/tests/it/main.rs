@@ -69,6 +69,7 @@ mod taa;
 mod textures;
 mod tone_resolve;
 mod transmission;
+mod transparency;
 mod upscale;
 mod velocity;
 mod views;

@@ -30,7 +30,7 @@ const MAX_BYTES: u64 = 60_000;
 const HELMET: &str = "tests/assets/models/FlightHelmet/FlightHelmet.gltf";
 
 /// The pictures: name, model, and options for the light.
-const PICTURES: [(&str, Model, &str); 28] = [
+const PICTURES: [(&str, Model, &str); 33] = [
     ("balls-studio", Model::Balls, "--environment tests/assets/hdri/studio.hdr"),
     ("balls-sunset", Model::Balls, "--environment tests/assets/hdri/sunset.hdr"),
     ("balls-aces", Model::Balls, "--environment tests/assets/hdri/sunset.hdr --tone-map aces"),
@@ -52,6 +52,11 @@ const PICTURES: [(&str, Model, &str); 28] = [
     ("spheres-reflections", Model::Spheres, "--ssr on"),
     ("glass-one-layer", Model::Glass, "--glass-layers 1"),
     ("glass-layers", Model::Glass, "--glass-layers 3"),
+    ("panes-sorted", Model::Panes, "--transparency sorted"),
+    ("panes-two-passes", Model::Panes, "--transparency two-passes"),
+    ("panes-weighted", Model::Panes, "--transparency weighted"),
+    ("panes-moments", Model::Panes, "--transparency moments"),
+    ("panes-peeled", Model::Panes, "--transparency peeled:layers=12"),
     ("columns-clear", Model::Aisle, "--fog off"),
     ("columns-fog", Model::Aisle, "--fog on:density=0.15,falloff=0.6,sharp=40"),
     ("balls-bloom", Model::Lamps, "--bloom on:strength=0.25"),
@@ -72,6 +77,7 @@ enum Model {
     Columns,
     Spheres,
     Glass,
+    Panes,
     Aisle,
     Lamps,
     Near,
@@ -86,6 +92,7 @@ impl Model {
             Self::Columns => "columns --size 368x207",
             Self::Spheres => "spheres --camera 0,1.3,6.4:-2.3,0.25,2:30 --size 336x189",
             Self::Glass => "glass --camera 2.1,0.75,3.1:1.5,0.42,0:36 --size 256x144",
+            Self::Panes => "panes --size 232x130",
             Self::Aisle => "columns --size 368x207 --camera 0.5,1.2,6:0,1.2,-4:45",
             Self::Lamps => {
                 "balls --camera -1.3,0.5,3.2:-1.3,0.33,0:34 --size 272x153 --environment tests/assets/hdri/studio.hdr --compensation 1 --resolve tone"
@@ -161,7 +168,10 @@ mod tests {
             let (name, ..) = picture;
             let command = format!("cargo run --release --bin render -- {}", words(picture));
             assert!(document.contains(&command), "docs/gallery/README.md lacks `{command}`");
-            assert!(document.contains(&format!("](gallery/{name}.png)")), "docs/gallery/README.md does not show {name}");
+            assert!(
+                document.contains(&format!("](gallery/{name}.png)")),
+                "docs/gallery/README.md does not show {name}"
+            );
             small(&workspace::root().join(FOLDER).join(format!("{name}.png"))).expect("a small picture");
         }
         let shown = document.matches("](gallery/").count();

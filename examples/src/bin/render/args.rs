@@ -38,7 +38,7 @@ Renders a scene through the compiled render graph, without a window.
 usage: render [SCENE] [options]
 
 SCENE is a glTF or GLB file, or a built-in scene: spheres (default), balls, columns, glass, lamps (lamps:N has N of them,
-lamps 1000), lobes, materials, optics.
+lamps 1000), lobes, materials, optics, panes (panes:N has N of them, panes 5).
 
   --size WxH           size of the picture in pixels (1280x720)
   --msaa 1|4           samples per pixel (4)
@@ -420,6 +420,8 @@ mod tests {
             (&["--grade", "hue=1"], "--grade hue"),
             (&["--ao", "ssao"], "--ao ssao"),
             (&["--ao", "sao:gloss=1"], "--ao gloss"),
+            (&["--transparency", "exact"], "--transparency exact: unknown choice"),
+            (&["--transparency", "peeled:layers=0"], "--transparency layers=0"),
             (&["--glass-layers", "0"], "--glass-layers 0"),
             (&["--glass-layers", "5"], "--glass-layers 5"),
             (&["--ssr", "maybe"], "--ssr maybe"),

@@ -214,6 +214,7 @@ impl Args {
             occlusion: self.effects.occlusion,
             reflections: self.effects.reflections,
             glass_layers: self.effects.glass_layers,
+            transparency: self.effects.transparency,
             fxaa: self.fxaa,
             ..self.base
         };

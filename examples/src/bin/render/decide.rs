@@ -172,8 +172,19 @@ impl Args {
             (settings.samples, settings.shading, settings.post, settings.fxaa);
         (self.shadows, self.grade) = (Shadows::with(settings.shadows), Grade::with(&settings.post));
         self.split_post = settings.split_post;
-        let Settings { occlusion, reflections, tone_resolve, taa, upscale, dof, bloom, fog, glass_layers, .. } =
-            settings;
+        let Settings {
+            occlusion,
+            reflections,
+            tone_resolve,
+            taa,
+            upscale,
+            dof,
+            bloom,
+            fog,
+            glass_layers,
+            transparency,
+            ..
+        } = settings;
         let own = Effects::default();
         self.effects = Effects {
             occlusion,
@@ -187,6 +198,7 @@ impl Args {
             lod_error_px,
             visible_layers,
             glass_layers,
+            transparency,
             ..own
         };
     }

@@ -5,7 +5,8 @@ use crate::look::number;
 use framegraph_passes::transmission::MOST_GLASS_LAYERS;
 use framegraph_passes::upscale::{DynamicResolution, UpscaleFilter};
 use framegraph_passes::{
-    BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, Settings, TaaSettings, Upscale,
+    BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, Settings, TaaSettings,
+    Transparency, Upscale,
 };
 use framegraph_scene::draw_options::DEFAULT_MASK;
 use lexopt::Parser;
@@ -39,7 +40,8 @@ pub const HELP: &str = "
   --dof off|on[:KEY=X,...]  what is out of focus is blurred as by a lens (off). focus=M (5), aperture=F (f-number, 2.8),
                        focal=M|view (length, of the view's angle on film of 24 mm), scale=X (of circles, 1),
                        resolution=full|half (half), before=PX, behind=PX (largest radii, 32), rings-before=N, rings-behind=N,
-                       rings-even=N (of taps, 5), median=on|off (on)
+                       rings-even=N (of taps, 5), median=on|off (on), blended=before|after (the blur are blended surfaces drawn
+                       that --transparency draws in any order; at --msaa 1 without --taa; before)
   --taa off|on[:KEY=X,...]  anti-aliasing over frames, of which --frames says how many there are (off): feedback=X (share of a
                        new frame, 0.12), width=X (of its filter, 1), jitter=rgss4|helix4|halton8|halton16|halton32,
                        box=bounds|variance|both (of colors that the sum is held to), clip=accurate|clamp|none, gamma=X
@@ -55,6 +57,10 @@ pub const HELP: &str = "
                        it takes MS milliseconds; no smaller than LEAST percent of its sides, 25 to 100 (50)
   --lod PX             meshes are drawn in fewer triangles where they are no farther than so many pixels from where they are, or
                        texels of shadow maps, 0 to 16; 0 draws all triangles (0)
+  --transparency METHOD[:KEY=X,...]  how blended surfaces are put in order: sorted (by object, default), two-passes (and back
+                       faces before front faces of double-sided ones), weighted (an average, nearer ones count more), moments
+                       (an average by where surfaces absorb) or peeled (layer by layer, exact); moments: precision=half|full
+                       (half), overestimation=X (0.25); peeled: layers=N (1 to 32, 4)
   --glass-layers N     layers of glass that is seen through glass, 1 to 4; 1 shows what is opaque alone (1)
   --layers MASK        layers of the scene that are shown, a bit each, such as 3, 0x03 or 0b11; objects in none of them neither
                        show nor cast shadows (1)
@@ -85,6 +91,8 @@ pub struct Effects {
     pub dynamic: Option<DynamicResolution>,
     /// How far a mesh may be drawn from where it is, in pixels; 0 draws it whole.
     pub lod_error_px: f32,
+    /// How blended surfaces are put in order.
+    pub transparency: Transparency,
     /// Layers of glass.
     pub glass_layers: u8,
     /// Layers of the scene that are shown, a bit each.
@@ -106,6 +114,7 @@ impl Default for Effects {
             dirt: None,
             fog: None,
             lod_error_px: 0.0,
+            transparency: Transparency::Sorted,
             glass_layers: 1,
             visible_layers: DEFAULT_MASK,
         }
@@ -148,6 +157,10 @@ impl Effects {
             "dof" => self.dof = DofSettings::from_text(&value()?).map_err(|told| format!("--dof {told}"))?,
             "fog" => self.fog = FogSettings::from_text(&value()?).map_err(|told| format!("--fog {told}"))?,
             "taa" => self.taa = TaaSettings::from_text(&value()?).map_err(|told| format!("--taa {told}"))?,
+            "transparency" => {
+                self.transparency =
+                    Transparency::from_text(&value()?).map_err(|told| format!("--transparency {told}"))?;
+            }
             "scale" => {
                 self.upscale = self.enlarging(f64::from(100.0 * number("--scale", &value()?, 0.25..=1.0)?));
             }

@@ -365,6 +365,7 @@ pub fn settings(args: &Args, loaded: &Loaded, seen: &ViewSettings) -> Settings {
         taa: args.effects.taa,
         upscale: args.effects.upscale,
         glass_layers: args.effects.glass_layers,
+        transparency: args.effects.transparency,
         fxaa: args.fxaa,
         split_post: args.split_post,
         post: args.post,

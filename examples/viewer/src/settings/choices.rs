@@ -63,6 +63,11 @@ const VARIANTS: [(&str, &[&str]); 31] = [
         "settings.fog.color",
         &["Radiance(2000.0, 2500.0, 3000.0)", "Environment(tint: (1.0, 1.0, 1.0), sharp_m: 100.0, sharp_levels: 1.0)"],
     ),
+    (
+        "settings.transparency",
+        &["Sorted", "TwoPasses", "Weighted", "Moments(precision: Half, overestimation: 0.25)", "Peeled(layers: 4)"],
+    ),
+    ("settings.transparency.precision", &["Half", "Full"]),
     ("settings.dof.resolution", &["Full", "Half"]),
     ("settings.bloom.quality", &["Low", "Medium", "High"]),
     ("settings.bloom.blend", &["Add", "Interpolate"]),
@@ -176,6 +181,11 @@ mod tests {
                 if path == "settings.occlusion.method.occluders" {
                     *whole.at_mut("settings.occlusion.method").expect("a method") =
                         super::super::parse(&alternatives("settings.occlusion.method").expect("methods")[1])
+                            .expect("a value");
+                }
+                if path == "settings.transparency.precision" {
+                    *whole.at_mut("settings.transparency").expect("a technique") =
+                        super::super::parse(&alternatives("settings.transparency").expect("techniques")[3])
                             .expect("a value");
                 }
                 if path == "settings.post.by.format" {

@@ -97,6 +97,29 @@ fn extras_are_ignored() {
     }
 }
 
+/// Materials alone have extras that are read, and what is wrong there is a warning.
+#[test]
+fn extras_of_materials_say_how_triangles_are_put_in_order() {
+    use crate::material::TransparencyMode;
+    let read = |extras: Value| {
+        let mut fixture = Fixture::triangle();
+        fixture.set("/materials", json!([{"extras": extras}]));
+        fixture.set("/meshes/0/primitives/0/material", json!(0));
+        let scene = fixture.load().expect("extras are never an error");
+        (scene.materials[0].transparency, scene.warnings.len())
+    };
+    let named = |name: &str| read(json!({"framegraph": {"transparency": name}}));
+    assert_eq!(named("default"), (TransparencyMode::Default, 0));
+    assert_eq!(named("two-passes-one-side"), (TransparencyMode::TwoPassesOneSide, 0));
+    assert_eq!(named("two-passes-two-sides"), (TransparencyMode::TwoPassesTwoSides, 0));
+    assert_eq!(named("both"), (TransparencyMode::Default, 1));
+    assert_eq!(read(json!({"framegraph": 1})), (TransparencyMode::Default, 1));
+    for other in [json!(null), json!(3), json!({"other": {"transparency": "both"}})] {
+        assert_eq!(read(other), (TransparencyMode::Default, 0));
+    }
+    assert_eq!(read(json!({"framegraph": {"transparency": [1]}})), (TransparencyMode::Default, 1));
+}
+
 #[test]
 fn deep_nesting_is_an_error() {
     for (open, close) in [("[", "]"), ("{\"extras\":", "}")] {

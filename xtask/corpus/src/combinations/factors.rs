@@ -30,7 +30,7 @@ const fn factor(name: &'static str, levels: &'static [Choice]) -> Factor {
 }
 
 /// All factors.
-pub const FACTORS: [Factor; 46] = [
+pub const FACTORS: [Factor; 47] = [
     // The scene.
     factor("punctual lights", &[None, P(Part::TwoLights), P(Part::EightLights)]),
     factor("glass", &[None, P(Part::Glass), P(Part::GlassBehindGlass)]),
@@ -89,6 +89,16 @@ pub const FACTORS: [Factor; 46] = [
     ),
     factor("reflections", &[None, O("--ssr on")]),
     factor("fog", &[None, O("--fog on"), O("--fog on:color=100:50:20,glow=4,cut-off=50,start=1")]),
+    factor(
+        "transparency",
+        &[
+            None,
+            O("--transparency two-passes"),
+            O("--transparency weighted"),
+            O("--transparency moments"),
+            O("--transparency peeled:layers=3"),
+        ],
+    ),
     factor("glass layers", &[None, O("--glass-layers 2"), O("--glass-layers 4")]),
     factor("bloom", &[None, O("--bloom on"), O("--bloom on:flare=on,quality=high,levels=3,blend=interpolate")]),
     factor("depth of field", &[None, O("--dof on"), O("--dof on:resolution=full,focus=2,median=off")]),

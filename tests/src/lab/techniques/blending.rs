@@ -1,0 +1,52 @@
+//! How blended surfaces are put in order.
+
+use super::{Technique, base, nowhere, pictures};
+use crate::lab::studio::Truth;
+use framegraph_passes::Transparency;
+use framegraph_passes::transparency::{MomentPrecision, MomentTransparency};
+use framegraph_wgpu::Gpu;
+
+/// Layers that no ray through `panes` has more of.
+const ALL_LAYERS: u8 = 16;
+
+/// Moments of 32 bits are measured where the device blends them.
+pub(super) fn techniques(gpu: &Gpu) -> Vec<Technique> {
+    let setup = base("panes");
+    let mut truth = setup;
+    truth.settings.transparency = Transparency::Peeled { layers: ALL_LAYERS };
+    let mut own = pictures(
+        "transparency",
+        "How blended surfaces are put in order: crossing panes, and a ball within a ball.",
+        ("depth peeling with 16 layers, more than any pixel has.", Truth::Frame(truth)),
+        setup,
+        &[
+            (
+                "sorted",
+                |s| s.settings.transparency = Transparency::Sorted,
+                |f| f.settings.transparency == Transparency::Sorted,
+            ),
+            ("two passes", |s| s.settings.transparency = Transparency::TwoPasses, nowhere),
+            ("weighted", |s| s.settings.transparency = Transparency::Weighted, nowhere),
+            (
+                "moments, 16 bits",
+                |s| s.settings.transparency = Transparency::Moments(MomentTransparency::DEFAULT),
+                nowhere,
+            ),
+            (
+                "moments, 32 bits",
+                |s| {
+                    let full = MomentTransparency { precision: MomentPrecision::Full, ..MomentTransparency::DEFAULT };
+                    s.settings.transparency = Transparency::Moments(full);
+                },
+                nowhere,
+            ),
+            ("peeled, 2 layers", |s| s.settings.transparency = Transparency::Peeled { layers: 2 }, nowhere),
+            ("peeled, 4 layers", |s| s.settings.transparency = Transparency::Peeled { layers: 4 }, nowhere),
+            ("peeled, 8 layers", |s| s.settings.transparency = Transparency::Peeled { layers: 8 }, nowhere),
+        ],
+    );
+    if !gpu.device.features().contains(wgpu::Features::FLOAT32_BLENDABLE) {
+        own.choices.retain(|choice| choice.name != "moments, 32 bits");
+    }
+    vec![own]
+}
