@@ -1,6 +1,6 @@
 //! Graphs as files: the RON form of a graph, names to ids, plugins by name.
 //!
-//! A file lists resources, passes and exports; `docs/reference/graph-format.md` documents every field. Passes are spelled out with
+//! A file lists resources, passes and exports; `docs/graph-format.md` documents every field. Passes are spelled out with
 //! their accesses, or named by the kind of a [`Plugin`]. They may stand in any order: a plain name means the newest
 //! version at that place of the file, `"hdr@scene"` the version that pass `scene` wrote, and the passes are declared in
 //! the topological order nearest to the order of the file. So cycles and two writers of one version can be said, and are

@@ -15,14 +15,14 @@ Plans a frame from a file, without a GPU.
 usage: plan FRAME.ron [options]
        plan --offsets FILE.csv [--budget-steps N] [--seconds S] [--out FILE]
 
-FRAME.ron is a graph; docs/reference/graph-format.md documents its fields.
+FRAME.ron is a graph; docs/graph-format.md documents its fields.
 
   --caps WHICH        desktop, tiler, wgpu (default), or a FILE.ron that describes a device
   --size WxH          size of the frame in texels; default: what the file says, else 1920x1080
   --set FEATURE=on|off
                       switches a feature of the file; may be given several times
   --order WHICH       declared (default) or optimized
-  --format WHICH      text (default), json (docs/reference/plan-json.md), dot, mermaid or svg
+  --format WHICH      text (default), json (docs/plan-json.md), dot, mermaid or svg
   --diff OTHER.ron    what changes from FRAME to OTHER, both for the same device, size and features (of which each takes
                       those that it knows); text or json
   --budget LIMITS     exit with 1 and the decisions to blame when a limit is passed: NAME=MOST,... with the names

@@ -1,4 +1,4 @@
-//! What each choice of the frame errs by and takes, as the lab of accuracy writes it (`accuracy.json`, `docs/measurements/accuracy.md`).
+//! What each choice of the frame errs by and takes, as the lab of accuracy writes it (`accuracy.json`, `docs/accuracy.md`).
 
 use framegraph_passes::Facts;
 use framegraph_passes::budget::{Choices, Measured, Offers};
@@ -174,7 +174,7 @@ pub fn read(text: &[u8]) -> Result<AccuracyData, String> {
     if (schema.as_str(), version) != (SCHEMA, VERSION) {
         return Err(format!(
             "it is `{schema}` of version {version}, and `{SCHEMA}` of version {VERSION} is read; measure anew with `accuracy` \
-             (docs/measurements/accuracy.md)"
+             (docs/accuracy.md)"
         ));
     }
     let data: AccuracyData = serde_json::from_slice(text).map_err(told)?;

@@ -17,12 +17,12 @@ usage: viewer [FILE] [options]
        viewer --standard PRESET|SETTINGS.ron [options]
        viewer --live [SCENE] [--settings PRESET|SETTINGS.ron] [--environment FILE] [options]
 
-FILE is a plan (JSON, docs/reference/plan-json.md), a graph (FRAME.ron, docs/reference/graph-format.md), which is planned here, watched, and
-planned anew when it changes, or a trace (`render --trace`). docs/reference/viewer.md shows the views.
+FILE is a plan (JSON, docs/plan-json.md), a graph (FRAME.ron, docs/graph-format.md), which is planned here, watched, and
+planned anew when it changes, or a trace (`render --trace`). docs/viewer.md shows the views.
 
   --plan FILE         the same as FILE
   --standard WHICH    the standard frame instead of a file: low, medium, high, ultra, or a FILE.ron of settings
-                      (docs/reference/settings.md); its effects are features
+                      (docs/settings.md); its effects are features
   --live [SCENE]      the standard frame, drawn in the window: FILE is a glTF or GLB file or a built-in scene (spheres);
                       the views show the plan that is executed
   --settings WHICH    with --live: the settings that it begins with (high)

@@ -1,7 +1,7 @@
-//! The words of the glossary (`docs/reference/glossary.md`), for tooltips.
+//! The words of the glossary (`docs/glossary.md`), for tooltips.
 
 /// The document, as it was when this program was built.
-const TEXT: &str = include_str!("../../../docs/reference/glossary.md");
+const TEXT: &str = include_str!("../../../docs/glossary.md");
 
 /// What a word means: the second column of the row whose first has it in bold; as plain text.
 pub fn meaning(word: &str) -> Option<String> {
@@ -40,7 +40,7 @@ mod tests {
     #[test]
     fn the_words_of_the_panels_are_explained() {
         for word in super::super::panel::TERMS {
-            let meaning = meaning(word).unwrap_or_else(|| panic!("`{word}` is not in docs/reference/glossary.md"));
+            let meaning = meaning(word).unwrap_or_else(|| panic!("`{word}` is not in docs/glossary.md"));
             assert!(meaning.len() > 20 && !meaning.contains("**"), "{word}: {meaning}");
         }
         assert_eq!(meaning("toaster"), None);

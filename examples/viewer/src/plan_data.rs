@@ -1,6 +1,6 @@
 //! A plan as the panels see it: plain rows with names, the same for a plan that was just made and for one that was saved.
 //!
-//! The rows are the fields of the JSON form (`docs/reference/plan-json.md`), which is what any program saves through the library
+//! The rows are the fields of the JSON form (`docs/plan-json.md`), which is what any program saves through the library
 //! ([`framegraph::dump::json`]). A live plan takes the same way, so that there is one reader and one set of views.
 
 mod data;

@@ -23,7 +23,7 @@ pub struct StandardFrame {
 }
 
 impl StandardFrame {
-    /// The frame of a preset, or of a file of settings (`docs/reference/settings.md`), for a scene without glass.
+    /// The frame of a preset, or of a file of settings (`docs/settings.md`), for a scene without glass.
     ///
     /// # Errors
     /// No such preset, a file that cannot be read, and everything that is wrong with it.

@@ -1,6 +1,6 @@
 //! What declaring and compiling cost, on the graphs that peers were measured on: time, instructions, memory.
 //!
-//! `cargo xtask bench` runs it and `docs/measurements/performance.md` is what it prints. Everything that is compared runs in one process.
+//! `cargo xtask bench` runs it and `docs/performance.md` is what it prints. Everything that is compared runs in one process.
 //! With `--count GRAPH WHAT FRAMES` it does nothing but run frames, for a profiler that counts instructions.
 
 mod count;

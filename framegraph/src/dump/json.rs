@@ -1,4 +1,4 @@
-//! The plan as JSON, for tools outside of this crate. `docs/reference/plan-json.md` documents the fields, `docs/reference/plan.schema.json`
+//! The plan as JSON, for tools outside of this crate. `docs/plan-json.md` documents the fields, `docs/plan.schema.json`
 //! is their schema (JSON Schema, draft 2020-12); a test holds them against what is written.
 //!
 //! Names stand in the place of ids: the plan's own arrays are free to change, the fields are not, short of a new

@@ -32,7 +32,7 @@ faults! {
         /// The text is no RON, or not of this form.
         Syntax { message: String, hint: String } => (message.clone(), hint.clone());
         Version { found: u32, known: u32 } "the file is of version {found}, this program reads version {known}",
-            "write `version: {known}` once the file follows docs/reference/graph-format.md";
+            "write `version: {known}` once the file follows docs/graph-format.md";
         Unknown {
             what: &'static str,
             name: String,

@@ -1,4 +1,4 @@
-//! The shape of a file, as serde reads it. Field by field the reference is `docs/reference/graph-format.md`.
+//! The shape of a file, as serde reads it. Field by field the reference is `docs/graph-format.md`.
 
 use super::access_form::{AccessForm, Level};
 use super::entries::{Count, Entries};

@@ -38,10 +38,10 @@ pub(super) fn explained(error: &ron::Error) -> (String, String) {
         | E::UnclosedBlockComment => "close the bracket or quote, or add the comma".into(),
         E::ExceededRecursionLimit => format!("put at most {DEPTH} brackets inside of each other"),
         E::IntegerOutOfBounds | E::InvalidValueForType { .. } => {
-            "the range of each field is in docs/reference/graph-format.md".into()
+            "the range of each field is in docs/graph-format.md".into()
         }
         E::TrailingCharacters => "a file holds one value".into(),
-        _ => "the fields and their forms are in docs/reference/graph-format.md".into(),
+        _ => "the fields and their forms are in docs/graph-format.md".into(),
     };
     let message = match error {
         E::NoSuchStructField { found, outer, .. } => match outer {

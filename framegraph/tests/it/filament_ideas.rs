@@ -1,4 +1,4 @@
-//! The sixteen tests of Filament's own frame graph, in the terms of this library. `docs/design/filament-frame-graph.md` says of
+//! The sixteen tests of Filament's own frame graph, in the terms of this library. `docs/filament-frame-graph.md` says of
 //! each what it shows and how the ideas are written here; names are those of `filament_framegraph_test.cpp`.
 
 use crate::support::*;

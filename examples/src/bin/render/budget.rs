@@ -20,15 +20,15 @@ pub const HELP: &str = "
 BUDGET
   --budget-ms X        the most accurate frame that takes at most X ms here: options of edges, shadows, ambient occlusion,
                        shading, precision, radiance, reflections and glass are chosen by what they were measured to take and
-                       to err by, tried on this scene, and compared with the finest frame (docs/measurements/accuracy.md)
+                       to err by, tried on this scene, and compared with the finest frame (docs/accuracy.md)
   --max-error X        the fastest frame that is no farther than X from the finest: root mean square in codes of 255
   --record FILE.json   what was measured, by `accuracy --technique budget`; without it, the record of the repository
-                       (docs/measurements/accuracy.json), which was made with a software driver. With --preset, the preset's options are
+                       (docs/accuracy.json), which was made with a software driver. With --preset, the preset's options are
                        chosen from it
 ";
 
 /// What was measured in the repository.
-const OWN: &str = include_str!("../../../../docs/measurements/accuracy.json");
+const OWN: &str = include_str!("../../../../docs/accuracy.json");
 
 /// What a frame is held to.
 #[derive(Clone, Debug, Default)]
@@ -72,7 +72,7 @@ struct Record {
 
 /// What was measured, and on which adapter.
 pub fn record(file: Option<&Path>) -> Result<(Measured, String), String> {
-    let shown = file.map_or_else(|| "docs/measurements/accuracy.json".into(), |file| file.to_string_lossy());
+    let shown = file.map_or_else(|| "docs/accuracy.json".into(), |file| file.to_string_lossy());
     let told = |what: &dyn std::fmt::Display| format!("--record {shown}: {what}");
     let text = match file {
         Some(file) => &text(file, MOST_TEXT_BYTES).map_err(|error| format!("--record {error}"))?,

@@ -19,19 +19,19 @@ use std::path::{Path, PathBuf};
 /// What `render --help` prints of them.
 pub const HELP: &str = "
 FRAME
-  --preset NAME        the whole frame: low, medium, high or ultra (docs/reference/settings.md); other options change it;
+  --preset NAME        the whole frame: low, medium, high or ultra (docs/settings.md); other options change it;
                        with --record, what that record chooses for it
-  --settings FILE.ron  the whole frame from a file (docs/reference/settings.md); other options change it
+  --settings FILE.ron  the whole frame from a file (docs/settings.md); other options change it
   --enable EFFECT      the effect in its default strength, whatever the scene calls for; may be given again
   --disable EFFECT     not the effect, whatever the scene calls for; may be given again. EFFECT is NAMES
   --force-effects      every effect that is asked for; without it, what facts about the scene prove to change nothing is left
-                       out, and said after the table with its reason (docs/design/feature-culling.md)
+                       out, and said after the table with its reason (docs/facts.md)
   --facts FILE.json    what was decided of each effect
   --what-it-costs      beside the picture a table of what each effect takes: the frame with it and without it, in turns, all
                        other decisions being made; times are medians of --frames, from recording to the end
-  --graph FILE.ron     the frame's graph, for the program `plan` (docs/reference/graph-format.md)
+  --graph FILE.ron     the frame's graph, for the program `plan` (docs/graph-format.md)
   --what-if WHICH      the plan's counts for a device that is not here, beside those for this one: desktop, tiler, wgpu, or a
-                       FILE.ron that describes one (docs/reference/graph-format.md)
+                       FILE.ron that describes one (docs/graph-format.md)
   --turntable N DIR    no picture, but N of them as DIR/turntable_0000.png, …: the camera goes once around the scene
   --sequence N DIR     N frames in a row, as DIR/frame_0000.png, …; with --time S an animation plays on from there, 30 frames a
                        second

@@ -38,7 +38,7 @@ pub enum ReadError {
         known: u32,
     },
     /// A field is missing, or holds something else.
-    #[error("line {line}: {reason}; docs/reference/plan-json.md documents the fields")]
+    #[error("line {line}: {reason}; docs/plan-json.md documents the fields")]
     Field {
         /// Where, from 1.
         line: usize,

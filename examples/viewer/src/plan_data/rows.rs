@@ -1,5 +1,5 @@
-//! The rows of a saved plan, field by field as `docs/reference/plan-json.md` documents them.
-#![expect(missing_docs, reason = "docs/reference/plan-json.md documents each field under the same name")]
+//! The rows of a saved plan, field by field as `docs/plan-json.md` documents them.
+#![expect(missing_docs, reason = "docs/plan-json.md documents each field under the same name")]
 
 use serde::Deserialize;
 

@@ -1,6 +1,6 @@
 //! Pictures of the panels of a frame that is drawn: at the size of a window, of a large one, and with letters twice as large.
 //!
-//! `VIEWER_PICTURES=write cargo test -p viewer --test it live_pictures` makes the one of `docs/reference/viewer.md` anew.
+//! `VIEWER_PICTURES=write cargo test -p viewer --test it live_pictures` makes the one of `docs/viewer.md` anew.
 
 use crate::live::{document, viewer};
 use std::path::Path;

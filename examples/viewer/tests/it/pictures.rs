@@ -1,4 +1,4 @@
-//! The pictures of `docs/reference/viewer.md`, compared with what the panels look like now.
+//! The pictures of `docs/viewer.md`, compared with what the panels look like now.
 //!
 //! `VIEWER_PICTURES=write cargo test -p viewer --test it pictures` makes them anew.
 

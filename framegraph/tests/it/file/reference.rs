@@ -1,10 +1,10 @@
-//! `docs/reference/graph-format.md` against the reader: its examples are read, and what can be written is in it.
+//! `docs/graph-format.md` against the reader: its examples are read, and what can be written is in it.
 
 use framegraph::file::*;
 
 fn reference() -> String {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/reference/graph-format.md");
-    std::fs::read_to_string(path).expect("docs/reference/graph-format.md is there")
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/graph-format.md");
+    std::fs::read_to_string(path).expect("docs/graph-format.md is there")
 }
 
 /// The text of each RON block.

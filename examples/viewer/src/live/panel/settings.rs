@@ -86,7 +86,7 @@ fn bar(ui: &mut Ui, live: &mut Live) {
         ui.add(TextEdit::singleline(&mut live.path).hint_text("SETTINGS.ron").desired_width(width));
         let path = PathBuf::from(live.path.trim());
         let named = !live.path.trim().is_empty();
-        if ui.add_enabled(named, egui::Button::new("Load")).on_hover_text("docs/reference/settings.md").clicked() {
+        if ui.add_enabled(named, egui::Button::new("Load")).on_hover_text("docs/settings.md").clicked() {
             let read = crate::standard_frame::settings(live.path.trim());
             live.settings.refused = match read {
                 Ok(frame) => {
