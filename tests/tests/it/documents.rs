@@ -48,8 +48,8 @@ fn every_link_leads_to_a_file() {
 }
 
 /// The rooms, the first words of paths.
-const ROOMS: [&str; 9] =
-    ["framegraph/", "renderer/", "scene/", "shaders/", "passes/", "tests/", "docs/", "examples/", "xtask/"];
+const ROOMS: [&str; 10] =
+    ["framegraph/", "renderer/", "scene/", "shaders/", "passes/", "tests/", "docs/", "examples/", "viewer/", "xtask/"];
 
 /// Sentences call a file by its name where the folder is plain.
 #[test]

@@ -1,7 +1,7 @@
 //! What the document of settings says of a field, for tooltips.
 
 /// The document, as it was when this program was built.
-const TEXT: &str = include_str!("../../../../docs/settings.md");
+const TEXT: &str = include_str!("../../../docs/settings.md");
 
 /// What a field is, by its path (`settings.shadows.filter`): the row of the field itself, or of the field that holds it.
 pub fn about(path: &str) -> Option<String> {

@@ -82,7 +82,7 @@ fn panels_look_as_in_the_document() {
         Err(error) => return test_report::skip(name, &error),
     };
     test_report::adapter(&screen.gpu().describe());
-    let (made, kept) = (folder("pictures"), Path::new("../../docs/viewer"));
+    let (made, kept) = (folder("pictures"), Path::new("../docs/viewer"));
     let anew = std::env::var_os("VIEWER_PICTURES").is_some_and(|word| word == "write");
     let mut before: Option<Vec<u8>> = None;
     for view in View::ALL.into_iter().filter(|view| *view != View::Inspector) {

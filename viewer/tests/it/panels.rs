@@ -187,7 +187,7 @@ fn a_frame_is_chosen_within_a_time_and_an_option_is_seen() {
     let pictures = folder.join("pictures");
     std::fs::create_dir_all(&pictures).expect("a folder");
     std::fs::copy("tests/it/accuracy.json", folder.join("accuracy.json")).expect("the sample");
-    std::fs::copy("../../docs/viewer/graph.png", pictures.join("shadow-filter.pcss.png")).expect("a picture");
+    std::fs::copy("../docs/viewer/graph.png", pictures.join("shadow-filter.pcss.png")).expect("a picture");
     std::fs::write(pictures.join("shadow-filter.vsm.png"), "no picture").expect("a file");
     let mut harness = shown("filament");
     harness.state_mut().session.open(&folder.join("accuracy.json"), viewer::app::Role::Shown);

@@ -26,7 +26,7 @@ const CASES: [&str; 7] = ["deferred", "diamond", "filament", "forward", "granite
 
 fn case(name: &str) -> PathBuf {
     // Tests run in the folder of their package; pictures show the path.
-    Path::new("../../tests/cases").join(format!("{name}.ron"))
+    Path::new("../tests/cases").join(format!("{name}.ron"))
 }
 
 /// A frame planned for a device, with some features switched on.

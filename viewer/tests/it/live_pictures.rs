@@ -26,7 +26,7 @@ fn panels_of_a_frame_fit_their_window() {
     };
     test_report::adapter(&screen.gpu().describe());
     let mut viewer = viewer(&screen.screen(), document(), "materials");
-    let (made, kept) = (crate::folder("live_pictures"), Path::new("../../docs/viewer"));
+    let (made, kept) = (crate::folder("live_pictures"), Path::new("../docs/viewer"));
     let anew = std::env::var_os("VIEWER_PICTURES").is_some_and(|word| word == "write");
     let live = viewer.live.as_mut().expect("a frame");
     // Panels are as large with a frame of fewer texels behind them, which is drawn in a tenth of the time.

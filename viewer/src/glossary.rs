@@ -1,7 +1,7 @@
 //! The words of the glossary (`docs/glossary.md`), for tooltips.
 
 /// The document, as it was when this program was built.
-const TEXT: &str = include_str!("../../../docs/glossary.md");
+const TEXT: &str = include_str!("../../docs/glossary.md");
 
 /// What a word means: the second column of the row whose first has it in bold; as plain text.
 pub fn meaning(word: &str) -> Option<String> {
