@@ -4,7 +4,7 @@ use crate::plan_data::PlanData;
 use crate::what_if::{Planner, WhatIf};
 use framegraph::file::{GraphFile, Included};
 use framegraph::{Graph, Options, Plan, Scratch};
-use program::input::{MOST_TEXT_BYTES, in_utf8};
+use program::input::{MAX_TEXT_BYTES, in_utf8};
 use std::path::{Path, PathBuf};
 
 /// The size of a frame when neither the file nor the user says one, in texels.
@@ -74,6 +74,6 @@ impl Planner for GraphSource {
 
 /// The text of a file.
 fn text_of(path: &Path) -> Result<String, String> {
-    let bytes = crate::file_bytes::bytes_of(path, MOST_TEXT_BYTES, &crate::job::Handle::default())?;
+    let bytes = crate::file_bytes::bytes_of(path, MAX_TEXT_BYTES, &crate::job::Handle::default())?;
     in_utf8(path, bytes)
 }

@@ -160,7 +160,7 @@ impl Live {
             Some("hdr" | "exr" | "ktx" | "ktx2") => self.wanted = Around::File(path.to_owned()),
             Some("ron") => {
                 let name = path.to_string_lossy();
-                let says_frame = || input::text(path, input::MOST_TEXT_BYTES).is_ok_and(|t| t.contains("frame: ("));
+                let says_frame = || input::text(path, input::MAX_TEXT_BYTES).is_ok_and(|t| t.contains("frame: ("));
                 match crate::standard_frame::settings(&name) {
                     Ok(frame) => self.set(Document { frame, ..self.document().clone() }, false),
                     // A graph is another kind of file; settings say what is wrong with them.

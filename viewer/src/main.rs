@@ -60,8 +60,7 @@ fn first(args: &args::Args) -> Result<WhatIf, Failure> {
         Some(caps) => caps,
         None if args.caps.ends_with(".ron") => {
             let path = &args.caps;
-            let text =
-                program::input::text(Path::new(path), program::input::MOST_TEXT_BYTES).map_err(Failure::Input)?;
+            let text = program::input::text(Path::new(path), program::input::MAX_TEXT_BYTES).map_err(Failure::Input)?;
             framegraph::file::caps(path, &text).map_err(|e| Failure::Input(e.to_string()))?
         }
         None => {

@@ -7,7 +7,7 @@ use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Target, Te
 use framegraph_passes::{Effect, Facts, FrameSettings, Preset, Settings, StageError, World, standard};
 use framegraph_scene::Scene;
 use framegraph_wgpu::Frame;
-use program::input::{MOST_TEXT_BYTES, text};
+use program::input::{MAX_TEXT_BYTES, text};
 use std::sync::Arc;
 
 /// The size of the frame when nobody says one, in texels.
@@ -57,7 +57,7 @@ pub fn settings(which: &str) -> Result<FrameSettings, String> {
         let presets = Preset::ALL.map(Preset::name).join(", ");
         return Err(format!("`{which}` is neither {presets} nor a file of settings (SETTINGS.ron)"));
     }
-    let text = text(which.as_ref(), MOST_TEXT_BYTES)?;
+    let text = text(which.as_ref(), MAX_TEXT_BYTES)?;
     FrameSettings::from_ron(which, &text).map_err(|e| e.to_string())
 }
 

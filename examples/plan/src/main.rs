@@ -1,5 +1,7 @@
-//! Plans a frame from a file, without a GPU: what it would cost on a device, at a size, with a feature, against another
-//! frame, and whether that is within a budget.
+//! Compiles a frame graph from a file without a GPU.
+//!
+//! Prints the plan and its cost for a chosen device, size and set of features, compares two graphs, and checks
+//! budgets.
 
 mod args;
 mod offsets;
@@ -34,7 +36,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The message on standard error; a line for each error.
+/// Prints each line of `message` on standard error and returns the exit code.
 fn fail(code: u8, message: &str) -> ExitCode {
     message.lines().for_each(program::note);
     program::exit(code)

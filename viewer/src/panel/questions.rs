@@ -6,7 +6,7 @@ use crate::view::{bytes, change};
 use crate::what_if::{SIZES, WhatIf};
 use egui::{ComboBox, DragValue, Grid, ScrollArea, TextEdit, Ui};
 use framegraph::{Alias, Caps, Order};
-use program::input::{MOST_TEXT_BYTES, text};
+use program::input::{MAX_TEXT_BYTES, text};
 
 /// What is asked, and what the panel needs to ask it.
 #[derive(Clone, Debug)]
@@ -80,7 +80,7 @@ impl Questions {
             ui.add(TextEdit::singleline(&mut self.device).hint_text("DEVICE.ron, then Enter").desired_width(150.0));
         if edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
             let path = self.device.trim().to_owned();
-            let text = text(path.as_ref(), MOST_TEXT_BYTES);
+            let text = text(path.as_ref(), MAX_TEXT_BYTES);
             let caps = text.and_then(|text| framegraph::file::caps(&path, &text).map_err(|e| e.to_string()));
             self.refused = caps.map(|caps| self.asked.caps = caps).err();
         }

@@ -247,7 +247,7 @@ fn debug_modes_are_executed_and_compared() {
     // A budget that the plan breaks is told with what to blame.
     live(&mut harness).budget = "steps=0".into();
     harness.run();
-    assert!(harness.query_all_by_label_contains("budget broken: steps").count() > 0);
+    assert!(harness.query_all_by_label_contains("budget exceeded: steps").count() > 0);
 }
 
 #[test]

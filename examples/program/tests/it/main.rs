@@ -1,10 +1,10 @@
-//! Output files from outside: what is replaced, what is refused, and what is left behind.
+//! Output files: replacement, rejected paths and temporary files.
 
 use program::outputs::{OutputError, Outputs, check_folder};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-/// A folder of its own for each test, empty at first.
+/// Creates an empty folder for a test.
 fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
     let _ = fs::remove_dir_all(&folder);
@@ -53,7 +53,7 @@ fn names_may_be_as_long_as_names_can_be() {
 fn what_cannot_be_written_is_said_before_the_work() {
     let folder = folder("refused");
     fs::create_dir(folder.join("d")).expect("the folder is ours");
-    for (name, reason) in [("d", "it is a folder"), ("gone/a", "there is no folder"), ("..", "it is a folder")] {
+    for (name, reason) in [("d", "it is a folder"), ("gone/a", "does not exist"), ("..", "it is a folder")] {
         let told = Outputs::default().add(&folder.join(name)).map_err(|error| error.to_string());
         assert!(told.as_ref().is_err_and(|told| told.contains(name) && told.contains(reason)), "{name}: {told:?}");
     }
@@ -132,7 +132,7 @@ mod unix {
         let told = outputs.commit().map_err(|error| error.to_string());
         assert!(told.is_err_and(|told| told.starts_with("/dev/full: ")));
         assert!(names(&folder).is_empty());
-        // A folder that is gone meanwhile.
+        // The folder disappears during the run.
         fs::create_dir(folder.join("d")).expect("the folder is ours");
         let mut outputs = Outputs::default();
         for path in [&first, &folder.join("d/second")] {

@@ -1,4 +1,4 @@
-//! What post-processing costs: at the end of the color pass's shader, in one full-screen pass, in a pass for each effect.
+//! Cost of post-processing: inlined, in one full-screen pass, and in one pass per effect.
 
 use crate::args::Args;
 use crate::keep::{Own, declare};
@@ -14,14 +14,14 @@ use framegraph_shaders::layout::Grading;
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Executor, Imports};
 
-/// The ways: name, inlined where that is sound, a pass for each effect.
+/// Variants to compare: name, inlined where possible, one pass per effect.
 const WAYS: [(&str, bool, bool); 3] = [
     ("inlined", true, false),
     ("fused: one full-screen pass", false, false),
-    ("unfused: a pass for each effect", false, true),
+    ("unfused: one pass per effect", false, true),
 ];
 
-/// One way at one number of samples.
+/// Variant at one sample count.
 struct Way {
     name: &'static str,
     samples: u8,
@@ -30,23 +30,23 @@ struct Way {
     executor: Executor,
 }
 
-/// Measures all ways in turns, so that all see the same machine, and prints one table.
+/// Measures all variants alternately under equal conditions and prints one table.
 ///
 /// # Errors
-/// One line, by whose fault it is.
+/// One line, as an input or a device failure.
 pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let gpu = open();
     let options = args.load_options(gpu.as_ref().map_or(BlockFormats::default(), block_formats));
     let mut loaded = load::load(args, &options).map_err(input)?;
-    args.moment.apply(&mut loaded.scene, 0.0).map_err(input)?;
+    args.animation.apply(&mut loaded.scene, 0.0).map_err(input)?;
     let colors = load::colors(args).map_err(input)?;
     let seen = load::view(args, &loaded).map_err(input)?;
     let gpu = gpu?;
     program::line(format_args!("adapter: {}", gpu.describe()));
-    args.shading.precision.check(&gpu).map_err(|told| input(format!("--{told}")))?;
+    args.shading.precision.check(&gpu).map_err(|error| input(format!("--{error}")))?;
     let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
     let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
-    // Every effect on, so that each is a pass in the last of the ways.
+    // Enable every effect, so that each becomes a pass in the last variant.
     let asked = settings(args, &loaded, &seen);
     let every = PostSettings {
         vignette_ev: asked.post.vignette_ev.max(0.5),
@@ -55,7 +55,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     };
     if asked.blended || asked.scene_levels > 0 {
         return Err(input(format!(
-            "--compare-post: the scene `{}` blends or transmits, so that nothing is inlined; choose one that does not",
+            "--compare-post: the scene `{}` has blended or transmissive materials, so nothing is inlined; choose another scene",
             args.scene
         )));
     }
@@ -90,8 +90,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
 }
 
 fn table(ways: &[Way]) -> String {
-    let head =
-        ["post-processing", "samples", "steps", "unresolves", "resolves", "loaded", "stored", "fetched", "GPU ms"];
+    let head = ["post-processing", "samples", "steps", "loads", "stores", "loaded", "stored", "fetched", "GPU ms"];
     let mut rows = vec![head.map(String::from)];
     rows.extend(ways.iter().map(|Way { name, samples, plan, executor, .. }| {
         let (counts, traffic) = (plan.counts(), plan.traffic(plan.frame()));
@@ -110,7 +109,7 @@ fn table(ways: &[Way]) -> String {
     aligned(&rows, 1)
 }
 
-/// Bytes that passes fetch at the same pixel from memory, where the read is not kept in the tile or inlined.
+/// Bytes of same-pixel reads from memory, which merging or inlining would avoid.
 fn fetched_bytes(plan: &Plan) -> u64 {
     let graph = plan.graph();
     let apart = plan.step_passes().iter().filter(|member| !matches!(member.join, Join::Inlined | Join::SamePixel));

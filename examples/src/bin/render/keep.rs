@@ -1,4 +1,4 @@
-//! Shadow maps that are kept over the frames of a run: a first frame draws them, and the others draw what is due.
+//! Shadow maps kept over the frames of a run: the first frame draws all of them, later frames those that changed.
 
 use crate::args::Args;
 use crate::dirt::Dirt;
@@ -13,40 +13,41 @@ use framegraph_wgpu::{Frame, Gpu, Imports};
 #[derive(Debug, Default)]
 pub struct Kept {
     maps: KeptShadows,
-    /// Maps that the last declared frame draws, of so many.
+    /// Maps that the last declared frame draws with the reasons, and the total number of maps.
     due: (Vec<(u16, Redraw)>, usize),
 }
 
 impl Kept {
-    /// How many maps the last declared frame draws, and why.
-    fn told(&self) -> String {
+    /// Describes the number of maps that the last declared frame draws, and the reasons.
+    fn describe(&self) -> String {
         let (due, all) = &self.due;
         let why =
             [Redraw::First, Redraw::Light, Redraw::Casters].map(|why| (why, due.iter().filter(|d| d.1 == why).count()));
         let reasons: Vec<_> =
             why.into_iter().filter(|(_, count)| *count > 0).map(|(why, count)| format!("{count} {why}")).collect();
-        let reasons = if reasons.is_empty() { "all are kept".to_owned() } else { reasons.join(", ") };
+        let reasons = if reasons.is_empty() { "all maps are kept".to_owned() } else { reasons.join(", ") };
         format!("draws {} of {all} shadow maps: {reasons}", due.len())
     }
 }
 
-/// A frame with what it imports.
+/// Frame with its outputs and imports.
 pub type Declared = (Frame<World>, FrameIo, Imports);
 
-/// What a frame is drawn over, of this application's own.
+/// Resources of the application that a frame imports.
 #[derive(Default)]
 pub struct Own<'a> {
-    /// Shadow maps that are kept.
+    /// Kept shadow maps.
     pub kept: Option<(&'a Gpu, &'a mut Kept, &'a ViewShadows)>,
-    /// Dirt on the lens.
+    /// Lens dirt.
     pub dirt: Option<&'a Dirt>,
 }
 
-/// The standard frame with its picture read back, and the linear radiance too if it is asked for. What facts left out is noted
-/// in the graph.
+/// Declares the standard frame with readback of the picture, and of the linear radiance if `linear` is set.
+///
+/// Dropped effects are noted in the graph.
 ///
 /// # Errors
-/// What a pass refuses, or the device.
+/// The error of a pass or of the device.
 pub fn declare(settings: &Settings, facts: &Facts, linear: bool, own: Own<'_>) -> Result<Declared, Failure> {
     let (mut frame, mut imports, mut handles) = (Frame::new(), Imports::new(), settings.handles());
     facts.note(frame.graph_mut());
@@ -62,7 +63,7 @@ pub fn declare(settings: &Settings, facts: &Facts, linear: bool, own: Own<'_>) -
     }
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
     let output = frame.graph_mut().texture("output", desc);
-    // The edge filter has codes of sRGB, which are written as they are: the device need not make them once more.
+    // FXAA outputs sRGB-encoded values, so the target is written without another conversion.
     let target = if settings.fxaa { output.viewed_as(Format::Rgba8Unorm).into() } else { Target::from(output) };
     let handles = stages(settings).declare(&mut frame, handles, target).map_err(device)?;
     let slot = |slot| handles.get(slot).map_err(device);
@@ -75,13 +76,13 @@ pub fn declare(settings: &Settings, facts: &Facts, linear: bool, own: Own<'_>) -
     Ok((frame, io, imports))
 }
 
-/// Draws the frame that all maps are due in, and declares the next one, which is that of the table and the picture.
+/// Draws the frame that redraws all shadow maps, and declares the next frame, which is measured.
 ///
 /// # Errors
-/// One line, by whose fault it is.
+/// One line, as an input or a device failure.
 pub fn first_frame(args: &Args, prepared: &mut Prepared) -> Result<(), Failure> {
     let Some(kept) = &prepared.kept else { return Ok(()) };
-    program::line(format_args!("the first frame {}", kept.told()));
+    program::line(format_args!("the first frame {}", kept.describe()));
     let (options, execute) = prepared.options(args);
     let mut plan = Plan::new();
     let mut executor = prepared.executor(args, execute)?;
@@ -93,16 +94,16 @@ pub fn first_frame(args: &Args, prepared: &mut Prepared) -> Result<(), Failure> 
         kept.maps.drawn(shadows);
     }
     (prepared.frame, prepared.io, prepared.imports) = prepared.declare(args)?;
-    let kept = prepared.kept.as_ref().map(Kept::told).unwrap_or_default();
-    program::line(format_args!("each frame after it {kept}"));
+    let kept = prepared.kept.as_ref().map(Kept::describe).unwrap_or_default();
+    program::line(format_args!("each later frame {kept}"));
     Ok(())
 }
 
 impl Prepared {
-    /// The next frame.
+    /// Declares the next frame.
     ///
     /// # Errors
-    /// One line, by whose fault it is.
+    /// One line, as an input or a device failure.
     pub fn declare(&mut self, args: &Args) -> Result<Declared, Failure> {
         let Self { gpu, kept, world, settings, facts, dirt, .. } = self;
         let view = &world.views.get(ViewId::MAIN).map_err(device)?.view;

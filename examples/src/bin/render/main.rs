@@ -1,22 +1,22 @@
-//! Renders a scene through the compiled render graph, headless: the main job of the project.
+//! Renders a scene with the compiled render graph, without a window.
 
+mod animation;
 mod args;
 mod budget;
 mod compare;
 mod debug;
 mod decide;
 mod dirt;
+mod effect_costs;
 mod effects;
-mod given;
+mod explicit;
 mod grade;
 mod keep;
 mod latency;
-mod leave_out;
 mod light;
 mod load;
-mod look;
-mod moment;
 mod name;
+mod parse;
 mod run;
 mod sequence;
 mod shadows;
@@ -52,7 +52,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// One line on standard error.
+/// Prints one line on standard error and returns the exit code.
 fn fail(code: u8, message: &str) -> ExitCode {
     program::error(message);
     program::exit(code)

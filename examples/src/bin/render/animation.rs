@@ -1,38 +1,39 @@
-//! Options that say at which moment of an animation the scene is.
+//! Options of the animation and its time.
 
 use framegraph_scene::Scene;
 use lexopt::Parser;
 
-/// What `render --help` prints of them.
-pub const HELP: &str = "
-  --time S             the scene S seconds into its animation, which repeats: nodes, skins, morph targets, lights and
-                       cameras on nodes, and what KHR_animation_pointer changes
-  --animation WHICH    the animation by name or number (0)
+/// Help section.
+pub const HELP: &str = "\
+ANIMATION
+  --time S             time of the animation in seconds; it repeats. Animates nodes, skins, morph targets, lights and
+                       cameras on nodes, and the targets of KHR_animation_pointer
+  --animation NAME     animation by name or index (0)
 ";
 
-/// What was asked for.
+/// Animation and its time.
 #[derive(Clone, Debug, Default)]
-pub struct Moment {
-    /// In seconds; none for the scene at rest.
+pub struct AnimationTime {
+    /// Time in seconds; `None` for the rest pose.
     time_s: Option<f64>,
     animation: Option<String>,
 }
 
-impl Moment {
-    /// Takes an option of this file; false for others.
+impl AnimationTime {
+    /// Parses the value of an option of this module; returns false for other options.
     ///
     /// # Errors
-    /// One line that names the option and what it takes.
+    /// One line that names the option and the expected value.
     pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
         let mut value = || {
-            let value = parser.value().map_err(|_| format!("--{name}: a value is missing"))?;
+            let value = parser.value().map_err(|_| format!("--{name}: missing value"))?;
             value.into_string().map_err(|v| format!("--{name} {v:?}: the value is not Unicode"))
         };
         match name {
             "time" => {
                 let text = value()?;
                 let seconds = text.parse().ok().filter(|seconds| (0.0..=1e9).contains(seconds));
-                self.time_s = Some(seconds.ok_or_else(|| format!("--time {text}: seconds from 0 to 1e9 are needed"))?);
+                self.time_s = Some(seconds.ok_or_else(|| format!("--time {text}: expected seconds from 0 to 1e9"))?);
             }
             "animation" => self.animation = Some(value()?),
             _ => return Ok(false),
@@ -40,15 +41,15 @@ impl Moment {
         Ok(true)
     }
 
-    /// Whether an animation plays.
+    /// Returns whether an animation plays.
     pub fn plays(&self) -> bool {
         self.time_s.is_some()
     }
 
-    /// Moves the scene to that time, and so many seconds later.
+    /// Poses the scene at the time of the options plus `later_s` seconds.
     ///
     /// # Errors
-    /// One line that names the option and what the scene lacks.
+    /// One line that names the option and the missing animation.
     pub fn apply(&self, scene: &mut Scene, later_s: f64) -> Result<(), String> {
         let Some(time_s) = self.time_s.map(|time_s| time_s + later_s) else { return Ok(()) };
         let all = &scene.motion.animations;
@@ -59,17 +60,13 @@ impl Moment {
                 let names = || all.iter().map(|animation| animation.name.as_str()).collect::<Vec<_>>().join(", ");
                 let found = named.or_else(|| asked.parse().ok().filter(|number| *number < all.len()));
                 found.ok_or_else(|| {
-                    format!(
-                        "--animation {asked}: the scene has no such animation; there are {}: {}",
-                        all.len(),
-                        names()
-                    )
+                    format!("--animation {asked}: no such animation; the scene has {}: {}", all.len(), names())
                 })?
             }
         };
         let animation = all.get(number).ok_or_else(|| format!("--time {time_s}: the scene has no animation"))?;
         let duration_s = animation.duration_s();
         let time_s = if duration_s > 0.0 && time_s > duration_s { time_s % duration_s } else { time_s };
-        scene.pose(Some(number), time_s).map_err(|told| format!("--time: {told}"))
+        scene.pose(Some(number), time_s).map_err(|error| format!("--time: {error}"))
     }
 }

@@ -1,4 +1,4 @@
-//! What each effect takes: the frame with it and without it, in turns.
+//! Cost of each effect: the frame with and without it, measured alternately.
 
 use crate::args::Args;
 use crate::keep::{Own, declare};
@@ -11,14 +11,14 @@ use framegraph_passes::{CameraView, Effect, EffectSet, FrameIndex, Settings, Vie
 use framegraph_wgpu::{Executor, Frame, Imports};
 use std::time::Instant;
 
-/// A frame of other settings.
+/// Frame with modified settings.
 struct Way {
     frame: Frame<World>,
     imports: Imports,
     plan: Plan,
     executor: Executor,
     view: CameraView,
-    /// Of each frame, from recording to its end.
+    /// Time of each frame from recording to completion, in milliseconds.
     times_ms: Vec<f64>,
 }
 
@@ -54,11 +54,12 @@ impl Way {
     }
 }
 
-/// Measures the frame with and without each effect that is asked for, all other decisions being made: a row an effect, with the
-/// medians of as many frames as are measured of the picture.
+/// Measures the frame with and without each requested effect, all other decisions unchanged.
+///
+/// Each row has the medians over `--frames` frames.
 ///
 /// # Errors
-/// One line, by whose fault it is.
+/// One line, as an input or a device failure.
 pub fn measure(args: &Args, prepared: &mut Prepared) -> Result<Vec<Saved>, Failure> {
     let decided = prepared.facts.apply(&prepared.asked);
     let asked: Vec<Effect> = Effect::ALL.into_iter().filter(|effect| prepared.asked.has(*effect)).collect();
@@ -86,7 +87,7 @@ pub fn measure(args: &Args, prepared: &mut Prepared) -> Result<Vec<Saved>, Failu
     Ok(rows)
 }
 
-/// The rows as a table.
+/// Formats the rows as a table.
 pub fn table(prepared: &Prepared, rows: &[Saved]) -> String {
     let head = ["effect", "decided", "passes", "loads", "stores", "moved", "ms with", "ms without"];
     let mut lines = vec![head.map(String::from)];
