@@ -1,53 +1,52 @@
-//! What each choice of the frame errs by and takes, as the lab of accuracy writes it (`accuracy.json`, `docs/accuracy.md`).
+//! Measured errors and costs of every setting, as written by the accuracy lab (`accuracy.json`, `docs/accuracy.md`).
 
 use framegraph_passes::Facts;
 use framegraph_passes::budget::{Choices, Measured, Offers};
 use serde::Deserialize;
 use std::path::PathBuf;
 
-/// The file's `schema`.
+/// Value of the file's `schema`.
 pub const SCHEMA: &str = "framegraph-accuracy";
-/// The `version` that is read.
+/// Supported value of the file's `version`.
 pub const VERSION: u32 = 2;
 
-/// All that was measured in one place. Fields that no view shows are not read.
+/// Measurements of one device. Fields that no view shows are ignored.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct AccuracyData {
-    /// Adapter, driver and interface.
+    /// Name of the adapter, with driver and API.
     pub adapter: String,
-    /// Pictures whose frames were timed, in pixels.
+    /// Size of the timed frames, in pixels.
     pub size_px: [u32; 2],
-    /// In the order of their list.
+    /// Techniques in the order of the file.
     pub techniques: Vec<Technique>,
-    /// What frames are chosen from within a time; none where that was not measured.
+    /// Measurements for choosing a frame within a time budget; `None` if the file has none.
     #[serde(default)]
     pub budget: Option<Measured>,
-    /// The folder of pictures beside the file, if there is one.
+    /// Folder of pictures next to the file, if it exists.
     #[serde(skip)]
     pub pictures: Option<PathBuf>,
 }
 
-/// What every version begins with.
+/// Fields common to all versions.
 #[derive(Deserialize)]
 struct Head {
     schema: String,
     version: u32,
 }
 
-/// The most accurate frame within a time.
+/// Most accurate frame within a time budget.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChosenFrame {
-    /// Each choice of the frame with its option.
+    /// Settings group and chosen option.
     pub options: Vec<[&'static str; 2]>,
-    /// Time of the frame in ms.
+    /// Time of the frame in milliseconds.
     pub ms: f64,
-    /// Root mean square difference from the finest frame, in codes of 255.
-    pub codes: f64,
+    /// Root-mean-square error against the reference frame, in 8-bit steps.
+    pub error: f64,
 }
 
 impl AccuracyData {
-    /// What frames are chosen from: the selector of `render --budget-ms` ([`framegraph_passes::budget`]), of a scene that calls
-    /// for everything.
+    /// Returns the options of `render --budget-ms` ([`framegraph_passes::budget`]) for a scene that uses every effect.
     fn offers(&self) -> Option<(Choices, Offers)> {
         let measured = self.budget.as_ref()?;
         let choices = measured.choices(&Facts::default(), |_| true).ok()?;
@@ -55,22 +54,23 @@ impl AccuracyData {
         Some((choices, offers))
     }
 
-    /// Times of the fastest and of the finest frame in ms; none where frames were not measured as a whole.
+    /// Returns the times of the fastest and of the reference frame in milliseconds; `None` without measured frames.
     pub fn span_ms(&self) -> Option<[f64; 2]> {
         let (_, offers) = self.offers()?;
         Some([offers.fastest(), offers.finest()].map(|set| offers.predicted(&set).ms))
     }
 
-    /// The most accurate frame that takes no more; where none does, the fastest. None where frames were not measured.
-    pub fn within(&self, most_ms: f64) -> Option<ChosenFrame> {
+    /// Returns the most accurate frame that takes at most `max_ms`, or else the fastest frame. `None` without measured
+    /// frames.
+    pub fn within(&self, max_ms: f64) -> Option<ChosenFrame> {
         let (choices, offers) = self.offers()?;
-        let set = offers.within_ms(most_ms).unwrap_or_else(|| offers.predicted(&offers.fastest()));
+        let set = offers.within_ms(max_ms).unwrap_or_else(|| offers.predicted(&offers.fastest()));
         let named = choices.iter().zip(&set.options);
         let options = named.map(|((group, options), index)| [group.name, options[*index].name]).collect();
-        Some(ChosenFrame { options, ms: set.ms, codes: set.codes() })
+        Some(ChosenFrame { options, ms: set.ms, error: set.codes() })
     }
 
-    /// The picture of a choice, reference, choice and sixteen times their difference side by side: where the lab puts it.
+    /// Returns the comparison picture of a choice: reference, choice and their difference times sixteen, side by side.
     pub fn picture(&self, technique: &Technique, choice: &Choice) -> Option<PathBuf> {
         let letter = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
         let name: String = choice.name.chars().map(letter).collect();
@@ -78,84 +78,84 @@ impl AccuracyData {
     }
 }
 
-/// A choice of the frame.
+/// Setting of the frame with its choices.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Technique {
-    /// Its name.
+    /// Name of the technique.
     pub name: String,
-    /// What is approximated.
+    /// Approximated quantity.
     pub what: String,
-    /// What is taken for the truth.
+    /// Reference of the errors.
     pub truth: String,
-    /// Unit of errors.
+    /// Unit of the errors.
     pub unit: String,
-    /// In the order of their list.
+    /// Choices in the order of the file.
     pub choices: Vec<Choice>,
 }
 
-/// An option.
+/// Value of a setting.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Choice {
-    /// Its name.
+    /// Name of the choice.
     pub name: String,
-    /// The error, in the technique's unit.
+    /// Error in the technique's unit.
     pub error: f64,
-    /// Time of a whole frame; none where it was not timed.
+    /// Time of a whole frame; `None` if it was not measured.
     #[serde(default)]
     pub ms: Option<Times>,
-    /// Operations of the shader's function, by kind.
+    /// Number of operations in the shader function, by kind.
     #[serde(default)]
     pub operations: Option<Vec<u32>>,
-    /// Presets that have it.
+    /// Presets that use the choice.
     #[serde(default)]
     pub presets: Vec<String>,
 }
 
-/// A frame's time over repeats, in ms.
+/// Frame time over repeated measurements, in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 pub struct Times {
-    /// Half is below.
+    /// Median.
     pub median: f64,
-    /// Where the median lies in 95 of 100 samples drawn from the repeats: low end.
+    /// Lower end of the 95 % bootstrap confidence interval of the median.
     pub low: f64,
-    /// And high end.
+    /// Upper end of the 95 % bootstrap confidence interval of the median.
     pub high: f64,
 }
 
-/// What choices of a technique cost.
+/// Unit of the costs of a technique.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// Milliseconds of a whole frame.
     Ms,
-    /// Operations of a function.
+    /// Number of operations of a function.
     Operations,
-    /// Nobody knows.
-    Nothing,
+    /// Unknown costs.
+    Unknown,
 }
 
 impl Technique {
-    /// What costs are given in: times where all choices are timed, else operations where all are counted.
+    /// Returns the unit of costs: times if all choices are timed, else operations if all are counted.
     pub fn unit_of_cost(&self) -> Unit {
         if self.choices.iter().all(|choice| choice.ms.is_some()) {
             Unit::Ms
         } else if self.choices.iter().all(|choice| choice.operations.is_some()) {
             Unit::Operations
         } else {
-            Unit::Nothing
+            Unit::Unknown
         }
     }
 
-    /// The cost of a choice in that unit.
+    /// Returns the cost of a choice in [`Self::unit_of_cost`].
     pub fn cost(&self, choice: &Choice) -> f64 {
         let operations = || choice.operations.iter().flatten().map(|count| f64::from(*count)).sum();
         match self.unit_of_cost() {
             Unit::Ms => choice.ms.map_or(0.0, |ms| ms.median),
             Unit::Operations => operations(),
-            Unit::Nothing => 0.0,
+            Unit::Unknown => 0.0,
         }
     }
 
-    /// For each choice whether no other is as cheap and as accurate, and better in one of both.
+    /// Marks the Pareto-optimal choices: no other choice is at least as cheap and as accurate, and better in one of both.
     pub fn front(&self) -> Vec<bool> {
         let points: Vec<[f64; 2]> = self.choices.iter().map(|choice| [self.cost(choice), choice.error]).collect();
         let beats = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
@@ -163,29 +163,29 @@ impl Technique {
     }
 }
 
-/// Reads a file.
+/// Parses a file.
 ///
 /// # Errors
-/// A sentence: no JSON, of another version, or not what the lab writes.
+/// A sentence: invalid JSON, an unsupported version, or an invalid value.
 pub fn read(text: &[u8]) -> Result<AccuracyData, String> {
-    let told = |error| format!("the accuracy cannot be read: {error}");
-    // The version first: another one has other fields.
-    let Head { schema, version } = serde_json::from_slice(text).map_err(told)?;
+    let failed = |error| format!("invalid accuracy record: {error}");
+    // Check the version first, because other versions have other fields.
+    let Head { schema, version } = serde_json::from_slice(text).map_err(failed)?;
     if (schema.as_str(), version) != (SCHEMA, VERSION) {
         return Err(format!(
-            "it is `{schema}` of version {version}, and `{SCHEMA}` of version {VERSION} is read; measure anew with `accuracy` \
+            "unsupported schema `{schema}` version {version}; expected `{SCHEMA}` version {VERSION}; measure again with `accuracy` \
              (docs/accuracy.md)"
         ));
     }
-    let data: AccuracyData = serde_json::from_slice(text).map_err(told)?;
+    let data: AccuracyData = serde_json::from_slice(text).map_err(failed)?;
     if let Some(measured) = &data.budget {
-        measured.choices(&Facts::default(), |_| true).map_err(|error| format!("its `budget`: {error}"))?;
+        measured.choices(&Facts::default(), |_| true).map_err(|error| format!("`budget`: {error}"))?;
     }
     let finite = |x: f64| x.is_finite() && x >= 0.0;
     let is_sound = |choice: &Choice| finite(choice.error) && choice.ms.is_none_or(|ms| finite(ms.median));
     for technique in &data.techniques {
         if let Some(choice) = technique.choices.iter().find(|choice| !is_sound(choice)) {
-            return Err(format!("{}, {}: a number is negative or none", technique.name, choice.name));
+            return Err(format!("{}, {}: a number is negative or not finite", technique.name, choice.name));
         }
     }
     Ok(data)

@@ -1,4 +1,4 @@
-//! The application: panes in tiles around one [`Session`].
+//! The application: panes in tiles that show one [`Session`].
 
 #[cfg(feature = "window")]
 mod chosen;
@@ -17,46 +17,46 @@ pub use shortcuts::SHORTCUTS;
 use crate::drawing::{Drawing, Item};
 use crate::panel::{self, Canvas, List};
 use crate::plan_data::PlanData;
-use crate::view::{self, Beside, View};
+use crate::view::{self, View, ViewContext};
 use egui::{Context, Panel, RichText, Ui};
 use egui_tiles::Tree;
 use std::collections::BTreeMap;
 
-/// Letters in a line of the inspector's picture.
+/// Characters per line in the inspector.
 const LETTERS: usize = 100;
 
-/// The application without its window: what an engine can show in one of its own.
+/// The application without its window, which an engine can embed in its own egui UI.
 pub struct Viewer {
-    /// What is looked at.
+    /// Displayed data.
     pub session: Session,
-    /// The arrangement of the panes.
+    /// Arrangement of the panes.
     tiles: Tree<Pane>,
-    /// The search.
+    /// Search pane.
     list: List,
-    /// Which part of each view is seen.
+    /// Pan and zoom of each view.
     canvases: BTreeMap<View, Canvas>,
-    /// The pictures, made once for each state of the session.
+    /// Cached drawings of the views.
     drawings: BTreeMap<View, Drawing>,
     drawn: [u64; 2],
-    /// The picture of an option.
+    /// Comparison picture of an accuracy choice.
     strip: strip::Strip,
-    /// A frame that is drawn beside its plan.
+    /// Live frame.
     #[cfg(feature = "window")]
     pub live: Option<crate::live::Live>,
-    /// A dialog for a file.
+    /// File dialog.
     #[cfg(feature = "window")]
     dialog: dialog::Dialog,
-    /// Paths of a scene and of a picture of light, and the file that a view goes to, as they are typed.
+    /// Typed paths of a scene, an environment, and an export file.
     #[cfg(feature = "window")]
     typed: ([String; 2], String),
-    /// The file that is opened or written next, as it is typed.
+    /// Typed path of the file to open or to compare with.
     path: String,
-    /// The list of shortcuts is open.
+    /// Shows the list of shortcuts.
     help: bool,
 }
 
 impl Viewer {
-    /// Shows a session.
+    /// Creates a viewer of a session.
     pub fn new(session: Session) -> Self {
         Self {
             session,
@@ -77,13 +77,13 @@ impl Viewer {
         }
     }
 
-    /// Shows a session, and draws a frame beside its plan.
+    /// Creates a viewer of a session with a live frame.
     #[cfg(feature = "window")]
     pub fn with(session: Session, live: crate::live::Live) -> Self {
         Self { live: Some(live), tiles: panes::arranged(true), ..Self::new(session) }
     }
 
-    /// Whether a frame is drawn.
+    /// Returns whether a live frame is shown.
     pub fn is_live(&self) -> bool {
         #[cfg(feature = "window")]
         return self.live.is_some();
@@ -91,8 +91,9 @@ impl Viewer {
         false
     }
 
-    /// Shows everything, before the background that `ui` has, which should be the one that [`panel::dress`] sets.
-    /// Nothing is worked out anew unless something changed.
+    /// Shows all panels.
+    ///
+    /// The background of `ui` should have the color that [`panel::dress`] sets. Only changes are recomputed.
     pub fn show(&mut self, ui: &mut Ui) {
         self.session.poll();
         #[cfg(feature = "window")]
@@ -103,8 +104,8 @@ impl Viewer {
         self.dropped(ui.ctx());
         #[cfg(feature = "window")]
         self.dialogs(ui);
-        for asked in shortcuts::asked(ui.ctx()) {
-            self.act(asked);
+        for action in shortcuts::actions(ui.ctx()) {
+            self.act(action);
         }
         Panel::top("bar").show(ui, |ui| self.bar(ui));
         if !self.session.messages.is_empty() {
@@ -122,13 +123,13 @@ impl Viewer {
             #[cfg(feature = "window")]
             typed: &mut self.typed.0,
         };
-        // What is behind is the window's color already: filling it again is most of what a software driver does.
+        // The background has the window's color already. Filling it again dominates the time of a software driver.
         let frame = egui::Frame::central_panel(ui.style()).fill(egui::Color32::TRANSPARENT);
         egui::CentralPanel::default().frame(frame).show(ui, |ui| tiles.ui(&mut behavior, ui));
         if self.help {
             self.help = shortcuts::list(ui.ctx());
         }
-        // What was asked in the panes is answered from the next frame on.
+        // Apply changes from the panes in the next frame.
         self.refresh();
     }
 
@@ -137,23 +138,23 @@ impl Viewer {
         self.tiles.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(this) if *this == pane));
     }
 
-    /// Selects an item and moves it into sight.
+    /// Selects an item and pans all views to it.
     pub fn select(&mut self, item: Option<Item>) {
         self.session.selected = item;
         panes::reveal(&mut self.canvases, &self.drawings, &self.session.lit());
     }
 
-    /// Where an item stands on the screen in a view; none where it is not in sight.
+    /// Returns the screen position of an item in a view; `None` if it is not visible.
     pub fn place_of(&self, view: View, item: Item) -> Option<egui::Pos2> {
         self.canvases.get(&view)?.place_of(self.drawings.get(&view)?, item)
     }
 
-    /// The arrangement of the panes as text, to be kept and given to [`Viewer::arrange`].
+    /// Returns the arrangement of the panes as text for [`Viewer::arrange`].
     pub fn arrangement(&self) -> Option<String> {
         serde_json::to_string(&self.tiles).ok()
     }
 
-    /// Arranges the panes as they were; a text that is none changes nothing.
+    /// Restores an arrangement of the panes. Invalid text changes nothing.
     pub fn arrange(&mut self, text: &str) {
         if let Ok(tiles) = serde_json::from_str::<Tree<Pane>>(text)
             && panes::is_whole(&tiles, self.is_live())
@@ -162,20 +163,20 @@ impl Viewer {
         }
     }
 
-    /// Makes pictures of what has changed.
+    /// Redraws changed views.
     fn refresh(&mut self) {
         let drawn = [self.session.generation(), self.session.times()];
         if self.drawn == drawn && !self.drawings.is_empty() {
             return;
         }
-        // Where times alone have changed, views without any stay.
+        // If only times changed, views without times keep their drawings.
         let only_times = self.drawn[0] == drawn[0] && !self.drawings.is_empty();
         self.drawn = drawn;
         let timed = |view: &View| matches!(view, View::Timeline | View::Trace | View::Queues);
         self.drawings.retain(|view, _| only_times && !timed(view));
         let none = PlanData::default();
         let plan = self.session.plan.as_deref();
-        let beside = Beside { selected: None, ..self.session.beside() };
+        let beside = ViewContext { selected: None, ..self.session.context() };
         let all = View::ALL.into_iter().filter(|view| *view != View::Inspector);
         for view in all.filter(|view| plan.is_some() || !view.is_of_a_plan()) {
             let make = || view::drawing(view, plan.unwrap_or(&none), beside, LETTERS);
@@ -183,19 +184,19 @@ impl Viewer {
         }
     }
 
-    /// Does what a key asks for.
-    fn act(&mut self, asked: shortcuts::Asked) {
-        match asked {
-            shortcuts::Asked::Search => {
+    /// Executes the action of a shortcut.
+    fn act(&mut self, action: shortcuts::Action) {
+        match action {
+            shortcuts::Action::Search => {
                 self.turn_to(Pane::List);
                 self.list.focus = true;
             }
-            shortcuts::Asked::View(view) => self.turn_to(Pane::View(view)),
-            shortcuts::Asked::Help => self.help = !self.help,
+            shortcuts::Action::View(view) => self.turn_to(Pane::View(view)),
+            shortcuts::Action::Help => self.help = !self.help,
             #[cfg(feature = "window")]
-            shortcuts::Asked::Undo | shortcuts::Asked::Redo => {
+            shortcuts::Action::Undo | shortcuts::Action::Redo => {
                 if let Some(live) = &mut self.live {
-                    let undo = asked == shortcuts::Asked::Undo;
+                    let undo = action == shortcuts::Action::Undo;
                     let moved = if undo { live.history.undo() } else { live.history.redo() };
                     if moved {
                         live.again();
@@ -203,12 +204,12 @@ impl Viewer {
                 }
             }
             #[cfg(not(feature = "window"))]
-            shortcuts::Asked::Undo | shortcuts::Asked::Redo => {}
-            shortcuts::Asked::Nothing => (self.help, self.session.selected) = (false, None),
+            shortcuts::Action::Undo | shortcuts::Action::Redo => {}
+            shortcuts::Action::Clear => (self.help, self.session.selected) = (false, None),
         }
     }
 
-    /// Files that are dropped onto the window.
+    /// Opens files dropped onto the window.
     fn dropped(&mut self, ctx: &Context) {
         let paths: Vec<std::path::PathBuf> =
             ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
@@ -217,7 +218,7 @@ impl Viewer {
         }
     }
 
-    /// Opens a file of any kind: what the frame that is drawn takes goes there.
+    /// Opens a file of any supported kind. Scenes, environments and settings go to the live frame.
     pub fn open(&mut self, path: &std::path::Path, role: Role) {
         #[cfg(feature = "window")]
         if let Some(live) = &mut self.live
@@ -235,9 +236,9 @@ impl Viewer {
             let hint = "PLAN.json, FRAME.ron or TRACE.json";
             let edit = ui.add(egui::TextEdit::singleline(&mut self.path).hint_text(hint).desired_width(220.0));
             let enter = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-            let tip = "opens the file; files can be dropped onto the window too";
+            let tip = "Open the file. Files can also be dropped onto the window";
             let open = ui.button("Open").on_hover_text(tip).clicked() || enter;
-            let tip = "opens the file as the plan to compare with";
+            let tip = "Open the file as the plan to compare with";
             let against = ui.button("Compare with").on_hover_text(tip).clicked();
             if (open || against) && !self.path.trim().is_empty() {
                 let path = std::path::PathBuf::from(self.path.trim());
@@ -247,7 +248,7 @@ impl Viewer {
             for (name, role) in [("Open…", Role::Shown), ("Compare with…", Role::Against)] {
                 self.ask_button(ui, name, dialog::Purpose::Open(role));
             }
-            if self.session.has_against() && ui.button("Compare with nothing").clicked() {
+            if self.session.has_against() && ui.button("Stop comparing").clicked() {
                 self.session.forget_against();
             }
             #[cfg(feature = "window")]
@@ -270,20 +271,19 @@ impl Viewer {
                     (totals.passes, "passes", "pass"),
                     (totals.culled, "culled", "culled"),
                     (totals.steps, "steps", "step"),
-                    (totals.unresolves, "unresolves", "unresolve"),
-                    (totals.resolves, "resolves", "resolve"),
+                    (totals.unresolves, "loads", "load"),
+                    (totals.resolves, "stores", "store"),
                 ] {
                     panel::term(ui, format!("{count} {words}"), word);
                 }
-                panel::term(ui, format!("{} of memory", view::bytes(totals.heap_bytes)), "alias");
+                panel::term(ui, format!("{} memory", view::bytes(totals.heap_bytes)), "alias");
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if ui.button("?").on_hover_text("shortcuts").clicked() {
+                if ui.button("?").on_hover_text("Keyboard shortcuts").clicked() {
                     self.help = !self.help;
                 }
                 let dark = ui.visuals().dark_mode;
-                if ui.button(if dark { "light" } else { "dark" }).on_hover_text("changes the theme (Ctrl+D)").clicked()
-                {
+                if ui.button(if dark { "light" } else { "dark" }).on_hover_text("Change the theme (Ctrl+D)").clicked() {
                     ui.ctx().set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
                 }
             });

@@ -1,4 +1,4 @@
-//! The command line of `viewer`.
+//! Command line of `viewer`.
 
 use framegraph::Order;
 use lexopt::{Arg, Parser, ValueExt};
@@ -7,9 +7,9 @@ use std::path::PathBuf;
 use viewer::drawing::Theme;
 use viewer::view::View;
 
-/// What `viewer --help` prints.
+/// Text of `viewer --help`.
 pub const HELP: &str = "\
-Shows what a frame does, why, and what it costs.
+Shows the passes, decisions and costs of a frame.
 
 usage: viewer [FILE] [options]
        viewer --headless --view VIEW --plan FILE [--against FILE] --out FILE.png|svg
@@ -17,88 +17,88 @@ usage: viewer [FILE] [options]
        viewer --standard PRESET|SETTINGS.ron [options]
        viewer --live [SCENE] [--settings PRESET|SETTINGS.ron] [--environment FILE] [options]
 
-FILE is a plan (JSON, docs/plan-json.md), a graph (FRAME.ron, docs/graph-format.md), which is planned here, watched, and
-planned anew when it changes, or a trace (`render --trace`). docs/viewer.md shows the views.
+FILE is a plan (JSON, docs/plan-json.md), a graph (FRAME.ron, docs/graph-format.md), or a trace (`render --trace`).
+Graphs are compiled here, and again after each change. docs/viewer.md shows the views.
 
-  --plan FILE         the same as FILE
-  --standard WHICH    the standard frame instead of a file: low, medium, high, ultra, or a FILE.ron of settings
+  --plan FILE         same as FILE
+  --standard PRESET   show the standard frame instead of a file: low, medium, high, ultra, or a FILE.ron of settings
                       (docs/settings.md); its effects are features
-  --live [SCENE]      the standard frame, drawn in the window: FILE is a glTF or GLB file or a built-in scene (spheres);
-                      the views show the plan that is executed
-  --settings WHICH    with --live: the settings that it begins with (high)
-  --environment FILE  with --live: light from a .hdr, .exr or .ktx picture instead of a clear sky
-  --against FILE      a plan or graph to compare with
-  --trace FILE        times of many frames
-  --caps WHICH        graphs are planned for: desktop, tiler, wgpu (default), or a FILE.ron that describes a device
-  --size WxH          size of the frame in texels; default: what the file says, else 1920x1080
+  --live [SCENE]      draw the standard frame in the window and show its plan; SCENE is a glTF or GLB file or a built-in
+                      scene (spheres)
+  --settings PRESET   initial settings with --live: a preset or a FILE.ron (high)
+  --environment FILE  environment light with --live: a .hdr, .exr or .ktx picture; default: a clear sky
+  --against FILE      plan or graph to compare with
+  --trace FILE        frame times to show
+  --caps DEVICE       device for graphs: desktop, tiler, wgpu (default), or a FILE.ron that describes one
+  --size WxH          frame size in texels; default: the size in the file, else 1920x1080
   --set FEATURE=on|off
-                      switches a feature of the graph; may be given several times
-  --order WHICH       declared (default) or optimized
-  --select NAME       selects a pass or a resource
+                      enable or disable a feature of the graph; repeatable
+  --order ORDER       declared (default) or optimized
+  --select NAME       select a pass or a resource
   --view VIEW         graph (default), timeline, memory, bandwidth, inspector, diff, trace,
                       accuracy or queues
-  --theme WHICH       light or dark; default: what the desktop says, light without a window
+  --theme THEME       light or dark; default: that of the desktop, light without a window
   --scale X           pixels per point, 0.5 to 4 (1)
-  --headless          no window: writes --out and ends
-  --out FILE          what --headless writes, by its extension a .png or .svg
-  --picture WxH       size of a PNG in pixels; default: as large as the view
-  --whole             the PNG shows the whole application, 1280x720 if --picture says nothing
-  --frames N          the window draws without a pause, closes after so many frames or one more, and says how many
-  --measure           no window: prints what the panels cost on this machine
-  --help              this text
+  --headless          write --out without opening a window
+  --out FILE          output of --headless, .png or .svg
+  --picture WxH       size of a PNG in pixels; default: the size of the view
+  --whole             draw the whole application into the PNG (1280x720)
+  --frames N          draw continuously, close the window after N or N + 1 frames, and print their number
+  --measure           print the cost of the panels on this machine, without a window
+  --help              print this help
 
-Exit codes: 0 done, 2 bad input or output, 3 no device or window, 128 and its number after a signal.
+Exit codes: 0 success, 2 invalid input or output, 3 no device or window, 128 + N stopped by signal N.
 ";
 
-/// What was asked for.
+/// Parsed options.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Args {
-    /// The file to look at.
+    /// File to show.
     pub file: Option<PathBuf>,
-    /// The standard frame of a preset or of a file of settings.
+    /// Preset or settings file of the standard frame.
     pub standard: Option<String>,
-    /// The standard frame is drawn; the file is a scene.
+    /// Draws the standard frame; the file is a scene.
     pub live: bool,
-    /// The settings that it begins with.
+    /// Initial settings of the live frame.
     pub settings: Option<String>,
-    /// Prints what the panels cost.
+    /// Prints the cost of the panels.
     pub measure: bool,
-    /// What lights its scene.
+    /// Environment of the live frame.
     pub environment: Option<PathBuf>,
-    /// The file to compare with.
+    /// File to compare with.
     pub against: Option<PathBuf>,
-    /// Times.
+    /// File with frame times.
     pub trace: Option<PathBuf>,
-    /// A preset or a file.
+    /// Name of a device preset, or path of a device file.
     pub caps: String,
-    /// The frame, in texels.
+    /// Frame size in texels.
     pub size: Option<[u32; 2]>,
-    /// Features with what they are set to.
+    /// Features to enable (`true`) or disable.
     pub features: Vec<(String, bool)>,
-    /// In which order passes run.
+    /// Order of passes.
     pub order: Order,
-    /// What is selected.
+    /// Name of the selected pass or resource.
     pub select: Option<String>,
-    /// Which view.
+    /// View in front.
     pub view: View,
-    /// Light or dark.
+    /// Theme; `None` follows the desktop.
     pub theme: Option<Theme>,
     /// Pixels per point.
     pub scale: f32,
-    /// Without a window, into this file.
+    /// Output file of a run without a window.
     pub out: Option<PathBuf>,
-    /// The picture, in pixels.
+    /// Size of the output picture in pixels.
     pub picture: Option<[u32; 2]>,
-    /// The whole application rather than one view.
+    /// Draws the whole application instead of one view.
     pub whole: bool,
-    /// Frames after which the window closes.
+    /// Number of frames after which the window closes.
     pub frames: Option<u64>,
 }
 
-/// Reads the command line, without the program's name; none where help is asked for.
+/// Parses the command line without the program name; `None` if help is requested.
 ///
 /// # Errors
-/// One line that names the option and what it takes.
+/// One line that names the option and the expected value.
 pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, String> {
     let mut out = Args {
         file: None,
@@ -127,7 +127,7 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
     while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
         let option = match arg {
             Arg::Long(name) => name.to_owned(),
-            Arg::Short(letter) => return Err(format!("there is no option `-{letter}`; see --help")),
+            Arg::Short(letter) => return Err(format!("unknown option `-{letter}`; see --help")),
             Arg::Value(value) => {
                 set(&mut out.file, value.into(), "FILE")?;
                 continue;
@@ -143,36 +143,37 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
         }
     }
     match (headless, &out.out) {
-        (true, None) => return Err("--headless needs --out FILE.png or FILE.svg".into()),
-        (false, Some(_)) => return Err("--out goes together with --headless only".into()),
+        (true, None) => return Err("--headless: requires --out FILE.png or --out FILE.svg".into()),
+        (false, Some(_)) => return Err("--out: requires --headless".into()),
         _ => {}
     }
-    let without_window = [(headless, "--headless"), (out.measure, "--measure")].into_iter().find(|(given, _)| *given);
+    let without_window =
+        [(headless, "--headless"), (out.measure, "--measure")].into_iter().find(|(present, _)| *present);
     if let (Some((_, other)), true) = (without_window, out.frames.is_some()) {
-        return Err(format!("--frames does not go together with {other}: there is no window"));
+        return Err(format!("--frames: cannot be used with {other}; it has no window"));
     }
     if out.measure && (headless || out.live || out.file.is_some() || out.standard.is_some()) {
-        return Err("--measure goes alone: it measures plans of its own".into());
+        return Err("--measure: cannot be combined with other modes or a FILE; it measures its own plans".into());
     }
     if !headless && (out.whole || out.picture.is_some()) {
-        return Err("--whole and --picture go together with --headless only".into());
+        return Err("--whole, --picture: require --headless".into());
     }
     if out.standard.is_some() && out.file.is_some() {
-        return Err("--standard does not go together with a FILE".into());
+        return Err("--standard: cannot be used with a FILE".into());
     }
     if out.live && (headless || out.standard.is_some()) {
-        return Err("--live does not go together with --headless or --standard".into());
+        return Err("--live: cannot be used with --headless or --standard".into());
     }
     if !out.live && (out.settings.is_some() || out.environment.is_some()) {
-        return Err("--settings and --environment go together with --live only".into());
+        return Err("--settings, --environment: require --live".into());
     }
     if headless && out.file.is_none() && out.standard.is_none() && out.view.is_of_a_plan() {
-        return Err("--headless needs a file to look at: --plan FILE".into());
+        return Err("--headless: requires a file; add --plan FILE".into());
     }
     Ok(Some(out))
 }
 
-/// Reads the value of one option.
+/// Parses the value of one option.
 fn value(parser: &mut Parser, option: &str, out: &mut Args) -> Result<(), String> {
     const KNOWN: [&str; 17] = [
         "standard",
@@ -194,10 +195,10 @@ fn value(parser: &mut Parser, option: &str, out: &mut Args) -> Result<(), String
         "frames",
     ];
     if !KNOWN.contains(&option) {
-        return Err(format!("there is no option `--{option}`; see --help"));
+        return Err(format!("unknown option `--{option}`; see --help"));
     }
     let name = format!("--{option}");
-    let value = parser.value().map_err(|_| format!("{name} needs a value; see --help"))?;
+    let value = parser.value().map_err(|_| format!("{name}: missing value; see --help"))?;
     match option {
         "plan" => return set(&mut out.file, value.into(), "FILE"),
         "against" => return set(&mut out.against, value.into(), &name),
@@ -207,16 +208,16 @@ fn value(parser: &mut Parser, option: &str, out: &mut Args) -> Result<(), String
         _ => {}
     }
     let value = value.string().map_err(|_| format!("{name}: the value is not UTF-8"))?;
-    let wrong = |takes: &str| format!("{name}: `{value}` is not {takes}");
+    let wrong = |expected: &str| format!("{name}: invalid value `{value}`; expected {expected}");
     match option {
         "caps" => out.caps = value,
         "select" => out.select = Some(value),
         "standard" => out.standard = Some(value),
         "settings" => out.settings = Some(value),
-        "size" => out.size = Some(sides(&value, 65536).ok_or_else(|| wrong("WxH with 1 to 65536 texels each way"))?),
+        "size" => out.size = Some(sides(&value, 65536).ok_or_else(|| wrong("WxH, each from 1 to 65536 texels"))?),
         "picture" => {
-            let most = viewer::offscreen::MOST_PX;
-            out.picture = Some(sides(&value, most).ok_or_else(|| wrong("WxH with 1 to 8192 pixels each way"))?);
+            let max = viewer::offscreen::MAX_PX;
+            out.picture = Some(sides(&value, max).ok_or_else(|| wrong("WxH, each from 1 to 8192 pixels"))?);
         }
         "set" => out.features.push(switch(&value).ok_or_else(|| wrong("FEATURE=on or FEATURE=off"))?),
         "order" => {
@@ -247,17 +248,17 @@ fn value(parser: &mut Parser, option: &str, out: &mut Args) -> Result<(), String
     Ok(())
 }
 
-/// Refuses a second value.
+/// Stores a value and rejects a second one.
 fn set(place: &mut Option<PathBuf>, value: PathBuf, name: &str) -> Result<(), String> {
     match place.replace(value) {
         None => Ok(()),
-        Some(_) => Err(format!("{name} is given twice")),
+        Some(_) => Err(format!("{name}: specified twice; remove one")),
     }
 }
 
-fn sides(value: &str, most: u32) -> Option<[u32; 2]> {
+fn sides(value: &str, max: u32) -> Option<[u32; 2]> {
     let (w, h) = value.split_once('x')?;
-    let side = |s: &str| s.parse().ok().filter(|side| (1..=most).contains(side));
+    let side = |s: &str| s.parse().ok().filter(|side| (1..=max).contains(side));
     Some([side(w)?, side(h)?])
 }
 
@@ -294,26 +295,26 @@ mod tests {
     #[test]
     fn every_mistake_is_one_line_that_names_it() {
         for (line, named) in [
-            ("a.ron b.ron", "FILE is given twice"),
-            ("a.ron --plan b.ron", "FILE is given twice"),
+            ("a.ron b.ron", "FILE: specified twice"),
+            ("a.ron --plan b.ron", "FILE: specified twice"),
             ("--live --standard low", "--live"),
-            ("--settings low", "--live only"),
-            ("--frames 3 --headless --plan a.json --out a.png", "--frames does not go together with --headless"),
-            ("a.json --measure", "--measure goes alone"),
-            ("a.json --whole", "--headless only"),
-            ("a.json --picture 8x8", "--headless only"),
+            ("--settings low", "require --live"),
+            ("--frames 3 --headless --plan a.json --out a.png", "--frames: cannot be used with --headless"),
+            ("a.json --measure", "--measure: cannot"),
+            ("a.json --whole", "require --headless"),
+            ("a.json --picture 8x8", "require --headless"),
             ("--capz tiler", "--capz"),
             ("-x", "-x"),
             ("a.ron --standard low", "--standard"),
             ("--caps", "--caps"),
-            ("--view picture", "--view: `picture`"),
-            ("--size 0x4", "--size: `0x4`"),
-            ("--picture 9000x1", "--picture: `9000x1`"),
-            ("--scale 9", "--scale: `9`"),
-            ("--theme blue", "--theme: `blue`"),
+            ("--view picture", "--view: invalid value `picture`"),
+            ("--size 0x4", "--size: invalid value `0x4`"),
+            ("--picture 9000x1", "--picture: invalid value `9000x1`"),
+            ("--scale 9", "--scale: invalid value `9`"),
+            ("--theme blue", "--theme: invalid value `blue`"),
             ("--order best", "declared or optimized"),
-            ("--set =on", "--set: `=on`"),
-            ("--frames x", "--frames: `x`"),
+            ("--set =on", "--set: invalid value `=on`"),
+            ("--frames x", "--frames: invalid value `x`"),
             ("--headless --plan a.json", "--out"),
             ("--out a.png", "--headless"),
             ("--headless --out a.png", "--plan"),

@@ -1,5 +1,7 @@
-//! Pictures as data: shapes in a plane, with what lies under which place. A view makes one from a plan without a window;
-//! a panel paints it, pans and zooms, and a file gets the same shapes ([`svg()`]).
+//! Drawings as data: shapes in a plane, with areas that react to the pointer.
+//!
+//! Views create drawings from a plan without a window. A panel paints them with pan and zoom, and [`svg()`] writes the
+//! shapes to a file.
 
 mod ink;
 mod svg;
@@ -7,119 +9,119 @@ mod svg;
 pub use ink::{Ink, Theme};
 pub use svg::svg;
 
-/// Width of a letter as a share of the height of the font: fonts are monospaced, here (Hack) and in files (DejaVu).
+/// Advance width of a character relative to the font size. Fonts are monospaced, on screen (Hack) and in files (DejaVu).
 pub const ADVANCE: f32 = 0.602;
-/// Height of a line as a share of the height of the font.
+/// Line height relative to the font size.
 pub const LINE: f32 = 1.35;
 
-/// What can be selected.
+/// Selectable item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Item {
-    /// A pass, by its index.
+    /// Pass by index.
     Pass(usize),
-    /// A step, by its index.
+    /// Step by index.
     Step(usize),
-    /// A resource, by its index.
+    /// Resource by index.
     Resource(usize),
-    /// A flow from pass to pass, by its index.
+    /// Flow from pass to pass by index.
     Flow(usize),
 }
 
-/// Where text stands against its place.
+/// Horizontal alignment of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
-    /// It begins there.
+    /// Text starts at its position.
     Left,
-    /// Its middle is there.
+    /// Text is centered at its position.
     Center,
-    /// It ends there.
+    /// Text ends at its position.
     Right,
 }
 
-/// One shape. Lengths are in points: pixels at a zoom of 1 on a display of scale 1.
+/// Shape of a drawing. Lengths are in points: pixels at zoom 1 on a display of scale 1.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// A box.
+    /// Rectangle.
     Rect {
         /// Left, top, right, bottom.
         bounds: [f32; 4],
-        /// What it is filled with.
+        /// Fill color.
         fill: Option<Ink>,
-        /// What its edge is drawn with.
+        /// Outline color.
         stroke: Option<Ink>,
-        /// The edge is dashed: what is not there.
+        /// Dashed outline, which marks something absent.
         dashed: bool,
     },
-    /// A line through points.
+    /// Polyline.
     Line {
-        /// At least two.
+        /// At least two points.
         points: Vec<[f32; 2]>,
-        /// Its color.
+        /// Color.
         ink: Ink,
-        /// Its width.
+        /// Width.
         width: f32,
-        /// It is dashed.
+        /// Dashed line.
         dashed: bool,
     },
-    /// A filled triangle: heads of arrows, marks.
+    /// Filled triangle, for arrow heads and marks.
     Triangle {
-        /// The corners.
+        /// Corners.
         points: [[f32; 2]; 3],
-        /// Its color.
+        /// Color.
         ink: Ink,
     },
-    /// One line of text.
+    /// Single line of text.
     Text {
-        /// Where its middle line meets the side that `align` names.
+        /// Position: vertically centered, horizontally aligned by `align`.
         at: [f32; 2],
-        /// Height of the font.
+        /// Font size.
         size: f32,
-        /// Which side.
+        /// Horizontal alignment.
         align: Align,
-        /// Its color.
+        /// Color.
         ink: Ink,
-        /// Turned about `at`, against the clock, in degrees.
+        /// Counter-clockwise rotation about `at`, in degrees.
         turned: f32,
-        /// The letters.
+        /// Characters.
         text: String,
     },
 }
 
-/// A place that can be pointed at.
+/// Area that reacts to the pointer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hit {
     /// Left, top, right, bottom.
     pub bounds: [f32; 4],
-    /// What is there, if it can be selected.
+    /// Item that a click selects.
     pub item: Option<Item>,
-    /// What to say about it.
+    /// Tooltip.
     pub tip: String,
 }
 
-/// A picture.
+/// Drawing of a view.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawing {
-    /// Shapes, the first at the bottom.
+    /// Shapes from bottom to top.
     pub shapes: Vec<Shape>,
-    /// Places, the last on top.
+    /// Pointer areas from bottom to top.
     pub hits: Vec<Hit>,
-    /// Shapes that belong to an item: they are lit with it.
+    /// Shapes that are highlighted with an item, by index.
     pub marks: Vec<(usize, Item)>,
     /// Right and bottom end of all shapes.
     pub size: [f32; 2],
 }
 
-/// The width of a text.
+/// Returns the width of a text.
 pub fn text_width(text: &str, size: f32) -> f32 {
     text.chars().count() as f32 * size * ADVANCE
 }
 
-/// The letters that fit a width.
+/// Returns the number of characters that fit a width.
 pub fn letters_in(width: f32, size: f32) -> usize {
     (width / (size * ADVANCE)).max(0.0) as usize
 }
 
-/// At most so many letters, the last an ellipsis where some are left out.
+/// Shortens text to a number of characters, with an ellipsis at the end if necessary.
 pub fn shortened(text: &str, letters: usize) -> String {
     if text.chars().count() <= letters {
         return text.into();
@@ -127,7 +129,7 @@ pub fn shortened(text: &str, letters: usize) -> String {
     text.chars().take(letters.saturating_sub(1)).chain(['…']).collect()
 }
 
-/// The text in lines of at most so many letters, broken between words where that can be done.
+/// Wraps text at a number of characters, between words where possible.
 pub fn wrapped(text: &str, letters: usize) -> Vec<String> {
     let letters = letters.max(8);
     let mut lines = vec![String::new()];
@@ -161,19 +163,19 @@ impl Drawing {
         self.size = [self.size[0].max(right), self.size[1].max(bottom)];
     }
 
-    /// A box.
+    /// Adds a rectangle.
     pub fn rect(&mut self, bounds: [f32; 4], fill: impl Into<Option<Ink>>, stroke: impl Into<Option<Ink>>) {
         self.reach(bounds[2], bounds[3]);
         self.shapes.push(Shape::Rect { bounds, fill: fill.into(), stroke: stroke.into(), dashed: false });
     }
 
-    /// A box with a dashed edge.
+    /// Adds a rectangle with a dashed outline.
     pub fn ghost(&mut self, bounds: [f32; 4], stroke: Ink) {
         self.reach(bounds[2], bounds[3]);
         self.shapes.push(Shape::Rect { bounds, fill: None, stroke: Some(stroke), dashed: true });
     }
 
-    /// A line through points.
+    /// Adds a polyline.
     pub fn line(&mut self, points: Vec<[f32; 2]>, ink: Ink, width: f32) {
         for [x, y] in &points {
             self.reach(*x, *y);
@@ -181,7 +183,7 @@ impl Drawing {
         self.shapes.push(Shape::Line { points, ink, width, dashed: false });
     }
 
-    /// A dashed line.
+    /// Adds a dashed polyline.
     pub fn dashes(&mut self, points: Vec<[f32; 2]>, ink: Ink, width: f32) {
         for [x, y] in &points {
             self.reach(*x, *y);
@@ -189,7 +191,7 @@ impl Drawing {
         self.shapes.push(Shape::Line { points, ink, width, dashed: true });
     }
 
-    /// A filled triangle.
+    /// Adds a filled triangle.
     pub fn triangle(&mut self, points: [[f32; 2]; 3], ink: Ink) {
         for [x, y] in points {
             self.reach(x, y);
@@ -197,12 +199,12 @@ impl Drawing {
         self.shapes.push(Shape::Triangle { points, ink });
     }
 
-    /// A line of text that begins at a place, its middle line there.
+    /// Adds left-aligned text, vertically centered at `at`.
     pub fn text(&mut self, at: [f32; 2], size: f32, ink: Ink, text: impl Into<String>) {
         self.aligned(at, size, Align::Left, ink, text);
     }
 
-    /// A line of text.
+    /// Adds aligned text, vertically centered at `at`.
     pub fn aligned(&mut self, at: [f32; 2], size: f32, align: Align, ink: Ink, text: impl Into<String>) {
         let text = text.into();
         let width = text_width(&text, size);
@@ -215,7 +217,7 @@ impl Drawing {
         self.shapes.push(Shape::Text { at, size, align, ink, turned: 0.0, text });
     }
 
-    /// Text that climbs to the right from a place, by so many degrees.
+    /// Adds text rotated counter-clockwise about its start, in degrees.
     pub fn slanted(&mut self, at: [f32; 2], size: f32, ink: Ink, turned: f32, text: impl Into<String>) {
         let text = text.into();
         let reach = text_width(&text, size) * turned.to_radians().cos();
@@ -223,17 +225,17 @@ impl Drawing {
         self.shapes.push(Shape::Text { at, size, align: Align::Left, ink, turned, text });
     }
 
-    /// A place that can be pointed at.
+    /// Adds a pointer area.
     pub fn hit(&mut self, bounds: [f32; 4], item: impl Into<Option<Item>>, tip: impl Into<String>) {
         self.hits.push(Hit { bounds, item: item.into(), tip: tip.into() });
     }
 
-    /// The last shape belongs to an item.
+    /// Highlights the last shape together with an item.
     pub fn mark(&mut self, item: Item) {
         self.marks.push((self.shapes.len().saturating_sub(1), item));
     }
 
-    /// What lies on top at a place.
+    /// Returns the topmost pointer area at a position.
     pub fn at(&self, [x, y]: [f32; 2]) -> Option<&Hit> {
         self.hits.iter().rev().find(|h| {
             let [left, top, right, bottom] = h.bounds;
@@ -241,7 +243,7 @@ impl Drawing {
         })
     }
 
-    /// Its letters, line by line, from the top, from the left: what is copied as text.
+    /// Returns all text, line by line from the top left, for copying.
     pub fn words(&self) -> String {
         let mut rows: Vec<(i64, i64, &str)> = Vec::new();
         for shape in &self.shapes {

@@ -1,9 +1,9 @@
-//! The words of the glossary (`docs/glossary.md`), for tooltips.
+//! Terms of the glossary (`docs/glossary.md`) for tooltips.
 
-/// The document, as it was when this program was built.
+/// Text of the document at build time.
 const TEXT: &str = include_str!("../../docs/glossary.md");
 
-/// What a word means: the second column of the row whose first has it in bold; as plain text.
+/// Returns the definition of a term as plain text: the second column of the row with the term in bold.
 pub fn meaning(word: &str) -> Option<String> {
     let row = TEXT.lines().filter_map(|line| {
         let mut cells = line.strip_prefix("| ")?.split(" | ");
@@ -14,7 +14,7 @@ pub fn meaning(word: &str) -> Option<String> {
     row.map(plain).next().or_else(|| sentence(word))
 }
 
-/// Words that are explained in running text: the sentence that has them in bold.
+/// Returns the sentence of running text that has the term in bold.
 fn sentence(word: &str) -> Option<String> {
     let bold = format!("**{word}**");
     let paragraphs = TEXT.split("\n\n").map(|paragraph| paragraph.replace('\n', " "));
@@ -28,7 +28,7 @@ fn sentence(word: &str) -> Option<String> {
     bold_in.next()
 }
 
-/// Without the marks of Markdown.
+/// Removes Markdown markup.
 fn plain(text: &str) -> String {
     text.replace("**", "").replace(['`', '*'], "")
 }

@@ -1,4 +1,4 @@
-//! A graph file as a source of plans: its text is kept, and planned for whatever is asked.
+//! Graph file as a source of plans: its text is kept and compiled for every what-if.
 
 use crate::plan_data::PlanData;
 use crate::what_if::{Planner, WhatIf};
@@ -7,10 +7,10 @@ use framegraph::{Graph, Options, Plan, Scratch};
 use program::input::{MAX_TEXT_BYTES, in_utf8};
 use std::path::{Path, PathBuf};
 
-/// The size of a frame when neither the file nor the user says one, in texels.
+/// Frame size in texels if neither the file nor the user sets one.
 const FRAME: [u32; 2] = [1920, 1080];
 
-/// A graph file with the files that it includes.
+/// Graph file with its included files.
 #[derive(Debug)]
 pub struct GraphSource {
     path: String,
@@ -20,10 +20,10 @@ pub struct GraphSource {
 }
 
 impl GraphSource {
-    /// Reads a file and what it includes, and checks its form.
+    /// Reads a file and its includes, and checks the syntax.
     ///
     /// # Errors
-    /// Files that cannot be read, and everything that is wrong with their form: a line each.
+    /// Unreadable files, and all errors of their form, one line each.
     pub fn open(path: &Path) -> Result<Self, String> {
         let text = text_of(path)?;
         let path = path.display().to_string();
@@ -34,12 +34,12 @@ impl GraphSource {
         Ok(Self { path, text, included, features })
     }
 
-    /// The file and those that it includes: what a watch looks at.
+    /// Returns the file and its includes, for watching.
     pub fn files(&self) -> Vec<PathBuf> {
         [self.path.as_str()].into_iter().chain(self.included.paths()).map(PathBuf::from).collect()
     }
 
-    /// `path:line` of the row of the file that names a pass; empty where its name is put together by a template or a plugin.
+    /// Returns `path:line` of the row that names a pass; empty if a template or plugin composes the name.
     fn place_of(&self, pass: &str) -> String {
         let named = format!("name: \"{pass}\"");
         let line =
@@ -72,7 +72,7 @@ impl Planner for GraphSource {
     }
 }
 
-/// The text of a file.
+/// Reads a text file.
 fn text_of(path: &Path) -> Result<String, String> {
     let bytes = crate::file_bytes::bytes_of(path, MAX_TEXT_BYTES, &crate::job::Handle::default())?;
     in_utf8(path, bytes)

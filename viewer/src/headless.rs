@@ -10,23 +10,23 @@ use viewer::offscreen::{Offscreen, own_size_px};
 use viewer::plan_data::PlanData;
 use viewer::view::drawing;
 
-/// The application, when nobody says how large, in pixels.
+/// Default size of the whole application in pixels.
 const WHOLE: [u32; 2] = [1280, 720];
-/// Letters in a line of the inspector.
+/// Characters per line in the inspector.
 const LETTERS: usize = 110;
 
 /// Writes the picture.
 ///
 /// # Errors
-/// Bad input or output; no device for a PNG.
+/// Invalid input or output, or no device for a PNG.
 pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
     let input = |error: &dyn std::fmt::Display| Failure::Input(error.to_string());
     let (is_svg, is_png) = (has_extension(out, "svg"), has_extension(out, "png"));
     if !is_svg && !is_png {
-        return Err(Failure::Input(format!("--out: {} ends neither in .png nor in .svg", out.display())));
+        return Err(Failure::Input(format!("--out {}: the file must end in .png or .svg", out.display())));
     }
     if is_svg && (args.whole || args.picture.is_some()) {
-        return Err(Failure::Input("--whole and --picture go together with a PNG only".into()));
+        return Err(Failure::Input("--whole, --picture: require a PNG output".into()));
     }
     let mut outputs = Outputs::default();
     let settings = args.standard.as_ref().filter(|which| which.ends_with(".ron")).map(Path::new);
@@ -43,11 +43,11 @@ pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
     outputs.commit().map(drop).map_err(|e| input(&e))
 }
 
-/// The drawing of the view that is asked for.
+/// Returns the drawing of the requested view.
 fn picture(args: &Args, session: &Session) -> viewer::drawing::Drawing {
     let empty = PlanData::default();
     let plan = session.plan.as_deref().unwrap_or(&empty);
-    drawing(args.view, plan, session.beside(), LETTERS)
+    drawing(args.view, plan, session.context(), LETTERS)
 }
 
 fn of_view(args: &Args, session: &Session) -> String {

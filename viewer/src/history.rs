@@ -1,30 +1,30 @@
 //! Undo and redo of one value.
 
-/// States that are kept; older ones make way.
+/// Maximum number of undo steps.
 const KEPT: usize = 200;
 
-/// A value with the states before it and, after an undo, those after it.
+/// Value with its undo and redo states.
 #[derive(Clone, Debug, Default)]
 pub struct History<T> {
     now: T,
     before: Vec<T>,
     after: Vec<T>,
-    /// The state before a change that is not finished, as while a slider is dragged.
+    /// State before an unfinished change, such as a slider being dragged.
     held: Option<T>,
 }
 
 impl<T: Clone + PartialEq> History<T> {
-    /// A value that nothing was done to.
+    /// Creates a history without undo steps.
     pub fn new(now: T) -> Self {
         Self { now, before: Vec::new(), after: Vec::new(), held: None }
     }
 
-    /// The value.
+    /// Returns the current value.
     pub fn now(&self) -> &T {
         &self.now
     }
 
-    /// Changes the value. As long as `going_on`, further changes are part of the same step.
+    /// Changes the value. While `going_on` is set, further changes belong to the same undo step.
     pub fn set(&mut self, value: T, going_on: bool) {
         if value != self.now {
             let before = std::mem::replace(&mut self.now, value);
@@ -35,7 +35,7 @@ impl<T: Clone + PartialEq> History<T> {
         }
     }
 
-    /// Ends a change that went on.
+    /// Completes an unfinished change.
     pub fn finish(&mut self) {
         if let Some(before) = self.held.take().filter(|before| *before != self.now) {
             self.before.push(before);
@@ -45,7 +45,7 @@ impl<T: Clone + PartialEq> History<T> {
         }
     }
 
-    /// Takes the last step back; false where there is none.
+    /// Undoes the last step; returns false if none exists.
     pub fn undo(&mut self) -> bool {
         self.finish();
         let Some(value) = self.before.pop() else { return false };
@@ -53,7 +53,7 @@ impl<T: Clone + PartialEq> History<T> {
         true
     }
 
-    /// Does again what was taken back; false where nothing was.
+    /// Redoes the last undone step; returns false if none exists.
     pub fn redo(&mut self) -> bool {
         self.finish();
         let Some(value) = self.after.pop() else { return false };
@@ -61,7 +61,7 @@ impl<T: Clone + PartialEq> History<T> {
         true
     }
 
-    /// How many steps can be taken back, and done again.
+    /// Returns the number of steps that can be undone and redone.
     pub fn steps(&self) -> [usize; 2] {
         [self.before.len() + usize::from(self.held.is_some()), self.after.len()]
     }
@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(history.steps(), [1, 1], "nothing was changed");
         history.set(7, false);
         assert_eq!((history.redo(), *history.now(), history.steps()), (false, 7, [2, 0]));
-        // A drag that ends where it began is none.
+        // A drag that returns to its start is no step.
         history.set(8, true);
         history.set(7, false);
         assert_eq!(history.steps(), [2, 0]);

@@ -1,42 +1,42 @@
-//! Work on a thread of its own, with its progress and a way to end it: panels ask for the result and never wait.
+//! Background work with progress and cancellation: panels poll for the result and never block.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::Duration;
 
-/// What work and its owner share.
+/// State shared by the work and its owner.
 #[derive(Clone, Debug, Default)]
 pub struct Handle {
     cancelled: Arc<AtomicBool>,
-    /// Finished of how much; 0 of 0 as long as nobody knows.
+    /// Completed and total units; 0 and 0 while unknown.
     progress: Arc<[AtomicU64; 2]>,
 }
 
 impl Handle {
-    /// Whether the owner no longer wants the result: the work should return at once.
+    /// Returns whether the owner cancelled the work, which should then return at once.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }
 
-    /// `done` of `total` units are finished.
+    /// Reports that `done` of `total` units are completed.
     pub fn step(&self, done: u64, total: u64) {
         self.progress[0].store(done, Ordering::Relaxed);
         self.progress[1].store(total, Ordering::Relaxed);
     }
 }
 
-/// Work in progress. Dropping it cancels.
+/// Running work, cancelled on drop.
 #[derive(Debug)]
 pub struct Job<T> {
-    /// What it does, for the user: `reading frame.ron`.
+    /// Description for the user, such as `reading frame.ron`.
     pub doing: String,
     handle: Handle,
     result: Receiver<T>,
 }
 
 impl<T: Send + 'static> Job<T> {
-    /// Starts the work; `wake` is called when there is a result to [`poll`](Self::poll).
+    /// Starts the work on a new thread. `wake` is called when a result is available to [`poll`](Self::poll).
     pub fn start(
         doing: impl Into<String>,
         wake: impl FnOnce() + Send + 'static,
@@ -46,7 +46,7 @@ impl<T: Send + 'static> Job<T> {
         let handle = Handle::default();
         let theirs = handle.clone();
         std::thread::spawn(move || {
-            // The owner may be gone; then nobody asks.
+            // Sending fails if the owner is gone.
             if sender.send(work(&theirs)).is_ok() {
                 wake();
             }
@@ -54,7 +54,7 @@ impl<T: Send + 'static> Job<T> {
         Self { doing: doing.into(), handle, result }
     }
 
-    /// The result, once it is there; `Some(Err(()))` when the work ended without one.
+    /// Returns the result if available; `Some(Err(()))` if the work ended without one.
     pub fn poll(&self) -> Option<Result<T, ()>> {
         match self.result.try_recv() {
             Ok(result) => Some(Ok(result)),
@@ -63,12 +63,12 @@ impl<T: Send + 'static> Job<T> {
         }
     }
 
-    /// Waits for the result.
+    /// Waits for the result, at most the given time.
     pub fn wait(&self, at_most: Duration) -> Option<T> {
         self.result.recv_timeout(at_most).ok()
     }
 
-    /// How much is finished, from 0 to 1; none as long as nobody knows.
+    /// Returns the completed fraction, 0 to 1; `None` while unknown.
     pub fn progress(&self) -> Option<f32> {
         let [done, total] = [0, 1].map(|i| self.handle.progress[i].load(Ordering::Relaxed));
         (total > 0).then(|| done as f32 / total as f32)

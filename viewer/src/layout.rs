@@ -1,9 +1,11 @@
-//! A layered layout of a directed graph, from left to right (Sugiyama, Tagawa, Toda 1981): layers by longest ways, order
-//! within layers by medians of neighbours (Eades, Wormald 1994), places by least squares.
+//! Layered layout of a directed graph, from left to right (Sugiyama, Tagawa, Toda 1981).
 //!
-//! It is written here because the crates at hand (`rust-sugiyama`, `layout-rs`) draw nodes of one size or route every edge
-//! on its own; a frame has boxes of many passes, and textures with dozens of readers, whose lines run side by side for
-//! most of the way. Here all edges of a node share one line until they part.
+//! Longest paths determine the layers, medians of neighbors the order within layers (Eades, Wormald 1994), and least
+//! squares the positions.
+//!
+//! Existing crates (`rust-sugiyama`, `layout-rs`) draw nodes of one size or route every edge separately. Frames have steps
+//! with many passes, and textures with dozens of readers whose lines run in parallel. Here all edges of a node share one
+//! line until they diverge.
 
 mod order;
 mod place;
@@ -13,27 +15,27 @@ use vertex::Vertex;
 
 /// Space between layers.
 pub const LAYER_GAP: f32 = 70.0;
-/// Points at which lines pass layers; further edges run straight.
-const MOST_BENDS: usize = 60_000;
+/// Maximum number of bends, where lines pass layers; further edges run straight.
+const MAX_BENDS: usize = 60_000;
 
-/// Where everything is.
+/// Positions of all nodes and edges.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
     /// Left and top of each node.
     pub nodes: Vec<[f32; 2]>,
-    /// The layer of each node, from 0.
+    /// Layer of each node, from 0.
     pub layers: Vec<usize>,
-    /// The points of each edge, from the right side of its source to the left side of its target.
+    /// Points of each edge, from the right side of its source to the left side of its target.
     pub edges: Vec<Vec<[f32; 2]>>,
 }
 
-/// Lays out nodes of these widths and heights. Edges that close a circle are drawn backward.
+/// Lays out nodes with the given widths and heights. Edges that close a cycle run backward.
 pub fn layout(sizes: &[[f32; 2]], edges: &[(usize, usize)]) -> Layout {
     let layers = layers(sizes.len(), edges);
     let count = layers.iter().max().map_or(0, |last| last + 1);
     let mut vertices: Vec<Vertex> =
         (0..sizes.len()).map(|node| Vertex { layer: layers[node], height: sizes[node][1], bend: false }).collect();
-    // Bends by source: those of the layers behind it, as far as its edges reach.
+    // Bends by source, in all later layers that its edges pass.
     let mut reach: Vec<usize> = layers.clone();
     for &(from, to) in edges {
         reach[from] = reach[from].max(layers[to].saturating_sub(1));
@@ -43,7 +45,7 @@ pub fn layout(sizes: &[[f32; 2]], edges: &[(usize, usize)]) -> Layout {
     for node in 0..sizes.len() {
         let mut before = node;
         for layer in layers[node] + 1..=reach[node] {
-            if vertices.len() - sizes.len() >= MOST_BENDS {
+            if vertices.len() - sizes.len() >= MAX_BENDS {
                 break;
             }
             links.push((before, vertices.len()));
@@ -79,8 +81,9 @@ pub fn layout(sizes: &[[f32; 2]], edges: &[(usize, usize)]) -> Layout {
     Layout { edges: edges.iter().map(route).collect(), layers, nodes }
 }
 
-/// The layer of each node: one more than the last of those before it. Nodes that nothing leads to stand next to the first
-/// that they lead to. Of a circle, the edges into its first node are passed over.
+/// Returns the layer of each node: one after its last predecessor.
+///
+/// Nodes without predecessors are placed next to their first successor. In a cycle, edges into its first node are ignored.
 fn layers(nodes: usize, edges: &[(usize, usize)]) -> Vec<usize> {
     let mut after = vec![Vec::new(); nodes];
     let mut waiting = vec![0usize; nodes];
@@ -113,7 +116,7 @@ fn layers(nodes: usize, edges: &[(usize, usize)]) -> Vec<usize> {
 mod tests {
     use super::*;
 
-    /// Nodes of a layer do not overlap, and layers do not.
+    /// Asserts that no nodes overlap.
     fn assert_apart(sizes: &[[f32; 2]], layout: &Layout) {
         let bounds = |n: usize| {
             let ([x, y], [w, h]) = (layout.nodes[n], sizes[n]);
@@ -146,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_circle_is_laid_out() {
+    fn a_cycle_is_laid_out() {
         let sizes = [[10.0, 10.0]; 3];
         let layout = layout(&sizes, &[(0, 1), (1, 2), (2, 0), (1, 1)]);
         assert_eq!(layout.layers, [0, 1, 2]);
@@ -154,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_that_need_not_cross_do_not() {
+    fn avoidable_crossings_are_avoided() {
         // Two ladders, declared crosswise.
         let sizes = [[10.0, 10.0]; 6];
         let edges = [(0, 3), (1, 2), (2, 4), (3, 5)];
@@ -166,13 +169,13 @@ mod tests {
     }
 
     #[test]
-    fn a_source_stands_beside_its_first_reader() {
+    fn a_source_is_next_to_its_first_reader() {
         let layout = layout(&[[10.0, 10.0]; 5], &[(0, 1), (1, 2), (2, 3), (4, 3)]);
         assert_eq!(layout.layers, [0, 1, 2, 3, 2]);
     }
 
     #[test]
-    fn nothing_is_laid_out_as_nothing() {
+    fn an_empty_graph_has_an_empty_layout() {
         assert_eq!(layout(&[], &[]), Layout::default());
     }
 }

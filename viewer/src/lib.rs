@@ -1,14 +1,13 @@
-//! What a frame does, why, and what it costs: panels for an egui application, and all that they show as data.
+//! Panels for egui applications that show a frame's passes, decisions and costs.
 //!
-//! Three layers, each of use without the next:
+//! The crate has three layers. Each is useful without the next.
 //!
-//! - data: a plan as rows ([`plan_data`]), live or saved; a trace ([`trace_data`]); accuracy
-//!   ([`accuracy_data`]); whoever can plan the frame anew
-//!   ([`what_if::Planner`], of which [`graph_source`] is the one for graph files and
-//!   [`standard_frame`] the one for the standard frame);
-//! - pictures as data ([`drawing`]), made by pure functions ([`view`]);
-//! - panels that paint them ([`panel`]), and the application made of panels ([`app`]), which may draw a frame of its own
-//!   (`live`, with the feature `window`).
+//! - Data: a live or saved plan as rows ([`plan_data`]), frame times ([`trace_data`]), measured accuracy
+//! ([`accuracy_data`]), and sources of plans ([`what_if::Planner`]): graph files ([`graph_source`]) and the standard frame
+//! ([`standard_frame`]).
+//! - Drawings as data ([`drawing`]), created by pure functions ([`view`]).
+//! - Panels that paint drawings ([`panel`]), and the application made of panels ([`app`]), optionally with a live frame
+//! (`live`, with the feature `window`).
 
 pub mod accuracy_data;
 pub mod app;

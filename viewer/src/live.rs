@@ -1,38 +1,38 @@
-//! A frame of one's own beside its plan: the standard frame of `framegraph_passes`, drawn on the device that draws the window.
+//! Live frame next to its plan: the standard frame of `framegraph_passes`, drawn on the device of the window.
 //!
-//! | file | what |
+//! | file | content |
 //! | --- | --- |
-//! | `screen.rs` | the device, and where egui finds textures of it |
-//! | `loading.rs` | a scene and its light, on a thread of its own |
-//! | `look.rs`, `factors.rs`, `camera.rs` | what goes beside settings; materials that are changed; a camera that is moved by hand |
-//! | `frame.rs` | the frame, executed again and again |
-//! | `shown.rs`, `asked_file.rs` | what the panel of settings keeps; what panels ask a file for |
-//! | `times.rs` | its times, as views show them |
-//! | `preview.rs`, `bisecting.rs` | textures of it; which liberty of the compiler changes it |
-//! | `panel/` | what is seen of all this |
+//! | `screen.rs` | the device, and registration of textures with egui |
+//! | `loading.rs` | a scene and its light, loaded in the background |
+//! | `capture.rs`, `factors.rs`, `camera.rs` | exposure, lens, light and animation; edited materials; the interactive camera |
+//! | `frame.rs` | the frame, executed repeatedly |
+//! | `settings_panel.rs`, `file_request.rs` | state of the settings panel; file dialogs that panels request |
+//! | `times.rs` | frame times for the views |
+//! | `preview.rs`, `bisecting.rs` | contents of textures; bisection of debug modes |
+//! | `panel/` | the panels |
 
-pub mod asked_file;
 pub mod bisecting;
 pub mod camera;
+pub mod capture;
 pub mod factors;
+pub mod file_request;
 pub mod frame;
 pub mod loading;
-pub mod look;
 pub mod panel;
 pub mod preview;
 pub mod screen;
-pub mod shown;
+pub mod settings_panel;
 mod times;
 
 use crate::history::History;
 use crate::job::Job;
 use crate::plan_data::PlanData;
 use crate::session::Session;
-use asked_file::AskedFile;
 use bisecting::Bisecting;
-use frame::{Asked, Running};
-use loading::{Around, Lit, Loaded};
-use look::{Document, Sun};
+use capture::{Document, Sun};
+use file_request::FileRequest;
+use frame::{DrawOptions, Running};
+use loading::{EnvironmentSource, Lit, Loaded};
 use preview::Preview;
 use program::input;
 use program::outputs::Outputs;
@@ -41,50 +41,50 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Frames that are drawn after a change: facts settle in eight, histories and effects over time soon after.
+/// Frames drawn after a change: feature culling settles in eight, histories and temporal effects soon after.
 const AFTER_CHANGE: u32 = 16;
-/// And where frames are added up over time.
-const ADDED_UP: u32 = 48;
-/// Seconds between two updates of times.
+/// Frames drawn after a change with temporal anti-aliasing.
+const AFTER_CHANGE_TAA: u32 = 48;
+/// Interval between two updates of the times, in seconds.
 const TIMES_S: f32 = 0.5;
 
-/// What a job brings.
-type Brought<T> = Result<T, String>;
+/// Result of a job.
+type JobResult<T> = Result<T, String>;
 
-/// A frame that is drawn, and all that is set about it.
+/// Live frame with all its settings.
 pub struct Live {
     screen: Screen,
     wake: Arc<dyn Fn() + Send + Sync>,
-    /// The scene, once it is loaded.
+    /// Running frame; `None` until the scene is loaded.
     pub running: Option<Running>,
-    /// Settings and look, with what undo and redo go back to.
+    /// Settings and capture with undo and redo.
     pub history: History<Document>,
-    /// What the frame is asked for beside them.
-    pub asked: Asked,
-    /// Frames are drawn without a pause, though nothing changes.
+    /// Debug modes and animation state.
+    pub options: DrawOptions,
+    /// Draws continuously, even without changes.
     pub continuous: bool,
-    /// Share of the viewport's pixels that is drawn along each side.
+    /// Fraction of the viewport's pixels drawn along each side.
     pub share: f32,
-    /// A texture that is looked at.
+    /// Texture preview.
     pub preview: Preview,
-    /// A file that a panel asks for, by a dialog of the desktop.
-    pub asks_file: Option<AskedFile>,
-    /// The material that is looked at.
+    /// File dialog that a panel requests.
+    pub file_request: Option<FileRequest>,
+    /// Index of the material being edited.
     pub material: Option<usize>,
-    /// Debug modes that are tried one after the other.
+    /// Running bisection of debug modes.
     pub bisecting: Option<Bisecting>,
-    /// The limits that are watched, as they are typed.
+    /// Typed budget limits.
     pub budget: String,
-    /// The file of settings that is opened or written next, as it is typed.
+    /// Typed path of a settings file.
     pub path: String,
-    /// What the panel of settings holds.
-    pub settings: shown::SettingsPanel,
-    loading: Option<Job<Brought<(Loaded, Vec<String>)>>>,
-    relighting: Option<Job<Brought<Lit>>>,
-    wanted: Around,
-    /// Frames that are still to be drawn.
+    /// State of the settings panel.
+    pub settings: settings_panel::SettingsPanel,
+    loading: Option<Job<JobResult<(Loaded, Vec<String>)>>>,
+    relighting: Option<Job<JobResult<Lit>>>,
+    wanted: EnvironmentSource,
+    /// Number of frames still to draw.
     left: u32,
-    told: u64,
+    reported_plans: u64,
     drawn_with: (Document, framegraph_wgpu::debug::Modes),
     refused: Option<String>,
     times_at: Option<Instant>,
@@ -93,7 +93,7 @@ pub struct Live {
 }
 
 impl Live {
-    /// Begins to load a scene, a built-in name or a path; `wake` is called from other threads when there is something new.
+    /// Starts loading a scene: a built-in name or a path. Other threads call `wake` when a result is available.
     pub fn new(
         screen: Screen,
         document: Document,
@@ -101,27 +101,27 @@ impl Live {
         environment: Option<&Path>,
         wake: impl Fn() + Send + Sync + 'static,
     ) -> Self {
-        let wanted = environment.map_or(Around::Sky(None), |path| Around::File(path.to_owned()));
+        let wanted = environment.map_or(EnvironmentSource::Sky(None), |path| EnvironmentSource::File(path.to_owned()));
         let mut live = Self {
             screen,
             wake: Arc::new(wake),
             running: None,
             history: History::new(document),
-            asked: Asked::default(),
+            options: DrawOptions::default(),
             continuous: false,
             share: 1.0,
             preview: Preview::default(),
-            asks_file: None,
+            file_request: None,
             material: None,
             bisecting: None,
             budget: String::new(),
             path: String::new(),
-            settings: shown::SettingsPanel::default(),
+            settings: settings_panel::SettingsPanel::default(),
             loading: None,
             relighting: None,
             wanted,
             left: AFTER_CHANGE,
-            told: 0,
+            reported_plans: 0,
             drawn_with: Default::default(),
             refused: None,
             times_at: None,
@@ -132,38 +132,38 @@ impl Live {
         live
     }
 
-    /// Loads a scene on a thread of its own. The one that is shown stays until it is there, or if it is none.
+    /// Loads a scene in the background. The displayed scene stays until loading succeeds.
     pub fn load(&mut self, name: &str) {
         let shown = self.running.as_ref().map(|running| &running.loaded).filter(|loaded| loaded.name == name);
         let variant = shown.and_then(|loaded| loaded.variant.clone());
         self.load_variant(name, variant);
     }
 
-    /// Loads a scene with the materials of a variant, as [`load`](Self::load) does.
+    /// Loads a scene with a material variant, like [`load`](Self::load).
     pub fn load_variant(&mut self, name: &str, variant: Option<String>) {
-        let (gpu, name, around) = (self.screen.gpu.clone(), name.to_owned(), self.wanted.clone());
+        let (gpu, name, environment) = (self.screen.gpu.clone(), name.to_owned(), self.wanted.clone());
         let (settings, levels) = (self.light_settings(), self.document().frame.lod_error_px > 0.0);
         let wake = self.wake.clone();
         self.relighting = None;
         self.loading = Some(Job::start(
             format!("loading {name}"),
             move || wake(),
-            move |handle| loading::load(&gpu, &name, &around, &settings, (levels, variant), handle),
+            move |handle| loading::load(&gpu, &name, &environment, &settings, (levels, variant), handle),
         ));
     }
 
-    /// Opens a file by its ending: a scene, a picture of light from all around, or settings; false for others.
+    /// Opens a scene, an environment or a settings file by its extension; returns false for other files.
     pub fn open(&mut self, path: &Path, session: &mut Session) -> bool {
         let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
         match ending.as_deref() {
             Some("gltf" | "glb") => self.load(&path.to_string_lossy()),
-            Some("hdr" | "exr" | "ktx" | "ktx2") => self.wanted = Around::File(path.to_owned()),
+            Some("hdr" | "exr" | "ktx" | "ktx2") => self.wanted = EnvironmentSource::File(path.to_owned()),
             Some("ron") => {
                 let name = path.to_string_lossy();
                 let says_frame = || input::text(path, input::MAX_TEXT_BYTES).is_ok_and(|t| t.contains("frame: ("));
                 match crate::standard_frame::settings(&name) {
                     Ok(frame) => self.set(Document { frame, ..self.document().clone() }, false),
-                    // A graph is another kind of file; settings say what is wrong with them.
+                    // Graphs also end in `.ron`. Only settings files report their errors.
                     Err(_) if !says_frame() => return false,
                     Err(error) => session.say(error),
                 }
@@ -173,47 +173,47 @@ impl Live {
         true
     }
 
-    /// Settings and look as they are.
+    /// Returns the current settings and capture.
     pub fn document(&self) -> &Document {
         self.history.now()
     }
 
-    /// Changes settings and look. As long as `going_on`, as while a slider is dragged, changes are one step of undo.
+    /// Changes settings and capture. While `going_on` is set, such as during a drag, all changes form one undo step.
     pub fn set(&mut self, document: Document, going_on: bool) {
         self.history.set(document, going_on);
         self.again();
     }
 
-    /// Draws some frames more: something has changed.
+    /// Draws more frames after a change.
     pub fn again(&mut self) {
         let over_time = self.document().frame.settings.taa.is_some();
-        self.left = if over_time { ADDED_UP } else { AFTER_CHANGE };
+        self.left = if over_time { AFTER_CHANGE_TAA } else { AFTER_CHANGE };
         self.refused = None;
     }
 
-    /// What is done on another thread, how far it is, and whether it can be ended.
+    /// Returns the description and progress of the background work.
     pub fn doing(&self) -> Option<(&str, Option<f32>)> {
         let loading = self.loading.as_ref().map(|job| (job.doing.as_str(), job.progress()));
         loading.or(self.relighting.as_ref().map(|job| (job.doing.as_str(), job.progress())))
     }
 
-    /// Ends it; what is shown stays.
+    /// Cancels the background work and keeps the displayed frame.
     pub fn cancel(&mut self) {
         self.loading = None;
         if self.relighting.take().is_some()
             && let Some(running) = &self.running
         {
-            self.wanted = running.loaded.around.clone();
+            self.wanted = running.loaded.environment.clone();
         }
     }
 
-    /// What light the shown settings are to be made with.
+    /// Returns the light settings of the current settings.
     fn light_settings(&self) -> framegraph_passes::shading::LightSettings {
         let frame = &self.document().frame;
         frame.settings.shading.light(frame.quality)
     }
 
-    /// Takes what other threads have brought, and lets time pass.
+    /// Applies finished background work and advances the animation.
     pub fn tick(&mut self, session: &mut Session, passed_s: f32) {
         if let Some(result) = self.loading.as_ref().and_then(Job::poll) {
             self.loading = None;
@@ -222,36 +222,36 @@ impl Live {
                     warnings.into_iter().take(3).for_each(|warning| session.say(warning));
                     self.preview = Preview::default();
                     self.bisecting = None;
-                    self.wanted = loaded.around.clone();
-                    let mut look = self.document().look;
-                    look.animation = None;
+                    self.wanted = loaded.environment.clone();
+                    let mut capture = self.document().capture;
+                    capture.animation = None;
                     let materials = std::collections::BTreeMap::new();
-                    self.history.set(Document { look, materials, ..self.document().clone() }, false);
+                    self.history.set(Document { capture, materials, ..self.document().clone() }, false);
                     self.material = None;
-                    self.asked.playing = false;
+                    self.options.playing = false;
                     self.running = Some(Running::new(&self.screen, loaded));
-                    self.told = 0;
+                    self.reported_plans = 0;
                     self.again();
                 }
                 Ok(Err(error)) => session.say(error),
-                Err(()) => session.say("loading ended without a result: this is a fault of the viewer".into()),
+                Err(()) => session.say("internal error: loading ended without a result".into()),
             }
         }
         self.relight(session);
-        if self.asked.playing && passed_s > 0.0 {
-            self.asked.time_s += f64::from(passed_s.min(0.25));
+        if self.options.playing && passed_s > 0.0 {
+            self.options.time_s += f64::from(passed_s.min(0.25));
             let length_s = self.running.as_ref().and_then(|running| {
-                let animation = running.loaded.scene.motion.animations.get(self.document().look.animation?)?;
+                let animation = running.loaded.scene.motion.animations.get(self.document().capture.animation?)?;
                 Some(animation.duration_s())
             });
             if let Some(length_s) = length_s.filter(|length| *length > 0.0) {
-                self.asked.time_s %= length_s;
+                self.options.time_s %= length_s;
             }
             self.again();
         }
     }
 
-    /// Waits until nothing is loaded or made any more; false when that takes longer than `at_most`.
+    /// Waits until all background work is done; returns false after `at_most`.
     pub fn settle(&mut self, session: &mut Session, at_most: Duration) -> bool {
         let end = Instant::now() + at_most;
         while Instant::now() < end {
@@ -264,7 +264,7 @@ impl Live {
         false
     }
 
-    /// Makes other light where the settings or the sun of a clear sky ask for it.
+    /// Creates new light if the settings or the sun of a clear sky require it.
     fn relight(&mut self, session: &mut Session) {
         if let Some(result) = self.relighting.as_ref().and_then(Job::poll) {
             self.relighting = None;
@@ -275,14 +275,14 @@ impl Live {
                 }
                 (Ok(Err(error)), Some(running)) => {
                     session.say(error);
-                    self.wanted = running.loaded.around.clone();
+                    self.wanted = running.loaded.environment.clone();
                 }
                 _ => {}
             }
         }
-        let sun = self.document().look.sun;
-        if let Around::Sky(own) = &mut self.wanted {
-            *own = if let Sun::Given { .. } = sun { sun.toward() } else { None };
+        let sun = self.document().capture.sun;
+        if let EnvironmentSource::Sky(own) = &mut self.wanted {
+            *own = if let Sun::Custom { .. } = sun { sun.toward() } else { None };
         }
         let (settings, levels) = (self.light_settings(), self.document().frame.lod_error_px > 0.0);
         let Some(loaded) = self.running.as_mut().map(|running| &mut running.loaded) else { return };
@@ -290,30 +290,30 @@ impl Live {
             let name = loaded.name.clone();
             return self.load(&name);
         }
-        let other = loaded.around != self.wanted || loaded.light_settings != settings;
+        let other = loaded.environment != self.wanted || loaded.light_settings != settings;
         if !other || self.relighting.is_some() || self.loading.is_some() || self.refused.is_some() {
             return;
         }
-        let (gpu, around, wake) = (self.screen.gpu.clone(), self.wanted.clone(), self.wake.clone());
-        // What light is made for: materials do not matter, the ground's color and the lights do.
+        let (gpu, environment, wake) = (self.screen.gpu.clone(), self.wanted.clone(), self.wake.clone());
+        // Light depends on the ground color and the lights, but not on materials.
         let scene = framegraph_scene::Scene {
             ground_albedo: loaded.scene.ground_albedo,
             lights: loaded.lights.clone(),
             ..framegraph_scene::Scene::default()
         };
         self.relighting = Some(Job::start(
-            "making light",
+            "preparing light",
             move || wake(),
-            move |handle| loading::light(&gpu, &scene, &around, &settings, handle),
+            move |handle| loading::light(&gpu, &scene, &environment, &settings, handle),
         ));
     }
 
-    /// Whether a frame is to be drawn.
+    /// Returns whether a frame should be drawn.
     pub fn wants_frame(&self) -> bool {
-        self.running.is_some() && (self.left > 0 || self.continuous || self.asked.playing)
+        self.running.is_some() && (self.left > 0 || self.continuous || self.options.playing)
     }
 
-    /// Draws the frame of that size, if it is to be drawn, and tells the session of its plan and times.
+    /// Draws the frame at a size if required, and passes its plan and times to the session.
     pub fn draw(&mut self, size_px: [u32; 2], session: &mut Session) {
         if !self.wants_frame() || size_px.contains(&0) {
             return;
@@ -321,12 +321,12 @@ impl Live {
         self.left = self.left.saturating_sub(1);
         let document = self.history.now().clone();
         let Some(running) = &mut self.running else { return };
-        // What light is not there yet for is drawn with the light that is.
+        // Until new light is available, draw with the existing light.
         let mut drawn = document.clone();
         let lit = running.loaded.light_settings;
         drawn.frame.settings.shading.bands = lit.image.bands;
         drawn.frame.settings.shading.table = lit.dfg.visibility;
-        if let Err(error) = running.draw(size_px, &drawn, &self.asked) {
+        if let Err(error) = running.draw(size_px, &drawn, &self.options) {
             if self.refused.as_ref() != Some(&error) {
                 session.say(error.clone());
             }
@@ -334,25 +334,25 @@ impl Live {
             return;
         }
         self.clock.tick(Instant::now());
-        self.tell(session);
+        self.report(session);
     }
 
-    /// Tells the session of plan and times, where it shows this frame.
-    fn tell(&mut self, session: &mut Session) {
+    /// Passes plan and times to the session if it shows this frame.
+    fn report(&mut self, session: &mut Session) {
         let Some(running) = &self.running else { return };
         let shows = session.is_live() || session.plan.is_none();
-        if shows && running.plans() != self.told {
+        if shows && running.plans() != self.reported_plans {
             let name = format!("live frame, {}", running.loaded.name);
-            let drawn = (self.history.now().clone(), self.asked.modes.clone());
-            let changed = self.told > 0 && drawn != self.drawn_with;
+            let drawn = (self.history.now().clone(), self.options.modes.clone());
+            let changed = self.reported_plans > 0 && drawn != self.drawn_with;
             match PlanData::of(running.plan(), &name) {
                 Ok(plan) => {
-                    let (planner, base) = running.planner(self.history.now(), &self.asked.modes);
+                    let (planner, base) = running.planner(self.history.now(), &self.options.modes);
                     session.show_live(planner, base, Arc::new(plan), changed);
                 }
                 Err(error) => session.say(error.to_string()),
             }
-            self.told = running.plans();
+            self.reported_plans = running.plans();
             self.drawn_with = drawn;
         }
         if shows && self.times_at.is_none_or(|at| at.elapsed().as_secs_f32() >= TIMES_S) {
@@ -363,24 +363,24 @@ impl Live {
         }
     }
 
-    /// Shows the plan of this frame again, after a file was shown.
+    /// Shows the plan of this frame again after a file was shown.
     pub fn show_plan(&mut self, session: &mut Session) {
         session.forget_plan();
-        self.told = 0;
+        self.reported_plans = 0;
         self.again();
     }
 
-    /// Notes the size of the viewport; returns whether it is another one.
+    /// Sets the size of the viewport and returns whether it changed.
     pub fn take_size(&mut self, size_px: [u32; 2]) -> bool {
         std::mem::replace(&mut self.size_px, size_px) != size_px
     }
 
-    /// Frames a second, over the latest ones.
+    /// Returns the recent frames per second.
     pub fn frames_per_s(&self) -> Option<f32> {
         self.clock.frames_per_s()
     }
 
-    /// Writes the settings as a file.
+    /// Saves the settings to a file.
     ///
     /// # Errors
     /// One line that names the file.
@@ -389,19 +389,19 @@ impl Live {
         Outputs::one_beside(path, text.as_bytes(), &self.read()).map_err(|error| error.to_string())
     }
 
-    /// The files that what is shown was read from.
+    /// Returns the input files of the displayed frame.
     pub fn read(&self) -> Vec<PathBuf> {
         self.running.iter().flat_map(|running| running.loaded.files()).cloned().collect()
     }
 
-    /// The environment that is shown or made, in words.
-    pub fn around(&self) -> String {
+    /// Returns the name of the current or requested environment.
+    pub fn environment(&self) -> String {
         self.wanted.to_string()
     }
 
-    /// Lights the scene by a clear sky, or by a picture.
-    pub fn set_around(&mut self, path: Option<PathBuf>) {
-        self.wanted = path.map_or(Around::Sky(None), Around::File);
+    /// Lights the scene with a clear sky or an environment picture.
+    pub fn set_environment(&mut self, path: Option<PathBuf>) {
+        self.wanted = path.map_or(EnvironmentSource::Sky(None), EnvironmentSource::File);
         self.again();
     }
 }

@@ -1,4 +1,4 @@
-//! `viewer`: what a frame does, why, and what it costs.
+//! Shows a frame's passes, decisions and costs.
 
 mod args;
 mod headless;
@@ -14,12 +14,12 @@ use viewer::drawing::Item;
 use viewer::standard_frame::StandardFrame;
 use viewer::what_if::WhatIf;
 
-/// Why nothing is shown.
+/// Reason that nothing is shown.
 #[derive(Debug)]
 pub enum Failure {
-    /// Bad input or output: a line each.
+    /// Invalid input or output, one line per error.
     Input(String),
-    /// No device, or no window.
+    /// No device or no window.
     Device(String),
 }
 
@@ -54,7 +54,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The question that graphs are opened with.
+/// Returns the initial what-if for graphs.
 fn first(args: &args::Args) -> Result<WhatIf, Failure> {
     let caps = match Caps::preset(&args.caps) {
         Some(caps) => caps,
@@ -65,13 +65,16 @@ fn first(args: &args::Args) -> Result<WhatIf, Failure> {
         }
         None => {
             let presets = Caps::PRESETS.join(", ");
-            return Err(Failure::Input(format!("--caps: `{}` is neither {presets} nor a FILE.ron", args.caps)));
+            return Err(Failure::Input(format!(
+                "--caps: invalid value `{}`; expected {presets} or a FILE.ron",
+                args.caps
+            )));
         }
     };
     Ok(WhatIf { frame: args.size, order: args.order, features: args.features.clone(), ..WhatIf::on(caps) })
 }
 
-/// Shows the standard frame, if it is asked for.
+/// Shows the standard frame if requested.
 fn standard(args: &args::Args, session: &mut Session) -> Result<(), Failure> {
     if let Some(which) = &args.standard {
         let frame = StandardFrame::open(which).map_err(|e| Failure::Input(format!("--standard: {e}")))?;
@@ -80,14 +83,14 @@ fn standard(args: &args::Args, session: &mut Session) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Waits until what was asked is there.
+/// Waits for the running work.
 fn settled(session: &mut Session) -> Result<(), Failure> {
-    // Long files are long: whoever waits can end the program.
+    // Large files take long; the user can end the program.
     while !session.settle(Duration::from_secs(3600)) {}
     if session.messages.is_empty() { Ok(()) } else { Err(Failure::Input(session.messages.join("\n"))) }
 }
 
-/// Opens everything, one after the other, and waits for each: only without a window.
+/// Opens all files in sequence and waits for each, in runs without a window.
 fn opened(args: &args::Args, session: &mut Session) -> Result<(), Failure> {
     standard(args, session)?;
     settled(session)?;
@@ -100,14 +103,14 @@ fn opened(args: &args::Args, session: &mut Session) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The pass or resource of a name.
+/// Returns the pass or resource with a name.
 fn selected(name: &str, session: &Session) -> Result<Item, Failure> {
     let plan = session.plan.as_ref();
     let item = plan.and_then(|plan| plan.pass(name).map(Item::Pass).or(plan.resource(name).map(Item::Resource)));
-    item.ok_or_else(|| Failure::Input(format!("--select: there is no pass or resource `{name}`")))
+    item.ok_or_else(|| Failure::Input(format!("--select: unknown pass or resource `{name}`")))
 }
 
-/// Whether a path ends so.
+/// Compares the extension of a path.
 fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }

@@ -1,4 +1,4 @@
-//! What the panels cost: time to lay out a large graph, to scroll it, and to show each panel of the standard frame.
+//! Cost of the panels: layout and scrolling of a large graph, and every panel of the standard frame.
 
 use crate::app::{Pane, Session, Viewer};
 use crate::offscreen::Offscreen;
@@ -12,15 +12,15 @@ use std::fmt::Write;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Size of the window, in points and pixels.
+/// Window size in points and pixels.
 const SIZE: [u32; 2] = [1280, 720];
-/// Frames that are measured of each thing.
+/// Number of measured frames.
 const FRAMES: usize = 40;
 
-/// The plan of a graph of so many passes and 40 more, each of which reads some of those before it.
+/// Returns the plan of a graph with `passes` + 40 passes that read earlier ones.
 ///
 /// # Errors
-/// None that is known: what the compiler refuses.
+/// An error of the compiler; none is known.
 pub fn large(passes: usize) -> Result<PlanData, String> {
     let mut graph = Graph::new();
     let desc = |format| TextureDesc::new(Extent::FRAME, format);
@@ -28,7 +28,7 @@ pub fn large(passes: usize) -> Result<PlanData, String> {
     let mut made = Vec::new();
     for pass in 0..passes {
         let written = graph.texture(&format!("texture {pass}"), desc(Format::R8Unorm));
-        // Readers of the one before, of one long ago, and now and then of the very first.
+        // Each pass reads its predecessor, an older pass, and every hundredth one the first pass.
         let read = [pass.checked_sub(1), pass.checked_sub(37), (pass % 100 == 99).then_some(0)];
         let read: Vec<_> = read.into_iter().flatten().filter_map(|before| made.get(before).copied()).collect();
         let declared = graph.add_fn(&format!("pass {pass}"), |builder| {
@@ -51,29 +51,29 @@ pub fn large(passes: usize) -> Result<PlanData, String> {
     PlanData::of(&plan, "large").map_err(|e| e.to_string())
 }
 
-/// Measures, and returns a table in Markdown.
+/// Measures and returns a Markdown table.
 ///
 /// # Errors
-/// What the standard frame or the device refuses.
+/// An error of the standard frame or of the device.
 pub fn table() -> Result<String, String> {
     let profile = if cfg!(debug_assertions) { "not optimized" } else { "optimized" };
-    let mut rows = vec![("what".to_owned(), format!("median, ms ({profile})"))];
+    let mut rows = vec![("measurement".to_owned(), format!("median, ms ({profile})"))];
     let plan = large(2000)?;
     let (passes, begun) = (plan.form.passes.len(), Instant::now());
     let drawing = graph::drawing(&plan, None);
-    rows.push((format!("layout of a graph of {passes} passes"), ms(begun.elapsed())));
+    rows.push((format!("layout of a graph, {passes} passes"), ms(begun.elapsed())));
     drop(drawing);
 
     let mut session = Session::new(WhatIf::on(Caps::wgpu()), || {});
     session.show_plan(plan);
     let mut viewer = Viewer::new(session);
     let (shown, idle) = frames(&mut viewer, true, None)?;
-    rows.push((format!("a frame of its window while it is scrolled, CPU of {passes} passes"), ms(shown)));
-    rows.push(("asks for another frame when nothing happens".into(), if idle { "no" } else { "yes" }.into()));
+    rows.push((format!("CPU time of a frame while scrolling, {passes} passes"), ms(shown)));
+    rows.push(("repaints without input".into(), if idle { "no" } else { "yes" }.into()));
     match Offscreen::as_windows() {
         Ok(mut screen) => {
             let drawn = frames(&mut viewer, true, Some(&mut screen))?.0;
-            rows.push((format!("the same, drawn by {}", screen.gpu().describe()), ms(drawn)));
+            rows.push((format!("time of a frame while scrolling, drawn by {}", screen.gpu().describe()), ms(drawn)));
         }
         Err(error) => rows.push(("no device".into(), error)),
     }
@@ -86,7 +86,7 @@ pub fn table() -> Result<String, String> {
     for pane in panes.chain([Pane::WhatIf]) {
         viewer.turn_to(pane);
         rows.push((
-            format!("panels of the standard frame, {} in front, CPU", pane.word()),
+            format!("CPU time of a frame, standard frame, {} in front", pane.word()),
             ms(frames(&mut viewer, false, None)?.0),
         ));
     }
@@ -100,7 +100,7 @@ pub fn table() -> Result<String, String> {
     Ok(text)
 }
 
-/// The median time that a frame takes, drawn on a screen if there is one, and whether none follows when nothing happens.
+/// Returns the median frame time, drawn on `screen` if present, and whether egui stays idle without input.
 fn frames(viewer: &mut Viewer, scrolls: bool, mut screen: Option<&mut Offscreen>) -> Result<(Duration, bool), String> {
     let ctx = Context::default();
     crate::panel::dress(&ctx);

@@ -1,4 +1,4 @@
-//! Pictures of panels without a window, on a device of the renderer's choice.
+//! Pictures of panels without a window.
 
 use crate::drawing::{Drawing, Theme};
 use crate::live::screen::Screen;
@@ -10,32 +10,33 @@ use framegraph_wgpu::{AdapterRequest, Gpu, read_texture};
 use std::sync::Arc;
 use wgpu::{TextureFormat, TextureUsages};
 
-/// Pictures are at most so wide and high, in pixels.
-pub const MOST_PX: u32 = 8192;
+/// Maximum width and height of a picture in pixels.
+pub const MAX_PX: u32 = 8192;
 
-/// A device that draws what egui shows.
+/// Device that draws the output of egui.
 pub struct Offscreen {
     gpu: Gpu,
     renderer: Arc<RwLock<Renderer>>,
 }
 
-/// What is drawn, in sRGB: egui blends there.
+/// Format of pictures, in sRGB: egui blends in gamma space.
 const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
 impl Offscreen {
-    /// Opens the best device there is.
+    /// Opens the best available device.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason that no device is available.
     pub fn open() -> Result<Self, String> {
         let gpu = Gpu::open(&AdapterRequest::from_env()).map_err(|e| e.to_string())?;
         Ok(Self::on(gpu))
     }
 
-    /// The same, drawing as windows are drawn: faster, and not the same pixels on every driver.
+    /// Opens the best available device with the renderer options of windows, which are faster, but not identical on every
+    /// driver.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason that no device is available.
     pub fn as_windows() -> Result<Self, String> {
         let mut screen = Self::open()?;
         let renderer = Renderer::new(&screen.gpu.device, FORMAT, RendererOptions::default());
@@ -43,28 +44,29 @@ impl Offscreen {
         Ok(screen)
     }
 
-    /// Draws with a device that is open.
+    /// Draws with an existing device.
     pub fn on(gpu: Gpu) -> Self {
-        // The same pixels on every driver, as far as that can be had.
+        // Nearly identical pixels on every driver.
         let renderer = Renderer::new(&gpu.device, FORMAT, RendererOptions::PREDICTABLE);
         Self { gpu, renderer: Arc::new(RwLock::new(renderer)) }
     }
 
-    /// The device, for a frame that is drawn in the panels.
+    /// Returns the device for a live frame in the panels.
     pub fn screen(&self) -> Screen {
         Screen::new(&self.gpu, Some(self.renderer.clone()))
     }
 
-    /// The device.
+    /// Returns the device.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
 
-    /// What `show` shows in a window of that size in pixels, at a scale of pixels per point: RGBA, row by row. It is called
-    /// for several frames, until everything has found its place.
+    /// Draws `show` into a picture of a size in pixels, at `scale` pixels per point. Returns RGBA rows.
+    ///
+    /// `show` runs for several frames until the layout is stable.
     ///
     /// # Errors
-    /// What the device refuses.
+    /// An error of the device.
     pub fn picture(
         &mut self,
         size_px: [u32; 2],
@@ -92,22 +94,22 @@ impl Offscreen {
         let texture = self.paint(&ctx, output.unwrap_or_default(), size_px);
         let pixels = read_texture(&self.gpu, &texture).map_err(|e| e.to_string())?;
         let mut rgba = pixels.rgba8();
-        // A window has no alpha.
+        // Windows are opaque.
         rgba.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 255);
         Ok(rgba)
     }
 
-    /// Draws a frame of egui as a window would, and waits until it is drawn.
+    /// Draws a frame of egui and waits for its completion.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// The device is lost.
     pub fn frame(&mut self, ctx: &Context, mut output: FullOutput, size_px: [u32; 2]) -> Result<(), String> {
         self.take_textures(&mut output);
         self.paint(ctx, output, size_px);
         self.gpu.wait().map_err(|e| e.to_string())
     }
 
-    /// Textures that a frame made or changed.
+    /// Uploads created and changed textures.
     fn take_textures(&mut self, output: &mut FullOutput) {
         let mut set: Vec<_> = output.textures_delta.set.drain().collect();
         set.sort_unstable_by_key(|(id, _)| *id);
@@ -116,13 +118,13 @@ impl Offscreen {
                 self.renderer.write().update_texture(&self.gpu.device, &self.gpu.queue, id, &delta);
             }
         }
-        // What is freed lives until the picture is made.
+        // Freed textures live until the picture is drawn.
         output.textures_delta.clear();
     }
 
-    /// Draws the shapes of a frame whose textures were taken.
+    /// Draws the shapes of a frame after its textures were uploaded.
     fn paint(&mut self, ctx: &Context, output: FullOutput, size_px: [u32; 2]) -> wgpu::Texture {
-        let [width, height] = size_px.map(|side| side.clamp(1, MOST_PX));
+        let [width, height] = size_px.map(|side| side.clamp(1, MAX_PX));
         let device = &self.gpu.device;
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("picture"),
@@ -162,10 +164,10 @@ impl Offscreen {
         texture
     }
 
-    /// A drawing alone, whole, as a picture of that size in pixels.
+    /// Draws a complete drawing into a picture of a size in pixels.
     ///
     /// # Errors
-    /// As [`Offscreen::picture`].
+    /// Fails like [`Offscreen::picture`].
     pub fn drawing(
         &mut self,
         drawing: &Drawing,
@@ -181,7 +183,7 @@ impl Offscreen {
     }
 }
 
-/// The size of a picture that holds a drawing at its own size, in pixels.
+/// Returns the size in pixels of a picture that holds a drawing at its own size.
 pub fn own_size_px(drawing: &Drawing, scale: f32) -> [u32; 2] {
-    drawing.size.map(|side| (((side + 2.0 * crate::panel::MARGIN) * scale).ceil() as u32).clamp(1, MOST_PX))
+    drawing.size.map(|side| (((side + 2.0 * crate::panel::MARGIN) * scale).ceil() as u32).clamp(1, MAX_PX))
 }

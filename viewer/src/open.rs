@@ -1,4 +1,4 @@
-//! Opening a file of any kind that the viewer shows: a saved plan, a graph, a trace.
+//! Opening of files: saved plans, graphs, traces and accuracy records.
 
 use crate::accuracy_data::AccuracyData;
 use crate::file_bytes::bytes_of;
@@ -9,40 +9,39 @@ use crate::trace_data::TraceData;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Plans and traces larger than this are refused, in bytes.
-pub const MOST_BYTES: u64 = 512 << 20;
+/// Maximum size of plans and traces, in bytes.
+pub const MAX_BYTES: u64 = 512 << 20;
 
-/// What a file turned out to be.
+/// Content of an opened file.
 #[derive(Clone, Debug)]
 pub enum Opened {
-    /// A plan that some program saved.
+    /// Saved plan.
     Plan(Arc<PlanData>),
-    /// A graph, which is planned here.
+    /// Graph, compiled by the viewer.
     Graph(Arc<GraphSource>),
-    /// Frames with their times.
+    /// Frame times.
     Trace(Arc<TraceData>),
-    /// What techniques err by and take.
+    /// Errors and costs of settings.
     Accuracy(Arc<AccuracyData>),
 }
 
-/// Opens a file: `.ron` is a graph; JSON is a plan, a trace if it has `traceEvents`, or accuracy
-/// by its schema.
+/// Opens a file. `.ron` is a graph. JSON is a plan, a trace if it has `traceEvents`, or an accuracy record by its schema.
 ///
 /// # Errors
-/// A line that names the file, the reason, and what to do.
+/// One line that names the file, the reason and a remedy.
 pub fn open(path: &Path, handle: &Handle) -> Result<Opened, String> {
     let shown = path.display();
     if path.extension().is_some_and(|extension| extension == "ron") {
         return GraphSource::open(path).map(|source| Opened::Graph(Arc::new(source)));
     }
-    let bytes = bytes_of(path, MOST_BYTES, handle)?;
+    let bytes = bytes_of(path, MAX_BYTES, handle)?;
     let Some(first) = bytes.iter().position(|byte| !byte.is_ascii_whitespace()) else {
-        return Err(format!("{shown}: the file is empty"));
+        return Err(format!("{shown}: empty file; open a plan, a graph or a trace"));
     };
     if bytes[first] != b'{' {
-        return Err(format!("{shown}: neither a graph (FRAME.ron) nor JSON of a plan or a trace"));
+        return Err(format!("{shown}: unknown file type; expected a graph (FRAME.ron), or JSON of a plan or a trace"));
     }
-    // The word stands in front of the events, and in no name of a plan's first fields.
+    // `traceEvents` precedes the events, and no leading field of a plan has this name.
     let head = &bytes[first..bytes.len().min(first + 256)];
     if String::from_utf8_lossy(head).contains("\"traceEvents\"") {
         return crate::trace_data::read(&bytes)

@@ -1,13 +1,13 @@
-//! Panels for egui. Each is a function of plain data and a small state of its own; an engine puts them into its windows.
+//! Panels for egui. Each is a function of plain data with a small state, so an engine can embed it in its windows.
 
 mod canvas;
-mod facts;
+mod inspector;
 mod list;
 mod paint;
 mod questions;
 
 pub use canvas::{Canvas, Clicked, MARGIN};
-pub use facts::facts;
+pub use inspector::inspector;
 pub use list::List;
 pub use questions::{Questions, Shown};
 
@@ -15,11 +15,11 @@ use crate::drawing::{Ink, Theme};
 use crate::glossary;
 use egui::{Color32, Response, Ui};
 
-/// The words of the panels that the glossary explains.
+/// Glossary terms with tooltips in the panels.
 pub const TERMS: [&str; 13] = [
     "pass",
-    "unresolve",
-    "resolve",
+    "load",
+    "store",
     "multisample resolve",
     "memoryless",
     "inlined",
@@ -32,31 +32,30 @@ pub const TERMS: [&str; 13] = [
     "merge",
 ];
 
-/// An ink on the screen.
+/// Returns the egui color of an ink.
 pub fn color(ink: Ink, theme: Theme) -> Color32 {
     let [r, g, b] = ink.rgb(theme);
     Color32::from_rgb(r, g, b)
 }
 
-/// The theme that egui shows.
+/// Returns the current theme of egui.
 pub fn theme(ui: &Ui) -> Theme {
     if ui.visuals().dark_mode { Theme::Dark } else { Theme::Light }
 }
 
-/// Gives egui the background of the pictures, and makes its words as dark as theirs: they are read, not skimmed. To be called
-/// once.
+/// Sets the background and text colors of the drawings in egui's style. Call it once.
 pub fn dress(ctx: &egui::Context) {
     for (theme, shown) in [(Theme::Light, egui::Theme::Light), (Theme::Dark, egui::Theme::Dark)] {
         ctx.style_mut_of(shown, |style| {
             style.visuals.panel_fill = color(Ink::Background, theme);
-            // Fields stand out from it.
+            // Text fields contrast with the background.
             style.visuals.text_edit_bg_color = Some(color(Ink::Grid, theme));
             style.visuals.widgets.noninteractive.fg_stroke.color = color(Ink::Text, theme);
         });
     }
 }
 
-/// A text with the meaning of a word of the glossary as a tooltip.
+/// Shows text with the glossary definition of a term as a tooltip.
 pub fn term(ui: &mut Ui, text: impl Into<egui::WidgetText>, word: &str) -> Response {
     let label = ui.label(text);
     match glossary::meaning(word) {

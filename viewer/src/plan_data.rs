@@ -1,7 +1,7 @@
-//! A plan as the panels see it: plain rows with names, the same for a plan that was just made and for one that was saved.
+//! A plan as named rows, for live and saved plans alike.
 //!
-//! The rows are the fields of the JSON form (`docs/plan-json.md`), which is what any program saves through the library
-//! ([`framegraph::dump::json`]). A live plan takes the same way, so that there is one reader and one set of views.
+//! The rows are the fields of the JSON form (`docs/plan-json.md`), which programs save with [`framegraph::dump::json`]. A
+//! live plan is converted through JSON too, so one reader and one set of views suffice.
 
 mod data;
 mod read;
@@ -14,10 +14,10 @@ pub use rows::*;
 use framegraph::Plan;
 
 impl PlanData {
-    /// A plan of this program, with the places in its code where passes were declared.
+    /// Converts a plan of this process, with the source locations of its passes.
     ///
     /// # Errors
-    /// None that a plan can cause: the library's own text is read back.
+    /// No known cause, since the library reads its own output.
     pub fn of(plan: &Plan, name: &str) -> Result<Self, ReadError> {
         let mut data = read(framegraph::dump::json(plan, name).as_bytes())?;
         data.declared_at = plan.graph().passes().iter().map(|p| p.location.to_string()).collect();

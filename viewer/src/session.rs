@@ -1,4 +1,4 @@
-//! What the application looks at: plans, where they come from, what is asked and selected. No windows here.
+//! Displayed data: plans with their sources, what-if questions and the selection. Independent of windows.
 
 use crate::accuracy_data::AccuracyData;
 use crate::drawing::Item;
@@ -7,66 +7,66 @@ use crate::open::{Opened, open};
 use crate::panel::Questions;
 use crate::plan_data::PlanData;
 use crate::trace_data::TraceData;
-use crate::view::{Beside, graph};
+use crate::view::{ViewContext, graph};
 use crate::watch::Watch;
 use crate::what_if::{Planner, WhatIf};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// What a file is opened for.
+/// Purpose of opening a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// To be looked at.
+    /// Show it.
     Shown,
-    /// To be compared with.
+    /// Compare with it.
     Against,
 }
 
-/// Messages that are kept; older ones make way.
+/// Maximum number of messages.
 const MESSAGES: usize = 4;
 
-/// A plan, or why there is none.
+/// Plan or error message.
 type Planned = Result<Arc<PlanData>, String>;
 
-/// What a job brings.
-enum Brought {
-    /// A file.
+/// Result of a job.
+enum JobResult {
+    /// Opened file.
     File(PathBuf, Role, Result<Opened, String>),
-    /// How the frame is, where that was asked, and the plan that was asked for.
+    /// Plan without what-if changes, if requested, and the what-if plan.
     Plans(Option<Planned>, Planned),
-    /// The plan to compare with.
+    /// Plan to compare with.
     Against(Planned),
 }
 
-/// Plans and questions.
+/// Plans and what-if questions.
 pub struct Session {
-    /// The plan that is shown.
+    /// Displayed plan.
     pub plan: Option<Arc<PlanData>>,
-    /// The trace that is shown.
+    /// Displayed trace.
     pub trace: Option<Arc<TraceData>>,
-    /// What techniques err by and take.
+    /// Errors and costs of settings.
     pub accuracy: Option<Arc<AccuracyData>>,
-    /// What a frame that is chosen of them may take, in ms.
+    /// Time budget of the chosen frame in the accuracy view, in milliseconds.
     pub budget_ms: f64,
-    /// What is asked; none where nobody can plan anew, as of a saved plan.
+    /// What-if questions; `None` if the plan has no source, such as a saved plan.
     pub questions: Option<Questions>,
-    /// What is selected.
+    /// Selected item.
     pub selected: Option<Item>,
-    /// Files that were opened, and what they include.
+    /// Opened files and their includes.
     pub read: Vec<PathBuf>,
-    /// What went wrong, the latest last.
+    /// Error messages, oldest first.
     pub messages: Vec<String>,
     base: Option<Arc<PlanData>>,
     against: Option<Arc<PlanData>>,
-    /// The frame that is drawn now, before its settings were changed last.
+    /// Plan of the live frame before the last change of its settings.
     before: Option<Arc<PlanData>>,
-    /// The frame of the planner is drawn now.
+    /// The planner's frame is live.
     live: bool,
     planner: Option<Arc<dyn Planner>>,
     watch: Option<(PathBuf, Watch)>,
-    job: Option<Job<Brought>>,
-    /// Something else was asked while a plan was made.
+    job: Option<Job<JobResult>>,
+    /// The what-if changed while a plan was compiled.
     stale: bool,
     generation: u64,
     times: u64,
@@ -75,8 +75,7 @@ pub struct Session {
 }
 
 impl Session {
-    /// An empty session that plans as `first` says when a graph is opened; `wake` is called from other threads when there is
-    /// something new.
+    /// Creates an empty session. `first` is the initial what-if; other threads call `wake` when a result is available.
     pub fn new(first: WhatIf, wake: impl Fn() + Send + Sync + 'static) -> Self {
         Self {
             plan: None,
@@ -102,75 +101,74 @@ impl Session {
         }
     }
 
-    /// Lets a chosen frame take so many milliseconds.
+    /// Sets the time budget of the chosen frame in milliseconds.
     pub fn allow_ms(&mut self, budget_ms: f64) {
         self.generation += u64::from(self.budget_ms != budget_ms);
         self.budget_ms = budget_ms;
     }
 
-    /// What views look at beside the plan.
-    pub fn beside(&self) -> Beside<'_> {
+    /// Returns the data that views show in addition to the plan.
+    pub fn context(&self) -> ViewContext<'_> {
         let (accuracy, trace) = (self.accuracy.as_deref(), self.trace.as_deref());
-        Beside { against: self.against(), trace, accuracy, budget_ms: self.budget_ms, selected: self.selected }
+        ViewContext { against: self.against(), trace, accuracy, budget_ms: self.budget_ms, selected: self.selected }
     }
 
-    /// Counts the changes of what is shown.
+    /// Counts changes of the displayed data.
     pub fn generation(&self) -> u64 {
         self.generation
     }
 
-    /// The plan to compare with: the one that was opened for it; else how the frame is where something else is asked; else, of a
-    /// frame that is drawn now, how it was before its settings were changed last.
+    /// Returns the plan to compare with: the opened plan, the plan without what-if changes, or the previous live plan.
     pub fn against(&self) -> Option<&PlanData> {
         let asked = self.questions.as_ref().is_some_and(|q| q.asked != q.base);
         let own = if asked { self.base.as_deref() } else { self.before.as_deref() };
         self.against.as_deref().or(own)
     }
 
-    /// What is selected and what belongs to it, itself first.
+    /// Returns the selected item and the items related to it.
     pub fn lit(&self) -> Vec<Item> {
         let lit = self.selected.zip(self.plan.as_ref()).map(|(item, plan)| graph::lit(plan, item));
         lit.unwrap_or_default()
     }
 
-    /// How the frame is, without any what-if.
+    /// Returns the plan without what-if changes.
     pub fn base(&self) -> Option<Arc<PlanData>> {
         self.base.clone()
     }
 
-    /// Whether a plan was opened to compare with.
+    /// Returns whether a plan is open for comparison.
     pub fn has_against(&self) -> bool {
         self.against.is_some()
     }
 
-    /// No longer compares.
+    /// Closes the plan for comparison.
     pub fn forget_against(&mut self) {
         self.against = None;
         self.generation += 1;
     }
 
-    /// What is done now, if anything is.
+    /// Returns the description of the running job.
     pub fn doing(&self) -> Option<&str> {
         self.job.as_ref().map(|job| job.doing.as_str())
     }
 
-    /// How far it is, from 0 to 1.
+    /// Returns the completed fraction of the running job, 0 to 1.
     pub fn progress(&self) -> Option<f32> {
         self.job.as_ref().and_then(Job::progress)
     }
 
-    /// Ends what is done now; what is shown stays.
+    /// Cancels the running job and keeps the displayed data.
     pub fn cancel(&mut self) {
         self.job = None;
         self.stale = false;
     }
 
-    /// Opens a file on a thread of its own. What is shown stays until it is there, or if it is none.
+    /// Opens a file on a new thread. The displayed data stays until the file is read successfully.
     pub fn open(&mut self, path: &Path, role: Role) {
         let at = path.to_owned();
         self.read.push(path.to_owned());
         self.start(format!("reading {}", path.display()), move |handle| {
-            Brought::File(at.clone(), role, open(&at, handle))
+            JobResult::File(at.clone(), role, open(&at, handle))
         });
     }
 
@@ -178,7 +176,7 @@ impl Session {
     pub fn show(&mut self, planner: Arc<dyn Planner>) {
         (self.before, self.live) = (None, false);
         let base = WhatIf { features: self.features(&*planner, &self.first), ..self.first.clone() };
-        // A file that is read again keeps what was asked, as far as it still knows it.
+        // A reloaded file keeps the what-if as far as possible.
         let asked = match (&self.questions, &self.planner) {
             (Some(questions), Some(old)) if old.name() == planner.name() => {
                 WhatIf { features: self.features(&*planner, &questions.asked), ..questions.asked.clone() }
@@ -193,8 +191,10 @@ impl Session {
         self.ask();
     }
 
-    /// Shows the plan of a frame that is drawn now, and who plans it anew. What is asked beside it stays asked. The plan before is
-    /// kept to compare with where `changed` says that the user changed the frame.
+    /// Shows the plan of the live frame and sets its planner.
+    ///
+    /// The what-if changes are kept. If `changed` is set, the user changed the frame, and the previous plan is kept for
+    /// comparison.
     pub fn show_live(&mut self, planner: Arc<dyn Planner>, base: WhatIf, plan: Arc<PlanData>, changed: bool) {
         self.watch = None;
         let old = if std::mem::replace(&mut self.live, true) { self.base.take() } else { None };
@@ -220,40 +220,40 @@ impl Session {
         }
     }
 
-    /// Shows no plan any more, so that the frame that is drawn now shows its own.
+    /// Closes the plan, so that the live frame shows its own.
     pub fn forget_plan(&mut self) {
         (self.plan, self.planner, self.questions, self.base, self.watch) = (None, None, None, None, None);
         self.generation += 1;
     }
 
-    /// Whether the frame that is planned is drawn now.
+    /// Returns whether the displayed frame is live.
     pub fn is_live(&self) -> bool {
         self.live
     }
 
-    /// Takes times of the frame; views that show them are drawn anew.
+    /// Replaces the frame times, and redraws the views that show them.
     pub fn take_times(&mut self, trace: TraceData) {
         self.trace = Some(Arc::new(trace));
         self.times += 1;
     }
 
-    /// Counts the changes of times alone.
+    /// Counts changes of times only.
     pub fn times(&self) -> u64 {
         self.times
     }
 
-    /// Shows a plan that nobody can plan anew.
+    /// Shows a plan without a source.
     pub fn show_plan(&mut self, plan: PlanData) {
         self.opened(Path::new(""), Role::Shown, Opened::Plan(Arc::new(plan)));
     }
 
-    /// The features of a frame, set as a question has them.
+    /// Returns the features of a planner, set as in a what-if.
     fn features(&self, planner: &dyn Planner, question: &WhatIf) -> Vec<(String, bool)> {
         let asked = |name: &str| question.features.iter().find(|(known, _)| known == name).map(|(_, on)| *on);
         planner.features().into_iter().map(|(name, on)| (name.clone(), asked(&name).unwrap_or(on))).collect()
     }
 
-    /// Plans what is asked; to be called when [`Session::questions`] have changed.
+    /// Compiles the current what-if. Call it after changes of [`Session::questions`].
     pub fn ask(&mut self) {
         if self.job.is_some() {
             self.stale = true;
@@ -270,17 +270,17 @@ impl Session {
                 Some(plan) if same => plan.clone(),
                 _ => plan_of(&asked),
             };
-            Brought::Plans(based, plan)
+            JobResult::Plans(based, plan)
         });
     }
 
-    /// Starts a job in the place of the one before it.
-    fn start(&mut self, doing: String, work: impl FnOnce(&crate::job::Handle) -> Brought + Send + 'static) {
+    /// Starts a job and cancels the previous one.
+    fn start(&mut self, doing: String, work: impl FnOnce(&crate::job::Handle) -> JobResult + Send + 'static) {
         let wake = self.wake.clone();
         self.job = Some(Job::start(doing, move || wake(), work));
     }
 
-    /// Takes what other threads have brought, without waiting for them.
+    /// Applies finished results of other threads without blocking.
     pub fn poll(&mut self) {
         if let Some((path, watch)) = &self.watch
             && self.job.is_none()
@@ -293,7 +293,7 @@ impl Session {
             self.job = None;
             match result {
                 Ok(brought) => self.take(brought),
-                Err(()) => self.say("the work ended without a result: this is a fault of the viewer".into()),
+                Err(()) => self.say("internal error: a job ended without a result".into()),
             }
             if std::mem::take(&mut self.stale) {
                 self.ask();
@@ -301,7 +301,7 @@ impl Session {
         }
     }
 
-    /// Waits until nothing is done any more; false when that takes longer than `at_most`.
+    /// Waits until no job runs; returns false after `at_most`.
     pub fn settle(&mut self, at_most: Duration) -> bool {
         let end = Instant::now() + at_most;
         while Instant::now() < end {
@@ -314,23 +314,23 @@ impl Session {
         false
     }
 
-    fn take(&mut self, brought: Brought) {
+    fn take(&mut self, brought: JobResult) {
         match brought {
-            Brought::File(path, role, Ok(opened)) => self.opened(&path, role, opened),
-            Brought::Plans(based, plan) => {
+            JobResult::File(path, role, Ok(opened)) => self.opened(&path, role, opened),
+            JobResult::Plans(based, plan) => {
                 if let Some(Ok(base)) = based {
                     self.base = Some(base);
                 }
                 match plan {
                     Ok(plan) => self.put(plan),
-                    Err(error) => self.say(format!("the plan before is kept: {error}")),
+                    Err(error) => self.say(format!("previous plan kept: {error}")),
                 }
             }
-            Brought::Against(Ok(plan)) => {
+            JobResult::Against(Ok(plan)) => {
                 self.against = Some(plan);
                 self.generation += 1;
             }
-            Brought::File(_, _, Err(error)) | Brought::Against(Err(error)) => self.say(error),
+            JobResult::File(_, _, Err(error)) | JobResult::Against(Err(error)) => self.say(error),
         }
     }
 
@@ -341,7 +341,7 @@ impl Session {
                 self.generation += 1;
             }
             (Opened::Accuracy(accuracy), _) => {
-                // From the finest frame down.
+                // Start with the reference frame.
                 self.budget_ms = accuracy.span_ms().map_or(0.0, |[_, finest]| finest);
                 self.accuracy = Some(accuracy);
                 self.generation += 1;
@@ -355,7 +355,7 @@ impl Session {
                 let question = self.questions.as_ref().map_or_else(|| self.first.clone(), |q| q.asked.clone());
                 let question = WhatIf { features: self.features(&*graph, &question), ..question };
                 self.start(format!("planning {}", graph.name()), move |_| {
-                    Brought::Against(graph.plan(&question).map(Arc::new))
+                    JobResult::Against(graph.plan(&question).map(Arc::new))
                 });
             }
             (Opened::Plan(plan), Role::Shown) => {
@@ -372,7 +372,7 @@ impl Session {
         }
     }
 
-    /// Shows a plan; what was selected stays so by its name.
+    /// Shows a plan, and keeps the selection by name.
     fn put(&mut self, plan: Arc<PlanData>) {
         let old = self.plan.take();
         self.selected = self.selected.take().and_then(|item| {
@@ -380,16 +380,16 @@ impl Session {
             match item {
                 Item::Pass(index) => plan.pass(&form.passes.get(index)?.name).map(Item::Pass),
                 Item::Resource(index) => plan.resource(&form.resources.get(index)?.name).map(Item::Resource),
-                // Numbers of another plan.
+                // Indices of another plan.
                 Item::Step(_) | Item::Flow(_) => None,
             }
         });
         self.plan = Some(plan);
-        self.messages.retain(|message| !message.starts_with("the plan before is kept"));
+        self.messages.retain(|message| !message.starts_with("previous plan kept"));
         self.generation += 1;
     }
 
-    /// Tells the user something that went wrong.
+    /// Shows an error message to the user.
     pub fn say(&mut self, message: String) {
         if self.messages.last() != Some(&message) {
             self.messages.push(message);

@@ -1,33 +1,32 @@
-//! The settings of the standard frame as a tree of values: what a panel needs to show every field of the file, also those that
-//! it knows nothing of.
+//! Settings of the standard frame as a tree of values, so that a panel can show every field without knowing it.
 
 mod choices;
+mod tooltips;
 mod tree;
-mod words;
 
 pub use choices::{Alternatives, alternatives};
+pub use tooltips::about;
 pub use tree::{Node, TreeError, parse};
-pub use words::about;
 
 use framegraph_passes::FrameSettings;
 
-/// The field of the file that holds the frame.
+/// Field of the file that holds the frame.
 const FRAME: &str = "frame";
 
-/// The settings as a tree, as the complete file has them.
+/// Returns the settings as a tree of the complete file.
 ///
 /// # Errors
-/// What the file cannot hold, or the tree cannot read: no settings that there are.
+/// No known cause, since the settings are written and read by the library.
 pub fn tree(frame: &FrameSettings) -> Result<Node, String> {
     let text = frame.to_ron()?;
     let whole = parse(&text).map_err(|error| error.to_string())?;
-    whole.field(FRAME).cloned().ok_or_else(|| format!("the settings have no field `{FRAME}`"))
+    whole.field(FRAME).cloned().ok_or_else(|| format!("internal error: the settings have no field `{FRAME}`"))
 }
 
-/// The settings that a tree says.
+/// Converts a tree to settings.
 ///
 /// # Errors
-/// The field that is wrong, and what it takes.
+/// The invalid field and its expected value.
 pub fn settings(frame: &Node) -> Result<FrameSettings, String> {
     let version = framegraph_passes::settings_file::SETTINGS_VERSION;
     let text = format!("(version: {version}, {FRAME}: {frame})");

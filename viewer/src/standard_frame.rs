@@ -1,5 +1,5 @@
-//! The standard frame of `framegraph_passes` as a source of plans: a preset, a file of settings or a frame that is drawn now, its
-//! effects as features.
+//! The standard frame of `framegraph_passes` as a source of plans: a preset, a settings file or the live frame. Its effects
+//! are features.
 
 use crate::plan_data::PlanData;
 use crate::what_if::{Planner, WhatIf};
@@ -10,10 +10,10 @@ use framegraph_wgpu::Frame;
 use program::input::{MAX_TEXT_BYTES, text};
 use std::sync::Arc;
 
-/// The size of the frame when nobody says one, in texels.
+/// Default frame size in texels.
 const FRAME: [u32; 2] = [1920, 1080];
 
-/// The standard frame of some settings.
+/// Standard frame with its settings.
 #[derive(Clone, Debug)]
 pub struct StandardFrame {
     name: String,
@@ -23,21 +23,21 @@ pub struct StandardFrame {
 }
 
 impl StandardFrame {
-    /// The frame of a preset, or of a file of settings (`docs/settings.md`), for a scene without glass.
+    /// Opens a preset or a settings file (`docs/settings.md`), for a scene without glass.
     ///
     /// # Errors
-    /// No such preset, a file that cannot be read, and everything that is wrong with it.
+    /// An unknown preset, an unreadable file, or an invalid setting.
     pub fn open(which: &str) -> Result<Self, String> {
         let frame = settings(which)?;
         Ok(Self { name: format!("standard frame, {which}"), frame, scene: Arc::default(), facts: Facts::default() })
     }
 
-    /// The frame that is drawn of a scene, of which only materials and instances are looked at.
+    /// Creates the planner of a live frame. Only materials and instances of `scene` are used.
     pub fn live(scene_name: &str, frame: FrameSettings, scene: Arc<Scene>, facts: Facts) -> Self {
         Self { name: format!("live frame, {scene_name}"), frame, scene, facts }
     }
 
-    /// The settings with some effects switched off, for a frame of that size.
+    /// Returns the settings with some effects disabled, for a frame of a size in texels.
     fn settings(&self, features: &[(String, bool)], size_texels: [u32; 2]) -> Settings {
         let off = features.iter().filter(|(_, on)| !on).filter_map(|(name, _)| Effect::from_name(name));
         let asked = off.fold(self.frame.settings, Settings::without);
@@ -45,26 +45,26 @@ impl StandardFrame {
     }
 }
 
-/// The settings of a preset, or of a file.
+/// Loads the settings of a preset or a file.
 ///
 /// # Errors
-/// No such preset, a file that cannot be read, and everything that is wrong with it.
+/// An unknown preset, an unreadable file, or an invalid setting.
 pub fn settings(which: &str) -> Result<FrameSettings, String> {
     if let Some(preset) = Preset::from_name(which) {
         return Ok(preset.frame());
     }
     if !which.ends_with(".ron") {
         let presets = Preset::ALL.map(Preset::name).join(", ");
-        return Err(format!("`{which}` is neither {presets} nor a file of settings (SETTINGS.ron)"));
+        return Err(format!("invalid value `{which}`; expected {presets} or a settings file (SETTINGS.ron)"));
     }
     let text = text(which.as_ref(), MAX_TEXT_BYTES)?;
     FrameSettings::from_ron(which, &text).map_err(|e| e.to_string())
 }
 
-/// Declares the standard frame into a picture that a window shows, with what facts left out; returns the picture's import.
+/// Declares the standard frame with an imported target picture, and notes dropped effects. Returns the import.
 ///
 /// # Errors
-/// What a stage refuses.
+/// An error of a stage.
 pub fn declare(frame: &mut Frame<World>, settings: &Settings, facts: &Facts) -> Result<Texture, StageError> {
     facts.note(frame.graph_mut());
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
@@ -78,7 +78,7 @@ impl Planner for StandardFrame {
         &self.name
     }
 
-    /// The effects that the settings ask for.
+    /// Returns the effects requested by the settings.
     fn features(&self) -> Vec<(String, bool)> {
         let asked = Effect::ALL.into_iter().filter(|effect| self.frame.settings.has(*effect));
         asked.map(|effect| (effect.name().to_owned(), true)).collect()

@@ -1,56 +1,56 @@
-//! A trace of many frames: the times of each step on CPU and GPU, with quartiles, and the frames that stutter.
+//! Trace of many frames: times of each step on CPU and GPU with quartiles, and stuttering frames.
 //!
-//! The file is what `render --trace` and `framegraph_wgpu::Trace` write: Chrome's Trace Event Format with a process each
-//! for CPU and GPU, and in it a track of frames and one of steps.
+//! `render --trace` and `framegraph_wgpu::Trace` write the file in Chrome's Trace Event Format. CPU and GPU are processes,
+//! each with a track of frames and a track of steps.
 
 use serde::Deserialize;
 
-/// Times are taken for a stutter from so many times the median on.
+/// Ratio to the median time from which a frame counts as a stutter.
 pub const STUTTER: f64 = 2.0;
 
-/// The frames of a trace.
+/// Frames of a trace.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TraceData {
-    /// In the order of the file.
+    /// Frames in the order of the file.
     pub frames: Vec<TracedFrame>,
-    /// In the order in which they first came.
+    /// Steps in the order of their first appearance.
     pub steps: Vec<TracedStep>,
 }
 
-/// One frame.
+/// Traced frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TracedFrame {
-    /// Its number.
+    /// Frame number.
     pub number: u64,
-    /// One of the first, in which pipelines are made.
+    /// Warm-up frame, during which pipelines are created.
     pub warm_up: bool,
-    /// From realizing to submitting, in milliseconds.
+    /// Time on the CPU from resource creation to submission, in milliseconds.
     pub cpu_ms: f64,
-    /// From the first step to the last, in milliseconds; none where it was not measured.
+    /// Time on the GPU from the first step to the last, in milliseconds; `None` if it was not measured.
     pub gpu_ms: Option<f64>,
 }
 
-/// The times of a step over all frames but those that warm up, in milliseconds, sorted.
+/// Times of a step over all frames after warm-up, in milliseconds, sorted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TracedStep {
-    /// Its passes, joined by ` + `.
+    /// Names of its passes, joined by ` + `.
     pub name: String,
-    /// Recording.
+    /// Recording times on the CPU.
     pub cpu_ms: Vec<f64>,
-    /// On the device.
+    /// Execution times on the GPU.
     pub gpu_ms: Vec<f64>,
 }
 
-/// First quartile, median and third quartile of sorted numbers, each the number at its rank; none of no numbers.
+/// Returns first quartile, median and third quartile of sorted numbers by nearest rank; `None` for an empty slice.
 pub fn quartiles(sorted: &[f64]) -> Option<[f64; 3]> {
     let last = sorted.len().checked_sub(1)?;
     Some([1, 2, 3].map(|quarter| sorted[(last * quarter + 2) / 4]))
 }
 
 impl TraceData {
-    /// The step that runs these passes.
+    /// Returns the step with these passes.
     pub fn step(&self, passes: &[String]) -> Option<&TracedStep> {
-        // Plans number passes of one name, traces do not.
+        // Plans number passes of equal names, traces do not.
         let plain = |name: &String| match name.rsplit_once('#') {
             Some((plain, number)) if number.parse::<u32>().is_ok() => plain.to_owned(),
             _ => name.clone(),
@@ -59,19 +59,19 @@ impl TraceData {
         self.steps.iter().find(|step| step.name == name)
     }
 
-    /// Frames that count: all but those that warm up.
+    /// Returns the frames after warm-up.
     pub fn warm(&self) -> impl Iterator<Item = &TracedFrame> {
         self.frames.iter().filter(|frame| !frame.warm_up)
     }
 
-    /// The median time of a frame, on the GPU where it was measured, else on the CPU; in milliseconds.
+    /// Returns the median frame time in milliseconds, on the GPU if measured, else on the CPU.
     pub fn median_ms(&self) -> Option<f64> {
         let mut times: Vec<f64> = self.warm().map(TracedFrame::time_ms).collect();
         times.sort_unstable_by(f64::total_cmp);
         quartiles(&times).map(|[_, median, _]| median)
     }
 
-    /// Frames that took [`STUTTER`] times the median or more.
+    /// Returns the frames that took at least [`STUTTER`] times the median.
     pub fn stutters(&self) -> Vec<&TracedFrame> {
         let limit = self.median_ms().map_or(f64::INFINITY, |median| median * STUTTER);
         self.warm().filter(|frame| frame.time_ms() >= limit && frame.time_ms() > 0.0).collect()
@@ -79,7 +79,7 @@ impl TraceData {
 }
 
 impl TracedFrame {
-    /// On the GPU where it was measured, else on the CPU.
+    /// Returns the time in milliseconds, on the GPU if measured, else on the CPU.
     pub fn time_ms(&self) -> f64 {
         self.gpu_ms.unwrap_or(self.cpu_ms)
     }
@@ -108,19 +108,19 @@ struct Event {
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct Arguments {
-    /// Of metadata: the name of the process or thread.
+    /// Name of the process or thread, in metadata events.
     name: Option<String>,
     warm_up: Option<bool>,
     frame: Option<u64>,
 }
 
-/// Reads a trace.
+/// Parses a trace.
 ///
 /// # Errors
-/// A sentence: no JSON, or none of the events that this library writes.
+/// A sentence: invalid JSON, or no events of this library.
 pub fn read(text: &[u8]) -> Result<TraceData, String> {
-    let form: Form = serde_json::from_slice(text).map_err(|e| format!("the trace cannot be read: {e}"))?;
-    // Which process and thread is which is in the metadata, not in the numbers.
+    let form: Form = serde_json::from_slice(text).map_err(|e| format!("invalid trace: {e}"))?;
+    // Metadata, not numbers, identifies processes and threads.
     let mut gpus = Vec::new();
     let mut frame_tracks = Vec::new();
     for event in form.events.iter().filter(|e| e.ph == "M") {
@@ -147,7 +147,7 @@ pub fn read(text: &[u8]) -> Result<TraceData, String> {
         }
     }
     if trace.frames.is_empty() {
-        return Err("the trace has no frames of this library: write one with `render SCENE --trace FILE.json`".into());
+        return Err("no frames of this library in the trace; write one with `render SCENE --trace FILE.json`".into());
     }
     let warm: std::collections::HashSet<u64> = trace.warm().map(|frame| frame.number).collect();
     for event in complete().filter(|e| !frame_tracks.contains(&(e.pid, e.tid))) {

@@ -1,49 +1,49 @@
-//! The views: each a pure function from a plan to a [`Drawing`], without a window.
+//! Views: pure functions from a plan to a [`Drawing`], independent of windows.
 
 pub mod accuracy;
 pub mod bandwidth;
 pub mod diff;
-pub mod facts;
+mod format;
 pub mod graph;
 mod heads;
+pub mod inspector;
 pub mod memory;
 pub mod queues;
 pub mod timeline;
 pub mod trace;
-mod words;
 
-pub use words::{bytes, change, change_ink, cost_ink};
+pub use format::{bytes, change, change_ink, cost_ink, label};
 
 use crate::accuracy_data::AccuracyData;
 use crate::drawing::{Drawing, Item};
 use crate::plan_data::PlanData;
 use crate::trace_data::TraceData;
 
-/// The views by name, as the command line and the tabs call them.
+/// Views with the names used by the command line and the tabs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub enum View {
-    /// Passes and what flows between them.
+    /// Passes and their dependencies.
     Graph,
-    /// Resources over passes.
+    /// Lifetimes of resources over passes.
     Timeline,
-    /// The heap over time.
+    /// Heap over time.
     Memory,
     /// Bytes moved by each step.
     Bandwidth,
-    /// Everything known about one thing.
+    /// All data of the selected item.
     Inspector,
-    /// What changed from one plan to another.
+    /// Differences between two plans.
     Diff,
-    /// The times of many frames.
+    /// Times of many frames.
     Trace,
-    /// Error over cost of each technique.
+    /// Error over cost of settings.
     Accuracy,
-    /// The frame on several queues.
+    /// Schedule on several queues.
     Queues,
 }
 
 impl View {
-    /// All of them, in the order of the tabs.
+    /// All views, in the order of the tabs.
     pub const ALL: [Self; 9] = [
         Self::Graph,
         Self::Timeline,
@@ -56,12 +56,12 @@ impl View {
         Self::Queues,
     ];
 
-    /// Whether it shows a plan, and not a file of another kind.
+    /// Returns whether the view shows a plan rather than another kind of file.
     pub const fn is_of_a_plan(self) -> bool {
         !matches!(self, Self::Trace | Self::Accuracy)
     }
 
-    /// Its name.
+    /// Returns the name.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Graph => "graph",
@@ -77,32 +77,32 @@ impl View {
     }
 }
 
-/// What a view may look at beside the plan.
+/// Data that views show in addition to the plan.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Beside<'a> {
-    /// The plan to compare with.
+pub struct ViewContext<'a> {
+    /// Plan to compare with.
     pub against: Option<&'a PlanData>,
-    /// Times of the frame.
+    /// Frame times.
     pub trace: Option<&'a TraceData>,
-    /// What techniques err by and take.
+    /// Errors and costs of settings.
     pub accuracy: Option<&'a AccuracyData>,
-    /// What a frame that is chosen of them may take, in ms.
+    /// Time budget of the chosen frame, in milliseconds.
     pub budget_ms: f64,
-    /// What is selected.
+    /// Selected item.
     pub selected: Option<Item>,
 }
 
-/// The picture of a view, with the inspector's lines of at most so many letters.
-pub fn drawing(view: View, plan: &PlanData, beside: Beside<'_>, letters: usize) -> Drawing {
+/// Returns the drawing of a view; `letters` is the number of characters per line of the inspector.
+pub fn drawing(view: View, plan: &PlanData, context: ViewContext<'_>, letters: usize) -> Drawing {
     match view {
-        View::Graph => graph::drawing(plan, beside.against),
-        View::Timeline => timeline::drawing(plan, beside.trace),
-        View::Memory => memory::drawing(plan, beside.against),
-        View::Bandwidth => bandwidth::drawing(plan, beside.against),
-        View::Inspector => facts::drawing(&facts::sections(plan, beside.selected), letters),
-        View::Diff => diff::drawing(beside.against, plan),
-        View::Trace => trace::drawing(beside.trace),
-        View::Accuracy => accuracy::drawing(beside.accuracy, beside.budget_ms),
-        View::Queues => queues::drawing(plan, beside.trace),
+        View::Graph => graph::drawing(plan, context.against),
+        View::Timeline => timeline::drawing(plan, context.trace),
+        View::Memory => memory::drawing(plan, context.against),
+        View::Bandwidth => bandwidth::drawing(plan, context.against),
+        View::Inspector => inspector::drawing(&inspector::sections(plan, context.selected), letters),
+        View::Diff => diff::drawing(context.against, plan),
+        View::Trace => trace::drawing(context.trace),
+        View::Accuracy => accuracy::drawing(context.accuracy, context.budget_ms),
+        View::Queues => queues::drawing(plan, context.trace),
     }
 }

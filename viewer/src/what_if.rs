@@ -1,33 +1,33 @@
-//! What a plan is asked for otherwise than it was made: another device, size, order, sharing of memory, other features.
+//! What-if: changed conditions of a plan, such as device, size, order, memory aliasing and features.
 
 use crate::plan_data::PlanData;
 use framegraph::{Alias, Caps, Order};
 
-/// The questions. `None` leaves what the frame itself says.
+/// Conditions of a plan. `None` keeps the frame's own value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WhatIf {
-    /// The device.
+    /// Device.
     pub caps: Caps,
     /// Width and height of the frame in texels.
     pub frame: Option<[u32; 2]>,
-    /// In which order passes run.
+    /// Order of passes.
     pub order: Order,
-    /// How memory is shared.
+    /// Memory aliasing.
     pub alias: Alias,
-    /// Remove what is not needed.
+    /// Culls unneeded passes.
     pub cull: bool,
-    /// Put passes into one step.
+    /// Merges passes into steps.
     pub merge: bool,
-    /// Make point-wise passes the end of another's shader.
+    /// Inlines point-wise passes into the shader of their producer.
     pub inline: bool,
-    /// Give attachments of one step no memory.
+    /// Makes attachments of a single step memoryless.
     pub memoryless: bool,
-    /// Features of the frame, each with its setting.
+    /// Features of the frame with their state.
     pub features: Vec<(String, bool)>,
 }
 
 impl WhatIf {
-    /// For a device, all else as `plan` does it by default.
+    /// Returns the default what-if for a device.
     pub fn on(caps: Caps) -> Self {
         Self {
             caps,
@@ -44,7 +44,7 @@ impl WhatIf {
 }
 
 impl WhatIf {
-    /// What is asked otherwise than `was`, asked of `base`.
+    /// Applies the changes from `was` to `self` onto `base`.
     #[must_use]
     pub fn moved(&self, was: &Self, base: &Self) -> Self {
         fn of<T: Clone + PartialEq>(asked: &T, was: &T, base: &T) -> T {
@@ -64,7 +64,7 @@ impl WhatIf {
     }
 }
 
-/// Common sizes of a frame, by name, in texels.
+/// Common frame sizes by name, in texels.
 pub const SIZES: [(&str, [u32; 2]); 6] = [
     ("720p", [1280, 720]),
     ("1080p", [1920, 1080]),
@@ -74,17 +74,17 @@ pub const SIZES: [(&str, [u32; 2]); 6] = [
     ("8K", [7680, 4320]),
 ];
 
-/// Who can plan the frame anew: a graph file here, an engine's own frame elsewhere. Planning goes on a thread of its own.
+/// Source of plans: a graph file, or the frame of an engine. Plans are compiled on a separate thread.
 pub trait Planner: Send + Sync {
-    /// What the frame is called: a path, or a name.
+    /// Returns the name of the frame: a path or a description.
     fn name(&self) -> &str;
 
-    /// The features that can be switched, with what they are by default.
+    /// Returns the features with their default state.
     fn features(&self) -> Vec<(String, bool)>;
 
-    /// Plans.
+    /// Compiles a plan.
     ///
     /// # Errors
-    /// What is wrong with the frame, or with what is asked of it: a line each.
+    /// All errors of the frame or of the what-if, one line each.
     fn plan(&self, what_if: &WhatIf) -> Result<PlanData, String>;
 }

@@ -11,26 +11,26 @@ use std::sync::Arc;
 use viewer::app::{Pane, Role, Session, Viewer};
 use viewer::drawing::Theme;
 use viewer::live::Live;
-use viewer::live::look::Document;
+use viewer::live::capture::Document;
 use viewer::live::screen::Screen;
 use viewer::view::View;
 
-/// The application in its window.
+/// State of the window.
 struct Program {
     viewer: Viewer,
-    /// Files that are opened once those before them are.
+    /// Files to open after the current one.
     waiting: Vec<(PathBuf, Role)>,
     select: Option<String>,
     frames: Option<u64>,
     drawn: u64,
-    /// Where the arrangement of the panes is kept; none where the system has no place for it.
+    /// File that keeps the arrangement of panes; `None` if the system has no folder for it.
     kept: Option<PathBuf>,
 }
 
 /// Shows the window until it is closed.
 ///
 /// # Errors
-/// No window, or no device.
+/// No window or no device.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let document = document(args)?;
     let mut setup = WgpuSetupCreateNew::without_display_handle();
@@ -55,12 +55,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             (Some(document), Some(state)) => {
                 let wake = cc.egui_ctx.clone();
                 let scene = args.file.as_ref().map_or("spheres".into(), |file| file.to_string_lossy());
-                let (screen, around) = (Screen::of(state), args.environment.as_deref());
-                let mut live = Live::new(screen, document.clone(), &scene, around, move || wake.request_repaint());
+                let (screen, environment) = (Screen::of(state), args.environment.as_deref());
+                let mut live = Live::new(screen, document.clone(), &scene, environment, move || wake.request_repaint());
                 live.continuous = args.frames.is_some();
                 Viewer::with(session, live)
             }
-            (Some(_), None) => return Err("eframe has opened no device".into()),
+            (Some(_), None) => return Err("eframe opened no device".into()),
             (None, _) => Viewer::new(session),
         };
         if let Some(theme) = args.theme {
@@ -78,10 +78,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let waiting = files.into_iter().filter_map(|(path, role)| Some((path?, role))).collect();
         Ok(Box::new(Program { viewer: shown, waiting, select: args.select, frames: args.frames, drawn: 0, kept }))
     });
-    eframe::run_native_ext("viewer", options, Some(ctx), create).map_err(|e| Failure::Device(format!("no window: {e}")))
+    eframe::run_native_ext("viewer", options, Some(ctx), create)
+        .map_err(|e| Failure::Device(format!("window: cannot be opened: {e}")))
 }
 
-/// The settings that a live frame begins with; none where none is drawn.
+/// Returns the initial settings of the live frame; `None` without one.
 fn document(args: &Args) -> Result<Option<Document>, Failure> {
     if !args.live {
         return Ok(None);
@@ -91,7 +92,10 @@ fn document(args: &Args) -> Result<Option<Document>, Failure> {
     Ok(Some(Document { frame, ..Document::default() }))
 }
 
-/// `viewer/panes.json` in the user's folder of states (XDG Base Directory Specification 0.8), or of settings elsewhere.
+/// Returns the file of the pane arrangement.
+///
+/// It is `framegraph-viewer/panes.json` in the user's state folder (XDG Base Directory Specification 0.8), or in the
+/// settings folder on other systems.
 fn kept(live: bool) -> Option<PathBuf> {
     let folder = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     let home = || Some(folder("HOME")?.join(".local/state"));
@@ -118,14 +122,14 @@ impl App for Program {
             }
         }
         self.viewer.show(ui);
-        // Frames count once the scene is there.
+        // Count frames only after the scene is loaded.
         let loading = self.viewer.live.as_ref().is_some_and(|live| live.running.is_none() && live.doing().is_some());
         self.drawn += u64::from(!loading);
         if let Some(frames) = self.frames {
             if self.drawn >= frames {
                 ui.ctx().send_viewport_cmd(ViewportCommand::Close);
             }
-            // One after the other, though nothing moves.
+            // Redraw continuously, although nothing changes.
             ui.ctx().request_repaint();
         }
     }
@@ -138,7 +142,7 @@ impl App for Program {
             }
         }
         let (Some(path), Some(text)) = (&self.kept, self.viewer.arrangement()) else { return };
-        // An arrangement that cannot be kept is none that is worth a word.
+        // Failing to save the arrangement is not worth a message.
         let _ = path.parent().map(std::fs::create_dir_all);
         let _ = std::fs::write(path, text);
     }

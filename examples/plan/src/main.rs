@@ -4,6 +4,7 @@
 //! budgets.
 
 mod args;
+mod help;
 mod offsets;
 mod output;
 mod plugins;
@@ -19,7 +20,7 @@ fn main() -> ExitCode {
     let outcome = match args::parse(std::env::args_os().skip(1)) {
         Err(message) => Err(run::Failure::Input(message)),
         Ok(Command::Help) => {
-            program::print(args::HELP);
+            program::print(help::HELP);
             Ok(())
         }
         Ok(Command::Plugins) => {

@@ -1,4 +1,4 @@
-//! Where `render` writes: standard output that is closed or full, pipes, files that it reads, signals.
+//! Output of `render`: closed or full standard output, pipes, input files as outputs, signals.
 #![cfg(unix)]
 
 use crate::support::{CORNERS, TRIANGLE, UP, entries, folder, refusal, triangle, undrawn};
@@ -8,11 +8,11 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// A picture with the texture and buffer of the scene named as such.
+/// glTF material with one texture.
 const TEXTURED: &str = r#""materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
   "textures": [{"source": 0}], "images": [{"uri": "t.png", "name": "wood"}], "accessors""#;
 
-/// The triangle with a texture of 4×4 texels.
+/// Writes the triangle with a texture of 4×4 texels.
 pub fn textured(folder: &Path) {
     let text = TRIANGLE.replace("\"accessors\"", TEXTURED).replace("\"NORMAL\": 1}", "\"NORMAL\": 1}, \"material\": 0");
     triangle(folder, &text, CORNERS, UP);
@@ -39,7 +39,7 @@ fn a_closed_or_full_standard_output_costs_no_file() {
         assert_eq!(told.contains("error"), !words.is_empty(), "{to}: {told}");
         assert!(folder.join(&out).is_file(), "{to}");
     }
-    // Nobody hears that nothing can be said either.
+    // Both streams are full, so the failure cannot be reported.
     let full = || File::options().write(true).open("/dev/full").expect("Linux has it");
     let status = undrawn(&folder, &["--help"]).stdout(full()).stderr(full()).status();
     assert_eq!(status.expect("the program starts").code(), Some(2));
@@ -71,9 +71,9 @@ fn nothing_that_the_scene_was_read_from_is_written_over() {
     textured(&folder);
     symlink("t.png", folder.join("link.png")).expect("the folder is ours");
     for (args, named) in [
-        (["--out", "t.png"], "t.png: it is read"),
-        (["--out", "link.png"], "link.png: it is read"),
-        (["--plan", "t.bin"], "t.bin: it is read"),
+        (["--out", "t.png"], "t.png: it is an input"),
+        (["--out", "link.png"], "link.png: it is an input"),
+        (["--plan", "t.bin"], "t.bin: it is an input"),
         (["--trace", "/dev/null/t.json"], "/dev/null/t.json: cannot be written"),
     ] {
         let line = refusal(&folder, undrawn(&folder, &["t.gltf"]).args(args));

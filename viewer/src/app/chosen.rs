@@ -1,29 +1,29 @@
-//! What is done with files that dialogs were answered with.
+//! Actions on files chosen in dialogs.
 
 use super::Viewer;
 use super::dialog::Purpose;
 use crate::drawing::Theme;
-use crate::live::asked_file::AskedFile;
+use crate::live::file_request::FileRequest;
 use crate::session::Role;
 use egui::Ui;
 use std::path::Path;
 
 impl Viewer {
-    /// A button that opens the desktop's dialog.
+    /// Adds a button that opens a file dialog of the desktop.
     pub(super) fn ask_button(&mut self, ui: &mut Ui, name: &str, purpose: Purpose) {
-        let tip = "a dialog of the desktop; where it has none, type the path";
+        let tip = "Choose a file in a dialog; without a desktop, type the path instead";
         if ui.button(name).on_hover_text(tip).clicked() {
             self.dialog.ask(purpose, ui.ctx());
             ui.close();
         }
     }
 
-    /// Takes what dialogs were answered, and opens those that panels ask for.
+    /// Handles finished dialogs, and opens those that panels request.
     pub(super) fn dialogs(&mut self, ui: &Ui) {
-        if let Some(asked) = self.live.as_mut().and_then(|live| live.asks_file.take()) {
+        if let Some(asked) = self.live.as_mut().and_then(|live| live.file_request.take()) {
             let purpose = match asked {
-                AskedFile::Open => Purpose::Open(Role::Shown),
-                AskedFile::SaveSettings => Purpose::SaveSettings,
+                FileRequest::Open => Purpose::Open(Role::Shown),
+                FileRequest::SaveSettings => Purpose::SaveSettings,
             };
             self.dialog.ask(purpose, ui.ctx());
         }
@@ -32,7 +32,7 @@ impl Viewer {
         }
     }
 
-    /// Does with a file what it was chosen for.
+    /// Executes the purpose of a dialog with the chosen file.
     pub fn chosen(&mut self, purpose: Purpose, path: &Path, theme: Theme) {
         let done = match purpose {
             Purpose::Open(role) => return self.open(path, role),

@@ -1,4 +1,4 @@
-//! The desktop's own dialogs for files: asked on a thread of their own, so that frames go on.
+//! File dialogs of the desktop, on a separate thread so that frames continue.
 
 use crate::job::Job;
 use crate::session::Role;
@@ -7,38 +7,38 @@ use egui::Context;
 use rfd::AsyncFileDialog;
 use std::path::PathBuf;
 
-/// What a file is asked for.
+/// Purpose of a file dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// To be opened.
+    /// Opens a file.
     Open(Role),
-    /// To write the settings of the frame to.
+    /// Saves the settings of the frame.
     SaveSettings,
-    /// To write a view, or the plan, to.
+    /// Exports a view or the plan.
     Export(View),
-    /// To write the times of frames to.
+    /// Exports frame times.
     Trace,
 }
 
 impl Purpose {
-    /// Kinds of files with their endings.
+    /// Returns the file filters with their extensions.
     const fn kinds(self) -> &'static [(&'static str, &'static [&'static str])] {
         match self {
             Self::Open(_) => &[
-                ("all that is opened", &["json", "ron", "gltf", "glb", "hdr", "exr", "ktx", "ktx2"]),
+                ("all supported files", &["json", "ron", "gltf", "glb", "hdr", "exr", "ktx", "ktx2"]),
                 ("plans, traces, records", &["json"]),
                 ("graphs, settings", &["ron"]),
                 ("scenes", &["gltf", "glb"]),
-                ("light from all around", &["hdr", "exr", "ktx", "ktx2"]),
+                ("environments", &["hdr", "exr", "ktx", "ktx2"]),
             ],
             Self::SaveSettings => &[("settings", &["ron"])],
             Self::Export(_) => &[("a view", &["svg", "png", "txt"]), ("the plan", &["json", "ron", "dot", "mmd"])],
-            Self::Trace => &[("frames, for Perfetto", &["json"])],
+            Self::Trace => &[("frame times for Perfetto", &["json"])],
         }
     }
 
-    /// The name that a new file begins with; none of one that is opened.
-    fn begun(self) -> Option<String> {
+    /// Returns the suggested name of a new file; `None` for opening a file.
+    fn suggested_name(self) -> Option<String> {
         match self {
             Self::Open(_) => None,
             Self::SaveSettings => Some("settings.ron".into()),
@@ -48,14 +48,14 @@ impl Purpose {
     }
 }
 
-/// A dialog that is open, if one is.
+/// State of the file dialog.
 #[derive(Debug, Default)]
 pub(super) struct Dialog {
     open: Option<(Purpose, Job<Option<PathBuf>>)>,
 }
 
 impl Dialog {
-    /// Opens one, unless another is open: what it is answered wakes the window.
+    /// Opens a dialog unless one is open. The answer wakes the window.
     pub fn ask(&mut self, purpose: Purpose, ctx: &Context) {
         if self.open.is_some() {
             return;
@@ -64,9 +64,9 @@ impl Dialog {
         for (name, endings) in purpose.kinds() {
             dialog = dialog.add_filter(*name, endings);
         }
-        // Begun here: some systems want the thread that has the window.
-        let begun = purpose.begun();
-        let answer: Box<dyn Future<Output = Option<rfd::FileHandle>> + Send + Unpin> = match begun {
+        // Created on this thread, because some systems require the thread of the window.
+        let suggested = purpose.suggested_name();
+        let answer: Box<dyn Future<Output = Option<rfd::FileHandle>> + Send + Unpin> = match suggested {
             None => Box::new(Box::pin(dialog.pick_file())),
             Some(name) => Box::new(Box::pin(dialog.set_file_name(name).save_file())),
         };
@@ -75,7 +75,7 @@ impl Dialog {
         self.open = Some((purpose, Job::start("choosing a file", move || ctx.request_repaint(), wait)));
     }
 
-    /// The file that was chosen since it was last asked.
+    /// Returns a newly chosen file with its purpose.
     pub fn answer(&mut self) -> Option<(Purpose, PathBuf)> {
         let (purpose, job) = self.open.as_ref()?;
         let (purpose, answer) = (*purpose, job.poll()?);

@@ -1,4 +1,4 @@
-//! Views, plans and times of frames as files, from the menu of the window.
+//! Export of views, plans and frame times to files.
 
 use super::Viewer;
 use super::dialog::Purpose;
@@ -12,10 +12,12 @@ use framegraph::file::to_ron;
 use program::outputs::Outputs;
 use std::path::{Path, PathBuf};
 
-/// Pixels for each point of a view in a PNG.
+/// Pixels per point in a PNG export.
 const SCALE: f32 = 2.0;
 
-/// A file by its ending: a view as `.svg`, `.png` or `.txt`; the plan as `.json`, `.dot` or `.mmd`, its graph as `.ron`.
+/// Writes a file whose kind depends on its extension.
+///
+/// A view becomes `.svg`, `.png` or `.txt`, the plan `.json`, `.dot` or `.mmd`, and its graph `.ron`.
 ///
 /// # Errors
 /// One line that names the file.
@@ -28,9 +30,11 @@ pub(super) fn write(
 ) -> Result<(), String> {
     let shown = path.display();
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let drawing = || drawing.ok_or_else(|| format!("{shown}: nothing is shown; open a plan"));
-    let live =
-        || plan.and_then(|plan| plan.plan.as_deref()).ok_or_else(|| format!("{shown}: a saved plan is a file already"));
+    let drawing = || drawing.ok_or_else(|| format!("{shown}: nothing to export; open a plan"));
+    let live = || {
+        plan.and_then(|plan| plan.plan.as_deref())
+            .ok_or_else(|| format!("{shown}: a saved plan cannot be exported; open its graph"))
+    };
     let name = || plan.map_or("", |plan| plan.form.name.as_str());
     let bytes = match ending.as_str() {
         "svg" => svg(drawing()?, theme).into_bytes(),
@@ -42,14 +46,14 @@ pub(super) fn write(
         "mmd" => dump::mermaid(live()?).into_bytes(),
         _ => {
             return Err(format!(
-                "{shown}: the ending is none of svg, png, txt (of a view), json, ron, dot, mmd (of the plan)"
+                "{shown}: unknown extension; use svg, png or txt for a view, json, ron, dot or mmd for the plan"
             ));
         }
     };
     Outputs::one_beside(path, &bytes, read).map_err(|error| error.to_string())
 }
 
-/// On a device of its own: what draws the window is not disturbed.
+/// Draws on a separate device, so that the window is not disturbed.
 fn png(drawing: &Drawing, theme: Theme) -> Result<Vec<u8>, String> {
     let mut screen = Offscreen::open()?;
     let size = own_size_px(drawing, SCALE);
@@ -60,11 +64,11 @@ fn png(drawing: &Drawing, theme: Theme) -> Result<Vec<u8>, String> {
 }
 
 impl Viewer {
-    /// A menu of views with the file that one goes to.
+    /// Shows the export menu: a file name and a button for each view.
     pub(super) fn export_menu(&mut self, ui: &mut Ui) {
         let theme = crate::panel::theme(ui);
         ui.menu_button("Export", |ui| {
-            ui.label("a view as .svg, .png or .txt; the plan as .json, .dot or .mmd, its graph as .ron");
+            ui.label("A view as .svg, .png or .txt; the plan as .json, .dot or .mmd; its graph as .ron");
             ui.add(TextEdit::singleline(&mut self.typed.1).hint_text("FILE.svg").desired_width(220.0));
             let typed = PathBuf::from(self.typed.1.trim());
             let named = |otherwise: String| if typed.as_os_str().is_empty() { otherwise.into() } else { typed.clone() };
@@ -80,7 +84,7 @@ impl Viewer {
             if self.live.is_some() {
                 ui.separator();
                 ui.horizontal(|ui| {
-                    let tip = "every frame with its steps on CPU and GPU, for Perfetto or chrome://tracing";
+                    let tip = "Times of every frame and step on CPU and GPU, for Perfetto or chrome://tracing";
                     if ui.button("times").on_hover_text(tip).clicked() {
                         self.chosen(Purpose::Trace, &named("trace.json".into()), theme);
                         ui.close();
@@ -91,7 +95,7 @@ impl Viewer {
         });
     }
 
-    /// Writes a view, or by the ending of the file the plan.
+    /// Exports a view, or the plan, depending on the extension.
     ///
     /// # Errors
     /// One line that names the file.
@@ -99,7 +103,7 @@ impl Viewer {
         write(path, self.drawings.get(&view), self.session.plan.as_deref(), theme, &self.read())
     }
 
-    /// Writes the times of the frames that were drawn in the trace event format.
+    /// Exports the times of the drawn frames in the trace event format.
     ///
     /// # Errors
     /// One line that names the file.
@@ -107,12 +111,12 @@ impl Viewer {
         let shown = path.display();
         let running = self.live.as_ref().and_then(|live| live.running.as_ref());
         let trace = running.and_then(|running| running.frames().executor().timing().trace());
-        let trace = trace.ok_or_else(|| format!("{shown}: no frame is drawn"))?;
+        let trace = trace.ok_or_else(|| format!("{shown}: no frame has been drawn yet"))?;
         let json = trace.chrome_json();
         Outputs::one_beside(path, json.as_bytes(), &self.read()).map_err(|error| error.to_string())
     }
 
-    /// What is shown was read from these files.
+    /// Returns the input files of the displayed data.
     fn read(&self) -> Vec<PathBuf> {
         let live = self.live.as_ref().map_or_else(Vec::new, |live| live.read());
         self.session.read.iter().cloned().chain(live).collect()

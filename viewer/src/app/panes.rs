@@ -1,4 +1,4 @@
-//! The panes and how they are arranged.
+//! Panes and their arrangement.
 
 use super::strip::Strip;
 use crate::drawing::{Drawing, Item};
@@ -10,33 +10,33 @@ use egui_tiles::{Behavior, SimplificationOptions, Tile, TileId, Tiles, Tree, UiR
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// What a pane shows.
+/// Content of a pane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub enum Pane {
-    /// A view of the plan.
+    /// View of the plan.
     View(View),
-    /// The search.
+    /// Search.
     List,
-    /// Questions.
+    /// What-if questions.
     WhatIf,
-    /// The frame that is drawn.
+    /// Live frame.
     Viewport,
-    /// Its settings.
+    /// Settings of the live frame.
     Settings,
-    /// Its effects, and what facts say of them.
+    /// Effects of the live frame and the decisions of feature culling.
     Effects,
     /// Camera and light.
     Lens,
-    /// The scene.
+    /// Scene.
     Scene,
     /// Debug modes and budgets.
     Debugging,
-    /// The contents of a texture.
+    /// Contents of a texture.
     Preview,
 }
 
 impl Pane {
-    /// The name on its tab.
+    /// Returns the name on the tab.
     pub const fn word(self) -> &'static str {
         match self {
             Self::View(view) => view.word(),
@@ -53,8 +53,10 @@ impl Pane {
     }
 }
 
-/// Search and questions on the left, views as tabs in the middle, the inspector on the right; with a frame that is drawn, what is
-/// set about it on the left, itself in the middle, and its textures on the right.
+/// Returns the default arrangement.
+///
+/// Search and what-if are on the left, views as tabs in the center, the inspector on the right. With a live frame, its
+/// settings are on the left, the frame in the center, and its textures on the right.
 pub(super) fn arranged(live: bool) -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let views = View::ALL.into_iter().filter(|view| *view != View::Inspector).map(Pane::View);
@@ -78,7 +80,7 @@ pub(super) fn arranged(live: bool) -> Tree<Pane> {
     Tree::new(egui::Id::unique("panes"), root, tiles)
 }
 
-/// Whether an arrangement has every pane once.
+/// Returns whether an arrangement contains every pane once.
 pub(super) fn is_whole(tree: &Tree<Pane>, live: bool) -> bool {
     let panes = |tree: &Tree<Pane>| -> Vec<Pane> {
         let of = tree.tiles.tiles().filter_map(|tile| match tile {
@@ -91,7 +93,7 @@ pub(super) fn is_whole(tree: &Tree<Pane>, live: bool) -> bool {
     found.len() == all.len() && found.into_iter().collect::<BTreeSet<_>>() == all.into_iter().collect()
 }
 
-/// Moves what is selected into sight wherever it is drawn, or where it is not, what belongs to it.
+/// Pans every view to the selected item, or to a related item if the view does not show it.
 pub(super) fn reveal(canvases: &mut BTreeMap<View, Canvas>, drawings: &BTreeMap<View, Drawing>, lit: &[Item]) {
     for (view, canvas) in canvases {
         if let Some(drawing) = drawings.get(view)
@@ -102,7 +104,7 @@ pub(super) fn reveal(canvases: &mut BTreeMap<View, Canvas>, drawings: &BTreeMap<
     }
 }
 
-/// What the panes need to be shown.
+/// State required to show the panes.
 pub(super) struct Panes<'a> {
     pub session: &'a mut Session,
     pub list: &'a mut List,
@@ -111,7 +113,7 @@ pub(super) struct Panes<'a> {
     pub strip: &'a mut Strip,
     #[cfg(feature = "window")]
     pub live: &'a mut Option<crate::live::Live>,
-    /// Paths of a scene and of a picture of light, as they are typed.
+    /// Typed paths of a scene and an environment.
     #[cfg(feature = "window")]
     pub typed: &'a mut [String; 2],
 }
@@ -126,13 +128,13 @@ impl Panes<'_> {
         let plan = self.session.plan.clone();
         let Some(plan) = plan.or_else(|| (!view.is_of_a_plan()).then(Arc::default)) else {
             ui.centered_and_justified(|ui| {
-                ui.label("open a plan (JSON) or a graph (RON): type its path above, or drop it here")
+                ui.label("Open a plan (JSON) or a graph (RON): type its path above, or drop it here")
             });
             return;
         };
         if view == View::Inspector {
-            let sections = view::facts::sections(&plan, self.session.selected);
-            if let Some(item) = panel::facts(ui, &sections) {
+            let sections = view::inspector::sections(&plan, self.session.selected);
+            if let Some(item) = panel::inspector(ui, &sections) {
                 self.select(Some(item));
             }
             return;
@@ -140,13 +142,13 @@ impl Panes<'_> {
         let Some(drawing) = self.drawings.get(&view) else { return };
         ui.horizontal(|ui| {
             let canvas = self.canvases.entry(view).or_default();
-            if ui.small_button("Fit").on_hover_text("shows all of it (F)").clicked() {
+            if ui.small_button("Fit").on_hover_text("Show the whole view (F)").clicked() {
                 canvas.fit();
             }
-            if ui.small_button("Copy").on_hover_text("copies its words as text").clicked() {
+            if ui.small_button("Copy").on_hover_text("Copy the view as text").clicked() {
                 ui.ctx().copy_text(drawing.words());
             }
-            if ui.small_button("SVG").on_hover_text("copies the picture as an SVG document").clicked() {
+            if ui.small_button("SVG").on_hover_text("Copy the view as an SVG document").clicked() {
                 ui.ctx().copy_text(crate::drawing::svg(drawing, panel::theme(ui)));
             }
             if view == View::Accuracy
@@ -154,10 +156,9 @@ impl Panes<'_> {
             {
                 if let Some([fastest, finest]) = data.span_ms() {
                     let mut budget_ms = self.session.budget_ms;
-                    let slider = egui::Slider::new(&mut budget_ms, fastest..=finest).suffix(" ms").text("a frame");
-                    ui.add(slider).on_hover_text(
-                        "the most accurate frame within that time is chosen, as `render --budget-ms` does",
-                    );
+                    let slider = egui::Slider::new(&mut budget_ms, fastest..=finest).suffix(" ms").text("time budget");
+                    ui.add(slider)
+                        .on_hover_text("Choose the most accurate frame within this time, as `render --budget-ms` does");
                     self.session.allow_ms(budget_ms);
                 }
                 self.strip.choose(ui, &data);
@@ -175,7 +176,7 @@ impl Panes<'_> {
         }
     }
 
-    /// A pane of the frame that is drawn.
+    /// Shows a pane of the live frame.
     #[cfg(feature = "window")]
     fn drawn(&mut self, ui: &mut Ui, pane: Pane) {
         use crate::live::panel as live;
@@ -193,7 +194,7 @@ impl Panes<'_> {
         }
     }
 
-    /// Without a window of its own, no frame is drawn.
+    /// Live frames require the feature `window`.
     #[cfg(not(feature = "window"))]
     fn drawn(&mut self, _: &mut Ui, _: Pane) {}
 
@@ -201,7 +202,7 @@ impl Panes<'_> {
         let planning = self.session.doing().is_some();
         let (base, now) = (self.session.base(), self.session.plan.clone());
         let Some(mut questions) = self.session.questions.take() else {
-            ui.label("A saved plan holds no graph, so it cannot be planned anew. Open the graph (FRAME.ron) to ask.");
+            ui.label("A saved plan contains no graph. Open the graph (FRAME.ron) to try other conditions.");
             return;
         };
         let changed = questions.show(ui, Shown { base: base.as_deref(), now: now.as_deref(), planning });

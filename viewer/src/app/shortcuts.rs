@@ -1,65 +1,65 @@
-//! Keys.
+//! Keyboard shortcuts.
 
 use crate::view::View;
 use egui::{Context, Grid, Key, Modifiers};
 
-/// Each shortcut with what it does.
+/// Shortcuts with descriptions.
 pub const SHORTCUTS: [(&str, &str); 14] = [
     ("Ctrl+F", "search passes and resources"),
     ("Ctrl+1 … Ctrl+8", "graph, timeline, memory, bandwidth, inspector, diff, trace, accuracy"),
-    ("Escape", "select nothing; close this list"),
+    ("Escape", "clear the selection; close this list"),
     ("F", "show the whole view under the pointer"),
-    ("1", "show it at its own size"),
+    ("1", "show it at 100 %"),
     ("+ and -", "zoom it"),
     ("arrows", "pan it"),
     ("drag, wheel", "pan it"),
-    ("Ctrl+wheel", "zoom it about the pointer"),
-    ("Ctrl+plus, Ctrl+minus", "make all letters larger or smaller"),
-    ("Ctrl+Z", "take back the last change of settings, camera or light"),
-    ("Ctrl+Y", "do it again"),
+    ("Ctrl+wheel", "zoom it at the pointer"),
+    ("Ctrl+plus, Ctrl+minus", "change the font size"),
+    ("Ctrl+Z", "undo the last change of settings, camera or light"),
+    ("Ctrl+Y", "redo it"),
     ("Ctrl+D", "change between light and dark"),
     ("F1", "this list"),
 ];
 
-/// What a key asks for.
+/// Action of a shortcut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Asked {
-    /// Search.
+pub(super) enum Action {
+    /// Focus the search.
     Search,
-    /// A view in front.
+    /// Bring a view to the front.
     View(View),
-    /// The list of shortcuts, or no list.
+    /// Toggle the list of shortcuts.
     Help,
-    /// Settings before the last change.
+    /// Undo the last change of settings.
     Undo,
-    /// Settings after it.
+    /// Redo the last undone change.
     Redo,
-    /// Nothing selected, no list.
-    Nothing,
+    /// Clear the selection and close the list.
+    Clear,
 }
 
-/// What keys ask for in this frame; the theme is changed at once.
-pub(super) fn asked(ctx: &Context) -> Vec<Asked> {
+/// Returns the actions of keys pressed in this frame. The theme changes immediately.
+pub(super) fn actions(ctx: &Context) -> Vec<Action> {
     let pressed = |modifiers: Modifiers, key: Key| ctx.input_mut(|i| i.consume_key(modifiers, key));
-    let mut asked = Vec::new();
+    let mut actions = Vec::new();
     if pressed(Modifiers::COMMAND, Key::F) {
-        asked.push(Asked::Search);
+        actions.push(Action::Search);
     }
     let numbers = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
-    asked.extend(
+    actions.extend(
         numbers
             .into_iter()
             .zip(View::ALL)
             .filter(|(key, _)| pressed(Modifiers::COMMAND, *key))
-            .map(|(_, view)| Asked::View(view)),
+            .map(|(_, view)| Action::View(view)),
     );
-    // Letters that are being typed have an undo of their own.
+    // Text fields have their own undo.
     if !ctx.egui_wants_keyboard_input() {
         if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || pressed(Modifiers::COMMAND, Key::Y) {
-            asked.push(Asked::Redo);
+            actions.push(Action::Redo);
         }
         if pressed(Modifiers::COMMAND, Key::Z) {
-            asked.push(Asked::Undo);
+            actions.push(Action::Undo);
         }
     }
     if pressed(Modifiers::COMMAND, Key::D) {
@@ -67,18 +67,18 @@ pub(super) fn asked(ctx: &Context) -> Vec<Asked> {
         ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
     }
     if pressed(Modifiers::NONE, Key::F1) {
-        asked.push(Asked::Help);
+        actions.push(Action::Help);
     }
     if pressed(Modifiers::NONE, Key::Escape) {
-        asked.push(Asked::Nothing);
+        actions.push(Action::Clear);
     }
-    asked
+    actions
 }
 
-/// Shows the shortcuts; returns whether they stay.
+/// Shows the shortcuts and returns whether the window stays open.
 pub(super) fn list(ctx: &Context) -> bool {
     let mut open = true;
-    egui::Window::new("shortcuts").open(&mut open).resizable(false).collapsible(false).show(ctx, |ui| {
+    egui::Window::new("Keyboard shortcuts").open(&mut open).resizable(false).collapsible(false).show(ctx, |ui| {
         Grid::new("shortcuts").num_columns(2).striped(true).show(ui, |ui| {
             for (keys, what) in SHORTCUTS {
                 ui.label(egui::RichText::new(keys).strong());

@@ -1,20 +1,19 @@
-//! What an option makes of its technique's picture, as the lab of accuracy keeps it: reference, option, and sixteen times their
-//! difference about grey, side by side.
+//! Comparison picture of an accuracy choice: reference, choice, and their difference times sixteen around gray.
 
 use crate::accuracy_data::AccuracyData;
 use egui::{ComboBox, Image, TextureHandle, TextureOptions, Ui};
 use framegraph_scene::picture::read_rgba8;
 use std::path::{Path, PathBuf};
 
-/// The picture that is shown, if one was chosen.
+/// Selected picture.
 #[derive(Default)]
 pub(super) struct Strip {
-    /// Whose picture it is, its file, and the picture or why there is none.
+    /// Name, file, and the picture or its error.
     shown: Option<(String, PathBuf, Result<TextureHandle, String>)>,
 }
 
 impl Strip {
-    /// The list of the options that have pictures; nothing where none has.
+    /// Shows the list of choices with pictures, if any exist.
     pub fn choose(&mut self, ui: &mut Ui, data: &AccuracyData) {
         if data.pictures.is_none() {
             return;
@@ -38,25 +37,25 @@ impl Strip {
         });
     }
 
-    /// The picture, as wide as there is room for.
+    /// Shows the picture, fitted to the available width.
     pub fn show(&self, ui: &mut Ui) {
         match &self.shown {
             None => {}
-            Some((.., Err(told))) => {
-                ui.colored_label(ui.visuals().error_fg_color, told);
+            Some((.., Err(error))) => {
+                ui.colored_label(ui.visuals().error_fg_color, error);
             }
             Some((name, _, Ok(texture))) => {
-                ui.label(format!("{name}; reference, option, and sixteen times the difference"));
+                ui.label(format!("{name}: reference, choice, and difference times sixteen"));
                 ui.add(Image::new(texture).fit_to_exact_size(fitted(texture.size_vec2(), ui.available_size())));
             }
         }
     }
 }
 
-/// A picture's size where it is to fit the width and a third of the height, at most thrice its own.
+/// Fits a picture into the width and a third of the height, at most three times its size.
 fn fitted(size: egui::Vec2, room: egui::Vec2) -> egui::Vec2 {
-    let most = (room.x / size.x).min(0.33 * room.y / size.y).min(3.0);
-    size * most.max(0.1)
+    let factor = (room.x / size.x).min(0.33 * room.y / size.y).min(3.0);
+    size * factor.max(0.1)
 }
 
 fn load(ui: &Ui, file: &Path) -> Result<TextureHandle, String> {

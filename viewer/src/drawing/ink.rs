@@ -1,50 +1,50 @@
-//! Colors by meaning, in a light and a dark theme.
+//! Colors by meaning, for a light and a dark theme.
 //!
-//! The hues are those of Okabe and Ito ("Color Universal Design", 2008), which color-blind readers tell apart. No meaning
-//! hangs on a hue alone: marks differ in shape, and boxes carry words.
+//! The hues are from Okabe and Ito ("Color Universal Design", 2008), which color-blind readers can distinguish. Meanings
+//! never depend on hue alone: marks differ in shape, and boxes carry text.
 
-/// What is drawn in a color of its own.
+/// Role of a color.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Ink {
-    /// Behind everything.
+    /// Background.
     Background,
-    /// Names and figures.
+    /// Names and numbers.
     Text,
-    /// What matters less.
+    /// Secondary text.
     Faint,
-    /// Lines of a table.
+    /// Grid lines.
     Grid,
-    /// The box of a step.
+    /// Box of a step.
     Step,
-    /// A raster pass.
+    /// Raster pass.
     Raster,
-    /// A compute pass.
+    /// Compute pass.
     Compute,
-    /// A copy.
+    /// Copy pass.
     Copy,
-    /// What was culled.
+    /// Culled passes.
     Ghost,
-    /// What flows from pass to pass.
+    /// Flows from pass to pass.
     Flow,
-    /// Loaded from memory.
+    /// Load from memory.
     Load,
-    /// Stored to memory.
+    /// Store to memory.
     Store,
-    /// Averaged into a target.
+    /// MSAA resolve into a target.
     Resolve,
-    /// Started from a value.
+    /// Clear.
     Clear,
     /// Read by shaders.
     Fetch,
-    /// Memory that is shared.
+    /// Shared memory.
     Shared,
-    /// No memory at all.
+    /// Memoryless attachment.
     Memoryless,
-    /// Outlives the frame.
+    /// Resource that outlives the frame.
     Own,
-    /// The moment of the most memory.
+    /// Step with the highest memory use.
     Peak,
-    /// Selected.
+    /// Selection.
     Selected,
     /// Worse than before.
     Worse,
@@ -52,7 +52,7 @@ pub enum Ink {
     Better,
 }
 
-/// Light or dark.
+/// Color theme.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Theme {
     /// Dark on light.
@@ -63,7 +63,7 @@ pub enum Theme {
 }
 
 impl Ink {
-    /// Red, green and blue, encoded as sRGB.
+    /// Returns the sRGB-encoded color.
     pub const fn rgb(self, theme: Theme) -> [u8; 3] {
         let (light, dark) = match self {
             Self::Background => ([255, 255, 255], [24, 26, 30]),
@@ -100,7 +100,7 @@ impl Ink {
 mod tests {
     use super::*;
 
-    /// The relative luminance of WCAG 2.2.
+    /// Relative luminance of WCAG 2.2.
     fn luminance(rgb: [u8; 3]) -> f64 {
         let linear = rgb.map(|c| {
             let c = f64::from(c) / 255.0;

@@ -1,12 +1,12 @@
-//! A drawing as an SVG document: one file without links, scripts or fonts of its own.
+//! Drawing as an SVG document: one file without links, scripts or embedded fonts.
 
 use super::{ADVANCE, Align, Drawing, Ink, Shape, Theme};
 use std::fmt::Write;
 
-/// Space around the shapes, in points.
+/// Margin around the shapes, in points.
 const MARGIN: f32 = 16.0;
 
-/// The document. What can be pointed at carries its words as a tooltip.
+/// Returns the document. Pointer areas become tooltips.
 pub fn svg(drawing: &Drawing, theme: Theme) -> String {
     let color = |ink: Ink| {
         let [r, g, b] = ink.rgb(theme);
@@ -21,7 +21,7 @@ pub fn svg(drawing: &Drawing, theme: Theme) -> String {
         m = -MARGIN,
     );
     for shape in &drawing.shapes {
-        // Writing to a string cannot fail; here and below.
+        // Writing to a string never fails.
         let _ = match shape {
             Shape::Rect { bounds: [left, top, right, bottom], fill, stroke, dashed } => writeln!(
                 out,
@@ -85,7 +85,7 @@ const fn dashes(dashed: bool) -> &'static str {
     if dashed { " stroke-dasharray=\"4 3\"" } else { "" }
 }
 
-/// Text that XML 1.0 can hold.
+/// Escapes text for XML 1.0.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

@@ -1,17 +1,17 @@
-//! The order within layers, such that few lines cross.
+//! Order within layers that minimizes line crossings.
 
 use super::vertex::Vertex;
 
-/// Sweeps over all layers, back and forth.
+/// Number of sweeps over all layers, back and forth.
 const SWEEPS: usize = 8;
 
-/// The vertices of each layer from the top: the best order that sweeps of medians found.
+/// Returns the vertices of each layer from the top, in the best order found by median sweeps.
 pub(super) fn ordered(vertices: &[Vertex], links: &[(usize, usize)], layers: usize) -> Vec<Vec<usize>> {
     let mut rows: Vec<Vec<usize>> = vec![Vec::new(); layers];
     for (vertex, row) in vertices.iter().enumerate() {
         rows[row.layer].push(vertex);
     }
-    let (before, after) = neighbours(vertices.len(), links);
+    let (before, after) = neighbors(vertices.len(), links);
     let mut rank = vec![0usize; vertices.len()];
     renumber(&rows, &mut rank);
     let mut best = (crossings(&rows, &after, &rank), rows.clone());
@@ -36,8 +36,8 @@ pub(super) fn ordered(vertices: &[Vertex], links: &[(usize, usize)], layers: usi
     best.1
 }
 
-/// By vertex: those of the layer before it, and those of the layer behind it.
-pub(super) fn neighbours(vertices: usize, links: &[(usize, usize)]) -> (Vec<Vec<usize>>, Vec<Vec<usize>>) {
+/// Returns the predecessors and the successors of each vertex.
+pub(super) fn neighbors(vertices: usize, links: &[(usize, usize)]) -> (Vec<Vec<usize>>, Vec<Vec<usize>>) {
     let (mut before, mut after) = (vec![Vec::new(); vertices], vec![Vec::new(); vertices]);
     for &(from, to) in links {
         after[from].push(to);
@@ -54,7 +54,7 @@ fn renumber(rows: &[Vec<usize>], rank: &mut [usize]) {
     }
 }
 
-/// Sorts a layer by the medians of its neighbours; vertices without any keep their places among the others.
+/// Sorts a layer by the medians of neighbors. Vertices without neighbors keep their positions.
 fn sort(row: &mut [usize], beside: &[Vec<usize>], rank: &[usize]) {
     let median = |vertex: usize| {
         let mut ranks: Vec<usize> = beside[vertex].iter().map(|n| rank[*n]).collect();
@@ -71,7 +71,7 @@ fn sort(row: &mut [usize], beside: &[Vec<usize>], rank: &[usize]) {
     }
 }
 
-/// How many pairs of lines cross, layer by layer, with a tree of sums (Barth, Jünger, Mutzel 2002).
+/// Counts line crossings layer by layer with a binary indexed tree (Barth, Jünger, Mutzel 2002).
 fn crossings(rows: &[Vec<usize>], after: &[Vec<usize>], rank: &[usize]) -> u64 {
     let mut total = 0;
     for (layer, row) in rows.iter().enumerate() {
@@ -81,7 +81,7 @@ fn crossings(rows: &[Vec<usize>], after: &[Vec<usize>], rank: &[usize]) -> u64 {
         for vertex in row {
             let mut ends: Vec<usize> = after[*vertex].iter().map(|n| rank[*n]).collect();
             ends.sort_unstable();
-            // Lines that end below this one and begin above it cross it.
+            // A line crosses earlier lines that end below it.
             for end in &ends {
                 let mut not_below = 0;
                 let mut at = end + 1;
@@ -112,7 +112,7 @@ mod tests {
     fn crossings_are_those_that_pairs_count() {
         let rows = vec![vec![0, 1, 2, 3], vec![4, 5, 6]];
         let links = [(0, 6), (0, 4), (1, 5), (1, 4), (2, 4), (3, 5), (3, 6)];
-        let (_, after) = neighbours(7, &links);
+        let (_, after) = neighbors(7, &links);
         let mut rank = vec![0; 7];
         renumber(&rows, &mut rank);
         let crossed = |a: (usize, usize), b: (usize, usize)| a.0 < b.0 && a.1 > b.1;

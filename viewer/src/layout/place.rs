@@ -1,14 +1,14 @@
-//! Places within layers: near the neighbours, in order, and apart.
+//! Positions within layers: near the neighbors, in order, without overlap.
 
-use super::order::neighbours;
+use super::order::neighbors;
 use super::vertex::Vertex;
 
-/// Sweeps over all layers, back and forth.
+/// Number of sweeps over all layers, back and forth.
 const SWEEPS: usize = 6;
 
-/// The height of the center of each vertex, the topmost edge of all being at 0.
+/// Returns the vertical center of each vertex, with the topmost edge at 0.
 pub(super) fn placed(vertices: &[Vertex], links: &[(usize, usize)], rows: &[Vec<usize>]) -> Vec<f32> {
-    let (before, after) = neighbours(vertices.len(), links);
+    let (before, after) = neighbors(vertices.len(), links);
     let mut y = vec![0.0f32; vertices.len()];
     for row in rows {
         let mut end = 0.0;
@@ -26,7 +26,7 @@ pub(super) fn placed(vertices: &[Vertex], links: &[(usize, usize)], rows: &[Vec<
             let wish = |vertex: usize| {
                 let beside = if forward { &before[vertex] } else { &after[vertex] };
                 let sum: f32 = beside.iter().map(|n| y[*n]).sum();
-                // What has no neighbour on this side stays, and gives way easily.
+                // A vertex without neighbors on this side stays, with a low weight.
                 if beside.is_empty() { (y[vertex], 0.1) } else { (sum / beside.len() as f32, 1.0) }
             };
             let wishes: Vec<(f32, f32)> = row.iter().map(|v| wish(*v)).collect();
@@ -40,13 +40,14 @@ pub(super) fn placed(vertices: &[Vertex], links: &[(usize, usize)], rows: &[Vec<
     y
 }
 
-/// The places nearest to the wishes, by weighted least squares, that keep order and distance: isotonic regression by
-/// pooling neighbours that violate it (Ayer and others 1955).
+/// Returns the positions nearest to the wishes by weighted least squares, under the constraints of order and distance.
+///
+/// It is an isotonic regression that pools adjacent violators (Ayer and others 1955).
 fn nearest(vertices: &[Vertex], row: &[usize], wishes: &[(f32, f32)]) -> Vec<f32> {
-    // Behind the sum of distances, the order is the only condition.
+    // After subtracting the accumulated distances, order is the only constraint.
     let mut shift = 0.0f64;
     let mut shifts = Vec::with_capacity(row.len());
-    // Blocks of vertices at one shifted place: sum of weighted wishes, weight, count.
+    // Blocks of vertices at one shifted position: sum of weighted wishes, weight, count.
     let mut blocks: Vec<(f64, f64, usize)> = Vec::new();
     for (place, vertex) in row.iter().enumerate() {
         if let Some(last) = place.checked_sub(1) {

@@ -1,11 +1,11 @@
-//! What stands in a layer.
+//! Vertices of a layer.
 
 /// Space between nodes of a layer.
 const NODE_GAP: f32 = 22.0;
-/// Lines that pass through a layer keep this apart.
+/// Space between lines that pass a layer.
 const LINE_GAP: f32 = 9.0;
 
-/// A node of a layer: one that was given, or a bend, where the edges of one source pass.
+/// Vertex of a layer: a node, or a bend of the edges of one source.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Vertex {
     pub layer: usize,
@@ -14,7 +14,7 @@ pub(super) struct Vertex {
 }
 
 impl Vertex {
-    /// How far the centers of two neighbours of a layer must be apart.
+    /// Returns the minimum distance between the centers of two adjacent vertices.
     pub(super) fn apart(&self, other: &Self) -> f32 {
         let gap = if self.bend && other.bend { LINE_GAP } else { NODE_GAP };
         (self.height + other.height) / 2.0 + gap

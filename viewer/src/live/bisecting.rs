@@ -1,69 +1,69 @@
-//! Which of the compiler's liberties changes the picture: the frame is drawn under each debug mode, one a call, and compared.
+//! Bisection of debug modes: draws the frame in each mode, one per call, and compares the pictures.
 
-use super::frame::{Asked, Running};
-use super::look::Document;
+use super::capture::Document;
+use super::frame::{DrawOptions, Running};
 use framegraph_wgpu::debug::{Mode, Modes, Outcome, bisect};
 use framegraph_wgpu::read_texture;
 
-/// Frames that are drawn under each mode before the picture is taken: histories settle.
+/// Frames drawn in each mode before the picture is read, so that histories settle.
 const FRAMES: u32 = 3;
 
-/// A picture under a mode.
+/// Picture in a mode.
 pub struct Drawn {
-    /// The mode; none for the frame as it is.
+    /// Mode; `None` for the unmodified frame.
     pub mode: Option<Mode>,
-    /// Four bytes a pixel.
+    /// RGBA, 8 bits per channel.
     pub rgba8: Vec<u8>,
 }
 
-/// The modes that were tried, and those that are to be.
+/// Running or finished bisection.
 pub struct Bisecting {
-    /// The frame when it began.
+    /// Settings at the start.
     document: Document,
-    /// What was asked for besides.
-    asked: Asked,
+    /// Animation state at the start.
+    options: DrawOptions,
     /// Size of the pictures.
     pub size_px: [u32; 2],
-    /// As it is, again, and under each mode.
+    /// Pictures of the unmodified frame, twice, and of each mode.
     pub drawn: Vec<Drawn>,
-    /// What came out, once all were drawn.
+    /// Results, after all pictures were drawn.
     pub outcomes: Vec<Outcome>,
-    /// The mode whose picture is shown.
+    /// Index of the displayed mode.
     pub shown: usize,
 }
 
 impl Bisecting {
-    /// Begins with the frame as it is.
-    pub fn new(document: Document, asked: &Asked, size_px: [u32; 2]) -> Self {
-        let asked = Asked { modes: Modes::default(), playing: false, ..asked.clone() };
-        Self { document, asked, size_px, drawn: Vec::new(), outcomes: Vec::new(), shown: 0 }
+    /// Starts a bisection of the current frame.
+    pub fn new(document: Document, options: &DrawOptions, size_px: [u32; 2]) -> Self {
+        let options = DrawOptions { modes: Modes::default(), playing: false, ..options.clone() };
+        Self { document, options, size_px, drawn: Vec::new(), outcomes: Vec::new(), shown: 0 }
     }
 
-    /// Whether everything was tried.
+    /// Returns whether all modes were drawn.
     pub fn is_done(&self) -> bool {
         !self.outcomes.is_empty()
     }
 
-    /// How much of it was.
+    /// Returns the completed fraction, 0 to 1.
     pub fn progress(&self) -> f32 {
         self.drawn.len() as f32 / (Mode::ALL.len() + 2) as f32
     }
 
-    /// Draws under the next mode.
+    /// Draws the next mode.
     ///
     /// # Errors
-    /// What the frame or the device refuses under it.
+    /// An error of the frame or the device in this mode.
     pub fn step(&mut self, running: &mut Running) -> Result<(), String> {
         let mode = match self.drawn.len() {
             0 | 1 => None,
             tried => Mode::ALL.get(tried - 2).copied(),
         };
-        let asked = Asked { modes: Modes(mode.into_iter().collect()), ..self.asked.clone() };
+        let options = DrawOptions { modes: Modes(mode.into_iter().collect()), ..self.options.clone() };
         running.restart();
         for _ in 0..FRAMES {
-            running.draw(self.size_px, &self.document, &asked)?;
+            running.draw(self.size_px, &self.document, &options)?;
         }
-        let texture = running.picture_texture().ok_or("the frame left no picture")?;
+        let texture = running.picture_texture().ok_or("the frame has no picture")?;
         let pixels = read_texture(&running.screen().gpu, texture).map_err(|e| e.to_string())?;
         self.drawn.push(Drawn { mode, rgba8: pixels.rgba8() });
         if self.drawn.len() == Mode::ALL.len() + 2 {
@@ -75,7 +75,7 @@ impl Bisecting {
         Ok(())
     }
 
-    /// The picture of an outcome, the picture without any mode, and their difference, 16 times as large.
+    /// Returns the unmodified picture, the picture of a mode, and their difference times 16.
     pub fn pictures(&self, outcome: usize) -> Option<[Vec<u8>; 3]> {
         let (first, other) = (self.drawn.first()?, self.drawn.get(outcome + 1)?);
         let difference = first

@@ -1,57 +1,57 @@
-//! How the camera is moved: about a place, or through the scene.
+//! Interactive camera: orbits around a target or flies through the scene.
 
 use framegraph_scene::{Camera, Projection, Scene};
 use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Radians for each point that the pointer is dragged.
+/// Radians per point of a drag.
 const TURN: f64 = 0.006;
-/// Nearer to the zenith than this the camera does not look, in radians.
+/// Minimum angle between the view direction and the vertical, in radians.
 const POLE: f64 = 0.02;
 
-/// What moving the camera does.
+/// Interaction mode of the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
-    /// It goes around the place that it looks at.
+    /// Orbits around the target.
     #[default]
     Orbit,
-    /// It looks around from where it is, and keys move it.
+    /// Looks around from its position and moves with keys.
     Fly,
 }
 
-/// What a frame's input asks of the camera.
+/// Camera input of one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moves {
-    /// Turn, in points of the pointer, right and down.
+    /// Rotation in pointer points, right and down.
     pub turn: DVec2,
-    /// Shift sideways, in shares of the panel's height, right and down.
+    /// Pan relative to the panel height, right and down.
     pub shift: DVec2,
-    /// Come nearer, in steps of the wheel.
+    /// Zoom in, in wheel steps.
     pub nearer: f64,
-    /// Fly to the right, up and forward, for so many seconds.
+    /// Flight to the right, up and forward, in seconds.
     pub fly_s: DVec3,
 }
 
-/// A camera that is moved by hand. It stands upright.
+/// Interactive, upright camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rig {
-    /// What moving does.
+    /// Interaction mode.
     pub mode: Mode,
-    /// Where the camera is, in meters.
+    /// Position in meters.
     eye: DVec3,
-    /// To the left about the vertical, from −z, and up, in radians.
+    /// Yaw to the left about the vertical, from −z, and pitch upward, in radians.
     heading: [f64; 2],
-    /// How far the place is that it goes around, in meters.
+    /// Distance to the orbit target in meters.
     distance_m: f64,
-    /// Meters a second of flight.
+    /// Flight speed in meters per second.
     pub speed_m: f64,
     projection: Projection,
-    /// The camera that it began with.
+    /// Initial camera.
     home: Camera,
 }
 
 impl Rig {
-    /// Begins with the camera that the scene has, and looks at the middle of the scene.
+    /// Starts with the default camera of the scene, and targets the center of the scene.
     pub fn new(scene: &Scene, width_over_height: f64) -> Self {
         let mut home = scene.default_camera(width_over_height);
         home.projection = home.projection.unstretched(width_over_height);
@@ -73,14 +73,14 @@ impl Rig {
         rig
     }
 
-    /// Back to the camera that it began with.
+    /// Returns to the initial camera.
     pub fn go_home(&mut self) {
         self.eye = self.home.eye;
         let f = self.home.forward();
         self.heading = [(-f.x).atan2(-f.z), f.y.clamp(-1.0, 1.0).asin()];
     }
 
-    /// Takes the place of a camera of the scene.
+    /// Adopts a camera of the scene.
     pub fn take(&mut self, camera: &Camera) {
         (self.home, self.projection) = (camera.clone(), camera.projection);
         self.go_home();
@@ -90,12 +90,12 @@ impl Rig {
         DQuat::from_rotation_y(self.heading[0]) * DQuat::from_rotation_x(self.heading[1])
     }
 
-    /// The place that it goes around, in meters.
+    /// Returns the orbit target in meters.
     pub fn target(&self) -> DVec3 {
         self.eye + self.rotation() * DVec3::NEG_Z * self.distance_m
     }
 
-    /// Moves the camera; returns whether it moved.
+    /// Moves the camera and returns whether it moved.
     pub fn act(&mut self, moves: &Moves) -> bool {
         if *moves == Moves::default() {
             return false;
@@ -127,7 +127,7 @@ impl Rig {
         *self != before
     }
 
-    /// The camera, with this vertical field of view in radians instead of its own where one is given.
+    /// Returns the camera, with another vertical field of view in radians if specified.
     pub fn camera(&self, fov_y_rad: Option<f64>) -> Camera {
         let mut projection = self.projection;
         if let (Projection::Perspective { fov_y_rad: own, .. }, Some(asked)) = (&mut projection, fov_y_rad) {
@@ -136,7 +136,7 @@ impl Rig {
         Camera { name: "viewer".into(), eye: self.eye, world_from_view: self.rotation(), projection }
     }
 
-    /// Its own vertical field of view in radians; none of a parallel projection.
+    /// Returns its own vertical field of view in radians; `None` for an orthographic projection.
     pub fn fov_y_rad(&self) -> Option<f64> {
         match self.projection {
             Projection::Perspective { fov_y_rad, .. } => Some(fov_y_rad),
@@ -172,7 +172,7 @@ mod tests {
         assert!((rig.eye.distance(target) - eye.distance(target)).abs() < 1e-9);
         rig.act(&Moves { nearer: 3.0, ..Moves::default() });
         assert!(rig.eye.distance(target) < 0.65 * eye.distance(target) && rig.target().abs_diff_eq(target, 1e-9));
-        // Over the pole it does not go.
+        // The camera cannot pass the pole.
         rig.act(&Moves { turn: DVec2::new(0.0, 1e6), ..Moves::default() });
         assert!(rig.camera(None).forward().y < -0.99 && rig.camera(None).forward().is_finite());
         rig.go_home();

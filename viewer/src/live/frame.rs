@@ -1,9 +1,9 @@
-//! The standard frame of a scene, executed again and again into a texture that egui shows.
+//! The standard frame of a scene, executed repeatedly into a texture for egui.
 
 use super::camera::Rig;
+use super::capture::{Capture, Document};
 use super::factors::Factors;
 use super::loading::Loaded;
-use super::look::{Document, Look};
 use super::screen::Screen;
 use crate::standard_frame::{StandardFrame, declare};
 use crate::what_if::WhatIf;
@@ -24,29 +24,29 @@ use glam::{DVec2, Vec2};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What the frame is asked for, beside size and document.
+/// Debug modes and animation state of a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Asked {
-    /// Switches to find a fault with.
+pub struct DrawOptions {
+    /// Debug modes.
     pub modes: Modes,
-    /// Effects stay, whatever the facts are.
+    /// Disables feature culling.
     pub forced: bool,
-    /// Moment of the animation, in seconds.
+    /// Animation time in seconds.
     pub time_s: f64,
-    /// The animation runs.
+    /// Whether the animation plays.
     pub playing: bool,
 }
 
-/// The texture that the frame is drawn into.
+/// Target texture of the frame.
 struct Picture {
     texture: wgpu::Texture,
     size_px: [u32; 2],
     id: TextureId,
 }
 
-/// All that a view of the frame depends on.
+/// Everything on which a view depends.
 #[derive(Clone, Debug, PartialEq)]
-struct Stand {
+struct ViewInputs {
     document: Document,
     camera: Camera,
     size_px: [u32; 2],
@@ -55,27 +55,27 @@ struct Stand {
     light: u64,
 }
 
-/// A scene that is drawn.
+/// Scene that is being drawn.
 pub struct Running {
     screen: Screen,
-    /// The scene with its light.
+    /// Scene with its light.
     pub loaded: Loaded,
-    /// The camera.
+    /// Interactive camera.
     pub rig: Rig,
-    /// What was decided for the frame that was drawn last.
+    /// Decisions of feature culling for the last frame.
     pub facts: Facts,
     frames: FrameLoop<World>,
     poison: bool,
     picture: Option<Picture>,
     memory: FactMemory,
-    stand: Option<Stand>,
+    view_inputs: Option<ViewInputs>,
     posed: Option<(usize, f64)>,
-    /// Materials as the scene has them.
+    /// Materials of the scene file.
     materials: Vec<Material>,
-    /// Which of them are drawn otherwise.
+    /// Materials drawn with edited factors.
     painted: BTreeMap<usize, Factors>,
-    asked: Settings,
-    /// Counts changes of light.
+    requested: Settings,
+    /// Number of light changes.
     light: u64,
     index: u32,
     key: Option<(Settings, Options)>,
@@ -83,7 +83,7 @@ pub struct Running {
 }
 
 impl Running {
-    /// A scene that nothing was drawn of.
+    /// Creates a frame that has not been drawn yet.
     pub fn new(screen: &Screen, loaded: Loaded) -> Self {
         Self {
             screen: screen.clone(),
@@ -96,9 +96,9 @@ impl Running {
             poison: false,
             picture: None,
             memory: FactMemory::default(),
-            stand: None,
+            view_inputs: None,
             posed: None,
-            asked: Settings::DEFAULT,
+            requested: Settings::DEFAULT,
             light: 0,
             index: 0,
             key: None,
@@ -106,25 +106,25 @@ impl Running {
         }
     }
 
-    /// Takes other light.
+    /// Replaces the light.
     pub fn relight(&mut self, lit: super::loading::Lit) {
         self.loaded.relight(lit);
         self.light += 1;
     }
 
-    /// Draws the frame once. What is wrong with it is told, and the picture before stays.
+    /// Draws one frame. On failure the previous picture stays.
     ///
     /// # Errors
-    /// One line: what the frame or the device refuses.
-    pub fn draw(&mut self, size_px: [u32; 2], document: &Document, asked: &Asked) -> Result<(), String> {
+    /// One line with the error of the frame or the device.
+    pub fn draw(&mut self, size_px: [u32; 2], document: &Document, requested: &DrawOptions) -> Result<(), String> {
         document.frame.settings.shading.precision.check(&self.screen.gpu).map_err(|e| e.to_string())?;
-        self.pose(document.look.animation, asked.time_s)?;
+        self.pose(document.capture.animation, requested.time_s)?;
         self.paint(&document.materials)?;
-        let settings = self.settings(size_px, document, asked);
-        self.look(size_px, document, &settings)?;
+        let settings = self.settings(size_px, document, requested);
+        self.update_view(size_px, document, &settings)?;
         let mut options = Options { inline: document.frame.inline, ..Options::for_frame(size_px[0], size_px[1]) };
         let mut execute = ExecutorOptions::default();
-        asked.modes.apply(&mut options, &mut execute);
+        requested.modes.apply(&mut options, &mut execute);
         if self.poison != execute.poison {
             (self.frames, self.poison) = (frames(&self.screen, execute.poison), execute.poison);
         }
@@ -145,20 +145,20 @@ impl Running {
         Ok(())
     }
 
-    /// Begins anew, as after a cut: no history of earlier frames, effects over time from their first frame.
+    /// Restarts histories and temporal effects, as after a camera cut.
     pub fn restart(&mut self) {
         self.frames.executor_mut().reset_histories();
-        (self.stand, self.index) = (None, 0);
+        (self.view_inputs, self.index) = (None, 0);
     }
 
-    /// Poses the scene at a time of an animation.
+    /// Poses the scene at an animation time.
     fn pose(&mut self, animation: Option<usize>, time_s: f64) -> Result<(), String> {
         let moment = animation.map(|number| (number, time_s));
         if moment == self.posed {
             return Ok(());
         }
         let Loaded { scene, lights, survey, prepared, world, .. } = &mut self.loaded;
-        // All lights are posed, also those that the chosen sun leaves out.
+        // Pose all lights, including those that the selected sun excludes.
         scene.lights.clone_from(lights);
         let posed = scene.pose(animation, time_s).map_err(|e| e.to_string());
         lights.clone_from(&scene.lights);
@@ -167,7 +167,7 @@ impl Running {
         if !scene.motion.rest.materials.is_empty() {
             for (material, _) in &scene.motion.rest.materials {
                 self.materials[material.index()] = scene.materials[material.index()].clone();
-                // It is painted again over its posed factors.
+                // Its edited factors are applied again over the posed ones.
                 self.painted.remove(&material.index());
             }
             *survey = Arc::new(Survey::new(scene));
@@ -176,12 +176,12 @@ impl Running {
         posed
     }
 
-    /// A material as the scene has it.
+    /// Returns a material of the scene file.
     pub fn material(&self, number: usize) -> Option<&Material> {
         self.materials.get(number)
     }
 
-    /// Gives materials other factors, and those that were given some before their own.
+    /// Applies edited factors, and restores materials that are no longer edited.
     fn paint(&mut self, wanted: &BTreeMap<usize, Factors>) -> Result<(), String> {
         if self.painted == *wanted {
             return Ok(());
@@ -196,18 +196,18 @@ impl Running {
             }
         }
         *survey = Arc::new(Survey::new(scene));
-        (self.painted, self.stand) = (wanted.clone(), None);
+        (self.painted, self.view_inputs) = (wanted.clone(), None);
         Ok(())
     }
 
-    /// What is drawn of the settings: what the scene has nothing for, and what facts leave out, is not.
-    fn settings(&mut self, size_px: [u32; 2], document: &Document, asked: &Asked) -> Settings {
+    /// Returns the drawn settings, without effects that the scene lacks or feature culling drops.
+    fn settings(&mut self, size_px: [u32; 2], document: &Document, requested: &DrawOptions) -> Settings {
         let FrameSettings { lights, lod_error_px, settings, .. } = document.frame;
-        let look = &document.look;
-        self.loaded.set_sun(look.sun, self.turned_rad(look));
+        let capture = &document.capture;
+        self.loaded.set_sun(capture.sun, self.turned_rad(capture));
         let Self { loaded, rig, memory, .. } = self;
         let (scene, image) = (&loaded.scene, &loaded.world.lighting.image);
-        let camera = rig.camera(look.fov_y_rad());
+        let camera = rig.camera(capture.fov_y_rad());
         let cascades = |own: &ShadowSettings| if has_sun(scene, image.sun.as_ref()) { own.cascades } else { 0 };
         let shadows = settings.shadows.map(|own| {
             let cascades = cascades(&own);
@@ -217,20 +217,20 @@ impl Running {
         });
         let shadows = shadows.filter(|shadows| shadows.layers() > 0);
         let drawn_px = settings.drawn_px(size_px);
-        let settings = Settings { shadows, moving: asked.playing, ..settings }.for_scene(scene, drawn_px);
-        self.asked = settings;
-        if asked.forced {
+        let settings = Settings { shadows, moving: requested.playing, ..settings }.for_scene(scene, drawn_px);
+        self.requested = settings;
+        if requested.forced {
             self.facts = Facts::default();
             return settings;
         }
-        // What tints by cascades shows those that were asked for.
+        // Cascade tinting requires the cascades.
         let tinted = shadows.is_some_and(|shadows| shadows.show_cascades);
         let shown = [Effect::SunShadows, Effect::Cascades].into_iter().filter(|_| tinted);
         let seen = ViewSettings {
             camera,
             size_px: drawn_px,
-            ev100: look.exposure.ev100(loaded.metered_ev100),
-            environment_intensity: look.environment_intensity,
+            ev100: capture.exposure.ev100(loaded.metered_ev100),
+            environment_intensity: capture.environment_intensity,
             shadows,
             lights,
             lod_error_px,
@@ -240,7 +240,7 @@ impl Running {
                 scene,
                 survey: &loaded.survey,
                 around: Around::from(image),
-                background: &loaded.background(look.behind),
+                background: &loaded.background(capture.background),
                 views: std::slice::from_ref(&seen),
                 settings: &settings,
                 measured: Measurement::Off,
@@ -252,16 +252,16 @@ impl Running {
         self.facts.apply(&settings)
     }
 
-    /// How far the environment is turned; a clear sky is not, which has its sun moved instead.
-    fn turned_rad(&self, look: &Look) -> f64 {
-        if matches!(self.loaded.background, Background::Environment) { look.turned_rad() } else { 0.0 }
+    /// Returns the rotation of the environment in radians; a clear sky moves its sun instead.
+    fn turned_rad(&self, capture: &Capture) -> f64 {
+        if matches!(self.loaded.background, Background::Environment) { capture.turned_rad() } else { 0.0 }
     }
 
-    /// Makes the view.
-    fn look(&mut self, size_px: [u32; 2], document: &Document, settings: &Settings) -> Result<(), String> {
-        let look = &document.look;
-        let camera = self.rig.camera(look.fov_y_rad());
-        let stand = Stand {
+    /// Updates the view.
+    fn update_view(&mut self, size_px: [u32; 2], document: &Document, settings: &Settings) -> Result<(), String> {
+        let capture = &document.capture;
+        let camera = self.rig.camera(capture.fov_y_rad());
+        let view_inputs = ViewInputs {
             document: document.clone(),
             camera: camera.clone(),
             size_px,
@@ -270,38 +270,38 @@ impl Running {
             light: self.light,
         };
         let jitter = settings.taa.map_or(DVec2::ZERO, |taa| taa.jitter_px(self.index));
-        let turned = self.turned_rad(look);
+        let turned = self.turned_rad(capture);
         let Loaded { scene, prepared, world, .. } = &self.loaded;
-        let told = |error: framegraph_passes::PassError| error.to_string();
-        if self.stand.as_ref() == Some(&stand) {
+        let failed = |error: framegraph_passes::PassError| error.to_string();
+        if self.view_inputs.as_ref() == Some(&view_inputs) {
             let world = &mut self.loaded.world;
             world.frame_index = FrameIndex(self.index);
-            return world.views.again(ViewId::MAIN, jitter).map_err(told);
+            return world.views.again(ViewId::MAIN, jitter).map_err(failed);
         }
         let seen = ViewSettings {
             camera,
             size_px: settings.drawn_px(size_px),
-            ev100: look.exposure.ev100(self.loaded.metered_ev100),
-            environment_intensity: look.environment_intensity,
+            ev100: capture.exposure.ev100(self.loaded.metered_ev100),
+            environment_intensity: capture.environment_intensity,
             shadows: settings.shadows,
             lights: document.frame.lights,
             lod_error_px: document.frame.lod_error_px,
         };
-        let background = self.loaded.background(look.behind);
+        let background = self.loaded.background(capture.background);
         let mut view = CameraView::prepared(scene, prepared, &world.lighting.image, &background, &seen);
         view.frame.environment_rotation = Vec2::new(turned.cos() as f32, -turned.sin() as f32);
-        if self.stand.is_some() {
-            view = view.after(&world.views.get(ViewId::MAIN).map_err(told)?.view);
+        if self.view_inputs.is_some() {
+            view = view.after(&world.views.get(ViewId::MAIN).map_err(failed)?.view);
         }
         view.jitter(jitter);
         let world = &mut self.loaded.world;
         world.frame_index = FrameIndex(self.index);
-        world.set_view(&self.screen.gpu, ViewId::MAIN, view).map_err(told)?;
-        self.stand = Some(stand);
+        world.set_view(&self.screen.gpu, ViewId::MAIN, view).map_err(failed)?;
+        self.view_inputs = Some(view_inputs);
         Ok(())
     }
 
-    /// The texture that the frame is drawn into.
+    /// Returns the target texture of the frame.
     fn texture(&mut self, size_px: [u32; 2]) -> wgpu::Texture {
         if let Some(picture) = self.picture.as_ref().filter(|picture| picture.size_px == size_px) {
             return picture.texture.clone();
@@ -327,53 +327,53 @@ impl Running {
         texture
     }
 
-    /// What egui knows the picture by, and its size; none before it was drawn.
+    /// Returns egui's id and the size of the picture; `None` before the first frame.
     pub fn picture(&self) -> Option<(TextureId, [u32; 2])> {
         self.picture.as_ref().map(|picture| (picture.id, picture.size_px))
     }
 
-    /// The texture of the picture.
+    /// Returns the texture of the picture.
     pub fn picture_texture(&self) -> Option<&wgpu::Texture> {
         self.picture.as_ref().map(|picture| &picture.texture)
     }
 
-    /// Counts the plans that differ: by settings, size or options.
+    /// Counts distinct plans, by settings, size or options.
     pub fn plans(&self) -> u64 {
         self.plans
     }
 
-    /// Counts the frames that were drawn.
+    /// Counts drawn frames.
     pub fn drawn(&self) -> u32 {
         self.index
     }
 
-    /// The plan that was executed last.
+    /// Returns the last executed plan.
     pub fn plan(&self) -> &Plan {
         self.frames.plan()
     }
 
-    /// Frame, plan, executor and imports of the frame that was executed last.
+    /// Returns frame, plan, executor and imports of the last executed frame.
     pub fn frames(&self) -> &FrameLoop<World> {
         &self.frames
     }
 
-    /// The device.
+    /// Returns the device.
     pub fn screen(&self) -> &Screen {
         &self.screen
     }
 
-    /// Whether poison fills what was never written.
+    /// Returns whether uninitialized memory is poisoned.
     pub fn is_poisoned(&self) -> bool {
         self.poison
     }
 
-    /// Who plans the frame that was drawn last anew, and the question that it answers as it is.
+    /// Returns a planner of the last drawn frame, and its unmodified what-if.
     pub fn planner(&self, document: &Document, modes: &Modes) -> (Arc<StandardFrame>, WhatIf) {
         let Loaded { name, scene, .. } = &self.loaded;
-        // What settings ask a scene for.
+        // Parts of the scene that settings depend on.
         let (materials, instances) = (scene.materials.clone(), scene.instances.clone());
         let needs = Scene { materials, instances, ..Scene::default() };
-        let frame = FrameSettings { settings: self.asked, ..document.frame };
+        let frame = FrameSettings { settings: self.requested, ..document.frame };
         let planner = StandardFrame::live(name, frame, Arc::new(needs), self.facts.clone());
         let options = self.key.map_or_else(Options::default, |(_, options)| options);
         let features = crate::what_if::Planner::features(&planner);
@@ -394,7 +394,7 @@ impl Running {
     }
 }
 
-/// A loop that writes down the times of its frames.
+/// Creates a frame loop that records frame times.
 fn frames(screen: &Screen, poison: bool) -> FrameLoop<World> {
     let execute = ExecutorOptions { trace: true, poison, ..ExecutorOptions::default() };
     FrameLoop::with(&screen.gpu, Options::default(), execute)

@@ -1,6 +1,6 @@
-//! Loading a scene with its light, on a thread of its own.
+//! Loading of a scene and its light in the background.
 
-use super::look::{Behind, Sun};
+use super::capture::{BackgroundSource, Sun};
 use crate::job::Handle;
 use framegraph_passes::facts::Survey;
 use framegraph_passes::ibl::cache::Cache;
@@ -16,19 +16,19 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Width of the map that a clear sky is evaluated into: it has no detail that more would show.
+/// Width of the environment map of a clear sky, in texels. A larger map would add no detail.
 const SKY_MAP_TEXELS: u32 = 512;
 
-/// What lights a scene from all around.
+/// Source of the environment light.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Around {
-    /// A clear sky, with its sun there; that of a clear afternoon where none is given.
+pub enum EnvironmentSource {
+    /// Clear sky with the direction toward its sun; `None` for a clear afternoon.
     Sky(Option<DVec3>),
-    /// An equirectangular picture, or a cube.
+    /// Equirectangular picture or cube map.
     File(PathBuf),
 }
 
-impl std::fmt::Display for Around {
+impl std::fmt::Display for EnvironmentSource {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Sky(_) => f.write_str("clear sky"),
@@ -37,80 +37,80 @@ impl std::fmt::Display for Around {
     }
 }
 
-/// Light from all around, on the device.
+/// Image-based light on the device.
 pub struct Lit {
-    /// What it was made of.
-    pub around: Around,
-    /// What it was made with.
+    /// Source of the light.
+    pub environment: EnvironmentSource,
+    /// Settings of the light.
     pub settings: LightSettings,
-    /// The light, with the environment's own sun.
+    /// The light, with the sun of the environment.
     pub lighting: Lighting,
-    /// The environment's own sun.
+    /// Sun of the environment.
     pub sun: Option<Light>,
-    /// What is seen behind the scene.
+    /// Visible background.
     pub background: Background,
-    /// The exposure value for this light.
+    /// Metered exposure value at ISO 100.
     pub metered_ev100: f32,
-    /// What was repaired, a line each.
+    /// Warnings, one line each.
     pub warnings: Vec<String>,
 }
 
-/// A scene on the device, with what is known of it on the CPU.
+/// Scene on the device with its CPU data.
 pub struct Loaded {
-    /// As it was asked for: a built-in name, or a path.
+    /// Requested name: a built-in scene or a path.
     pub name: String,
-    /// The scene, without the texels of its images.
+    /// Scene without the texels of its images.
     pub scene: Scene,
-    /// Its lights; those of `scene` change with the sun that is asked for.
+    /// All lights of the scene; those of `scene` depend on the selected sun.
     pub lights: Vec<Light>,
-    /// What facts know of its surfaces.
+    /// Summary of the materials for feature culling.
     pub survey: Arc<Survey>,
-    /// What views read of it.
+    /// Scene data for views.
     pub prepared: PreparedScene,
-    /// On the device, with its light.
+    /// Scene and light on the device.
     pub world: World,
-    /// The environment's own sun.
+    /// Sun of the environment.
     pub sun: Option<Light>,
-    /// What lights it.
-    pub around: Around,
-    /// What its light was made with.
+    /// Source of the environment light.
+    pub environment: EnvironmentSource,
+    /// Settings of the light.
     pub light_settings: LightSettings,
-    /// What is seen behind it.
+    /// Visible background.
     pub background: Background,
-    /// The exposure value for its light.
+    /// Metered exposure value at ISO 100.
     pub metered_ev100: f32,
-    /// Its meshes have levels of detail.
+    /// Whether meshes have levels of detail.
     pub levels: bool,
-    /// The material variant that is shown.
+    /// Selected material variant.
     pub variant: Option<String>,
 }
 
-/// Loads a scene with a material variant, its light, and levels of detail where settings ask for them. The second value has
-/// the warnings, a line each.
+/// Loads a scene with a material variant, its light, and levels of detail if required. Also returns warnings, one line
+/// each.
 ///
 /// # Errors
-/// One line that names the file and the reason; also when the work was cancelled.
+/// One line that names the file and the reason; also after cancellation.
 pub fn load(
     gpu: &Gpu,
     name: &str,
-    around: &Around,
+    source: &EnvironmentSource,
     settings: &LightSettings,
     (levels, variant): (bool, Option<String>),
     handle: &Handle,
 ) -> Result<(Loaded, Vec<String>), String> {
     let options = LoadOptions { variant, block_formats: block_formats(gpu), ..LoadOptions::default() };
-    let mut scene = Scene::open_with(name, &options, &mut |p| told(handle, p)).map_err(|e| e.to_string())?;
+    let mut scene = Scene::open_with(name, &options, &mut |p| report(handle, p)).map_err(|e| e.to_string())?;
     scene.check().map_err(|error| format!("{name}: {error}"))?;
     if scene.instances.is_empty() {
-        return Err(format!("{name}: the scene shows nothing: it has no mesh in it"));
+        return Err(format!("{name}: the scene has no mesh; open another one"));
     }
     if levels {
-        scene.make_levels(&mut |p| told(handle, p)).map_err(|e| e.to_string())?;
+        scene.make_levels(&mut |p| report(handle, p)).map_err(|e| e.to_string())?;
     }
-    let Lit { around, settings, lighting, sun, background, metered_ev100, mut warnings } =
-        light(gpu, &scene, around, settings, handle)?;
+    let Lit { environment, settings, lighting, sun, background, metered_ev100, mut warnings } =
+        light(gpu, &scene, source, settings, handle)?;
     warnings.splice(0..0, scene.warnings.iter().cloned());
-    let uploaded = GpuScene::upload_freeing(gpu, &mut scene, &options.memory, &mut |p| told(handle, p));
+    let uploaded = GpuScene::upload_freeing(gpu, &mut scene, &options.memory, &mut |p| report(handle, p));
     let uploaded = uploaded.map_err(|e| e.to_string())?;
     warnings.extend(uploaded.warnings.iter().cloned());
     let prepared = PreparedScene::new(&scene);
@@ -136,7 +136,7 @@ pub fn load(
         prepared,
         world,
         sun,
-        around,
+        environment,
         light_settings,
         background,
         metered_ev100,
@@ -146,65 +146,65 @@ pub fn load(
     Ok((loaded, warnings))
 }
 
-/// Makes light from all around a scene.
+/// Creates image-based light.
 ///
 /// # Errors
-/// As [`load`].
+/// One line that names the file and the reason; also after cancellation.
 pub fn light(
     gpu: &Gpu,
     scene: &Scene,
-    around: &Around,
+    source: &EnvironmentSource,
     settings: &LightSettings,
     handle: &Handle,
 ) -> Result<Lit, String> {
-    let mut environment = match around {
-        Around::File(path) => {
-            let loaded = Environment::load_with(path, &LoadOptions::default(), &mut |p| told(handle, p));
+    let mut environment = match source {
+        EnvironmentSource::File(path) => {
+            let loaded = Environment::load_with(path, &LoadOptions::default(), &mut |p| report(handle, p));
             loaded.map_err(|e| e.to_string())?
         }
-        Around::Sky(toward) => sky(scene, *toward).environment(SKY_MAP_TEXELS).map_err(|e| e.to_string())?,
+        EnvironmentSource::Sky(toward) => sky(scene, *toward).environment(SKY_MAP_TEXELS).map_err(|e| e.to_string())?,
     };
-    let background = match around {
-        Around::Sky(toward) => Background::clear_sky(&sky(scene, *toward)),
-        Around::File(_) => Background::Environment,
+    let background = match source {
+        EnvironmentSource::Sky(toward) => Background::clear_sky(&sky(scene, *toward)),
+        EnvironmentSource::File(_) => Background::Environment,
     };
     let mut warnings = environment.warnings.clone();
-    // The sun of a map is light without a shadow, and what filters the map cannot hold it.
+    // A sun inside the map casts no shadow, and prefiltering cannot represent it.
     if let extraction @ SunExtraction::Extracted { .. } = environment.extract_sun() {
         warnings.push(format!("{}: {extraction}", environment.name));
     }
     let metered_ev100 = environment.metered_ev100(scene);
-    let lighting = Lighting::new(gpu, &environment, settings, &Cache::from_env(), &mut |p| told(handle, p));
+    let lighting = Lighting::new(gpu, &environment, settings, &Cache::from_env(), &mut |p| report(handle, p));
     let lighting = lighting.map_err(|e| e.to_string())?;
     warnings.extend(lighting.warnings().map(str::to_owned));
     let sun = environment.sun;
-    Ok(Lit { around: around.clone(), settings: *settings, lighting, sun, background, metered_ev100, warnings })
+    Ok(Lit { environment: source.clone(), settings: *settings, lighting, sun, background, metered_ev100, warnings })
 }
 
-/// The clear sky over the ground of a scene.
+/// Returns the clear sky over the ground of a scene.
 fn sky(scene: &Scene, toward: Option<DVec3>) -> Sky {
     let usual = Sky::default();
     let ground_albedo = scene.ground_albedo.map_or(usual.ground_albedo, |albedo| albedo.as_dvec3());
-    // A sun at the horizon or below it leaves the sky as it is.
+    // A sun at or below the horizon leaves the default sky.
     let toward_sun = toward.filter(|toward| toward.y > 0.01).unwrap_or(usual.toward_sun);
     Sky { toward_sun, ground_albedo, ..usual }
 }
 
 impl Loaded {
-    /// The files of the scene and of its light: nothing is written over them.
+    /// Returns the input files of the scene and its light, which exports must not overwrite.
     pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
-        let around = if let Around::File(file) = &self.around { Some(file) } else { None };
-        self.scene.files.iter().chain(around)
+        let environment = if let EnvironmentSource::File(file) = &self.environment { Some(file) } else { None };
+        self.scene.files.iter().chain(environment)
     }
 
-    /// Takes other light.
+    /// Replaces the light.
     pub fn relight(&mut self, lit: Lit) {
-        let Lit { around, settings, lighting, sun, background, metered_ev100, .. } = lit;
-        (self.around, self.light_settings, self.world.lighting) = (around, settings, lighting);
+        let Lit { environment, settings, lighting, sun, background, metered_ev100, .. } = lit;
+        (self.environment, self.light_settings, self.world.lighting) = (environment, settings, lighting);
         (self.sun, self.background, self.metered_ev100) = (sun, background, metered_ev100);
     }
 
-    /// Sets the sun that shines.
+    /// Selects the sun.
     pub fn set_sun(&mut self, sun: Sun, turned_rad: f64) {
         let is_sun = |light: &Light| matches!(light.kind, LightKind::Directional { .. });
         self.world.lighting.image.sun = sun.light(self.sun.as_ref(), turned_rad);
@@ -214,17 +214,17 @@ impl Loaded {
         }
     }
 
-    /// What is seen behind the scene.
-    pub fn background(&self, behind: Behind) -> Background {
-        match behind {
-            Behind::Environment => self.background.clone(),
-            Behind::Constant(nits) => Background::Constant(Vec3::from_array(nits)),
+    /// Returns the visible background.
+    pub fn background(&self, source: BackgroundSource) -> Background {
+        match source {
+            BackgroundSource::Environment => self.background.clone(),
+            BackgroundSource::Constant(nits) => Background::Constant(Vec3::from_array(nits)),
         }
     }
 }
 
-/// Tells a step of the work, and asks it to stop once nobody waits for it.
-fn told(handle: &Handle, progress: Progress<'_>) -> ControlFlow<()> {
+/// Reports progress and stops the work after cancellation.
+fn report(handle: &Handle, progress: Progress<'_>) -> ControlFlow<()> {
     handle.step(progress.done as u64, progress.total as u64);
     if handle.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }

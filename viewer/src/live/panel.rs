@@ -1,4 +1,4 @@
-//! Panels of the frame that is drawn.
+//! Panels of the live frame.
 
 mod curves;
 mod debugging;
@@ -21,23 +21,23 @@ pub use settings::settings;
 pub use viewport::viewport;
 
 use super::Live;
-use super::asked_file::AskedFile;
+use super::file_request::FileRequest;
 use egui::{ColorImage, Context, TextureHandle, TextureOptions, Ui};
 
-/// A button that asks for a file by a dialog of the desktop.
-fn ask(ui: &mut Ui, live: &mut Live, wanted: AskedFile, tip: &str) {
-    let name = if wanted == AskedFile::Open { "Open…" } else { "Save…" };
+/// Adds a button that requests a file dialog.
+fn ask(ui: &mut Ui, live: &mut Live, wanted: FileRequest, tip: &str) {
+    let name = if wanted == FileRequest::Open { "Open…" } else { "Save…" };
     if ui.button(name).on_hover_text(tip).clicked() {
-        live.asks_file = Some(wanted);
+        live.file_request = Some(wanted);
     }
 }
 
-/// Whether a change goes on: the pointer is held, as while a slider is dragged, or a text is typed.
+/// Returns whether a change continues, during a drag or while typing.
 fn goes_on(ctx: &Context) -> bool {
     ctx.input(|i| i.pointer.any_down()) || ctx.egui_wants_keyboard_input()
 }
 
-/// A picture of four bytes a pixel as egui shows it, its pixels not blurred; made anew where `made` is another number than before.
+/// Returns an unfiltered egui texture of RGBA pixels. It is uploaded again when `made` changes.
 fn texture(ctx: &Context, name: &str, made: u64, size: [u32; 2], rgba8: &[u8]) -> TextureHandle {
     let id = egui::Id::unique(name);
     if let Some((known, handle)) = ctx.data(|data| data.get_temp::<(u64, TextureHandle)>(id))

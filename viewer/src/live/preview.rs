@@ -1,51 +1,51 @@
-//! A texture of the frame that is drawn: any version, level, layer, plane and sample, as numbers and as a picture. A second plan is
-//! executed for it, so the frame's own stays as it is.
+//! Texture preview of the live frame: any version, mip level, layer, plane and sample, as numbers and as a picture. It
+//! executes a second plan, so the frame's own plan is unchanged.
 
 use super::frame::Running;
 use framegraph_wgpu::inspect::{Channel, DisplayImage, DisplayMode, InspectTarget, Inspector, Texels, all_targets};
 
-/// Boxes of a histogram.
-pub const BOXES: usize = 64;
+/// Number of histogram bins.
+pub const BINS: usize = 64;
 
-/// What was found of a texture.
+/// Inspected texture.
 pub struct Found {
-    /// What it is, in words.
+    /// Description.
     pub title: String,
-    /// Its texels.
+    /// Texels.
     pub texels: Texels,
-    /// The same as numbers.
+    /// Texels as numbers.
     pub numbers: Vec<[f32; 4]>,
-    /// The least and the greatest finite number of the channels that there are; 0 where none is finite.
+    /// Minimum and maximum finite values of the existing channels; 0 if none is finite.
     pub span: [f32; 2],
-    /// As they are shown.
+    /// Displayed picture.
     pub picture: DisplayImage,
-    /// Counts which picture it is.
+    /// Number of the picture, for caching.
     pub made: u64,
-    /// How many texels of each channel lie in each part of the picture's range.
-    pub histogram: Vec<[u32; BOXES]>,
+    /// Histogram of each channel over the displayed range.
+    pub histogram: Vec<[u32; BINS]>,
 }
 
-/// The texture that is looked at.
+/// State of the texture preview.
 pub struct Preview {
-    /// The resource, by its full name.
+    /// Full name of the resource.
     pub name: Option<String>,
-    /// Number of the version; none for the newest.
+    /// Number of the version; `None` for the newest.
     pub version: Option<usize>,
     /// Mip level.
     pub mip: u8,
-    /// Layer, or slice.
+    /// Array layer or slice.
     pub layer: u16,
-    /// Number of the plane among those that there are.
+    /// Index of the plane among the existing ones.
     pub plane: usize,
-    /// One sample; none for the average.
+    /// Sample; `None` for the average.
     pub sample: Option<u8>,
-    /// How numbers are shown.
+    /// Display mode.
     pub mode: DisplayMode,
-    /// It is looked at anew with each frame that is drawn.
+    /// Updates the preview in every frame.
     pub follow: bool,
-    /// What was found last.
+    /// Last inspected texture.
     pub found: Option<Found>,
-    /// Why nothing was found.
+    /// Reason that inspection failed.
     pub error: Option<String>,
     inspector: Option<Inspector>,
     asked: Option<(InspectTarget, u64)>,
@@ -75,7 +75,7 @@ impl Default for Preview {
 }
 
 impl Preview {
-    /// Looks at another resource: its newest version, its first part.
+    /// Selects another resource, with its newest version and first subresource.
     pub fn look_at(&mut self, name: &str) {
         if self.name.as_deref() == Some(name) {
             return;
@@ -85,17 +85,17 @@ impl Preview {
         self.asked = None;
     }
 
-    /// Looks anew at the next opportunity.
+    /// Inspects the texture again in the next frame.
     pub fn again(&mut self) {
         self.asked = None;
     }
 
-    /// The parts of the resource that there are to look at.
+    /// Returns the inspectable subresources of the resource.
     pub fn targets(&self, running: &Running) -> Vec<InspectTarget> {
         let Some(name) = &self.name else { return Vec::new() };
         let graph = running.plan().graph();
         let resource = |target: &InspectTarget| graph.versions()[target.version.index()].resource;
-        // Rows of a plan number resources of one name, in their order.
+        // Plan rows number resources of equal names, in order.
         let (plain, number) = match name.rsplit_once('#').map(|(plain, number)| (plain, number.parse::<usize>())) {
             Some((plain, Ok(number))) => (plain, number.max(1)),
             _ => (name.as_str(), 1),
@@ -110,7 +110,7 @@ impl Preview {
         all
     }
 
-    /// What is asked for, of the parts that there are.
+    /// Returns the selected subresource.
     fn target(&self, targets: &[InspectTarget]) -> Option<InspectTarget> {
         let newest = targets.iter().map(|target| target.number).max()?;
         let number = self.version.filter(|v| targets.iter().any(|t| t.number == *v)).unwrap_or(newest);
@@ -126,7 +126,7 @@ impl Preview {
         Some(found)
     }
 
-    /// Looks, where something else is asked for than was found. `frame` counts the frames that were drawn, where those matter.
+    /// Inspects the texture after a change of the selection; `frame` identifies the drawn frame if the preview follows.
     pub fn refresh(&mut self, running: &Running, frame: u64) {
         let targets = self.targets(running);
         let Some(target) = self.target(&targets) else {
@@ -159,7 +159,7 @@ impl Preview {
         Ok(Found { title, texels: found.texels, numbers, span, picture, made: 0, histogram: Vec::new() })
     }
 
-    /// Makes the picture of what was found, where it is to be shown otherwise than it is.
+    /// Converts the texels to a picture after a change of the display mode.
     fn display(&mut self, running: &Running) {
         if self.shown == Some(self.mode) {
             return;
@@ -176,34 +176,34 @@ impl Preview {
 }
 
 impl Found {
-    /// The numbers of a texel; none outside of the picture.
+    /// Returns the values of a texel; `None` outside the picture.
     pub fn texel(&self, [x, y]: [u32; 2]) -> Option<[f32; 4]> {
         let [width, height] = self.texels.size;
         (x < width && y < height).then(|| self.numbers[(y * width + x) as usize])
     }
 }
 
-/// The least and the greatest finite number of the first `channels` of all texels; 0 where none is finite.
+/// Returns the minimum and maximum finite values of the first `channels` channels; 0 if none is finite.
 fn span(numbers: &[[f32; 4]], channels: usize) -> [f32; 2] {
     let finite = numbers.iter().flat_map(|texel| &texel[..channels]).copied().filter(|x| x.is_finite());
     let [low, high] = finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
     if low <= high { [low, high] } else { [0.0; 2] }
 }
 
-/// How many numbers of each channel lie in each part of a span; what is not finite lies in none.
-pub fn histogram(numbers: &[[f32; 4]], channels: usize, [low, high]: [f32; 2]) -> Vec<[u32; BOXES]> {
-    let mut all = vec![[0; BOXES]; channels];
-    let per_box = (high - low) / BOXES as f32;
+/// Counts the values of each channel per bin of a range; NaN and infinity are ignored.
+pub fn histogram(numbers: &[[f32; 4]], channels: usize, [low, high]: [f32; 2]) -> Vec<[u32; BINS]> {
+    let mut all = vec![[0; BINS]; channels];
+    let per_bin = (high - low) / BINS as f32;
     for texel in numbers {
         for (boxes, number) in all.iter_mut().zip(texel).filter(|(_, number)| number.is_finite()) {
-            let at = if per_box > 0.0 { ((number - low) / per_box) as usize } else { 0 };
-            boxes[at.min(BOXES - 1)] += 1;
+            let at = if per_bin > 0.0 { ((number - low) / per_bin) as usize } else { 0 };
+            boxes[at.min(BINS - 1)] += 1;
         }
     }
     all
 }
 
-/// A channel by its letter.
+/// Channels by name.
 pub const CHANNELS: [(&str, Channel); 4] =
     [("red", Channel::Red), ("green", Channel::Green), ("blue", Channel::Blue), ("alpha", Channel::Alpha)];
 
@@ -212,12 +212,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_finite_number_is_in_one_box() {
+    fn every_finite_value_is_in_one_bin() {
         let numbers = [[0.0, 1.0, f32::NAN, 1.0], [0.5, -1.0, 2.0, 1.0], [1.0, f32::INFINITY, 0.0, 1.0]];
         let found = histogram(&numbers, 3, [-1.0, 2.0]);
         let sums: Vec<u32> = found.iter().map(|boxes| boxes.iter().sum()).collect();
         assert_eq!(sums, [3, 2, 2]);
-        assert_eq!((found[1][0], found[2][BOXES - 1]), (1, 1));
+        assert_eq!((found[1][0], found[2][BINS - 1]), (1, 1));
         assert_eq!(histogram(&[[5.0; 4]], 1, [5.0, 5.0])[0][0], 1);
     }
 }

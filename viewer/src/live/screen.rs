@@ -1,4 +1,4 @@
-//! The device that frames and panels share, and where egui finds textures of it.
+//! Device shared by frames and panels, and registration of textures with egui.
 
 use eframe::egui_wgpu::{RenderState, Renderer};
 use egui::TextureId;
@@ -6,20 +6,20 @@ use egui::mutex::RwLock;
 use framegraph_wgpu::Gpu;
 use std::sync::Arc;
 
-/// The device that frames and panels share.
+/// Device shared by frames and panels.
 #[derive(Clone)]
 pub struct Screen {
-    /// The device.
+    /// Device.
     pub gpu: Gpu,
-    /// Who draws the panels; none where nobody does, as in tests of panels without a picture.
+    /// Renderer of the panels; `None` in tests without pictures.
     renderer: Option<Arc<RwLock<Renderer>>>,
 }
 
 impl Screen {
-    /// The device that eframe opened for its window. What wgpu refuses outside of frames is told on the terminal.
+    /// Wraps the device that eframe opened for its window. Uncaptured errors of wgpu are printed on standard error.
     pub fn of(state: &RenderState) -> Self {
         let gpu = Gpu::wrap(&state.adapter, &state.device, &state.queue);
-        state.device.on_uncaptured_error(Arc::new(|error| program::note(format_args!("the device refused: {error}"))));
+        state.device.on_uncaptured_error(Arc::new(|error| program::note(format_args!("device: {error}"))));
         let lost = gpu.shared_errors();
         state
             .device
@@ -27,12 +27,12 @@ impl Screen {
         Self { gpu, renderer: Some(state.renderer.clone()) }
     }
 
-    /// A device with who draws its panels.
+    /// Creates a screen from a device and an optional renderer of panels.
     pub fn new(gpu: &Gpu, renderer: Option<Arc<RwLock<Renderer>>>) -> Self {
         Self { gpu: gpu.clone(), renderer }
     }
 
-    /// What egui knows a texture by, instead of the one that it knew by `before`. Its texels are taken for display codes.
+    /// Registers a texture with egui, replacing `before`. Its texels are display-encoded.
     pub fn show(&self, view: &wgpu::TextureView, before: Option<TextureId>) -> TextureId {
         let Some(renderer) = &self.renderer else { return before.unwrap_or(TextureId::User(0)) };
         let (device, filter) = (&self.gpu.device, wgpu::FilterMode::Linear);

@@ -1,14 +1,14 @@
-//! Times of the frame that is drawn, as views show them.
+//! Times of the live frame for the views.
 
 use crate::trace_data::{TraceData, TracedFrame, TracedStep};
 use framegraph_wgpu::Trace;
 use std::collections::VecDeque;
 use std::time::Instant;
 
-/// Frames that views show.
+/// Number of frames in the views.
 const SHOWN: usize = 240;
 
-/// The latest frames with their steps.
+/// Returns the latest frames with their steps.
 pub(super) fn of(trace: &Trace) -> TraceData {
     let mut data = TraceData::default();
     for frame in trace.latest(SHOWN) {
@@ -30,14 +30,14 @@ pub(super) fn of(trace: &Trace) -> TraceData {
     data
 }
 
-/// When the latest frames were drawn.
+/// Times of the latest frames.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Clock(VecDeque<Instant>);
 
 impl Clock {
-    /// A frame is drawn.
+    /// Records a drawn frame.
     pub fn tick(&mut self, now: Instant) {
-        // A pause is no slow frame.
+        // A pause must not count as a slow frame.
         if self.0.back().is_some_and(|last| now.duration_since(*last).as_secs_f32() > 2.0) {
             self.0.clear();
         }
@@ -47,7 +47,7 @@ impl Clock {
         }
     }
 
-    /// Frames a second; none of fewer than four frames.
+    /// Returns frames per second; `None` for fewer than four frames.
     pub fn frames_per_s(&self) -> Option<f32> {
         let (first, last) = (self.0.front()?, self.0.back()?);
         let passed = last.duration_since(*first).as_secs_f32();

@@ -1,25 +1,25 @@
-//! A drawing that is panned, zoomed and pointed at.
+//! Drawing with pan, zoom and pointer interaction.
 
 use super::{paint, theme};
 use crate::drawing::{Drawing, Item};
 use egui::emath::TSTransform;
 use egui::{Key, Modifiers, Pos2, Rect, Sense, Ui, Vec2, pos2, vec2};
 
-/// Zoom at least and at most.
+/// Minimum and maximum zoom.
 const ZOOM: [f32; 2] = [0.02, 8.0];
-/// Space around the drawing.
+/// Margin around the drawing.
 pub const MARGIN: f32 = 16.0;
-/// A drawing that is fitted by itself is never made smaller than this: letters stay readable.
+/// Minimum zoom of automatic fitting, so that text stays readable.
 const READABLE: f32 = 0.7;
 
-/// Which part of a drawing is seen.
+/// Pan and zoom of a drawing.
 #[derive(Clone, Debug)]
 pub struct Canvas {
-    /// From the drawing to the panel, whose left top is the origin; none until it is shown for the first time.
+    /// Transform from the drawing to the panel, relative to its top left; `None` before the first frame.
     view: Option<TSTransform>,
-    /// A drawing that is fitted by itself is never made smaller than this.
+    /// Minimum zoom of automatic fitting.
     least: f32,
-    /// The panel, and the drawing in it, when it was shown last.
+    /// Panel and transform to the screen in the last frame.
     last: (Rect, TSTransform),
 }
 
@@ -29,24 +29,24 @@ impl Default for Canvas {
     }
 }
 
-/// What was clicked.
+/// Result of a click.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clicked {
-    /// Nothing.
+    /// No click.
     No,
-    /// A place where nothing is.
+    /// Click on empty space.
     Empty,
-    /// An item.
+    /// Click on an item.
     Item(Item),
 }
 
 impl Canvas {
-    /// Shows all of a drawing at first, however small.
+    /// Creates a canvas that first fits the whole drawing, at any zoom.
     pub fn whole() -> Self {
         Self { least: ZOOM[0], ..Self::default() }
     }
 
-    /// Shows a drawing, called by its name to who cannot see it; the first of the lit items is the selected one.
+    /// Shows a drawing with an accessible name. The first of the lit items is the selected one.
     pub fn show(&mut self, ui: &mut Ui, name: &str, drawing: &Drawing, lit: &[Item]) -> Clicked {
         let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, format!("{name} view")));
@@ -66,7 +66,7 @@ impl Canvas {
                 view = keyed(ui, view, drawing, panel);
             }
         }
-        // Whatever was done, something of the drawing stays in sight.
+        // Keep a part of the drawing visible.
         let [w, h] = drawing.size.map(|side| side * view.scaling);
         let t = &mut view.translation;
         *t = vec2(
@@ -95,16 +95,16 @@ impl Canvas {
         clicked
     }
 
-    /// Shows the whole drawing when it is shown next.
+    /// Fits the whole drawing in the next frame.
     pub fn fit(&mut self) {
         self.view = None;
     }
 
-    /// Moves an item into the middle, if it is not in sight.
+    /// Centers an item unless it is visible.
     pub fn reveal(&mut self, drawing: &Drawing, item: Item) {
         let (panel, to_screen) = self.last;
         let Some(view) = &mut self.view else { return };
-        // The last is the place itself; heads and lines come first.
+        // The last area is the item itself; heads and lines come first.
         let Some(hit) = drawing.hits.iter().rev().find(|hit| hit.item == Some(item)) else { return };
         let [left, top, right, bottom] = hit.bounds;
         let middle = to_screen * pos2((left + right) / 2.0, (top + bottom) / 2.0);
@@ -113,7 +113,7 @@ impl Canvas {
         }
     }
 
-    /// Where an item was drawn last, on the screen; none where it is out of sight.
+    /// Returns the last screen position of an item; `None` if it is not visible.
     pub fn place_of(&self, drawing: &Drawing, item: Item) -> Option<Pos2> {
         let (panel, to_screen) = self.last;
         drawing.hits.iter().rev().filter(|hit| hit.item == Some(item)).find_map(|hit| {
@@ -123,21 +123,21 @@ impl Canvas {
     }
 }
 
-/// The drawing as large as the panel allows, but never larger than it is, nor smaller than `least`.
+/// Fits the drawing into the panel at a zoom between `least` and 1.
 fn fitted(drawing: &Drawing, panel: Vec2, least: f32) -> TSTransform {
     let [w, h] = drawing.size.map(|side| side.max(1.0) + 2.0 * MARGIN);
     let zoom = (panel.x / w).min(panel.y / h).clamp(ZOOM[0], 1.0).max(least);
     TSTransform::new(vec2(MARGIN, MARGIN) * zoom.min(1.0), zoom)
 }
 
-/// Zoomed about a place of the panel.
+/// Zooms about a position of the panel.
 fn zoomed(view: TSTransform, factor: f32, about: Vec2) -> TSTransform {
     let zoom = (view.scaling * factor).clamp(ZOOM[0], ZOOM[1]);
     let factor = zoom / view.scaling;
     TSTransform::new(about + (view.translation - about) * factor, zoom)
 }
 
-/// What keys do, as `app::SHORTCUTS` lists them.
+/// Handles the keys listed in `app::SHORTCUTS`.
 fn keyed(ui: &Ui, view: TSTransform, drawing: &Drawing, panel: Rect) -> TSTransform {
     let pressed = |key: Key| ui.input_mut(|i| i.consume_key(Modifiers::NONE, key));
     let middle = panel.size() / 2.0;

@@ -1,23 +1,23 @@
-//! Every pass and resource by name, narrowed by a search.
+//! List of passes and resources with a search field.
 
 use crate::drawing::Item;
 use crate::plan_data::PlanData;
 use egui::{RichText, ScrollArea, TextEdit, Ui};
 
-/// The search.
+/// State of the search.
 #[derive(Clone, Debug, Default)]
 pub struct List {
-    /// What is searched for: all of its words, in any order, whatever the case.
+    /// Case-insensitive search words, in any order.
     pub search: String,
-    /// The search gets the keyboard when it is shown next.
+    /// Focuses the search field in the next frame.
     pub focus: bool,
 }
 
-/// Height of a row, in points.
+/// Height of a row in points.
 const ROW: f32 = 18.0;
 
 impl List {
-    /// The items whose names have all words of the search: passes, then resources.
+    /// Returns the items whose names contain all search words: passes, then resources.
     pub fn found(&self, plan: &PlanData) -> Vec<Item> {
         let words: Vec<String> = self.search.split_whitespace().map(str::to_lowercase).collect();
         let fits = |name: &str| {
@@ -29,7 +29,7 @@ impl List {
         passes.chain(resources.map(|(i, _)| Item::Resource(i))).collect()
     }
 
-    /// Shows the search and what it found; returns what was clicked.
+    /// Shows the search field and the results; returns the clicked item.
     pub fn show(&mut self, ui: &mut Ui, plan: &PlanData, selected: Option<Item>) -> Option<Item> {
         let edit = TextEdit::singleline(&mut self.search).hint_text("search passes and resources");
         let edit = ui.add(edit.desired_width(f32::INFINITY));
@@ -39,7 +39,7 @@ impl List {
         let found = self.found(plan);
         ui.label(format!("{} of {}", found.len(), plan.form.passes.len() + plan.form.resources.len()));
         let mut clicked = None;
-        // The first one, for who types and presses Enter.
+        // Enter selects the first result.
         if edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
             clicked = found.first().copied();
         }

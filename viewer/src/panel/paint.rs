@@ -1,4 +1,4 @@
-//! Paints the shapes of a drawing that can be seen.
+//! Painter of the visible shapes of a drawing.
 
 use super::color;
 use crate::drawing::{ADVANCE, Align, Drawing, Item, Shape, Theme};
@@ -6,10 +6,10 @@ use egui::emath::TSTransform;
 use egui::epaint::TextShape;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, pos2};
 
-/// Letters lower than this are not drawn, in points.
-const LEAST: f32 = 3.5;
+/// Minimum height of painted text, in points.
+const MIN_TEXT: f32 = 3.5;
 
-/// Paints what lies within the painter's bounds; marked shapes of lit items stand out.
+/// Paints the shapes within the clip rectangle and highlights marked shapes of lit items.
 pub(super) fn paint(painter: &Painter, drawing: &Drawing, to_screen: TSTransform, theme: Theme, lit: &[Item]) {
     let seen = painter.clip_rect().expand(2.0);
     let bright: std::collections::HashSet<usize> =
@@ -55,7 +55,7 @@ pub(super) fn paint(painter: &Painter, drawing: &Drawing, to_screen: TSTransform
             Shape::Text { at: place, size, align, ink, turned, text } => {
                 let size = size * zoom;
                 let (place, reach) = (at(*place), text.chars().count() as f32 * size * ADVANCE + size);
-                if size < LEAST || !Rect::from_center_size(place, egui::Vec2::splat(2.0 * reach)).intersects(seen) {
+                if size < MIN_TEXT || !Rect::from_center_size(place, egui::Vec2::splat(2.0 * reach)).intersects(seen) {
                     continue;
                 }
                 let anchor = match align {
@@ -63,7 +63,7 @@ pub(super) fn paint(painter: &Painter, drawing: &Drawing, to_screen: TSTransform
                     Align::Center => Align2::CENTER_CENTER,
                     Align::Right => Align2::RIGHT_CENTER,
                 };
-                // Half points, so that a zoom makes few sizes of a font.
+                // Round to half points, so that zooming creates few font sizes.
                 let font = FontId::monospace((size * 2.0).round() / 2.0);
                 let ink = color(*ink, theme);
                 if *turned == 0.0 {
@@ -81,8 +81,9 @@ pub(super) fn paint(painter: &Painter, drawing: &Drawing, to_screen: TSTransform
     }
 }
 
-/// Those parts of a line that can be seen: a line from one end of a long frame to the other has thousands of points. A part
-/// begins and ends with the points beyond the edge.
+/// Returns the visible runs of a polyline, each with the points just outside.
+///
+/// A line across a long frame has thousands of points.
 fn runs(points: impl Iterator<Item = Pos2>, seen: Rect) -> Vec<Vec<Pos2>> {
     let mut runs: Vec<Vec<Pos2>> = Vec::new();
     let mut last: Option<(Pos2, bool)> = None;
@@ -98,7 +99,7 @@ fn runs(points: impl Iterator<Item = Pos2>, seen: Rect) -> Vec<Vec<Pos2>> {
     runs
 }
 
-/// Frames the places of lit items; of places within one another, the first.
+/// Outlines the areas of lit items; of nested areas, only the outermost.
 pub(super) fn frame(painter: &Painter, drawing: &Drawing, to_screen: TSTransform, theme: Theme, lit: &[Item]) {
     let seen = painter.clip_rect().expand(2.0);
     for (index, item) in lit.iter().enumerate() {
@@ -127,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_keep_what_is_seen_of_them() {
+    fn lines_keep_their_visible_runs() {
         let seen = Rect::from_min_max(pos2(0.0, 0.0), pos2(10.0, 10.0));
         let line = |xs: &[f32]| runs(xs.iter().map(|x| pos2(*x, 5.0)), seen);
         let xs = |run: &[Pos2]| run.iter().map(|p| p.x).collect::<Vec<_>>();

@@ -1,44 +1,45 @@
-//! What-if: the same frame for another device, size, order, sharing of memory, with other features; planned without
-//! rendering, with the difference against how the frame is.
+//! What-if panel: the frame under another device, size, order, memory aliasing or features.
+//!
+//! Plans are compiled without rendering and compared with the unmodified plan.
 
 use crate::plan_data::PlanData;
-use crate::view::{bytes, change};
+use crate::view::{bytes, change, label};
 use crate::what_if::{SIZES, WhatIf};
 use egui::{ComboBox, DragValue, Grid, ScrollArea, TextEdit, Ui};
 use framegraph::{Alias, Caps, Order};
 use program::input::{MAX_TEXT_BYTES, text};
 
-/// What is asked, and what the panel needs to ask it.
+/// What-if questions and the state of their panel.
 #[derive(Clone, Debug)]
 pub struct Questions {
-    /// How the frame is.
+    /// Unmodified conditions.
     pub base: WhatIf,
-    /// What is asked.
+    /// Requested conditions.
     pub asked: WhatIf,
-    /// The path of a device file, as it is typed.
+    /// Typed path of a device file.
     device: String,
-    /// Why it could not be taken.
+    /// Error of the device file.
     refused: Option<String>,
 }
 
-/// What the panel compares: how the frame is, and what was asked.
+/// Plans that the panel compares.
 #[derive(Clone, Copy, Debug)]
 pub struct Shown<'a> {
-    /// How the frame is.
+    /// Unmodified plan.
     pub base: Option<&'a PlanData>,
-    /// What was asked.
+    /// What-if plan.
     pub now: Option<&'a PlanData>,
-    /// A plan is being made.
+    /// Whether a plan is being compiled.
     pub planning: bool,
 }
 
 impl Questions {
-    /// Nothing is asked yet.
+    /// Starts without changes.
     pub fn new(base: WhatIf) -> Self {
         Self { asked: base.clone(), base, device: String::new(), refused: None }
     }
 
-    /// Shows the questions and the answer; returns whether something else is asked now.
+    /// Shows the questions and the comparison; returns whether the questions changed.
     pub fn show(&mut self, ui: &mut Ui, shown: Shown<'_>) -> bool {
         let before = self.asked.clone();
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -48,12 +49,12 @@ impl Questions {
             }
             self.features(ui);
             ui.horizontal(|ui| {
-                if ui.add_enabled(self.asked != self.base, egui::Button::new("As it is")).clicked() {
+                if ui.add_enabled(self.asked != self.base, egui::Button::new("Reset")).clicked() {
                     self.asked = self.base.clone();
                 }
                 if shown.planning {
                     ui.spinner();
-                    ui.label("planning");
+                    ui.label("compiling");
                 }
             });
             ui.separator();
@@ -152,12 +153,12 @@ impl Questions {
     }
 }
 
-/// The figures that differ, or the most important ones where none does.
+/// Shows changed totals, and the most important others.
 fn answer(ui: &mut Ui, shown: Shown<'_>) {
     let (Some(base), Some(now)) = (shown.base, shown.now) else { return };
     let theme = super::theme(ui);
     Grid::new("answer").num_columns(3).min_col_width(0.0).spacing([8.0, 2.0]).striped(true).show(ui, |ui| {
-        for heading in ["figure", "now", "change"] {
+        for heading in ["total", "now", "change"] {
             ui.label(egui::RichText::new(heading).weak());
         }
         ui.end_row();
@@ -165,7 +166,7 @@ fn answer(ui: &mut Ui, shown: Shown<'_>) {
             if name == "optimal" || (was, is) == (0, 0) {
                 continue;
             }
-            let words = name.replace('_', " ");
+            let words = label(name);
             let small = egui::RichText::new(&words).size(11.0);
             super::term(ui, small, words.trim_end_matches(" bytes").trim_end_matches('s'));
             ui.label(if is_bytes { bytes(is) } else { is.to_string() });

@@ -1,27 +1,27 @@
-//! The rows of a plan, found by name.
+//! Rows of a plan with lookup by name.
 
 use super::rows::{Access, Attachment, Form, Step};
 use framegraph::Plan;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A plan with its rows found by name.
+/// Rows of a plan with lookup by name.
 #[derive(Clone, Debug, Default)]
 pub struct PlanData {
-    /// The fields of the form.
+    /// Fields of the JSON form.
     pub form: Form,
-    /// What the reader has to say about the file: fields that it does not know, and what an older file lacks.
+    /// Notes of the reader: unknown fields, and missing fields of older files.
     pub notes: Vec<String>,
-    /// Where each pass was declared, by its index; empty where nobody knows, as in a saved plan.
+    /// Source location of each pass by index; empty if unknown, as in a saved plan.
     pub declared_at: Vec<String>,
-    /// The plan itself; none of a saved one.
+    /// The plan itself; `None` for a saved plan.
     pub plan: Option<Arc<Plan>>,
     passes: HashMap<String, usize>,
     resources: HashMap<String, usize>,
 }
 
 impl PlanData {
-    /// The rows of a form, with an index of their names. Of several rows with one name, the first is found.
+    /// Indexes the rows of a form by name. Of several rows with one name, the first is found.
     pub fn new(form: Form, notes: Vec<String>) -> Self {
         let mut passes = HashMap::new();
         for (index, pass) in form.passes.iter().enumerate() {
@@ -34,19 +34,20 @@ impl PlanData {
         Self { form, notes, declared_at: Vec::new(), plan: None, passes, resources }
     }
 
-    /// The index of a pass in [`Form::passes`].
+    /// Returns the index of a pass in [`Form::passes`].
     pub fn pass(&self, name: &str) -> Option<usize> {
         self.passes.get(name).copied()
     }
 
-    /// The index of a resource in [`Form::resources`].
+    /// Returns the index of a resource in [`Form::resources`].
     pub fn resource(&self, name: &str) -> Option<usize> {
         self.resources.get(name).copied()
     }
 
-    /// Bytes that the shaders and copies of a step read from memory if they read each texture and buffer once and whole:
-    /// what is sampled, fetched, read as storage or copied, and not kept in the tile. Attachments that are loaded are
-    /// counted elsewhere ([`Step::unresolve_bytes`]).
+    /// Returns the bytes that shaders and copies of a step read from memory, each texture and buffer once and completely.
+    ///
+    /// Sampled, fetched, storage and copy reads count, unless the data stays in the tile. Attachment loads are counted
+    /// separately ([`Step::unresolve_bytes`]).
     pub fn fetched_bytes(&self, step: &Step) -> u64 {
         let mut read: Vec<usize> = Vec::new();
         for pass in step.passes.iter().filter_map(|name| self.pass(name)) {
@@ -66,7 +67,7 @@ impl PlanData {
         read.iter().fold(0, |sum: u64, r| sum.saturating_add(self.form.resources[*r].bytes))
     }
 
-    /// The attachments of a step that are this resource.
+    /// Returns the attachments of a step that are this resource.
     pub fn attached<'a>(&self, step: &'a Step, resource: &'a str) -> impl Iterator<Item = &'a Attachment> {
         step.attachments.iter().filter(move |a| a.resource == resource)
     }

@@ -1,60 +1,58 @@
-//! From the text of a saved plan to rows, or to one sentence that says why not.
+//! Reader of saved plans, with one-sentence errors.
 
 use super::data::PlanData;
 use super::rows::Form;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-/// Fields that are not known, of which so many are named.
+/// Maximum number of unknown fields to list.
 const NAMED: usize = 8;
 
-/// A text that is no plan that this program reads.
+/// Error of reading a saved plan.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ReadError {
-    /// The text is no JSON, or ends before its object does.
-    #[error("line {line}: the text is no JSON: {reason}{}", if *.truncated { "; it ends too early: copy or save it again" } else { "" })]
+    /// The text is invalid or truncated JSON.
+    #[error("line {line}: invalid JSON: {reason}{}", if *.truncated { "; the text is truncated; copy or save it again" } else { "" })]
     Syntax {
-        /// Where, from 1.
+        /// Line, from 1.
         line: usize,
-        /// What the parser says.
+        /// Error of the parser.
         reason: String,
-        /// The text ends within the object.
+        /// Whether the text ends within the object.
         truncated: bool,
     },
-    /// It is JSON of something else.
-    #[error("the file is no plan: its `schema` is {}, not `framegraph-plan`; save a plan with `plan FRAME.ron --format json`", quoted(.schema.as_deref()))]
+    /// JSON with another schema.
+    #[error("not a plan: `schema` is {}, expected `framegraph-plan`; save a plan with `plan FRAME.ron --format json`", quoted(.schema.as_deref()))]
     Schema {
-        /// The `schema` field, where it has one.
+        /// The `schema` field, if present.
         schema: Option<String>,
     },
-    /// A plan of another version.
-    #[error(
-        "the plan is of version {version}, and this program reads version {known}: save it anew with this version of the library"
-    )]
+    /// Plan with another version.
+    #[error("unsupported plan version {version}, expected {known}; save it again with this version of the library")]
     Version {
-        /// The version of the file.
+        /// Version of the file.
         version: u64,
-        /// The version that is read here.
+        /// Supported version.
         known: u32,
     },
-    /// A field is missing, or holds something else.
+    /// A field is missing or has the wrong type.
     #[error("line {line}: {reason}; docs/plan-json.md documents the fields")]
     Field {
-        /// Where, from 1.
+        /// Line, from 1.
         line: usize,
-        /// What is wrong.
+        /// Error of the parser.
         reason: String,
     },
-    /// A row points to a row that is not there.
-    #[error("{place}: {what} {index} is not among the {count} of the plan; the file was changed by hand or damaged")]
+    /// A row refers to a missing row.
+    #[error("{place}: {what} {index} does not exist, the plan has {count}; the file is damaged, save it again")]
     Dangling {
-        /// The row that points.
+        /// The referring row.
         place: String,
-        /// What it points to: a step or a slot.
+        /// Kind of the missing row: a step or a slot.
         what: &'static str,
-        /// The number that it gives.
+        /// Index of the missing row.
         index: usize,
-        /// How many there are.
+        /// Number of existing rows.
         count: usize,
     },
 }
@@ -69,14 +67,14 @@ fn quoted(schema: Option<&str>) -> String {
     schema.map_or_else(|| "missing".into(), |s| format!("`{}`", s.chars().take(40).collect::<String>()))
 }
 
-/// What says which form a file is of.
+/// Fields that identify the form of a file.
 #[derive(Deserialize)]
 struct Head {
     schema: Option<String>,
     version: Option<u64>,
 }
 
-/// Reads a plan. Fields that it does not know are named in [`PlanData::notes`] and left out.
+/// Reads a plan. Unknown fields are ignored and listed in [`PlanData::notes`].
 ///
 /// # Errors
 /// [`ReadError`], with line and reason.
@@ -85,7 +83,7 @@ pub fn read(text: &[u8]) -> Result<PlanData, ReadError> {
     let mut more = 0;
     let mut deserializer = serde_json::Deserializer::from_slice(text);
     let form: Result<Form, _> = serde_ignored::deserialize(&mut deserializer, |path| {
-        // One line for all rows of a list.
+        // Report one path for all rows of a list.
         let path = path.to_string();
         let path = path.split('.').map(|part| if part.parse::<usize>().is_ok() { "*" } else { part });
         let path = path.collect::<Vec<_>>().join(".");
@@ -102,15 +100,15 @@ pub fn read(text: &[u8]) -> Result<PlanData, ReadError> {
     let mut notes = Vec::new();
     if !unknown.is_empty() {
         let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
-        notes.push(format!("fields that this version does not know are not shown: {}{rest}", unknown.join(", ")));
+        notes.push(format!("unknown fields are not shown: {}{rest}", unknown.join(", ")));
     }
     if form.flows.is_none() {
-        notes.push("the file was saved before plans had `flows`: the graph has no edges; save it anew".into());
+        notes.push("the file is from a version without `flows`: the graph has no edges; save it again".into());
     }
     Ok(PlanData::new(form, notes))
 }
 
-/// Refuses another schema or version.
+/// Rejects other schemas and versions.
 fn known(schema: Option<String>, version: Option<u64>) -> Result<(), ReadError> {
     if schema.as_deref() != Some("framegraph-plan") {
         return Err(ReadError::Schema { schema });
@@ -123,13 +121,13 @@ fn known(schema: Option<String>, version: Option<u64>) -> Result<(), ReadError> 
     }
 }
 
-/// Why the rows could not be read: another form or version comes before a missing field.
+/// Explains a failure. A wrong schema or version takes precedence over a missing field.
 fn explained(text: &[u8], error: &serde_json::Error) -> ReadError {
     let (line, reason) = (error.line(), without_place(error));
     if error.is_syntax() || error.is_eof() {
         return ReadError::Syntax { line, reason, truncated: error.is_eof() };
     }
-    // A text that is whole, and of something else.
+    // Valid JSON of another form.
     let head = match serde_json::from_slice::<Head>(text) {
         Ok(head) => head,
         Err(error) if error.is_syntax() || error.is_eof() => {
@@ -145,13 +143,13 @@ fn explained(text: &[u8], error: &serde_json::Error) -> ReadError {
     }
 }
 
-/// The parser's sentence without its ` at line 1 column 2`.
+/// Returns the message of the parser without ` at line 1 column 2`.
 fn without_place(error: &serde_json::Error) -> String {
     let text = error.to_string();
     text.rsplit_once(" at line ").map_or(text.clone(), |(reason, _)| reason.to_owned())
 }
 
-/// Every index leads to a row, so that no view has to ask.
+/// Checks that every index refers to an existing row.
 fn dangling(form: &Form) -> Result<(), ReadError> {
     let (steps, slots) = (form.steps.len(), form.slots.len());
     let step = |place: &dyn Fn() -> String, index: Option<usize>| match index {
@@ -164,7 +162,7 @@ fn dangling(form: &Form) -> Result<(), ReadError> {
     for (index, row) in form.steps.iter().enumerate() {
         if row.index != index {
             let place = format!("step {index}");
-            return Err(ReadError::Dangling { place, what: "its index", index: row.index, count: steps });
+            return Err(ReadError::Dangling { place, what: "index", index: row.index, count: steps });
         }
     }
     for resource in &form.resources {

@@ -1,4 +1,4 @@
-//! The rows of a saved plan, field by field as `docs/plan-json.md` documents them.
+//! Rows of a saved plan, one field each as documented in `docs/plan-json.md`.
 #![expect(missing_docs, reason = "docs/plan-json.md documents each field under the same name")]
 
 use serde::Deserialize;
@@ -19,7 +19,7 @@ pub struct Form {
     pub totals: Totals,
     pub peak: Option<Peak>,
     pub passes: Vec<Pass>,
-    /// None in files that were saved before the form had them.
+    /// `None` in files saved before the form had flows.
     pub flows: Option<Vec<Flow>>,
     pub steps: Vec<Step>,
     pub resources: Vec<Resource>,
@@ -29,14 +29,14 @@ pub struct Form {
     pub decisions: Vec<Decision>,
 }
 
-/// What is probably not meant.
+/// Probable mistake in the graph.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Warning {
     pub warning: String,
     pub sentence: String,
 }
 
-/// Why an effect is in the frame, or is not.
+/// Reason that an effect is in the frame, or was dropped.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Note {
     pub about: String,
@@ -70,7 +70,7 @@ pub struct Totals {
 }
 
 impl Totals {
-    /// Each figure by its name, and whether it counts bytes; in the order of the form.
+    /// Returns every figure with its name, and whether it counts bytes, in the order of the form.
     pub fn rows(&self) -> [(&'static str, u64, bool); 21] {
         [
             ("unresolves", self.unresolves, false),
@@ -98,7 +98,7 @@ impl Totals {
     }
 }
 
-/// The step at which the most bytes are live.
+/// Step with the most live memory.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Peak {
     pub step: usize,
@@ -106,7 +106,7 @@ pub struct Peak {
     pub resources: Vec<String>,
 }
 
-/// A declared pass.
+/// Declared pass.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Pass {
     pub name: String,
@@ -118,7 +118,7 @@ pub struct Pass {
     pub accesses: Vec<Access>,
 }
 
-/// One use of one resource.
+/// Use of a resource by a pass.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Access {
     pub resource: String,
@@ -129,18 +129,18 @@ pub struct Access {
 }
 
 impl Access {
-    /// Whether contents change.
+    /// Returns whether the access changes contents.
     pub fn writes(&self) -> bool {
         self.mode != "read"
     }
 
-    /// Whether earlier contents are needed.
+    /// Returns whether the access needs earlier contents.
     pub fn reads(&self) -> bool {
         matches!(self.mode.as_str(), "read" | "modify")
     }
 }
 
-/// What one pass needs of another.
+/// Dependency between two passes.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Flow {
     pub from: String,
@@ -148,7 +148,7 @@ pub struct Flow {
     pub resources: Vec<String>,
 }
 
-/// A step.
+/// Step of the plan.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Step {
     pub index: usize,
@@ -165,7 +165,7 @@ pub struct Step {
     pub resolve_bytes: u64,
 }
 
-/// One attachment of a step.
+/// Attachment of a step.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Attachment {
     pub resource: String,
@@ -186,7 +186,7 @@ pub struct Attachment {
     pub resolve_bytes: u64,
 }
 
-/// A declared resource.
+/// Declared resource.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Resource {
     pub name: String,
@@ -210,7 +210,7 @@ pub struct Resource {
     pub slot: Option<usize>,
 }
 
-/// In which state an import comes.
+/// Initial state of an import.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Entry {
     pub defined: bool,
@@ -218,7 +218,7 @@ pub struct Entry {
     pub stages: Vec<String>,
 }
 
-/// A texture that later frames read.
+/// Texture that later frames read.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct History {
     pub name: String,
@@ -228,14 +228,14 @@ pub struct History {
     pub previous: Vec<Previous>,
 }
 
-/// An earlier image of a history.
+/// Earlier image of a history.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Previous {
     pub resource: String,
     pub age: u64,
 }
 
-/// A physical texture or buffer of the pool.
+/// Physical texture or buffer of the pool.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Slot {
     pub index: usize,
@@ -246,7 +246,7 @@ pub struct Slot {
     pub tenants: Vec<String>,
 }
 
-/// A transition or a hand-over of memory.
+/// Barrier: a layout transition or an aliasing barrier.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Barrier {
     pub before_step: usize,
@@ -261,7 +261,7 @@ pub struct Barrier {
     pub hand_over: Option<String>,
 }
 
-/// A decision with its reason.
+/// Decision with its reason.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Decision {
     pub about: String,

@@ -1,4 +1,4 @@
-//! Fields that take one of a few variants, or nothing.
+//! Fields with variants or optional values.
 
 use super::Node;
 use framegraph_passes::bloom::FlareSettings;
@@ -7,13 +7,13 @@ use framegraph_passes::occlusion::{Blur, ConeTrace};
 use framegraph_passes::{Effect, FrameSettings, Settings, Upscale};
 use std::sync::OnceLock;
 
-/// What a field may be instead: each as it is written in the file.
+/// Alternative values of a field, in RON.
 pub type Alternatives = Vec<String>;
 
-/// Froxels by default.
+/// Default settings of froxels.
 const FROXELS: &str = "tiles: 144, slices: 16, near_m: 5.0, far_m: 100.0";
 
-/// Fields that are `None` or hold something.
+/// Optional fields.
 const OPTIONS: [&str; 19] = [
     "settings.shading.specular_aa",
     "settings.shading.light_fade_m",
@@ -36,7 +36,7 @@ const OPTIONS: [&str; 19] = [
     "settings.post.edge_fade",
 ];
 
-/// Fields that are one of some variants.
+/// Fields with variants.
 const VARIANTS: [(&str, &[&str]); 29] = [
     ("quality", &["Low", "High", "Ultra"]),
     ("settings.samples", &["1", "4"]),
@@ -89,7 +89,7 @@ const VARIANTS: [(&str, &[&str]); 29] = [
     ("settings.hdr_format", &["Rgba16Float", "Rg11b10Ufloat"]),
 ];
 
-/// What the field at a path may be instead; none for numbers, truth values, and what has fields alone.
+/// Returns the alternatives of the field at a path; `None` for numbers, booleans and plain structures.
 pub fn alternatives(path: &str) -> Option<Alternatives> {
     if path == "lights" {
         return Some(vec![format!("Auto({FROXELS})"), format!("Froxels({FROXELS})"), "All".into()]);
@@ -100,7 +100,7 @@ pub fn alternatives(path: &str) -> Option<Alternatives> {
     OPTIONS.contains(&path).then(|| vec!["None".into(), template().at(path).map_or_else(String::new, Node::to_string)])
 }
 
-/// Settings in which nothing is `None`.
+/// Returns settings in which nothing is `None`.
 fn template() -> &'static Node {
     static TREE: OnceLock<Node> = OnceLock::new();
     TREE.get_or_init(|| {
@@ -109,7 +109,7 @@ fn template() -> &'static Node {
     })
 }
 
-/// Every effect in its default strength.
+/// Returns settings with every effect at its default strength.
 fn everything() -> Settings {
     let mut s = Effect::ALL.into_iter().fold(Settings::DEFAULT, Settings::with);
     s.upscale = Some(Upscale::DEFAULT);
@@ -138,7 +138,7 @@ mod tests {
     use super::*;
     use crate::settings::{settings, tree};
 
-    /// Every field below a path that is written as a variant.
+    /// Lists every field below a path whose value is a variant.
     fn variants(node: &Node, path: &str, found: &mut Vec<String>) {
         let is_name = |word: &str| word.starts_with(|c: char| c.is_ascii_uppercase());
         if node.variant().is_some_and(is_name) {
@@ -156,7 +156,7 @@ mod tests {
         variants(template(), "", &mut found);
         assert!(found.len() > 20, "{found:?}");
         for path in found {
-            assert!(alternatives(&path).is_some(), "nobody knows what {path} may be");
+            assert!(alternatives(&path).is_some(), "{path} has no alternatives");
         }
     }
 

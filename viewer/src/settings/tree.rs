@@ -1,37 +1,37 @@
-//! Values of RON as a tree: fields, items, words. Read from text, changed by who shows them, written back.
+//! RON values as a tree of fields, items and words, which can be parsed, edited and written.
 
 use std::fmt;
 
-/// A value.
+/// RON value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Node {
-    /// Named fields, of a struct or of a variant, whose name stands before them.
+    /// Named fields of a struct or variant, with the variant's name.
     Fields(Option<String>, Vec<(String, Self)>),
-    /// Values in a row, of a tuple or of a variant, whose name stands before them.
+    /// Items of a tuple or variant, with the variant's name.
     Items(Option<String>, Vec<Self>),
-    /// A number, a truth value, a variant that holds nothing, or a string with its quotes: as it is written.
+    /// Number, boolean, unit variant, or string with its quotes, as written.
     Word(String),
 }
 
-/// A text that is no tree.
+/// Syntax error in RON.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the settings cannot be read at letter {at}: {why}")]
+#[error("settings: syntax error at byte {at}: {why}")]
 pub struct TreeError {
-    /// Where, in bytes.
+    /// Byte offset.
     pub at: usize,
-    /// What was expected.
+    /// Reason.
     pub why: &'static str,
 }
 
 impl fmt::Debug for TreeError {
-    /// The sentence, since that is what an `unwrap` shows.
+    /// Prints the sentence, which `unwrap` shows.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
     }
 }
 
 impl Node {
-    /// The field of that name.
+    /// Returns the field with a name.
     pub fn field(&self, name: &str) -> Option<&Self> {
         match self {
             Self::Fields(_, fields) => fields.iter().find(|(own, _)| own == name).map(|(_, value)| value),
@@ -39,7 +39,8 @@ impl Node {
         }
     }
 
-    /// The value at a path of names and numbers, `settings.shadows.splits.0`; the whole for an empty path.
+    /// Returns the value at a path of names and indices such as `settings.shadows.splits.0`; the whole tree for an empty
+    /// path.
     pub fn at(&self, path: &str) -> Option<&Self> {
         path.split('.').filter(|part| !part.is_empty()).try_fold(self, |node, part| match node {
             Self::Items(_, items) => items.get(part.parse::<usize>().ok()?),
@@ -47,7 +48,7 @@ impl Node {
         })
     }
 
-    /// The same, to be changed.
+    /// Returns the value at a path for editing; see [`Self::at`].
     pub fn at_mut(&mut self, path: &str) -> Option<&mut Self> {
         path.split('.').filter(|part| !part.is_empty()).try_fold(self, |node, part| match node {
             Self::Items(_, items) => items.get_mut(part.parse::<usize>().ok()?),
@@ -56,7 +57,7 @@ impl Node {
         })
     }
 
-    /// The name of a variant; of a word, the word.
+    /// Returns the name of a variant, or the word itself.
     pub fn variant(&self) -> Option<&str> {
         match self {
             Self::Fields(name, _) | Self::Items(name, _) => name.as_deref(),
@@ -64,7 +65,7 @@ impl Node {
         }
     }
 
-    /// What it holds, each with the name or number that follows its own path.
+    /// Returns the children with the last part of their paths.
     pub fn children(&self) -> Vec<(String, &Self)> {
         match self {
             Self::Fields(_, fields) => fields.iter().map(|(name, value)| (name.clone(), value)).collect(),
@@ -91,19 +92,19 @@ impl fmt::Display for Node {
     }
 }
 
-/// Reads a value.
+/// Parses a value.
 ///
 /// # Errors
-/// Where the text is none.
+/// The position of the first syntax error.
 pub fn parse(text: &str) -> Result<Node, TreeError> {
     let mut reader = Reader { text, at: 0 };
     let node = reader.value(0)?;
     reader.space();
-    if reader.at < text.len() { Err(reader.wrong("nothing more is expected")) } else { Ok(node) }
+    if reader.at < text.len() { Err(reader.wrong("expected the end")) } else { Ok(node) }
 }
 
-/// Values deeper within one another than this are refused.
-const DEEPEST: usize = 64;
+/// Maximum nesting depth.
+const MAX_DEPTH: usize = 64;
 
 struct Reader<'a> {
     text: &'a str,
@@ -134,25 +135,25 @@ impl Reader<'_> {
         self.space();
         let ends = |c: char| c.is_whitespace() || matches!(c, '(' | ')' | ',' | ':' | '"');
         let length = self.rest().find(ends).unwrap_or(self.rest().len());
-        // `r#None` is a variant of that name, which is read without the mark too.
+        // `r#None` is a variant of that name, parsed without the raw prefix.
         let word = self.rest()[..length].trim_start_matches("r#").to_owned();
         self.at += length;
         word
     }
 
     fn value(&mut self, depth: usize) -> Result<Node, TreeError> {
-        if depth > DEEPEST {
-            return Err(self.wrong("the values lie too deep within one another"));
+        if depth > MAX_DEPTH {
+            return Err(self.wrong("values are nested too deeply"));
         }
         if self.take('"') {
-            let end = self.rest().find('"').ok_or_else(|| self.wrong("the string does not end"))?;
+            let end = self.rest().find('"').ok_or_else(|| self.wrong("unterminated string"))?;
             let word = format!("\"{}\"", &self.rest()[..end]);
             self.at += end + 1;
             return Ok(Node::Word(word));
         }
         let name = self.word();
         if !self.take('(') {
-            return if name.is_empty() { Err(self.wrong("a value is expected")) } else { Ok(Node::Word(name)) };
+            return if name.is_empty() { Err(self.wrong("expected a value")) } else { Ok(Node::Word(name)) };
         }
         let name = (!name.is_empty()).then_some(name);
         let (mut fields, mut items) = (Vec::new(), Vec::new());
@@ -171,11 +172,11 @@ impl Reader<'_> {
                     self.rest().starts_with(')')
                 }
             {
-                return Err(self.wrong("a comma or a closing bracket is expected"));
+                return Err(self.wrong("expected a comma or a closing parenthesis"));
             }
         }
         match (fields.is_empty(), items.is_empty()) {
-            (false, false) => Err(self.wrong("fields and plain values do not go together")),
+            (false, false) => Err(self.wrong("fields and plain values cannot be mixed")),
             (false, true) => Ok(Node::Fields(name, fields)),
             (true, _) => Ok(Node::Items(name, items)),
         }
@@ -187,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_is_read_again() -> Result<(), TreeError> {
+    fn written_values_are_parsed_again() -> Result<(), TreeError> {
         let text =
             "(a: 1.5, b: Some(x: -2, y: inf), c: (1, 2, (q: true)), d: None, e: \"no, (word)\", f: At((0.1, 0.2)))";
         let node = parse(text)?;
@@ -201,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_tree_is_refused_where_it_ends_to_be_one() {
+    fn syntax_errors_have_positions() {
         for (text, at) in
             [("", 0), ("(a: 1", 5), ("(a: 1, 2)", 9), ("(a: \"b)", 5), ("(a: 1) b", 7), ("(a: , b: 2)", 4)]
         {

@@ -1,36 +1,36 @@
-//! Bytes that each step loads, stores, averages and fetches, and their sums; with the change from another plan.
+//! Bytes loaded, stored, resolved and fetched by each step, with totals and the change from another plan.
 
+use super::format::{bytes, change, change_ink, title};
 use super::heads::step_tip;
-use super::words::{bytes, change, change_ink, title};
 use crate::drawing::{Align, Drawing, Ink, Item, letters_in, shortened, text_width};
 use crate::plan_data::{PlanData, Step};
 
 /// Height of a row.
 const ROW: f32 = 24.0;
-/// Width of the names at most.
+/// Maximum width of the names.
 const NAMES: f32 = 300.0;
-/// Width of a column of figures.
+/// Width of a column of numbers.
 const FIGURE: f32 = 92.0;
 /// Width of the longest bar.
 const BAR: f32 = 420.0;
-/// Height of letters.
+/// Font size.
 const SIZE: f32 = 12.0;
 
-/// What a step moves, in bytes.
+/// Bytes moved by a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Moved {
-    /// Loaded into the tile: unresolves.
+    /// Attachment loads (unresolves).
     pub loaded: u64,
-    /// Stored from the tile, without targets of multisample resolves.
+    /// Attachment stores (resolves), without multisample resolve targets.
     pub stored: u64,
-    /// Targets of multisample resolves.
+    /// Multisample resolve targets.
     pub resolved: u64,
-    /// Read by shaders and copies, each texture and buffer once.
+    /// Reads by shaders and copies, each texture and buffer once.
     pub fetched: u64,
 }
 
 impl Moved {
-    /// Together.
+    /// Returns the sum.
     pub fn total(self) -> u64 {
         [self.stored, self.resolved, self.fetched].iter().fold(self.loaded, |sum, b| sum.saturating_add(*b))
     }
@@ -39,13 +39,13 @@ impl Moved {
         [
             ("loaded", self.loaded, Ink::Load),
             ("stored", self.stored, Ink::Store),
-            ("averaged", self.resolved, Ink::Resolve),
+            ("resolved", self.resolved, Ink::Resolve),
             ("fetched", self.fetched, Ink::Fetch),
         ]
     }
 }
 
-/// What one step moves.
+/// Returns the bytes moved by a step.
 pub fn of_step(plan: &PlanData, step: &Step) -> Moved {
     let averages = step.attachments.iter().filter(|a| a.role.starts_with("resolve"));
     let resolved = averages.fold(0u64, |sum, a| sum.saturating_add(a.resolve_bytes));
@@ -57,7 +57,7 @@ pub fn of_step(plan: &PlanData, step: &Step) -> Moved {
     }
 }
 
-/// What the whole frame moves.
+/// Returns the bytes moved by the whole frame.
 pub fn of_frame(plan: &PlanData) -> Moved {
     plan.form.steps.iter().map(|step| of_step(plan, step)).fold(Moved::default(), |a, b| Moved {
         loaded: a.loaded.saturating_add(b.loaded),
@@ -67,7 +67,7 @@ pub fn of_frame(plan: &PlanData) -> Moved {
     })
 }
 
-/// Draws the table with its bars.
+/// Draws the table with bars.
 pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
     let mut drawing = Drawing::default();
     let mut y = title(&mut drawing, "bandwidth", plan);
@@ -75,9 +75,9 @@ pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
     let name = |step: &Step| format!("{} {}", step.index, step.passes.join(" + "));
     let widest = steps.iter().map(|(step, _)| text_width(&name(step), SIZE)).fold(110.0, f32::max);
     let names = widest.min(NAMES);
-    // Where bars begin.
+    // Left end of the bars.
     let bars = names + 4.0 * FIGURE + 20.0;
-    let most = steps.iter().map(|(_, moved)| moved.total()).max().unwrap_or(0).max(1);
+    let max = steps.iter().map(|(_, moved)| moved.total()).max().unwrap_or(0).max(1);
     for (column, (name, _, ink)) in Moved::default().parts().into_iter().enumerate() {
         let right = names + FIGURE * (column + 1) as f32;
         drawing.rect(
@@ -95,7 +95,7 @@ pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
         figures(&mut drawing, &name, *moved, [names, y]);
         let mut x = bars;
         for (word, count, ink) in moved.parts() {
-            let width = BAR * (count as f64 / most as f64) as f32;
+            let width = BAR * (count as f64 / max as f64) as f32;
             if width > 0.0 {
                 let bounds = [x, y - 7.0, x + width, y + 7.0];
                 drawing.rect(bounds, ink, None);
@@ -108,8 +108,8 @@ pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
     }
     drawing.line(vec![[0.0, y - ROW / 2.0], [bars + BAR, y - ROW / 2.0]], Ink::Text, 1.0);
     let total = of_frame(plan);
-    figures(&mut drawing, "the whole frame", total, [names, y]);
-    drawing.text([bars, y], SIZE, Ink::Text, format!("{} together", bytes(total.total())));
+    figures(&mut drawing, "whole frame", total, [names, y]);
+    drawing.text([bars, y], SIZE, Ink::Text, format!("{} in total", bytes(total.total())));
     if let Some(before) = against.map(of_frame) {
         y += ROW;
         drawing.text([0.0, y], SIZE, Ink::Text, "change");
@@ -119,13 +119,13 @@ pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
             drawing.aligned([right, y], SIZE, Align::Right, change_ink(was, now), change(was, now, true));
         }
         let (was, now) = (before.total(), total.total());
-        let words = format!("{} together", change(was, now, true));
+        let words = format!("{} in total", change(was, now, true));
         drawing.text([bars, y], SIZE, change_ink(was, now), words);
     }
     y += ROW + 4.0;
     for line in [
-        "loaded: attachments from memory into the tile (unresolves). stored: from the tile to memory (resolves).",
-        "averaged: targets of multisample resolves. fetched: read by shaders and copies, each texture and buffer once, whole.",
+        "loaded: attachments from memory into the tile. stored: attachments from the tile to memory.",
+        "resolved: multisample resolve targets. fetched: reads by shaders and copies, each texture and buffer once.",
     ] {
         drawing.text([0.0, y], 11.0, Ink::Faint, line);
         y += 17.0;

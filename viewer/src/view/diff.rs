@@ -1,36 +1,36 @@
-//! What changed from one plan to another: passes and resources that appeared or vanished, culls, steps, places, figures.
+//! Differences between two plans: passes, culling, merging, totals and resources.
 //!
-//! [`framegraph::diff()`] compares plans of this program; here one or both may have been saved. A test holds the two to
-//! the same answers.
+//! [`framegraph::diff()`] compares plans of this process, while here one or both may be saved. A test compares the results
+//! of both.
 
-use super::words::{bytes, change, cost_ink};
+use super::format::{bytes, change, cost_ink, label};
 use crate::drawing::{Align, Drawing, Ink, Item, text_width, wrapped};
 use crate::plan_data::{Pass, PlanData, Resource, Step};
 use std::collections::BTreeSet;
 
-/// Everything that changed.
+/// Differences between two plans.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Changes {
-    /// Passes that only the second has.
+    /// Passes only in the second plan.
     pub passes_added: Vec<String>,
-    /// Passes that only the first has.
+    /// Passes only in the first plan.
     pub passes_removed: Vec<String>,
-    /// Passes of both that run in one of them only: name, whether it is culled now, and why.
+    /// Passes culled in only one plan: name, whether it is culled now, and the reason.
     pub culls: Vec<(String, bool, String)>,
-    /// Passes that run in both, with the others of their steps before and after, where these differ.
+    /// Passes that run in both plans, with the other passes of their steps before and after, if these differ.
     pub merges: Vec<(String, Vec<String>, Vec<String>)>,
-    /// Figures that differ: name, before, after, and whether they count bytes.
+    /// Changed totals: name, before, after, and whether they count bytes.
     pub totals: Vec<(&'static str, u64, u64, bool)>,
-    /// Resources that only the second has.
+    /// Resources only in the second plan.
     pub resources_added: Vec<String>,
-    /// Resources that only the first has.
+    /// Resources only in the first plan.
     pub resources_removed: Vec<String>,
-    /// Resources of both whose shape, bytes or kind of placement differ: name, before, after.
+    /// Resources in both plans with different shape, size or placement: name, before, after.
     pub resources: Vec<(String, String, String)>,
 }
 
 impl Changes {
-    /// Whether nothing changed.
+    /// Returns whether nothing changed.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
@@ -70,7 +70,7 @@ pub fn changes(before: &PlanData, after: &PlanData) -> Changes {
     out
 }
 
-/// Names of the first list only, and of the second only, each once for each time that it has no partner.
+/// Returns the unmatched names of both lists, once per missing match.
 fn apart(before: &[String], after: &[String]) -> (Vec<String>, Vec<String>) {
     let only = |these: &[String], others: &[String]| {
         let mut left = std::collections::HashMap::<&str, usize>::new();
@@ -87,30 +87,30 @@ fn apart(before: &[String], after: &[String]) -> (Vec<String>, Vec<String>) {
     (only(before, after), only(after, before))
 }
 
-/// The other passes of a step.
+/// Returns the other passes of a step.
 fn others(step: &Step, pass: &Pass) -> Vec<String> {
     step.passes.iter().filter(|name| **name != pass.name).cloned().collect()
 }
 
-/// The changes as lists and a table.
+/// Draws the differences as lists and a table.
 pub fn drawing(before: Option<&PlanData>, after: &PlanData) -> Drawing {
     let mut drawing = Drawing::default();
     let Some(before) = before else {
-        let words = "nothing to compare with: open a second plan as the one to compare with, or ask a what-if";
+        let words = "Nothing to compare with: open a second plan for comparison, or change the what-if";
         drawing.text([0.0, 10.0], 12.0, Ink::Faint, words);
         return drawing;
     };
     let called = |plan: &PlanData| {
         let form = &plan.form;
         let [w, h] = form.frame;
-        let name = if form.name.is_empty() { "the frame" } else { &form.name };
+        let name = if form.name.is_empty() { "frame" } else { &form.name };
         format!("{name}, {} at {w}x{h}, {} steps", form.caps, form.totals.steps)
     };
     drawing.text([0.0, 10.0], 15.0, Ink::Text, format!("before: {}", called(before)));
     drawing.text([0.0, 32.0], 15.0, Ink::Text, format!("after:  {}", called(after)));
     let changes = changes(before, after);
     if changes.is_empty() {
-        drawing.text([0.0, 64.0], 13.0, Ink::Text, "nothing changed");
+        drawing.text([0.0, 64.0], 13.0, Ink::Text, "no differences");
         return drawing;
     }
     let y = figures(&changes, &mut drawing, 66.0);
@@ -118,16 +118,16 @@ pub fn drawing(before: Option<&PlanData>, after: &PlanData) -> Drawing {
     drawing
 }
 
-/// The figures that changed.
+/// Draws the changed totals.
 fn figures(changes: &Changes, drawing: &mut Drawing, mut y: f32) -> f32 {
     const COLUMNS: [f32; 3] = [360.0, 480.0, 600.0];
     for (x, name) in COLUMNS.into_iter().zip(["before", "after", "change"]) {
         drawing.aligned([x, y], 12.0, Align::Right, Ink::Faint, name);
     }
-    drawing.text([0.0, y], 12.0, Ink::Faint, "figure");
+    drawing.text([0.0, y], 12.0, Ink::Faint, "total");
     for &(name, was, is, is_bytes) in &changes.totals {
         y += 19.0;
-        drawing.text([0.0, y], 12.0, Ink::Text, name.replace('_', " "));
+        drawing.text([0.0, y], 12.0, Ink::Text, label(name));
         let word = |count: u64| if is_bytes { bytes(count) } else { count.to_string() };
         let ink = cost_ink(name, was, is);
         drawing.aligned([COLUMNS[0], y], 12.0, Align::Right, Ink::Text, word(was));
@@ -137,7 +137,7 @@ fn figures(changes: &Changes, drawing: &mut Drawing, mut y: f32) -> f32 {
     y + 26.0
 }
 
-/// What appeared, vanished, moved.
+/// Draws the lists of changed passes and resources.
 fn lists(changes: &Changes, after: &PlanData, drawing: &mut Drawing, mut y: f32) {
     let plain = |names: &[String]| names.iter().map(|n| (n.clone(), n.clone())).collect::<Vec<_>>();
     let with = |names: &[String]| if names.is_empty() { "alone".into() } else { format!("with {}", names.join(", ")) };
@@ -150,14 +150,14 @@ fn lists(changes: &Changes, after: &PlanData, drawing: &mut Drawing, mut y: f32)
     let resources = changes.resources.iter();
     let resources = resources.map(|(name, was, is)| (name.clone(), format!("{name}: {was} → {is}")));
     let lists = [
-        ("passes that appeared", '+', plain(&changes.passes_added)),
-        ("passes that vanished", '-', plain(&changes.passes_removed)),
-        ("passes that run now", '+', culls(false)),
-        ("passes that are culled now", '-', culls(true)),
-        ("passes in other company", '~', merges.collect()),
-        ("resources that appeared", '+', plain(&changes.resources_added)),
-        ("resources that vanished", '-', plain(&changes.resources_removed)),
-        ("resources that changed", '~', resources.collect()),
+        ("added passes", '+', plain(&changes.passes_added)),
+        ("removed passes", '-', plain(&changes.passes_removed)),
+        ("passes no longer culled", '+', culls(false)),
+        ("newly culled passes", '-', culls(true)),
+        ("passes merged differently", '~', merges.collect()),
+        ("added resources", '+', plain(&changes.resources_added)),
+        ("removed resources", '-', plain(&changes.resources_removed)),
+        ("changed resources", '~', resources.collect()),
     ];
     for (title, sign, rows) in lists.into_iter().filter(|(.., rows)| !rows.is_empty()) {
         drawing.text([0.0, y], 13.0, Ink::Text, format!("{title} ({})", rows.len()));

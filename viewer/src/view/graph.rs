@@ -1,8 +1,8 @@
 //! Passes and what flows between them: a box a step with its passes, culled passes as ghosts, imports and what outlives
 //! the frame at the ends of its lines.
 
+use super::format::{bytes, title};
 use super::heads::{step_tip, tip};
-use super::words::{bytes, title};
 use crate::drawing::{Drawing, Ink, Item, shortened, text_width};
 use crate::layout::layout;
 use crate::plan_data::{Pass, PlanData, Step};
@@ -10,31 +10,31 @@ use std::collections::BTreeMap;
 
 /// Height of a pass within its step.
 const ROW: f32 = 34.0;
-/// Height of the head of a step.
+/// Height of the header of a step.
 const HEAD: f32 = 20.0;
-/// Space around the passes of a step.
+/// Padding around the passes of a step.
 const PAD: f32 = 6.0;
-/// Letters of a name.
+/// Maximum number of characters of a name.
 const LETTERS: usize = 30;
-/// Height of the letters of names.
+/// Font size of names.
 const NAME: f32 = 13.0;
-/// Height of the letters of what is said about them.
+/// Font size of notes.
 const NOTE: f32 = 10.5;
 
-/// A node of the picture.
+/// Node of the graph.
 #[derive(Clone, Debug, PartialEq)]
 enum Node {
-    /// A step with its passes.
+    /// Step with its passes.
     Step(usize),
-    /// A pass that does not run.
+    /// Culled pass.
     Culled(usize),
-    /// What comes from outside of the frame.
+    /// Resource that enters the frame.
     Source(usize),
-    /// What is there after the frame.
+    /// Resource that outlives the frame.
     End(usize),
 }
 
-/// Draws the graph; below it, as ghosts, the passes that only the plan has which it is compared with.
+/// Draws the graph, and below it the passes that only the compared plan declares.
 pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
     let mut drawing = Drawing::default();
     let top = title(&mut drawing, "graph", plan);
@@ -77,7 +77,7 @@ pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
             Node::Source(resource) | Node::End(resource) => {
                 let row = &plan.form.resources[resource];
                 drawing.rect(bounds, Ink::Own, Ink::Faint);
-                let said = if matches!(node, Node::Source(_)) { "comes in" } else { "goes out" };
+                let said = if matches!(node, Node::Source(_)) { "in" } else { "out" };
                 let name = shortened(&row.name, LETTERS);
                 drawing.text([x + PAD, y + 12.0], NAME, Ink::Text, name);
                 drawing.text([x + PAD, y + 26.0], NOTE, Ink::Text, format!("{} {said}", row.kind));
@@ -92,7 +92,7 @@ pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
     drawing
 }
 
-/// Passes that are not declared any more: of effects that are switched off, or of another frame.
+/// Draws passes that are no longer declared, such as those of disabled effects.
 fn gone(before: &PlanData, plan: &PlanData, drawing: &mut Drawing) {
     let names = super::diff::changes(before, plan).passes_removed;
     if names.is_empty() {
@@ -100,7 +100,7 @@ fn gone(before: &PlanData, plan: &PlanData, drawing: &mut Drawing) {
     }
     let right = drawing.size[0].max(700.0);
     let [mut x, mut y] = [0.0, drawing.size[1] + 40.0];
-    drawing.text([x, y - 18.0], NOTE, Ink::Ghost, "not declared here, only in the plan that this is compared with:");
+    drawing.text([x, y - 18.0], NOTE, Ink::Ghost, "not declared here, only in the compared plan:");
     for name in names.iter().map(|name| shortened(name, LETTERS)) {
         let width = text_width(&name, NAME) + 2.0 * PAD;
         if x > 0.0 && x + width > right {
@@ -112,10 +112,10 @@ fn gone(before: &PlanData, plan: &PlanData, drawing: &mut Drawing) {
     }
 }
 
-/// Resources and flows that run from node to node.
+/// Resources and flows of each line between two nodes.
 type Lines = BTreeMap<(usize, usize), (Vec<usize>, Vec<usize>)>;
 
-/// The nodes in the order in which they run, and what runs between them.
+/// Returns the nodes in execution order and the lines between them.
 fn nodes(plan: &PlanData) -> (Vec<Node>, Lines) {
     let form = &plan.form;
     let mut nodes: Vec<Node> = (0..form.steps.len()).map(Node::Step).collect();
@@ -142,7 +142,7 @@ fn nodes(plan: &PlanData) -> (Vec<Node>, Lines) {
             put(from, to_node, Some(resource), Some(index));
         }
     }
-    // Full-screen resolves read what their pass, of an earlier step, has drawn.
+    // Full-screen resolves read the output of their pass in an earlier step.
     for step in form.steps.iter().filter(|step| step.full_screen_resolve) {
         for drawn in step.passes.iter().filter_map(|name| node_of[plan.pass(name)?]) {
             put(drawn, step.index, None, None);
@@ -178,7 +178,7 @@ fn nodes(plan: &PlanData) -> (Vec<Node>, Lines) {
     (nodes, lines)
 }
 
-/// What a pass writes, in one short line.
+/// Returns the resources that a pass writes, as a short line.
 fn written(pass: &Pass) -> String {
     let mut names: Vec<&str> = Vec::new();
     for access in pass.accesses.iter().filter(|a| a.writes()) {
@@ -189,7 +189,7 @@ fn written(pass: &Pass) -> String {
     if names.is_empty() { "writes nothing".into() } else { format!("→ {}", names.join(", ")) }
 }
 
-/// How a pass came into its step.
+/// Returns the label of how a pass joined its step.
 fn joined(pass: &Pass, step: &Step) -> &'static str {
     match pass.join.as_deref() {
         _ if step.full_screen_resolve => "full-screen resolve",
@@ -230,13 +230,13 @@ fn size(plan: &PlanData, node: &Node) -> [f32; 2] {
         Node::Culled(pass) => [pass_width(&plan.form.passes[pass], "culled") + 2.0 * PAD, ROW + 2.0],
         Node::Source(resource) | Node::End(resource) => {
             let row = &plan.form.resources[resource];
-            let said = text_width(&format!("{} goes out", row.kind), NOTE);
+            let said = text_width(&format!("{} out", row.kind), NOTE);
             [text_width(&shortened(&row.name, LETTERS), NAME).max(said) + 2.0 * PAD, ROW + 2.0]
         }
     }
 }
 
-/// Letters of the small line that is as wide as the longest name.
+/// Number of note characters as wide as the longest name.
 fn note_letters() -> usize {
     (LETTERS as f32 * NAME / NOTE) as usize
 }
@@ -262,7 +262,7 @@ fn draw_step(plan: &PlanData, step: &Step, bounds: [f32; 4], drawing: &mut Drawi
     }
 }
 
-/// The two lines of a pass.
+/// Draws the two lines of a pass.
 fn draw_pass(plan: &PlanData, pass: usize, said: &str, [x, y]: [f32; 2], ink: Ink, drawing: &mut Drawing) {
     let pass = &plan.form.passes[pass];
     let name = shortened(&pass.name, LETTERS);
@@ -274,7 +274,7 @@ fn draw_pass(plan: &PlanData, pass: usize, said: &str, [x, y]: [f32; 2], ink: In
     drawing.text([x, y + 23.0], NOTE, ink, shortened(&written(pass), note_letters()));
 }
 
-/// A polyline with its slopes bent: between two places, half a wave.
+/// Returns a polyline with smooth slopes.
 fn smooth(points: &[[f32; 2]]) -> Vec<[f32; 2]> {
     const PARTS: usize = 8;
     let mut out = vec![points[0]];
@@ -291,7 +291,7 @@ fn smooth(points: &[[f32; 2]]) -> Vec<[f32; 2]> {
     out
 }
 
-/// What belongs to an item and is lit when it is selected: a resource lights its way from writer to readers.
+/// Returns an item and its related items, which are highlighted together. A resource includes its writers and readers.
 pub fn lit(plan: &PlanData, item: Item) -> Vec<Item> {
     let mut lit = vec![item];
     match item {

@@ -1,28 +1,28 @@
-//! Columns of passes in the order in which they run, under brackets of steps: what timeline and memory map share.
+//! Column headers of passes in execution order under brackets of steps, for the timeline and the memory map.
 
-use super::words::bytes;
+use super::format::bytes;
 use crate::drawing::{Drawing, Ink, Item, shortened, text_width};
 use crate::plan_data::{Pass, PlanData, Step};
 
-/// Letters of a name in a head.
+/// Maximum number of characters of a name.
 const LETTERS: usize = 28;
-/// Height of the letters.
+/// Font size.
 const SIZE: f32 = 12.0;
-/// Heads climb by so many degrees.
+/// Slope of the names in degrees.
 const TURNED: f32 = 55.0;
 
-/// A column.
+/// Column of a pass.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Column {
-    /// The pass, by its index; a full-screen resolve stands by the pass that declares it.
+    /// Pass by index; a full-screen resolve uses the pass that declares it.
     pub pass: usize,
-    /// Its step; none of what was culled.
+    /// Step; `None` for a culled pass.
     pub step: Option<usize>,
-    /// The step resolves what its pass, of an earlier step, declares.
+    /// Whether the step is a full-screen resolve of an earlier step.
     pub resolve: bool,
 }
 
-/// The passes by step, then those that were culled.
+/// Returns the passes by step, then the culled passes.
 pub(super) fn columns(plan: &PlanData) -> Vec<Column> {
     let mut columns = Vec::new();
     for step in &plan.form.steps {
@@ -35,7 +35,7 @@ pub(super) fn columns(plan: &PlanData) -> Vec<Column> {
     columns
 }
 
-/// How a pass came into its step, as a sign.
+/// Returns the sign of how a pass joined its step.
 fn sign(pass: &Pass, column: &Column) -> &'static str {
     match pass.join.as_deref() {
         _ if column.resolve => "resolve ",
@@ -45,8 +45,7 @@ fn sign(pass: &Pass, column: &Column) -> &'static str {
     }
 }
 
-/// Draws names over columns that begin at `x` and are `width` wide, and brackets around those of one step; returns where
-/// they end.
+/// Draws the names and step brackets of columns of a width from `x`; returns the bottom.
 pub(super) fn draw(plan: &PlanData, columns: &[Column], drawing: &mut Drawing, [x, y]: [f32; 2], width: f32) -> f32 {
     let label = |column: &Column| {
         let pass = &plan.form.passes[column.pass];
@@ -71,7 +70,7 @@ pub(super) fn draw(plan: &PlanData, columns: &[Column], drawing: &mut Drawing, [
         let center = crate::drawing::Align::Center;
         match step.map(|step| &plan.form.steps[step]) {
             Some(row) => {
-                // A bracket over several passes: they share one step.
+                // Passes under one bracket share a step.
                 drawing.rect(bounds, Ink::Step, if count > 1 { Ink::Text } else { Ink::Faint });
                 drawing.aligned(middle, 11.0, center, Ink::Text, row.index.to_string());
                 drawing.hit(bounds, Item::Step(row.index), step_tip(row));
@@ -80,7 +79,7 @@ pub(super) fn draw(plan: &PlanData, columns: &[Column], drawing: &mut Drawing, [
                 drawing.ghost(bounds, Ink::Ghost);
                 let word = if text_width("culled", 11.0) < bounds[2] - bounds[0] { "culled" } else { "-" };
                 drawing.aligned(middle, 11.0, center, Ink::Ghost, word);
-                drawing.hit(bounds, None, "culled passes: they do not run");
+                drawing.hit(bounds, None, "culled passes: do not run");
             }
         }
         first += count;
@@ -88,16 +87,16 @@ pub(super) fn draw(plan: &PlanData, columns: &[Column], drawing: &mut Drawing, [
     bracket
 }
 
-/// What a pass is, in a few lines.
+/// Returns the tooltip of a pass.
 pub(super) fn tip(pass: &Pass) -> String {
     format!("{} ({})\n{}", pass.name, pass.kind, pass.reason)
 }
 
-/// What a step is, in a few lines.
+/// Returns the tooltip of a step.
 pub(super) fn step_tip(step: &Step) -> String {
     let [w, h] = step.extent;
     format!(
-        "step {}: {}\n{}, {w}x{h}, {} samples\nunresolves {}, loads {}\nresolves {}, stores {}",
+        "step {}: {}\n{}, {w}x{h}, {} samples\nloads: {}, {}\nstores: {}, {}",
         step.index,
         step.passes.join(" + "),
         step.kind,

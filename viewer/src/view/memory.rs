@@ -1,23 +1,23 @@
-//! The heap map, offset over time, with the moment of the most memory; and what sharing and memoryless attachments saved.
+//! Memory map: offsets over steps, with the peak, and the savings of aliasing and memoryless attachments.
 
+use super::format::{bytes, change, title};
 use super::heads::step_tip;
 use super::timeline::{place_ink, tip};
-use super::words::{bytes, change, title};
 use crate::drawing::{Align, Drawing, Ink, Item, letters_in, shortened, text_width};
 use crate::plan_data::{PlanData, Resource};
 
 /// Height of the map.
 const HEIGHT: f32 = 380.0;
-/// Width of the map at least.
+/// Minimum width of the map.
 const WIDTH: f32 = 640.0;
-/// Width of a step at least.
+/// Minimum width of a step.
 const STEP: f32 = 46.0;
-/// Width of the scale of offsets.
+/// Width of the offset scale.
 const SCALE: f32 = 84.0;
-/// Height of letters.
+/// Font size.
 const SIZE: f32 = 12.0;
 
-/// Draws the map; with the change from another plan where there is one.
+/// Draws the map, with the change from another plan.
 pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
     let mut drawing = Drawing::default();
     let y = title(&mut drawing, "memory", plan);
@@ -31,41 +31,41 @@ pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
         let ([af, al], [bf, bl], (ao, ae), (bo, be)) = (held(a), held(b), range(a), range(b));
         af <= bl && bf <= al && ao < be && bo < ae
     };
-    // Where a device keeps them in heaps of their own, offsets of both start at 0.
+    // Offsets of textures and buffers both start at 0 if the device has separate heaps.
     let apart = form.alias == "heap" && textures.iter().any(|(_, t)| buffers.iter().any(|(_, b)| overlap(t, b)));
     if textures.is_empty() && buffers.is_empty() {
-        drawing.text([0.0, y], SIZE, Ink::Faint, "no resource takes shared memory");
+        drawing.text([0.0, y], SIZE, Ink::Faint, "no resource uses shared memory");
         y += 20.0;
     } else if apart {
-        y = map(plan, "heap of textures", &textures, &mut drawing, y);
-        y = map(plan, "heap of buffers", &buffers, &mut drawing, y + 20.0);
+        y = map(plan, "texture heap", &textures, &mut drawing, y);
+        y = map(plan, "buffer heap", &buffers, &mut drawing, y + 20.0);
     } else {
-        let what = if form.slots.is_empty() { "heap" } else { "slots of the pool, laid end to end" };
+        let what = if form.slots.is_empty() { "heap" } else { "slots of the pool, end to end" };
         let all: Vec<_> = placed().collect();
         y = map(plan, what, &all, &mut drawing, y);
     }
     let y = list(plan, "outlives the frame", |r| r.placement == "own" || r.kind == "history", &mut drawing, y + 24.0);
     let y = list(plan, "imported", |r| r.placement == "external", &mut drawing, y + 12.0);
-    list(plan, "takes no memory", |r| matches!(r.placement.as_str(), "memoryless" | "inlined"), &mut drawing, y + 12.0);
+    list(plan, "no memory", |r| matches!(r.placement.as_str(), "memoryless" | "inlined"), &mut drawing, y + 12.0);
     drawing
 }
 
-/// Where a resource ends in its heap.
+/// Returns the end of a resource in its heap.
 fn end(resource: &Resource) -> u64 {
     resource.offset.unwrap_or_default().saturating_add(resource.bytes)
 }
 
-/// Figures and what they come from.
+/// Draws the totals.
 fn sums(plan: &PlanData, against: Option<&PlanData>, drawing: &mut Drawing, mut y: f32) -> f32 {
     let totals = plan.form.totals;
     let shared = totals.unaliased_bytes.saturating_sub(totals.heap_bytes);
-    let bound = if totals.optimal { " (the least possible: proved)" } else { "" };
+    let bound = if totals.optimal { " (proved minimal)" } else { "" };
     let was = against.map(|plan| plan.form.totals);
     let row = |of: &dyn Fn(&crate::plan_data::Totals) -> u64| (of(&totals), was.as_ref().map(of));
     let rows = [
         ("shared memory", row(&|t| t.heap_bytes), bound.to_owned()),
-        ("lower bound", row(&|t| t.lower_bound_bytes), " (no placement takes less)".into()),
-        ("without sharing", row(&|t| t.unaliased_bytes), format!(" ({} saved by sharing)", bytes(shared))),
+        ("lower bound", row(&|t| t.lower_bound_bytes), " (of any placement)".into()),
+        ("without aliasing", row(&|t| t.unaliased_bytes), format!(" ({} saved by aliasing)", bytes(shared))),
         ("avoided", row(&|t| t.avoided_bytes), " (memoryless and inlined)".into()),
         ("outlives the frame", row(&|t| t.own_bytes), " (histories, exports)".into()),
     ];
@@ -79,7 +79,7 @@ fn sums(plan: &PlanData, against: Option<&PlanData>, drawing: &mut Drawing, mut 
     y
 }
 
-/// One map.
+/// Draws one map.
 fn map(plan: &PlanData, what: &str, rows: &[(usize, &Resource)], drawing: &mut Drawing, y: f32) -> f32 {
     let form = &plan.form;
     let top_bytes = rows.iter().map(|(_, r)| end(r)).max().unwrap_or(1).max(1);
@@ -131,7 +131,7 @@ fn map(plan: &PlanData, what: &str, rows: &[(usize, &Resource)], drawing: &mut D
     top + HEIGHT + 8.0
 }
 
-/// Resources outside of the map, a line each.
+/// Draws a list of resources outside the map.
 fn list(plan: &PlanData, what: &str, is: impl Fn(&Resource) -> bool, drawing: &mut Drawing, y: f32) -> f32 {
     let rows: Vec<_> = plan.form.resources.iter().enumerate().filter(|(_, r)| is(r)).collect();
     if rows.is_empty() {

@@ -1,6 +1,6 @@
-//! The frame on devices with several queues: a lane a queue with steps as long as they take, semaphores between lanes, and what it wins.
+//! Schedule on devices with several queues: one lane per queue, steps by duration, semaphores, and the time saved.
 
-use super::words::{bytes, title};
+use super::format::{bytes, title};
 use crate::drawing::{Align, Drawing, Ink, Item, letters_in, shortened};
 use crate::plan_data::PlanData;
 use crate::trace_data::{TraceData, quartiles};
@@ -9,18 +9,18 @@ use framegraph_queues::{QueueLayout, Schedule, estimate_us, replan, schedule, sh
 
 /// Height of a lane.
 const LANE: f32 = 40.0;
-/// Width of the names of lanes.
+/// Width of the lane names.
 const NAMES: f32 = 90.0;
 /// Width of the longest frame.
 const WIDTH: f32 = 1100.0;
-/// Height of letters.
+/// Font size.
 const SIZE: f32 = 12.0;
-/// Bytes a microsecond where no times are at hand: 100 GB/s.
+/// Memory bandwidth for estimated times: 100 GB/s, in bytes per microsecond.
 const BYTES_PER_US: f64 = 100_000.0;
-/// Steps of a frame that is scheduled while one looks; `plan --queues` takes its time for more.
-const MOST_STEPS: usize = 400;
+/// Maximum number of steps to schedule interactively; `plan --queues` has no limit.
+const MAX_STEPS: usize = 400;
 
-/// Draws the frame on one queue more and on two more. Costs are the medians of the trace where each step has one.
+/// Draws the schedules with one and with two additional queues. Costs are the medians of the trace if every step has one.
 pub fn drawing(data: &PlanData, trace: Option<&TraceData>) -> Drawing {
     let mut drawing = Drawing::default();
     let mut y = title(&mut drawing, "queues", data);
@@ -29,11 +29,11 @@ pub fn drawing(data: &PlanData, trace: Option<&TraceData>) -> Drawing {
         y += 20.0;
     };
     let Some(plan) = &data.plan else {
-        say("a saved plan holds no graph, so it cannot be planned for several queues: open the graph (FRAME.ron)");
+        say("A saved plan contains no graph: open the graph (FRAME.ron) to schedule it on several queues");
         return drawing;
     };
-    if plan.steps().len() > MOST_STEPS {
-        say(&format!("more than {MOST_STEPS} steps: `plan FRAME.ron --queues async-compute` schedules them"));
+    if plan.steps().len() > MAX_STEPS {
+        say(&format!("More than {MAX_STEPS} steps: schedule them with `plan FRAME.ron --queues async-compute`"));
         return drawing;
     }
     let own = match replan(plan) {
@@ -45,8 +45,8 @@ pub fn drawing(data: &PlanData, trace: Option<&TraceData>) -> Drawing {
     };
     let measured = trace.and_then(|trace| medians_us(&own, trace));
     say(match measured {
-        Some(_) => "steps take what the trace has as the median of each",
-        None => "steps take what the bytes that they touch take at 100 GB/s; a trace has their times",
+        Some(_) => "step times: medians of the trace",
+        None => "step times: estimated from bytes at 100 GB/s; open a trace for measured times",
     });
     let costs_us = measured.unwrap_or_else(|| estimate_us(&own, BYTES_PER_US));
     for layout in [QueueLayout::async_compute(), QueueLayout::async_compute_and_copy()] {
@@ -58,11 +58,11 @@ pub fn drawing(data: &PlanData, trace: Option<&TraceData>) -> Drawing {
             }
         };
     }
-    drawing.text([0.0, y + 8.0], 11.0, Ink::Faint, "wgpu has one queue: no back end here runs more");
+    drawing.text([0.0, y + 8.0], 11.0, Ink::Faint, "wgpu has a single queue; these schedules are not executed");
     drawing
 }
 
-/// The median time of each step on the GPU, or on the CPU where the GPU's are not known; none where a step has no time.
+/// Returns the median time of each step on the GPU, or else on the CPU; `None` if a step has no time.
 fn medians_us(plan: &Plan, trace: &TraceData) -> Option<Vec<f64>> {
     let of = |step| {
         let names = plan.passes_of(step).iter().map(|member| plan.graph().pass_name(member.pass).to_owned());
@@ -73,20 +73,20 @@ fn medians_us(plan: &Plan, trace: &TraceData) -> Option<Vec<f64>> {
     plan.step_ids().map(of).collect()
 }
 
-/// One layout; the bottom of what was drawn.
+/// Draws one layout and returns the bottom.
 fn lanes(data: &PlanData, plan: &Plan, found: &Schedule, drawing: &mut Drawing, y: f32) -> f32 {
     let Schedule { layout, lanes, waits, transfers, times_us, total_us, alone_us, .. } = found;
     let names: Vec<_> = layout.queues.iter().map(|queue| queue.name.as_str()).collect();
     let memory = share_memory(plan, found, plan.caps().texture_alignment_bytes.max(1));
     let head = format!(
-        "{}: {total_us:.0} µs, {alone_us:.0} µs on one queue; {} semaphores, {} transfers; {} of memory",
+        "{}: {total_us:.0} µs, {alone_us:.0} µs on one queue; {} semaphores, {} transfers; {} memory",
         names.join(" + "),
         waits.len() + found.joins.len(),
         transfers.len(),
         bytes(memory.bytes())
     );
     drawing.text([0.0, y], 13.0, Ink::Text, head);
-    // Both layouts have one scale.
+    // All layouts use one scale.
     let scale = WIDTH / alone_us.max(1e-3) as f32;
     let (x, top) = (|us: f64| NAMES + us as f32 * scale, |lane: usize| y + 18.0 + LANE * lane as f32);
     for (lane, name) in names.iter().enumerate() {
@@ -105,7 +105,7 @@ fn lanes(data: &PlanData, plan: &Plan, found: &Schedule, drawing: &mut Drawing, 
         drawing.rect(bounds, ink, Ink::Faint);
         let first = plan.passes_of(step)[0].pass;
         let name = plan.graph().pass_name(first);
-        // Steps of the plan that is shown are those of this one, as long as memory alone differs.
+        // The steps of both plans correspond, since only memory differs.
         let item = data.form.steps.get(step.index()).map(|shown| Item::Step(shown.index));
         if let Some(item) = item {
             drawing.mark(item);

@@ -1,7 +1,7 @@
-//! Resources down, passes across: lifetimes as bars, what each pass reads and writes, and what each step loads and stores.
+//! Timeline of resources over passes: lifetimes as bars, accesses, loads and stores.
 
+use super::format::{bytes, title};
 use super::heads::{self, Column};
-use super::words::{bytes, title};
 use crate::drawing::{Align, Drawing, Ink, Item, letters_in, shortened, text_width};
 use crate::plan_data::{Attachment, PlanData, Resource};
 use crate::trace_data::{TraceData, quartiles};
@@ -10,12 +10,12 @@ use crate::trace_data::{TraceData, quartiles};
 const ROW: f32 = 22.0;
 /// Width of a pass.
 const COLUMN: f32 = 52.0;
-/// Width of the names at most.
+/// Maximum width of the names.
 const NAMES: f32 = 330.0;
-/// Height of letters.
+/// Font size.
 const SIZE: f32 = 12.0;
 
-/// Draws the matrix; with the times of the steps where a trace of this frame is at hand.
+/// Draws the matrix, with step times if a trace of the frame is open.
 pub fn drawing(plan: &PlanData, trace: Option<&TraceData>) -> Drawing {
     let mut drawing = Drawing::default();
     let y = title(&mut drawing, "timeline", plan);
@@ -42,16 +42,16 @@ pub fn drawing(plan: &PlanData, trace: Option<&TraceData>) -> Drawing {
     drawing
 }
 
-/// What the marks mean.
+/// Draws the legend.
 fn legend(drawing: &mut Drawing, y: f32) -> f32 {
     let mut x = 0.0;
-    for (mark, words) in [("load", "unresolve (load)"), ("clear", "clear"), ("dont_care", "don't care")] {
+    for (mark, words) in [("load", "load"), ("clear", "clear"), ("dont_care", "don't care")] {
         load_mark(drawing, mark, x, y);
         drawing.text([x + 14.0, y], 11.0, Ink::Faint, words);
         x += 30.0 + text_width(words, 11.0);
     }
     for (mark, words) in
-        [("store", "resolve (store)"), ("multisample", "multisample resolve"), ("discard", "discard"), ("none", "none")]
+        [("store", "store"), ("multisample", "multisample resolve"), ("discard", "discard"), ("none", "none")]
     {
         store_mark(drawing, mark, x + 8.0, y);
         drawing.text([x + 16.0, y], 11.0, Ink::Faint, words);
@@ -70,7 +70,7 @@ fn legend(drawing: &mut Drawing, y: f32) -> f32 {
     y + 16.0
 }
 
-/// Medians and quartiles of the steps, on CPU and GPU.
+/// Draws medians and quartiles of step times on CPU and GPU.
 fn times(plan: &PlanData, columns: &[Column], trace: &TraceData, drawing: &mut Drawing, [names, y]: [f32; 2]) -> f32 {
     for (line, side) in ["CPU ms", "GPU ms"].into_iter().enumerate() {
         let middle = y + ROW * (line as f32 + 0.5);
@@ -94,7 +94,7 @@ fn times(plan: &PlanData, columns: &[Column], trace: &TraceData, drawing: &mut D
     y + 2.0 * ROW + 4.0
 }
 
-/// The color of a place.
+/// Returns the color of a placement.
 pub(super) fn place_ink(resource: &Resource) -> Ink {
     match resource.placement.as_str() {
         "slot" | "heap" => Ink::Shared,
@@ -103,19 +103,19 @@ pub(super) fn place_ink(resource: &Resource) -> Ink {
     }
 }
 
-/// Name, shape, bytes and place.
+/// Returns the tooltip of a resource: name, shape, size and placement.
 pub(super) fn tip(resource: &Resource) -> String {
     let mut tip = format!("{} ({})\n{}, {}\n", resource.name, resource.kind, resource.shape, bytes(resource.bytes));
     tip += &match (resource.placement.as_str(), resource.offset) {
         ("slot", _) => format!("slot {} of the pool", resource.slot.unwrap_or_default()),
-        ("heap", Some(offset)) => format!("heap, from {}", bytes(offset)),
-        ("external", _) => "memory of its owner".into(),
+        ("heap", Some(offset)) => format!("heap, offset {}", bytes(offset)),
+        ("external", _) => "external memory".into(),
         (place, _) => place.into(),
     };
     tip
 }
 
-/// Where a resource lives and what it takes, in two words.
+/// Returns the placement and size of a resource as a short label.
 fn place_of(resource: &Resource) -> String {
     let history = matches!(resource.kind.as_str(), "history" | "previous");
     match resource.placement.as_str() {
@@ -164,7 +164,7 @@ fn row(plan: &PlanData, columns: &[Column], index: usize, drawing: &mut Drawing,
         let Some(step) = column.step.map(|s| &plan.form.steps[s]) else {
             if !uses.is_empty() {
                 let words: Vec<_> = uses.iter().map(|a| format!("{} {}", a.mode, a.kind)).collect();
-                let tip = format!("{} would {} {}, and is culled", pass.name, words.join(", "), resource.name);
+                let tip = format!("{} (culled) would {} {}", pass.name, words.join(", "), resource.name);
                 drawing.hit([left, y, right, y + ROW], Item::Pass(column.pass), tip);
             }
             continue;
@@ -196,7 +196,7 @@ fn row(plan: &PlanData, columns: &[Column], index: usize, drawing: &mut Drawing,
     }
 }
 
-/// The attachment that says most: of several levels or layers of one resource.
+/// Returns the attachment with the highest rank among several levels or layers of a resource.
 fn strongest<'a>(attached: &[&'a Attachment], rank: impl Fn(&Attachment) -> u8) -> Option<&'a Attachment> {
     attached.iter().copied().max_by_key(|a| rank(a))
 }
@@ -217,7 +217,7 @@ fn store_rank(store: &str) -> u8 {
     }
 }
 
-/// How contents come into the tile: an arrow in, a filled box, an empty box.
+/// Draws the load operation: an arrow, a filled box, or an empty box.
 fn load_mark(drawing: &mut Drawing, load: &str, x: f32, y: f32) {
     match load {
         "load" => drawing.triangle([[x, y - 5.0], [x + 8.0, y], [x, y + 5.0]], Ink::Load),
@@ -226,7 +226,7 @@ fn load_mark(drawing: &mut Drawing, load: &str, x: f32, y: f32) {
     }
 }
 
-/// What becomes of them: an arrow out, two arrows for a multisample resolve, a cross, a dot.
+/// Draws the store operation: an arrow, two arrows for a multisample resolve, a cross, or a dot.
 fn store_mark(drawing: &mut Drawing, store: &str, x: f32, y: f32) {
     let arrow = |x: f32| [[x - 4.0, y - 5.0], [x + 4.0, y], [x - 4.0, y + 5.0]];
     match store {

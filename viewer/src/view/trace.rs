@@ -1,4 +1,4 @@
-//! The times of many frames: a bar a frame with those that stutter marked, and the quartiles of each step.
+//! Frame times: one bar per frame with stutters marked, and the quartiles of each step.
 
 use crate::drawing::{Align, Drawing, Ink, letters_in, shortened};
 use crate::trace_data::{STUTTER, TraceData, quartiles};
@@ -7,27 +7,27 @@ use crate::trace_data::{STUTTER, TraceData, quartiles};
 const HEIGHT: f32 = 160.0;
 /// Width of all bars.
 const WIDTH: f32 = 900.0;
-/// Height of letters.
+/// Font size.
 const SIZE: f32 = 12.0;
 /// Height of a row.
 const ROW: f32 = 20.0;
 /// Width of the names.
 const NAMES: f32 = 380.0;
-/// Frames that are drawn; of more, the latest.
-const MOST: usize = 900;
+/// Maximum number of drawn frames, the latest ones.
+const MAX_FRAMES: usize = 900;
 
-/// Draws the frames and steps.
+/// Draws frames and steps.
 pub fn drawing(trace: Option<&TraceData>) -> Drawing {
     let mut drawing = Drawing::default();
     let Some(trace) = trace else {
-        drawing.text([0.0, 10.0], SIZE, Ink::Faint, "no trace: open one that `render SCENE --trace FILE.json` wrote");
+        drawing.text([0.0, 10.0], SIZE, Ink::Faint, "No trace: open one written by `render SCENE --trace FILE.json`");
         return drawing;
     };
-    let frames = &trace.frames[trace.frames.len().saturating_sub(MOST)..];
-    let most = frames.iter().filter(|f| !f.warm_up).map(|f| f.time_ms()).fold(0.0, f64::max).max(1e-3);
+    let frames = &trace.frames[trace.frames.len().saturating_sub(MAX_FRAMES)..];
+    let max_ms = frames.iter().filter(|f| !f.warm_up).map(|f| f.time_ms()).fold(0.0, f64::max).max(1e-3);
     let stutters = trace.stutters();
     let head = format!(
-        "{} frames, {} of them stutter (more than {STUTTER} times the median of {:.3} ms)",
+        "{} frames, {} stutters (at least {STUTTER} times the median of {:.3} ms)",
         trace.frames.len(),
         stutters.len(),
         trace.median_ms().unwrap_or(0.0)
@@ -37,7 +37,7 @@ pub fn drawing(trace: Option<&TraceData>) -> Drawing {
     let width = WIDTH / frames.len().max(1) as f32;
     for (index, frame) in frames.iter().enumerate() {
         let x = width * index as f32;
-        let height = (f64::from(HEIGHT) * (frame.time_ms() / most).min(1.0)) as f32;
+        let height = (f64::from(HEIGHT) * (frame.time_ms() / max_ms).min(1.0)) as f32;
         let stutter = stutters.iter().any(|s| s.number == frame.number);
         let ink = match (frame.warm_up, stutter) {
             (true, _) => Ink::Grid,
@@ -46,16 +46,16 @@ pub fn drawing(trace: Option<&TraceData>) -> Drawing {
         };
         drawing.rect([x, base - height, x + (width - 0.5).max(0.5), base], ink, None);
         if stutter {
-            // A mark of its own shape, for who does not see the color.
+            // A marker in addition to the color, for color-blind users.
             drawing.triangle([[x, 28.0], [x + 8.0, 28.0], [x + 4.0, 34.0]], Ink::Peak);
         }
-        let warm = if frame.warm_up { ", warms up" } else { "" };
+        let warm = if frame.warm_up { ", warm-up" } else { "" };
         let gpu = frame.gpu_ms.map(|ms| format!(", GPU {ms:.3} ms")).unwrap_or_default();
         let tip = format!("frame {}: CPU {:.3} ms{gpu}{warm}", frame.number, frame.cpu_ms);
         drawing.hit([x, 28.0, x + width, base], None, tip);
     }
     drawing.line(vec![[0.0, base], [WIDTH, base]], Ink::Text, 1.0);
-    drawing.text([WIDTH + 8.0, base - HEIGHT], 11.0, Ink::Faint, format!("{most:.3} ms"));
+    drawing.text([WIDTH + 8.0, base - HEIGHT], 11.0, Ink::Faint, format!("{max_ms:.3} ms"));
     drawing.text([WIDTH + 8.0, base], 11.0, Ink::Faint, "0 ms");
     let mut y = base + 30.0;
     let columns = ["CPU 1/4", "median", "3/4 ms", "GPU 1/4", "median", "3/4 ms"];

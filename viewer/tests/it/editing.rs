@@ -1,4 +1,4 @@
-//! What is changed by hand in the window: materials, curves; and what is written from it.
+//! Edits in the window: materials and curves; and exported files.
 
 use crate::folder;
 use crate::live::{harness, live, plan, settled};
@@ -16,7 +16,7 @@ use viewer::trace_data;
 use viewer::view::View;
 use viewer::what_if::{Planner, WhatIf};
 
-/// What the viewport shows.
+/// Returns the pixels of the viewport.
 fn picture(harness: &mut Harness<'_, Viewer>) -> Vec<u8> {
     settled(harness);
     let running = live(harness).running.as_ref().expect("a frame");
@@ -27,7 +27,7 @@ fn picture(harness: &mut Harness<'_, Viewer>) -> Vec<u8> {
 #[test]
 fn a_material_is_changed_and_comes_back() {
     let Some(mut harness) = harness("a_material_is_changed_and_comes_back", "columns") else { return };
-    // Dither is another one in each frame.
+    // Dither differs in every frame.
     let mut document = live(&mut harness).document().clone();
     document.frame.settings.post.dither = 0.0;
     live(&mut harness).set(document, false);
@@ -41,7 +41,7 @@ fn a_material_is_changed_and_comes_back() {
     buttons.into_iter().next().expect("the material of an instance").click();
     harness.run();
     assert_eq!(live(&mut harness).material, Some(number));
-    // Looking changes nothing, whatever sliders would allow.
+    // Selecting a material changes nothing.
     assert_eq!(live(&mut harness).document().materials, BTreeMap::new());
     assert!(picture(&mut harness) == before, "the frame is the same");
 
@@ -57,14 +57,14 @@ fn a_material_is_changed_and_comes_back() {
     };
     assert_eq!(survey(&mut harness), 0.0, "facts are decided for what is drawn");
     harness.run();
-    harness.get_by_label("as it was").click();
+    harness.get_by_label("Reset").click();
     harness.run();
     assert!(live(&mut harness).document().materials.is_empty());
-    assert!(picture(&mut harness) == before, "it is as it was");
+    assert!(picture(&mut harness) == before, "the picture is restored");
     assert!(live(&mut harness).history.undo());
     live(&mut harness).again();
     assert!(picture(&mut harness) == painted, "undo paints it again");
-    // Another scene has materials of its own.
+    // Another scene has other materials.
     live(&mut harness).load("glass");
     settled(&mut harness);
     assert!(live(&mut harness).document().materials.is_empty() && live(&mut harness).material.is_none());
@@ -115,14 +115,14 @@ fn plans_graphs_and_times_are_written_and_read_again() {
         (again.form.totals.passes, again.form.totals.steps),
         (shown.form.totals.passes, shown.form.totals.steps)
     );
-    // What is shown was read from the files of the session; nothing is written over those.
+    // Exports never overwrite input files of the session.
     let kept = std::fs::read(&ron).expect("a file");
     harness.state_mut().session.read.push(ron.clone());
     for purpose in [Purpose::Trace, Purpose::Export(graph)] {
         harness.state_mut().session.messages.clear();
         write(&mut harness, purpose, "frame.ron");
-        let told = harness.state().session.messages.join("\n");
-        assert!(told.contains("frame.ron: it is read"), "{told}");
+        let messages = harness.state().session.messages.join("\n");
+        assert!(messages.contains("frame.ron: it is an input"), "{messages}");
     }
     assert_eq!(std::fs::read(&ron).expect("a file"), kept);
     let trace = write(&mut harness, Purpose::Trace, "times.json");
@@ -137,9 +137,9 @@ fn plans_graphs_and_times_are_written_and_read_again() {
     harness.state_mut().session.messages.clear();
     write(&mut harness, Purpose::Export(graph), "frame.tiff");
     harness.state_mut().chosen(Purpose::Trace, Path::new("/no/such/folder/trace.json"), Theme::Light);
-    let told = harness.state().session.messages.join("\n");
+    let messages = harness.state().session.messages.join("\n");
     assert!(
-        told.contains("frame.tiff: the ending is none of") && told.contains("trace.json: cannot be written"),
-        "{told}"
+        messages.contains("frame.tiff: unknown extension") && messages.contains("trace.json: cannot be written"),
+        "{messages}"
     );
 }

@@ -1,4 +1,4 @@
-//! A frame that is drawn beside its plan: what is set about it, and what its panels show.
+//! Live frame next to its plan: settings and panels.
 
 use crate::folder;
 use egui_kittest::Harness;
@@ -11,34 +11,34 @@ use std::sync::Arc;
 use std::time::Duration;
 use viewer::app::{Pane, Session, Viewer};
 use viewer::live::Live;
-use viewer::live::look::Document;
+use viewer::live::capture::Document;
 use viewer::live::screen::Screen;
 use viewer::plan_data::PlanData;
 use viewer::what_if::WhatIf;
 
-/// Loading and making light take longer than this only where something hangs.
+/// Timeout of loading and preparing light.
 const PATIENCE: Duration = Duration::from_secs(300);
 
-/// The frame of the cheapest preset with ambient occlusion, of a scene with a light that casts shadows; of whole meshes, since levels of
-/// detail take longer to make than the rest.
+/// Returns the cheapest preset with ambient occlusion, for a scene with a shadow-casting light. Levels of detail are
+/// disabled, because creating them dominates the test time.
 pub fn document() -> Document {
     let mut frame = FrameSettings { lod_error_px: 0.0, ..Preset::Low.frame() };
     frame.settings = Settings::with(frame.settings, Effect::Occlusion);
     Document { frame, ..Document::default() }
 }
 
-/// A viewer with a frame of `spheres`, on this device.
+/// Creates a viewer with a live frame on a device.
 pub fn viewer(screen: &Screen, document: Document, scene: &str) -> Viewer {
     let mut session = Session::new(WhatIf::on(Caps::wgpu()), || {});
     let mut live = Live::new(screen.clone(), document, scene, None, || {});
     assert!(live.settle(&mut session, PATIENCE), "loading takes five minutes");
     assert!(live.running.is_some(), "{:?}", session.messages);
-    live.asked.forced = true;
+    live.options.forced = true;
     live.share = 0.1;
     Viewer::with(session, live)
 }
 
-/// The same in a window that nobody draws; none where there is no device.
+/// Creates a harness of a viewer with a live frame; `None` without a device.
 pub fn harness(name: &str, scene: &str) -> Option<Harness<'static, Viewer>> {
     let gpu = match Gpu::open(&AdapterRequest::from_env()) {
         Ok(gpu) => gpu,
@@ -66,7 +66,7 @@ pub fn plan(harness: &Harness<'_, Viewer>) -> Arc<PlanData> {
     harness.state().session.plan.clone().expect("a plan")
 }
 
-/// Shows what has changed until nothing does.
+/// Shows changes until nothing changes.
 pub fn settled(harness: &mut Harness<'_, Viewer>) {
     let viewer = harness.state_mut();
     let Viewer { live, session, .. } = viewer;
@@ -83,7 +83,7 @@ fn an_effect_that_is_switched_off_is_not_drawn_and_undo_draws_it_again() {
     let before = plan(&harness);
     let made: Vec<_> = before.form.passes.iter().map(|p| p.name.clone()).filter(|p| p.contains("occlusion")).collect();
     assert!(made.len() > 2, "{made:?}");
-    // What is shown is what is executed.
+    // The displayed plan is the executed one.
     let counts = |harness: &mut Harness<'_, Viewer>| live(harness).running.as_ref().expect("a frame").plan().counts();
     let (executed, shown) = (counts(&mut harness), before.form.totals);
     assert_eq!((u64::from(executed.passes), u64::from(executed.steps)), (shown.passes, shown.steps));
@@ -114,7 +114,7 @@ fn an_effect_that_is_switched_off_is_not_drawn_and_undo_draws_it_again() {
 fn what_facts_drop_is_told_beside_its_switch() {
     let name = "what_facts_drop_is_told_beside_its_switch";
     let Some(mut harness) = harness(name, "columns") else { return };
-    live(&mut harness).asked.forced = false;
+    live(&mut harness).options.forced = false;
     live(&mut harness).again();
     harness.run();
     harness.state_mut().turn_to(Pane::Effects);
@@ -122,11 +122,11 @@ fn what_facts_drop_is_told_beside_its_switch() {
     let facts = live(&mut harness).running.as_ref().expect("a frame").facts.clone();
     let row =
         facts.rows.iter().find(|row| facts.dropped().contains(row.effect)).expect("the scene needs not everything");
-    let told = format!("dropped because {}", row.reason);
+    let told = format!("dropped: {}", row.reason);
     assert!(harness.query_all_by_label_contains(&told).count() > 0, "{told}");
 }
 
-/// Whoever asks for levels of detail of a scene that has none waits for them once.
+/// Requesting levels of detail creates them once.
 #[test]
 fn levels_of_detail_are_made_when_they_are_asked_for() {
     let Some(mut harness) = harness("levels_of_detail_are_made_when_they_are_asked_for", "spheres") else { return };
@@ -159,7 +159,7 @@ fn four_k_is_asked_of_the_frame_that_is_drawn() {
     assert!(after.form.totals.resolve_bytes > before.totals.resolve_bytes);
     let drawn = live(&mut harness).running.as_ref().expect("a frame").plan().frame();
     assert_eq!(drawn, before.frame, "only the plan is of another size");
-    harness.get_by_label("As it is").click();
+    harness.get_by_label("Reset").click();
     harness.run();
     settled(&mut harness);
     assert_eq!(plan(&harness).form.totals, before.totals);
@@ -180,11 +180,11 @@ fn a_bad_file_keeps_the_scene() {
         assert!(harness.query_all_by_label_contains(&named).count() > 0, "{named} is in a message");
         let loaded = &live(&mut harness).running.as_ref().expect("a scene").loaded;
         assert_eq!(loaded.name, "columns");
-        assert!(matches!(loaded.around, viewer::live::loading::Around::Sky(_)));
+        assert!(matches!(loaded.environment, viewer::live::loading::EnvironmentSource::Sky(_)));
         harness.get_by_label("Close").click();
         harness.run();
     }
-    // And a good one takes its place.
+    // A valid scene replaces it.
     live(&mut harness).load("glass");
     settled(&mut harness);
     assert_eq!(live(&mut harness).running.as_ref().expect("a scene").loaded.name, "glass");
@@ -212,7 +212,7 @@ fn looking_at_textures_changes_no_count() {
     let running = live(&mut harness).running.as_ref().expect("a frame");
     assert_eq!(u64::from(running.plan().counts().passes), before.form.totals.passes);
     assert_eq!(plan(&harness).form.totals, before.form.totals);
-    // The picture shows what it holds: it is neither one color nor the one before.
+    // The preview shows the contents of the picture: more than one color.
     live(&mut harness).preview.look_at("picture");
     harness.run();
     let found = live(&mut harness).preview.found.take().expect("a picture");
@@ -226,12 +226,12 @@ fn debug_modes_are_executed_and_compared() {
     let name = "debug_modes_are_executed_and_compared";
     let Some(mut harness) = harness(name, "columns") else { return };
     let before = plan(&harness);
-    live(&mut harness).asked.modes = Modes(vec![Mode::Immediate]);
+    live(&mut harness).options.modes = Modes(vec![Mode::Immediate]);
     live(&mut harness).again();
     harness.run();
     let immediate = plan(&harness);
     assert!(immediate.form.totals.steps > before.form.totals.steps);
-    live(&mut harness).asked.modes = Modes::default();
+    live(&mut harness).options.modes = Modes::default();
     live(&mut harness).again();
     harness.run();
     harness.state_mut().turn_to(Pane::Debugging);
@@ -240,11 +240,11 @@ fn debug_modes_are_executed_and_compared() {
     harness.run();
     let bisecting = live(&mut harness).bisecting.as_ref().expect("it has begun");
     assert!(bisecting.is_done() && bisecting.outcomes.len() == Mode::ALL.len() + 1);
-    // Grading in a pass of its own reads what a texture of small floats has rounded, and FXAA sees other edges then.
+    // A separate grading pass reads radiance rounded by a small float format, and FXAA then finds other edges.
     let differ: Vec<_> = bisecting.outcomes.iter().filter(|o| !o.is_same()).map(|o| o.name()).collect();
     assert_eq!(differ, ["no-inline", "immediate"]);
     assert_eq!(bisecting.pictures(0).map(|pictures| pictures[2].iter().step_by(4).any(|code| *code > 0)), Some(false));
-    // A budget that the plan breaks is told with what to blame.
+    // An exceeded budget is reported with the responsible decisions.
     live(&mut harness).budget = "steps=0".into();
     harness.run();
     assert!(harness.query_all_by_label_contains("budget exceeded: steps").count() > 0);

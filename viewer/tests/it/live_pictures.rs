@@ -1,6 +1,6 @@
-//! Pictures of the panels of a frame that is drawn: at the size of a window, of a large one, and with letters twice as large.
+//! Pictures of the panels of a live frame: at common window sizes, and at twice the font size.
 //!
-//! `VIEWER_PICTURES=write cargo test -p viewer --test it live_pictures` makes the one of `docs/viewer.md` anew.
+//! `VIEWER_PICTURES=write cargo test -p viewer --test it live_pictures` renews the picture of `docs/viewer.md`.
 
 use crate::live::{document, viewer};
 use std::path::Path;
@@ -8,7 +8,7 @@ use viewer::app::Pane;
 use viewer::drawing::Theme;
 use viewer::offscreen::Offscreen;
 
-/// What is shown: a file, size in pixels, pixels per point, a pane on the left and one in the middle.
+/// Pictures: file, size in pixels, pixels per point, pane on the left, pane in the center.
 const SHOWN: [(&str, [u32; 2], f32, Pane, Pane); 5] = [
     ("live", [1280, 720], 1.0, Pane::Settings, Pane::Viewport),
     ("live-effects", [1280, 720], 1.0, Pane::Effects, Pane::Viewport),
@@ -29,8 +29,8 @@ fn panels_of_a_frame_fit_their_window() {
     let (made, kept) = (crate::folder("live_pictures"), Path::new("../docs/viewer"));
     let anew = std::env::var_os("VIEWER_PICTURES").is_some_and(|word| word == "write");
     let live = viewer.live.as_mut().expect("a frame");
-    // Panels are as large with a frame of fewer texels behind them, which is drawn in a tenth of the time.
-    (live.share, live.asked.forced) = (if anew { 1.0 } else { 0.25 }, false);
+    // Panel sizes do not depend on the resolution of the frame, so draw a small one.
+    (live.share, live.options.forced) = (if anew { 1.0 } else { 0.25 }, false);
     let shown_here = if anew { SHOWN.to_vec() } else { test_report::share(SHOWN) };
     for (file, size, scale, left, middle) in shown_here {
         viewer.turn_to(left);
@@ -49,7 +49,7 @@ fn panels_of_a_frame_fit_their_window() {
         if anew && file == "live" {
             std::fs::copy(&path, kept.join("live.png")).expect("a file");
         }
-        // The frame is in the middle: its pixels are of many colors.
+        // The viewport in the center shows many colors.
         if middle == Pane::Viewport {
             let mut colors = std::collections::HashSet::new();
             let [width, height] = size.map(|side| side as usize);

@@ -1,4 +1,4 @@
-//! Tests of the viewer: what it reads, what it draws, what its panels do, and its window.
+//! Tests of the viewer: files, drawings, panels and the window.
 
 mod changes;
 mod editing;
@@ -21,7 +21,7 @@ use viewer::plan_data::PlanData;
 use viewer::view::bandwidth;
 use viewer::what_if::{Planner, WhatIf};
 
-/// Frames as data, of the workspace.
+/// Graph files of the workspace.
 const CASES: [&str; 7] = ["deferred", "diamond", "filament", "forward", "granite_on_tile", "mip_pyramid", "two_views"];
 
 fn case(name: &str) -> PathBuf {
@@ -29,19 +29,19 @@ fn case(name: &str) -> PathBuf {
     Path::new("../tests/cases").join(format!("{name}.ron"))
 }
 
-/// A frame planned for a device, with some features switched on.
+/// Compiles a graph file for a device, with some features enabled.
 fn planned(name: &str, caps: &Caps, on: &[&str]) -> PlanData {
     let source = GraphSource::open(&case(name)).expect("the case is sound");
     let features = on.iter().map(|feature| ((*feature).to_owned(), true)).collect();
     source.plan(&WhatIf { features, ..WhatIf::on(caps.clone()) }).expect("the case can be planned")
 }
 
-/// A session that shows a file, after everything is read and planned.
+/// Opens a file in a session and waits for its plan.
 fn session(path: &Path) -> Session {
     session_of(path, &[])
 }
 
-/// The same with some features of the file switched on.
+/// Opens a file in a session with some features enabled.
 fn session_of(path: &Path, on: &[&str]) -> Session {
     let features = on.iter().map(|feature| ((*feature).to_owned(), true)).collect();
     let mut session = Session::new(WhatIf { features, ..WhatIf::on(Caps::tiler()) }, || {});
@@ -50,8 +50,9 @@ fn session_of(path: &Path, on: &[&str]) -> Session {
     session
 }
 
-/// The text of a trace as the library writes it: so many frames of a plan, of which the first warms up and one stutters. The
-/// times are made up: a millisecond for each ten mebibytes that a step moves, and a little more from frame to frame.
+/// Returns a trace in the format of the library: a warm-up frame, and one frame that stutters.
+///
+/// Times are synthetic: a millisecond for every ten mebibytes that a step moves, with small variations.
 fn trace_of(plan: &PlanData, frames: u64, stutter: u64) -> String {
     let named = |what: &str, pid: u32, tid: u32, name: &str| {
         format!(r#"{{"name":"{what}","ph":"M","pid":{pid},"tid":{tid},"args":{{"name":"{name}"}}}}"#)
@@ -80,7 +81,7 @@ fn trace_of(plan: &PlanData, frames: u64, stutter: u64) -> String {
     format!("{{\"displayTimeUnit\":\"ms\",\"traceEvents\":[{}]}}", events.join(","))
 }
 
-/// A folder for files of one test.
+/// Creates an empty folder for a test.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("viewer").join(name);
     let _ = std::fs::remove_dir_all(&folder);
@@ -88,7 +89,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Every case for every device.
+/// Compiles every graph file for every device.
 fn plans() -> Vec<(String, Arc<PlanData>)> {
     let mut plans = Vec::new();
     for name in CASES {
@@ -97,7 +98,7 @@ fn plans() -> Vec<(String, Arc<PlanData>)> {
             for on in [false, true] {
                 let features = source.features().into_iter().map(|(feature, is)| (feature, is || on)).collect();
                 let plan = source.plan(&WhatIf { features, ..WhatIf::on(caps.clone()) });
-                // Not all features of a case go together.
+                // Some features of a graph exclude each other.
                 plans.extend(plan.ok().map(|plan| (format!("{name} for {}, all on: {on}", caps.name), Arc::new(plan))));
             }
         }

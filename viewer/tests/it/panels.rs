@@ -1,4 +1,4 @@
-//! Panels in use: clicks and keys, and what they lead to.
+//! Panels in use: clicks, keys, and their effects.
 
 use crate::{case, folder, session};
 use egui_kittest::Harness;
@@ -26,7 +26,7 @@ fn of(session: Session) -> Harness<'static, Viewer> {
     harness
 }
 
-/// Waits for other threads, then shows what they brought.
+/// Waits for background work and shows its results.
 fn settled(harness: &mut Harness<'_, Viewer>) {
     assert!(harness.state_mut().session.settle(Duration::from_secs(60)));
     harness.run();
@@ -47,11 +47,11 @@ fn a_pass_that_is_clicked_is_explained() {
     harness.get_by_label("pass grade");
     let reason = &plan.form.passes[plan.pass("grade").expect("a pass")].reason;
     assert!(harness.query_all_by_label_contains(reason).count() > 0, "{reason}");
-    // A link leads on: to the texture that it reads.
+    // A link selects the texture that the pass reads.
     harness.get_by_label("read same pixel hdr").click();
     harness.run();
     harness.get_by_label("resource hdr");
-    // And Escape back to the frame.
+    // Escape returns to the frame.
     harness.key_press(egui::Key::Escape);
     harness.run();
     assert_eq!(harness.state().session.selected, None);
@@ -90,7 +90,7 @@ fn presets_and_files_of_settings_are_planned() {
         let plan = frame.plan(&WhatIf::on(Caps::wgpu())).expect("it can be planned");
         assert!(plan.pass("color").is_some() && plan.declared_at[0].contains(".rs:"), "{which}");
     }
-    // Its shadow maps are drawn by passes of one name, which are told apart.
+    // Passes of equal names are numbered.
     let ultra = StandardFrame::open("ultra").and_then(|frame| frame.plan(&WhatIf::on(Caps::tiler()))).expect("a plan");
     let map = ultra.resource("shadow/shadow_map").expect("a resource");
     let lit = viewer::view::graph::lit(&ultra, Item::Resource(map));
@@ -122,7 +122,7 @@ fn four_k_is_asked_and_the_bytes_are_seen() {
     let bytes = viewer::view::bytes(after.form.totals.resolve_bytes);
     assert!(harness.query_all_by_label_contains(&bytes).count() > 0, "{bytes} is on the panel");
     assert!(harness.state().session.against().is_some(), "the difference is against the frame as it is");
-    harness.get_by_label("As it is").click();
+    harness.get_by_label("Reset").click();
     harness.run();
     settled(&mut harness);
     assert_eq!(harness.state().session.plan.clone().expect("a plan").form.totals, before);
@@ -137,7 +137,7 @@ fn a_bad_file_is_a_message_and_what_was_shown_stays() {
     std::fs::write(&path, "{\"schema\": \"framegraph-plan\", \"version\": 1, \"passes\": [").expect("a file");
     harness.state_mut().session.open(&path, viewer::app::Role::Shown);
     settled(&mut harness);
-    assert!(harness.query_all_by_label_contains("ends too early").count() == 1);
+    assert!(harness.query_all_by_label_contains("truncated").count() == 1);
     assert!(Arc::ptr_eq(&before, harness.state().session.plan.as_ref().expect("a plan")));
     harness.get_by_label("Close").click();
     harness.run();
@@ -180,7 +180,7 @@ fn nothing_is_drawn_while_nothing_happens() {
     assert_eq!(harness.state().session.doing(), None);
 }
 
-/// The slider chooses frames, the list below it shows the pictures of options; without a folder of pictures there is none.
+/// The slider chooses frames, and the list shows comparison pictures of choices, if their folder exists.
 #[test]
 fn a_frame_is_chosen_within_a_time_and_an_option_is_seen() {
     let folder = folder("accuracy_panel");
@@ -204,7 +204,7 @@ fn a_frame_is_chosen_within_a_time_and_an_option_is_seen() {
     assert!(harness.query_by_label("shadow-filter: DPCF").is_none(), "there is no picture of it");
     harness.get_by_label("shadow-filter: PCSS").click();
     harness.run();
-    harness.get_by_label_contains("reference, option, and sixteen times");
+    harness.get_by_label_contains("reference, choice, and difference times sixteen");
     harness.get_by_label("picture").click();
     harness.run();
     harness.get_by_label("shadow-filter: VSM").click();

@@ -1,6 +1,6 @@
-//! The pictures of `docs/viewer.md`, compared with what the panels look like now.
+//! Compares the pictures of `docs/viewer.md` with the current panels.
 //!
-//! `VIEWER_PICTURES=write cargo test -p viewer --test it pictures` makes them anew.
+//! `VIEWER_PICTURES=write cargo test -p viewer --test it pictures` renews them.
 
 use crate::{case, folder, session_of, trace_of};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
@@ -15,14 +15,14 @@ use viewer::offscreen::Offscreen;
 use viewer::trace_data::read;
 use viewer::view::View;
 
-/// Size of the pictures, in pixels.
+/// Size of the pictures in pixels.
 const SIZE: [u32; 2] = [1280, 720];
-/// A pixel differs from this much of a channel on: drivers round edges of letters otherwise.
+/// Minimum difference of a channel that counts, since drivers round the edges of glyphs differently.
 const STEP: u8 = 24;
-/// So many pixels may differ: a tenth of a percent.
-const MOST: usize = (SIZE[0] * SIZE[1] / 1000) as usize;
+/// Maximum number of differing pixels: 0.1 %.
+const MAX_DIFFERENT: usize = (SIZE[0] * SIZE[1] / 1000) as usize;
 
-/// How many pixels differ.
+/// Counts differing pixels.
 fn differing(a: &[u8], b: &[u8]) -> usize {
     let far = |(p, q): (&[u8], &[u8])| p.iter().zip(q).any(|(p, q)| p.abs_diff(*q) >= STEP);
     a.chunks_exact(4).zip(b.chunks_exact(4)).filter(|pair| far(*pair)).count()
@@ -31,14 +31,14 @@ fn differing(a: &[u8], b: &[u8]) -> usize {
 fn write(path: &Path, rgba: &[u8]) {
     let file = File::create(path).expect("a file");
     let rgb: Vec<u8> = rgba.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect();
-    // Flat boxes pack best as they are.
+    // Flat areas compress best without a filter.
     let encoder = PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::NoFilter);
     encoder.write_image(&rgb, SIZE[0], SIZE[1], ExtendedColorType::Rgb8).expect("a picture");
 }
 
-/// A frame on a tiler, Filament's but for queues, with what the view is about.
+/// Returns a viewer of Filament's frame on a tiler, or of a deferred frame for queues, with a selection for the view.
 fn shown(view: View) -> (Viewer, Option<Item>) {
-    // Nothing of Filament's frame leaves for another queue.
+    // Filament's frame has no work for another queue.
     let mut session = match view {
         View::Queues => session_of(&case("deferred"), &[]),
         _ => session_of(&case("filament"), &["shadows", "sao"]),
@@ -101,10 +101,10 @@ fn panels_look_as_in_the_document() {
         let expected = image::open(kept.join(&file)).unwrap_or_else(|e| panic!("{file}: {e}")).to_rgba8();
         assert_eq!(expected.dimensions(), (SIZE[0], SIZE[1]));
         let differ = differing(&rgba, expected.as_raw());
-        assert!(differ <= MOST, "{file}: {differ} pixels differ; see {}", made.display());
-        // The judge tells one view from the other.
+        assert!(differ <= MAX_DIFFERENT, "{file}: {differ} pixels differ; see {}", made.display());
+        // Negative control: different views are told apart.
         if let Some(before) = before.replace(rgba.clone()) {
-            assert!(differing(&before, &rgba) > MOST, "{file} is the picture before it");
+            assert!(differing(&before, &rgba) > MAX_DIFFERENT, "{file} is the picture before it");
         }
     }
 }

@@ -53,7 +53,7 @@ fn every_mistake_is_one_line_and_leaves_no_file() {
     assert!(code == Some(0) && help.contains("--headless") && help.lines().all(|line| line.len() <= 120), "{help}");
 }
 
-/// A file of so many passes in a row that planning them takes longer than a signal.
+/// Writes a graph file with 20,000 passes in a row, which takes longer to plan than a signal takes to arrive.
 fn long_chain(path: &Path) {
     let (mut resources, mut passes) = (String::new(), String::new());
     for i in 0..20_000 {

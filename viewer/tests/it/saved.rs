@@ -1,4 +1,4 @@
-//! Saved plans, and what passes for one.
+//! Saved plans and invalid files.
 
 use crate::{case, folder, planned, session};
 use framegraph::Caps;
@@ -11,7 +11,7 @@ use viewer::open::{Opened, open};
 use viewer::plan_data::read;
 use viewer::what_if::WhatIf;
 
-/// A plan as some program saved it.
+/// Returns a saved plan.
 fn text() -> String {
     let file = fs::read_to_string(case("filament")).expect("the case is there");
     let file = framegraph::file::GraphFile::parse("filament.ron", &file).expect("the case is sound");
@@ -33,26 +33,26 @@ fn a_saved_plan_is_the_live_one() {
     let level = &live.form.passes[live.pass("structure/2").expect("a pass")];
     let parts: Vec<_> = level.accesses.iter().map(|access| access.part.as_deref()).collect();
     assert_eq!(parts, [Some("mip 1"), Some("mip 2")]);
-    // Where a pass is declared, only the source knows.
+    // Only source files provide locations of passes.
     let at = &live.declared_at[live.pass("structure/2").expect("a pass")];
     assert!(at.contains("filament.ron:") && saved.declared_at.is_empty(), "{at}");
 }
 
 #[test]
-fn what_is_no_plan_is_told_in_a_sentence() {
+fn invalid_plans_are_reported_in_a_sentence() {
     let good = text();
     let cases: [(String, &str); 10] = [
-        (good.replace("\"version\": 1,", "\"version\": 7,"), "version 7, and this program reads version 1"),
-        // Of another version, and of another form with it.
+        (good.replace("\"version\": 1,", "\"version\": 7,"), "version 7, expected 1"),
+        // Another version with other fields.
         (good.replace("\"version\": 1,", "\"version\": 7,").replace("\"frame\":", "\"size\":"), "version 7"),
-        (good.replace("framegraph-plan", "framegraph-diff"), "`framegraph-diff`, not `framegraph-plan`"),
-        (good[..good.len() / 2].to_owned(), "ends too early"),
-        (String::new(), "ends too early"),
+        (good.replace("framegraph-plan", "framegraph-diff"), "`framegraph-diff`, expected `framegraph-plan`"),
+        (good[..good.len() / 2].to_owned(), "truncated"),
+        (String::new(), "truncated"),
         ("{}".into(), "`schema` is missing"),
         ("[1, 2]".into(), "`schema` is missing"),
-        (good.replace("\"steps\": [", "\"steps\": [,"), "no JSON"),
+        (good.replace("\"steps\": [", "\"steps\": [,"), "invalid JSON"),
         (good.replace("\"caps\": \"tiler\"", "\"caps\": 3"), "expected a string"),
-        (good.replacen("\"step\": 0", "\"step\": 99", 1), "step 99 is not among the"),
+        (good.replacen("\"step\": 0", "\"step\": 99", 1), "step 99 does not exist"),
     ];
     for (text, named) in cases {
         let error = read(text.as_bytes()).expect_err(named).to_string();
@@ -61,7 +61,7 @@ fn what_is_no_plan_is_told_in_a_sentence() {
 }
 
 #[test]
-fn fields_that_are_not_known_are_named_and_left_out() {
+fn unknown_fields_are_listed_and_ignored() {
     let text = text().replace("\"kind\": \"raster\",", "\"kind\": \"raster\", \"queue\": 3,");
     let plan = read(text.as_bytes()).expect("more fields do no harm");
     assert_eq!(plan.notes.len(), 1);
@@ -69,14 +69,14 @@ fn fields_that_are_not_known_are_named_and_left_out() {
     let noted =
         text.replace("\"notes\": []", "\"notes\": [{\"about\": \"ao\", \"sentence\": \"nothing stands near\"}]");
     let plan = read(noted.as_bytes()).expect("notes are read");
-    let words = viewer::view::facts::text(&viewer::view::facts::sections(&plan, None));
+    let words = viewer::view::inspector::text(&viewer::view::inspector::sections(&plan, None));
     assert!(words.contains("effects\n  ao: nothing stands near"), "{words}");
     let older = text.replace("\"flows\"", "\"flow\"");
     let plan = read(older.as_bytes()).expect("an older file is read");
     assert!(plan.notes.iter().any(|note| note.contains("no edges")), "{:?}", plan.notes);
 }
 
-/// Names that are twice, out of order, or lead nowhere: every view draws what there is.
+/// Every view draws plans with duplicate names, wrong order or dangling references.
 #[test]
 fn a_plan_changed_by_hand_is_drawn_without_a_panic() {
     let texts = [
@@ -91,8 +91,8 @@ fn a_plan_changed_by_hand_is_drawn_without_a_panic() {
     for text in texts {
         let Ok(plan) = read(text.as_bytes()) else { continue };
         for view in viewer::view::View::ALL {
-            let beside = viewer::view::Beside { against: Some(&plan), ..Default::default() };
-            let drawing = viewer::view::drawing(view, &plan, beside, 80);
+            let context = viewer::view::ViewContext { against: Some(&plan), ..Default::default() };
+            let drawing = viewer::view::drawing(view, &plan, context, 80);
             assert!(drawing.size.iter().all(|side| side.is_finite() && *side > 0.0), "{view:?}: {:?}", drawing.size);
         }
     }
@@ -105,13 +105,13 @@ fn written(name: &str, bytes: &[u8]) -> PathBuf {
 }
 
 #[test]
-fn files_of_other_kinds_are_told_by_name() {
+fn files_of_other_kinds_are_reported_by_name() {
     let none = folder("nothing").join("none.json");
     let cases = [
         (none.clone(), "cannot be read"),
         (none.parent().expect("a folder").to_owned(), "is a folder"),
-        (written("empty.json", b" \n"), "the file is empty"),
-        (written("picture.json", b"\x89PNG"), "neither a graph"),
+        (written("empty.json", b" \n"), "empty file"),
+        (written("picture.json", b"\x89PNG"), "unknown file type"),
         (written("trace.json", b"{\"traceEvents\": []}"), "no frames of this library"),
         (written("bad.ron", b"(version: 1, passes: [Raster(name: \"a\")], oops"), "bad.ron"),
         (written("binary.ron", b"(version: 1,\n\xff"), "binary.ron:2:1: the line is not UTF-8"),
@@ -124,7 +124,7 @@ fn files_of_other_kinds_are_told_by_name() {
     assert!(matches!(open(&written("plan.json", text().as_bytes()), &Handle::default()), Ok(Opened::Plan(_))));
 }
 
-/// A hundred megabytes that end too early: read on another thread, so that nobody waits, then a message.
+/// A truncated file of a hundred megabytes is read in the background and then reported.
 #[test]
 fn a_large_file_is_read_elsewhere_and_can_be_given_up() {
     let path = folder("large").join("large.json");
@@ -137,7 +137,7 @@ fn a_large_file_is_read_elsewhere_and_can_be_given_up() {
     let asked = Instant::now();
     waiting.open(&path, Role::Shown);
     waiting.poll();
-    // No time is promised: only that it is not the time of reading, which takes its course elsewhere.
+    // Only the absence of blocking is asserted, not a time.
     let doing = waiting.doing().map(str::to_owned);
     assert!(doing.is_some_and(|doing| doing.contains("large.json")), "it was read while the panel waited");
     assert!(waiting.settle(Duration::from_secs(120)), "{:?}", asked.elapsed());

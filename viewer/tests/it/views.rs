@@ -1,12 +1,12 @@
-//! What the views draw, without a window.
+//! Drawings of the views.
 
 use crate::{planned, plans, trace_of};
 use framegraph::Caps;
 use viewer::drawing::{Align, Drawing, Item, LINE, Shape, Theme, svg, text_width};
 use viewer::trace_data::{quartiles, read};
-use viewer::view::{Beside, View, bandwidth, drawing, facts, graph};
+use viewer::view::{View, ViewContext, bandwidth, drawing, graph, inspector};
 
-/// The bounds of each line of upright text.
+/// Returns the bounds of each horizontal text.
 fn texts(drawing: &Drawing) -> Vec<([f32; 4], &str)> {
     let text = |shape| match shape {
         &Shape::Text { at: [x, y], size, align, turned: 0.0, ref text, .. } => {
@@ -16,7 +16,7 @@ fn texts(drawing: &Drawing) -> Vec<([f32; 4], &str)> {
                 Align::Center => x - width / 2.0,
                 Align::Right => x - width,
             };
-            // Letters are lower than their lines.
+            // Glyphs are lower than their lines.
             let half = size * LINE * 0.36;
             Some(([left, y - half, left + width, y + half], text.as_str()))
         }
@@ -25,7 +25,7 @@ fn texts(drawing: &Drawing) -> Vec<([f32; 4], &str)> {
     drawing.shapes.iter().filter_map(text).collect()
 }
 
-/// Two lines of text on top of each other, or one that is cut off.
+/// Returns the first overlapping or clipped text.
 fn clash(drawing: &Drawing) -> Option<String> {
     let texts = texts(drawing);
     for (index, (a, first)) in texts.iter().enumerate() {
@@ -45,7 +45,7 @@ fn no_words_lie_over_others_in_any_view_of_any_plan() {
     let plans = plans();
     for (name, plan) in &plans {
         for view in View::ALL {
-            let beside = Beside { against: Some(&plans[0].1), ..Beside::default() };
+            let beside = ViewContext { against: Some(&plans[0].1), ..ViewContext::default() };
             let drawing = drawing(view, plan, beside, 60);
             if let Some(clash) = clash(&drawing) {
                 panic!("{name}, {view:?}: {clash}");
@@ -54,7 +54,7 @@ fn no_words_lie_over_others_in_any_view_of_any_plan() {
             assert!(text.starts_with("<svg ") && text.ends_with("</svg>\n"));
         }
     }
-    // The judge sees what there is to see.
+    // Negative control: overlapping text is detected.
     let mut bad = Drawing::default();
     bad.text([0.0, 10.0], 12.0, viewer::drawing::Ink::Text, "one");
     bad.text([10.0, 12.0], 12.0, viewer::drawing::Ink::Text, "two");
@@ -97,11 +97,11 @@ fn a_culled_pass_says_why() {
     let session = crate::session(&path);
     let plan = session.plan.as_ref().expect("a plan");
     let idle = Item::Pass(plan.pass("idle").expect("a pass"));
-    let words = facts::text(&facts::sections(plan, Some(idle)));
+    let words = inspector::text(&inspector::sections(plan, Some(idle)));
     assert!(words.contains("culled, no pass reads `idle_out`") && words.contains("small.ron:6"), "{words}");
-    let frame = facts::text(&facts::sections(plan, None));
+    let frame = inspector::text(&inspector::sections(plan, None));
     assert!(frame.contains("culled passes\n  idle: culled"), "{frame}");
-    let timeline = drawing(View::Timeline, plan, Beside::default(), 80).words();
+    let timeline = drawing(View::Timeline, plan, ViewContext::default(), 80).words();
     assert!(timeline.contains("culled") || timeline.contains('-'), "{timeline}");
 }
 
@@ -113,12 +113,12 @@ fn bytes_by_step_are_those_of_the_plan() {
         assert_eq!(frame.stored + frame.resolved, totals.resolve_bytes, "{name}");
         assert_eq!(frame.resolved, totals.multisample_resolve_bytes, "{name}");
     }
-    // One full-screen pass reads a picture of 16 bits a channel: eight bytes a texel.
+    // A full-screen pass reads a picture of 16 bits per channel: eight bytes per texel.
     let plan = planned("filament", &Caps::desktop(), &[]);
     let grade = &plan.form.passes[plan.pass("grade").expect("a pass")];
     let step = &plan.form.steps[grade.step.expect("it runs")];
     assert_eq!(bandwidth::of_step(&plan, step).fetched, 1920 * 1080 * 8);
-    // The filter behind it samples one of eight.
+    // The following filter samples 8 bits per channel.
     let fxaa = &plan.form.passes[plan.pass("fxaa").expect("a pass")];
     let step = &plan.form.steps[fxaa.step.expect("it runs")];
     assert_eq!(bandwidth::of_step(&plan, step).fetched, 1920 * 1080 * 4);
@@ -127,7 +127,7 @@ fn bytes_by_step_are_those_of_the_plan() {
 #[test]
 fn the_heap_map_shows_each_resource_where_it_lies() {
     let plan = planned("filament", &Caps::tiler(), &["shadows", "sao"]);
-    let drawing = drawing(View::Memory, &plan, Beside::default(), 80);
+    let drawing = drawing(View::Memory, &plan, ViewContext::default(), 80);
     let bounds = |name: &str| {
         let item = Some(Item::Resource(plan.resource(name).expect("a resource")));
         drawing.hits.iter().find(|hit| hit.item == item).unwrap_or_else(|| panic!("{name}")).bounds
@@ -146,15 +146,15 @@ fn the_heap_map_shows_each_resource_where_it_lies() {
 #[test]
 fn lanes_are_those_of_the_schedule() {
     let plan = planned("deferred", &Caps::desktop(), &[]);
-    let words = |beside: Beside<'_>| drawing(View::Queues, &plan, beside, 80).words();
+    let words = |beside: ViewContext<'_>| drawing(View::Queues, &plan, beside, 80).words();
     let own = framegraph_queues::replan(plan.plan.as_ref().expect("it was planned here")).expect("a plan");
     let costs_us = framegraph_queues::estimate_us(&own, 100_000.0);
     let layout = framegraph_queues::QueueLayout::async_compute();
     let found = framegraph_queues::schedule(&own, &layout, &costs_us).expect("a schedule");
     let head = format!("graphics + compute: {:.0} µs, {:.0} µs on one queue", found.total_us, found.alone_us);
-    assert!(found.total_us < found.alone_us && words(Beside::default()).contains(&head), "{head}");
-    // A box a step in each of two layouts, those of the second queue below the others.
-    let drawn = drawing(View::Queues, &plan, Beside::default(), 80);
+    assert!(found.total_us < found.alone_us && words(ViewContext::default()).contains(&head), "{head}");
+    // Each step has one box in each of two layouts; boxes of the second queue are lower.
+    let drawn = drawing(View::Queues, &plan, ViewContext::default(), 80);
     let boxes = |step: usize| drawn.hits.iter().filter(move |hit| hit.item == Some(Item::Step(step)));
     assert!((0..own.steps().len()).all(|step| boxes(step).count() == 2));
     let top = |step: usize| boxes(step).next().expect("a box").bounds[1];
@@ -163,12 +163,14 @@ fn lanes_are_those_of_the_schedule() {
     }
     // With a trace of the frame, times are its medians.
     let trace = read(trace_of(&plan, 12, 6).as_bytes()).expect("a trace");
-    let traced = words(Beside { trace: Some(&trace), ..Beside::default() });
-    assert!(traced.contains("the median of each") && !traced.contains(&head), "{traced}");
+    let traced = words(ViewContext { trace: Some(&trace), ..ViewContext::default() });
+    assert!(traced.contains("medians of the trace") && !traced.contains(&head), "{traced}");
     // A saved plan has no graph.
     let mut saved = plan.clone();
     saved.plan = None;
-    assert!(drawing(View::Queues, &saved, Beside::default(), 80).words().contains("a saved plan holds no graph"));
+    assert!(
+        drawing(View::Queues, &saved, ViewContext::default(), 80).words().contains("A saved plan contains no graph")
+    );
 }
 
 #[test]
@@ -183,9 +185,9 @@ fn a_trace_gives_quartiles_and_stutters() {
     assert!(0.0100 <= low && low < median && median < high && high <= 0.0108, "{low} {median} {high}");
     assert_eq!(quartiles(&[1.0, 2.0, 3.0, 4.0, 5.0]), Some([2.0, 3.0, 4.0]));
     assert_eq!(quartiles(&[]), None);
-    let beside = Beside { trace: Some(&trace), ..Beside::default() };
+    let beside = ViewContext { trace: Some(&trace), ..ViewContext::default() };
     assert!(drawing(View::Timeline, &plan, beside, 80).words().contains("0.01"), "the median of the step");
-    assert!(drawing(View::Trace, &plan, beside, 80).words().contains("1 of them stutter"));
+    assert!(drawing(View::Trace, &plan, beside, 80).words().contains("1 stutters"));
 }
 
 #[test]
@@ -203,19 +205,19 @@ fn accuracy_is_plotted_for_every_technique() {
     let data = viewer::accuracy_data::read(&text).expect("it is sound");
     assert!(data.techniques.len() > 3);
     let drawn = |budget_ms: f64| {
-        let beside = Beside { accuracy: Some(&data), budget_ms, ..Beside::default() };
+        let beside = ViewContext { accuracy: Some(&data), budget_ms, ..ViewContext::default() };
         drawing(View::Accuracy, &viewer::plan_data::PlanData::default(), beside, 80)
     };
     let (strict, free) = (drawn(0.0), drawn(1e9));
-    // The more time there is, the nearer to the finest frame; the slider goes from one end to the other.
+    // A larger time budget gives a smaller error; the slider covers the whole range.
     let [fastest, finest] = data.span_ms().expect("frames were measured");
     let (fast, fine) = (data.within(fastest).expect("a frame"), data.within(finest).expect("a frame"));
-    assert!(fast.ms < fine.ms && fast.codes > 1.0 && fine.codes == 0.0, "{fast:?} {fine:?}");
+    assert!(fast.ms < fine.ms && fast.error > 1.0 && fine.error == 0.0, "{fast:?} {fine:?}");
     for [group, option] in &fine.options {
         assert!(free.words().contains(&format!("{group}: {option}")), "{group}");
     }
     let middle = data.within(0.5 * (fastest + finest)).expect("a frame");
-    assert!(middle.ms <= 0.5 * (fastest + finest) && middle.codes < fast.codes && middle.codes > 0.0, "{middle:?}");
+    assert!(middle.ms <= 0.5 * (fastest + finest) && middle.error < fast.error && middle.error > 0.0, "{middle:?}");
     for technique in &data.techniques {
         assert!(strict.words().contains(&technique.name));
         let front = technique.front();
@@ -227,8 +229,8 @@ fn accuracy_is_plotted_for_every_technique() {
     let is_timed = |technique: &&viewer::accuracy_data::Technique| technique.choices.iter().all(|c| c.ms.is_some());
     let timed = data.techniques.iter().filter(is_timed).count();
     assert!(timed > 1 && timed < data.techniques.len(), "some are timed, some are counted: {timed}");
-    for (text, told) in [("{}", "cannot be read"), ("[", "cannot be read")] {
-        assert!(viewer::accuracy_data::read(text.as_bytes()).is_err_and(|error| error.contains(told)), "{text}");
+    for (text, named) in [("{}", "invalid accuracy record"), ("[", "invalid accuracy record")] {
+        assert!(viewer::accuracy_data::read(text.as_bytes()).is_err_and(|error| error.contains(named)), "{text}");
     }
     let text = String::from_utf8_lossy(&text);
     for (own, other) in [
@@ -236,8 +238,8 @@ fn accuracy_is_plotted_for_every_technique() {
         ("\"version\": 2", "\"version\": 3"),
         ("\"name\": \"edges\"", "\"name\": \"hems\""),
     ] {
-        let told = viewer::accuracy_data::read(text.replace(own, other).as_bytes()).expect_err("it is another");
+        let error = viewer::accuracy_data::read(text.replace(own, other).as_bytes()).expect_err("it is another");
         let word = other.rsplit(['"', ' ']).find(|word| !word.is_empty()).unwrap_or(other);
-        assert!(told.contains(word), "{told}");
+        assert!(error.contains(word), "{error}");
     }
 }

@@ -11,6 +11,7 @@ mod effect_costs;
 mod effects;
 mod explicit;
 mod grade;
+mod help;
 mod keep;
 mod latency;
 mod light;
@@ -33,7 +34,7 @@ fn main() -> ExitCode {
     let args = match args::parse(std::env::args_os().skip(1)) {
         Ok(Command::Render(args)) => args,
         Ok(Command::Help) => {
-            program::line(args::help());
+            program::line(help::help());
             return program::exit(0);
         }
         Err(message) => return fail(2, &message),

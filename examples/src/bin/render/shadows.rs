@@ -204,6 +204,14 @@ mod tests {
     }
 
     #[test]
+    fn former_keys_are_valid() {
+        let of = |keys: &str| parsed(&["--shadow", keys]).map(|shadows| shadows.settings);
+        let current = of("map-size=64,punctual=3");
+        assert_eq!(of("texels=64,local=3"), current);
+        assert_ne!(of(""), current);
+    }
+
+    #[test]
     fn invalid_options_are_reported() {
         for words in [
             ["--shadows", "soft"],

@@ -1,4 +1,4 @@
-//! The curve editor: what grading does to each channel below and above a middle, changed by its handles.
+//! Curve editor of grading: shadow gamma, middle and highlight scale per channel, edited with handles.
 
 use crate::drawing::Ink;
 use crate::panel::{color, theme};
@@ -7,23 +7,23 @@ use framegraph_shaders::layout::Grading;
 use framegraph_shaders::reference::grading::toe_and_shoulder;
 use glam::Vec3;
 
-/// Stops of linear light about 1 that are plotted, along both sides.
+/// Plotted range of linear light in stops about 1, on both axes.
 const STOPS: [f32; 2] = [-8.0, 4.0];
-/// Stops below the middle at which the dark part is held, and above it at which the bright part is.
-const HELD: [f32; 2] = [-3.0, 2.0];
-/// Points of a curve.
+/// Positions of the outer handles in stops from the middle: shadows and highlights.
+const HANDLES: [f32; 2] = [-3.0, 2.0];
+/// Number of points per curve.
 const POINTS: u8 = 96;
-/// Colors of red, green and blue that can be told apart by who sees two of them alike.
+/// Channel colors that color-blind users can distinguish.
 pub(super) const CHANNELS: [[u8; 3]; 3] = [[213, 94, 0], [0, 158, 115], [0, 114, 178]];
 
-/// What a handle changes.
+/// Parameter that a handle edits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Handle {
-    /// The exponent below the middle.
+    /// Exponent below the middle.
     Gamma,
-    /// The middle, along the diagonal.
+    /// Middle, along the diagonal.
     Middle,
-    /// The slope above the middle.
+    /// Slope above the middle.
     Scale,
 }
 
@@ -38,30 +38,30 @@ impl Handle {
         }
     }
 
-    /// Where it stands on a channel's curve: light in and out, in stops about 1.
+    /// Returns its position on a channel's curve: input and output light in stops about 1.
     pub fn place(self, grading: &Grading, channel: usize) -> [f32; 2] {
         let middle = grading.middle[channel].max(1e-5);
         let stops = middle.log2()
             + match self {
-                Self::Gamma => HELD[0],
+                Self::Gamma => HANDLES[0],
                 Self::Middle => 0.0,
-                Self::Scale => HELD[1],
+                Self::Scale => HANDLES[1],
             };
         [stops, out_stops(grading, channel, stops)]
     }
 
-    /// Moves it to a place in stops, in the channels that are chosen.
+    /// Moves the handle to a position in stops, for the selected channels.
     pub fn drag(self, grading: &mut Grading, chosen: [bool; 3], [in_stops, out_stops]: [f32; 2]) {
         for channel in (0..3).filter(|channel| chosen[*channel]) {
             let middle = grading.middle[channel].max(1e-5);
-            // What is between the middle and the handle, as settings have it.
+            // Convert the position to the parameter of the settings.
             match self {
                 Self::Gamma => {
-                    grading.shadow_gamma[channel] = ((out_stops - middle.log2()) / HELD[0]).clamp(0.05, 8.0);
+                    grading.shadow_gamma[channel] = ((out_stops - middle.log2()) / HANDLES[0]).clamp(0.05, 8.0);
                 }
                 Self::Middle => grading.middle[channel] = in_stops.clamp(STOPS[0], STOPS[1]).exp2(),
                 Self::Scale => {
-                    let over = (out_stops.exp2() / middle - 1.0) / (HELD[1].exp2() - 1.0);
+                    let over = (out_stops.exp2() / middle - 1.0) / (HANDLES[1].exp2() - 1.0);
                     grading.highlight_scale[channel] = over.clamp(0.0, 16.0);
                 }
             }
@@ -69,21 +69,21 @@ impl Handle {
     }
 }
 
-/// Light out of a channel, in stops about 1, of light in.
+/// Returns the output of a channel in stops about 1.
 fn out_stops(grading: &Grading, channel: usize, in_stops: f32) -> f32 {
     let [gamma, middle, scale] = [grading.shadow_gamma, grading.middle, grading.highlight_scale].map(|of| of[channel]);
     let light = toe_and_shoulder(in_stops.exp2().into(), gamma.max(1e-5).into(), middle.max(1e-5).into(), scale.into());
     (light.max(1e-9) as f32).log2()
 }
 
-/// Plots the three curves with the handles of those that are chosen; returns whether grading was changed.
+/// Plots the three curves with handles for the selected channels; returns whether grading changed.
 pub(super) fn curves(ui: &mut Ui, grading: &mut Grading) -> bool {
     let before = *grading;
     CollapsingHeader::new("curves").default_open(false).show(ui, |ui| {
         let id = ui.scope_id().with("channels");
         let mut chosen = ui.data(|data| data.get_temp::<[bool; 3]>(id)).unwrap_or([true; 3]);
         ui.horizontal(|ui| {
-            let tip = "which channels the handles change";
+            let tip = "Channels that the handles edit";
             for (only, name) in [
                 ([true; 3], "all"),
                 ([true, false, false], "red"),
@@ -94,7 +94,7 @@ pub(super) fn curves(ui: &mut Ui, grading: &mut Grading) -> bool {
                     chosen = only;
                 }
             }
-            if ui.small_button("straight").on_hover_text("curves that change nothing").clicked() {
+            if ui.small_button("Reset").on_hover_text("Reset to neutral curves").clicked() {
                 (grading.shadow_gamma, grading.middle, grading.highlight_scale) = (Vec3::ONE, Vec3::ONE, Vec3::ONE);
             }
         });
@@ -104,7 +104,7 @@ pub(super) fn curves(ui: &mut Ui, grading: &mut Grading) -> bool {
     *grading != before
 }
 
-/// Where stops are on the screen.
+/// Mapping from stops to the screen.
 #[derive(Clone, Copy, Debug)]
 struct Axes(Rect);
 
@@ -174,7 +174,7 @@ fn line(painter: &Painter, axes: Axes, grading: &Grading, channel: usize) {
 mod tests {
     use super::*;
 
-    /// A handle that is dragged stands where it was dragged to, in the channels that were chosen alone.
+    /// A dragged handle stays at its position, and only selected channels change.
     #[test]
     fn curves_go_through_their_handles() {
         for handle in Handle::ALL {

@@ -1,4 +1,4 @@
-//! Switches to find a fault with, which of them changes the picture, and limits on what the frame may cost.
+//! Debug modes, their bisection, and budget limits.
 
 use super::texture;
 use crate::drawing::Ink;
@@ -10,7 +10,7 @@ use egui::{Grid, RichText, ScrollArea, TextEdit, Ui, vec2};
 use framegraph_wgpu::debug::Mode;
 use program::budget::Budget;
 
-/// Shows the switches, the comparison and the limits.
+/// Shows debug modes, bisection and limits.
 pub fn debugging(ui: &mut Ui, live: &mut Live, session: &mut Session) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         modes(ui, live);
@@ -22,20 +22,20 @@ pub fn debugging(ui: &mut Ui, live: &mut Live, session: &mut Session) {
 }
 
 fn modes(ui: &mut Ui, live: &mut Live) {
-    ui.strong("the frame is drawn with");
-    let mut modes = live.asked.modes.clone();
+    ui.strong("debug modes");
+    let mut modes = live.options.modes.clone();
     for mode in Mode::ALL {
         let mut on = modes.0.contains(&mode);
-        let tip = format!("a picture that changes under it: {}", mode.suspect());
+        let tip = format!("If the picture changes in this mode: {}", mode.suspect());
         if ui.checkbox(&mut on, mode.name()).on_hover_text(tip).changed() {
             modes.0.retain(|other| *other != mode);
             modes.0.extend(on.then_some(mode));
         }
     }
-    if modes != live.asked.modes {
-        // Immediate takes the others' place, so it is applied last.
+    if modes != live.options.modes {
+        // `immediate` implies the other modes, so apply it last.
         modes.0.sort_by_key(|mode| Mode::ALL.iter().position(|other| other == mode));
-        live.asked.modes = modes;
+        live.options.modes = modes;
         live.again();
     }
 }
@@ -44,10 +44,10 @@ fn bisecting(ui: &mut Ui, live: &mut Live, session: &mut Session) {
     ui.horizontal(|ui| {
         ui.strong("bisect");
         let can = live.running.as_ref().and_then(|running| running.picture());
-        let tip = "draws the frame under each of these switches, and says which changes the picture";
+        let tip = "Draw the frame in each debug mode and list those that change the picture";
         let begin = ui.add_enabled(can.is_some(), egui::Button::new("Compare")).on_hover_text(tip).clicked();
         if let Some((_, size_px)) = can.filter(|_| begin) {
-            live.bisecting = Some(Bisecting::new(live.document().clone(), &live.asked, size_px));
+            live.bisecting = Some(Bisecting::new(live.document().clone(), &live.options, size_px));
         }
         if live.bisecting.is_some() && ui.button("Close").clicked() {
             live.bisecting = None;
@@ -67,7 +67,7 @@ fn bisecting(ui: &mut Ui, live: &mut Live, session: &mut Session) {
     }
     let theme = theme(ui);
     Grid::new("outcomes").num_columns(4).striped(true).show(ui, |ui| {
-        for heading in ["mode", "picture", "pixels", "worst"] {
+        for heading in ["mode", "picture", "pixels", "max difference"] {
             ui.label(RichText::new(heading).weak());
         }
         ui.end_row();
@@ -83,16 +83,21 @@ fn bisecting(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         }
     });
     match bisecting.outcomes.iter().find(|outcome| !outcome.is_same()) {
-        Some(first) => {
-            ui.add(egui::Label::new(format!("{} is the first to change it: {}", first.name(), first.suspect())).wrap())
-        }
+        Some(first) => ui.add(
+            egui::Label::new(format!(
+                "{} is the first mode that changes the picture: {}",
+                first.name(),
+                first.suspect()
+            ))
+            .wrap(),
+        ),
         None => ui.label("no mode changes the picture"),
     };
     let Some(pictures) = bisecting.pictures(bisecting.shown) else { return };
     let [width, height] = bisecting.size_px.map(|side| side as f32);
     let shown = ui.available_width().min(width);
     let size = vec2(shown, shown * height / width.max(1.0));
-    for (name, rgba) in ["as it is", "under the mode", "their difference, 16 times"].into_iter().zip(pictures) {
+    for (name, rgba) in ["unmodified", "with the mode", "difference times 16"].into_iter().zip(pictures) {
         ui.label(name);
         let handle = texture(ui.ctx(), name, bisecting.shown as u64 + 1, bisecting.size_px, &rgba);
         ui.image((handle.id(), size));
@@ -102,7 +107,7 @@ fn bisecting(ui: &mut Ui, live: &mut Live, session: &mut Session) {
 fn budget(ui: &mut Ui, live: &mut Live, session: &Session) {
     ui.strong("budget");
     let hint = "steps=4,bytes=64MiB,traffic=100MB";
-    let tip = "NAME=MOST,... with loads, stores, steps, culled, bytes, traffic: the limits of `plan --budget`";
+    let tip = "Limits as in `plan --budget`: NAME=MAX,... with loads, stores, steps, culled, bytes, traffic";
     ui.add(TextEdit::singleline(&mut live.budget).hint_text(hint).desired_width(f32::INFINITY)).on_hover_text(tip);
     if live.budget.trim().is_empty() {
         return;
@@ -113,12 +118,12 @@ fn budget(ui: &mut Ui, live: &mut Live, session: &Session) {
     };
     let budget = match Budget::parse(live.budget.trim()) {
         Ok(budget) => budget,
-        Err(told) => return error(ui, &told),
+        Err(message) => return error(ui, &message),
     };
     match session.plan.as_ref().and_then(|plan| plan.plan.as_ref()) {
-        None => _ = ui.label("a saved plan has no graph to tell what to blame: open the graph"),
+        None => _ = ui.label("A saved plan has no graph to explain the costs. Open the graph"),
         Some(plan) => match budget.broken(plan) {
-            None => _ = ui.label("the plan keeps within it"),
+            None => _ = ui.label("The plan meets all limits"),
             Some(lines) => lines.lines().for_each(|line| error(ui, line)),
         },
     }

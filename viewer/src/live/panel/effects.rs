@@ -1,21 +1,21 @@
-//! Each effect of the frame with a switch, and what the facts of the scene say of it.
+//! Switches for all effects, with the decisions of feature culling.
 
 use crate::drawing::Ink;
 use crate::live::Live;
-use crate::live::look::Document;
+use crate::live::capture::Document;
 use egui::{RichText, ScrollArea, Ui};
 use framegraph_passes::facts::Decision;
 use framegraph_passes::{Effect, Settings};
 
-/// What only a scene calls for, and no setting switches on.
-const OF_THE_SCENE: [Effect; 3] = [Effect::Transmission, Effect::Blending, Effect::Grading];
+/// Effects that only the scene enables, not a setting.
+const SCENE_EFFECTS: [Effect; 3] = [Effect::Transmission, Effect::Blending, Effect::Grading];
 
-/// Shows the effects; changes settings.
+/// Shows the effects and edits the settings.
 pub fn effects(ui: &mut Ui, live: &mut Live) {
-    let tip = "effects stay, though the scene does not call for them";
-    let mut forced = live.asked.forced;
+    let tip = "Draw all requested effects, even if they change nothing in this scene";
+    let mut forced = live.options.forced;
     if ui.checkbox(&mut forced, "force effects").on_hover_text(tip).changed() {
-        live.asked.forced = forced;
+        live.options.forced = forced;
         live.again();
     }
     ui.separator();
@@ -29,13 +29,13 @@ pub fn effects(ui: &mut Ui, live: &mut Live) {
             let dropped = row.is_some_and(|row| row.decision == Decision::Dropped);
             let name =
                 if dropped { RichText::new(effect.name()).strikethrough() } else { RichText::new(effect.name()) };
-            let can = on || !OF_THE_SCENE.contains(&effect);
+            let can = on || !SCENE_EFFECTS.contains(&effect);
             let response = ui.add_enabled(can, egui::Checkbox::new(&mut on, name));
             if response.changed() {
                 asked = if on { Settings::with(asked, effect) } else { Settings::without(asked, effect) };
             }
             if let Some(row) = row {
-                let word = if dropped { "dropped because" } else { "kept:" };
+                let word = if dropped { "dropped:" } else { "kept:" };
                 let ink = if dropped { Ink::Text } else { Ink::Faint };
                 let text = RichText::new(format!("{word} {} [{}]", row.reason, row.proof)).size(11.0);
                 ui.indent(effect.name(), |ui| {

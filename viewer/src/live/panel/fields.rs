@@ -1,22 +1,22 @@
-//! Fields of settings, whatever they are: truth values as switches, numbers as what is dragged, variants as lists; everything else
-//! as it is written in the file.
+//! Generic editor of settings fields: booleans as check boxes, numbers as drag values, variants as lists, other values as
+//! RON text.
 
 use crate::settings::{Node, about, alternatives, parse};
 use egui::{Checkbox, ComboBox, DragValue, RichText, TextEdit, Ui};
 
-/// A number that has a range: field, value, least and greatest.
+/// Numeric range: field, value, minimum and maximum.
 pub(super) type Range = (&'static str, f64, f64, f64);
 
-/// What the fields are shown with.
+/// Editor of settings fields.
 pub(super) struct Fields<'a> {
-    /// The numbers that have a range.
+    /// Ranges of numeric fields.
     pub ranges: &'a [Range],
-    /// Fields are shown whose names have this in them, with all that they hold; all for an empty one.
+    /// Search text that filters fields by name, including their children; empty shows all.
     pub search: &'a str,
 }
 
 impl Fields<'_> {
-    /// Shows what a value holds, and changes it.
+    /// Shows and edits the children of a value.
     pub fn children(&self, ui: &mut Ui, path: &str, node: &mut Node) {
         let own = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
         match node {
@@ -25,7 +25,7 @@ impl Fields<'_> {
                     self.field(ui, &own(name), name, value);
                 }
             }
-            // Colors and other numbers in a row stand in a row.
+            // Colors and other vectors stay on one line.
             Node::Items(_, items) if items.iter().all(|item| matches!(item, Node::Word(_))) => {
                 ui.horizontal_wrapped(|ui| {
                     for (index, value) in items.iter_mut().enumerate() {
@@ -42,14 +42,14 @@ impl Fields<'_> {
         }
     }
 
-    /// Whether a field or something in it has the search in its name.
+    /// Returns whether the name of a field or of a descendant matches the search.
     fn is_found(&self, path: &str, node: &Node) -> bool {
         let search = self.search.trim();
         path.contains(search)
             || node.children().iter().any(|(name, child)| self.is_found(&format!("{path}.{name}"), child))
     }
 
-    /// A field: its name, its value, and below that what it holds.
+    /// Shows a field: its name, its value, and its children below.
     fn field(&self, ui: &mut Ui, path: &str, name: &str, node: &mut Node) {
         if !self.is_found(path, node) {
             return;
@@ -84,7 +84,7 @@ impl Fields<'_> {
         }
     }
 
-    /// One of a few values, or what holds nothing.
+    /// Shows a list of variants, or a check box for an optional value.
     fn choice(&self, ui: &mut Ui, path: &str, all: &[String], node: &mut Node, label: egui::Id) {
         let name_of = |node: &Node| node.variant().unwrap_or("on").to_owned();
         let now = name_of(node);
@@ -97,7 +97,7 @@ impl Fields<'_> {
                 if switch.changed() {
                     replace(node, &all[usize::from(on)]);
                 } else if was_word {
-                    // A number that may be none.
+                    // Optional number.
                     self.word(ui, path, node, Some(label));
                 }
             });
@@ -115,7 +115,7 @@ impl Fields<'_> {
         list.response.labelled_by(label);
     }
 
-    /// A word: a truth value, a number, or anything else.
+    /// Shows a scalar: a boolean, a number, or other text.
     fn word(&self, ui: &mut Ui, path: &str, node: &mut Node, label: Option<egui::Id>) {
         let Node::Word(word) = node else { return };
         let named = |response: egui::Response| match label {

@@ -1,8 +1,8 @@
-//! Camera and light: exposure, lens, light from all around, sun, and what stands behind the scene.
+//! Camera and light: exposure, lens, environment, sun, background and fog.
 
 use super::goes_on;
 use crate::live::Live;
-use crate::live::look::{Behind, Exposure, Look, Sun, focal_length_mm};
+use crate::live::capture::{BackgroundSource, Capture, Exposure, Sun, focal_length_mm};
 use egui::{Checkbox, DragValue, Grid, ScrollArea, Slider, TextEdit, Ui};
 use framegraph_passes::DofSettings;
 use framegraph_passes::fog::FogSettings;
@@ -10,34 +10,34 @@ use framegraph_passes::shadow::ShadowSettings;
 use framegraph_scene::camera::EV100_RANGE;
 use std::path::PathBuf;
 
-/// Shows camera and light, and changes them.
+/// Shows and edits camera and light.
 pub fn lens(ui: &mut Ui, live: &mut Live, environment: &mut String) {
     let before = live.document().clone();
     let mut document = before.clone();
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.strong("camera");
         Grid::new("camera").num_columns(2).show(ui, |ui| {
-            exposure(ui, live, &mut document.look);
-            focal(ui, live, &mut document.look);
+            exposure(ui, live, &mut document.capture);
+            focal(ui, live, &mut document.capture);
             focus(ui, &mut document.frame.settings.dof);
         });
         ui.separator();
-        ui.strong("light from all around");
-        around(ui, live, environment);
-        Grid::new("around").num_columns(2).show(ui, |ui| {
-            let look = &mut document.look;
+        ui.strong("environment");
+        environment_source(ui, live, environment);
+        Grid::new("environment").num_columns(2).show(ui, |ui| {
+            let capture = &mut document.capture;
             row(ui, "intensity", |ui| {
-                ui.add(Slider::new(&mut look.environment_intensity, 0.0..=8.0).logarithmic(true))
+                ui.add(Slider::new(&mut capture.environment_intensity, 0.0..=8.0).logarithmic(true))
             });
-            let tip = "turns a picture about the vertical, with its sun; a clear sky turns with the sun that is given";
+            let tip = "Rotate the picture and its sun about the vertical. A clear sky follows a custom sun";
             row(ui, "rotation", |ui| {
-                ui.add(Slider::new(&mut look.environment_turned_deg, -180.0..=180.0).suffix("°")).on_hover_text(tip)
+                ui.add(Slider::new(&mut capture.environment_turned_deg, -180.0..=180.0).suffix("°")).on_hover_text(tip)
             });
-            behind(ui, &mut look.behind);
+            background(ui, &mut capture.background);
         });
         ui.separator();
         ui.strong("sun");
-        sun(ui, &mut document.look.sun);
+        sun(ui, &mut document.capture.sun);
         shadows(ui, &mut document.frame.settings.shadows);
         ui.separator();
         ui.strong("fog");
@@ -48,30 +48,30 @@ pub fn lens(ui: &mut Ui, live: &mut Live, environment: &mut String) {
     }
 }
 
-/// A name with a widget that answers to it.
+/// Adds a labeled widget.
 fn row(ui: &mut Ui, name: &str, widget: impl FnOnce(&mut Ui) -> egui::Response) {
     let label = ui.label(name).id;
     widget(ui).labelled_by(label);
     ui.end_row();
 }
 
-fn exposure(ui: &mut Ui, live: &Live, look: &mut Look) {
+fn exposure(ui: &mut Ui, live: &Live, capture: &mut Capture) {
     let metered = live.running.as_ref().map_or(0.0, |running| running.loaded.metered_ev100);
-    let now = look.exposure.ev100(metered);
+    let now = capture.exposure.ev100(metered);
     ui.label("exposure");
     ui.horizontal(|ui| {
-        let is = |exposure: Exposure| std::mem::discriminant(&look.exposure) == std::mem::discriminant(&exposure);
+        let is = |exposure: Exposure| std::mem::discriminant(&capture.exposure) == std::mem::discriminant(&exposure);
         let camera = Exposure::Camera { aperture: 16.0, shutter_s: 1.0 / 125.0, iso: 100.0 };
-        let all = [("metered", Exposure::Metered), ("EV100", Exposure::Ev100(now)), ("by camera", camera)];
+        let all = [("metered", Exposure::Metered), ("EV100", Exposure::Ev100(now)), ("camera", camera)];
         let all = all.map(|(name, exposure)| (name, exposure, is(exposure)));
         for (name, exposure, is) in all {
             if ui.selectable_label(is, name).clicked() && !is {
-                look.exposure = exposure;
+                capture.exposure = exposure;
             }
         }
     });
     ui.end_row();
-    match &mut look.exposure {
+    match &mut capture.exposure {
         Exposure::Metered => {
             ui.label("EV100");
             ui.label(format!("{now:.2}"));
@@ -95,19 +95,19 @@ fn exposure(ui: &mut Ui, live: &Live, look: &mut Look) {
     }
 }
 
-fn focal(ui: &mut Ui, live: &Live, look: &mut Look) {
+fn focal(ui: &mut Ui, live: &Live, capture: &mut Capture) {
     let own = live.running.as_ref().and_then(|running| running.rig.fov_y_rad()).map(focal_length_mm);
     let Some(own) = own else { return };
-    let mut mm = look.focal_length_mm.unwrap_or(own);
+    let mut mm = capture.focal_length_mm.unwrap_or(own);
     let label = ui.label("focal length").id;
     ui.horizontal(|ui| {
-        let tip = "for a sensor 24 mm high; it gives the field of view";
+        let tip = "For a sensor 24 mm high; sets the field of view";
         let drag = DragValue::new(&mut mm).range(4.0..=800.0).speed(0.2).max_decimals(1).suffix(" mm");
         if ui.add(drag).labelled_by(label).on_hover_text(tip).changed() {
-            look.focal_length_mm = Some(mm);
+            capture.focal_length_mm = Some(mm);
         }
-        if look.focal_length_mm.is_some() && ui.small_button("scene's").clicked() {
-            look.focal_length_mm = None;
+        if capture.focal_length_mm.is_some() && ui.small_button("Reset").clicked() {
+            capture.focal_length_mm = None;
         }
     });
     ui.end_row();
@@ -124,39 +124,39 @@ fn focus(ui: &mut Ui, dof: &mut Option<DofSettings>) {
         row(ui, "focus distance", |ui| {
             ui.add(DragValue::new(&mut dof.focus_m).range(0.01..=1e4).speed(0.02).suffix(" m"))
         });
-        row(ui, "its aperture", |ui| {
+        row(ui, "DOF aperture", |ui| {
             ui.add(DragValue::new(&mut dof.f_number).range(0.5..=64.0).speed(0.05).prefix("f/"))
         });
     }
 }
 
-fn around(ui: &mut Ui, live: &mut Live, path: &mut String) {
-    ui.label(live.around());
+fn environment_source(ui: &mut Ui, live: &mut Live, path: &mut String) {
+    ui.label(live.environment());
     ui.horizontal(|ui| {
         let width = (ui.available_width() - 110.0).max(40.0);
         ui.add(TextEdit::singleline(path).hint_text("PICTURE.hdr, .exr or .ktx").desired_width(width));
         if ui.button("Open").clicked() && !path.trim().is_empty() {
-            live.set_around(Some(PathBuf::from(path.trim())));
+            live.set_environment(Some(PathBuf::from(path.trim())));
         }
-        if ui.button("Sky").on_hover_text("a clear sky instead").clicked() {
-            live.set_around(None);
+        if ui.button("Sky").on_hover_text("Use a clear sky").clicked() {
+            live.set_environment(None);
         }
     });
 }
 
-fn behind(ui: &mut Ui, behind: &mut Behind) {
-    ui.label("behind the scene");
+fn background(ui: &mut Ui, source: &mut BackgroundSource) {
+    ui.label("background");
     ui.horizontal(|ui| {
-        let is_constant = matches!(behind, Behind::Constant(_));
+        let is_constant = matches!(source, BackgroundSource::Constant(_));
         if ui.selectable_label(!is_constant, "environment").clicked() {
-            *behind = Behind::Environment;
+            *source = BackgroundSource::Environment;
         }
         if ui.selectable_label(is_constant, "color").clicked() && !is_constant {
-            *behind = Behind::Constant([1000.0; 3]);
+            *source = BackgroundSource::Constant([1000.0; 3]);
         }
-        if let Behind::Constant(nits) = behind {
+        if let BackgroundSource::Constant(nits) = source {
             for channel in nits {
-                ui.add(DragValue::new(channel).range(0.0..=1e6).speed(10.0)).on_hover_text("nits");
+                ui.add(DragValue::new(channel).range(0.0..=1e6).speed(10.0)).on_hover_text("Radiance in nits");
             }
         }
     });
@@ -165,14 +165,14 @@ fn behind(ui: &mut Ui, behind: &mut Behind) {
 
 fn sun(ui: &mut Ui, sun: &mut Sun) {
     ui.horizontal(|ui| {
-        for (name, other) in [("own", Sun::Own), ("off", Sun::Off), ("given", Sun::GIVEN)] {
+        for (name, other) in [("from scene", Sun::FromScene), ("off", Sun::Off), ("custom", Sun::CUSTOM)] {
             let is = std::mem::discriminant(sun) == std::mem::discriminant(&other);
             if ui.selectable_label(is, name).clicked() && !is {
                 *sun = other;
             }
         }
     });
-    if let Sun::Given { azimuth_deg, elevation_deg, illuminance_lux, diameter_deg } = sun {
+    if let Sun::Custom { azimuth_deg, elevation_deg, illuminance_lux, diameter_deg } = sun {
         Grid::new("sun").num_columns(2).show(ui, |ui| {
             row(ui, "azimuth", |ui| ui.add(Slider::new(azimuth_deg, -180.0..=180.0).suffix("°")));
             row(ui, "elevation", |ui| ui.add(Slider::new(elevation_deg, -10.0..=90.0).suffix("°")));
@@ -190,10 +190,9 @@ fn shadows(ui: &mut Ui, shadows: &mut Option<ShadowSettings>) {
     if let Some(own) = shadows {
         Grid::new("shadows").num_columns(2).show(ui, |ui| {
             row(ui, "cascades", |ui| ui.add(Slider::new(&mut own.cascades, 0..=4)));
-            row(ui, "texels of a map", |ui| ui.add(Slider::new(&mut own.map_texels, 256..=4096).step_by(256.0)));
+            row(ui, "shadow-map size", |ui| ui.add(Slider::new(&mut own.map_texels, 256..=4096).step_by(256.0)));
             row(ui, "show cascades", |ui| {
-                ui.add(Checkbox::without_text(&mut own.show_cascades))
-                    .on_hover_text("tints what is lit by the number of its cascade")
+                ui.add(Checkbox::without_text(&mut own.show_cascades)).on_hover_text("Tint surfaces by their cascade")
             });
         });
     }
@@ -207,12 +206,12 @@ fn fog(ui: &mut Ui, fog: &mut Option<FogSettings>) {
     if let Some(own) = fog {
         Grid::new("fog").num_columns(2).show(ui, |ui| {
             row(ui, "density", |ui| ui.add(Slider::new(&mut own.density, 0.0..=10.0).logarithmic(true)));
-            row(ui, "begins at", |ui| {
+            row(ui, "start distance", |ui| {
                 ui.add(DragValue::new(&mut own.start_m).range(0.0..=1e4).speed(0.1).suffix(" m"))
             });
             row(ui, "height", |ui| ui.add(DragValue::new(&mut own.height_m).range(-1e4..=1e4).speed(0.1).suffix(" m")));
-            row(ui, "thins out by", |ui| ui.add(Slider::new(&mut own.falloff, 0.0..=10.0).logarithmic(true)));
-            row(ui, "at most", |ui| ui.add(Slider::new(&mut own.most_opacity, 0.0..=1.0)));
+            row(ui, "height falloff", |ui| ui.add(Slider::new(&mut own.falloff, 0.0..=10.0).logarithmic(true)));
+            row(ui, "max opacity", |ui| ui.add(Slider::new(&mut own.most_opacity, 0.0..=1.0)));
         });
     }
 }

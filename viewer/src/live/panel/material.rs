@@ -1,4 +1,4 @@
-//! A material of the scene: what it is, and its factors, which can be changed.
+//! Material editor: properties and editable factors.
 
 use super::goes_on;
 use crate::live::Live;
@@ -7,7 +7,7 @@ use egui::{DragValue, Grid, Response, Slider, SliderClamping, Ui};
 use framegraph_scene::Material;
 use framegraph_scene::material::EmissiveUnit;
 
-/// Shows the material that is looked at, if one is, and changes it.
+/// Shows and edits the selected material.
 pub(super) fn material(ui: &mut Ui, live: &mut Live) {
     let shown = live.material.and_then(|number| Some((number, live.running.as_ref()?.material(number)?)));
     let Some((number, own)) = shown else { return };
@@ -18,15 +18,15 @@ pub(super) fn material(ui: &mut Ui, live: &mut Live) {
     let mut closed = false;
     ui.horizontal(|ui| {
         ui.strong(if own.name.is_empty() { "(no name)" } else { &own.name });
-        let tip = "gives the material what the scene has for it";
-        if factors != scenes && ui.small_button("as it was").on_hover_text(tip).clicked() {
+        let tip = "Restore the values of the scene";
+        if factors != scenes && ui.small_button("Reset").on_hover_text(tip).clicked() {
             factors = scenes;
         }
         closed = ui.small_button("Close").clicked();
     });
     Grid::new("material").num_columns(2).striped(true).show(ui, |ui| {
         changed(ui, own, &mut factors);
-        told(ui, own);
+        properties(ui, own);
     });
     if factors != before {
         let mut document = live.document().clone();
@@ -42,21 +42,21 @@ pub(super) fn material(ui: &mut Ui, live: &mut Live) {
     }
 }
 
-/// A name with a widget that answers to it.
+/// Adds a labeled widget.
 fn row(ui: &mut Ui, name: &str, texture: bool, widget: impl FnOnce(&mut Ui) -> Response) {
-    let label = ui.label(if texture { format!("{name} (times its texture)") } else { name.to_owned() }).id;
+    let label = ui.label(if texture { format!("{name} (× texture)") } else { name.to_owned() }).id;
     widget(ui).labelled_by(label);
     ui.end_row();
 }
 
-/// What can be changed.
+/// Shows editable factors.
 fn changed(ui: &mut Ui, own: &Material, factors: &mut Factors) {
-    // What a scene has beyond a slider's end stays until it is moved.
-    let slider = |value, most| Slider::new(value, 0.0..=most).max_decimals(3).clamping(SliderClamping::Edits);
+    // Values beyond the range of a slider stay until it is moved.
+    let slider = |value, max| Slider::new(value, 0.0..=max).max_decimals(3).clamping(SliderClamping::Edits);
     row(ui, "base color", own.base_color_texture.is_some(), |ui| {
         let mut rgba = factors.base_color.to_array();
         let button = ui.color_edit_button_rgba_unmultiplied(&mut rgba);
-        // It goes through hue and back, which rounds.
+        // The round trip through hue rounds values.
         if button.changed() {
             factors.base_color = rgba.into();
         }
@@ -72,7 +72,7 @@ fn changed(ui: &mut Ui, own: &Material, factors: &mut Factors) {
         let mut strength = strongest;
         let drag =
             DragValue::new(&mut strength).range(0.0..=1e6).clamp_existing_to_range(false).speed(0.05).suffix(unit);
-        let drag = ui.add(drag).on_hover_text("of the strongest channel; the color stays");
+        let drag = ui.add(drag).on_hover_text("Strongest channel; the color is kept");
         if strength != strongest {
             factors.emissive =
                 if strongest > 0.0 { factors.emissive * (strength / strongest) } else { glam::Vec3::splat(strength) };
@@ -87,8 +87,8 @@ fn changed(ui: &mut Ui, own: &Material, factors: &mut Factors) {
     }
 }
 
-/// What chooses how it is drawn, and stays.
-fn told(ui: &mut Ui, own: &Material) {
+/// Shows read-only properties that select the shader.
+fn properties(ui: &mut Ui, own: &Material) {
     let lobes: Vec<String> = own.lobes().iter().map(|lobe| format!("{lobe:?}")).collect();
     for (name, text) in [
         ("alpha", format!("{:?}", own.alpha)),

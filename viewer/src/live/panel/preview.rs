@@ -1,4 +1,4 @@
-//! The contents of a texture: which version and part, how it is shown, the histogram, and the numbers under the pointer.
+//! Texture preview: version and subresource, display mode, histogram, and values under the pointer.
 
 use super::texture;
 use crate::drawing::Item;
@@ -8,14 +8,14 @@ use crate::session::Session;
 use egui::{Color32, ComboBox, DragValue, Pos2, Rect, Sense, Ui, pos2, vec2};
 use framegraph_wgpu::inspect::{Channel, DisplayMode, InspectTarget};
 
-/// Shows the texture of the resource that is selected.
+/// Shows the texture of the selected resource.
 pub fn preview(ui: &mut Ui, live: &mut Live, session: &Session) {
     if !session.is_live() {
-        ui.label("textures have contents in the frame that is drawn alone: show its plan (viewport)");
+        ui.label("Only textures of the live frame have contents. Show its plan from the viewport");
         return;
     }
     let Some(running) = &live.running else {
-        ui.label("no frame is drawn yet");
+        ui.label("No frame has been drawn yet");
         return;
     };
     let preview = &mut live.preview;
@@ -31,7 +31,7 @@ pub fn preview(ui: &mut Ui, live: &mut Live, session: &Session) {
             plan.form.resources.iter().filter(|r| r.format.is_some()).map(|r| r.name.clone()).collect()
         });
         names.sort_unstable();
-        let shown = preview.name.clone().unwrap_or_else(|| "a texture".into());
+        let shown = preview.name.clone().unwrap_or_else(|| "select a texture".into());
         ComboBox::from_id_salt("texture")
             .selected_text(shown)
             .show_ui(ui, |ui| {
@@ -42,7 +42,7 @@ pub fn preview(ui: &mut Ui, live: &mut Live, session: &Session) {
                 }
             })
             .response
-            .on_hover_text("the texture that is looked at: that of the resource that is selected");
+            .on_hover_text("Displayed texture; follows the selected resource");
         parts(ui, preview, &targets);
     });
     modes(ui, preview);
@@ -56,7 +56,7 @@ pub fn preview(ui: &mut Ui, live: &mut Live, session: &Session) {
     }
 }
 
-/// Version, level, layer, plane and sample.
+/// Shows the selection of version, mip level, layer, plane and sample.
 fn parts(ui: &mut Ui, preview: &mut Preview, targets: &[InspectTarget]) {
     let mut versions: Vec<(usize, String)> = targets
         .iter()
@@ -77,7 +77,7 @@ fn parts(ui: &mut Ui, preview: &mut Preview, targets: &[InspectTarget]) {
             }
         })
         .response
-        .on_hover_text("which version of it: as this pass has left it");
+        .on_hover_text("Version: contents after this pass");
     let of_version = || targets.iter().filter(|target| target.number == number);
     let mips = of_version().map(|target| target.mip).max().unwrap_or(0);
     let layers = of_version().map(|target| target.layer).max().unwrap_or(0);
@@ -85,11 +85,11 @@ fn parts(ui: &mut Ui, preview: &mut Preview, targets: &[InspectTarget]) {
     preview.layer = preview.layer.min(layers);
     if mips > 0 {
         ui.add(DragValue::new(&mut preview.mip).range(0..=mips).speed(0.05).prefix("level "))
-            .on_hover_text("mip level");
+            .on_hover_text("Mip level");
     }
     if layers > 0 {
         ui.add(DragValue::new(&mut preview.layer).range(0..=layers).speed(0.05).prefix("layer "))
-            .on_hover_text("layer of an array, or slice");
+            .on_hover_text("Array layer or slice");
     }
     let mut planes: Vec<_> = of_version().map(|target| target.aspect).collect();
     planes.dedup();
@@ -98,10 +98,10 @@ fn parts(ui: &mut Ui, preview: &mut Preview, targets: &[InspectTarget]) {
             ui.selectable_value(&mut preview.plane, index, format!("{plane:?}").to_lowercase());
         }
     }
-    let text = preview.sample.map_or("samples averaged".into(), |sample| format!("sample {sample}"));
+    let text = preview.sample.map_or("average of samples".into(), |sample| format!("sample {sample}"));
     ui.menu_button(text, |ui| {
         for sample in [None, Some(0), Some(1), Some(2), Some(3)] {
-            let text = sample.map_or("averaged".into(), |sample: u8| format!("sample {sample}"));
+            let text = sample.map_or("average".into(), |sample: u8| format!("sample {sample}"));
             if ui.selectable_label(preview.sample == sample, text).clicked() {
                 preview.sample = sample;
                 ui.close();
@@ -109,10 +109,10 @@ fn parts(ui: &mut Ui, preview: &mut Preview, targets: &[InspectTarget]) {
         }
     })
     .response
-    .on_hover_text("of a texture of several samples");
+    .on_hover_text("Sample of a multisampled texture");
 }
 
-/// How numbers are shown.
+/// Shows the selection of the display mode.
 fn modes(ui: &mut Ui, preview: &mut Preview) {
     let channel = match preview.mode {
         DisplayMode::Stretch { channel } | DisplayMode::Plain { channel } | DisplayMode::False { channel, .. } => {
@@ -122,15 +122,15 @@ fn modes(ui: &mut Ui, preview: &mut Preview) {
     };
     ui.horizontal_wrapped(|ui| {
         for (name, mode, tip) in [
-            ("auto", DisplayMode::Auto, "what its format calls for"),
-            ("light", DisplayMode::Color { stops: 0.0 }, "linear light, exposed by stops"),
-            ("distance", DisplayMode::Depth { near_m: None }, "distance from the camera, of depth"),
-            ("stretch", DisplayMode::Stretch { channel }, "one channel, from its least to its greatest number"),
-            ("plain", DisplayMode::Plain { channel }, "one channel, from 0 to 1"),
+            ("auto", DisplayMode::Auto, "Chosen by format"),
+            ("color", DisplayMode::Color { stops: 0.0 }, "Linear light with an exposure in stops"),
+            ("depth", DisplayMode::Depth { near_m: None }, "Distance from the camera"),
+            ("stretch", DisplayMode::Stretch { channel }, "One channel, from its minimum to its maximum"),
+            ("plain", DisplayMode::Plain { channel }, "One channel, from 0 to 1"),
             (
-                "colors",
+                "false color",
                 DisplayMode::False { channel, range: None },
-                "one channel in the colors of the Turbo map, over a range",
+                "One channel in the Turbo color map, over a range",
             ),
         ] {
             let is = std::mem::discriminant(&preview.mode) == std::mem::discriminant(&mode);
@@ -138,8 +138,8 @@ fn modes(ui: &mut Ui, preview: &mut Preview) {
                 preview.mode = mode;
             }
         }
-        ui.checkbox(&mut preview.follow, "follow").on_hover_text("looks anew at each frame that is drawn");
-        if ui.small_button("Look").on_hover_text("looks anew").clicked() {
+        ui.checkbox(&mut preview.follow, "live").on_hover_text("Update in every frame");
+        if ui.small_button("Refresh").on_hover_text("Inspect the texture again").clicked() {
             preview.again();
         }
     });
@@ -157,7 +157,7 @@ fn modes(ui: &mut Ui, preview: &mut Preview) {
             }
             for end in range.iter_mut().flatten() {
                 let drag = DragValue::new(end).speed(0.01 * (span[1] - span[0]).abs().max(1e-3));
-                ui.add(drag).on_hover_text("what the first and the last color stand for");
+                ui.add(drag).on_hover_text("Value of the first or last color");
             }
         }
         DisplayMode::Auto | DisplayMode::Depth { .. } => {}
@@ -170,7 +170,7 @@ fn channels(ui: &mut Ui, channel: &mut Channel) {
     }
 }
 
-/// The picture, what stands under the pointer, the histogram.
+/// Shows the picture, the value under the pointer, and the histogram.
 fn contents(ui: &mut Ui, found: &Found) {
     let [width, height] = found.texels.size;
     let room = vec2(ui.available_width(), (ui.available_height() - 120.0).max(80.0));
@@ -189,36 +189,34 @@ fn contents(ui: &mut Ui, found: &Found) {
     let [low, high] = found.picture.range;
     ui.label(format!("{}  {width}x{height} {:?}", found.title, found.texels.format));
     let bad = found.picture.non_finite;
-    let bad = if bad > 0 { format!("  {bad} texels are not finite") } else { String::new() };
+    let bad = if bad > 0 { format!("  {bad} texels NaN or infinite") } else { String::new() };
     ui.label(match under {
         Some(([x, y], numbers)) => {
             let numbers: Vec<String> = numbers[..found.texels.channels()].iter().map(|n| format!("{n:.6}")).collect();
             format!("{x}, {y}: {}", numbers.join("  "))
         }
-        None => format!("shown from {low} to {high}{bad}"),
+        None => format!("range {low} to {high}{bad}"),
     });
     histogram(ui, found);
 }
 
-/// How often numbers occur, each channel a line, the highest as high as there is room.
+/// Shows the histogram with one line per channel, scaled to the maximum.
 fn histogram(ui: &mut Ui, found: &Found) {
     let (response, painter) = ui.allocate_painter(vec2(ui.available_width(), 48.0), Sense::hover());
     let rect = response.rect;
     let inks = [[213, 94, 0], [0, 158, 115], [0, 114, 178], [128, 128, 128]];
     for (boxes, [r, g, b]) in found.histogram.iter().zip(inks) {
-        let most = boxes.iter().copied().max().unwrap_or(1).max(1) as f32;
+        let max = boxes.iter().copied().max().unwrap_or(1).max(1) as f32;
         let points: Vec<Pos2> = boxes
             .iter()
             .enumerate()
             .map(|(index, count)| {
                 let x = rect.left() + rect.width() * (index as f32 + 0.5) / boxes.len() as f32;
-                pos2(x, rect.bottom() - rect.height() * (*count as f32 / most).sqrt())
+                pos2(x, rect.bottom() - rect.height() * (*count as f32 / max).sqrt())
             })
             .collect();
         painter.add(egui::Shape::line(points, egui::Stroke::new(1.2, Color32::from_rgb(r, g, b))));
     }
     let [low, high] = found.span;
-    response.on_hover_text(format!(
-        "how often numbers from {low} to {high} occur: red, green, blue, alpha; heights are square roots"
-    ));
+    response.on_hover_text(format!("Histogram from {low} to {high}: red, green, blue, alpha (square-root scale)"));
 }

@@ -1,18 +1,18 @@
-//! The scene: where it comes from, its animation, its cameras, what it is made of and with which materials.
+//! Scene panel: file, animation, cameras, instances and materials.
 
 use crate::live::Live;
-use crate::live::asked_file::AskedFile;
+use crate::live::file_request::FileRequest;
 use egui::{Button, ComboBox, RichText, ScrollArea, Slider, TextEdit, Ui};
 use framegraph_scene::builtin::NAMES;
 use framegraph_scene::{Camera, Scene};
 use std::path::Path;
 
-/// Names of files that are offered at most.
+/// Maximum number of suggested file names.
 const OFFERED: usize = 12;
-/// Endings of scenes, and of pictures of light.
+/// Extensions of scenes and environments.
 const ENDINGS: [&str; 6] = ["gltf", "glb", "hdr", "exr", "ktx", "ktx2"];
 
-/// Shows the scene; loads another one, moves it, looks from one of its cameras.
+/// Shows the scene, loads another one, plays its animations, and selects its cameras.
 pub fn scene(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::session::Session) {
     open(ui, live, path, session);
     ui.separator();
@@ -36,20 +36,20 @@ pub fn scene(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crat
     hierarchy(ui, &running.loaded.scene, &mut live.material);
 }
 
-/// A path with what there is in its folder, and the built-in scenes.
+/// Shows a path with suggestions, and the built-in scenes.
 fn open(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::session::Session) {
     ui.horizontal(|ui| {
         let width = (ui.available_width() - 192.0).max(60.0);
         let edit = ui.add(TextEdit::singleline(path).hint_text("SCENE.gltf, .glb or light.hdr").desired_width(width));
         let enter = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-        let tip = "loads it; files can be dropped onto the window too";
+        let tip = "Load the file. Files can also be dropped onto the window";
         if (ui.button("Load").on_hover_text(tip).clicked() || enter)
             && !path.trim().is_empty()
             && !live.open(Path::new(path.trim()), session)
         {
             live.load(path.trim());
         }
-        super::ask(ui, live, AskedFile::Open, "loads a scene, or light from all around");
+        super::ask(ui, live, FileRequest::Open, "Load a scene or an environment");
         ComboBox::from_id_salt("built-in")
             .selected_text("built-in")
             .width(60.0)
@@ -61,7 +61,7 @@ fn open(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::se
                 }
             })
             .response
-            .on_hover_text("scenes that the program makes itself");
+            .on_hover_text("Built-in scenes");
     });
     let offered = if path.is_empty() { Vec::new() } else { completions(path) };
     if !offered.is_empty() {
@@ -76,7 +76,7 @@ fn open(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::se
     }
 }
 
-/// Folders and files that a path may go on with: scenes and pictures of light, in their order.
+/// Returns folders and supported files that complete a path, sorted.
 pub(super) fn completions(path: &str) -> Vec<String> {
     let (folder, begun) = path
         .rsplit_once('/')
@@ -98,7 +98,7 @@ pub(super) fn completions(path: &str) -> Vec<String> {
     names
 }
 
-/// Chooses a material variant of the file; the scene is loaded again with its materials.
+/// Shows the material variants of the file. Another variant reloads the scene.
 fn variant(ui: &mut Ui, live: &mut Live) {
     let Some(loaded) = live.running.as_ref().map(|running| &running.loaded) else { return };
     if loaded.scene.variants.is_empty() {
@@ -114,7 +114,7 @@ fn variant(ui: &mut Ui, live: &mut Live) {
             }
         })
         .response
-        .on_hover_text("material variant of the file");
+        .on_hover_text("Material variant of the file");
     if chosen != loaded.variant {
         let name = loaded.name.clone();
         live.load_variant(&name, chosen);
@@ -132,32 +132,32 @@ fn animation(ui: &mut Ui, live: &mut Live) {
         name => name.to_owned(),
     };
     let mut document = live.document().clone();
-    let chosen = document.look.animation.filter(|number| *number < animations.len());
+    let chosen = document.capture.animation.filter(|number| *number < animations.len());
     let length_s = chosen.map_or(0.0, |number| animations[number].duration_s());
     ui.horizontal(|ui| {
-        let text = chosen.map_or("at rest".into(), named);
+        let text = chosen.map_or("rest pose".into(), named);
         ComboBox::from_id_salt("animation")
             .selected_text(text)
             .show_ui(ui, |ui| {
-                ui.selectable_value(&mut document.look.animation, None, "at rest");
+                ui.selectable_value(&mut document.capture.animation, None, "rest pose");
                 for number in 0..animations.len() {
-                    ui.selectable_value(&mut document.look.animation, Some(number), named(number));
+                    ui.selectable_value(&mut document.capture.animation, Some(number), named(number));
                 }
             })
             .response
-            .on_hover_text("which animation of the scene");
+            .on_hover_text("Animation of the scene");
         if chosen.is_some() {
-            ui.checkbox(&mut live.asked.playing, "play");
+            ui.checkbox(&mut live.options.playing, "play");
         }
     });
     if chosen.is_some() {
         let slider =
-            Slider::new(&mut live.asked.time_s, 0.0..=length_s.max(1e-3)).suffix(" s").max_decimals(3).text("time");
+            Slider::new(&mut live.options.time_s, 0.0..=length_s.max(1e-3)).suffix(" s").max_decimals(3).text("time");
         if ui.add(slider).changed() {
             live.again();
         }
     } else {
-        live.asked.playing = false;
+        live.options.playing = false;
     }
     if document != *live.document() {
         live.set(document, false);
@@ -175,7 +175,7 @@ fn cameras(ui: &mut Ui, live: &mut Live) {
         ui.label("cameras:");
         for (number, camera) in cameras.iter().enumerate() {
             let name = if camera.name.is_empty() { number.to_string() } else { camera.name.clone() };
-            if ui.small_button(name).on_hover_text("looks from there").clicked() {
+            if ui.small_button(name).on_hover_text("Use this camera").clicked() {
                 running.rig.take(camera);
                 taken = true;
             }
@@ -186,7 +186,7 @@ fn cameras(ui: &mut Ui, live: &mut Live) {
     }
 }
 
-/// Instances under their nodes, each with its material.
+/// Lists instances below their nodes, each with its material.
 fn hierarchy(ui: &mut Ui, scene: &Scene, chosen: &mut Option<usize>) {
     ScrollArea::vertical().auto_shrink(false).show_rows(ui, 22.0, scene.instances.len(), |ui, rows| {
         for number in rows {
@@ -210,7 +210,7 @@ fn hierarchy(ui: &mut Ui, scene: &Scene, chosen: &mut Option<usize>) {
                 let number = instance.material.index();
                 let shown = *chosen == Some(number);
                 let button = Button::selectable(shown, RichText::new(named).size(11.0));
-                if ui.add(button).on_hover_text("shows the material, and changes it").clicked() {
+                if ui.add(button).on_hover_text("Edit the material").clicked() {
                     *chosen = (!shown).then_some(number);
                 }
             });
@@ -218,7 +218,7 @@ fn hierarchy(ui: &mut Ui, scene: &Scene, chosen: &mut Option<usize>) {
     });
 }
 
-/// How many nodes stand above that of an instance.
+/// Returns the number of ancestor nodes of an instance.
 fn depth(scene: &Scene, instance: usize) -> usize {
     let mut node = scene.motion.instance_nodes.get(instance).copied();
     let mut depth = 0;
@@ -236,7 +236,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn paths_go_on_with_what_is_there() {
+    fn paths_are_completed() {
         assert!(completions("src/li").contains(&"live/".to_owned()) && completions("no/such/fold").is_empty());
         let light = completions("../tests/assets/hdri/ven");
         assert!(light.iter().all(|name| name.starts_with("ven")) && !light.is_empty(), "{light:?}");

@@ -1,16 +1,16 @@
-//! The settings of the frame: presets, files, undo, and every field.
+//! Settings panel: presets, files, undo, and every field.
 
 use super::fields::Fields;
 use super::{curves, goes_on, tone};
 use crate::live::Live;
-use crate::live::asked_file::AskedFile;
-use crate::live::shown::SettingsPanel;
+use crate::live::file_request::FileRequest;
+use crate::live::settings_panel::SettingsPanel;
 use crate::settings::{settings as as_settings, tree};
 use egui::{RichText, ScrollArea, TextEdit, Ui};
 use framegraph_passes::Preset;
 use std::path::PathBuf;
 
-/// Shows the settings, and changes them.
+/// Shows and edits the settings.
 pub fn settings(ui: &mut Ui, live: &mut Live) {
     bar(ui, live);
     let mut panel = std::mem::take(&mut live.settings);
@@ -60,12 +60,12 @@ fn fields(panel: &mut SettingsPanel, ui: &mut Ui, live: &mut Live) {
         Err(error) => panel.refused = Some(error),
     }
 }
-/// Presets, undo and redo, files.
+/// Shows presets, undo, redo and files.
 fn bar(ui: &mut Ui, live: &mut Live) {
     ui.horizontal_wrapped(|ui| {
         for preset in Preset::ALL {
             let is = live.document().frame == preset.frame();
-            if ui.selectable_label(is, preset.name()).on_hover_text("the whole frame of this preset").clicked() {
+            if ui.selectable_label(is, preset.name()).on_hover_text("Load all settings of this preset").clicked() {
                 let mut document = live.document().clone();
                 document.frame = preset.frame();
                 live.set(document, false);
@@ -78,15 +78,19 @@ fn bar(ui: &mut Ui, live: &mut Live) {
         if ui.add_enabled(redo, egui::Button::new("Redo")).on_hover_text("Ctrl+Y").clicked() && live.history.redo() {
             live.again();
         }
-        super::ask(ui, live, AskedFile::Open, "opens a file of settings");
-        super::ask(ui, live, AskedFile::SaveSettings, "saves them as a file");
+        super::ask(ui, live, FileRequest::Open, "Open a settings file");
+        super::ask(ui, live, FileRequest::SaveSettings, "Save the settings to a file");
     });
     ui.horizontal(|ui| {
         let width = (ui.available_width() - 122.0).max(40.0);
         ui.add(TextEdit::singleline(&mut live.path).hint_text("SETTINGS.ron").desired_width(width));
         let path = PathBuf::from(live.path.trim());
         let named = !live.path.trim().is_empty();
-        if ui.add_enabled(named, egui::Button::new("Load")).on_hover_text("docs/settings.md").clicked() {
+        if ui
+            .add_enabled(named, egui::Button::new("Load"))
+            .on_hover_text("Load a settings file (docs/settings.md)")
+            .clicked()
+        {
             let read = crate::standard_frame::settings(live.path.trim());
             live.settings.refused = match read {
                 Ok(frame) => {
@@ -98,7 +102,7 @@ fn bar(ui: &mut Ui, live: &mut Live) {
                 Err(error) => Some(error),
             };
         }
-        if ui.add_enabled(named, egui::Button::new("Save")).on_hover_text("every field, as RON").clicked() {
+        if ui.add_enabled(named, egui::Button::new("Save")).on_hover_text("Save every field as RON").clicked() {
             live.settings.refused = live.save(&path).err();
         }
     });

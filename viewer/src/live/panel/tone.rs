@@ -1,4 +1,4 @@
-//! The tone curve: what becomes of light of the scene, by the look's own function.
+//! Plot of the tone curve, from scene light to display values, with the function of the current look.
 
 use crate::drawing::Ink;
 use crate::panel::{color, theme};
@@ -7,14 +7,14 @@ use framegraph_passes::PostSettings;
 use framegraph_passes::grading::Extras;
 use glam::DVec3;
 
-/// Stops below and above middle gray that are plotted.
+/// Plotted range in stops about middle gray.
 const STOPS: [f64; 2] = [-8.0, 8.0];
-/// Light of the scene that is middle gray.
+/// Scene luminance of middle gray.
 const MIDDLE: f64 = 0.18;
-/// Points of the curve.
+/// Number of points of the curve.
 const POINTS: usize = 97;
 
-/// Codes of the display, 0 to 1, of a gray so many stops above middle gray, before dither.
+/// Returns the display value, 0 to 1 per channel, of a gray at `stops` above middle gray, before dither.
 pub(super) fn codes(post: &PostSettings, stops: f64) -> Option<DVec3> {
     let extras = Extras::default();
     let function = post.look.function(&extras).ok()?;

@@ -1,4 +1,4 @@
-//! The frame itself: drawn as large as there is room, the camera moved by pointer and keys.
+//! Viewport: the live frame at the available size, with pointer and key control of the camera.
 
 use crate::live::Live;
 use crate::live::camera::{Mode, Moves};
@@ -6,10 +6,10 @@ use crate::session::Session;
 use egui::{Color32, Key, PointerButton, Rect, Sense, Ui, pos2, vec2};
 use glam::{DVec2, DVec3};
 
-/// The largest side that is drawn, in pixels.
-const MOST_PX: u32 = 8192;
+/// Maximum side of the drawn frame, in pixels.
+const MAX_PX: u32 = 8192;
 
-/// Shows the frame, and draws it where something has changed.
+/// Shows the frame and draws it after changes.
 pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
     bar(ui, live, session);
     let rect = ui.available_rect_before_wrap();
@@ -20,8 +20,8 @@ pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "viewport"));
     steer(ui, live, &response, rect);
     let scale = ui.ctx().pixels_per_point() * live.share.clamp(0.1, 1.0);
-    let most = live.screen.gpu.caps().max_texture_texels.min(MOST_PX) as f32;
-    let size_px = [rect.width(), rect.height()].map(|side| (side * scale).round().clamp(1.0, most) as u32);
+    let max = live.screen.gpu.caps().max_texture_texels.min(MAX_PX) as f32;
+    let size_px = [rect.width(), rect.height()].map(|side| (side * scale).round().clamp(1.0, max) as u32);
     if live.take_size(size_px) {
         live.again();
     }
@@ -30,7 +30,7 @@ pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         Some((id, _)) => {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             ui.painter().image(id, rect, whole, Color32::WHITE);
-            // Over the picture: words that grow would change its size, and so what is measured.
+            // Drawn over the picture, because a growing text line would change its size and thereby the measurement.
             let font = egui::FontId::monospace(11.0);
             let words = ui.painter().layout_no_wrap(statistics(live), font, Color32::WHITE);
             let at = rect.left_bottom() + vec2(6.0, -6.0 - words.size().y);
@@ -39,7 +39,7 @@ pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
             ui.painter().galley(at, words, Color32::WHITE);
         }
         None => {
-            let text = if live.doing().is_some() { "loading" } else { "no scene: drop a glTF file here" };
+            let text = if live.doing().is_some() { "Loading" } else { "No scene: drop a glTF file here" };
             ui.painter().text(
                 rect.center(),
                 egui::Align2::CENTER_CENTER,
@@ -54,7 +54,7 @@ pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
     }
 }
 
-/// Statistics, what the camera does, and how much is drawn.
+/// Shows background work, camera mode and resolution.
 fn bar(ui: &mut Ui, live: &mut Live, session: &mut Session) {
     ui.horizontal_wrapped(|ui| {
         if let Some((doing, progress)) = live.doing().map(|(doing, progress)| (doing.to_owned(), progress)) {
@@ -63,31 +63,27 @@ fn bar(ui: &mut Ui, live: &mut Live, session: &mut Session) {
                 None => _ = ui.spinner(),
             }
             ui.label(doing);
-            if ui.button("Stop").on_hover_text("ends loading; what is shown stays").clicked() {
+            if ui.button("Stop").on_hover_text("Cancel loading and keep the displayed frame").clicked() {
                 live.cancel();
             }
             ui.separator();
         }
         let Some(running) = &mut live.running else { return };
         for (mode, name, tip) in [
-            (
-                Mode::Orbit,
-                "orbit",
-                "dragging goes around the place in the middle, the right button shifts, the wheel comes nearer",
-            ),
+            (Mode::Orbit, "orbit", "Drag to orbit, right-drag to pan, wheel to zoom"),
             (
                 Mode::Fly,
                 "fly",
-                "dragging looks around; W A S D move, Q and E go down and up, Shift is four times as fast",
+                "Drag to look around; W A S D move, Q and E move down and up, Shift is four times as fast",
             ),
         ] {
             ui.selectable_value(&mut running.rig.mode, mode, name).on_hover_text(tip);
         }
-        if ui.button("home").on_hover_text("back to the camera of the scene").clicked() {
+        if ui.button("home").on_hover_text("Return to the camera of the scene").clicked() {
             running.rig.go_home();
             live.again();
         }
-        let tip = "frames are drawn without a pause, to measure; otherwise only where something changes";
+        let tip = "Draw continuously for measurements; otherwise only after changes";
         ui.checkbox(&mut live.continuous, "run").on_hover_text(tip);
         ui.menu_button(format!("{:.0} %", 100.0 * live.share), |ui| {
             for share in [1.0, 0.75, 0.5, 0.25] {
@@ -99,16 +95,16 @@ fn bar(ui: &mut Ui, live: &mut Live, session: &mut Session) {
             }
         })
         .response
-        .on_hover_text("pixels that are drawn along each side, of those that the viewport has");
+        .on_hover_text("Rendered fraction of the viewport's sides");
         if !session.is_live()
-            && ui.button("Show its plan").on_hover_text("the views show the plan of this frame").clicked()
+            && ui.button("Show plan").on_hover_text("Show the plan of this frame in the views").clicked()
         {
             live.show_plan(session);
         }
     });
 }
 
-/// Frames a second, medians of the frame on both sides and from its begin until the device is done, size and counts.
+/// Returns frame rate, median CPU, GPU and latency times, size and counts.
 fn statistics(live: &Live) -> String {
     let Some(running) = &live.running else { return String::new() };
     let times = running.frames().executor().timing().frame();

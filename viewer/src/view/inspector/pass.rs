@@ -1,4 +1,4 @@
-//! What there is to say about a pass.
+//! Inspector sections of a pass.
 
 use super::section::{Line, Section};
 use super::step;
@@ -15,24 +15,24 @@ pub(super) fn sections(plan: &PlanData, index: usize) -> Vec<Section> {
             let others: Vec<_> = step.passes.iter().filter(|name| **name != pass.name).map(String::as_str).collect();
             let with = if others.is_empty() { String::new() } else { format!(", with {}", others.join(", ")) };
             let how = match pass.join.as_deref() {
-                Some("attachments") => ", merged by shared attachments",
-                Some("same_pixel") => ", merged: it reads at the same pixel, in the tile",
-                Some("inlined") => ", inlined into the shader of the pass before it",
+                Some("attachments") => ", merged: shared attachments",
+                Some("same_pixel") => ", merged: same-pixel reads in the tile",
+                Some("inlined") => ", inlined into the shader of the previous pass",
                 _ => "",
             };
             head.link(Item::Step(at), format!("runs in step {at}{with}{how}"));
         }
-        _ => head.say("culled: it does not run"),
+        _ => head.say("culled: does not run"),
     }
     if let Some(place) = plan.declared_at.get(index).filter(|place| !place.is_empty()) {
         head.say(format!("declared at {place}"));
     }
-    let mut why = Section::new("why");
+    let mut why = Section::new("decisions");
     let of_pass = |pass: &Option<String>, name: &str| pass.as_deref() == Some(name);
     for decision in plan.form.decisions.iter().filter(|d| d.about == "pass" && of_pass(&d.pass, &pass.name)) {
         why.decide(decision);
     }
-    let mut elsewhere = Section::new("named by decisions about others");
+    let mut elsewhere = Section::new("mentioned by other decisions");
     for decision in plan.form.decisions.iter().filter(|d| of_pass(&d.other_pass, &pass.name)) {
         let about = decision.pass.as_ref().or(decision.resource.as_ref());
         elsewhere.say(format!("{}: {}", about.map_or("", |a| a), decision.sentence));

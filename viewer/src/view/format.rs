@@ -1,9 +1,9 @@
-//! Figures in words, colors of changes, and headings: what the views share.
+//! Formatting shared by the views: numbers, colors of changes, and titles.
 
 use crate::drawing::{Drawing, Ink};
 use crate::plan_data::PlanData;
 
-/// Bytes with a unit that keeps three or four digits.
+/// Formats bytes with a binary unit.
 pub fn bytes(count: u64) -> String {
     const UNITS: [&str; 5] = ["B", "KiB", "MiB", "GiB", "TiB"];
     let mut value = count as f64;
@@ -15,7 +15,19 @@ pub fn bytes(count: u64) -> String {
     if unit == 0 { format!("{count} B") } else { format!("{value:.1} {}", UNITS[unit]) }
 }
 
-/// How a figure changed: `+3`, `-1.5 MiB`, `=` where it did not.
+/// Returns the label of a field of the totals: `unresolve_bytes` becomes `load bytes`, `resolves` becomes `stores`.
+///
+/// Multisample resolves keep their name.
+pub fn label(name: &str) -> String {
+    let words = name.replace('_', " ");
+    if words.starts_with("multisample") {
+        words
+    } else {
+        words.replace("unresolve", "load").replace("resolve", "store")
+    }
+}
+
+/// Formats a change: `+3`, `-1.5 MiB`, or `=`.
 pub fn change(before: u64, after: u64, is_bytes: bool) -> String {
     let amount = before.abs_diff(after);
     let amount = if is_bytes { bytes(amount) } else { amount.to_string() };
@@ -26,7 +38,7 @@ pub fn change(before: u64, after: u64, is_bytes: bool) -> String {
     }
 }
 
-/// The color of a change in a cost: more is worse.
+/// Returns the color of a change in a cost: more is worse.
 pub fn change_ink(before: u64, after: u64) -> Ink {
     match before.cmp(&after) {
         std::cmp::Ordering::Less => Ink::Worse,
@@ -35,16 +47,16 @@ pub fn change_ink(before: u64, after: u64) -> Ink {
     }
 }
 
-/// The same for a figure of the totals; those that are no cost stay plain.
+/// Returns the color of a change in a total; totals that are not costs use the text color.
 pub fn cost_ink(name: &str, before: u64, after: u64) -> Ink {
     let costs = matches!(name, "unresolves" | "resolves" | "steps" | "render_passes") || name.ends_with("_bytes");
     if costs && name != "avoided_bytes" { change_ink(before, after) } else { Ink::Text }
 }
 
-/// The heading of a picture: what frame, for what, how large.
+/// Draws the title of a view and the warnings of the plan; returns the bottom.
 pub(super) fn title(drawing: &mut Drawing, what: &str, plan: &PlanData) -> f32 {
     let form = &plan.form;
-    let name = if form.name.is_empty() { "the frame" } else { &form.name };
+    let name = if form.name.is_empty() { "frame" } else { &form.name };
     let [w, h] = form.frame;
     let head = format!("{what}: {name}, for {} at {w}x{h}", form.caps);
     drawing.text([0.0, 10.0], 16.0, Ink::Text, head);

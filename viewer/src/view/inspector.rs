@@ -1,4 +1,4 @@
-//! Everything known about the frame or one thing in it, in words: what the inspector shows, and its files and copies hold.
+//! Inspector: all data of the frame or of one item as text, for its panel, exports and the clipboard.
 
 mod pass;
 mod resource;
@@ -7,11 +7,11 @@ mod step;
 
 pub use section::{Line, Section};
 
-use super::words::bytes;
+use super::format::{bytes, label};
 use crate::drawing::{Drawing, Ink, Item, wrapped};
 use crate::plan_data::PlanData;
 
-/// What there is to say about an item; about the whole frame where none is selected.
+/// Returns the sections of an item, or of the whole frame without a selection.
 pub fn sections(plan: &PlanData, item: Option<Item>) -> Vec<Section> {
     let form = &plan.form;
     let mut sections = match item {
@@ -25,23 +25,23 @@ pub fn sections(plan: &PlanData, item: Option<Item>) -> Vec<Section> {
     sections
 }
 
-/// The whole frame: figures, warnings, what was culled.
+/// Returns the sections of the whole frame: totals, warnings, and culled passes.
 fn frame(plan: &PlanData) -> Vec<Section> {
     let form = &plan.form;
     let [w, h] = form.frame;
-    let mut head = Section::new(if form.name.is_empty() { "the frame" } else { &form.name });
-    head.say(format!("for {} at {w}x{h}, passes {}, memory shared by {}", form.caps, form.order, form.alias));
+    let mut head = Section::new(if form.name.is_empty() { "frame" } else { &form.name });
+    head.say(format!("device {}, {w}x{h}, order {}, aliasing {}", form.caps, form.order, form.alias));
     form.warnings.iter().for_each(|w| head.say(format!("warning: {}", w.sentence)));
     plan.notes.iter().for_each(|note| head.say(format!("note: {note}")));
     let mut totals = Section::new("totals");
     for (name, count, is_bytes) in form.totals.rows() {
         let value = match name {
-            "optimal" if count == 0 => "no: not proved to be the least possible".into(),
-            "optimal" => "yes: no placement takes less".into(),
+            "optimal" if count == 0 => "no: not proved minimal".into(),
+            "optimal" => "yes: proved minimal".into(),
             _ if is_bytes => bytes(count),
             _ => count.to_string(),
         };
-        totals.say(format!("{}: {value}", name.replace('_', " ")));
+        totals.say(format!("{}: {value}", label(name)));
     }
     let mut culled = Section::new("culled passes");
     for (index, pass) in form.passes.iter().enumerate().filter(|(_, pass)| pass.culled) {
@@ -52,14 +52,14 @@ fn frame(plan: &PlanData) -> Vec<Section> {
     vec![head, effects, totals, culled]
 }
 
-/// What one pass needs of another.
+/// Returns the sections of a dependency between two passes.
 fn flow(plan: &PlanData, index: usize) -> Vec<Section> {
     let Some(flow) = plan.form.flows.as_ref().and_then(|flows| flows.get(index)) else { return frame(plan) };
-    let mut head = Section::new(format!("flow from {} to {}", flow.from, flow.to));
+    let mut head = Section::new(format!("dependency from {} to {}", flow.from, flow.to));
     for name in [&flow.from, &flow.to] {
         head.lines.extend(plan.pass(name).map(|pass| Line::Link(Item::Pass(pass), format!("pass {name}"))));
     }
-    let mut what = Section::new("what flows");
+    let mut what = Section::new("resources");
     for resource in flow.resources.iter().filter_map(|name| plan.resource(name)) {
         let row = &plan.form.resources[resource];
         what.link(Item::Resource(resource), format!("{}: {}, {}", row.name, row.shape, bytes(row.bytes)));
@@ -67,7 +67,7 @@ fn flow(plan: &PlanData, index: usize) -> Vec<Section> {
     vec![head, what]
 }
 
-/// The sections as text, for the clipboard.
+/// Returns the sections as text for the clipboard.
 pub fn text(sections: &[Section]) -> String {
     let mut out = String::new();
     for Section { title, lines } in sections {
@@ -82,7 +82,7 @@ pub fn text(sections: &[Section]) -> String {
     out
 }
 
-/// The sections as a picture, in lines of at most so many letters.
+/// Draws the sections with lines of at most `letters` characters.
 pub fn drawing(sections: &[Section], letters: usize) -> Drawing {
     let mut drawing = Drawing::default();
     let mut y = 10.0;

@@ -1,25 +1,25 @@
-//! Lines of words under headings.
+//! Text lines under headings.
 
 use crate::drawing::Item;
 use crate::plan_data::Decision;
 
-/// A line of a section.
+/// Line of a section.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Line {
-    /// A plain sentence.
+    /// Plain sentence.
     Plain(String),
-    /// What to change to have it otherwise.
+    /// Hint about the change that would alter a decision.
     Hint(String),
-    /// Something that can be selected.
+    /// Link to an item.
     Link(Item, String),
 }
 
 /// Lines under a heading.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Section {
-    /// The heading.
+    /// Heading.
     pub title: String,
-    /// The lines.
+    /// Lines.
     pub lines: Vec<Line>,
 }
 
@@ -36,7 +36,7 @@ impl Section {
         self.lines.push(Line::Link(item, line.into()));
     }
 
-    /// A decision with its hint.
+    /// Adds a decision with its hint.
     pub(super) fn decide(&mut self, decision: &Decision) {
         let refused = decision.refusal.as_ref().map(|why| format!(" [{why}]")).unwrap_or_default();
         self.say(format!("{}{refused}", decision.sentence));

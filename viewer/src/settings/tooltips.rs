@@ -1,9 +1,9 @@
-//! What the document of settings says of a field, for tooltips.
+//! Tooltips of settings fields from `docs/settings.md`.
 
-/// The document, as it was when this program was built.
+/// Text of the document at build time.
 const TEXT: &str = include_str!("../../../docs/settings.md");
 
-/// What a field is, by its path (`settings.shadows.filter`): the row of the field itself, or of the field that holds it.
+/// Returns the documentation of a field by its path, such as `settings.shadows.filter`: its own row, or that of its parent.
 pub fn about(path: &str) -> Option<String> {
     let mut names = path.split('.');
     let first = names.next()?;
@@ -17,7 +17,7 @@ pub fn about(path: &str) -> Option<String> {
     Some(format!("{name}: {}", plain(what)))
 }
 
-/// Without marks and addresses of Markdown.
+/// Removes Markdown markup and link targets.
 fn plain(text: &str) -> String {
     let mut out = String::new();
     for (index, part) in text.split("](").enumerate() {

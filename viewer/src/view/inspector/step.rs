@@ -1,10 +1,10 @@
-//! What there is to say about a step, its attachments and barriers.
+//! Inspector sections of a step, its attachments and barriers.
 
 use super::section::{Line, Section};
 use crate::drawing::Item;
 use crate::plan_data::{Attachment, Barrier, PlanData, Step};
 use crate::view::bandwidth;
-use crate::view::words::bytes;
+use crate::view::format::bytes;
 
 pub(super) fn sections(plan: &PlanData, index: usize) -> Vec<Section> {
     let step = &plan.form.steps[index];
@@ -21,19 +21,19 @@ pub(super) fn sections(plan: &PlanData, index: usize) -> Vec<Section> {
     }
     let mut cost = Section::new("bytes");
     let moved = bandwidth::of_step(plan, step);
-    cost.say(format!("unresolves {}, loads {}", step.unresolves, bytes(moved.loaded)));
-    cost.say(format!("resolves {}, stores {}", step.resolves, bytes(step.resolve_bytes)));
+    cost.say(format!("loads: {}, {}", step.unresolves, bytes(moved.loaded)));
+    cost.say(format!("stores: {}, {}", step.resolves, bytes(step.resolve_bytes)));
     if moved.resolved > 0 {
-        cost.say(format!("of which {} are targets of multisample resolves", bytes(moved.resolved)));
+        cost.say(format!("including multisample resolve targets: {}", bytes(moved.resolved)));
     }
-    cost.say(format!("fetches {} at most, each texture and buffer once", bytes(moved.fetched)));
+    cost.say(format!("fetches: at most {}, each texture and buffer once", bytes(moved.fetched)));
     if let Some(peak) = plan.form.peak.as_ref().filter(|peak| peak.step == index) {
-        cost.say(format!("the most memory is live here: {}", peak.resources.join(", ")));
+        cost.say(format!("memory peak: {}", peak.resources.join(", ")));
     }
     vec![head, cost, attachments(plan, step, step.attachments.iter()), barriers(plan, |b| b.before_step == index)]
 }
 
-/// Load and store of attachments with their reasons and hints.
+/// Returns the load and store of attachments with reasons and hints.
 pub(super) fn attachments<'a>(
     plan: &PlanData,
     step: &Step,
@@ -71,21 +71,23 @@ pub(super) fn attachments<'a>(
     section
 }
 
-/// Transitions and hand-overs.
+/// Returns the layout transitions and aliasing barriers.
 pub(super) fn barriers(plan: &PlanData, is: impl Fn(&Barrier) -> bool) -> Section {
     let mut section = Section::new("barriers");
     for barrier in plan.form.barriers.iter().filter(|b| is(b)) {
         let stages = |stages: &[String]| if stages.is_empty() { "-".to_owned() } else { stages.join("+") };
-        let after = barrier.after_step.map_or_else(|| "what was before the frame".into(), |s| format!("step {s}"));
-        let over = barrier.hand_over.as_ref().map(|r| format!(", takes over the memory of {r}")).unwrap_or_default();
+        let (waiting, from) = (stages(&barrier.to_stages), stages(&barrier.from_stages));
+        let wait = match barrier.after_step {
+            Some(step) => format!("{waiting} waits for {from} of step {step}"),
+            None => format!("{waiting} waits for {from}, initial layout"),
+        };
+        let over = barrier.hand_over.as_ref().map(|r| format!(", takes memory over from {r}")).unwrap_or_default();
         section.say(format!(
-            "before step {}: {} from {} to {}, {} wait for {} of {after}{over}",
+            "before step {}: {}, {} → {}; {wait}{over}",
             barrier.before_step,
             barrier.resource,
             barrier.from.replace('_', " "),
             barrier.to.replace('_', " "),
-            stages(&barrier.to_stages),
-            stages(&barrier.from_stages),
         ));
     }
     section

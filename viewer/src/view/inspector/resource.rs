@@ -1,10 +1,10 @@
-//! What there is to say about a resource.
+//! Inspector sections of a resource.
 
 use super::section::{Line, Section};
 use super::step;
 use crate::drawing::Item;
 use crate::plan_data::PlanData;
-use crate::view::words::bytes;
+use crate::view::format::bytes;
 
 pub(super) fn sections(plan: &PlanData, index: usize) -> Vec<Section> {
     let form = &plan.form;
@@ -25,47 +25,47 @@ pub(super) fn sections(plan: &PlanData, index: usize) -> Vec<Section> {
     }
     match (resource.first_step, resource.last_step) {
         (Some(first), Some(last)) => head.say(format!("lives from step {first} to step {last}")),
-        _ => head.say("no kept pass touches it"),
+        _ => head.say("not used by any running pass"),
     }
     if let Some(entry) = &resource.entry {
-        let holds = if entry.defined { "holds contents" } else { "holds nothing" };
-        head.say(format!("comes in {holds}, as {}; stages {}", entry.state, entry.stages.join("+")));
+        let holds = if entry.defined { "defined contents" } else { "undefined contents" };
+        head.say(format!("import with {holds}, state {}; stages {}", entry.state, entry.stages.join("+")));
     }
     if let Some(exit) = &resource.exit {
-        head.say(format!("goes out: {exit}"));
+        head.say(format!("exit: {exit}"));
     }
     let mut place = Section::new("memory");
     place.say(match (resource.placement.as_str(), resource.offset, resource.slot) {
         ("slot", _, Some(slot)) => {
             let tenants = form.slots[slot].tenants.join(", ");
-            format!("slot {slot} of the pool, {}, by turns: {tenants}", bytes(form.slots[slot].bytes))
+            format!("slot {slot} of the pool, {}, shared by: {tenants}", bytes(form.slots[slot].bytes))
         }
-        ("heap", Some(offset), _) => format!("heap, from {offset} on ({})", bytes(offset)),
-        ("external", ..) => "memory of its owner".into(),
-        ("own", ..) => "memory of its own: it outlives the frame".into(),
-        ("memoryless", ..) => "none: it never leaves the tile".into(),
-        ("inlined", ..) => "none: its reader was inlined, so that it never exists".into(),
+        ("heap", Some(offset), _) => format!("heap, offset {offset} ({})", bytes(offset)),
+        ("external", ..) => "external: memory of its owner".into(),
+        ("own", ..) => "own memory: outlives the frame".into(),
+        ("memoryless", ..) => "none: memoryless, never leaves the tile".into(),
+        ("inlined", ..) => "none: its reader is inlined, so it does not exist".into(),
         (other, ..) => other.into(),
     });
     if let Some([first, last]) = resource.held_steps {
-        place.say(format!("keeps its place from step {first} to step {last}"));
+        place.say(format!("holds its memory from step {first} to step {last}"));
     }
     if form.peak.as_ref().is_some_and(|peak| peak.resources.contains(&resource.name)) {
-        place.say("it is live when the most memory is");
+        place.say("live at the memory peak");
     }
     for history in form.histories.iter().filter(|h| h.name == resource.name) {
         place.say(format!("history of {} images, {} each", history.images, bytes(history.image_bytes)));
         for previous in &history.previous {
-            place.say(format!("{} is its image of {} frames ago", previous.resource, previous.age));
+            place.say(format!("{} is its image from {} frames ago", previous.resource, previous.age));
         }
     }
-    let mut why = Section::new("why");
+    let mut why = Section::new("decisions");
     for decision in form.decisions.iter().filter(|d| d.resource.as_ref() == Some(&resource.name)) {
         let place = decision.step.map(|s| format!("{} in step {s}: ", decision.about)).unwrap_or_default();
         why.say(format!("{place}{}", decision.sentence));
         why.lines.extend(decision.hint.clone().map(Line::Hint));
     }
-    let mut path = Section::new("from writer to readers");
+    let mut path = Section::new("accesses");
     for (at, pass) in form.passes.iter().enumerate() {
         for access in pass.accesses.iter().filter(|a| a.resource == resource.name) {
             let part = access.part.as_ref().map(|part| format!(" ({part})")).unwrap_or_default();

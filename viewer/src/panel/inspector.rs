@@ -1,13 +1,13 @@
-//! The inspector: everything known about what is selected, in words that can be selected too.
+//! Inspector: all data of the selected item as selectable text.
 
 use crate::drawing::{Ink, Item};
-use crate::view::facts::{Line, Section, text};
+use crate::view::inspector::{Line, Section, text};
 use egui::{Label, RichText, ScrollArea, Ui};
 
-/// Shows the sections; returns the item of a link that was clicked.
-pub fn facts(ui: &mut Ui, sections: &[Section]) -> Option<Item> {
+/// Shows the sections and returns the item of a clicked link.
+pub fn inspector(ui: &mut Ui, sections: &[Section]) -> Option<Item> {
     let mut clicked = None;
-    if ui.small_button("Copy").on_hover_text("copies all of this as text").clicked() {
+    if ui.small_button("Copy").on_hover_text("Copy everything as text").clicked() {
         ui.ctx().copy_text(text(sections));
     }
     let theme = super::theme(ui);
