@@ -83,7 +83,7 @@ pub(super) fn barriers(plan: &PlanData, is: impl Fn(&Barrier) -> bool) -> Sectio
         };
         let over = barrier.hand_over.as_ref().map(|r| format!(", takes memory over from {r}")).unwrap_or_default();
         section.say(format!(
-            "before step {}: {}, {} → {}; {wait}{over}",
+            "before step {}: {} from {} to {}; {wait}{over}",
             barrier.before_step,
             barrier.resource,
             barrier.from.replace('_', " "),
