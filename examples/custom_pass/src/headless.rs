@@ -18,7 +18,7 @@ const STEP_S: f32 = 1.0 / 60.0;
 /// Draws the frames and writes the last one to `out`.
 ///
 /// # Errors
-/// One line, as an input or a device failure.
+/// An input or device failure with a one-line message.
 pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
     interrupt::watch();
     let output = |error: OutputError| Failure::Input(format!("--out {error}"));

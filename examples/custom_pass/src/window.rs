@@ -20,7 +20,7 @@ use winit::window::{Window, WindowId};
 /// Opens a window and draws until it is closed.
 ///
 /// # Errors
-/// One line, as an input or a device failure.
+/// An input or device failure with a one-line message.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let no_display =
         |error| Failure::Input(format!("no window can be opened ({error}); write a file with --out FILE.png instead"));

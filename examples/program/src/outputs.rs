@@ -13,7 +13,7 @@
 //! let mut outputs = Outputs::default();
 //! outputs.add(&picture)?;
 //! outputs.write(&picture, |file| file.write_all(b"light"))?;
-//! assert!(!picture.exists(), "it is made beside its place");
+//! assert!(!picture.exists(), "the file appears only at commit");
 //! outputs.commit()?;
 //! assert_eq!(std::fs::read(&picture).unwrap(), b"light");
 //! # std::fs::remove_file(&picture).unwrap();

@@ -8,12 +8,12 @@ use std::path::Path;
 /// Returns the picture that `render` writes in `folder`; `None` without an adapter.
 fn picture(folder: &Path, test: &str, args: &[&str]) -> Option<Vec<u8>> {
     let output = render(folder, args);
-    let told = String::from_utf8_lossy(&output.stderr);
-    if told.contains("no adapter") {
-        test_report::skip(test, told.trim());
+    let message = String::from_utf8_lossy(&output.stderr);
+    if message.contains("no adapter") {
+        test_report::skip(test, message.trim());
         return None;
     }
-    assert!(output.status.success(), "{args:?}: {told}");
+    assert!(output.status.success(), "{args:?}: {message}");
     Some(read_rgba8(&folder.join("render.png")).expect("a picture was written").1)
 }
 
@@ -46,8 +46,8 @@ fn bloom_comes_through_what_is_white_of_the_dirt() -> Result<(), Box<dyn std::er
     assert!(glow > dark + dark / 50 && shine > dim + dim / 50, "bloom is seen: {dark}, {glow}; {dim}, {shine}");
     assert!(behind_black.abs_diff(dark) <= dark / 500, "nothing comes through black: {dark}, {behind_black}");
     assert!(behind_white.abs_diff(shine) <= shine / 500, "all comes through white: {shine}, {behind_white}");
-    let told = refused(&folder, &["--bloom", "on", "--dirt", "nowhere.png"]);
-    assert!(told.contains("nowhere.png"), "{told}");
+    let message = refused(&folder, &["--bloom", "on", "--dirt", "nowhere.png"]);
+    assert!(message.contains("nowhere.png"), "{message}");
     Ok(())
 }
 
@@ -60,11 +60,11 @@ fn frames_are_drawn_as_large_as_their_time_lets_them_be() {
     for (target, least) in [("0.001:40", "rendered at 40 to 100 %"), ("100000:40", "rendered at 100 to 100 %")] {
         let line = format!("spheres --size 64x48 --turntable 24 . --dynamic-resolution {target}");
         let output = render(&folder, &line.split(' ').collect::<Vec<_>>());
-        let (told, out) = (String::from_utf8_lossy(&output.stderr), String::from_utf8_lossy(&output.stdout));
-        if told.contains("no adapter") {
-            return test_report::skip(TEST, told.trim());
+        let (message, out) = (String::from_utf8_lossy(&output.stderr), String::from_utf8_lossy(&output.stdout));
+        if message.contains("no adapter") {
+            return test_report::skip(TEST, message.trim());
         }
-        assert!(output.status.success(), "{told}");
+        assert!(output.status.success(), "{message}");
         assert!(out.contains(least) && out.contains(" ms, target "), "{target}: {out}");
         for index in [0, 23] {
             let file = folder.join(format!("turntable_{index:04}.png"));

@@ -95,7 +95,7 @@ fn try_shot(folder: &Path, name: &str, args: &[&str]) -> Result<Shot, String> {
 }
 
 fn shot(folder: &Path, args: &[&str]) -> Shot {
-    try_shot(folder, "shot", args).unwrap_or_else(|told| panic!("{told}"))
+    try_shot(folder, "shot", args).unwrap_or_else(|message| panic!("{message}"))
 }
 
 #[track_caller]
@@ -222,12 +222,12 @@ fn the_camera_of_the_file() {
     };
     assert!(!seen(&["--camera-from-gltf"]), "the first sees the card with what is around it");
     assert!(seen(&["--camera-from-gltf", "--camera", "close"]), "the second sees the card alone");
-    let told = try_shot(&folder, "none", &["--camera-from-gltf", "--camera", "other"]).err().unwrap_or_default();
-    assert!(told.contains("other") && told.contains("wide, close"), "{told}");
+    let message = try_shot(&folder, "none", &["--camera-from-gltf", "--camera", "other"]).err().unwrap_or_default();
+    assert!(message.contains("other") && message.contains("wide, close"), "{message}");
     fs::write(folder.join("card.gltf"), CARD.replace("\"camera\": 0,", "").replace("\"camera\": 1,", ""))
         .expect("writable");
-    let told = try_shot(&folder, "none", &["--camera-from-gltf"]).err().unwrap_or_default();
-    assert!(told.contains("--camera-from-gltf: `card.gltf` has no camera"), "{told}");
+    let message = try_shot(&folder, "none", &["--camera-from-gltf"]).err().unwrap_or_default();
+    assert!(message.contains("--camera-from-gltf: `card.gltf` has no camera"), "{message}");
 }
 
 /// The EXR contains radiance before post-processing, independent of its settings and of the plan.

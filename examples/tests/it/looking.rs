@@ -29,19 +29,19 @@ fn render(folder: &Path, args: &[&str]) -> Result<String, String> {
         .args([frames, map, args].concat())
         .output();
     let Output { status, stdout, stderr } = done.expect("the program starts");
-    let (out, told) = (String::from_utf8_lossy(&stdout).into_owned(), String::from_utf8_lossy(&stderr).into_owned());
-    if status.success() { Ok(out) } else { Err(format!("{status}: {told}")) }
+    let (out, message) = (String::from_utf8_lossy(&stdout).into_owned(), String::from_utf8_lossy(&stderr).into_owned());
+    if status.success() { Ok(out) } else { Err(format!("{status}: {message}")) }
 }
 
 /// Returns whether an adapter exists; reports a skip otherwise.
 fn renders(test: &str, folder: &Path) -> bool {
-    let told = render(folder, &["--out", "plain.png"]);
-    let missing = told.as_ref().err().filter(|e| e.contains("no adapter"));
+    let message = render(folder, &["--out", "plain.png"]);
+    let missing = message.as_ref().err().filter(|e| e.contains("no adapter"));
     if let Some(why) = missing {
         test_report::skip(test, why.trim());
         return false;
     }
-    told.unwrap_or_else(|e| panic!("{e}"));
+    message.unwrap_or_else(|e| panic!("{e}"));
     true
 }
 
@@ -55,7 +55,7 @@ fn half_floats_are_an_option() {
     let read = |name: &str| fs::read(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
     match render(&folder, &["--precision", "f16", "--out", "half.png"]) {
         Ok(_) => assert_ne!(read("half.png"), read("plain.png"), "roughness begins at 0.089"),
-        Err(told) => assert!(told.contains("SHADER_F16") && !folder.join("half.png").exists(), "{told}"),
+        Err(message) => assert!(message.contains("SHADER_F16") && !folder.join("half.png").exists(), "{message}"),
     }
 }
 
@@ -90,11 +90,11 @@ fn looking_changes_neither_the_picture_nor_its_plan() {
         assert!(out.contains(&format!(".{name}.png")), "{name}: {out}");
     }
 
-    let told = render(&folder, &["--out", "typo.png", "--inspect", "hbr"]).expect_err("there is no such texture");
-    assert!(told.contains("there is no texture `hbr`; the frame has `output`, `shadow_map`"), "{told}");
+    let message = render(&folder, &["--out", "typo.png", "--inspect", "hbr"]).expect_err("there is no such texture");
+    assert!(message.contains("there is no texture `hbr`; the frame has `output`, `shadow_map`"), "{message}");
     assert!(!folder.join("typo.png").exists(), "that is said before any work is done");
-    let told = render(&folder, &["--inspect-all", "nowhere"]).expect_err("there is no such folder");
-    assert!(told.contains("folder nowhere does not exist"), "{told}");
+    let message = render(&folder, &["--inspect-all", "nowhere"]).expect_err("there is no such folder");
+    assert!(message.contains("folder nowhere does not exist"), "{message}");
 }
 
 #[test]
@@ -132,9 +132,9 @@ fn kept_shadow_maps_are_drawn_once() {
         render(&folder, &args).unwrap_or_else(|e| panic!("{words}: {e}"))
     };
     let anew = run("anew", "map-size=256,fit=stable", "shadow/shadow_map:0:2");
-    let told = run("kept", "texels=256,fit=stable,keep=on", "shadow_map:0:2");
-    assert!(told.contains("the first frame draws 3 of 3 shadow maps: 3 never drawn before"), "{told}");
-    assert!(told.contains("each later frame draws 0 of 3 shadow maps: all maps are kept"), "{told}");
+    let message = run("kept", "texels=256,fit=stable,keep=on", "shadow_map:0:2");
+    assert!(message.contains("the first frame draws 3 of 3 shadow maps: 3 never drawn before"), "{message}");
+    assert!(message.contains("each later frame draws 0 of 3 shadow maps: all maps are kept"), "{message}");
     assert!(!anew.contains("shadow maps: "), "{anew}");
     assert!(read("kept.png") == read("anew.png") && read("kept.map.png") == read("anew.map.png"), "another picture");
     assert!(cascades("anew.plan.txt") >= 3 && cascades("kept.plan.txt") == 0);

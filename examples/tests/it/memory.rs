@@ -38,8 +38,8 @@ fn peak_kib(mut run: Command, options: &str) -> Option<u64> {
 #[test]
 fn memory_does_not_grow_with_frames() {
     let folder = folder("memory");
-    let told = command(&folder).args(["--size", "16x8"]).output().expect("the program starts");
-    if String::from_utf8_lossy(&told.stderr).contains("no adapter") {
+    let message = command(&folder).args(["--size", "16x8"]).output().expect("the program starts");
+    if String::from_utf8_lossy(&message.stderr).contains("no adapter") {
         return test_report::skip("memory_does_not_grow_with_frames", "no adapter");
     }
     // Effects with images and shaders of their own, all at once.

@@ -32,11 +32,11 @@ fn a_closed_or_full_standard_output_costs_no_file() {
         });
         let mut child = command.spawn().expect("the program starts");
         drop(child.stdout.take());
-        let mut told = String::new();
-        child.stderr.take().expect("it is piped").read_to_string(&mut told).expect("the words are UTF-8");
-        assert_eq!(child.wait().expect("it ends").code(), Some(code), "{to}: {told}");
-        assert!(!told.contains("panicked") && told.contains(words), "{to}: {told}");
-        assert_eq!(told.contains("error"), !words.is_empty(), "{to}: {told}");
+        let mut message = String::new();
+        child.stderr.take().expect("it is piped").read_to_string(&mut message).expect("the words are UTF-8");
+        assert_eq!(child.wait().expect("it ends").code(), Some(code), "{to}: {message}");
+        assert!(!message.contains("panicked") && message.contains(words), "{to}: {message}");
+        assert_eq!(message.contains("error"), !words.is_empty(), "{to}: {message}");
         assert!(folder.join(&out).is_file(), "{to}");
     }
     // Both streams are full, so the failure cannot be reported.
@@ -122,9 +122,9 @@ fn a_signal_stops_the_run_and_leaves_nothing() {
         let sent = Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status();
         assert!(sent.is_ok_and(|status| status.success()));
         let output = child.wait_with_output().expect("it ends");
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(code), "{told}");
-        assert!(told.contains("error: stopped by signal"), "{told}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{message}");
+        assert!(message.contains("error: stopped by signal"), "{message}");
         assert_eq!(entries(&folder), [] as [std::path::PathBuf; 0]);
     }
 }

@@ -11,12 +11,12 @@ const SHOWN: [u32; 2] = [64, 48];
 fn rendered(folder: &Path, test: &str, options: &str) -> Option<()> {
     let frame = "columns --size 64x48 --frames 1 --dither 0";
     let output = render(folder, &format!("{frame} {options}").split_whitespace().collect::<Vec<_>>());
-    let told = String::from_utf8_lossy(&output.stderr);
-    if told.contains("no adapter") {
-        test_report::skip(test, told.trim());
+    let message = String::from_utf8_lossy(&output.stderr);
+    if message.contains("no adapter") {
+        test_report::skip(test, message.trim());
         return None;
     }
-    assert!(output.status.success(), "{options}: {told}");
+    assert!(output.status.success(), "{options}: {message}");
     Some(())
 }
 
@@ -85,8 +85,8 @@ fn a_scaled_frame_is_drawn_smaller_and_shown_as_large() {
     rendered(&folder, TEST, &format!("--scale 1 {}", files("one")));
     assert_eq!(codes(&folder.join("one.png")), whole);
     assert_eq!(read("one.txt"), read("whole.txt"));
-    let told = refused(&folder, &["--scale", "0.2"]);
-    assert!(told.contains("--scale 0.2"), "{told}");
+    let message = refused(&folder, &["--scale", "0.2"]);
+    assert!(message.contains("--scale 0.2"), "{message}");
 }
 
 /// Each picture of a sequence equals the single picture, if nothing moves and nothing is accumulated.

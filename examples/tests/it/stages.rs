@@ -30,12 +30,12 @@ fn fog_is_inserted_and_the_edge_filter_replaced() -> TestResult {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("stages");
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder)?;
-    let (code, out, told) = run(&folder, &["foggy.png", "0.5"])?;
-    if told.contains("no adapter") {
-        test_report::skip("fog_is_inserted_and_the_edge_filter_replaced", told.trim());
+    let (code, out, message) = run(&folder, &["foggy.png", "0.5"])?;
+    if message.contains("no adapter") {
+        test_report::skip("fog_is_inserted_and_the_edge_filter_replaced", message.trim());
         return Ok(());
     }
-    assert_eq!(code, Some(0), "{told}");
+    assert_eq!(code, Some(0), "{message}");
     // The fog stage requests single-sampled depth. The replacement of `fxaa` writes the output.
     for line in ["pass depth_resolve", "pass fog", "pass sharpen", "color 0: output dont_care -> store"] {
         assert!(out.contains(line), "{line}: {out}");
@@ -44,8 +44,8 @@ fn fog_is_inserted_and_the_edge_filter_replaced() -> TestResult {
 
     let ([width, height], foggy) = read_rgba8(&folder.join("foggy.png"))?;
     assert_eq!([width, height], [640, 360]);
-    let (code, _, told) = run(&folder, &["clear.png", "0"])?;
-    assert_eq!(code, Some(0), "{told}");
+    let (code, _, message) = run(&folder, &["clear.png", "0"])?;
+    assert_eq!(code, Some(0), "{message}");
     let (_, clear) = read_rgba8(&folder.join("clear.png"))?;
     // Geometry below the sky fades toward the fog; the sky at the top is unchanged.
     let changed = |rows: std::ops::Range<usize>| {
@@ -66,9 +66,12 @@ fn bad_input_is_one_line_and_exit_code_2() -> TestResult {
         (&["a.png", "thick"], "DENSITY thick"),
         (&["a.png", "11"], "from 0 to 10"),
     ] {
-        let (code, out, told) = run(folder, args)?;
-        assert_eq!((code, out.as_str()), (Some(2), ""), "{args:?}: {told}");
-        assert!(told.starts_with("error: ") && told.contains(named) && told.lines().count() == 1, "{args:?}: {told}");
+        let (code, out, message) = run(folder, args)?;
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{args:?}: {message}");
+        assert!(
+            message.starts_with("error: ") && message.contains(named) && message.lines().count() == 1,
+            "{args:?}: {message}"
+        );
     }
     let (code, out, _) = run(folder, &["--help"])?;
     assert!(code == Some(0) && out.contains("DENSITY"), "{out}");

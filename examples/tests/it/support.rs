@@ -46,11 +46,11 @@ pub fn refused<S: AsRef<OsStr>>(folder: &Path, args: &[S]) -> String {
 pub fn refusal(folder: &Path, command: &mut Command) -> String {
     let before = entries(folder);
     let Output { status, stderr, .. } = command.output().expect("the program starts");
-    let told = String::from_utf8_lossy(&stderr).into_owned();
-    assert_eq!(status.code(), Some(2), "{told}");
-    assert!(!told.contains("panicked"), "{told}");
-    let errors: Vec<_> = told.lines().filter(|l| l.starts_with("error: ")).collect();
-    assert_eq!(errors.len(), 1, "{told}");
+    let message = String::from_utf8_lossy(&stderr).into_owned();
+    assert_eq!(status.code(), Some(2), "{message}");
+    assert!(!message.contains("panicked"), "{message}");
+    let errors: Vec<_> = message.lines().filter(|l| l.starts_with("error: ")).collect();
+    assert_eq!(errors.len(), 1, "{message}");
     assert_eq!(entries(folder), before, "something was written");
     errors[0].to_owned()
 }

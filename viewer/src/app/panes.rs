@@ -17,7 +17,7 @@ pub enum Pane {
     View(View),
     /// Search.
     List,
-    /// What-if questions.
+    /// The what-if panel.
     WhatIf,
     /// Live frame.
     Viewport,

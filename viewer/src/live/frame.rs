@@ -33,7 +33,7 @@ pub struct DrawOptions {
     pub forced: bool,
     /// Animation time in seconds.
     pub time_s: f64,
-    /// Whether the animation plays.
+    /// True while the animation plays.
     pub playing: bool,
 }
 

@@ -79,7 +79,7 @@ pub struct Loaded {
     pub background: Background,
     /// Metered exposure value at ISO 100.
     pub metered_ev100: f32,
-    /// Whether meshes have levels of detail.
+    /// True if meshes have levels of detail.
     pub levels: bool,
     /// Selected material variant.
     pub variant: Option<String>,

@@ -29,7 +29,7 @@ pub struct Shown<'a> {
     pub base: Option<&'a PlanData>,
     /// What-if plan.
     pub now: Option<&'a PlanData>,
-    /// Whether a plan is being compiled.
+    /// True while a plan is being compiled.
     pub planning: bool,
 }
 

@@ -21,7 +21,7 @@ pub struct PlanData {
 }
 
 impl PlanData {
-    /// Indexes the rows of a form by name. Of several rows with one name, the first is found.
+    /// Indexes the rows of a form by name. The first row of a name wins.
     pub fn new(form: Form, notes: Vec<String>) -> Self {
         let mut passes = HashMap::new();
         for (index, pass) in form.passes.iter().enumerate() {

@@ -18,7 +18,7 @@ pub enum ReadError {
         line: usize,
         /// Error of the parser.
         reason: String,
-        /// Whether the text ends within the object.
+        /// True if the text ends within the object.
         truncated: bool,
     },
     /// JSON with another schema.

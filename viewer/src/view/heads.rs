@@ -18,7 +18,7 @@ pub(super) struct Column {
     pub pass: usize,
     /// Step; `None` for a culled pass.
     pub step: Option<usize>,
-    /// Whether the step is a full-screen resolve of an earlier step.
+    /// True if the step is a full-screen resolve of an earlier step.
     pub resolve: bool,
 }
 

@@ -102,7 +102,7 @@ fn panels_look_as_in_the_document() {
         assert_eq!(expected.dimensions(), (SIZE[0], SIZE[1]));
         let differ = differing(&rgba, expected.as_raw());
         assert!(differ <= MAX_DIFFERENT, "{file}: {differ} pixels differ; see {}", made.display());
-        // Negative control: different views are told apart.
+        // Negative control: different views are message apart.
         if let Some(before) = before.replace(rgba.clone()) {
             assert!(differing(&before, &rgba) > MAX_DIFFERENT, "{file} is the picture before it");
         }

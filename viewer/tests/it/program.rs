@@ -22,8 +22,8 @@ fn views_are_written_as_svg() {
         let out = folder.join(format!("{view}.svg"));
         let args =
             ["--headless", "--view", view, "--plan", shown(&frame), "--against", shown(&other), "--out", shown(&out)];
-        let (code, _, told) = run(&args);
-        assert_eq!(code, Some(0), "{told}");
+        let (code, _, message) = run(&args);
+        assert_eq!(code, Some(0), "{message}");
         let text = std::fs::read_to_string(&out).expect("the file is there");
         assert!(text.contains("Filament") && text.ends_with("</svg>\n"), "{view}");
     }
@@ -44,9 +44,12 @@ fn every_mistake_is_one_line_and_leaves_no_file() {
         (&["--headless", "--plan", shown(&frame), "--caps", "toaster", "--out", shown(&out)], "`toaster`"),
     ];
     for (args, named) in cases {
-        let (code, out, told) = run(args);
-        assert_eq!((code, out.as_str()), (Some(2), ""), "{args:?}: {told}");
-        assert!(told.lines().count() == 1 && told.starts_with("error: ") && told.contains(named), "{args:?}: {told}");
+        let (code, out, message) = run(args);
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{args:?}: {message}");
+        assert!(
+            message.lines().count() == 1 && message.starts_with("error: ") && message.contains(named),
+            "{args:?}: {message}"
+        );
     }
     assert!(!out.exists());
     let (code, help, _) = run(&["--help"]);

@@ -19,10 +19,10 @@ fn program(display: &Display, args: &[&str]) -> Command {
 }
 
 /// Reports a skip without a display or a device.
-fn skipped(name: &str, told: &str) -> bool {
-    let none = told.contains("window: cannot be opened") || told.contains("No suitable graphics adapter");
+fn skipped(name: &str, message: &str) -> bool {
+    let none = message.contains("window: cannot be opened") || message.contains("No suitable graphics adapter");
     if none {
-        test_report::skip(name, told.trim());
+        test_report::skip(name, message.trim());
     }
     none
 }
@@ -34,10 +34,10 @@ fn a_window_draws_sixty_frames() {
     let frame = case("filament");
     let output = program(&display, &[frame.to_str().expect("a name"), "--frames", "60"]).output();
     let Output { status, stdout, stderr } = output.expect("the program starts");
-    let (out, told) = (String::from_utf8_lossy(&stdout), String::from_utf8_lossy(&stderr));
-    if !skipped(name, &told) {
+    let (out, message) = (String::from_utf8_lossy(&stdout), String::from_utf8_lossy(&stderr));
+    if !skipped(name, &message) {
         let frames = out.split_once(" frames").and_then(|(count, _)| count.parse::<u32>().ok());
-        assert!(status.code() == Some(0) && frames >= Some(60), "{status}: {out}{told}");
+        assert!(status.code() == Some(0) && frames >= Some(60), "{status}: {out}{message}");
     }
 }
 
@@ -67,10 +67,10 @@ fn a_window_is_resized_hidden_and_closed() {
     let root = x.setup().roots[screen].root;
     let Some(window) = window(&x, root) else {
         let _ = program.kill();
-        let mut told = String::new();
-        program.stderr.take().map(|mut err| err.read_to_string(&mut told));
+        let mut message = String::new();
+        program.stderr.take().map(|mut err| err.read_to_string(&mut message));
         let _ = program.wait();
-        assert!(skipped(name, &told), "no window: {told}");
+        assert!(skipped(name, &message), "no window: {message}");
         return;
     };
     let pause = || std::thread::sleep(Duration::from_millis(400));
@@ -103,10 +103,10 @@ fn a_window_is_resized_hidden_and_closed() {
     if status.is_none() {
         let _ = program.kill();
     }
-    let mut told = String::new();
-    program.stderr.take().map(|mut err| err.read_to_string(&mut told));
-    assert_eq!(status.and_then(|status| status.code()), Some(0), "{told}");
-    assert!(!told.contains("panicked"), "{told}");
+    let mut message = String::new();
+    program.stderr.take().map(|mut err| err.read_to_string(&mut message));
+    assert_eq!(status.and_then(|status| status.code()), Some(0), "{message}");
+    assert!(!message.contains("panicked"), "{message}");
 }
 
 #[test]
@@ -124,13 +124,13 @@ fn a_live_frame_is_drawn_in_a_window() {
         let _ = x.flush();
     }
     let Output { status, stdout, stderr } = program.wait_with_output().expect("a program");
-    let (out, told) = (String::from_utf8_lossy(&stdout), String::from_utf8_lossy(&stderr));
-    if !skipped(name, &told) {
+    let (out, message) = (String::from_utf8_lossy(&stdout), String::from_utf8_lossy(&stderr));
+    if !skipped(name, &message) {
         let frames = out.split_once(" frames").and_then(|(count, _)| count.parse::<u32>().ok());
-        assert!(status.code() == Some(0) && frames >= Some(24), "{status}: {out}{told}");
+        assert!(status.code() == Some(0) && frames >= Some(24), "{status}: {out}{message}");
         let mut words = out.split_whitespace().rev().skip_while(|word| *word != "of").skip(1);
         let drawn = words.next().and_then(|word| word.parse::<u32>().ok());
-        assert!(drawn >= Some(20), "the scene is drawn in each of them: {out}{told}");
-        assert!(!told.contains("device: ") && !told.contains("panicked"), "{told}");
+        assert!(drawn >= Some(20), "the scene is drawn in each of them: {out}{message}");
+        assert!(!message.contains("device: ") && !message.contains("panicked"), "{message}");
     }
 }

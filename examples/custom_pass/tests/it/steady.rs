@@ -74,9 +74,9 @@ fn a_lost_device_is_an_error() -> TestResult {
         picture(&mut app, 0.0, &image)?;
         app.frames.executor().gpu().wait()?;
         app.engine.device.destroy();
-        let told = app.draw(0.0, Screen::Texture(&image));
-        let lost = matches!(told, Err(FrameError::Execute(ExecuteError::Device(DeviceError::Lost { .. }))));
-        assert!(lost, "{told:?}");
+        let message = app.draw(0.0, Screen::Texture(&image));
+        let lost = matches!(message, Err(FrameError::Execute(ExecuteError::Device(DeviceError::Lost { .. }))));
+        assert!(lost, "{message:?}");
         Ok(())
     })
 }

@@ -100,7 +100,7 @@ struct Tried {
 /// Chooses the frame, prints the choice and the verified result, and returns the resulting command line.
 ///
 /// # Errors
-/// One line, as an input or a device failure.
+/// An input or device failure with a one-line message.
 pub fn choose(args: &Args, bound: Bound) -> Result<Args, Failure> {
     let (measured, adapter) = record(args.budget.record.as_deref()).map_err(input)?;
     let base = args.frame();

@@ -33,7 +33,7 @@ struct Way {
 /// Measures all variants alternately under equal conditions and prints one table.
 ///
 /// # Errors
-/// One line, as an input or a device failure.
+/// An input or device failure with a one-line message.
 pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let gpu = open();
     let options = args.load_options(gpu.as_ref().map_or(BlockFormats::default(), block_formats));

@@ -141,7 +141,7 @@ impl Debugging {
 /// `before` holds the object counts before the measured frames.
 ///
 /// # Errors
-/// One line, as an input or a device failure.
+/// An input or device failure with a one-line message.
 pub fn report(
     args: &Args,
     prepared: &mut Prepared,
@@ -292,7 +292,7 @@ fn made_line(args: &Args, executor: &Executor, before: ObjectCounts) -> String {
 /// Renders with every debug mode and prints the modes that change the picture.
 ///
 /// # Errors
-/// One line, as an input or a device failure.
+/// An input or device failure with a one-line message.
 pub fn run_bisect(args: &Args) -> Result<(), Failure> {
     let mut prepared = prepare(args, &mut Outputs::default())?;
     let outcomes = bisect(|mode| {

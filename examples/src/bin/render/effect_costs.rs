@@ -59,7 +59,7 @@ impl Way {
 /// Each row has the medians over `--frames` frames.
 ///
 /// # Errors
-/// One line, as an input or a device failure.
+/// An input or device failure with a one-line message.
 pub fn measure(args: &Args, prepared: &mut Prepared) -> Result<Vec<Saved>, Failure> {
     let decided = prepared.facts.apply(&prepared.asked);
     let asked: Vec<Effect> = Effect::ALL.into_iter().filter(|effect| prepared.asked.has(*effect)).collect();

@@ -79,7 +79,7 @@ pub fn declare(settings: &Settings, facts: &Facts, linear: bool, own: Own<'_>) -
 /// Draws the frame that redraws all shadow maps, and declares the next frame, which is measured.
 ///
 /// # Errors
-/// One line, as an input or a device failure.
+/// An input or device failure with a one-line message.
 pub fn first_frame(args: &Args, prepared: &mut Prepared) -> Result<(), Failure> {
     let Some(kept) = &prepared.kept else { return Ok(()) };
     program::line(format_args!("the first frame {}", kept.describe()));
@@ -103,7 +103,7 @@ impl Prepared {
     /// Declares the next frame.
     ///
     /// # Errors
-    /// One line, as an input or a device failure.
+    /// An input or device failure with a one-line message.
     pub fn declare(&mut self, args: &Args) -> Result<Declared, Failure> {
         let Self { gpu, kept, world, settings, facts, dirt, .. } = self;
         let view = &world.views.get(ViewId::MAIN).map_err(device)?.view;

@@ -104,7 +104,7 @@ impl Prepared {
 /// Opens the device, loads the scene, declares the frame, and uploads.
 ///
 /// # Errors
-/// One line, as an input or a device failure. An output file must not be an input file of the scene.
+/// An input or device failure with a one-line message. An output file must not be an input file of the scene.
 pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> {
     // Images are decoded to formats that the device samples. Invalid input is reported even without a device.
     let gpu = open();
@@ -235,7 +235,7 @@ impl Frames {
 /// Renders the frame of the command line and writes the files.
 ///
 /// # Errors
-/// One line, as an input or a device failure.
+/// An input or device failure with a one-line message.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let mut outputs = outputs(args)?;
     let what_if = args.decide.what_if.as_deref().map(what_if::device).transpose()?;

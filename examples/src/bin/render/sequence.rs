@@ -34,7 +34,7 @@ pub fn files(sequence: &Sequence) -> impl Iterator<Item = PathBuf> {
 /// animation plays, temporal effects receive motion vectors. With dynamic resolution, earlier frame times choose the scale.
 ///
 /// # Errors
-/// One line, as an input or a device failure, or a signal.
+/// An input or device failure with a one-line message, or a signal.
 pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs: &mut Outputs) -> Result<(), Failure> {
     let (options, execute) = prepared.options(args);
     let (mut plan, mut scratch) = (Plan::new(), Scratch::new());
