@@ -3,11 +3,11 @@
 //! The crate has three layers. Each is useful without the next.
 //!
 //! - Data: a live or saved plan as rows ([`plan_data`]), frame times ([`trace_data`]), measured accuracy
-//! ([`accuracy_data`]), and sources of plans ([`what_if::Planner`]): graph files ([`graph_source`]) and the standard frame
-//! ([`standard_frame`]).
+//!   ([`accuracy_data`]), and sources of plans ([`what_if::Planner`]): graph files ([`graph_source`]) and the standard frame
+//!   ([`standard_frame`]).
 //! - Drawings as data ([`drawing`]), created by pure functions ([`view`]).
 //! - Panels that paint drawings ([`panel`]), and the application made of panels ([`app`]), optionally with a live frame
-//! (`live`, with the feature `window`).
+//!   (`live`, with the feature `window`).
 
 pub mod accuracy_data;
 pub mod app;

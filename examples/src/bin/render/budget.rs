@@ -91,7 +91,7 @@ pub fn record(file: Option<&Path>) -> Result<(Measured, String), String> {
 }
 
 /// Result of a candidate frame: its picture, its time in milliseconds, and the dropped effects.
-struct Tried {
+struct Candidate {
     picture: Vec<u8>,
     ms: f64,
     facts: Facts,
@@ -105,7 +105,7 @@ pub fn choose(args: &Args, bound: Bound) -> Result<Args, Failure> {
     let (measured, adapter) = record(args.budget.record.as_deref()).map_err(input)?;
     let base = args.frame();
     let finest = reference(&base);
-    let truth = attempt(&args.with(&finest))?;
+    let truth = draw_candidate(&args.with(&finest))?;
     let gpu = crate::run::open()?;
     let has = |option: &framegraph_passes::budget::FrameOption| {
         let mut frame = finest;
@@ -119,11 +119,11 @@ pub fn choose(args: &Args, bound: Bound) -> Result<Args, Failure> {
         choices.iter().zip(set).for_each(|((_, options), index)| (options[*index].apply)(&mut frame));
         frame
     };
-    let fastest = attempt(&args.with(&frame_of(&vec![0; choices.len()])))?;
+    let fastest = draw_candidate(&args.with(&frame_of(&vec![0; choices.len()])))?;
     let mut offers = measured.offers(&choices, fastest.ms.min(truth.ms), truth.ms);
     let settled = settle(&mut offers, bound, |set| {
-        let tried = attempt(&args.with(&frame_of(set)))?;
-        Ok::<_, Failure>(Trial { ms: tried.ms, squares: squares(&tried.picture, &truth.picture) })
+        let candidate = draw_candidate(&args.with(&frame_of(set)))?;
+        Ok::<_, Failure>(Trial { ms: candidate.ms, squares: squares(&candidate.picture, &truth.picture) })
     })?;
     program::print(table(&choices, &offers, &settled, &truth.facts));
     program::print(verdict(bound, &settled, &adapter, truth.ms));
@@ -131,7 +131,7 @@ pub fn choose(args: &Args, bound: Bound) -> Result<Args, Failure> {
 }
 
 /// Renders a frame and returns its median time.
-fn attempt(args: &Args) -> Result<Tried, Failure> {
+fn draw_candidate(args: &Args) -> Result<Candidate, Failure> {
     let mut prepared = prepare(args, &mut Outputs::default())?;
     let (options, execute) = prepared.options(args);
     let mut plan = Plan::new();
@@ -148,7 +148,7 @@ fn attempt(args: &Args) -> Result<Tried, Failure> {
     let Prepared { gpu, io, facts, .. } = prepared;
     let texture = executor.texture(&plan, io.output).ok_or_else(|| device("the frame has no picture"))?;
     let picture = read_texture(&gpu, texture).map_err(device)?.rgba8();
-    Ok(Tried { picture, ms: took[took.len() / 2], facts })
+    Ok(Candidate { picture, ms: took[took.len() / 2], facts })
 }
 
 /// Mean squared difference of the color channels, in squared 8-bit steps.
@@ -193,7 +193,7 @@ fn verdict(bound: Bound, Settled { chosen, trial, holds }: &Settled, adapter: &s
         Bound::Ms(ms) => format!("at most {ms} ms"),
         Bound::Codes(codes) => format!("at most {codes} 8-bit steps"),
     };
-    let kept = if *holds { "met" } else { "not met by any tried frame; this one is nearest" };
+    let kept = if *holds { "met" } else { "not met by any candidate frame; this one is nearest" };
     format!(
         "predicted: {:.1} ms, error {:.2} 8-bit steps, from times measured on {adapter}\n\
          measured: {:.1} ms, error {:.2} 8-bit steps against the reference frame, which takes {reference_ms:.1} ms\n\

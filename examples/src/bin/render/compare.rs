@@ -1,7 +1,7 @@
 //! Cost of post-processing: inlined, in one full-screen pass, and in one pass per effect.
 
 use crate::args::Args;
-use crate::keep::{Own, declare};
+use crate::kept_shadows::{OwnResources, declare};
 use crate::load;
 use crate::run::{Failure, Frames, WARM_UP, device, executed, input, open, settings};
 use crate::table::{aligned, mebibytes, milliseconds};
@@ -15,14 +15,14 @@ use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Executor, Imports};
 
 /// Variants to compare: name, inlined where possible, one pass per effect.
-const WAYS: [(&str, bool, bool); 3] = [
+const VARIANTS: [(&str, bool, bool); 3] = [
     ("inlined", true, false),
     ("fused: one full-screen pass", false, false),
     ("unfused: one pass per effect", false, true),
 ];
 
 /// Variant at one sample count.
-struct Way {
+struct Variant {
     name: &'static str,
     samples: u8,
     frame: Frame<World>,
@@ -61,38 +61,38 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     }
     let mut world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
     world.grading.set_colors(colors);
-    let mut ways = Vec::new();
+    let mut variants = Vec::new();
     for samples in [1, 4] {
-        for (name, inline, split_post) in WAYS {
+        for (name, inline, split_post) in VARIANTS {
             let settings = Settings { samples, split_post, post: every, ..asked };
-            let (frame, ..) = declare(&settings, &Facts::default(), false, Own::default())?;
+            let (frame, ..) = declare(&settings, &Facts::default(), false, OwnResources::default())?;
             let mut plan = Plan::new();
             let options = Options { inline, ..Options::for_frame(args.size_px[0], args.size_px[1]) };
             compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;
-            ways.push(Way { name, samples, frame, plan, executor: Executor::new(&gpu) });
+            variants.push(Variant { name, samples, frame, plan, executor: Executor::new(&gpu) });
         }
     }
     let rounds = WARM_UP + args.frames;
     let mut shown = Frames::new(rounds);
     for round in 0..rounds {
         world.frame_index = FrameIndex(round);
-        for Way { frame, plan, executor, .. } in &mut ways {
+        for Variant { frame, plan, executor, .. } in &mut variants {
             executor.execute(plan, frame, &world, &Imports::new()).map_err(executed)?;
             gpu.wait().map_err(device)?;
         }
         shown.next()?;
     }
-    for way in &mut ways {
-        way.executor.catch_up().map_err(device)?;
+    for variant in &mut variants {
+        variant.executor.catch_up().map_err(device)?;
     }
-    program::print(table(&ways));
+    program::print(table(&variants));
     Ok(())
 }
 
-fn table(ways: &[Way]) -> String {
+fn table(variants: &[Variant]) -> String {
     let head = ["post-processing", "samples", "steps", "loads", "stores", "loaded", "stored", "fetched", "GPU ms"];
     let mut rows = vec![head.map(String::from)];
-    rows.extend(ways.iter().map(|Way { name, samples, plan, executor, .. }| {
+    rows.extend(variants.iter().map(|Variant { name, samples, plan, executor, .. }| {
         let (counts, traffic) = (plan.counts(), plan.traffic(plan.frame()));
         [
             (*name).to_owned(),

@@ -194,14 +194,14 @@ impl Args {
 
 /// Inputs of feature culling that persist between frames.
 #[derive(Debug)]
-pub struct Deciding {
+pub struct FeatureCulling {
     survey: Survey,
     memory: FactMemory,
     forced: EffectSet,
     off: bool,
 }
 
-impl Deciding {
+impl FeatureCulling {
     pub fn new(asked: &Decide, loaded: &Loaded, settings: &Settings) -> Self {
         let mut forced = asked.enabled;
         // Cascade tinting requires the cascades.

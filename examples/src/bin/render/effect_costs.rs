@@ -1,7 +1,7 @@
 //! Cost of each effect: the frame with and without it, measured alternately.
 
 use crate::args::Args;
-use crate::keep::{Own, declare};
+use crate::kept_shadows::{OwnResources, declare};
 use crate::run::{Failure, Frames, Prepared, WARM_UP, device, executed, input};
 use crate::table::{aligned, mebibytes};
 use framegraph::{Plan, Scratch, compile};
@@ -12,7 +12,7 @@ use framegraph_wgpu::{Executor, Frame, Imports};
 use std::time::Instant;
 
 /// Frame with modified settings.
-struct Way {
+struct Variant {
     frame: Frame<World>,
     imports: Imports,
     plan: Plan,
@@ -22,11 +22,12 @@ struct Way {
     times_ms: Vec<f64>,
 }
 
-impl Way {
+impl Variant {
     fn new(args: &Args, prepared: &Prepared, settings: &Settings) -> Result<Self, Failure> {
         let (options, execute) = prepared.options(args);
         let Prepared { gpu, facts, loaded, seen, world, .. } = prepared;
-        let (frame, _, imports) = declare(settings, facts, false, Own { kept: None, dirt: prepared.dirt.as_ref() })?;
+        let (frame, _, imports) =
+            declare(settings, facts, false, OwnResources { kept: None, dirt: prepared.dirt.as_ref() })?;
         let mut plan = Plan::new();
         compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;
         let seen = ViewSettings { shadows: settings.shadows, ..seen.clone() };
@@ -63,7 +64,7 @@ impl Way {
 pub fn measure(args: &Args, prepared: &mut Prepared) -> Result<Vec<Saved>, Failure> {
     let decided = prepared.facts.apply(&prepared.asked);
     let asked: Vec<Effect> = Effect::ALL.into_iter().filter(|effect| prepared.asked.has(*effect)).collect();
-    let mut own = Way::new(args, prepared, &decided)?;
+    let mut own = Variant::new(args, prepared, &decided)?;
     let rounds = WARM_UP + args.frames;
     let mut shown = Frames::new(rounds * asked.len() as u32);
     let mut rows = Vec::new();
@@ -73,14 +74,14 @@ pub fn measure(args: &Args, prepared: &mut Prepared) -> Result<Vec<Saved>, Failu
             true => prepared.facts.apply_but(&prepared.asked, EffectSet::NONE.with(effect)),
             false => decided.without(effect),
         };
-        let mut way = Way::new(args, prepared, &other)?;
+        let mut variant = Variant::new(args, prepared, &other)?;
         own.times_ms.clear();
         for round in 0..rounds {
             own.frame(prepared, round)?;
-            way.frame(prepared, round)?;
+            variant.frame(prepared, round)?;
             shown.next()?;
         }
-        let (with, without) = if dropped { (&mut way, &mut own) } else { (&mut own, &mut way) };
+        let (with, without) = if dropped { (&mut variant, &mut own) } else { (&mut own, &mut variant) };
         let ms = Some([with.median_ms(), without.median_ms()]);
         rows.push(Saved { effect, with: Cost::of(&with.plan), without: Cost::of(&without.plan), ms });
     }

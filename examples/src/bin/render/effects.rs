@@ -134,7 +134,7 @@ impl Effects {
         };
         match name {
             "ao" => {
-                self.occlusion = OcclusionSettings::from_text(&value()?).map_err(|error| format!("--ao {error}"))?
+                self.occlusion = OcclusionSettings::from_text(&value()?).map_err(|error| format!("--ao {error}"))?;
             }
             "ssr" => {
                 self.reflections =

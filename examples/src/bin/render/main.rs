@@ -12,7 +12,7 @@ mod effects;
 mod explicit;
 mod grade;
 mod help;
-mod keep;
+mod kept_shadows;
 mod latency;
 mod light;
 mod load;

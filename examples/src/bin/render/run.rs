@@ -3,10 +3,10 @@
 use crate::args::Args;
 use crate::budget;
 use crate::debug::report;
-use crate::decide::Deciding;
+use crate::decide::FeatureCulling;
 use crate::dirt::Dirt;
 use crate::effect_costs;
-use crate::keep::{Kept, Own, declare, first_frame};
+use crate::kept_shadows::{Kept, OwnResources, declare, first_frame};
 use crate::latency;
 use crate::light::EnvironmentSource;
 use crate::load::{self, Loaded};
@@ -72,7 +72,7 @@ pub struct Prepared {
     /// Decisions of feature culling.
     pub facts: Facts,
     /// Inputs of feature culling.
-    pub deciding: Deciding,
+    pub culling: FeatureCulling,
     /// The scene without its images.
     pub loaded: Loaded,
     /// View settings with the requested shadows.
@@ -134,8 +134,8 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     if args.round_hdr {
         asked.stored = Some(StoreRounding::measure(&gpu).map_err(device)?);
     }
-    let mut deciding = Deciding::new(&args.decide, &loaded, &asked);
-    let facts = deciding.facts(&loaded, &lighting.image, &seen, &asked, Measurement::Off);
+    let mut culling = FeatureCulling::new(&args.decide, &loaded, &asked);
+    let facts = culling.facts(&loaded, &lighting.image, &seen, &asked, Measurement::Off);
     let settings = facts.apply(&asked);
     let shown = ViewSettings { shadows: settings.shadows, ..seen.clone() };
     let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &shown);
@@ -153,13 +153,13 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     }
     let dirt = args.effects.dirt.as_deref().map(|file| Dirt::load(&gpu, file, &options.memory)).transpose()?;
     let kept_shadows = kept.as_mut().zip(moment.shadows.as_ref()).map(|(kept, shadows)| (&gpu, kept, shadows));
-    let own = Own { kept: kept_shadows, dirt: dirt.as_ref() };
+    let own = OwnResources { kept: kept_shadows, dirt: dirt.as_ref() };
     let (frame, io, imports) = declare(&settings, &facts, args.linear_out.is_some(), own)?;
     let near_m = seen.camera.projection.near_m() as f32;
     let mut world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
     world.grading.set_colors(colors);
     let mut prepared =
-        Prepared { gpu, settings, frame, io, world, imports, kept, dirt, near_m, asked, facts, deciding, loaded, seen };
+        Prepared { gpu, settings, frame, io, world, imports, kept, dirt, near_m, asked, facts, culling, loaded, seen };
     first_frame(args, &mut prepared)?;
     Ok(prepared)
 }

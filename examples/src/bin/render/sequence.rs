@@ -2,7 +2,7 @@
 
 use crate::args::Args;
 use crate::decide::Sequence;
-use crate::keep::{Own, declare};
+use crate::kept_shadows::{OwnResources, declare};
 use crate::load;
 use crate::run::{Failure, Prepared, device, executed, input};
 use framegraph::{Plan, Scratch};
@@ -50,7 +50,7 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
             args.animation.apply(&mut prepared.loaded.scene, f64::from(index) / sequence.per_second).map_err(input)?;
             prepared.world.scene.repose(&prepared.gpu, &prepared.loaded.scene).map_err(device)?;
             if !prepared.loaded.scene.motion.rest.materials.is_empty() {
-                prepared.deciding.resurvey(&prepared.loaded.scene);
+                prepared.culling.resurvey(&prepared.loaded.scene);
             }
             // The camera may be attached to an animated node.
             prepared.seen.camera = load::view(args, &prepared.loaded).map_err(input)?.camera;
@@ -67,7 +67,7 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         }
         let light = &prepared.world.lighting.image;
         let measured = measuring.known(&prepared.gpu).map_err(device)?;
-        let facts = prepared.deciding.facts(&prepared.loaded, light, &seen, &prepared.asked, measured);
+        let facts = prepared.culling.facts(&prepared.loaded, light, &seen, &prepared.asked, measured);
         let mut settings = facts.apply(&prepared.asked);
         let seen = ViewSettings { shadows: settings.shadows, ..seen };
         if plays {
@@ -88,7 +88,7 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         let stand = view.stand();
         world.set_view(gpu, ViewId::MAIN, view).map_err(device)?;
         world.frame_index = FrameIndex(index);
-        let own = Own { kept: None, dirt: dirt.as_ref() };
+        let own = OwnResources { kept: None, dirt: dirt.as_ref() };
         let (frame, io, imports) = declare(&settings, &facts, false, own)?;
         executor.compile(frame.graph(), &options, &mut scratch, &mut plan).map_err(input)?;
         plans += u32::from(planned.replace(settings) != Some(settings));

@@ -35,7 +35,7 @@ pub type Declared = (Frame<World>, FrameIo, Imports);
 
 /// Resources of the application that a frame imports.
 #[derive(Default)]
-pub struct Own<'a> {
+pub struct OwnResources<'a> {
     /// Kept shadow maps.
     pub kept: Option<(&'a Gpu, &'a mut Kept, &'a ViewShadows)>,
     /// Lens dirt.
@@ -48,7 +48,7 @@ pub struct Own<'a> {
 ///
 /// # Errors
 /// The error of a pass or of the device.
-pub fn declare(settings: &Settings, facts: &Facts, linear: bool, own: Own<'_>) -> Result<Declared, Failure> {
+pub fn declare(settings: &Settings, facts: &Facts, linear: bool, own: OwnResources<'_>) -> Result<Declared, Failure> {
     let (mut frame, mut imports, mut handles) = (Frame::new(), Imports::new(), settings.handles());
     facts.note(frame.graph_mut());
     if let Some(dirt) = own.dirt.filter(|_| settings.bloom.is_some()) {
@@ -108,6 +108,6 @@ impl Prepared {
         let Self { gpu, kept, world, settings, facts, dirt, .. } = self;
         let view = &world.views.get(ViewId::MAIN).map_err(device)?.view;
         let kept = kept.as_mut().zip(view.shadows.as_ref()).map(|(kept, shadows)| (&*gpu, kept, shadows));
-        declare(settings, facts, args.linear_out.is_some(), Own { kept, dirt: dirt.as_ref() })
+        declare(settings, facts, args.linear_out.is_some(), OwnResources { kept, dirt: dirt.as_ref() })
     }
 }
