@@ -194,7 +194,8 @@ fn write_inspection(
     });
     written.map_err(input)?;
     let [width, height] = texels.size;
-    let bad = if non_finite > 0 { format!(", {non_finite} texels NaN or infinite") } else { String::new() };
+    // `cargo xtask corpus` parses this number.
+    let bad = if non_finite > 0 { format!(", {non_finite} texels not finite") } else { String::new() };
     Ok(format!(": {}, {width}x{height} {:?}, {low} to {high}{bad}", found.title(), texels.format))
 }
 
