@@ -1,4 +1,4 @@
-//! Fog, a pass of one's own that reads depth: it asks its world for programs and views, and for nothing else.
+//! Custom fog pass that reads depth. It requires programs and views of its world, nothing else.
 
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use framegraph_passes::ViewId;
@@ -8,7 +8,7 @@ use framegraph_passes::view::Views;
 use framegraph_shaders::Module;
 use framegraph_wgpu::{Cx, Record, RecordError};
 
-/// What the pass provides to its shader: the names of the variables in `fog.wgsl`, in the order in which they are bound.
+/// Names of the variables in `fog.wgsl` that the pass binds, in order.
 static INTERFACE: Interface = Interface { groups: &[&["frame", "hdr", "depth", "fog"]], constants: &[] };
 
 static SHADER: Module<'static> = Module::new("fog.wgsl", include_str!("fog.wgsl"));
@@ -16,19 +16,19 @@ static SHADER: Module<'static> = Module::new("fog.wgsl", include_str!("fog.wgsl"
 /// Fades radiance with distance.
 #[derive(Clone, Copy, Debug)]
 pub struct Fog {
-    /// The view whose camera the depth belongs to.
+    /// View whose camera rendered the depth.
     pub view: ViewId,
     /// Radiance, single-sampled.
     pub hdr: Texture,
     /// Reversed depth, single-sampled.
     pub depth: Texture,
-    /// Radiance of thick fog as a share of white on the display, linear Rec.709.
+    /// Radiance of dense fog, linear Rec.709, relative to white on the display.
     pub color: [f32; 3],
-    /// Extinction in 1/m.
+    /// Extinction coefficient in 1/m.
     pub density: f32,
 }
 
-/// What the pass reads and wrote.
+/// Resources of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct FogIo {
     hdr: View,

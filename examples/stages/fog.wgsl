@@ -1,17 +1,17 @@
-// Fog: radiance fades toward that of the fog with the distance to what is there.
+// Fog: blends radiance toward the fog color by the distance of the surface.
 
 import package::interface::frame::frame;
 import package::lib::fullscreen::{fullscreen_position, uv_from_clip};
 
 struct Fog {
-    /// Radiance of thick fog as a share of white on the display, linear Rec.709.
+    /// Radiance of dense fog, linear Rec.709, relative to white on the display.
     color: vec3<f32>,
-    /// Extinction in 1/m: after 1/density meters a share of 1/e is left.
+    /// Extinction coefficient in 1/m: transmittance is 1/e after 1/density meters.
     density: f32,
 }
 
 @group(0) @binding(1) var hdr: texture_2d<f32>;
-/// One sample per texel, reversed: 0 is the far plane.
+/// Single-sampled reversed depth: 0 is the far plane.
 @group(0) @binding(2) var depth: texture_depth_2d;
 @group(0) @binding(3) var<uniform> fog: Fog;
 
@@ -31,7 +31,7 @@ fn fs_main(vertex: FogVertex) -> @location(0) vec4<f32> {
     let at = vec2<i32>(vertex.position.xy);
     let shaded = textureLoad(hdr, at, 0);
     let reversed_depth = textureLoad(depth, at, 0);
-    // Where nothing is, the sky is: it has its own haze.
+    // Pixels of the sky have no depth and keep their radiance.
     if reversed_depth == 0.0 {
         return shaded;
     }

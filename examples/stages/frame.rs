@@ -1,4 +1,4 @@
-//! The standard frame with a stage of one's own and one replaced.
+//! Standard frame with one additional and one replaced stage.
 
 use crate::fog::Fog;
 use crate::sharpen::Sharpen;
@@ -6,17 +6,17 @@ use framegraph_passes::depth_resolve::{DepthOf, single_sample_depth};
 use framegraph_passes::stages::Stages;
 use framegraph_passes::{Settings, Slot, Stage, StageError, StandardWorld, stages};
 
-/// The standard frame of these settings, with fog after the stage `color`, and a sharpening filter in the place of `fxaa`.
+/// Returns the standard frame with fog after the stage `color`, and a sharpening filter instead of `fxaa`.
 ///
 /// # Errors
-/// None, unless the standard frame renames its stages.
+/// Fails only if the standard frame renames its stages.
 pub fn foggy<W: StandardWorld + ?Sized>(settings: &Settings, density: f32) -> Result<Stages<W>, StageError> {
-    // What takes the edge filter's place reads what that would read: encoded values.
+    // The replacement of FXAA reads its input: sRGB-encoded values.
     let mut stages = stages(&Settings { fxaa: true, ..*settings });
     stages.insert_after(
         "color",
         Stage::new("fog", move |frame, handles| {
-            // With several samples per texel this declares a pass that makes one depth of them; without, none.
+            // With MSAA this declares a pass that resolves depth to one sample.
             let depth = single_sample_depth(frame, handles, DepthOf::Nearest)?;
             let fog =
                 Fog { view: handles.view(), hdr: handles.get(Slot::HDR)?, depth, color: [0.7, 0.75, 0.8], density };

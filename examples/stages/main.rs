@@ -1,5 +1,5 @@
-//! The standard frame with fog after its color stage and a sharpening filter in the place of FXAA. See `README.md` beside
-//! this file.
+//! Standard frame with a fog pass after its stage `color` and a sharpening filter instead of FXAA. See `README.md` in this
+//! folder.
 
 mod fog;
 mod frame;
@@ -21,15 +21,15 @@ use std::path::Path;
 use std::process::ExitCode;
 
 const HELP: &str = "\
-The standard frame with fog after its color stage and a sharpening filter in the place of FXAA.
+Renders the built-in scene `columns` at 640x360 with a fog pass after the color stage and a sharpening filter instead of FXAA.
 
 usage: stages FILE.png [DENSITY]
 
-  FILE.png   the picture of the built-in scene `columns`, 640x360
+  FILE.png   output file
   DENSITY    extinction of the fog in 1/m, 0 to 10 (0.05)
 
-WGPU_BACKEND and WGPU_ADAPTER_NAME choose another adapter.
-Exit codes: 0 done, 1 the device failed, 2 bad input or output, 128 and its number after a signal.";
+WGPU_BACKEND and WGPU_ADAPTER_NAME select another adapter.
+Exit codes: 0 success, 1 device failure, 2 invalid input or output, 128 + N stopped by signal N.";
 
 const SIZE_PX: [u32; 2] = [640, 360];
 
@@ -54,15 +54,15 @@ fn main() -> ExitCode {
     }
 }
 
-/// The picture's file and the density.
+/// Parses the output file and the density.
 fn arguments(args: &[String]) -> Result<(&str, f32), String> {
     let (out, density) = match args {
         [out] => (out, 0.05),
         [out, density] => match density.parse() {
             Ok(number) if (0.0..=10.0).contains(&number) => (out, number),
-            _ => return Err(format!("DENSITY {density}: a number from 0 to 10 is needed")),
+            _ => return Err(format!("DENSITY {density}: expected a number from 0 to 10")),
         },
-        _ => return Err("a file for the picture is needed; `stages --help` says more".into()),
+        _ => return Err("FILE.png: missing argument; see `stages --help`".into()),
     };
     if Path::new(out).extension().is_none_or(|extension| extension != "png") && !is_special(Path::new(out)) {
         return Err(format!("{out}: the file must end in .png"));
@@ -70,7 +70,7 @@ fn arguments(args: &[String]) -> Result<(&str, f32), String> {
     Ok((out, density))
 }
 
-/// One line on standard error.
+/// Prints one line on standard error and returns the exit code.
 fn fail(code: u8, message: &str) -> ExitCode {
     program::error(message);
     program::exit(code)
@@ -82,7 +82,7 @@ fn draw(out: &Path, density: f32) -> Result<(), Box<dyn Error>> {
     let gpu = Gpu::open(&AdapterRequest::from_env())?;
     program::line(format_args!("adapter: {}", gpu.describe()));
 
-    // The scene, its light, and a view of it.
+    // Scene, light and view.
     let scene = Scene::open("columns", &mut progress::silent)?;
     let environment = Sky::default().environment(128)?;
     let quality = Quality::High;
@@ -102,7 +102,7 @@ fn draw(out: &Path, density: f32) -> Result<(), Box<dyn Error>> {
     let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &seen);
     let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;
 
-    // The frame: declared, planned, executed.
+    // Declare, compile and execute the frame.
     let mut frame = Frame::<World>::new();
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
     let target = Target::from(frame.graph_mut().texture("output", desc));
@@ -115,7 +115,7 @@ fn draw(out: &Path, density: f32) -> Result<(), Box<dyn Error>> {
     let mut executor = Executor::new(&gpu);
     executor.execute(&plan, &frame, &world, &Imports::new())?;
 
-    let texture = executor.texture(&plan, picture).ok_or("the frame left no picture")?;
+    let texture = executor.texture(&plan, picture).ok_or("the frame has no picture")?;
     let picture = read_texture(&gpu, texture)?.rgba8();
     outputs.write(out, |file| encode_png(file, SIZE_PX, &picture))?;
     outputs.commit()?;

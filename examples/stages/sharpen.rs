@@ -1,4 +1,4 @@
-//! A sharpening filter over the finished picture: it needs shaders and a picture, no scene.
+//! Sharpening filter for the final picture. It requires shaders and a picture, no scene.
 
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
 use framegraph_passes::full_screen::FullScreen;
@@ -10,14 +10,14 @@ static INTERFACE: Interface = Interface { groups: &[&["picture"]], constants: &[
 
 static SHADER: Module<'static> = Module::new("sharpen.wgsl", include_str!("sharpen.wgsl"));
 
-/// Adds to each texel what it has over its neighbors.
+/// Adds the difference between each texel and the mean of its neighbors.
 #[derive(Clone, Copy, Debug)]
 pub struct Sharpen {
-    /// The picture, sRGB encoded in a linear format.
+    /// Picture, sRGB-encoded in a linear format.
     pub picture: Texture,
-    /// Where the result goes; a new one is eight bits a channel, sRGB.
+    /// Destination; a new texture is 8-bit sRGB.
     pub into: Target,
-    /// How much of the difference is added, from 0 (nothing).
+    /// Weight of the difference; 0 changes nothing.
     pub strength: f32,
 }
 

@@ -1,14 +1,14 @@
-// Sharpen: an unsharp mask over the finished picture, in the encoded values that the eye sees evenly.
+// Sharpen: unsharp mask on the sRGB-encoded final picture, which is perceptually uniform.
 
 import package::lib::fullscreen::fullscreen_position;
 import package::lib::srgb::linear_from_srgb;
 
-/// How much of the difference to the neighbors' mean is added; 0 is nothing.
+/// Weight of the difference to the mean of the neighbors; 0 changes nothing.
 override STRENGTH: f32 = 0.5;
-/// True writes encoded values to a Unorm target, false linear ones to an sRGB target.
+/// True writes encoded values to a Unorm target, false writes linear values to an sRGB target.
 override OUTPUT_ENCODED: bool = false;
 
-/// sRGB encoded, in a linear format.
+/// Picture, sRGB-encoded in a linear format.
 @group(0) @binding(0) var picture: texture_2d<f32>;
 
 @vertex
@@ -16,7 +16,7 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
     return fullscreen_position(vertex, 0.0);
 }
 
-/// The texel at `at`, or the nearest one inside of the picture.
+/// Returns the texel at `at`, clamped to the picture.
 fn texel(at: vec2<i32>) -> vec3<f32> {
     let last = vec2<i32>(textureDimensions(picture)) - 1;
     return textureLoad(picture, clamp(at, vec2<i32>(0), last), 0).rgb;

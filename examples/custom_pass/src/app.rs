@@ -1,25 +1,25 @@
-//! The application with its graph: declared anew each frame, compiled when that or the size changes, executed.
+//! Application with its graph: declared every frame, compiled after changes, executed.
 
 use super::engine::Engine;
 use super::frame::{Settings, declare};
 use framegraph::Format;
 use framegraph_wgpu::{FrameError, FrameLoop, Gpu, format_of};
 
-/// The engine beside everything that the graph needs.
+/// Engine with its render graph.
 #[derive(Debug)]
 pub struct App {
-    /// The engine, which is also the world that recorders are handed.
+    /// The engine, which recorders also receive as their world.
     pub engine: Engine,
-    /// The graph: its frame, plan, pools, caches, times.
+    /// Graph state: frame, plan, pools, caches and times.
     pub frames: FrameLoop<Engine>,
     format: Format,
-    /// What is switched on.
+    /// Enabled effects.
     pub settings: Settings,
 }
 
-/// The screen has a format that the graph does not know.
+/// Error for a screen format that the graph does not support.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the screen's format {0:?} is unknown")]
+#[error("screen: unsupported format {0:?}; use another surface format")]
 pub struct UnknownFormat(wgpu::TextureFormat);
 
 impl std::fmt::Debug for UnknownFormat {
@@ -28,44 +28,44 @@ impl std::fmt::Debug for UnknownFormat {
     }
 }
 
-/// What a frame is drawn into.
+/// Render target of a frame.
 #[derive(Clone, Copy, Debug)]
 pub enum Screen<'a> {
-    /// The image of a surface: another one each time.
+    /// Image of a surface, different in every frame.
     Surface(&'a wgpu::Texture),
-    /// A texture of one's own: views of it are kept.
+    /// Persistent texture, whose views are cached.
     Texture(&'a wgpu::Texture),
 }
 
 impl App {
-    /// An application that draws into screens of that format.
+    /// Creates an application that draws into screens of `format`.
     ///
     /// # Errors
     /// [`UnknownFormat`].
     pub fn new(engine: Engine, format: wgpu::TextureFormat, settings: Settings) -> Result<Self, UnknownFormat> {
         let format = format_of(format).ok_or(UnknownFormat(format))?;
-        // The device stays the engine's: the graph only borrows it, in clones.
+        // The engine keeps the device. The graph holds clones of its handles.
         let gpu = Gpu::wrap(&engine.adapter, &engine.device, &engine.queue);
-        // So are its handlers; what ours hears of a loss, frames report as an error.
+        // Error handlers belong to the engine too. A device loss is forwarded, so that frames return an error.
         let errors = gpu.shared_errors();
         let heard = move |reason, message| errors.report_lost(format!("{reason:?}: {message}"));
         engine.device.set_device_lost_callback(heard);
         Ok(Self { frames: FrameLoop::new(&gpu), engine, format, settings })
     }
 
-    /// Draws the frame of time `time_s` in seconds. The screen says how large it is.
+    /// Draws the frame at time `time_s` in seconds, at the size of `screen`.
     ///
-    /// Nothing is said of what changed since the last frame: one that is declared as before is not compiled again, and
-    /// textures that are no longer used stay in the pool for half a second, so that switching back makes nothing.
+    /// Changes are detected automatically: an unchanged frame is not compiled again. Unused textures stay in the pool for
+    /// half a second, so switching an effect back creates nothing.
     ///
     /// # Errors
-    /// What a pass, the compiler or the device refuses. Nothing was drawn then, and the next frame starts clean.
+    /// An error of a pass, the compiler or the device. Nothing is drawn then, and the next frame starts clean.
     pub fn draw(&mut self, time_s: f32, screen: Screen<'_>) -> Result<(), FrameError> {
         let Self { engine, frames, format, settings } = self;
         let (Screen::Surface(image) | Screen::Texture(image)) = screen;
         let size = [image.width(), image.height()];
         engine.animate(time_s, size[0] as f32 / size[1] as f32);
-        // Whatever the engine submits on its own queue before or after is in order with the graph's commands.
+        // Submissions of the engine to its own queue stay in order with the commands of the graph.
         frames.run(size, engine, |frame, imports| {
             let handle = declare(frame, *format, *settings)?;
             match screen {

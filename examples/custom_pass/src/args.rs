@@ -1,45 +1,45 @@
-//! The command line of `custom_pass`.
+//! Command line of `custom_pass`.
 
 use custom_pass::frame::Settings;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// What `custom_pass --help` prints.
+/// Text of `custom_pass --help`.
 pub const HELP: &str = "\
-An engine of its own with two effects from the render graph: a glow and outlines.
+Draws an animation with an existing engine and two effects from the render graph: a glow and outlines.
 
 usage: custom_pass [options]
 
-  --out FILE.png   draw without a window, and write the last frame
-  --size WxH       size of the picture, or of the window at first, in pixels (960x540)
-  --frames N       frames to draw, at 60 a second of the animation; without --out, the window closes after them (1 with
-                   --out, without end in a window)
-  --no-blur        begin without the glow
-  --no-outline     begin without outlines
-  --plan           print what the compiler planned, with its reasons
-  --help           this text
+  --out FILE.png   draw without a window and write the last frame
+  --size WxH       picture size or initial window size in pixels (960x540)
+  --frames N       number of frames to draw; with --out at 60 frames per second of the animation (1), else the window
+                   closes after them (unlimited)
+  --no-blur        start without the glow
+  --no-outline     start without outlines
+  --plan           print the plan with its reasons
+  --help           print this help
 
-In the window, B and O switch glow and outlines, P prints the plan, the space bar stops time, Escape closes.
+Keys in the window: B and O toggle glow and outlines, P prints the plan, space pauses, Escape closes.
 
-WGPU_BACKEND and WGPU_ADAPTER_NAME choose another adapter.
-Exit codes: 0 done, 1 the device failed, 2 bad input or output, 128 and its number after a signal.";
+WGPU_BACKEND and WGPU_ADAPTER_NAME select another adapter.
+Exit codes: 0 success, 1 device failure, 2 invalid input or output, 128 + N stopped by signal N.";
 
-/// What was asked for.
+/// Parsed options of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Args {
-    /// The picture; a window without.
+    /// Output file; `None` opens a window.
     pub out: Option<PathBuf>,
     /// Width and height in pixels.
     pub size_px: [u32; 2],
-    /// Frames to draw.
+    /// Number of frames to draw.
     pub frames: Option<u32>,
-    /// Effects to begin with.
+    /// Effects that are enabled at the start.
     pub settings: Settings,
-    /// Print the plan.
+    /// Prints the plan.
     pub plan: bool,
 }
 
-/// What the command line comes to.
+/// Parsed command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Command {
     /// Print the help.
@@ -48,10 +48,10 @@ pub enum Command {
     Draw(Args),
 }
 
-/// Reads the command line; `args` without the program's name.
+/// Parses the command line; `args` excludes the program name.
 ///
 /// # Errors
-/// One line that names the option and what it takes.
+/// One line that names the option and the expected value.
 pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String> {
     use lexopt::prelude::*;
     let mut parser = lexopt::Parser::from_args(args);
@@ -65,8 +65,8 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Long("no-blur") => found.settings.blur = false,
             Long("no-outline") => found.settings.outline = false,
             Long("plan") => found.plan = true,
-            Value(value) => return Err(format!("{value:?}: no file is read; `custom_pass --help` lists the options")),
-            Long(name) => return Err(format!("--{name}: unknown option; `custom_pass --help` lists them")),
+            Value(value) => return Err(format!("{value:?}: unexpected argument; see `custom_pass --help`")),
+            Long(name) => return Err(format!("--{name}: unknown option; see `custom_pass --help`")),
             Short(name) => return Err(format!("-{name}: unknown option; `custom_pass --help` lists them")),
         }
     }
@@ -74,12 +74,12 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
 }
 
 fn text(parser: &mut lexopt::Parser, option: &str) -> Result<String, String> {
-    let value = parser.value().map_err(|_| format!("{option}: a value is missing"))?;
+    let value = parser.value().map_err(|_| format!("{option}: missing value"))?;
     value.into_string().map_err(|v| format!("{option} {v:?}: the value is not Unicode"))
 }
 
 fn png(parser: &mut lexopt::Parser) -> Result<PathBuf, String> {
-    let path = parser.value().map(PathBuf::from).map_err(|_| "--out: a file is missing".to_owned())?;
+    let path = parser.value().map(PathBuf::from).map_err(|_| "--out: missing file".to_owned())?;
     let fits = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
     if fits || program::outputs::is_special(&path) {
         Ok(path)
@@ -89,7 +89,7 @@ fn png(parser: &mut lexopt::Parser) -> Result<PathBuf, String> {
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {
-    let wrong = || format!("--size {text}: two whole numbers from 1 are needed, such as 1280x720");
+    let wrong = || format!("--size {text}: expected two whole numbers from 1, such as 1280x720");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
     match [width, height].map(str::parse::<u32>) {
         [Ok(width), Ok(height)] if width > 0 && height > 0 => Ok([width, height]),
@@ -100,7 +100,7 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 fn frames(text: &str) -> Result<u32, String> {
     match text.parse::<u32>() {
         Ok(frames @ 1..=1_000_000) => Ok(frames),
-        _ => Err(format!("--frames {text}: a number from 1 to 1000000 is needed")),
+        _ => Err(format!("--frames {text}: expected a number from 1 to 1000000")),
     }
 }
 
@@ -135,8 +135,8 @@ mod tests {
             &["scene.gltf"],
         ];
         for words in cases {
-            let told = args(words).err().unwrap_or_else(|| panic!("{words:?} was taken"));
-            assert!(told.contains(words[0]) && !told.contains('\n'), "{told}");
+            let error = args(words).err().unwrap_or_else(|| panic!("{words:?} was taken"));
+            assert!(error.contains(words[0]) && !error.contains('\n'), "{error}");
         }
     }
 }

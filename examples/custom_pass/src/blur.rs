@@ -1,27 +1,27 @@
-//! A blur as an effect: a function from a texture handle to a texture handle, three compute passes behind it.
+//! Blur effect: a function from a texture handle to a texture handle, implemented by three compute passes.
 //!
-//! `halve` makes the next smaller level, `across` and `down` blur it along one axis each. The three intermediates have one
-//! shape; `down` writes while `halve`'s result is no longer needed, so the plan gives the two one texture.
+//! `halve` downsamples to half size, `across` and `down` blur along one axis each. The three intermediate textures have
+//! equal descriptions. `down` writes after the last read of `halve`'s result, so the plan assigns both to one texture.
 
 use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use framegraph_wgpu::{Compute, Constants, Cx, RecordError, Shader};
 use framegraph_wgpu::{Frame, Record};
 
-/// Texels to either side that a blur mixes in, at half resolution.
+/// Radius of the blur in texels at half resolution.
 pub const RADIUS: usize = 12;
-/// Texels of a line that one workgroup writes.
+/// Texels of a line written by one workgroup.
 const STRETCH: u32 = 64;
 
 const SHADER: Shader<'static> = Shader::new("custom_pass/blur", include_str!("blur.wgsl"));
 
-/// Blurs `image` (linear light) with a Gaussian; the result has half its size, rounded up, and the same light in total.
+/// Blurs `image` (linear light) with a Gaussian filter. The result has half the size, rounded up, and the same total light.
 ///
-/// The effect works in any frame: it asks nothing of the world.
+/// The effect works in any frame, because it reads nothing from the world.
 ///
 /// # Errors
-/// When `image` is stale, of another graph, or cannot be sampled.
+/// Fails if `image` is stale, belongs to another graph, or cannot be sampled.
 pub fn blur<W: ?Sized + 'static>(frame: &mut Frame<W>, image: Texture) -> Result<Texture, DeclareError> {
-    // Names nest: the passes are called `blur/halve`, `blur/across` and `blur/down`.
+    // Scopes nest names: the passes are called `blur/halve`, `blur/across` and `blur/down`.
     frame.scope("blur", |frame| {
         let (_, half) = frame.add("halve", Halve { image })?;
         let (_, across) = frame.add("across", Sweep { image: half, down: false })?;
@@ -30,8 +30,9 @@ pub fn blur<W: ?Sized + 'static>(frame: &mut Frame<W>, image: Texture) -> Result
     })
 }
 
-/// The weights of the center and of the texels to one side: a Gaussian whose deviation is a third of the radius, such that
-/// the center once and the others twice sum up to 1.
+/// Weights of the center and of the texels on one side.
+///
+/// The standard deviation is a third of the radius. The center plus twice the others sum to 1.
 pub fn weights() -> [f32; 16] {
     let mut weights = [0.0; 16];
     let deviation = RADIUS as f32 / 3.0;
@@ -42,24 +43,25 @@ pub fn weights() -> [f32; 16] {
     weights.map(|weight| weight / total)
 }
 
-/// What all intermediates look like: half the frame, and a format that compute shaders can write.
+/// Description of the intermediate textures: half the frame size, in a format for storage writes.
 fn half_size() -> TextureDesc {
     TextureDesc::new(Extent::fraction(2), Format::Rgba16Float)
 }
 
-/// Halves both sides of a picture.
+/// Downsamples a picture to half its size.
 struct Halve {
     image: Texture,
 }
 
 impl Pass for Halve {
-    // What the recorder needs: the token of the read, and the handle of what is written.
+    // Data for the recorder: the token of the read, and the handle of the written texture.
     type Io = (View, Texture);
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Self::Io, DeclareError> {
         let image = pass.sampled(self.image)?;
         let half = pass.texture("half", half_size());
-        // Every texel is written, so what the memory held before does not matter. No load or store is ever named.
+        // Every texel is overwritten, so the previous contents are irrelevant. Loads and stores are derived, never
+        // declared.
         Ok((image, pass.storage_write(half, Intent::Overwrite)?))
     }
 }

@@ -1,16 +1,16 @@
-// A separable blur at half resolution. The steps along the two axes are one shader: a workgroup loads a stretch of a line
-// with what lies beyond its ends into shared memory once, and each of its texels then takes its 25 taps from there.
+// Separable blur at half resolution. One shader handles both axes: a workgroup loads a stretch of a line and its borders
+// into shared memory, and each texel takes its 25 taps from there.
 
 @group(0) @binding(0) var image: texture_2d<f32>;
 @group(0) @binding(1) var result: texture_storage_2d<rgba16float, write>;
-// Weights of the center and of the 12 texels to either side, four in a row.
+// Weights of the center and of the 12 texels on each side, four per vector.
 @group(0) @binding(2) var<uniform> weights: array<vec4f, 4>;
 
 override DOWN: bool = false;
 const RADIUS = 12;
 const STRETCH = 64;
 
-// The next smaller level: the mean of four texels, at odd edges with the last one repeated.
+// Downsamples by averaging 2x2 texels, clamped at odd edges.
 @compute @workgroup_size(8, 8) fn halve(@builtin(global_invocation_id) id: vec3u) {
     if any(id.xy >= textureDimensions(result)) {
         return;

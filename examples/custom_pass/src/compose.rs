@@ -1,4 +1,4 @@
-//! The last pass: scene and glow, tone mapped, into the picture for the screen.
+//! Final pass: composes scene and glow, and applies the tone curve.
 
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, View};
 use framegraph_wgpu::Record;
@@ -11,18 +11,18 @@ const SHADER: Shader<'static> = Shader::new("custom_pass/compose", include_str!(
 pub struct Compose {
     /// Linear light, of the size of `into`.
     pub image: Texture,
-    /// The same, blurred, of any size.
+    /// Blurred linear light, of any size.
     pub glow: Option<Texture>,
-    /// The picture.
+    /// Render target.
     pub into: Texture,
 }
 
-/// What recording takes.
+/// Resources of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Io {
     image: View,
     glow: Option<View>,
-    /// The picture with what this pass drew.
+    /// The composed picture.
     pub picture: Texture,
     encode: bool,
 }
@@ -31,10 +31,10 @@ impl Pass for Compose {
     type Io = Io;
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Io, DeclareError> {
-        // Only the texel under the fragment is read: on a device that can, the scene never leaves the tile.
+        // Only the texel at the fragment is read. A device with same-pixel reads keeps the scene in the tile.
         let image = pass.same_pixel(self.image)?;
         let glow = self.glow.map(|glow| pass.sampled(glow)).transpose()?;
-        // A target that does not encode sRGB codes itself leaves that to the shader.
+        // Without an sRGB target, the shader encodes the output.
         let format: Format = pass.desc(self.into)?.format;
         Ok(Io { image, glow, picture: pass.color(self.into, Intent::Overwrite)?, encode: !format.is_srgb() })
     }

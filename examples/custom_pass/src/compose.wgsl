@@ -1,12 +1,12 @@
-// The picture for the screen: the scene, the glow over it, tone mapped.
+// Final picture: the scene with the glow on top, tone mapped.
 
 @group(0) @binding(0) var image: texture_2d<f32>;
 @group(0) @binding(1) var glow: texture_2d<f32>;
 @group(0) @binding(2) var linear: sampler;
 
-// Light that the lens scatters.
+// Weight of the light that the lens scatters.
 override GLOW: f32 = 0.35;
-// The target does not encode: the shader has to.
+// True if the target is not sRGB, so that the shader encodes.
 override ENCODE: bool = false;
 
 @vertex fn vs_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {

@@ -1,5 +1,5 @@
-//! The application that is there before: an instance, a device, a queue, pipelines and buffers of its own. Nothing in this
-//! file knows that there is a render graph.
+//! The existing engine: an instance, a device, a queue, pipelines and buffers. Nothing in this file depends on the render
+//! graph.
 
 use super::shapes::{Vertex, cube, octahedron, torus};
 use bytemuck::{Pod, Zeroable};
@@ -12,21 +12,21 @@ use wgpu::{
     VertexBufferLayout, VertexStepMode, vertex_attr_array,
 };
 
-/// Linear light: what the engine draws.
+/// Format of linear color.
 pub const COLOR_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
-/// Normals in 0…1, and the object's number over 255.
+/// Format of ids: normals mapped to 0…1, and the object number divided by 255.
 pub const ID_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
-/// Depth, reversed: 1 at the near plane, 0 infinitely far.
+/// Format of reversed depth: 1 at the near plane, 0 at infinity.
 pub const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 
-/// The engine could not start.
+/// Error while starting the engine.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum EngineError {
-    /// No adapter can draw, or into the window.
-    #[error("no adapter fits: {0}; install a driver, or change WGPU_BACKEND and WGPU_ADAPTER_NAME")]
+    /// No adapter is suitable, or none can present to the window.
+    #[error("no adapter is suitable: {0}; install a driver, or change WGPU_BACKEND and WGPU_ADAPTER_NAME")]
     NoAdapter(String),
-    /// The adapter gives no device.
-    #[error("the adapter refused: {0}")]
+    /// The adapter provides no device.
+    #[error("adapter: cannot open a device: {0}")]
     NoDevice(String),
 }
 
@@ -36,14 +36,14 @@ impl std::fmt::Debug for EngineError {
     }
 }
 
-/// A small engine: a few shapes that turn.
+/// Small engine that draws a few rotating shapes.
 #[derive(Debug)]
 pub struct Engine {
-    /// Where the device comes from.
+    /// Adapter of the device.
     pub adapter: Adapter,
-    /// The device.
+    /// Device.
     pub device: Device,
-    /// Its queue.
+    /// Queue of the device.
     pub queue: Queue,
     backdrop: RenderPipeline,
     shapes: RenderPipeline,
@@ -51,7 +51,7 @@ pub struct Engine {
     view_group: BindGroup,
     vertices: Buffer,
     instances: Buffer,
-    /// The vertices of each object.
+    /// Vertex range of each object.
     objects: Vec<Range<u32>>,
 }
 
@@ -71,12 +71,12 @@ struct Instanced {
     pad: [u32; 3],
 }
 
-/// An object as it is at a time.
+/// Animated object.
 struct Object {
     shape: usize,
-    /// Linear color, and its own light as a multiple of it.
+    /// Linear color, and the emission as a multiple of it.
     color: [f32; 4],
-    /// Where it is and how it is turned, by time in seconds.
+    /// Transform as a function of time in seconds.
     placed: fn(f32) -> Mat4,
 }
 
@@ -121,7 +121,7 @@ const OBJECTS: [Object; 5] = [
 ];
 
 impl Engine {
-    /// A texture to draw into in a window's place, and to read afterwards.
+    /// Creates a texture to draw into without a window, and to read back.
     pub fn picture(&self, [width, height]: [u32; 2]) -> Texture {
         self.device.create_texture(&TextureDescriptor {
             label: Some("picture"),
@@ -135,13 +135,13 @@ impl Engine {
         })
     }
 
-    /// Opens a device, one that can draw into `surface` if there is one, and makes everything that drawing takes.
+    /// Opens a device, compatible with `surface` if present, and creates all resources for drawing.
     ///
     /// # Errors
     /// [`EngineError`].
     pub fn open(instance: &Instance, surface: Option<&Surface<'_>>) -> Result<Self, EngineError> {
         let adapter = pollster::block_on(choose(instance, surface))?;
-        // The engine asks for nothing beyond WebGPU's defaults, and the graph does not either.
+        // Neither the engine nor the graph requires more than WebGPU's defaults.
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("engine"),
             required_limits: wgpu::Limits::default().using_resolution(adapter.limits()),
@@ -177,7 +177,7 @@ impl Engine {
         Self { adapter, device, queue, backdrop, shapes, view, view_group, vertices, instances, objects }
     }
 
-    /// Moves everything to where it is at `time_s` seconds, seen in a picture of `width_over_height`.
+    /// Updates all transforms to the time `time_s` in seconds, for a picture with aspect ratio `width_over_height`.
     pub fn animate(&self, time_s: f32, width_over_height: f32) {
         use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_at_mat4};
         let eye = look_at_mat4(Vec3::new(0.0, 1.3, 4.6), Vec3::new(0.0, 0.0, 0.0), Vec3::Y);
@@ -196,8 +196,8 @@ impl Engine {
         self.queue.write_buffer(&self.instances, 0, bytemuck::cast_slice(&instances));
     }
 
-    /// Draws everything into a render pass of the caller's, whose targets are [`COLOR_FORMAT`], [`ID_FORMAT`] and
-    /// [`DEPTH_FORMAT`] with one sample.
+    /// Draws into a render pass of the caller. Its targets are [`COLOR_FORMAT`], [`ID_FORMAT`] and [`DEPTH_FORMAT`],
+    /// single-sampled.
     pub fn draw(&self, pass: &mut RenderPass<'_>) {
         pass.set_pipeline(&self.backdrop);
         pass.draw(0..3, 0..1);
@@ -211,7 +211,7 @@ impl Engine {
     }
 }
 
-/// The adapter that WGPU_ADAPTER_NAME names, or wgpu's choice.
+/// Returns the adapter named by WGPU_ADAPTER_NAME, or the choice of wgpu.
 async fn choose(instance: &Instance, surface: Option<&Surface<'_>>) -> Result<Adapter, EngineError> {
     let Ok(name) = std::env::var("WGPU_ADAPTER_NAME") else {
         let options = wgpu::RequestAdapterOptions { compatible_surface: surface, ..Default::default() };
@@ -222,11 +222,11 @@ async fn choose(instance: &Instance, surface: Option<&Surface<'_>>) -> Result<Ad
         named && surface.is_none_or(|surface| adapter.is_surface_supported(surface))
     };
     let all = instance.enumerate_adapters(wgpu::Backends::all()).await;
-    let missing = || EngineError::NoAdapter(format!("none is called `{name}`"));
+    let missing = || EngineError::NoAdapter(format!("no adapter is named `{name}`"));
     all.into_iter().find(fits).ok_or_else(missing)
 }
 
-/// Both pipelines draw into the same targets, because both do so in one render pass.
+/// Both pipelines have the same targets, because they draw in one render pass.
 fn pipelines(device: &Device) -> (RenderPipeline, RenderPipeline) {
     let module = device.create_shader_module(wgpu::include_wgsl!("engine.wgsl"));
     let vertices = VertexBufferLayout {

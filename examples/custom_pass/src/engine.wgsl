@@ -1,8 +1,8 @@
-// The engine's own shaders: shapes with a color, and beside it what post effects want to know of the surface.
+// Shaders of the engine: shaded shapes, with normals and object numbers for post effects.
 
 struct View {
     clip_from_world: mat4x4f,
-    // Direction toward the light, and the share of light that comes from everywhere.
+    // Direction toward the light, and the fraction of ambient light.
     light: vec4f,
 }
 @group(0) @binding(0) var<uniform> view: View;
@@ -16,7 +16,7 @@ struct Instance {
     @location(3) y: vec4f,
     @location(4) z: vec4f,
     @location(5) w: vec4f,
-    // Linear red, green, blue; light of its own as a multiple of the color.
+    // Linear color, and the emission as a multiple of it.
     @location(6) color: vec4f,
     @location(7) number: u32,
 }
@@ -28,7 +28,7 @@ struct Surface {
 }
 struct Targets {
     @location(0) color: vec4f,
-    // Normal in 0…1, and the object's number: 0 for the backdrop.
+    // Normal mapped to 0…1, and the object number: 0 for the backdrop.
     @location(1) id: vec4f,
 }
 
@@ -36,7 +36,7 @@ struct Targets {
     let world = mat4x4f(instance.x, instance.y, instance.z, instance.w);
     var out: Surface;
     out.at = view.clip_from_world * world * vec4f(vertex.position, 1.0);
-    // Shapes are rotated and scaled alike on all axes, so normals turn as positions do.
+    // Shapes are scaled uniformly, so normals transform like positions.
     out.normal = normalize((world * vec4f(vertex.normal, 0.0)).xyz);
     out.color = instance.color;
     out.number = instance.number;
@@ -52,9 +52,9 @@ struct Targets {
 
 @vertex fn vs_backdrop(@builtin(vertex_index) i: u32) -> Surface {
     var out: Surface;
-    // One triangle over everything, on the far plane: depth is reversed, 0 is infinitely far.
+    // One full-screen triangle on the far plane: depth is reversed, 0 is at infinity.
     out.at = vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-    // How far up, 0…1 within the picture.
+    // Height within the picture, 0…1.
     out.normal = vec3f(0.0, f32(i >> 1u) * 2.0, 0.0);
     return out;
 }

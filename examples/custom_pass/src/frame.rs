@@ -1,4 +1,4 @@
-//! The frame: the engine's drawing as one pass among others.
+//! The frame: the drawing of the engine as one pass among others.
 
 use super::blur::blur;
 use super::compose::Compose;
@@ -8,10 +8,10 @@ use framegraph::{ClearValue, DeclareError, Entry, Exit, Extent, Format, Intent, 
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{RecordError, format_of};
 
-/// What is switched on.
+/// Enabled effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// A glow: the scene, blurred, over itself.
+    /// Glow: the blurred scene on top of the scene.
     pub blur: bool,
     /// Lines around objects.
     pub outline: bool,
@@ -23,18 +23,18 @@ impl Default for Settings {
     }
 }
 
-/// Declares the frame; `screen` is the format of what it is drawn into. Returns the import that stands for it.
+/// Declares the frame and returns the import of the screen, whose format is `screen`.
 ///
 /// # Errors
-/// What a pass refuses; a format that cannot be drawn into, say.
+/// An error of a pass, such as a format that is not renderable.
 pub fn declare(frame: &mut Frame<Engine>, screen: Format, settings: Settings) -> Result<Texture, DeclareError> {
-    // Somebody else's image: it holds nothing that we want, and what we draw must survive the frame. Which image it is
-    // will be said when the frame is executed.
+    // The screen is an external image. Its contents are not needed, and the result must survive the frame. The image itself
+    // is bound at execution.
     let desc = TextureDesc::new(Extent::FRAME, screen);
     let screen = frame.graph_mut().import_texture("screen", desc, Entry::Undefined, Exit::Keep);
 
-    // The engine's own pipelines, in a render pass that the graph opens. What the engine draws is declared; what becomes
-    // of it is not: without the outline, ids and depth are never read, and will get no memory.
+    // The pipelines of the engine draw in a render pass of the graph. The graph decides whether outputs are stored: without
+    // outlines, ids and depth are never read and get no memory.
     let (color, ids, depth) = frame.add_fn(
         "scene",
         |pass| {
@@ -42,7 +42,7 @@ pub fn declare(frame: &mut Frame<Engine>, screen: Format, settings: Settings) ->
             let color = pass.texture("color", target(known(COLOR_FORMAT)));
             let ids = pass.texture("ids", target(known(ID_FORMAT)));
             let depth = pass.texture("depth", target(known(DEPTH_FORMAT)));
-            // Pipelines that are made elsewhere fit these targets and no others: the step must not grow.
+            // External pipelines match exactly these targets, so the step must not gain attachments.
             pass.never_merge();
             Ok((
                 pass.color(color, Intent::Overwrite)?,
@@ -64,7 +64,7 @@ pub fn declare(frame: &mut Frame<Engine>, screen: Format, settings: Settings) ->
     Ok(screen)
 }
 
-/// The graph's word for one of the engine's formats.
+/// Returns the graph's format for one of the engine's formats.
 fn known(format: wgpu::TextureFormat) -> Format {
     match format_of(format) {
         Some(format) => format,

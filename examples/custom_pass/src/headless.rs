@@ -1,4 +1,4 @@
-//! Without a window: a texture of our own takes the screen's place, and its last frame becomes a file.
+//! Headless mode: draws into a texture and writes the last frame to a file.
 
 use crate::Failure;
 use crate::args::Args;
@@ -15,10 +15,10 @@ use wgpu::{Instance, InstanceDescriptor};
 /// Seconds between two frames of the animation.
 const STEP_S: f32 = 1.0 / 60.0;
 
-/// Draws the frames that `args` asks for and writes the last one.
+/// Draws the frames and writes the last one to `out`.
 ///
 /// # Errors
-/// Whose fault it is, in one line.
+/// An input or device failure with a one-line message.
 pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
     interrupt::watch();
     let output = |error: OutputError| Failure::Input(format!("--out {error}"));
@@ -28,9 +28,9 @@ pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
     let engine = Engine::open(&instance, None).map_err(Failure::device)?;
     program::line(format_args!("adapter: {}", describe(&engine.adapter.get_info())));
     let [width, height] = args.size_px;
-    let most = engine.device.limits().max_texture_dimension_2d;
-    if width.max(height) > most {
-        return Err(Failure::Input(format!("--size {width}x{height}: the adapter's limit is {most}x{most}")));
+    let max = engine.device.limits().max_texture_dimension_2d;
+    if width.max(height) > max {
+        return Err(Failure::Input(format!("--size {width}x{height}: exceeds the adapter's limit of {max}x{max}")));
     }
     let image = engine.picture(args.size_px);
     let mut app = App::new(engine, image.format(), args.settings).map_err(Failure::device)?;

@@ -1,5 +1,4 @@
-//! A render graph in an engine that has everything already: the teaching program `custom_pass`. Its `README.md` walks
-//! through the files in the order in which they are best read.
+//! Teaching program `custom_pass`: a render graph in an existing engine. `README.md` lists the files in reading order.
 
 pub mod app;
 pub mod blur;

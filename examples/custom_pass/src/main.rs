@@ -1,5 +1,5 @@
-//! An engine that owns its device, surface and pipelines, with two effects from the render graph. See `README.md` beside
-//! this file.
+//! Engine that owns its device, surface and pipelines, with two effects from the render graph. See `README.md` in this
+//! package.
 
 mod args;
 mod headless;
@@ -11,11 +11,11 @@ use program::interrupt;
 use std::fmt::Display;
 use std::process::ExitCode;
 
-/// Why nothing was drawn.
+/// Reason that nothing was drawn.
 enum Failure {
-    /// The user's input.
+    /// Invalid input.
     Input(String),
-    /// The device, or a fault of ours.
+    /// Device failure or internal error.
     Device(String),
 }
 
@@ -47,7 +47,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// One line on standard error.
+/// Prints one line on standard error and returns the exit code.
 fn fail(code: u8, message: &str) -> ExitCode {
     program::error(message);
     program::exit(code)

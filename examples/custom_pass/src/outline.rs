@@ -1,22 +1,22 @@
-//! Outlines as an effect: one raster pass over the finished picture.
+//! Outline effect: one raster pass over the final picture.
 
 use framegraph::{DeclareError, Intent, Pass, PassBuilder, Texture, View};
 use framegraph_wgpu::Record;
 use framegraph_wgpu::{Cx, Raster, RecordError, Shader};
 
-/// What lines are drawn with: linear red, green, blue, and alpha.
+/// Color of the lines: linear red, green, blue, and alpha.
 pub const COLOR: [f32; 4] = [1.0, 1.0, 1.0, 1.0];
 
 const SHADER: Shader<'static> = Shader::new("custom_pass/outline", include_str!("outline.wgsl"));
 
-/// Draws lines around objects, over `over`.
+/// Draws lines around objects into `over`.
 #[derive(Clone, Copy, Debug)]
 pub struct Outline {
-    /// Object numbers over 255 in alpha.
+    /// Object numbers divided by 255 in the alpha channel.
     pub ids: Texture,
     /// Reversed depth.
     pub depth: Texture,
-    /// The picture to draw over, of the same size.
+    /// Picture to draw into, of equal size.
     pub over: Texture,
 }
 
@@ -25,8 +25,8 @@ impl Pass for Outline {
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Self::Io, DeclareError> {
         let (ids, depth) = (pass.sampled(self.ids)?, pass.sampled(self.depth)?);
-        // Most of the picture stays: `Modify`. The pass before draws into the same target, so both share a step, and the
-        // picture is not loaded from memory in between.
+        // `Modify` keeps the other pixels. The previous pass draws into this target too, so both share a step, and the
+        // picture is not loaded from memory.
         Ok((ids, depth, pass.color(self.over, Intent::Modify)?))
     }
 }

@@ -1,8 +1,8 @@
-// Lines around objects, from their numbers and depths alone. A texel is on an outline when a texel one or two steps away
-// along an axis belongs to another object and lies farther away: the line runs inside of the object in front.
+// Lines around objects, from object numbers and depth. A texel is on an outline if a texel one or two steps away along an
+// axis belongs to another object and is farther away. The line is inside the object in front.
 
 @group(0) @binding(0) var ids: texture_2d<f32>;
-// Depth as plain numbers: OpenGL's shaders cannot load texels of a depth texture.
+// Depth as a float texture, because OpenGL shaders cannot load texels of a depth texture.
 @group(0) @binding(1) var depth: texture_2d<f32>;
 @group(0) @binding(2) var<uniform> color: vec4f;
 
@@ -22,7 +22,7 @@ fn number(at: vec2i) -> u32 {
     var steps = array(vec2i(1, 0), vec2i(-1, 0), vec2i(0, 1), vec2i(0, -1));
     for (var i = 0; i < 8; i++) {
         let other = clamp(at + steps[i % 4] * (1 + i / 4), vec2i(), last);
-        // Depth is reversed: what is farther is smaller.
+        // Depth is reversed: farther is smaller.
         if number(other) != own && textureLoad(depth, other, 0).x < own_depth {
             return color;
         }

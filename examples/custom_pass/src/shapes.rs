@@ -1,13 +1,13 @@
-//! Shapes as plain triangles: a cube, an octahedron, a torus.
+//! Shapes as triangle lists: a cube, an octahedron, a torus.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-/// A corner of a triangle.
+/// Vertex of a triangle.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Vertex {
-    /// Position in the shape's own space, about one unit from its center.
+    /// Position in object space, about one unit from the center.
     pub position: [f32; 3],
     /// Outward normal of length 1.
     pub normal: [f32; 3],
@@ -17,18 +17,18 @@ fn vertex(position: Vec3, normal: Vec3) -> Vertex {
     Vertex { position: position.to_array(), normal: normal.to_array() }
 }
 
-/// A flat triangle, counter-clockwise seen from outside.
+/// Returns a flat triangle, counter-clockwise from outside.
 fn triangle(corners: [Vec3; 3]) -> [Vertex; 3] {
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
     corners.map(|corner| vertex(corner, normal))
 }
 
-/// A cube with edges of 1.2 units.
+/// Returns a cube with edges of 1.2 units.
 pub fn cube() -> Vec<Vertex> {
     let mut vertices = Vec::new();
     for (axis, sign) in [Vec3::X, Vec3::Y, Vec3::Z].into_iter().flat_map(|axis| [(axis, 1.0), (axis, -1.0)]) {
         let out = axis * sign;
-        // Two directions along the face that make a right-handed frame with its normal.
+        // Two directions along the face that form a right-handed frame with its normal.
         let (u, v) = (out.any_orthonormal_vector(), out.cross(out.any_orthonormal_vector()));
         let corner = |a: f32, b: f32| (out + u * a + v * b) * 0.6;
         let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
@@ -37,20 +37,20 @@ pub fn cube() -> Vec<Vertex> {
     vertices
 }
 
-/// An octahedron with its corners one unit from the center.
+/// Returns an octahedron with its corners one unit from the center.
 pub fn octahedron() -> Vec<Vertex> {
     let mut vertices = Vec::new();
     for octant in 0..8u32 {
         let sign = |bit: u32| if octant >> bit & 1 == 0 { 1.0 } else { -1.0 };
         let (x, y, z) = (Vec3::X * sign(0), Vec3::Y * sign(1), Vec3::Z * sign(2));
-        // An odd number of mirrored axes turns the triangle around.
+        // An odd number of mirrored axes reverses the winding.
         let mirrored = octant.count_ones() % 2 == 1;
         vertices.extend(triangle(if mirrored { [x, z, y] } else { [x, y, z] }));
     }
     vertices
 }
 
-/// A torus around the Y axis: radius 0.9, tube 0.35.
+/// Returns a torus around the Y axis with radius 0.9 and tube radius 0.35.
 pub fn torus() -> Vec<Vertex> {
     const AROUND: u32 = 48;
     const ACROSS: u32 = 24;

@@ -1,4 +1,4 @@
-//! In a window: the graph draws into whatever image the surface hands out.
+//! Window mode: the graph draws into the images of the surface.
 
 use crate::Failure;
 use crate::args::Args;
@@ -20,11 +20,10 @@ use winit::window::{Window, WindowId};
 /// Opens a window and draws until it is closed.
 ///
 /// # Errors
-/// Whose fault it is, in one line.
+/// An input or device failure with a one-line message.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let no_display = |error| {
-        Failure::Input(format!("no window can be opened ({error}); draw into a file with --out FILE.png instead"))
-    };
+    let no_display =
+        |error| Failure::Input(format!("no window can be opened ({error}); write a file with --out FILE.png instead"));
     let events = EventLoop::new().map_err(no_display)?;
     events.set_control_flow(ControlFlow::Poll);
     let mut program = Program { args: args.clone(), running: None, failed: None };
@@ -32,14 +31,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     program.failed.map_or(Ok(()), Err)
 }
 
-/// What the event loop drives.
+/// State of the event loop.
 struct Program {
     args: Args,
     running: Option<Running>,
     failed: Option<Failure>,
 }
 
-/// An open window.
+/// Open window.
 struct Running {
     window: Arc<Window>,
     instance: Instance,
@@ -50,7 +49,7 @@ struct Running {
     print_plan: bool,
 }
 
-/// The animation's time, which can stand still.
+/// Animation time, which can be paused.
 struct Clock {
     since: Instant,
     before_s: f32,
@@ -87,7 +86,7 @@ impl ApplicationHandler for Program {
                 Ok(())
             }
             WindowEvent::Resized(size) => {
-                // The graph follows the surface when the next frame is drawn.
+                // The graph adopts the new size with the next frame.
                 running.surface.resize([size.width, size.height]);
                 Ok(())
             }
@@ -172,11 +171,11 @@ impl Running {
         self.window.set_title(&format!("custom_pass: [B]lur {}, [O]utline {}, [P]lan", word(blur), word(outline)));
     }
 
-    /// Draws into the surface's next image, if it has one.
+    /// Draws into the next image of the surface, if available.
     fn draw(&mut self) -> Result<(), Failure> {
         let image = match self.surface.acquire() {
             Ok(Some(image)) => image,
-            // Nobody sees the window, or the screen is busy: the next redraw asks again.
+            // The window is hidden or the screen is busy; the next redraw tries again.
             Ok(None) => return Ok(()),
             Err(SurfaceError::Lost) => {
                 self.surface.replace(self.instance.create_surface(self.window.clone()).map_err(Failure::device)?);
@@ -189,8 +188,8 @@ impl Running {
             program::line(dump::text(self.app.frames.plan()));
             let flight = self.app.frames.frames_in_flight();
             if let Some(latency) = flight.latency() {
-                let (median_ms, most) = (latency.median_ms, flight.max());
-                program::line(format_args!("latency: median {median_ms:.2} ms with {most} frames queued at most"));
+                let (median_ms, max) = (latency.median_ms, flight.max());
+                program::line(format_args!("latency: median {median_ms:.2} ms with at most {max} frames queued"));
             }
         }
         self.window.pre_present_notify();

@@ -1,4 +1,4 @@
-//! The command line of `plan`.
+//! Command line of `plan`.
 
 use crate::queues;
 use framegraph::Order;
@@ -8,117 +8,74 @@ use program::budget::Budget;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// What `plan --help` prints.
-pub const HELP: &str = "\
-Plans a frame from a file, without a GPU.
-
-usage: plan FRAME.ron [options]
-       plan --offsets FILE.csv [--budget-steps N] [--seconds S] [--out FILE]
-
-FRAME.ron is a graph; docs/graph-format.md documents its fields.
-
-  --caps WHICH        desktop, tiler, wgpu (default), or a FILE.ron that describes a device
-  --size WxH          size of the frame in texels; default: what the file says, else 1920x1080
-  --set FEATURE=on|off
-                      switches a feature of the file; may be given several times
-  --order WHICH       declared (default) or optimized
-  --format WHICH      text (default), json (docs/plan-json.md), dot, mermaid or svg
-  --diff OTHER.ron    what changes from FRAME to OTHER, both for the same device, size and features (of which each takes
-                      those that it knows); text or json
-  --budget LIMITS     exit with 1 and the decisions to blame when a limit is passed: NAME=MOST,... with the names
-                        loads     attachments loaded from memory (unresolves)
-                        stores    attachments stored to memory (resolves)
-                        steps     steps
-                        culled    culled passes
-                        bytes     memory that transient resources take
-                        traffic   bytes loaded and stored
-                      and B, kB, MB, GB (powers of 1000), KiB, MiB or GiB (of 1024) behind bytes:
-                        --budget loads=0,stores=3,bytes=200MB
-  --queues LAYOUT     runs the frame on several queues where that is shorter: one, async-compute, async-compute-and-copy,
-                      or device for those that --caps has;
-                      prints what runs where, what waits for what, and the frame's time; text or svg
-  --costs FILE        what each pass costs there: lines `PASS,MICROSECONDS`; default: by the bytes that it touches
-  --out FILE          where to write; default: standard output
-  --offsets FILE.csv  packs intervals `id,lower,upper,size` into one heap and prints `id,lower,upper,size,offset`;
-                      (MiniMalloc's form; an `end` in the place of `upper` is the last step itself, `start` and `begin`
-                      are `lower`); the top and the bound go to standard error, every second while the search goes on. A
-                      signal ends it, and the best offsets so far are printed
-  --plugins           prints the kinds of plugins that files can name here, with their slots
-  --budget-steps N    steps that the search for offsets may take (150000000)
-  --seconds S         seconds that it may take; default: until the steps are taken
-  --help              this text
-
-Exit codes: 0 done, 1 a budget is broken, 2 bad input or output, 128 and its number after a signal.
-";
-
-/// What was asked for.
+/// Options of a run that plans a frame.
 #[derive(Clone, Debug)]
 pub struct Args {
-    /// The graph.
+    /// Path of the graph file.
     pub frame: PathBuf,
-    /// A preset or a file.
+    /// Name of a device preset, or path of a device file.
     pub caps: String,
-    /// Width and height in texels.
+    /// Frame width and height in texels; `None` for the size in the file.
     pub size_texels: Option<[u32; 2]>,
-    /// Features with what they are set to.
+    /// Features to enable (`true`) or disable.
     pub switches: Vec<(String, bool)>,
-    /// In which order passes run.
+    /// Order of passes.
     pub order: Order,
-    /// The form of the output.
+    /// Output format.
     pub format: Format,
-    /// The graph to compare with.
+    /// Graph file to compare with.
     pub diff: Option<PathBuf>,
-    /// What the plan may cost.
+    /// Limits on the cost of the plan.
     pub budget: Budget,
-    /// Where to write.
+    /// Output file; `None` for standard output.
     pub out: Option<PathBuf>,
-    /// The frame on several queues.
+    /// Options of the schedule on several queues.
     pub queues: Option<QueuesArgs>,
 }
 
-/// What `--queues` was asked for.
+/// Options of `--queues`.
 #[derive(Clone, Debug)]
 pub struct QueuesArgs {
-    /// The queues; none for those of the device.
+    /// Queue layout; `None` for the queues of the device.
     pub layout: Option<QueueLayout>,
-    /// The costs of passes.
+    /// File with the costs of passes.
     pub costs: Option<PathBuf>,
 }
 
-/// What `--offsets` was asked for.
+/// Options of `--offsets`.
 #[derive(Clone, Debug)]
 pub struct OffsetsArgs {
-    /// The intervals.
+    /// File with the intervals to pack.
     pub file: PathBuf,
-    /// Steps of the search.
+    /// Maximum number of search steps.
     pub budget_steps: u64,
-    /// Seconds of the search.
+    /// Time limit of the search in seconds.
     pub seconds: Option<u32>,
-    /// Where to write.
+    /// Output file; `None` for standard output.
     pub out: Option<PathBuf>,
 }
 
-/// The form of the output.
+/// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Everything in words.
+    /// Complete plan as text.
     Text,
-    /// For other tools.
+    /// JSON for other tools.
     Json,
-    /// For Graphviz.
+    /// Graphviz.
     Dot,
-    /// For browsers and forges.
+    /// Mermaid, for browsers and code-hosting sites.
     Mermaid,
-    /// A picture.
+    /// SVG picture.
     Svg,
 }
 
-/// What the command line comes to.
+/// Parsed command line.
 #[derive(Clone, Debug)]
 pub enum Command {
     /// Print the help.
     Help,
-    /// Print the kinds of plugins.
+    /// List plugin kinds.
     Plugins,
     /// Plan a frame.
     Plan(Box<Args>),
@@ -126,9 +83,9 @@ pub enum Command {
     Offsets(OffsetsArgs),
 }
 
-/// The options as they were given.
+/// Options as specified, before defaults apply.
 #[derive(Debug, Default)]
-struct Given {
+struct ExplicitOptions {
     frame: Option<PathBuf>,
     caps: Option<String>,
     size_texels: Option<[u32; 2]>,
@@ -145,25 +102,25 @@ struct Given {
     costs: Option<PathBuf>,
 }
 
-/// Steps of the search for offsets when nothing is said.
+/// Default of `--budget-steps`.
 const BUDGET_STEPS: u64 = 150_000_000;
 
-/// Reads the command line; `args` without the program's name.
+/// Parses the command line; `args` excludes the program name.
 ///
 /// # Errors
-/// One line that names the option and what it takes.
+/// One line that names the option and the expected value.
 pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
     let mut parser = Parser::from_args(args);
-    let mut given = Given::default();
+    let mut explicit = ExplicitOptions::default();
     while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
         let option = match &arg {
             Arg::Long(name) => (*name).to_owned(),
             Arg::Short(letter) => {
-                return Err(format!("there is no option `-{letter}`; see --help"));
+                return Err(format!("unknown option `-{letter}`; see --help"));
             }
             Arg::Value(value) => {
                 let value = PathBuf::from(value);
-                set(&mut given.frame, value, "FRAME.ron")?;
+                set(&mut explicit.frame, value, "FRAME.ron")?;
                 continue;
             }
         };
@@ -173,13 +130,13 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
         if option == "plugins" {
             return Ok(Command::Plugins);
         }
-        take(&mut parser, &option, &mut given)?;
+        take(&mut parser, &option, &mut explicit)?;
     }
-    finish(given)
+    finish(explicit)
 }
 
-/// Reads the value of one option.
-fn take(parser: &mut Parser, option: &str, given: &mut Given) -> Result<(), String> {
+/// Parses the value of one option.
+fn take(parser: &mut Parser, option: &str, explicit: &mut ExplicitOptions) -> Result<(), String> {
     const KNOWN: [&str; 13] = [
         "caps",
         "size",
@@ -196,29 +153,29 @@ fn take(parser: &mut Parser, option: &str, given: &mut Given) -> Result<(), Stri
         "costs",
     ];
     if !KNOWN.contains(&option) {
-        return Err(format!("there is no option `--{option}`; see --help"));
+        return Err(format!("unknown option `--{option}`; see --help"));
     }
-    let value = parser.value().map_err(|_| format!("--{option} needs a value; see --help"))?;
+    let value = parser.value().map_err(|_| format!("--{option}: missing value; see --help"))?;
     if matches!(option, "diff" | "out" | "offsets" | "costs") {
         let place = match option {
-            "diff" => &mut given.diff,
-            "out" => &mut given.out,
-            "costs" => &mut given.costs,
-            _ => &mut given.offsets,
+            "diff" => &mut explicit.diff,
+            "out" => &mut explicit.out,
+            "costs" => &mut explicit.costs,
+            _ => &mut explicit.offsets,
         };
         return set(place, value.into(), &format!("--{option}"));
     }
     let value = value.string().map_err(|_| format!("--{option}: the value is not UTF-8"))?;
-    let wrong = |takes: &str| format!("--{option}: `{value}` is not {takes}");
+    let wrong = |expected: &str| format!("--{option}: invalid value `{value}`; expected {expected}");
     let name = format!("--{option}");
     match option {
-        "caps" => set(&mut given.caps, value, &name),
+        "caps" => set(&mut explicit.caps, value, &name),
         "size" => {
-            let size = size(&value).ok_or_else(|| wrong("WxH with 1 to 65536 texels each way"))?;
-            set(&mut given.size_texels, size, &name)
+            let size = size(&value).ok_or_else(|| wrong("WxH, each from 1 to 65536 texels"))?;
+            set(&mut explicit.size_texels, size, &name)
         }
         "set" => {
-            given.switches.push(switch(&value).ok_or_else(|| wrong("FEATURE=on or FEATURE=off"))?);
+            explicit.switches.push(switch(&value).ok_or_else(|| wrong("FEATURE=on or FEATURE=off"))?);
             Ok(())
         }
         "order" => {
@@ -227,7 +184,7 @@ fn take(parser: &mut Parser, option: &str, given: &mut Given) -> Result<(), Stri
                 "optimized" => Order::Optimized,
                 _ => return Err(wrong("declared or optimized")),
             };
-            set(&mut given.order, order, &name)
+            set(&mut explicit.order, order, &name)
         }
         "format" => {
             let format = match value.as_str() {
@@ -238,29 +195,29 @@ fn take(parser: &mut Parser, option: &str, given: &mut Given) -> Result<(), Stri
                 "svg" => Format::Svg,
                 _ => return Err(wrong("text, json, dot, mermaid or svg")),
             };
-            set(&mut given.format, format, &name)
+            set(&mut explicit.format, format, &name)
         }
         "budget" => {
             let budget = Budget::parse(&value).map_err(|e| format!("--budget: {e}"))?;
-            set(&mut given.budget, budget, &name)
+            set(&mut explicit.budget, budget, &name)
         }
-        "queues" => set(&mut given.queues, queues::layout(&value)?, &name),
+        "queues" => set(&mut explicit.queues, queues::layout(&value)?, &name),
         "seconds" => {
             let seconds = value.parse().map_err(|_| wrong("a whole number of seconds"))?;
-            set(&mut given.seconds, seconds, &name)
+            set(&mut explicit.seconds, seconds, &name)
         }
         _ => {
             let steps = value.parse().map_err(|_| wrong("a whole number of steps"))?;
-            set(&mut given.budget_steps, steps, &name)
+            set(&mut explicit.budget_steps, steps, &name)
         }
     }
 }
 
-/// Refuses a second value.
+/// Stores a value and rejects a second one.
 fn set<T>(place: &mut Option<T>, value: T, name: &str) -> Result<(), String> {
     match place.replace(value) {
         None => Ok(()),
-        Some(_) => Err(format!("{name} is given twice")),
+        Some(_) => Err(format!("{name}: specified twice; remove one")),
     }
 }
 
@@ -280,10 +237,23 @@ fn switch(value: &str) -> Option<(String, bool)> {
     (!feature.is_empty()).then(|| (feature.to_owned(), on))
 }
 
-/// Checks what goes together.
-fn finish(given: Given) -> Result<Command, String> {
-    let Given { frame, caps, size_texels, switches, order, format, diff, budget, out, offsets, queues, costs, .. } =
-        given;
+/// Checks combinations of options and applies defaults.
+fn finish(explicit: ExplicitOptions) -> Result<Command, String> {
+    let ExplicitOptions {
+        frame,
+        caps,
+        size_texels,
+        switches,
+        order,
+        format,
+        diff,
+        budget,
+        out,
+        offsets,
+        queues,
+        costs,
+        ..
+    } = explicit;
     if let Some(file) = offsets {
         let alone = [
             (frame.is_some(), "FRAME.ron"),
@@ -297,29 +267,31 @@ fn finish(given: Given) -> Result<Command, String> {
             (queues.is_some(), "--queues"),
             (costs.is_some(), "--costs"),
         ];
-        if let Some((_, other)) = alone.into_iter().find(|(given, _)| *given) {
-            return Err(format!("{other} does not go together with --offsets"));
+        if let Some((_, other)) = alone.into_iter().find(|(present, _)| *present) {
+            return Err(format!("{other}: not available with --offsets; remove one of both"));
         }
-        let budget_steps = given.budget_steps.unwrap_or(BUDGET_STEPS);
-        return Ok(Command::Offsets(OffsetsArgs { file, budget_steps, seconds: given.seconds, out }));
+        let budget_steps = explicit.budget_steps.unwrap_or(BUDGET_STEPS);
+        return Ok(Command::Offsets(OffsetsArgs { file, budget_steps, seconds: explicit.seconds, out }));
     }
-    for (given, name) in [(given.budget_steps.is_some(), "--budget-steps"), (given.seconds.is_some(), "--seconds")] {
-        if given {
-            return Err(format!("{name} goes together with --offsets only"));
+    for (present, name) in
+        [(explicit.budget_steps.is_some(), "--budget-steps"), (explicit.seconds.is_some(), "--seconds")]
+    {
+        if present {
+            return Err(format!("{name}: requires --offsets"));
         }
     }
     let format = format.unwrap_or(Format::Text);
     if costs.is_some() && queues.is_none() {
-        return Err("--costs goes together with --queues only".into());
+        return Err("--costs: requires --queues".into());
     }
     if queues.is_some() && (diff.is_some() || !matches!(format, Format::Text | Format::Svg)) {
-        return Err("--queues prints --format text or svg, of one frame".into());
+        return Err("--queues: available with --format text or svg and without --diff".into());
     }
     if diff.is_some() && !matches!(format, Format::Text | Format::Json) {
-        return Err("--diff prints --format text or json".into());
+        return Err("--diff: requires --format text or json".into());
     }
     Ok(Command::Plan(Box::new(Args {
-        frame: frame.ok_or("FRAME.ron is missing; see --help")?,
+        frame: frame.ok_or("FRAME.ron: missing argument; see --help")?,
         caps: caps.unwrap_or_else(|| "wgpu".into()),
         size_texels,
         switches,
@@ -364,26 +336,26 @@ mod tests {
     fn every_mistake_is_one_line_that_names_it() {
         for (line, named) in [
             ("", "FRAME.ron"),
-            ("a.ron b.ron", "FRAME.ron is given twice"),
+            ("a.ron b.ron", "FRAME.ron: specified twice"),
             ("a.ron --capz tiler", "--capz"),
             ("a.ron -x", "-x"),
             ("a.ron --caps", "--caps"),
-            ("a.ron --size 0x4", "--size: `0x4`"),
-            ("a.ron --size 4", "--size: `4`"),
+            ("a.ron --size 0x4", "--size: invalid value `0x4`"),
+            ("a.ron --size 4", "--size: invalid value `4`"),
             ("a.ron --size 4x99999999999", "--size"),
-            ("a.ron --set msaa", "--set: `msaa`"),
-            ("a.ron --set =on", "--set: `=on`"),
+            ("a.ron --set msaa", "--set: invalid value `msaa`"),
+            ("a.ron --set =on", "--set: invalid value `=on`"),
             ("a.ron --order best", "declared or optimized"),
-            ("a.ron --format png", "--format: `png`"),
+            ("a.ron --format png", "--format: invalid value `png`"),
             ("a.ron --budget loads=-1", "--budget: loads"),
-            ("a.ron --caps a --caps b", "--caps is given twice"),
+            ("a.ron --caps a --caps b", "--caps: specified twice"),
             ("a.ron --diff b.ron --format svg", "--diff"),
             ("a.ron --budget-steps 3", "--offsets"),
-            ("a.ron --queues many", "`many` is not device, one, async-compute"),
-            ("a.ron --queues one --format dot", "--queues prints"),
-            ("a.ron --costs b.csv", "--costs goes together with --queues"),
-            ("a.ron --offsets b.csv", "FRAME.ron does not go together"),
-            ("--offsets b.csv --budget-steps x", "--budget-steps: `x`"),
+            ("a.ron --queues many", "`many`; expected device, one, async-compute"),
+            ("a.ron --queues one --format dot", "--queues: available"),
+            ("a.ron --costs b.csv", "--costs: requires --queues"),
+            ("a.ron --offsets b.csv", "FRAME.ron: not available"),
+            ("--offsets b.csv --budget-steps x", "--budget-steps: invalid value `x`"),
         ] {
             let error = parsed(line).expect_err(line);
             assert!(error.contains(named) && !error.contains('\n'), "{line}: {error}");

@@ -1,7 +1,10 @@
-//! Plans a frame from a file, without a GPU: what it would cost on a device, at a size, with a feature, against another
-//! frame, and whether that is within a budget.
+//! Compiles a frame graph from a file without a GPU.
+//!
+//! Prints the plan and its cost for a chosen device, size and set of features, compares two graphs, and checks
+//! budgets.
 
 mod args;
+mod help;
 mod offsets;
 mod output;
 mod plugins;
@@ -17,7 +20,7 @@ fn main() -> ExitCode {
     let outcome = match args::parse(std::env::args_os().skip(1)) {
         Err(message) => Err(run::Failure::Input(message)),
         Ok(Command::Help) => {
-            program::print(args::HELP);
+            program::print(help::HELP);
             Ok(())
         }
         Ok(Command::Plugins) => {
@@ -34,7 +37,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The message on standard error; a line for each error.
+/// Prints each line of `message` on standard error and returns the exit code.
 fn fail(code: u8, message: &str) -> ExitCode {
     message.lines().for_each(program::note);
     program::exit(code)

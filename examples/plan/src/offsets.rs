@@ -9,24 +9,26 @@ use program::interrupt;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-/// Reads, packs until the budget, the time or a signal ends it, and writes the best offsets; top and bound go to
-/// standard error.
+/// Packs the intervals of `args.file` and writes the best offsets found.
+///
+/// The search ends at the step budget, the time limit or a signal. Progress goes to standard error once a second. The
+/// final top and lower bound follow.
 ///
 /// # Errors
-/// One line that names the file, the line, and what it must hold.
+/// One line that names the file, the line, and the expected content.
 pub fn run(args: &OffsetsArgs) -> Result<(), String> {
     let OffsetsArgs { file, budget_steps, seconds, out } = args;
     let outputs = output::prepare(out.as_deref(), [file.as_path()])?;
     let shown = file.display();
     let table = csv::read(&read(file)?).map_err(|e| format!("{shown}: {e}"))?;
     let options = Options { effort: Effort::Exact, budget_steps: *budget_steps };
-    let (mut offsets, start, mut told) = (Vec::new(), Instant::now(), 0);
+    let (mut offsets, start, mut reported_s) = (Vec::new(), Instant::now(), 0);
     let mut watch = |progress: Progress| {
         let passed = start.elapsed();
-        if passed.as_secs() > told {
-            told = passed.as_secs();
+        if passed.as_secs() > reported_s {
+            reported_s = passed.as_secs();
             let Progress { top, lower_bound, steps } = progress;
-            program::note(format_args!("{told} s, {steps} steps: top {top}, lower bound {lower_bound}"));
+            program::note(format_args!("{reported_s} s, {steps} steps: top {top}, lower bound {lower_bound}"));
         }
         let over = seconds.is_some_and(|seconds| passed >= Duration::from_secs(seconds.into()));
         if over { ControlFlow::Break(()) } else { interrupt::flow() }
@@ -38,7 +40,7 @@ pub fn run(args: &OffsetsArgs) -> Result<(), String> {
     let proof = if packing.optimal {
         "optimal".to_owned()
     } else {
-        format!("not proved optimal in {} steps; --budget-steps and --seconds allow more", packing.steps)
+        format!("not proved optimal in {} steps; raise --budget-steps or --seconds to search longer", packing.steps)
     };
     program::note(format_args!("top {}, lower bound {}, {proof}", packing.top, packing.lower_bound));
     Ok(())

@@ -1,12 +1,12 @@
-//! Where results go.
+//! Output of results to a file or to standard output.
 
 use program::outputs::Outputs;
 use std::path::Path;
 
-/// The files of a run: `out` is checked before the work, and never one of those that are read.
+/// Registers the files of a run and checks `out` before any work is done.
 ///
 /// # Errors
-/// One line that names the file and what is against it.
+/// One line that names the file and the reason: `out` is not writable, or it is one of the input files.
 pub fn prepare<'a>(out: Option<&Path>, read: impl IntoIterator<Item = &'a Path>) -> Result<Outputs, String> {
     let mut outputs = Outputs::default();
     for path in read {
@@ -18,10 +18,10 @@ pub fn prepare<'a>(out: Option<&Path>, read: impl IntoIterator<Item = &'a Path>)
     Ok(outputs)
 }
 
-/// Writes to the file, or to standard output when there is none.
+/// Writes `text` to `out`, or to standard output if `out` is `None`.
 ///
 /// # Errors
-/// One line that names the file and what the system says.
+/// One line that names the file and the system's reason.
 pub fn write(mut outputs: Outputs, out: Option<&Path>, text: &str) -> Result<(), String> {
     let Some(path) = out else {
         program::print(text);

@@ -1,14 +1,14 @@
-//! The kinds of plugins that files can name here: the standard passes.
+//! Plugin kinds that graph files can name: the standard passes.
 
 use framegraph::Graph;
 use framegraph::file::{Registry, Takes};
 
-/// The standard passes.
+/// Returns the registry of the standard passes.
 pub fn registry() -> Registry<'static, Graph> {
     framegraph_passes::plugins::registry()
 }
 
-/// The kinds with their slots, a line each.
+/// Lists every kind with its slots, one line per kind.
 pub fn listed(registry: &Registry<'_, Graph>) -> String {
     let mut lines = String::new();
     for kind in registry.kinds() {

@@ -1,4 +1,4 @@
-//! From files to a plan, and from the plan to what was asked for.
+//! Reads the input files, compiles the plan, and prints the requested output.
 
 use crate::args::{Args, Format};
 use crate::{output, queues};
@@ -7,22 +7,22 @@ use framegraph::{Alias, Caps, Graph, Options, Plan, Scratch, diff, dump};
 use program::input;
 use std::path::Path;
 
-/// Why there is nothing to show for it.
+/// Reason for a non-zero exit code.
 #[derive(Debug)]
 pub enum Failure {
-    /// A budget is broken: the decisions to blame, a line each.
+    /// Exceeded budget limits with the decisions that caused them, one line each.
     Budget(String),
-    /// Bad input: a line an error.
+    /// Invalid input, one line per error.
     Input(String),
 }
 
-/// The frame size when neither the file nor the command line says one, in texels.
+/// Frame size in texels if neither the file nor the command line sets one.
 const FRAME: [u32; 2] = [1920, 1080];
 
-/// Plans, prints, and checks the budget.
+/// Compiles, prints, and checks the budget.
 ///
 /// # Errors
-/// Bad input, or a broken budget; the output is written in the second case.
+/// Invalid input, or an exceeded budget. In the second case the output is written nevertheless.
 pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
     let source = |path: &Path| {
         let (path, text) = (path.display().to_string(), read(path)?);
@@ -58,7 +58,8 @@ pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
     }
 }
 
-/// The plan of one file. A feature that is switched must be known here, or to the file that this one is compared with.
+/// Compiles the plan of one file. Each switched feature must exist in `file` or in `other`, the file it is compared
+/// with.
 fn planned(
     args: &Args,
     registry: &Registry<'_, Graph>,
@@ -84,25 +85,25 @@ fn planned(
     Ok(plan)
 }
 
-/// A preset, or the device that a file describes.
+/// Returns the capabilities of a preset or of a device file.
 fn caps(which: &str) -> Result<Caps, String> {
     if let Some(preset) = Caps::preset(which) {
         return Ok(preset);
     }
     if !which.ends_with(".ron") {
         let presets = Caps::PRESETS.join(", ");
-        return Err(format!("--caps: `{which}` is neither {presets} nor a FILE.ron"));
+        return Err(format!("--caps: invalid value `{which}`; expected {presets} or a FILE.ron"));
     }
     let text = read(Path::new(which))?;
     file::caps(which, &text).map_err(|e| e.to_string())
 }
 
-/// The text of a file.
+/// Reads a text file.
 ///
 /// # Errors
-/// One line that names the file and what is wrong with it.
+/// One line that names the file and the reason.
 pub fn read(path: &Path) -> Result<String, String> {
-    input::text(path, input::MOST_TEXT_BYTES)
+    input::text(path, input::MAX_TEXT_BYTES)
 }
 
 fn shown(plan: &Plan, name: &str, format: Format) -> String {

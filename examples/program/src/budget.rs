@@ -1,18 +1,18 @@
-//! Limits on what a plan may cost, and which decisions break them.
+//! Limits on the cost of a plan, and the decisions that exceed them.
 
 use crate::bytes;
 use framegraph::{Decision, Plan, Reason, Subject};
 
-/// A kind of cost.
+/// Kind of cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cost {
-    /// Attachments loaded.
+    /// Number of attachment loads.
     Loads,
-    /// Attachments stored.
+    /// Number of attachment stores.
     Stores,
-    /// Steps.
+    /// Number of steps.
     Steps,
-    /// Culled passes.
+    /// Number of culled passes.
     Culled,
     /// Memory of transient resources, in bytes.
     Bytes,
@@ -21,7 +21,7 @@ pub enum Cost {
 }
 
 impl Cost {
-    /// Every name with what it stands for.
+    /// Option names of every kind of cost, with synonyms.
     const NAMES: [(&'static str, Self); 9] = [
         ("loads", Self::Loads),
         ("unresolves", Self::Loads),
@@ -38,7 +38,7 @@ impl Cost {
         matches!(self, Self::Bytes | Self::Traffic)
     }
 
-    /// What a plan costs of this kind.
+    /// Returns the cost of a plan.
     fn of(self, plan: &Plan) -> u64 {
         let counts = plan.counts();
         match self {
@@ -51,7 +51,7 @@ impl Cost {
         }
     }
 
-    /// Whether a decision adds to this cost.
+    /// Returns whether a decision adds to this cost.
     fn is_due_to(self, plan: &Plan, decision: &Decision) -> bool {
         let loads = matches!(decision.reason, Reason::LoadWritten(_) | Reason::LoadEntry);
         let stores = matches!(
@@ -91,61 +91,62 @@ impl Cost {
     }
 }
 
-/// Limits, in the order in which they were given.
+/// Limits, in the order of the command line.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Budget {
     limits: Vec<(&'static str, Cost, u64)>,
 }
 
 impl Budget {
-    /// Reads `NAME=MOST,...`.
+    /// Parses `NAME=MAX,...`.
     ///
     /// # Errors
-    /// One line that names the limit and what it takes.
+    /// One line that names the limit and the expected value.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut limits: Vec<(&str, Cost, u64)> = Vec::new();
         for limit in text.split(',') {
             let limit = limit.trim();
-            let (name, most) = limit.split_once('=').ok_or_else(|| format!("`{limit}` is not NAME=MOST"))?;
+            let (name, max) =
+                limit.split_once('=').ok_or_else(|| format!("`{limit}`: missing `=`; expected NAME=MAX"))?;
             let Some(&(name, cost)) = Cost::NAMES.iter().find(|(n, _)| *n == name) else {
                 let names: Vec<_> = Cost::NAMES.iter().map(|(n, _)| *n).collect();
-                return Err(format!("there is no limit `{name}`; there are {}", names.join(", ")));
+                return Err(format!("unknown limit `{name}`; expected {}", names.join(", ")));
             };
-            let value = if cost.is_bytes() { bytes(most) } else { most.parse().ok() };
-            let takes = if cost.is_bytes() { "bytes, like 200MB or 1.5GiB" } else { "a whole number" };
-            let value = value.ok_or_else(|| format!("{name}: `{most}` is not {takes}"))?;
+            let value = if cost.is_bytes() { bytes(max) } else { max.parse().ok() };
+            let expected = if cost.is_bytes() { "bytes, like 200MB or 1.5GiB" } else { "a whole number" };
+            let value = value.ok_or_else(|| format!("{name}: invalid value `{max}`; expected {expected}"))?;
             if limits.iter().any(|(_, c, _)| *c == cost) {
-                return Err(format!("{name} is limited twice"));
+                return Err(format!("{name}: specified twice; remove one"));
             }
             limits.push((name, cost, value));
         }
         Ok(Self { limits })
     }
 
-    /// What a plan passes, with the decisions to blame, a line each; none when it keeps within the limits.
+    /// Returns the exceeded limits with the decisions that caused them, one line each; `None` if every limit is met.
     pub fn broken(&self, plan: &Plan) -> Option<String> {
         let mut lines = Vec::new();
-        for &(name, cost, most) in &self.limits {
+        for &(name, cost, max) in &self.limits {
             let is = cost.of(plan);
-            if is <= most {
+            if is <= max {
                 continue;
             }
             let unit = if cost.is_bytes() { " B" } else { "" };
-            lines.push(format!("budget broken: {name} {is}{unit}, allowed {most}{unit}"));
+            lines.push(format!("budget exceeded: {name} {is}{unit}, limit {max}{unit}"));
             let mut blamed = 0;
             for decision in plan.decisions().iter().filter(|d| cost.is_due_to(plan, d)) {
                 blamed += 1;
                 lines.push(format!("  {}", blame(plan, decision)));
             }
             if cost == Cost::Steps && blamed == 0 {
-                lines.push("  every step is a pass that nothing stands before".into());
+                lines.push("  every step holds one pass with no earlier pass to merge with".into());
             }
         }
         (!lines.is_empty()).then(|| lines.join("\n"))
     }
 }
 
-/// A decision in words, with bytes where it costs bytes, and what to do.
+/// Returns the sentence of a decision, with its size in bytes where it costs memory, and the hint.
 fn blame(plan: &Plan, decision: &Decision) -> String {
     let sentence = plan.explained(decision);
     let bytes = match decision.subject {
@@ -164,15 +165,15 @@ mod tests {
     #[test]
     fn limits_are_read_and_mistakes_named() {
         let budget = Budget::parse("loads=0, stores=3,bytes=200MB").expect("the limits are sound");
-        let flat: Vec<_> = budget.limits.iter().map(|(name, _, most)| (*name, *most)).collect();
+        let flat: Vec<_> = budget.limits.iter().map(|(name, _, max)| (*name, *max)).collect();
         assert_eq!(flat, [("loads", 0), ("stores", 3), ("bytes", 200_000_000)]);
         for (text, named) in [
             ("", "``"),
-            ("loads", "`loads` is not NAME=MOST"),
-            ("load=0", "no limit `load`"),
-            ("loads=1MB", "loads: `1MB` is not a whole number"),
-            ("bytes=x", "bytes: `x` is not bytes"),
-            ("loads=1,unresolves=2", "unresolves is limited twice"),
+            ("loads", "expected NAME=MAX"),
+            ("load=0", "unknown limit `load`"),
+            ("loads=1MB", "loads: invalid value `1MB`; expected a whole number"),
+            ("bytes=x", "bytes: invalid value `x`; expected bytes"),
+            ("loads=1,unresolves=2", "unresolves: specified twice"),
         ] {
             let error = Budget::parse(text).expect_err(text);
             assert!(error.contains(named), "{text}: {error}");

@@ -1,6 +1,8 @@
-//! Numbers of bytes as users write them.
+//! Byte counts with units, as typed on a command line.
 
-/// A number of bytes with an optional unit: `B`, powers of 1000 (`kB`, `MB`, `GB`) or of 1024 (`KiB`, `MiB`, `GiB`).
+/// Parses a byte count with an optional unit.
+///
+/// Units are `B`, powers of 1000 (`kB`, `MB`, `GB`) and powers of 1024 (`KiB`, `MiB`, `GiB`).
 #[must_use]
 pub fn bytes(text: &str) -> Option<u64> {
     let digits = text.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(text.len());
@@ -18,7 +20,7 @@ pub fn bytes(text: &str) -> Option<u64> {
     if let Ok(whole) = number.parse::<u64>() {
         return whole.checked_mul(factor);
     }
-    // Fractions of a unit need no more digits than a double has.
+    // An `f64` is precise enough for fractions of a unit.
     let value = number.parse::<f64>().ok()? * factor as f64;
     (value.is_finite() && (0.0..=9e15).contains(&value)).then_some(value as u64)
 }

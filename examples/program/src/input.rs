@@ -1,4 +1,6 @@
-//! Files that a run reads: regular ones alone, since a pipe would wait for its writer and a device may have no end.
+//! Input files of a run.
+//!
+//! Only regular files are read: opening a pipe blocks until it has a writer, and a device may never end.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -7,7 +9,7 @@ use std::path::Path;
 /// Opens a file for reading.
 ///
 /// # Errors
-/// What the system refuses; that it is not a regular file.
+/// The system's error, or that the path is not a regular file.
 pub fn open(path: &Path) -> io::Result<File> {
     let about = fs::metadata(path)?;
     if about.is_dir() {
@@ -19,26 +21,26 @@ pub fn open(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// The text of a file of at most so many bytes.
+/// Reads a UTF-8 text file of at most `max_bytes` bytes.
 ///
 /// # Errors
-/// One line that names the file and what is wrong with it, with the place where that is a line.
-pub fn text(path: &Path, most_bytes: u64) -> Result<String, String> {
+/// One line that names the file and the reason, with line and column for invalid UTF-8.
+pub fn text(path: &Path, max_bytes: u64) -> Result<String, String> {
     let shown = path.display();
     let unreadable = |error: io::Error| format!("{shown}: cannot be read: {error}");
-    // Some files say that they have no length.
+    // Special files may report a length of zero.
     let mut bytes = Vec::new();
-    open(path).map_err(unreadable)?.take(most_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > most_bytes {
-        return Err(format!("{shown}: more than {most_bytes} bytes; files of that size are not read"));
+    open(path).map_err(unreadable)?.take(max_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > max_bytes {
+        return Err(format!("{shown}: larger than {max_bytes} bytes; use a smaller file"));
     }
     in_utf8(path, bytes)
 }
 
-/// The bytes of a file as text.
+/// Converts the bytes of a file to text.
 ///
 /// # Errors
-/// One line that names the file and the line that is none.
+/// One line that names the file and the first line that is not UTF-8.
 pub fn in_utf8(path: &Path, bytes: Vec<u8>) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|error| {
         let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
@@ -47,5 +49,5 @@ pub fn in_utf8(path: &Path, bytes: Vec<u8>) -> Result<String, String> {
     })
 }
 
-/// Texts that describe a frame, a device or settings are read up to so many bytes.
-pub const MOST_TEXT_BYTES: u64 = 64 << 20;
+/// Maximum size of a text file that describes a frame, a device or settings, in bytes.
+pub const MAX_TEXT_BYTES: u64 = 64 << 20;

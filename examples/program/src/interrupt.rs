@@ -1,23 +1,23 @@
-//! SIGINT and SIGTERM as a question that long work asks at each step.
+//! SIGINT and SIGTERM as a flag that long work polls at each step.
 //!
-//! The first signal is remembered, so that the work can stop in order; a second one ends the program at once. Elsewhere than
-//! on Unix nothing is watched, and the system ends the program.
+//! The first signal sets the flag, so that the work can stop cleanly. A second signal ends the program at once. On
+//! systems other than Unix no signal is watched, and the system ends the program.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-/// The signal that came, or zero.
+/// Number of the received signal, or zero.
 static SIGNAL: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
 
-/// How often [`exit_when_asked`] looks.
+/// Polling interval of [`exit_when_asked`].
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// Whether the work from now on ends by itself once a signal came.
+/// Set while the work itself stops at a signal.
 static IN_ORDER: AtomicBool = AtomicBool::new(false);
 
-/// The run was asked to stop.
+/// Error of a run that a signal stopped.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("stopped by signal {signal}; no file was written")]
 pub struct Stopped {
@@ -32,14 +32,14 @@ impl std::fmt::Debug for Stopped {
 }
 
 impl Stopped {
-    /// What shells report of a program that a signal ended.
+    /// Returns the exit code that shells report for a program ended by this signal.
     #[must_use]
     pub fn code(self) -> u8 {
         128 + self.signal
     }
 }
 
-/// Watches from now on. A system that refuses ends the program at a signal, as it does without this.
+/// Starts watching for signals. If the system refuses, a signal ends the program as without this call.
 pub fn watch() {
     let signal = SIGNAL.get_or_init(Arc::default);
     #[cfg(unix)]
@@ -57,7 +57,7 @@ pub fn watch() {
     let _ = signal;
 }
 
-/// Ends the program soon after a signal, with its parts of files removed: for work that has no steps to stop at.
+/// Ends the program soon after a signal and removes its partial files. Meant for work without steps to stop at.
 pub fn exit_when_asked() {
     watch();
     std::thread::spawn(|| {
@@ -72,15 +72,15 @@ pub fn exit_when_asked() {
     });
 }
 
-/// From now on the work itself ends at a signal, with what it has: [`exit_when_asked`] no longer does.
+/// Makes the work responsible for stopping at a signal: [`exit_when_asked`] no longer ends the program.
 pub fn end_in_order() {
     IN_ORDER.store(true, Ordering::Relaxed);
 }
 
-/// Whether to go on.
+/// Checks for a signal.
 ///
 /// # Errors
-/// [`Stopped`], once a signal came.
+/// [`Stopped`] after a signal.
 pub fn check() -> Result<(), Stopped> {
     match SIGNAL.get().map_or(0, |signal| signal.load(Ordering::Relaxed)) {
         0 => Ok(()),
@@ -88,7 +88,7 @@ pub fn check() -> Result<(), Stopped> {
     }
 }
 
-/// The same for work that asks its caller.
+/// Returns [`ControlFlow::Break`] after a signal, for work that polls through a callback.
 pub fn flow() -> ControlFlow<()> {
     if check().is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }

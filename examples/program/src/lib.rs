@@ -1,12 +1,12 @@
-//! What the command-line programs of this repository share.
+//! Code shared by the command-line programs of this repository.
 //!
-//! - [`print`](mod@print): standard output and standard error, written without a panic when they are closed or full.
-//! - [`outputs`] (feature `run`): the files that a run writes, checked before the work and put in place together after it.
-//! - [`input`]: files that are read, which are regular ones.
-//! - [`interrupt`] (feature `run`): SIGINT and SIGTERM as a question that long work asks at each step.
-//! - [`bytes`](fn@crate::bytes) (feature `run`): numbers of bytes as users write them.
-//! - [`budget`] (feature `budget`): limits on what a plan may cost.
-//! - [`progress`] (feature `run`): how far the work is, on standard error.
+//! - [`print`](mod@print): standard output and standard error without panics when they are closed or full.
+//! - [`outputs`] (feature `run`): output files, checked before the work and renamed into place together after it.
+//! - [`input`]: input files, which must be regular files.
+//! - [`interrupt`] (feature `run`): SIGINT and SIGTERM as a flag that long work polls at each step.
+//! - [`bytes`](fn@crate::bytes) (feature `run`): byte counts with units.
+//! - [`budget`] (feature `budget`): limits on the cost of a plan.
+//! - [`progress`] (feature `run`): progress on standard error.
 
 #[cfg(feature = "budget")]
 pub mod budget;

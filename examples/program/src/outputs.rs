@@ -1,8 +1,8 @@
-//! The files that a run writes: checked before the work, put in place together after it.
+//! Output files of a run, checked before the work and renamed into place together after it.
 //!
-//! [`Outputs::add`] refuses, before anything is rendered, what cannot be written, what two outputs would share, and what the
-//! run reads. [`Outputs::write`] makes the file beside its place. [`Outputs::commit`] writes through pipes and devices, then
-//! gives every file its name; when anything fails, no file is changed.
+//! Before the work, [`Outputs::add`] rejects paths that are not writable, that two outputs share, or that the run
+//! reads. [`Outputs::write`] writes a temporary file in the same folder. [`Outputs::commit`] writes through pipes and
+//! devices, then renames every file. If anything fails, no file changes.
 //!
 //! ```
 //! use program::outputs::Outputs;
@@ -13,7 +13,7 @@
 //! let mut outputs = Outputs::default();
 //! outputs.add(&picture)?;
 //! outputs.write(&picture, |file| file.write_all(b"light"))?;
-//! assert!(!picture.exists(), "it is made beside its place");
+//! assert!(!picture.exists(), "the file appears only at commit");
 //! outputs.commit()?;
 //! assert_eq!(std::fs::read(&picture).unwrap(), b"light");
 //! # std::fs::remove_file(&picture).unwrap();
@@ -28,40 +28,40 @@ use std::fs;
 use std::io::{self, BufWriter, Cursor, Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// What an output is written into: all encoders of this repository can.
+/// Destination of the bytes of an output. Every encoder of this repository writes to it.
 pub trait Sink: Write + Seek {}
 
 impl<T: Write + Seek> Sink for T {}
 
-/// An output cannot be written.
+/// Error of an output file.
 #[derive(thiserror::Error)]
 pub enum OutputError {
-    /// The system refuses.
+    /// The system refuses the file.
     #[error("{}: cannot be written: {error}", path.display())]
     File {
-        /// The output.
+        /// Path of the output.
         path: PathBuf,
-        /// Why.
+        /// Reason of the system.
         error: io::Error,
     },
-    /// The encoder refuses, or the disk is full.
+    /// The encoder failed, or the disk is full.
     #[error("{}: cannot be written: {reason}", path.display())]
     Encode {
-        /// The output.
+        /// Path of the output.
         path: PathBuf,
-        /// Why.
+        /// Reason of the encoder.
         reason: String,
     },
     /// The run reads the file.
-    #[error("{}: it is read and would be written over; choose another name", path.display())]
+    #[error("{}: it is an input of this run; choose another name", path.display())]
     Read {
-        /// The output.
+        /// Path of the output.
         path: PathBuf,
     },
     /// Two outputs are one file.
-    #[error("{}: two files would be written under this name; name them apart", path.display())]
+    #[error("{}: two outputs have this name; rename one", path.display())]
     Twice {
-        /// The second of them.
+        /// Path of the second output.
         path: PathBuf,
     },
 }
@@ -72,17 +72,17 @@ impl std::fmt::Debug for OutputError {
     }
 }
 
-/// The files that a run writes.
+/// Output files of a run.
 #[derive(Debug, Default)]
 pub struct Outputs {
     files: Vec<Output>,
-    /// Files that are read, behind all links.
+    /// Input files, with all links resolved.
     read: Vec<PathBuf>,
 }
 
 #[derive(Debug)]
 struct Output {
-    /// As it was given.
+    /// Path as the caller specified it.
     path: PathBuf,
     target: Target,
     content: Content,
@@ -91,17 +91,17 @@ struct Output {
 
 #[derive(Debug)]
 enum Content {
-    /// Beside its place.
+    /// Temporary file in the same folder.
     Part(Part),
-    /// What goes through a pipe or device, which takes it only when all is well.
+    /// Bytes for a pipe or a device, written at commit.
     Memory(Cursor<Vec<u8>>),
 }
 
 impl Outputs {
-    /// A file that the run reads: no output may be written over it. One that is not there is left to whoever reads it.
+    /// Registers an input file, which no output may overwrite. A missing file is ignored; reading it fails later.
     ///
     /// # Errors
-    /// [`OutputError::Read`], when an output that was added is this file.
+    /// [`OutputError::Read`] if a registered output is this file.
     pub fn reads(&mut self, path: &Path) -> Result<(), OutputError> {
         let Ok(read) = path.canonicalize() else { return Ok(()) };
         let over = self.files.iter().find(|file| matches!(&file.target, Target::File(place) if same(place, &read)));
@@ -112,10 +112,10 @@ impl Outputs {
         Ok(())
     }
 
-    /// A file that will be written.
+    /// Registers an output file.
     ///
     /// # Errors
-    /// [`OutputError`]: it cannot be written, it is read, or it was added before.
+    /// [`OutputError`] if the path is not writable, is an input, or was registered before.
     pub fn add(&mut self, path: &Path) -> Result<(), OutputError> {
         let failed = |error| OutputError::File { path: path.into(), error };
         let target = Target::find(path).map_err(failed)?;
@@ -127,7 +127,7 @@ impl Outputs {
                 if self.read.iter().any(|read| same(read, place)) {
                     return Err(OutputError::Read { path: path.into() });
                 }
-                // A name that the system does not take is noticed here, too: nothing of it is in the part's.
+                // Also detects invalid names, which creating the temporary file would not.
                 let folder = place.parent().unwrap_or(Path::new("."));
                 Content::Part(Part::create(folder).map_err(failed)?)
             }
@@ -141,7 +141,7 @@ impl Outputs {
         Ok(())
     }
 
-    /// Makes the contents of an output, which is added if it was not.
+    /// Writes the contents of an output, and registers it if necessary.
     ///
     /// # Errors
     /// [`OutputError`].
@@ -172,11 +172,12 @@ impl Outputs {
         Ok(())
     }
 
-    /// Puts what was written in its place and returns the names. Pipes and devices come first: they may fail, while to
-    /// give a file its name hardly can.
+    /// Renames all written files into place and returns their paths.
+    ///
+    /// Pipes and devices come first, because they may fail while a rename hardly can.
     ///
     /// # Errors
-    /// [`OutputError`]: no file was replaced, and none is new.
+    /// [`OutputError`]. In that case no file was replaced or created.
     pub fn commit(self) -> Result<Vec<PathBuf>, OutputError> {
         let mut parts = Vec::new();
         let mut names = Vec::new();
@@ -195,7 +196,7 @@ impl Outputs {
         for (path, place, part) in &parts {
             let gone = !part.is_there() || place.is_dir();
             if gone {
-                let error = io::Error::other("its place was removed or became a folder meanwhile");
+                let error = io::Error::other("its folder was removed, or it became a folder, during the run");
                 return Err(OutputError::File { path: path.clone(), error });
             }
         }
@@ -207,7 +208,7 @@ impl Outputs {
         Ok(names)
     }
 
-    /// Writes one file, whole or not at all.
+    /// Writes one file, completely or not at all.
     ///
     /// # Errors
     /// [`OutputError`].
@@ -215,7 +216,7 @@ impl Outputs {
         Self::one_beside(path, bytes, &[])
     }
 
-    /// The same, but not over one of the files that were read.
+    /// Writes one file, completely or not at all, and never over one of the input files `read`.
     ///
     /// # Errors
     /// [`OutputError`].
@@ -229,19 +230,19 @@ impl Outputs {
     }
 }
 
-/// Whether files can be written into a folder.
+/// Checks that files can be created in a folder.
 ///
 /// # Errors
-/// [`OutputError::File`], when they cannot.
+/// [`OutputError::File`] if they cannot.
 pub fn check_folder(folder: &Path) -> Result<(), OutputError> {
     let failed = |error| OutputError::File { path: folder.into(), error };
     if !folder.is_dir() {
-        return Err(failed(io::Error::other(format!("there is no folder {}", folder.display()))));
+        return Err(failed(io::Error::other(format!("folder {} does not exist", folder.display()))));
     }
     Part::create(folder).map(drop).map_err(failed)
 }
 
-/// Whether what stands at a path is written through, such as a pipe or a device; a name beside it means nothing.
+/// Returns whether a path is a pipe, a device or another special file, which is written through instead of replaced.
 #[must_use]
 pub fn is_special(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir())

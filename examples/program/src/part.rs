@@ -1,7 +1,7 @@
-//! A file in the making beside the place that it will take.
+//! Temporary file in the folder of its final path.
 //!
-//! Its name has nothing of the final one, which may be as long as names can be. It is locked while it is made, so that one
-//! without a lock was left behind by a run that was killed: the next run that writes into the folder sweeps it away.
+//! Its name is independent of the final name, which may already have the maximum length. The file is locked while in
+//! use. An unlocked one was left by a killed run, and the next run that writes into the folder removes it.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
@@ -12,41 +12,41 @@ use std::sync::{Mutex, MutexGuard};
 
 const BEGIN: &str = ".framegraph-";
 const END: &str = ".part";
-/// How often a part that was swept away between making and locking it is made anew.
+/// Attempts to create a temporary file that another run removes before it is locked.
 const TRIES: u32 = 10;
 
-/// The parts that there are, for a program that ends without dropping them.
+/// Temporary files of this process, for exits without running destructors.
 static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 fn live() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     LIVE.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// Held while files get their names: the program ends before or after that, not between.
+/// Held while files are renamed, so that the process exits before or after all renames.
 static PLACING: Mutex<()> = Mutex::new(());
 
-/// Keeps [`remove_all`] waiting.
+/// Blocks [`remove_all`] while the guard lives.
 pub(crate) fn hold() -> MutexGuard<'static, ()> {
     PLACING.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// A name in `folder` that nothing else in this program has.
+/// Returns a file name in `folder` that is unique in this process.
 pub(crate) fn fresh_name(folder: &Path) -> PathBuf {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let number = COUNT.fetch_add(1, Ordering::Relaxed);
     folder.join(format!("{BEGIN}{}-{number}{END}", std::process::id()))
 }
 
-/// Removes every part of this program, which is about to end.
+/// Removes all temporary files of this process before it exits.
 pub(crate) fn remove_all() {
     std::mem::forget(hold());
     for path in live().iter() {
-        // What cannot be removed is swept away by the next run.
+        // The next run removes leftovers.
         let _ = fs::remove_file(path);
     }
 }
 
-/// A file in the making. Dropping it removes it.
+/// Temporary file, removed on drop.
 #[derive(Debug)]
 pub(crate) struct Part {
     pub file: File,
@@ -54,7 +54,7 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// A new part in `folder`. Removes what killed runs left there.
+    /// Creates a temporary file in `folder` and removes leftovers of killed runs.
     pub fn create(folder: &Path) -> io::Result<Self> {
         sweep(folder);
         for _ in 0..TRIES {
@@ -65,28 +65,28 @@ impl Part {
             };
             live().insert(path.clone());
             let part = Self { file, path };
-            // Where files cannot be locked nothing is swept either.
+            // Without file locks, nothing is swept either.
             let _ = part.file.lock();
             if part.is_there() {
                 return Ok(part);
             }
         }
-        Err(io::Error::other("a file beside it was removed each time it was made"))
+        Err(io::Error::other("a temporary file in its folder was removed each time it was created"))
     }
 
-    /// Whether the file still has its name.
+    /// Returns whether the file still exists under its name.
     pub fn is_there(&self) -> bool {
         fs::symlink_metadata(&self.path).is_ok()
     }
 
-    /// Gives the file the name `place`, with mode and owner of the file that it replaces.
+    /// Renames the file to `place` with the mode and owner of the file it replaces.
     pub fn place(self, place: &Path) -> io::Result<()> {
         if let Ok(old) = fs::metadata(place) {
             self.file.set_permissions(old.permissions())?;
             #[cfg(unix)]
             {
                 use std::os::unix::fs::{MetadataExt, fchown};
-                // Only the system's administrator can give files away.
+                // Changing the owner requires administrator rights.
                 let _ = fchown(&self.file, Some(old.uid()), Some(old.gid()));
             }
         }
@@ -96,13 +96,13 @@ impl Part {
 
 impl Drop for Part {
     fn drop(&mut self) {
-        // One that was placed is not there any more.
+        // Fails for a file that was renamed.
         let _ = fs::remove_file(&self.path);
         live().remove(&self.path);
     }
 }
 
-/// Removes parts that nobody holds a lock on. What cannot be removed stays.
+/// Removes unlocked temporary files and ignores failures.
 fn sweep(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {

@@ -1,26 +1,26 @@
-//! Files that get their names together: when one cannot, the others are as they were.
+//! Renames several files into place together: if one rename fails, the others are undone.
 
 use crate::part::{self, Part};
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What stood in a place, under another name beside it, until all files are placed.
+/// Backup of a replaced file, kept until all files are in place.
 #[derive(Debug)]
 struct Kept {
     path: PathBuf,
-    /// So that no other run sweeps it away.
+    /// Lock that keeps other runs from removing the backup.
     _locked: Option<File>,
 }
 
 impl Kept {
-    /// Keeps the file at `place`; none where there is no file.
+    /// Backs up the file at `place`; `None` if it does not exist.
     fn of(place: &Path) -> io::Result<Option<Self>> {
         if !place.is_file() {
             return Ok(None);
         }
         let path = part::fresh_name(place.parent().unwrap_or(Path::new(".")));
-        // Not all systems have second names for files.
+        // Some file systems have no hard links.
         fs::hard_link(place, &path).or_else(|_| fs::rename(place, &path))?;
         let locked = File::open(&path).ok();
         let _ = locked.as_ref().map(File::lock);
@@ -30,15 +30,15 @@ impl Kept {
 
 impl Drop for Kept {
     fn drop(&mut self) {
-        // One that was put back is not there any more.
+        // Fails if the backup was restored.
         let _ = fs::remove_file(&self.path);
     }
 }
 
-/// Gives each file its place.
+/// Renames each file into place.
 ///
 /// # Errors
-/// Which of them was refused, and why: no place was changed.
+/// Index of the rejected file and the reason. No path has changed.
 pub(crate) fn all(parts: Vec<(PathBuf, Part)>) -> Result<(), (usize, io::Error)> {
     let _until_all_are_placed = part::hold();
     let mut placed: Vec<(PathBuf, Option<Kept>)> = Vec::new();
@@ -62,7 +62,7 @@ pub(crate) fn all(parts: Vec<(PathBuf, Part)>) -> Result<(), (usize, io::Error)>
     Ok(())
 }
 
-/// Puts back what was kept, and takes away what is new. Nothing more can be done where that is refused.
+/// Restores the backups and removes new files. Failures are ignored, since nothing more can be done.
 fn undo(placed: Vec<(PathBuf, Option<Kept>)>) {
     for (place, kept) in placed.into_iter().rev() {
         let _ = match kept {
@@ -78,7 +78,7 @@ mod tests {
     use std::io::Write;
 
     #[test]
-    fn a_place_that_is_refused_leaves_the_others_as_they_were() {
+    fn a_failed_rename_undoes_the_others() {
         let folder = std::env::temp_dir().join(format!("program-place-{}", std::process::id()));
         let [old, new, refused] = ["old", "new", "refused"].map(|name| folder.join(name));
         fs::create_dir_all(refused.join("not empty")).expect("a folder for temporary files");
@@ -91,7 +91,7 @@ mod tests {
             };
             places.iter().map(part).collect::<Vec<_>>()
         };
-        // No file can take the name of a folder.
+        // A file cannot replace a folder.
         let failed = all(parts(&[&old, &new, &refused]));
         assert!(failed.is_err_and(|(index, _)| index == 2));
         assert_eq!(fs::read_to_string(&old).ok().as_deref(), Some("old"));

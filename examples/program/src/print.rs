@@ -1,7 +1,7 @@
-//! Standard output and standard error, which may be closed, full, or what an output file goes to.
+//! Standard output and standard error, which may be closed, full, or the destination of an output file.
 //!
-//! Nothing here fails where it is called: work and files come first. What standard output could not take is remembered, and
-//! [`exit`] says so once, at the end.
+//! Printing never fails at the call, because work and files come first. [`exit`] reports a failure of standard output
+//! once, at the end.
 
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
@@ -9,20 +9,20 @@ use std::process::ExitCode;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The first failure of standard output.
+/// First failure of standard output.
 static FAILED: Mutex<Option<io::Error>> = Mutex::new(None);
-/// Standard output holds a file of the run, so that words go elsewhere.
+/// Set while standard output carries a file of the run, so that messages go to standard error.
 static DIVERTED: AtomicBool = AtomicBool::new(false);
 
-/// From now on what is printed goes to standard error: standard output takes a file.
+/// Sends all later text to standard error, because standard output carries a file.
 pub fn divert() {
     DIVERTED.store(true, Ordering::Relaxed);
 }
 
-/// Prints a text as it is.
+/// Prints text without a line break.
 pub fn print(text: impl Display) {
     if DIVERTED.load(Ordering::Relaxed) {
-        // What cannot be shown must not stop the work.
+        // Failing to print must not stop the work.
         let _ = write!(io::stderr().lock(), "{text}");
         return;
     }
@@ -34,9 +34,9 @@ pub fn line(text: impl Display) {
     print(format_args!("{text}\n"));
 }
 
-/// Shows lines on standard error, if that can be done; names in them have no control characters there.
+/// Prints lines on standard error, with control characters escaped. Failures are ignored.
 pub fn note(text: impl Display) {
-    // What cannot be shown must not stop the work.
+    // Failing to print must not stop the work.
     let mut stderr = io::stderr().lock();
     for line in text.to_string().lines() {
         let escaped = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
@@ -44,13 +44,15 @@ pub fn note(text: impl Display) {
     }
 }
 
-/// Shows a message as one line, `error: …`, on standard error.
+/// Prints a message on standard error as one line, `error: …`.
 pub fn error(message: impl Display) {
     note(format_args!("error: {}", message.to_string().replace(['\n', '\r'], " ")));
 }
 
-/// The exit code of a run that comes to `code`. A closed standard output is no fault: its reader has seen enough. A full
-/// one is: a line says so, and `code` 0 becomes 2, as for any output that cannot be written.
+/// Flushes standard output and returns the exit code.
+///
+/// A closed standard output is not an error, since its reader needs no more. A full one is reported on standard
+/// error, and turns `code` 0 into 2, as for any unwritable output.
 pub fn exit(code: u8) -> ExitCode {
     keep_first(|out| out.flush());
     let failed = FAILED.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take();
@@ -63,7 +65,7 @@ pub fn exit(code: u8) -> ExitCode {
     }
 }
 
-/// The exit code of a program that did its work, 0, or did not, 1, of which a line on standard error says why.
+/// Returns the exit code of a program: 0 on success, 1 on failure. A failure is reported on standard error.
 pub fn ended(program: &str, result: Result<(), impl Display>) -> ExitCode {
     match result {
         Ok(()) => exit(0),
@@ -74,15 +76,17 @@ pub fn ended(program: &str, result: Result<(), impl Display>) -> ExitCode {
     }
 }
 
-/// Refuses what stands on the command line of a program that takes nothing.
+/// Rejects any argument, for a program that has none.
 ///
 /// # Errors
-/// One line that names the first word.
+/// One line that names the first argument.
 pub fn no_arguments() -> Result<(), String> {
-    std::env::args_os().nth(1).map_or(Ok(()), |word| Err(format!("{}: no argument is taken", word.to_string_lossy())))
+    std::env::args_os()
+        .nth(1)
+        .map_or(Ok(()), |word| Err(format!("{}: unexpected argument; this program takes none", word.to_string_lossy())))
 }
 
-/// Writes, unless that has failed before.
+/// Writes unless an earlier write failed.
 fn keep_first(write: impl FnOnce(&mut io::StdoutLock<'_>) -> io::Result<()>) {
     let mut failed = FAILED.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
     if failed.is_none() {

@@ -1,14 +1,16 @@
-//! How far the work is, on standard error: one line that is written over on a terminal; elsewhere a line when a stage is
-//! done, and now and then while it lasts.
+//! Progress on standard error.
+//!
+//! On a terminal, one line is overwritten. Elsewhere a line is printed when a stage is done, and every five seconds
+//! while it lasts.
 
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
-/// Between two lines of a stage in a log.
+/// Interval between two lines of a stage in a log.
 const PAUSE: Duration = Duration::from_secs(5);
 
-/// Shows progress.
+/// Progress display.
 #[derive(Debug)]
 pub struct Shown {
     terminal: bool,
@@ -23,10 +25,10 @@ impl Default for Shown {
 }
 
 impl Shown {
-    /// `done` of `total` items of a stage are finished, the latest of them `item`, which may be empty.
+    /// Reports `done` of `total` items of a stage. `item` names the latest one and may be empty.
     pub fn step(&mut self, stage: impl Display, done: usize, total: usize, item: &str) {
         let mut err = io::stderr().lock();
-        // What cannot be shown must not stop the work.
+        // Failing to print must not stop the work.
         if self.terminal {
             let _ = write!(err, "\r\x1b[K{stage} {done}/{total} {item}");
             let _ = err.flush();
@@ -42,7 +44,7 @@ impl Shown {
         }
     }
 
-    /// Leaves the line free for other words.
+    /// Clears the progress line before other output.
     pub fn clear(&self) {
         if self.terminal {
             let _ = write!(io::stderr().lock(), "\r\x1b[K");

@@ -1,29 +1,29 @@
-//! Where an output goes: a file that is replaced or new, or something that is written through.
+//! Destination of an output: a regular file to create or replace, or a special file that is written through.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// What stands at a path that is to be written.
+/// Kind of file at an output path.
 #[derive(Debug)]
 pub(crate) enum Target {
-    /// A regular file, or none yet: the path with all links followed.
+    /// Regular or missing file: the path with all links resolved.
     File(PathBuf),
-    /// A device that is open.
+    /// Open device.
     Device(File),
-    /// A named pipe, which is opened when there is something to write.
+    /// Named pipe, opened when there are bytes to write.
     Pipe(PathBuf),
-    /// What standard output is.
+    /// The file that standard output refers to.
     Output,
-    /// What standard error is.
+    /// The file that standard error refers to.
     Error,
 }
 
-/// Links that are followed before a circle is suspected, as on Linux.
-const MOST_LINKS: usize = 40;
+/// Maximum number of links to follow, as on Linux.
+const MAX_LINKS: usize = 40;
 
 impl Target {
-    /// Looks at a path without changing anything there.
+    /// Determines the kind of a path without changing it.
     pub fn find(path: &Path) -> io::Result<Self> {
         let about = match fs::metadata(path) {
             Ok(about) => about,
@@ -31,7 +31,7 @@ impl Target {
             Err(error) => return Err(error),
         };
         if about.is_dir() {
-            return Err(io::Error::other("it is a folder"));
+            return Err(io::Error::other("it is a folder; name a file"));
         }
         if let Some(device) = device(path, &about)? {
             return Ok(device);
@@ -40,14 +40,14 @@ impl Target {
             return Ok(stream);
         }
         if about.is_file() {
-            // A file that may not be written is not replaced either.
+            // A read-only file must not be replaced either.
             OpenOptions::new().write(true).open(path)?;
             return followed(path).map(Self::File);
         }
         pipe(path, &about)
     }
 
-    /// Whether both write into one file or pipe. A device may take several outputs: one after the other, or none at all.
+    /// Returns whether both are one file or one pipe. A device may take several outputs in sequence.
     pub fn is(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::File(a), Self::File(b)) | (Self::Pipe(a), Self::Pipe(b)) => same(a, b),
@@ -56,7 +56,7 @@ impl Target {
         }
     }
 
-    /// Writes what goes through. A reader that has closed its end has seen enough.
+    /// Writes to a pipe, device or standard stream. A closed reader is not an error.
     pub fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         let all = |to: &mut dyn Write| to.write_all(bytes).and_then(|()| to.flush());
         let written = match self {
@@ -73,14 +73,14 @@ impl Target {
     }
 }
 
-/// The canonical folder and the name that a file has, or will have, behind all links.
+/// Resolves all links of a path; the file itself may be missing.
 fn followed(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_owned();
-    for _ in 0..MOST_LINKS {
-        let name = path.file_name().ok_or_else(|| io::Error::other("it names no file"))?;
+    for _ in 0..MAX_LINKS {
+        let name = path.file_name().ok_or_else(|| io::Error::other("the path names no file"))?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let folder = folder.canonicalize().map_err(|error| match error.kind() {
-            io::ErrorKind::NotFound => io::Error::other(format!("there is no folder {}", folder.display())),
+            io::ErrorKind::NotFound => io::Error::other(format!("folder {} does not exist", folder.display())),
             _ => error,
         })?;
         let place = folder.join(name);
@@ -91,10 +91,10 @@ fn followed(path: &Path) -> io::Result<PathBuf> {
             Err(error) => return Err(error),
         }
     }
-    Err(io::Error::other("its links go in a circle"))
+    Err(io::Error::other("its symbolic links form a cycle"))
 }
 
-/// Whether two paths without links are one file: the same name, or other names of the same file.
+/// Returns whether two resolved paths are the same file, also under different names (hard links).
 pub(crate) fn same(a: &Path, b: &Path) -> bool {
     #[cfg(unix)]
     {
@@ -107,7 +107,7 @@ pub(crate) fn same(a: &Path, b: &Path) -> bool {
     a == b
 }
 
-/// A character device, opened; none for anything else.
+/// Opens a character device; `None` for any other file.
 #[cfg(unix)]
 fn device(path: &Path, about: &fs::Metadata) -> io::Result<Option<Target>> {
     use std::os::unix::fs::FileTypeExt;
@@ -121,7 +121,7 @@ fn pipe(path: &Path, about: &fs::Metadata) -> io::Result<Target> {
     if about.file_type().is_fifo() {
         Ok(Target::Pipe(path.to_owned()))
     } else {
-        Err(io::Error::other("it is neither a file, a pipe nor a character device"))
+        Err(io::Error::other("it is not a file, pipe or character device"))
     }
 }
 
@@ -135,8 +135,8 @@ fn pipe(path: &Path, _: &fs::Metadata) -> io::Result<Target> {
     OpenOptions::new().write(true).open(path).map(Target::Device)
 }
 
-/// Whether this is the file that standard output or standard error goes to. Opened anew it would be written from its
-/// beginning, over what the shell or this program has put there.
+/// Returns the standard stream that refers to this file. Opening the file again would overwrite earlier output from
+/// its start.
 #[cfg(unix)]
 fn standard(about: &fs::Metadata) -> Option<Target> {
     use std::os::fd::AsFd;
@@ -157,14 +157,14 @@ fn standard(_: &fs::Metadata) -> Option<Target> {
     None
 }
 
-/// Waits for a reader, unless a signal comes first.
+/// Opens a pipe for writing. Waits for a reader until a signal arrives.
 #[cfg(unix)]
 fn open_pipe(path: &Path) -> io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt;
     use std::time::Duration;
     loop {
         match OpenOptions::new().write(true).custom_flags(libc::O_NONBLOCK).open(path) {
-            // The reader is there; without the flag, writing waits for it to read.
+            // A reader exists. Without the flag, writes block until it reads.
             Ok(_open) => return OpenOptions::new().write(true).open(path),
             Err(error) if error.raw_os_error() == Some(libc::ENXIO) => {}
             Err(error) => return Err(error),

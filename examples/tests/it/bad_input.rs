@@ -1,10 +1,10 @@
-//! Bad input: one line that names what is wrong, exit code 2, no panic, nothing half-written.
+//! Invalid input: one line that names the mistake, exit code 2, no panic, no partial file.
 
 use crate::support::{CORNERS, TRIANGLE, UP, folder, refused, render, triangle};
 use std::fs;
 
 #[test]
-fn words_that_mean_nothing_are_named() {
+fn invalid_values_are_reported() {
     let folder = folder("words");
     let cases: [(&[&str], &str); 12] = [
         (&["--environment", "uniform:1,2"], "--environment uniform 1,2"),
@@ -27,15 +27,15 @@ fn words_that_mean_nothing_are_named() {
 }
 
 #[test]
-fn nothing_is_written_over_what_is_read_or_written() {
+fn no_input_or_output_is_overwritten() {
     let folder = folder("over");
     triangle(&folder, TRIANGLE, CORNERS, UP);
     fs::write(folder.join("map.exr"), "a map").expect("the folder can be written");
     let cases: [(&[&str], &str); 4] = [
-        (&["t.gltf", "--plan", "t.gltf"], "t.gltf: it is read"),
-        (&["t.gltf", "--plan", "./t.gltf"], "t.gltf: it is read"),
-        (&["t.gltf", "--environment", "map.exr", "--linear-out", "map.exr"], "map.exr: it is read"),
-        (&["t.gltf", "--out", "a.png", "--plan", "a.png"], "a.png: two files"),
+        (&["t.gltf", "--plan", "t.gltf"], "t.gltf: it is an input"),
+        (&["t.gltf", "--plan", "./t.gltf"], "t.gltf: it is an input"),
+        (&["t.gltf", "--environment", "map.exr", "--linear-out", "map.exr"], "map.exr: it is an input"),
+        (&["t.gltf", "--out", "a.png", "--plan", "a.png"], "a.png: two outputs"),
     ];
     for (args, named) in cases {
         let line = refused(&folder, args);
@@ -45,7 +45,7 @@ fn nothing_is_written_over_what_is_read_or_written() {
 }
 
 #[test]
-fn broken_models_are_refused() {
+fn invalid_models_are_rejected() {
     let folder = folder("models");
     let mut nan = CORNERS;
     nan[4] = f32::NAN;
@@ -69,7 +69,7 @@ fn broken_models_are_refused() {
 }
 
 #[test]
-fn broken_pictures_are_refused() {
+fn invalid_pictures_are_rejected() {
     let folder = folder("pictures");
     fs::write(folder.join("e.hdr"), "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\nshort").expect("writable");
     fs::write(folder.join("e.exr"), [0x76, 0x2f, 0x31, 0x01, 2, 0]).expect("writable");
@@ -85,7 +85,7 @@ fn broken_pictures_are_refused() {
 }
 
 #[test]
-fn a_target_that_cannot_be_written_is_named() {
+fn an_unwritable_output_is_reported() {
     let folder = folder("targets");
     let line = refused(&folder, &["--size", "8x8", "--frames", "1", "--out", "nowhere/picture.png"]);
     assert!(line.contains("nowhere"), "{line}");

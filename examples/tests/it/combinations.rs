@@ -1,4 +1,4 @@
-//! Combinations of effects, options and parts of scenes, each drawn by `render` in a process of its own.
+//! Combinations of effects, options and scene parts, each rendered by a separate `render` process.
 
 use crate::support::{LIGHT, folder};
 use corpus::combinations::{Options, run};
@@ -6,8 +6,8 @@ use corpus::verdict::Verdict;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Every pair of levels is drawn without a crash, an error of the device, or radiance that is not finite; every triple where all
-/// cases are asked for (`cargo xtask test --all`).
+/// Every pair of levels renders without a crash, a device error or non-finite radiance. With all cases (`cargo xtask test
+/// --all`), every triple does.
 #[test]
 fn every_combination_is_drawn() {
     const TEST: &str = "every_combination_is_drawn";

@@ -1,4 +1,4 @@
-//! `cargo xtask corpus` with `render` itself, on the device that draws nothing.
+//! `cargo xtask corpus` with the real `render` on wgpu's noop backend.
 
 use crate::support::{CORNERS, TRIANGLE, UP, folder, triangle};
 use corpus::args::Args;
@@ -16,7 +16,7 @@ fn a_folder_of_good_and_bad_files_has_its_verdicts() {
     triangle(&scenes, TRIANGLE, CORNERS, UP);
     fs::write(scenes.join("old.gltf"), TRIANGLE.replace("\"2.0\"", "\"3.0\"")).expect("a scene");
     fs::write(scenes.join("garbage.glb"), [7; 100]).expect("a scene");
-    // Another process writes the script: one that this process still had open could not be started.
+    // Another process writes the script, because a script that this process has open cannot be executed.
     let script = "printf '%s\\n' '#!/bin/sh' \"WGPU_BACKEND=noop FRAMEGRAPH_LIGHT_CACHE='$2' exec '$1' \\\"\\$@\\\"\" > \"$3\"; chmod +x \"$3\"";
     let render = folder.join("render.sh");
     let light = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");

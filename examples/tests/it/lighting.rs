@@ -1,20 +1,20 @@
-//! What `render` is told about light, background, camera, exposure and tone curve is seen in its pictures, by the numbers.
+//! Options for light, background, camera, exposure and tone curve, verified by pixel values of rendered pictures.
 //!
-//! The scene is a grey card, two meters wide and facing +z, which a parallel camera sees in the middle of a picture that is
-//! twice as wide. Radiance is read from the EXR; half floats round by less than a thousandth.
+//! The scene is a gray card, two meters wide and facing +z. An orthographic camera shows it in the center of a picture
+//! twice as wide. Radiance is read from the EXR; rounding to half floats is below 1/1000.
 
 use framegraph_scene::environment::direction_from_equirect_uv;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// Where light is kept: tests neither find nor leave anything in the user's folder.
+/// Cache folder of image-based light, apart from the user's cache.
 const LIGHT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
-/// The reflectance of the card.
+/// Reflectance of the card.
 const GREY: f64 = 0.5;
-/// Rounding of a half float, and of a sum of a few.
+/// Relative tolerance for half floats and sums of a few.
 const ROUNDING: f64 = 2e-3;
-/// 1 / (1.2 · 2^EV100) is one.
+/// EV100 with unit exposure: 1 / (1.2 · 2^EV100) is 1.
 const UNIT_EXPOSURE: &str = "-0.26303440583";
 
 const CARD: &str = r#"{
@@ -37,7 +37,7 @@ const CARD: &str = r#"{
   "buffers": [{"uri": "card.bin", "byteLength": 144}]
 }"#;
 
-/// A folder with the card in it; none, in words, where there is no adapter to render on.
+/// Creates a folder with the card; `None` without an adapter, which is reported as a skip.
 fn folder(test: &str) -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
     let _ = fs::remove_dir_all(&folder);
@@ -54,7 +54,7 @@ fn folder(test: &str) -> Option<PathBuf> {
     None
 }
 
-/// One picture: radiance times exposure, and display codes.
+/// One picture: exposed radiance and 8-bit display values.
 struct Shot {
     linear: image::Rgba32FImage,
     codes: image::RgbaImage,
@@ -63,12 +63,12 @@ struct Shot {
 const SIDE: u32 = 32;
 
 impl Shot {
-    /// In the middle of the card.
+    /// Radiance at the center of the card.
     fn card(&self) -> [f64; 3] {
         self.at(SIDE / 2, SIDE / 2)
     }
 
-    /// Beside it.
+    /// Radiance of the background.
     fn background(&self) -> [f64; 3] {
         self.at(1, SIDE / 2)
     }
@@ -95,7 +95,7 @@ fn try_shot(folder: &Path, name: &str, args: &[&str]) -> Result<Shot, String> {
 }
 
 fn shot(folder: &Path, args: &[&str]) -> Shot {
-    try_shot(folder, "shot", args).unwrap_or_else(|told| panic!("{told}"))
+    try_shot(folder, "shot", args).unwrap_or_else(|message| panic!("{message}"))
 }
 
 #[track_caller]
@@ -104,7 +104,7 @@ fn close(what: &str, found: [f64; 3], expected: [f64; 3]) {
     assert!(fits, "{what}: {found:?}, expected {expected:?}");
 }
 
-/// No sun, unit exposure, an even environment.
+/// No sun and unit exposure.
 const EVEN: [&str; 4] = ["--sun", "off", "--exposure", UNIT_EXPOSURE];
 
 #[test]
@@ -131,10 +131,10 @@ fn the_sun_and_the_background() {
     let dark = |more: &[&str]| {
         shot(&folder, &[&["--environment", "uniform:0,0,0", "--exposure", UNIT_EXPOSURE], more].concat())
     };
-    // The light of the file, 3 lux along -z, is the sun where there is no other, and else a punctual light beside it.
+    // The file has a light of 3 lux along -z. It is the sun if no other exists, and else a punctual light.
     let [own, ..] = dark(&[]).card();
     let sun = |given: &str| dark(&["--sun", given]).card()[0] - own;
-    // Lambert, and within a tenth the highlight of a rough dielectric.
+    // Lambertian reflection, plus the highlight of a rough dielectric within a tenth.
     assert!((own / (GREY * 3.0 / std::f64::consts::PI) - 1.0).abs() < 0.1, "{own}");
     let head_on = own * 10.0 / 3.0;
     close("a sun in front", [sun("0,0,5:10"); 3], [head_on; 3]);
@@ -148,14 +148,14 @@ fn the_sun_and_the_background() {
     close("lights nothing", behind.card(), [own; 3]);
 }
 
-/// A map that is black but for a small bright patch: the patch becomes a light, part of the environment's brightness.
+/// A small bright patch in a black map becomes a directional light and scales with the environment intensity.
 #[test]
 fn the_sun_of_a_map_is_a_light() {
     let Some(folder) = folder("map") else { return };
     let (width, height, nits) = (128_u32, 64_u32, 5000.0_f32);
     let mut map = image::Rgb32FImage::new(width, height);
     let mut expected = 0.0;
-    // +z, which the card faces, is where the map's left and right edges meet.
+    // The left and right edges of the map meet at +z, the direction that the card faces.
     for (y, x) in [(31, 0), (31, width - 1), (32, 0), (32, width - 1)] {
         let uv = glam::DVec2::new((f64::from(x) + 0.5) / f64::from(width), (f64::from(y) + 0.5) / f64::from(height));
         let cosine = direction_from_equirect_uv(uv).z;
@@ -169,12 +169,13 @@ fn the_sun_of_a_map_is_a_light() {
         shot(&folder, &[&["--environment", "sun.exr", "--exposure", UNIT_EXPOSURE], more].concat()).card()[0]
     };
     let dark = shot(&folder, &["--environment", "uniform:0,0,0", "--exposure", UNIT_EXPOSURE]).card()[0];
-    // The file's own light has 3 lux. Within a hundredth: the patch has a size, and its light comes from one direction.
+    // The light of the file has 3 lux. The tolerance of 1/100 covers the size of the patch, which becomes a single
+    // direction.
     let (once, twice) = (lit(&[]) - dark, lit(&["--ibl-intensity", "2"]) - dark);
     assert!((once / (dark / 3.0 * expected) - 1.0).abs() < 0.01, "{once} for {expected} lux");
     close("twice the environment", [twice; 3], [2.0 * once; 3]);
     assert!(lit(&["--sun", "off"]) < 1e-3 * once, "nothing of it is left in the map");
-    // Three bands of harmonics give a light head-on 17/16 of what it gives.
+    // Three bands of spherical harmonics overestimate a frontal light by 17/16.
     let texels = lit(&["--sun", "in-map"]) - dark;
     assert!((texels / once - 1.0).abs() < 0.1, "as texels {texels}, as a light {once}");
 }
@@ -186,7 +187,7 @@ fn a_clear_sky_shows_the_disc_of_its_sun() {
         let view = ["--camera", "0,0,3:0,1,2:90", "--msaa", "1", "--exposure", "16,1/125,100"];
         shot(&folder, &[&view, more].concat())
     };
-    // A disc of radiance E / (π sin² r) is far brighter than its sky, which is as bright as ten thousand nits at most.
+    // A disc of radiance E / (π sin² r) is far brighter than the sky, which reaches ten thousand nits at most.
     let lit = |shot: &Shot| shot.linear.pixels().filter(|p| p.0[0] > 3.0).count();
     let counts = [0.0, 8.0, 24.0].map(|degrees| lit(&sky(&["--sun", &format!("0,1,-1:90000:{degrees}")])));
     assert!(counts[0] <= 1 && counts[1] > counts[0] && counts[2] > 4 * counts[1], "{counts:?}");
@@ -221,15 +222,15 @@ fn the_camera_of_the_file() {
     };
     assert!(!seen(&["--camera-from-gltf"]), "the first sees the card with what is around it");
     assert!(seen(&["--camera-from-gltf", "--camera", "close"]), "the second sees the card alone");
-    let told = try_shot(&folder, "none", &["--camera-from-gltf", "--camera", "other"]).err().unwrap_or_default();
-    assert!(told.contains("other") && told.contains("wide, close"), "{told}");
+    let message = try_shot(&folder, "none", &["--camera-from-gltf", "--camera", "other"]).err().unwrap_or_default();
+    assert!(message.contains("other") && message.contains("wide, close"), "{message}");
     fs::write(folder.join("card.gltf"), CARD.replace("\"camera\": 0,", "").replace("\"camera\": 1,", ""))
         .expect("writable");
-    let told = try_shot(&folder, "none", &["--camera-from-gltf"]).err().unwrap_or_default();
-    assert!(told.contains("--camera-from-gltf: `card.gltf` has no camera"), "{told}");
+    let message = try_shot(&folder, "none", &["--camera-from-gltf"]).err().unwrap_or_default();
+    assert!(message.contains("--camera-from-gltf: `card.gltf` has no camera"), "{message}");
 }
 
-/// The EXR is what comes before post-processing, whatever that does and however it is planned.
+/// The EXR contains radiance before post-processing, independent of its settings and of the plan.
 #[test]
 fn radiance_is_that_before_post_processing() {
     let Some(folder) = folder("linear") else { return };
@@ -257,7 +258,8 @@ fn radiance_is_that_before_post_processing() {
     assert_ne!(codes(&plain), codes(&graded), "the picture is not the same");
 }
 
-/// Curves that one formula says, at one grey. Those of several steps are held to Filament's own pictures and to charts.
+/// Tone curves with a single formula, at one gray value. Other tests compare complex curves with Filament's pictures and
+/// charts.
 #[test]
 fn tone_curves_by_name() {
     let Some(folder) = folder("tone") else { return };

@@ -1,10 +1,10 @@
-//! `render` looks into its frame: files that are asked for are there, and the picture and its plan are the same bytes.
+//! Inspection with `render`: requested files exist, and picture and plan stay identical to the byte.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// Light made by one run is found by the next; none is taken from the user's folder.
+/// Shared cache folder of image-based light, apart from the user's cache.
 const LIGHT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
 
 fn folder(test: &str) -> PathBuf {
@@ -14,12 +14,13 @@ fn folder(test: &str) -> PathBuf {
     folder
 }
 
-/// A tiny picture with these options; standard output.
+/// Renders a tiny picture with these options and returns standard output.
 fn render(folder: &Path, args: &[&str]) -> Result<String, String> {
     let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
-    // A bisection measures nothing, and refuses a number of frames. A map is written as a picture, which takes the longest.
+    // Bisection measures no times and rejects a number of frames. Small shadow maps shorten the writing of pictures.
     let frames: &[&str] = if args.contains(&"--bisect") { &[] } else { &["--frames", "2"] };
-    let map: &[&str] = if args.iter().any(|word| word.contains("-shadow")) { &[] } else { &["--shadow", "texels=256"] };
+    let map: &[&str] =
+        if args.iter().any(|word| word.contains("-shadow")) { &[] } else { &["--shadow", "map-size=256"] };
     let done = command
         .env("NODEVICE_SELECT", "1")
         .env("FRAMEGRAPH_LIGHT_CACHE", LIGHT)
@@ -28,23 +29,23 @@ fn render(folder: &Path, args: &[&str]) -> Result<String, String> {
         .args([frames, map, args].concat())
         .output();
     let Output { status, stdout, stderr } = done.expect("the program starts");
-    let (out, told) = (String::from_utf8_lossy(&stdout).into_owned(), String::from_utf8_lossy(&stderr).into_owned());
-    if status.success() { Ok(out) } else { Err(format!("{status}: {told}")) }
+    let (out, message) = (String::from_utf8_lossy(&stdout).into_owned(), String::from_utf8_lossy(&stderr).into_owned());
+    if status.success() { Ok(out) } else { Err(format!("{status}: {message}")) }
 }
 
-/// Whether there is an adapter to render on; says so when there is none.
+/// Returns whether an adapter exists; reports a skip otherwise.
 fn renders(test: &str, folder: &Path) -> bool {
-    let told = render(folder, &["--out", "plain.png"]);
-    let missing = told.as_ref().err().filter(|e| e.contains("no adapter"));
+    let message = render(folder, &["--out", "plain.png"]);
+    let missing = message.as_ref().err().filter(|e| e.contains("no adapter"));
     if let Some(why) = missing {
         test_report::skip(test, why.trim());
         return false;
     }
-    told.unwrap_or_else(|e| panic!("{e}"));
+    message.unwrap_or_else(|e| panic!("{e}"));
     true
 }
 
-/// Shading in half floats makes another picture, or the adapter is named that has none.
+/// Shading in half floats changes the picture, or fails with the name of an adapter without support.
 #[test]
 fn half_floats_are_an_option() {
     let folder = folder("half_floats");
@@ -54,7 +55,7 @@ fn half_floats_are_an_option() {
     let read = |name: &str| fs::read(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
     match render(&folder, &["--precision", "f16", "--out", "half.png"]) {
         Ok(_) => assert_ne!(read("half.png"), read("plain.png"), "roughness begins at 0.089"),
-        Err(told) => assert!(told.contains("SHADER_F16") && !folder.join("half.png").exists(), "{told}"),
+        Err(message) => assert!(message.contains("SHADER_F16") && !folder.join("half.png").exists(), "{message}"),
     }
 }
 
@@ -72,14 +73,14 @@ fn looking_changes_neither_the_picture_nor_its_plan() {
     assert!(read("plain.png") == read("looked.png"), "another picture");
     assert_eq!(read("plain.plan.txt"), read("looked.plan.txt"));
     assert!(out.contains("depth@color, sample 0, 48x27 Depth32Float"), "{out}");
-    assert!(out.contains("made in 2 frames: 0 textures, "), "{out}");
-    let held = out.lines().find_map(|line| line.strip_prefix("held by the pools: ")).expect("memory is told");
+    assert!(out.contains("created in 2 frames: 0 textures, "), "{out}");
+    let held = out.lines().find_map(|line| line.strip_prefix("held by pools: ")).expect("memory is reported");
     let mebibytes: Vec<_> = held.split(" MiB").filter_map(|text| text.rsplit([' ', '(']).next()).collect();
-    // Held, used, at most and budget: nothing but one plan was executed, so what is held is used.
+    // Held, used, peak and budget: a single plan was executed, so all held memory is used.
     assert!(mebibytes[0] == mebibytes[1] && mebibytes[0] == mebibytes[2] && mebibytes[0] != "0.00", "{held}");
     let budget = mebibytes[0].parse::<f64>().expect("a number") * 3.0;
     assert!((mebibytes[3].parse::<f64>().expect("a number") - budget).abs() < 0.03, "three plans: {held}");
-    assert!(out.contains("| of which inside wgpu: "), "{out}");
+    assert!(out.contains("| inside wgpu: "), "{out}");
     let trace = String::from_utf8(read("trace.json")).expect("JSON is text");
     assert!(trace.contains("\"name\":\"shadow\"") && trace.contains("\"traceEvents\""));
     assert!(read("depth.png").starts_with(b"\x89PNG"));
@@ -89,11 +90,11 @@ fn looking_changes_neither_the_picture_nor_its_plan() {
         assert!(out.contains(&format!(".{name}.png")), "{name}: {out}");
     }
 
-    let told = render(&folder, &["--out", "typo.png", "--inspect", "hbr"]).expect_err("there is no such texture");
-    assert!(told.contains("there is no texture `hbr`; the frame has `output`, `shadow_map`"), "{told}");
+    let message = render(&folder, &["--out", "typo.png", "--inspect", "hbr"]).expect_err("there is no such texture");
+    assert!(message.contains("there is no texture `hbr`; the frame has `output`, `shadow_map`"), "{message}");
     assert!(!folder.join("typo.png").exists(), "that is said before any work is done");
-    let told = render(&folder, &["--inspect-all", "nowhere"]).expect_err("there is no such folder");
-    assert!(told.contains("there is no folder nowhere"), "{told}");
+    let message = render(&folder, &["--inspect-all", "nowhere"]).expect_err("there is no such folder");
+    assert!(message.contains("folder nowhere does not exist"), "{message}");
 }
 
 #[test]
@@ -102,19 +103,19 @@ fn the_bisection_names_every_mode() {
     if !renders("the_bisection_names_every_mode", &folder) {
         return;
     }
-    // One sample and the rounding of a store: no mode changes the picture.
+    // With one sample and rounded radiance, no mode changes the picture.
     let out = render(&folder, &["--bisect", "--msaa", "1", "--round-hdr"]).unwrap_or_else(|e| panic!("{e}"));
     for mode in ["again", "no-cull", "no-merge", "no-inline", "no-alias", "immediate", "poison"] {
         let row = out.lines().find(|l| l.starts_with(&format!("| {mode} "))).unwrap_or_else(|| panic!("{mode}: {out}"));
         assert!(row.contains("| same "), "{row}");
     }
     assert!(out.ends_with("no mode changes the picture\n"), "{out}");
-    // Several samples are graded one by one where that is inlined, so there it does.
+    // With several samples, inlined grading runs per sample and changes the picture.
     let out = render(&folder, &["--bisect", "--msaa", "4"]).unwrap_or_else(|e| panic!("{e}"));
-    assert!(out.contains("no-inline is the first to change the picture"), "{out}");
+    assert!(out.contains("no-inline is the first mode that changes the picture"), "{out}");
 }
 
-/// Frames after the first draw no map of a still scene, say so, and show the same picture.
+/// Later frames of a static scene draw no shadow map, report that, and show an equal picture.
 #[test]
 fn kept_shadow_maps_are_drawn_once() {
     let folder = folder("kept");
@@ -123,21 +124,21 @@ fn kept_shadow_maps_are_drawn_once() {
     }
     let read = |name: &str| fs::read(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
     let cascades = |plan: &str| String::from_utf8_lossy(&read(plan)).matches("shadow/cascade").count();
-    // A map that a frame makes has the name of its passes before its own.
+    // A map created in the frame has the names of its passes as a prefix.
     let run = |name: &str, words: &str, map: &str| {
         let files = [format!("{name}.png"), format!("{name}.map.png")];
         let looking = ["--inspect", map, "--inspect-out", &files[1]];
         let args = [&["--cascades", "3", "--shadow", words, "--out", &files[0]], &looking[..]].concat();
         render(&folder, &args).unwrap_or_else(|e| panic!("{words}: {e}"))
     };
-    let anew = run("anew", "texels=256,fit=stable", "shadow/shadow_map:0:2");
-    let told = run("kept", "texels=256,fit=stable,keep=on", "shadow_map:0:2");
-    assert!(told.contains("the first frame draws 3 of 3 shadow maps: 3 never drawn before"), "{told}");
-    assert!(told.contains("each frame after it draws 0 of 3 shadow maps: all are kept"), "{told}");
+    let anew = run("anew", "map-size=256,fit=stable", "shadow/shadow_map:0:2");
+    let message = run("kept", "texels=256,fit=stable,keep=on", "shadow_map:0:2");
+    assert!(message.contains("the first frame draws 3 of 3 shadow maps: 3 never drawn before"), "{message}");
+    assert!(message.contains("each later frame draws 0 of 3 shadow maps: all maps are kept"), "{message}");
     assert!(!anew.contains("shadow maps: "), "{anew}");
     assert!(read("kept.png") == read("anew.png") && read("kept.map.png") == read("anew.map.png"), "another picture");
     assert!(cascades("anew.plan.txt") >= 3 && cascades("kept.plan.txt") == 0);
-    // Shadows can be seen in so small a picture.
+    // Shadows are visible even in this small picture.
     render(&folder, &["--no-shadows", "--out", "none.png"]).unwrap_or_else(|e| panic!("{e}"));
     assert!(read("none.png") != read("kept.png"));
 }

@@ -1,4 +1,4 @@
-//! The programs as their users run them.
+//! Command-line programs, run as processes.
 
 mod bad_input;
 mod combinations;

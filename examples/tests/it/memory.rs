@@ -1,23 +1,23 @@
-//! What a run holds does not grow with its frames.
+//! Memory use of a run is independent of its number of frames.
 //!
-//! Drivers compile shaders anew for values of uniforms that bound loops. Mesa 22.3's software driver does so in every frame for
-//! loops that a uniform ends, and for whole numbers and flags beside what lies first in a uniform block, and keeps each: with
-//! such shaders a frame of 32×32 pixels took several MiB more than the one before. Bounds of loops are therefore `override`
-//! constants, and what fragments are shaded with does not lie first.
+//! Drivers may recompile shaders for new values of uniforms that bound loops. Mesa 22.3's software driver does so in every
+//! frame for loops that end at a uniform. It also recompiles for integers and flags after the first field of a uniform
+//! block, and keeps every variant: frames of 32×32 pixels then grew by several MiB each. Loop bounds are therefore
+//! `override` constants, and shading parameters never come first.
 
 use crate::support::{CORNERS, TRIANGLE, UP, command, folder, refusal, triangle, undrawn};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// The most that a process held in memory while it drew some frames.
+/// Returns the peak memory of a process that draws some frames.
 fn peak_of_frames_kib(folder: &Path, frames: &str, options: &str) -> Option<u64> {
     let mut run = command(folder);
     run.args(["columns", "--size", "32x32", "--frames", frames]).args(options.split(' '));
     peak_kib(run, options)
 }
 
-/// The most that the process held in memory, in KiB, as the system says it while it runs; none where it does not say.
+/// Returns the peak memory of a process in KiB while it runs; `None` if the system does not report it.
 fn peak_kib(mut run: Command, options: &str) -> Option<u64> {
     let mut run = run.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program starts");
     let status = format!("/proc/{}/status", run.id());
@@ -34,16 +34,16 @@ fn peak_kib(mut run: Command, options: &str) -> Option<u64> {
     }
 }
 
-/// 25 frames more take no 12 MiB more: those that compiled a shader in each took 20 MiB at least.
+/// Limit of 12 MiB for 25 additional frames: recompiling a shader per frame took at least 20 MiB.
 #[test]
 fn memory_does_not_grow_with_frames() {
     let folder = folder("memory");
-    let told = command(&folder).args(["--size", "16x8"]).output().expect("the program starts");
-    if String::from_utf8_lossy(&told.stderr).contains("no adapter") {
+    let message = command(&folder).args(["--size", "16x8"]).output().expect("the program starts");
+    if String::from_utf8_lossy(&message.stderr).contains("no adapter") {
         return test_report::skip("memory_does_not_grow_with_frames", "no adapter");
     }
-    // All that makes images and shaders of its own at once.
-    let options = "--preset ultra --shadows evsm --shadow texels=256,blur=9,contact=on --fog on --bloom on:flare=on \
+    // Effects with images and shaders of their own, all at once.
+    let options = "--preset ultra --shadows evsm --shadow map-size=256,blur=9,contact=on --fog on --bloom on:flare=on \
                    --dof on:focus=3,resolution=full --taa on";
     let [few, many] = ["8", "33"].map(|frames| peak_of_frames_kib(&folder, frames, options));
     let (Some(few), Some(many)) = (few, many) else {
@@ -52,8 +52,8 @@ fn memory_does_not_grow_with_frames() {
     assert!(many < few + (12 << 10), "{few} KiB after 8 frames, {many} KiB after 33");
 }
 
-/// One picture that is used 16 times is decoded once, within the budget that is given: 16 MiB of texels, and 48 for mip levels and
-/// the way to the device. Held for each use they would take 256 MiB.
+/// A picture used 16 times is decoded once, within the memory budget: 16 MiB of texels, and 48 MiB for mip levels and
+/// upload. One copy per use would take 256 MiB.
 #[test]
 fn one_picture_takes_its_budget_however_often_it_is_used() {
     const BUDGET_MIB: u64 = 80;
@@ -85,7 +85,7 @@ fn one_picture_takes_its_budget_however_often_it_is_used() {
         assert!(many < plain + (BUDGET_MIB << 10), "{options:?}: {many} KiB, without the picture {plain} KiB");
         assert!(many > plain + (8 << 10), "the picture is not in it: {many} KiB, without {plain} KiB");
     }
-    // The budget counts: a picture that does not fit is refused.
+    // A picture that exceeds the budget is rejected.
     for (text, options) in
         [(text.as_str(), &["t.gltf"][..]), (TRIANGLE, &["t.gltf", "--dirt", "large.png", "--bloom", "on"])]
     {

@@ -1,4 +1,4 @@
-//! Where `render` writes: standard output that is closed or full, pipes, files that it reads, signals.
+//! Output of `render`: closed or full standard output, pipes, input files as outputs, signals.
 #![cfg(unix)]
 
 use crate::support::{CORNERS, TRIANGLE, UP, entries, folder, refusal, triangle, undrawn};
@@ -8,11 +8,11 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// A picture with the texture and buffer of the scene named as such.
+/// glTF material with one texture.
 const TEXTURED: &str = r#""materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
   "textures": [{"source": 0}], "images": [{"uri": "t.png", "name": "wood"}], "accessors""#;
 
-/// The triangle with a texture of 4×4 texels.
+/// Writes the triangle with a texture of 4×4 texels.
 pub fn textured(folder: &Path) {
     let text = TRIANGLE.replace("\"accessors\"", TEXTURED).replace("\"NORMAL\": 1}", "\"NORMAL\": 1}, \"material\": 0");
     triangle(folder, &text, CORNERS, UP);
@@ -32,14 +32,14 @@ fn a_closed_or_full_standard_output_costs_no_file() {
         });
         let mut child = command.spawn().expect("the program starts");
         drop(child.stdout.take());
-        let mut told = String::new();
-        child.stderr.take().expect("it is piped").read_to_string(&mut told).expect("the words are UTF-8");
-        assert_eq!(child.wait().expect("it ends").code(), Some(code), "{to}: {told}");
-        assert!(!told.contains("panicked") && told.contains(words), "{to}: {told}");
-        assert_eq!(told.contains("error"), !words.is_empty(), "{to}: {told}");
+        let mut message = String::new();
+        child.stderr.take().expect("it is piped").read_to_string(&mut message).expect("the words are UTF-8");
+        assert_eq!(child.wait().expect("it ends").code(), Some(code), "{to}: {message}");
+        assert!(!message.contains("panicked") && message.contains(words), "{to}: {message}");
+        assert_eq!(message.contains("error"), !words.is_empty(), "{to}: {message}");
         assert!(folder.join(&out).is_file(), "{to}");
     }
-    // Nobody hears that nothing can be said either.
+    // Both streams are full, so the failure cannot be reported.
     let full = || File::options().write(true).open("/dev/full").expect("Linux has it");
     let status = undrawn(&folder, &["--help"]).stdout(full()).stderr(full()).status();
     assert_eq!(status.expect("the program starts").code(), Some(2));
@@ -71,9 +71,9 @@ fn nothing_that_the_scene_was_read_from_is_written_over() {
     textured(&folder);
     symlink("t.png", folder.join("link.png")).expect("the folder is ours");
     for (args, named) in [
-        (["--out", "t.png"], "t.png: it is read"),
-        (["--out", "link.png"], "link.png: it is read"),
-        (["--plan", "t.bin"], "t.bin: it is read"),
+        (["--out", "t.png"], "t.png: it is an input"),
+        (["--out", "link.png"], "link.png: it is an input"),
+        (["--plan", "t.bin"], "t.bin: it is an input"),
         (["--trace", "/dev/null/t.json"], "/dev/null/t.json: cannot be written"),
     ] {
         let line = refusal(&folder, undrawn(&folder, &["t.gltf"]).args(args));
@@ -122,9 +122,9 @@ fn a_signal_stops_the_run_and_leaves_nothing() {
         let sent = Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status();
         assert!(sent.is_ok_and(|status| status.success()));
         let output = child.wait_with_output().expect("it ends");
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(code), "{told}");
-        assert!(told.contains("error: stopped by signal"), "{told}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{message}");
+        assert!(message.contains("error: stopped by signal"), "{message}");
         assert_eq!(entries(&folder), [] as [std::path::PathBuf; 0]);
     }
 }

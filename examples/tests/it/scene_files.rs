@@ -1,4 +1,4 @@
-//! Files that a scene names, memory that they take, and limits that they pass.
+//! Files referenced by a scene, their memory use, and device limits.
 
 use crate::outputs::textured;
 use crate::support::{CORNERS, TRIANGLE, UP, folder, refusal, refused, triangle, undrawn};
@@ -28,7 +28,7 @@ fn files_of_a_scene_stay_in_its_folder() {
     assert!(allowed.is_ok_and(|output| output.status.success()));
 }
 
-/// A pipe without a writer: opening it would wait for ever.
+/// Opening a pipe without a writer would block forever, so only regular files are opened.
 #[cfg(unix)]
 #[test]
 fn nothing_but_regular_files_is_opened() {
@@ -66,7 +66,7 @@ fn an_image_over_the_budget_is_named() {
     for words in ["t.png: image 0 \"wood\", 1024×512: 2.0 MiB of memory are needed", "of the 1.0 MiB", "--memory"] {
         assert!(line.contains(words), "{line}");
     }
-    // Decoded it fits; with its mip levels on the way to the device it does not.
+    // The decoded image fits, but not together with its mip levels for the upload.
     let line = refusal(&folder, &mut undrawn(&folder, &["t.gltf", "--memory", "4MiB"]));
     assert!(line.contains("t.png: mip levels and upload, 1024×512"), "{line}");
     let enough = undrawn(&folder, &["t.gltf", "--memory", "10MiB", "--frames", "1"]).output();
@@ -86,7 +86,7 @@ fn what_a_material_asks_too_much_is_the_scenes_fault() {
     triangle(&folder, &text, CORNERS, UP);
     let line = refusal(&folder, &mut undrawn(&folder, &["t.gltf"]));
     assert!(line.contains("material \"opal\" combines") && line.contains("the device allows"), "{line}");
-    // Without a texture it binds none.
+    // A material without a texture binds none.
     let text = plain.replace(r#""materials": [{"#, &format!(r#""materials": [{lobes}}}, {{"#));
     triangle(&folder, &text, CORNERS, UP);
     let allowed = undrawn(&folder, &["t.gltf", "--frames", "1"]).output();

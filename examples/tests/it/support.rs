@@ -1,14 +1,14 @@
-//! Running `render` in a folder of one's own, and a small scene for it.
+//! Running `render` in a test folder, and a small scene.
 
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// Light made by one run is found by the next; none is taken from the user's folder.
+/// Shared cache folder of image-based light, apart from the user's cache.
 pub const LIGHT: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/light");
 
-/// A folder of its own for each test, empty at first.
+/// Creates an empty folder for a test.
 pub fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
     let _ = fs::remove_dir_all(&folder);
@@ -20,37 +20,37 @@ pub fn render<S: AsRef<OsStr>>(folder: &Path, args: &[S]) -> Output {
     command(folder).args(args).output().expect("the program starts")
 }
 
-/// The program in `folder`, without arguments.
+/// Returns the program in `folder`, without arguments.
 pub fn command(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
-    // Mesa's device selection layer complains about a missing session on standard error; that is not the program's word.
+    // Mesa's device selection layer complains about a missing session on standard error.
     command.env("NODEVICE_SELECT", "1").env("FRAMEGRAPH_LIGHT_CACHE", LIGHT).current_dir(folder);
     command
 }
 
-/// The same on the device that draws nothing, one small frame: for what is not in the picture.
+/// Returns the program on wgpu's noop backend with a small frame, for tests that need no picture.
 pub fn undrawn(folder: &Path, args: &[&str]) -> Command {
     let mut command = command(folder);
     command.env("WGPU_BACKEND", "noop").args(["--size", "16x8"]).args(args);
     command
 }
 
-/// Runs it in `folder` and checks the manners of a refusal; returns the line.
+/// Runs the program in `folder`, checks the form of its error, and returns the error line.
 pub fn refused<S: AsRef<OsStr>>(folder: &Path, args: &[S]) -> String {
     let mut command = command(folder);
     command.args(args);
     refusal(folder, &mut command)
 }
 
-/// The same of any command.
+/// Runs a command, checks the form of its error, and returns the error line.
 pub fn refusal(folder: &Path, command: &mut Command) -> String {
     let before = entries(folder);
     let Output { status, stderr, .. } = command.output().expect("the program starts");
-    let told = String::from_utf8_lossy(&stderr).into_owned();
-    assert_eq!(status.code(), Some(2), "{told}");
-    assert!(!told.contains("panicked"), "{told}");
-    let errors: Vec<_> = told.lines().filter(|l| l.starts_with("error: ")).collect();
-    assert_eq!(errors.len(), 1, "{told}");
+    let message = String::from_utf8_lossy(&stderr).into_owned();
+    assert_eq!(status.code(), Some(2), "{message}");
+    assert!(!message.contains("panicked"), "{message}");
+    let errors: Vec<_> = message.lines().filter(|l| l.starts_with("error: ")).collect();
+    assert_eq!(errors.len(), 1, "{message}");
     assert_eq!(entries(folder), before, "something was written");
     errors[0].to_owned()
 }
@@ -61,7 +61,7 @@ pub fn entries(folder: &Path) -> Vec<PathBuf> {
     names
 }
 
-/// A triangle as glTF text, with some parts to be replaced by what is wrong.
+/// Triangle as glTF text, with parts that tests replace by invalid ones.
 pub const TRIANGLE: &str = r#"{
   "asset": {"version": "2.0"},
   "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],

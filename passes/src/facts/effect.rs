@@ -96,7 +96,7 @@ impl Effect {
     pub const fn name(self) -> &'static str {
         match self {
             Self::SunShadows => "sun-shadows",
-            Self::LampShadows => "lamp-shadows",
+            Self::LampShadows => "punctual-shadows",
             Self::Cascades => "cascades",
             Self::ContactShadows => "contact-shadows",
             Self::Occlusion => "ao",
@@ -127,6 +127,8 @@ impl Effect {
 
     /// Returns the effect with this name.
     pub fn from_name(name: &str) -> Option<Self> {
+        // The former name remains valid.
+        let name = if name == "lamp-shadows" { "punctual-shadows" } else { name };
         Self::ALL.into_iter().find(|effect| effect.name() == name)
     }
 }
@@ -188,6 +190,7 @@ mod tests {
             assert!(EffectSet::ALL.contains(effect) && !EffectSet::ALL.without(effect).contains(effect));
         }
         assert_eq!(Effect::from_name("shadow"), None);
+        assert_eq!(Effect::from_name("lamp-shadows"), Some(Effect::LampShadows));
         assert_eq!(Effect::ALL.into_iter().collect::<EffectSet>(), EffectSet::ALL);
     }
 }

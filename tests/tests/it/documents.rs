@@ -48,8 +48,8 @@ fn every_link_leads_to_a_file() {
 }
 
 /// Top-level folders, the first parts of paths.
-const ROOMS: [&str; 9] =
-    ["framegraph/", "renderer/", "scene/", "shaders/", "passes/", "tests/", "docs/", "examples/", "xtask/"];
+const ROOMS: [&str; 10] =
+    ["framegraph/", "renderer/", "scene/", "shaders/", "passes/", "tests/", "docs/", "examples/", "viewer/", "xtask/"];
 
 /// Text may name a file without its folder where that is unambiguous.
 #[test]

@@ -1,4 +1,4 @@
-//! `custom_pass`: the effects against the CPU, the plan in numbers, and the program as its users run it.
+//! Tests of `custom_pass`: effects against the CPU, counts of the plan, and the program as a process.
 
 mod blur;
 mod outline;
@@ -19,13 +19,13 @@ const NEITHER: Settings = Settings { blur: false, outline: false };
 const GLOW: Settings = Settings { blur: true, outline: false };
 const LINES: Settings = Settings { blur: false, outline: true };
 
-/// Says that a test was skipped, and why.
+/// Reports a skipped test with its reason.
 fn skip(test: &str, why: &str) -> TestResult {
     test_report::skip(test, why);
     Ok(())
 }
 
-/// Runs `test` with an engine on the adapter that there is, or says that it was skipped.
+/// Runs `test` with an engine, or reports a skip without an adapter.
 fn with_engine(name: &str, test: impl FnOnce(Engine) -> TestResult) -> TestResult {
     match Engine::open(&Instance::new(InstanceDescriptor::new_without_display_handle_from_env()), None) {
         Ok(engine) => test(engine),
@@ -34,12 +34,12 @@ fn with_engine(name: &str, test: impl FnOnce(Engine) -> TestResult) -> TestResul
     }
 }
 
-/// The engine with its graph.
+/// Creates the engine with its graph.
 fn app(engine: Engine, settings: Settings) -> Result<App, Box<dyn std::error::Error>> {
     Ok(App::new(engine, TextureFormat::Rgba8UnormSrgb, settings)?)
 }
 
-/// The picture of time `time_s`; what was executed is what was planned.
+/// Renders the picture at `time_s`; the executed counts must equal the planned ones.
 fn picture(app: &mut App, time_s: f32, image: &Texture) -> Result<Pixels, Box<dyn std::error::Error>> {
     app.draw(time_s, Screen::Texture(image))?;
     assert_eq!(app.frames.executor().executed(), app.frames.plan().counts());

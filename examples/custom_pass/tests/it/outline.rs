@@ -1,4 +1,4 @@
-//! Outlines stand where the CPU finds edges in ids and depth, and nowhere else.
+//! Outlines appear exactly where the CPU finds edges in ids and depth.
 
 use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, picture, with_engine};
 use custom_pass::app::App;
@@ -8,7 +8,7 @@ use framegraph_wgpu::inspect::Inspector;
 const SIZE: [u32; 2] = [160, 90];
 const WHITE: [u8; 4] = [255; 4];
 
-/// The first channel, or the last, of every texel of a texture of the frame as it would be drawn next.
+/// Returns one channel of every texel of a texture in the current frame.
 fn look(app: &App, request: &str, channel: usize) -> Result<Vec<f32>, Box<dyn std::error::Error>> {
     let mut inspector = Inspector::new(app.frames.executor().gpu());
     let seen = inspector.inspect(
@@ -22,7 +22,7 @@ fn look(app: &App, request: &str, channel: usize) -> Result<Vec<f32>, Box<dyn st
     Ok(seen.texels.numbers().into_iter().map(|texel| texel[channel]).collect())
 }
 
-/// Whether a texel up to two steps away along an axis is of another object, and farther.
+/// Marks texels with a farther texel of another object at most two steps away along an axis.
 fn edges(ids: &[f32], depths: &[f32], [width, height]: [u32; 2]) -> Vec<bool> {
     let (width, height) = (i64::from(width), i64::from(height));
     let index = |x: i64, y: i64| (y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize;
@@ -32,14 +32,14 @@ fn edges(ids: &[f32], depths: &[f32], [width, height]: [u32; 2]) -> Vec<bool> {
         let own = index(x, y);
         let around = [(1, 0), (-1, 0), (0, 1), (0, -1), (2, 0), (-2, 0), (0, 2), (0, -2)];
         around.into_iter().map(|(dx, dy)| index(x + dx, y + dy)).any(|other| {
-            // Reversed depth: the farther, the smaller.
+            // Depth is reversed: farther is smaller.
             number(other) != number(own) && depths[other] < depths[own]
         })
     };
     places.map(is_edge).collect()
 }
 
-/// Texels that are not the line's color on an edge, or not what they were without lines elsewhere.
+/// Counts edge texels without the line color, and other texels that changed.
 fn misplaced(outlined: &Pixels, plain: &Pixels, edges: &[bool]) -> usize {
     let texels = outlined.bytes.chunks_exact(4).zip(plain.bytes.chunks_exact(4)).zip(edges);
     texels.filter(|((after, before), edge)| *after != if **edge { WHITE.as_slice() } else { before }).count()
@@ -61,7 +61,7 @@ fn lines_are_where_objects_end() -> TestResult {
                 let count = edges.iter().filter(|edge| **edge).count();
                 assert!((300..3000).contains(&count), "{count} texels of lines around five objects");
                 assert_eq!(misplaced(&outlined, &plain, &edges), 0, "{drawn:?} at {time_s} s");
-                // The control: one edge less, and one texel is wrong.
+                // Negative control: with one edge less, one texel is wrong.
                 let first = edges.iter().position(|edge| *edge).ok_or("no edge")?;
                 let one_less: Vec<_> = edges.iter().enumerate().map(|(at, edge)| *edge && at != first).collect();
                 assert_eq!(misplaced(&outlined, &plain, &one_less), 1);
@@ -84,7 +84,7 @@ fn every_object_is_seen() -> TestResult {
         }
         let lit = look(&app, "color@scene", 0)?;
         assert!(lit.iter().all(|v| v.is_finite() && *v > 0.0), "light everywhere");
-        assert!(lit.iter().any(|v| *v > 5.0), "and a lamp");
+        assert!(lit.iter().any(|v| *v > 5.0), "and an emitter");
         Ok(())
     })
 }

@@ -1,9 +1,9 @@
-//! What switching an effect does to the plan, in numbers.
+//! Effect of the switches on the plan, in counts.
 
 use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, picture, with_engine};
 use framegraph::{Placement, Plan};
 
-/// Whether two resources share a place.
+/// Returns whether two resources share memory.
 fn share(plan: &Plan, a: &str, b: &str) -> bool {
     let place = |name: &str| {
         let found = plan.graph().find_resource(name);
@@ -17,8 +17,8 @@ fn switching_an_effect_changes_what_is_stored() -> TestResult {
     with_engine("switching_an_effect_changes_what_is_stored", |engine| {
         let image = engine.picture([64, 36]);
         let mut app = app(engine, BOTH)?;
-        // Passes, steps, loads, stores, memoryless textures. Without outlines nobody reads ids and depth; nothing is ever
-        // loaded, because outlines are drawn in the step of the picture under them.
+        // Passes, steps, loads, stores, memoryless textures. Without outlines, ids and depth are never read. Nothing is
+        // ever loaded, because outlines are drawn in the step of the picture below them.
         let expected =
             [(BOTH, [6, 5, 0, 4, 0]), (GLOW, [5, 5, 0, 2, 2]), (LINES, [3, 2, 0, 4, 0]), (NEITHER, [2, 2, 0, 2, 2])];
         for (settings, counts) in expected {

@@ -1,4 +1,4 @@
-//! The program from outside: files, exit codes, and a window where there is a display.
+//! The program as a process: files, exit codes, and a window if a display exists.
 
 use super::{TestResult, skip};
 use framegraph_scene::picture::read_rgba8;
@@ -16,7 +16,7 @@ fn folder(test: &str) -> std::io::Result<PathBuf> {
 
 fn program(folder: &Path, args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_custom_pass"));
-    // Mesa's device selection layer complains about a missing session on standard error; that is not the program's word.
+    // Mesa's device selection layer complains about a missing session on standard error.
     command.env("NODEVICE_SELECT", "1").env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
     command.current_dir(folder).args(args);
     command
@@ -31,11 +31,11 @@ fn run(folder: &Path, args: &[&str]) -> std::io::Result<(Option<i32>, String, St
 #[test]
 fn a_picture_is_drawn_without_a_window() -> TestResult {
     let folder = folder("picture")?;
-    let (code, out, told) = run(&folder, &["--out", "a.png", "--size", "161x91", "--frames", "2", "--plan"])?;
-    if told.contains("no adapter") {
-        return skip("a_picture_is_drawn_without_a_window", told.trim());
+    let (code, out, error) = run(&folder, &["--out", "a.png", "--size", "161x91", "--frames", "2", "--plan"])?;
+    if error.contains("no adapter") {
+        return skip("a_picture_is_drawn_without_a_window", error.trim());
     }
-    assert_eq!(code, Some(0), "{told}");
+    assert_eq!(code, Some(0), "{error}");
     assert!(out.contains("pass outline (merged: attachments)"), "{out}");
     let ([width, height], rgba) = read_rgba8(&folder.join("a.png"))?;
     assert_eq!([width, height], [161, 91]);
@@ -46,8 +46,8 @@ fn a_picture_is_drawn_without_a_window() -> TestResult {
     let (code, out, _) = run(&folder, &["--out", "b.png", "--size", "161x91", "--no-outline", "--no-blur"])?;
     assert!(code == Some(0) && !out.contains("steps:"), "{out}");
     let (_, plain) = read_rgba8(&folder.join("b.png"))?;
-    assert!(white(&plain) < 100, "the lamp alone is white: {}", white(&plain));
-    assert_eq!(fs::read_dir(&folder)?.count(), 2, "no part is left behind");
+    assert!(white(&plain) < 100, "only the emitter is white: {}", white(&plain));
+    assert_eq!(fs::read_dir(&folder)?.count(), 2, "no temporary file is left");
     Ok(())
 }
 
@@ -65,10 +65,10 @@ fn bad_input_is_one_line_and_exit_code_2() -> TestResult {
         (&[], "--out FILE.png"),
     ];
     for (args, named) in cases {
-        let (code, out, told) = run(&folder, args)?;
-        assert_eq!((code, out.as_str()), (Some(2), ""), "{args:?}: {told}");
-        let lines: Vec<_> = told.lines().filter(|l| l.starts_with("error: ")).collect();
-        assert!(lines.len() == 1 && lines[0].contains(named) && !told.contains("panicked"), "{args:?}: {told}");
+        let (code, out, error) = run(&folder, args)?;
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{args:?}: {error}");
+        let lines: Vec<_> = error.lines().filter(|l| l.starts_with("error: ")).collect();
+        assert!(lines.len() == 1 && lines[0].contains(named) && !error.contains("panicked"), "{args:?}: {error}");
     }
     assert_eq!(fs::read_dir(&folder)?.count(), 0, "something was written");
     let (code, out, _) = run(&folder, &["--help"])?;
@@ -83,16 +83,16 @@ fn a_window_is_drawn_into() -> TestResult {
     let folder = folder("window")?;
     let mut command = program(&folder, &["--frames", "3", "--size", "200x120", "--plan"]);
     let Output { status, stdout, stderr } = command.env("DISPLAY", &display.name).output()?;
-    let (out, told) = (String::from_utf8_lossy(&stdout), String::from_utf8_lossy(&stderr));
-    if told.contains("no adapter") || told.contains("no window can be opened") {
-        return skip(name, told.trim());
+    let (out, error) = (String::from_utf8_lossy(&stdout), String::from_utf8_lossy(&stderr));
+    if error.contains("no adapter") || error.contains("no window can be opened") {
+        return skip(name, error.trim());
     }
-    assert!(status.success(), "{told}");
+    assert!(status.success(), "{error}");
     assert!(out.contains("at 200x120") && out.contains("steps:"), "{out}");
     Ok(())
 }
 
-/// Standard output and standard error that take nothing more: an exit code says so, and nothing panics.
+/// If both streams are full, the exit code reports it and nothing panics.
 #[cfg(unix)]
 #[test]
 fn a_full_standard_output_is_an_exit_code() {
@@ -107,6 +107,6 @@ fn a_backend_that_there_is_not_is_named() {
     let mut command = Command::new(env!("CARGO_BIN_EXE_custom_pass"));
     let output =
         command.args(["--out", "never.png"]).env("WGPU_BACKEND", "vulcan").output().expect("the program starts");
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.code() == Some(2) && told.contains("\"vulcan\" names no graphics API"), "{told}");
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && error.contains("\"vulcan\" names no graphics API"), "{error}");
 }

@@ -1,4 +1,4 @@
-//! From frame to frame: nothing is made anew, sizes come and go, and a lost device is an error.
+//! Steady state: no new objects, changing sizes, and a lost device.
 
 use super::{BOTH, GLOW, LINES, NEITHER, TestResult, app, picture, with_engine};
 use custom_pass::app::Screen;
@@ -17,7 +17,7 @@ fn a_warm_application_makes_no_object() -> TestResult {
         let made = app.frames.executor().objects();
         assert!(made.textures > 0 && made.pipelines > 0, "{made:?}");
         for frame in 0..40u8 {
-            // Switched every other frame: what is not in use is kept for a while.
+            // Switched every other frame: unused objects stay in the pool for a while.
             app.settings = all[usize::from(frame / 2 % 4)];
             picture(&mut app, f32::from(frame) / 60.0, &image)?;
         }
@@ -34,7 +34,7 @@ fn an_image_that_is_lent_leaves_nothing_behind() -> TestResult {
         app.draw(0.0, Screen::Surface(&warm))?;
         let made = app.frames.executor().objects();
         for frame in 1..=3u8 {
-            // A surface hands out another image each time.
+            // A surface provides another image each time.
             let lent = app.engine.picture([64, 36]);
             app.draw(0.0, Screen::Surface(&lent))?;
             let now = app.frames.executor().objects();
@@ -74,9 +74,9 @@ fn a_lost_device_is_an_error() -> TestResult {
         picture(&mut app, 0.0, &image)?;
         app.frames.executor().gpu().wait()?;
         app.engine.device.destroy();
-        let told = app.draw(0.0, Screen::Texture(&image));
-        let lost = matches!(told, Err(FrameError::Execute(ExecuteError::Device(DeviceError::Lost { .. }))));
-        assert!(lost, "{told:?}");
+        let message = app.draw(0.0, Screen::Texture(&image));
+        let lost = matches!(message, Err(FrameError::Execute(ExecuteError::Device(DeviceError::Lost { .. }))));
+        assert!(lost, "{message:?}");
         Ok(())
     })
 }

@@ -1,4 +1,4 @@
-//! Names of files and devices, words of the command line: none of them controls a terminal.
+//! File names, device names and arguments with control characters are escaped in every output.
 
 use crate::{run, scratch};
 
@@ -19,8 +19,8 @@ fn no_output_has_control_characters() {
         (&[&empty], r"\u{1b}[31m empty.ron: warning: no pass runs"),
         (&[&wrong], r"\u{1b}[31m wrong.ron:1:14: "),
         (&["\u{1b}[31m.ron"], r"\u{1b}[31m.ron: cannot be read"),
-        (&[&empty, "--caps", "\u{1b}[31m"], r"`\u{1b}[31m` is neither"),
-        (&["--\u{1b}[31m"], r"no option `--\u{1b}[31m`"),
+        (&[&empty, "--caps", "\u{1b}[31m"], r"invalid value `\u{1b}[31m`"),
+        (&["--\u{1b}[31m"], r"unknown option `--\u{1b}[31m`"),
         (&["--offsets", &table], r"a\u{1b}[31m,1,2,4,0"),
     ];
     for (args, shown) in cases {

@@ -1,4 +1,4 @@
-//! The `plan` program from outside: what it prints, where, and with which exit code.
+//! Runs the program `plan` and checks its output, files and exit codes.
 
 mod characters;
 
@@ -14,14 +14,14 @@ fn plan(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_plan")).args(args).output().expect("the program starts")
 }
 
-/// Exit code, standard output and standard error.
+/// Returns exit code, standard output and standard error.
 fn run(args: &[&str]) -> (Option<i32>, String, String) {
     let output = plan(args);
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the output is UTF-8");
     (output.status.code(), text(output.stdout), text(output.stderr))
 }
 
-/// A file of this test's own.
+/// Returns the path of a scratch file of this test binary.
 fn scratch(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("plan");
     std::fs::create_dir_all(&folder).expect("the folder can be made");
@@ -29,7 +29,7 @@ fn scratch(name: &str) -> PathBuf {
 }
 
 #[test]
-fn a_frame_is_planned_for_the_device_size_and_features_that_are_asked_for() {
+fn options_select_device_size_and_features() {
     let frame = case("filament.ron");
     let (code, text, error) = run(&[&frame]);
     assert_eq!((code, error.as_str()), (Some(0), ""));
@@ -62,10 +62,10 @@ fn every_format_is_written() {
 }
 
 #[test]
-fn a_broken_budget_names_the_decisions_to_blame() {
+fn an_exceeded_budget_lists_the_decisions_that_caused_it() {
     let frame = case("filament.ron");
     let with = |budget| run(&[&frame, "--set", "sao=on", "--caps", "desktop", "--budget", budget]);
-    // Three loads of tested depth, eleven stores: see the case.
+    // Three loads of tested depth and eleven stores; see the case file.
     let (code, text, error) = with("loads=3,stores=11");
     assert_eq!((code, error.as_str()), (Some(0), ""));
     assert!(text.starts_with("plan 1"));
@@ -73,7 +73,7 @@ fn a_broken_budget_names_the_decisions_to_blame() {
     assert_eq!(code, Some(1));
     assert!(text.starts_with("plan 1"), "the plan is printed all the same");
     let lines: Vec<_> = error.lines().collect();
-    assert_eq!(lines[0], "budget broken: loads 3, allowed 2");
+    assert_eq!(lines[0], "budget exceeded: loads 3, limit 2");
     assert_eq!(lines.len(), 4, "{error}");
     for line in &lines[1..] {
         assert!(
@@ -83,7 +83,7 @@ fn a_broken_budget_names_the_decisions_to_blame() {
     }
     let (code, _, error) = with("bytes=1MB,traffic=1MB,steps=1,culled=0");
     assert_eq!(code, Some(1));
-    for line in ["budget broken: bytes ", "budget broken: traffic ", "budget broken: steps ", "not merged with"] {
+    for line in ["budget exceeded: bytes ", "budget exceeded: traffic ", "budget exceeded: steps ", "not merged with"] {
         assert!(error.contains(line), "{error}\nlacks {line}");
     }
     assert!(!error.contains("culled"), "nothing is culled: {error}");
@@ -99,7 +99,7 @@ fn two_frames_are_compared() {
     assert_eq!(same, "no change\n");
     let (_, json, _) = run(&[&desktop, "--diff", &other, "--format", "json"]);
     assert!(json.contains("\"passes_removed\": [\n    \"a/scene\""), "{json}");
-    // A feature that one of the two knows is switched there; one that neither knows is named.
+    // A feature known to only one of both files is switched there. A feature unknown to both is an error.
     let frame = case("filament.ron");
     for args in [[&frame, "--diff", &desktop], [&desktop, "--diff", &frame]] {
         let (code, off, error) = run(&[&args[..], &["--set", "fxaa=off"]].concat());
@@ -124,7 +124,7 @@ fn devices_come_from_files_too() {
 }
 
 #[test]
-fn bad_input_is_one_line_an_error_and_exit_code_2() {
+fn invalid_input_is_one_line_per_error_and_exit_code_2() {
     let bad = scratch("bad.ron");
     std::fs::write(&bad, "(version: 1, resources: [\n  Texture(name: \"a\", format: R8Unrm),\n])").expect("written");
     let latin = scratch("latin.ron");
@@ -132,11 +132,14 @@ fn bad_input_is_one_line_an_error_and_exit_code_2() {
     let frame = case("filament.ron");
     let shown = bad.display().to_string();
     let cases: [(&[&str], String); 9] = [
-        (&[], "FRAME.ron is missing; see --help".into()),
-        (&[&frame, "--frobnicate"], "there is no option `--frobnicate`; see --help".into()),
-        (&[&frame, "--size", "big"], "--size: `big` is not WxH".into()),
+        (&[], "FRAME.ron: missing argument; see --help".into()),
+        (&[&frame, "--frobnicate"], "unknown option `--frobnicate`; see --help".into()),
+        (&[&frame, "--size", "big"], "--size: invalid value `big`; expected WxH".into()),
         (&[&frame, "--set", "fxa=off"], "there is no feature `fxa`; did you mean `fxaa`?".into()),
-        (&[&frame, "--caps", "toaster"], "--caps: `toaster` is neither desktop, tiler, wgpu nor a FILE.ron".into()),
+        (
+            &[&frame, "--caps", "toaster"],
+            "--caps: invalid value `toaster`; expected desktop, tiler, wgpu or a FILE.ron".into(),
+        ),
         (&[&frame, "--size", "20000x20000"], "the device allows".into()),
         (&["nowhere.ron"], "nowhere.ron: cannot be read: ".into()),
         (&[&shown], format!("{shown}:2:30: `R8Unrm` is no Format; did you mean `R8Unorm`?")),
@@ -150,7 +153,7 @@ fn bad_input_is_one_line_an_error_and_exit_code_2() {
 }
 
 #[test]
-fn intervals_are_packed_and_mistakes_in_them_named() {
+fn intervals_are_packed_and_mistakes_are_reported() {
     let csv = scratch("intervals.csv");
     std::fs::write(&csv, "id,lower,upper,size\na,0,3,4\nb,3,9,4\nc,0,9,4\n").expect("written");
     let path = csv.display().to_string();
@@ -165,7 +168,8 @@ fn intervals_are_packed_and_mistakes_in_them_named() {
     assert!(error.contains("line 2") && error.contains("size"), "{error}");
 }
 
-/// A search that would take hours tells how far it is, and ends by the clock or by a signal with what it has.
+/// A search that would take hours reports its progress. It ends at the time limit or at a signal, and prints its best
+/// result.
 #[cfg(unix)]
 #[test]
 fn offsets_are_printed_when_time_is_up() {
@@ -184,11 +188,11 @@ fn offsets_are_printed_when_time_is_up() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_plan"));
     child.args(["--offsets", &path, "--budget-steps", &steps]).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = child.spawn().expect("the program starts");
-    let mut told = String::new();
+    let mut reported = String::new();
     let mut lines = std::io::BufReader::new(child.stderr.take().expect("it is piped"));
-    std::io::BufRead::read_line(&mut lines, &mut told).expect("the words are UTF-8");
+    std::io::BufRead::read_line(&mut lines, &mut reported).expect("the words are UTF-8");
     let sent = Command::new("kill").args(["-s", "TERM", &child.id().to_string()]).status();
-    assert!(told.contains("lower bound 1024") && sent.expect("kill is there").success(), "{told}");
+    assert!(reported.contains("lower bound 1024") && sent.expect("kill is there").success(), "{reported}");
     let output = child.wait_with_output().expect("it ends");
     let lines = output.stdout.iter().filter(|byte| **byte == b'\n').count();
     assert_eq!((output.status.code(), lines), (Some(0), items.len() + 1));
@@ -216,7 +220,7 @@ fn help_names_every_option() {
     }
 }
 
-/// The README shows a picture of a plan beside the command that makes it.
+/// `docs/plan.svg` equals the output of the command in the README.
 #[test]
 fn the_picture_in_the_readme_is_what_its_command_writes() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -234,7 +238,7 @@ fn the_picture_in_the_readme_is_what_its_command_writes() {
     assert!(read(&out) == read(&root.join("docs/plan.svg")), "docs/plan.svg is old: run the README's command again");
 }
 
-/// What it prints may have nowhere to go, and it must not go over what it was made from.
+/// A full or closed standard output is reported, and input files are never overwritten.
 #[cfg(unix)]
 #[test]
 fn outputs_lose_nothing() {
@@ -249,26 +253,26 @@ fn outputs_lose_nothing() {
     let (other, link) = (case("diamond.ron"), link.display().to_string());
     for args in [[&own, "--out", &own], [&own, "--out", &link], [&link, "--out", &own]] {
         let (code, _, error) = run(&args);
-        assert!(code == Some(2) && error.contains("it is read and would be written over"), "{args:?}: {error}");
+        assert!(code == Some(2) && error.contains("it is an input of this run"), "{args:?}: {error}");
     }
     let (code, _, error) = run(&[&other, "--diff", &own, "--out", &own]);
-    assert!(code == Some(2) && error.contains("it is read"), "{error}");
+    assert!(code == Some(2) && error.contains("it is an input"), "{error}");
     assert_eq!(std::fs::read(&input).ok(), std::fs::read(case("two_views.ron")).ok());
-    // Full: a line says so. Closed: the reader has seen enough.
+    // A full device is an error. A closed pipe is not, because its reader needs no more.
     let full = File::options().write(true).open("/dev/full").expect("Linux has it");
     let output = Command::new(env!("CARGO_BIN_EXE_plan")).arg(&own).stdout(full).output().expect("the program starts");
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!((output.status.code(), told.lines().count()), (Some(2), 1), "{told}");
-    assert!(told.starts_with("error: standard output: "), "{told}");
+    let reported = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!((output.status.code(), reported.lines().count()), (Some(2), 1), "{reported}");
+    assert!(reported.starts_with("error: standard output: "), "{reported}");
     let mut child = Command::new(env!("CARGO_BIN_EXE_plan"));
     child.args([&own, "--budget", "steps=0"]).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = child.spawn().expect("the program starts");
     drop(child.stdout.take());
-    let mut told = String::new();
-    child.stderr.take().expect("it is piped").read_to_string(&mut told).expect("the words are UTF-8");
-    assert_eq!(child.wait().expect("it ends").code(), Some(1), "{told}");
-    assert!(told.starts_with("budget broken: steps") && !told.contains("standard output"), "{told}");
-    // The same words through a device, and into the longest of names.
+    let mut reported = String::new();
+    child.stderr.take().expect("it is piped").read_to_string(&mut reported).expect("the words are UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(1), "{reported}");
+    assert!(reported.starts_with("budget exceeded: steps") && !reported.contains("standard output"), "{reported}");
+    // The output is equal through a device, and with the longest possible file name.
     let (_, printed, _) = run(&[&own]);
     let (code, through, _) = run(&[&own, "--out", "/dev/stdout"]);
     assert_eq!((code, &through), (Some(0), &printed));
@@ -311,7 +315,7 @@ fn a_frame_of_standard_passes_is_planned_and_their_kinds_are_listed() {
 }
 
 #[test]
-fn a_forgotten_export_is_said() {
+fn a_missing_export_is_a_warning() {
     let file = scratch("idle.ron");
     let text = r#"(version: 1, resources: [Texture(name: "a", format: R8Unorm)],
         passes: [Raster(name: "p", accesses: [Color(to: "a", intent: Overwrite)])])"#;
@@ -325,15 +329,14 @@ fn a_forgotten_export_is_said() {
 }
 
 #[test]
-fn an_end_is_the_last_step_itself() {
+fn the_column_end_is_inclusive() {
     let file = scratch("ends.csv");
     std::fs::write(&file, "buffer,start,end,size\na,0,2,4\nb,3,8,4\n").expect("the file can be written");
     let (code, table, error) = run(&["--offsets", &file.display().to_string()]);
     assert_eq!((code, table.as_str()), (Some(0), "id,lower,upper,size,offset\na,0,3,4,0\nb,3,9,4,0\n"), "{error}");
 }
 
-/// Work without steps ends at a signal, and leaves nothing behind: here it waits for somebody to write its input.
-/// A file of so many passes in a row that planning them takes longer than a signal.
+/// Writes a graph file with 20,000 passes in a row, which takes longer to plan than a signal takes to arrive.
 fn long_chain(path: &Path) {
     let (mut resources, mut passes) = (String::new(), String::new());
     for i in 0..20_000 {
@@ -344,7 +347,7 @@ fn long_chain(path: &Path) {
     std::fs::write(path, format!("(version: 1, resources: [{resources}], passes: [{passes}])")).expect("a file");
 }
 
-/// A pipe without a writer: opening it would wait for ever.
+/// Opening a pipe without a writer would block forever, so only regular files are opened.
 #[cfg(unix)]
 #[test]
 fn nothing_but_regular_files_is_opened() {
@@ -372,7 +375,7 @@ fn nothing_but_regular_files_is_opened() {
 
 #[cfg(unix)]
 #[test]
-fn a_signal_ends_what_has_no_steps() {
+fn a_signal_ends_planning() {
     let folder = scratch("signal");
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("the folder is ours");

@@ -1,10 +1,10 @@
-//! Output files from outside: what is replaced, what is refused, and what is left behind.
+//! Output files: replacement, rejected paths and temporary files.
 
 use program::outputs::{OutputError, Outputs, check_folder};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-/// A folder of its own for each test, empty at first.
+/// Creates an empty folder for a test.
 fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
     let _ = fs::remove_dir_all(&folder);
@@ -46,16 +46,19 @@ fn names_may_be_as_long_as_names_can_be() {
     let (longest, longer) = ("n".repeat(255), "n".repeat(256));
     one(&folder.join(&longest), "x").expect("255 bytes are allowed");
     assert_eq!(names(&folder), [longest]);
-    assert!(Outputs::default().add(&folder.join(longer)).is_err(), "256 are not, which is said before the work");
+    assert!(Outputs::default().add(&folder.join(longer)).is_err(), "256 bytes are rejected before the work");
 }
 
 #[test]
 fn what_cannot_be_written_is_said_before_the_work() {
     let folder = folder("refused");
     fs::create_dir(folder.join("d")).expect("the folder is ours");
-    for (name, reason) in [("d", "it is a folder"), ("gone/a", "there is no folder"), ("..", "it is a folder")] {
-        let told = Outputs::default().add(&folder.join(name)).map_err(|error| error.to_string());
-        assert!(told.as_ref().is_err_and(|told| told.contains(name) && told.contains(reason)), "{name}: {told:?}");
+    for (name, reason) in [("d", "it is a folder"), ("gone/a", "does not exist"), ("..", "it is a folder")] {
+        let message = Outputs::default().add(&folder.join(name)).map_err(|error| error.to_string());
+        assert!(
+            message.as_ref().is_err_and(|message| message.contains(name) && message.contains(reason)),
+            "{name}: {message:?}"
+        );
     }
     assert!(check_folder(&folder).is_ok() && check_folder(&folder.join("gone")).is_err());
     assert_eq!(names(&folder), ["d"], "nothing is left of asking");
@@ -109,8 +112,8 @@ mod unix {
         }
         one(&folder.join("b"), "through two links").expect("it can be written");
         one(&folder.join("dangling"), "made").expect("its folder is there");
-        let told = one(&folder.join("circle"), "").map_err(|error| error.to_string());
-        assert!(told.is_err_and(|told| told.contains("circle")));
+        let message = one(&folder.join("circle"), "").map_err(|error| error.to_string());
+        assert!(message.is_err_and(|message| message.contains("circle")));
         assert_eq!(fs::read_to_string(folder.join("real/a")).ok().as_deref(), Some("through two links"));
         assert_eq!(fs::read_to_string(folder.join("real/new")).ok().as_deref(), Some("made"));
         let mode = |name| fs::metadata(folder.join(name)).expect("it is there").permissions().mode() & 0o777;
@@ -129,10 +132,10 @@ mod unix {
         for path in [first.as_path(), Path::new("/dev/full")] {
             outputs.write(path, |file| file.write_all(b"x")).expect("it fails only at the end");
         }
-        let told = outputs.commit().map_err(|error| error.to_string());
-        assert!(told.is_err_and(|told| told.starts_with("/dev/full: ")));
+        let message = outputs.commit().map_err(|error| error.to_string());
+        assert!(message.is_err_and(|message| message.starts_with("/dev/full: ")));
         assert!(names(&folder).is_empty());
-        // A folder that is gone meanwhile.
+        // The folder disappears during the run.
         fs::create_dir(folder.join("d")).expect("the folder is ours");
         let mut outputs = Outputs::default();
         for path in [&first, &folder.join("d/second")] {

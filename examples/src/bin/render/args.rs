@@ -1,16 +1,16 @@
-//! The command line of `render`.
+//! Command line of `render`.
 
-use crate::budget::{self, Budget};
-use crate::debug::{self, Debugging};
+use crate::animation::AnimationTime;
+use crate::budget::Budget;
+use crate::debug::Debugging;
 use crate::decide::{self, Decide};
-use crate::effects::{self, Effects};
-use crate::given::Given;
-use crate::grade::{self, Grade};
-use crate::light::{self, Lighting};
-use crate::look::{number, precision, quality, shading, switch};
-use crate::moment::{self, Moment};
+use crate::effects::Effects;
+use crate::explicit::ExplicitOptions;
+use crate::grade::Grade;
+use crate::light::Lighting;
 use crate::name::{plan_files, with_ending};
-use crate::shadows::{self, Shadows};
+use crate::parse::{number, precision, quality, shading, switch};
+use crate::shadows::Shadows;
 use crate::values::{alias, camera, frames, memory, samples, size, threads};
 use framegraph::Alias;
 use framegraph_passes::PostSettings;
@@ -19,159 +19,82 @@ use framegraph_scene::{BlockFormats, CameraChoice, LoadOptions, Memory};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// What `render --help` prints.
-pub fn help() -> String {
-    let plain = |text: &str| text.trim_start_matches('\n').to_owned();
-    HELP.replace("LIGHTING\n", &plain(light::HELP))
-        .replace("GRADING\n", &plain(grade::HELP))
-        .replace("SHADOWS\n", &plain(shadows::HELP))
-        .replace("EFFECTS\n", &plain(effects::HELP))
-        .replace("BUDGET\n", &plain(budget::HELP))
-        .replace("FRAME\n", &plain(&decide::help()))
-        .replace("MOMENT\n", &plain(moment::HELP))
-        .replace("DEBUGGING\n", &plain(debug::HELP))
-}
-
-const HELP: &str = "\
-Renders a scene through the compiled render graph, without a window.
-
-usage: render [SCENE] [options]
-
-SCENE is a glTF or GLB file, or a built-in scene: spheres (default), balls, columns, glass, lamps (lamps:N has N of them,
-lamps 1000), lobes, materials, optics, panes (panes:N has N of them, panes 5).
-
-  --size WxH           size of the picture in pixels (1280x720)
-  --msaa 1|4           samples per pixel (4)
-  --camera WHICH       a camera of the scene by name, `orbit` (the whole scene), or EX,EY,EZ:TX,TY,TZ:FOVY with eye and
-                       target in meters and the vertical field of view in degrees; default: the scene's first, else orbit
-  --camera-from-gltf   the first camera of the file, or that of --camera NAME; an error where it has none
-  --variant NAME       the materials of a variant of the file (KHR_materials_variants)
-MOMENT
-LIGHTING
-  --quality low|high|ultra  how surfaces are shaded: `low` as Filament does on phones, `high` as on desktops, `ultra` with
-                       more bands of irradiance and finer reflections (high)
-  --shade KEY=X,...    one by one: visibility=exact|fast, table=exact|fast (visibility's own), floor=R (least
-                       roughness), f90-fades=on|off,
-                       compensation=on|off|image|punctual (of light scattered more than once), bands=2|3|5 (of
-                       irradiance), window=none|hann|sinc|laplacian:LAMBDA (of its bands, against ringing),
-                       irradiance=harmonics|cube (the last level of the prefiltered environment),
-                       environment-format=rg11b10|half|rgbm (of the prefiltered environment), aa=on|off|VARIANCE:THRESHOLD (of highlights), multi-bounce=on|off (of ambient
-                       occlusion), specular-occlusion=on|off, micro-shadows=on|off (of the sun, by the material's
-                       occlusion), fast-coat=on|off (reflection under varnish), coat-ior-change=on|off (clear coat lowers
-                       the base's f0), transmission-blur=distance|angle (of what is behind rough bodies; angle as Filament), light-window=gltf|filament (how punctual lights end at their range), light-fade=off|M (meters
-                       from the eye beyond which none shines)
-  --precision f32|f16  the numbers that shading computes in; f16 where the adapter has it, roughness then from 0.089 (f32)
-  --compensation EV    exposure compensation (0)
-  --vignette EV        how much darker the corners are than the middle (0)
-  --dither X           amplitude of the dither: 1 is half a code either way (1)
-  --inline on|off      post-processing at the end of the color pass's shader, where that is sound (on)
-  --alias heap|pool|none  textures that live at other times share memory: at offsets of one block, whatever their shape
-                       (Vulkan; elsewhere the pool serves); textures of one shape (pool); or not
-  --threads auto|N     threads that record a frame where that is measured to be faster (auto: as many as there are cores)
-  --round-hdr          where it is inlined, round the radiance first as the device stores it: with --msaa 1 the same bits
-                       as --inline off
-  --split-post         a pass for each effect of post-processing
-  --compare-post       no picture, but a table of what post-processing costs inlined, in one pass and in a pass for each
-                       effect, at one and four samples (--size 1920x1080)
-FRAME
-BUDGET
-EFFECTS
-  --no-fxaa            leave edges as they are
-  --frames N           measured frames after four for warming up (8)
-  --out FILE.png       the picture (render.png)
-  --linear-out FILE.exr  radiance times exposure before tone mapping, linear Rec.709, of the size as drawn. It contains
-                       shading, shadows, ao, ssr, glass, blending, fog, the background, msaa, taa and dof; not bloom, flares,
-                       --compensation, vignette, edge fade, grading, the tone curve, dither, fxaa and enlarging. Values above
-                       1 are kept, so it does not go together with --disable hdr-target
-  --plan FILE          the plan as text; its graph goes beside it with the ending .dot (the picture's name with .plan.txt)
-  --memory BYTES       what loading may take: files, decoding, mip levels, upload; 512MiB, 2GB, … (half of the machine's)
-  --allow-outside      buffers and images of the scene may lie outside of its folder
-GRADING
-SHADOWS
-DEBUGGING
-  --help               this text
-
-The adapter is the best there is, hardware first; WGPU_BACKEND and WGPU_ADAPTER_NAME choose another.
-Light of an environment is kept in the user's cache folder; FRAMEGRAPH_LIGHT_CACHE names another, or is `off`.
-Files are written together at the end, whole or not at all; a pipe or a device is written through. SIGINT and SIGTERM stop the
-run at its next step, and nothing is written.
-Exit codes: 0 done, 1 the device failed, 2 bad input or output, 128 and its number after a signal.";
-
-/// What was asked for.
+/// Parsed options of a run.
 #[derive(Clone, Debug)]
 pub struct Args {
-    /// Built-in name or file.
+    /// Name of a built-in scene, or path of a file.
     pub scene: String,
-    /// Width and height in pixels.
+    /// Picture width and height in pixels.
     pub size_px: [u32; 2],
     /// Samples per pixel.
     pub samples: u8,
-    /// The camera; none takes the scene's first, else an orbit.
+    /// Camera; `None` selects the first camera of the scene, or else an orbit.
     pub camera: Option<CameraChoice>,
-    /// The camera must be one of the scene's own.
+    /// Requires a camera of the file.
     pub camera_from_gltf: bool,
-    /// What lights the scene, what is behind it, exposure.
+    /// Environment, sun, background and exposure.
     pub lighting: Lighting,
-    /// How fine light is.
+    /// Quality of image-based light and shading.
     pub quality: Quality,
-    /// How surfaces are shaded.
+    /// Single shading options.
     pub shading: Shading,
-    /// Exposure, vignette, grading, tone curve, dither.
+    /// Exposure compensation, vignette, grading, tone curve and dither.
     pub post: PostSettings,
-    /// Grading and tone curve as they were asked for; [`Args::post`] has them.
+    /// Grading and tone curve as specified; [`Args::post`] contains them.
     pub grade: Grade,
-    /// Post-processing in the color pass's shader, where that is sound.
+    /// Runs post-processing in the color pass's shader where possible.
     pub inline: bool,
     pub alias: Alias,
-    /// 0 for as many as there are cores.
+    /// Number of recording threads; 0 for the number of cores.
     pub threads: usize,
-    /// Round the radiance as the device stores it, where it is not stored.
+    /// Rounds inlined radiance to the precision of the HDR format.
     pub round_hdr: bool,
-    /// A pass for each effect.
+    /// Runs every post-processing effect as a pass of its own.
     pub split_post: bool,
-    /// Compare ways of post-processing instead of rendering a picture.
+    /// Compares the costs of post-processing instead of rendering a picture.
     pub compare_post: bool,
-    /// How lights cast shadows.
+    /// Shadow options.
     pub shadows: Shadows,
-    /// Ambient occlusion, reflections, glass, fog.
+    /// Ambient occlusion, reflections, glass, fog, lens effects and anti-aliasing.
     pub effects: Effects,
-    /// The frame that these options change: what they do not name is its.
+    /// Settings of the frame before options override them.
     pub base: Settings,
-    /// The file that it was read from.
+    /// File of the base settings.
     pub settings: Option<PathBuf>,
-    /// Which effects stay and go, and what else is done with the frame.
+    /// Enabled and disabled effects, and additional outputs.
     pub decide: Decide,
     /// Name of the material variant.
     pub variant: Option<String>,
-    /// At which moment of an animation the scene is.
-    pub moment: Moment,
-    /// Soften edges.
+    /// Animation and its time.
+    pub animation: AnimationTime,
+    /// Enables FXAA.
     pub fxaa: bool,
-    /// Measured frames.
+    /// Number of measured frames.
     pub frames: u32,
-    /// The picture.
+    /// Path of the picture.
     pub out: PathBuf,
-    /// Linear radiance.
+    /// Path of the linear radiance.
     pub linear_out: Option<PathBuf>,
-    /// The plan as text; none where the picture goes to a pipe or a device and nothing was said.
+    /// Path of the plan as text; `None` if the picture goes to a pipe or device and no path was specified.
     pub plan: Option<PathBuf>,
-    /// The plan as a graph; none where the text goes to a pipe or a device.
+    /// Path of the plan as a graph; `None` if the text goes to a pipe or device.
     pub dot: Option<PathBuf>,
-    /// What loading may take in bytes; none for half of the machine's.
+    /// Memory limit of loading in bytes; `None` for half of the machine's memory.
     pub memory_bytes: Option<u64>,
-    /// Files of the scene may lie outside of its folder.
+    /// Allows files outside the folder of the scene.
     pub allow_outside: bool,
-    /// Looking into the frame, and bisecting it.
+    /// Inspection and bisection.
     pub debug: Debugging,
-    /// What the frame is held to.
+    /// Time or error limit of the frame.
     pub budget: Budget,
-    /// It is one of several frames that are tried, and what was told of the scene is not told again.
+    /// Set for the candidate frames of a budget search, which print no messages about the scene.
     pub trial: bool,
 }
 
 impl Args {
-    /// Returns the options of loading for a device that samples these formats. Everything that is loaded shares one budget:
-    /// make them once.
+    /// Returns the loading options for a device that samples `block_formats`.
+    ///
+    /// Call it once: everything loaded with the result shares one memory budget.
     pub fn load_options(&self, block_formats: BlockFormats) -> LoadOptions {
         let memory = self.memory_bytes.map_or_else(Memory::default, Memory::new);
         LoadOptions {
@@ -184,7 +107,7 @@ impl Args {
     }
 }
 
-/// What the command line comes to.
+/// Parsed command line.
 #[derive(Clone, Debug)]
 pub enum Command {
     /// Print the help.
@@ -193,16 +116,16 @@ pub enum Command {
     Render(Box<Args>),
 }
 
-/// Reads the command line; `args` without the program's name.
+/// Parses the command line; `args` excludes the program name.
 ///
 /// # Errors
-/// One line that names the option and what it takes.
+/// One line that names the option and the expected value.
 pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String> {
     use lexopt::prelude::*;
     let args: Vec<OsString> = args.into_iter().collect();
     let (frame, settings) = decide::base(&args)?;
     let base = frame.map_or(Settings::default(), |frame| frame.settings);
-    let mut given = Given::of(&args);
+    let mut explicit = ExplicitOptions::of(&args);
     let mut parser = lexopt::Parser::from_args(args);
     let mut found = Args {
         scene: String::new(),
@@ -227,7 +150,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         settings,
         decide: Decide::default(),
         variant: None,
-        moment: Moment::default(),
+        animation: AnimationTime::default(),
         fxaa: true,
         frames: 8,
         out: PathBuf::from("render.png"),
@@ -248,7 +171,7 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     let mut numbers: Option<Precision> = None;
     while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
         if let Long(name) = arg {
-            given.note(name)?;
+            explicit.note(name)?;
         }
         match arg {
             Long("help") | Short('h') => return Ok(Command::Help),
@@ -286,13 +209,13 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             Value(value) if found.scene.is_empty() => {
                 found.scene = value.into_string().map_err(|v| format!("SCENE {v:?}: the name is not Unicode"))?;
             }
-            Value(value) => return Err(format!("{value:?}: one scene at a time; SCENE is `{}` already", found.scene)),
+            Value(value) => return Err(format!("{value:?}: unexpected argument; SCENE is already `{}`", found.scene)),
             Long(name) => {
                 let name = name.to_owned();
                 let taken = found.lighting.take(&name, &mut parser)?
                     || found.shadows.take(&name, &mut parser)?
                     || found.effects.take(&name, &mut parser)?
-                    || found.moment.take(&name, &mut parser)?
+                    || found.animation.take(&name, &mut parser)?
                     || found.grade.take(&name, &mut parser)?
                     || found.decide.take(&name, &mut parser)?
                     || found.budget.take(&name, &mut parser)?
@@ -309,16 +232,17 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     }
     if let (true, Some(CameraChoice::Orbit | CameraChoice::LookAt { .. })) = (found.camera_from_gltf, &found.camera) {
         return Err(
-            "--camera-from-gltf: --camera asks for one that is not the file's; give its name, or one of the two".into(),
+            "--camera-from-gltf: --camera does not name a camera of the file; name one, or remove one of both options"
+                .into(),
         );
     }
-    given.check(&found)?;
+    explicit.check(&found)?;
     found.keep_linear()?;
     found.grade.apply(&mut found.post)?;
-    let chosen = if given.has("quality") { found.quality.shading() } else { found.shading };
+    let chosen = if explicit.has("quality") { found.quality.shading() } else { found.shading };
     found.shading = shading(chosen, &shade)?;
     found.shading.precision = numbers.unwrap_or(found.shading.precision);
-    if found.compare_post && !given.has("size") {
+    if found.compare_post && !explicit.has("size") {
         found.size_px = [1920, 1080];
     }
     (found.plan, found.dot) = plan_files(plan, &found.out);
@@ -326,14 +250,14 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
 }
 
 impl Args {
-    /// Keeps the target of half floats where its radiance is written to a file: eight bits would cut off values above 1.
+    /// Keeps the half-float HDR format for `--linear-out`, because 8-bit values would be clipped at 1.
     fn keep_linear(&mut self) -> Result<(), String> {
         if self.linear_out.is_none() {
             return Ok(());
         }
         if self.decide.disabled.contains(Effect::HdrTarget) {
             return Err(
-                "--linear-out: without hdr-target values above 1 are cut off; leave out --disable hdr-target or \
+                "--linear-out: without hdr-target, values above 1 are clipped; remove --disable hdr-target or \
                         --linear-out"
                     .into(),
             );
@@ -344,12 +268,12 @@ impl Args {
 }
 
 fn text(parser: &mut lexopt::Parser, option: &str) -> Result<String, String> {
-    let value = parser.value().map_err(|_| format!("{option}: a value is missing"))?;
+    let value = parser.value().map_err(|_| format!("{option}: missing value"))?;
     value.into_string().map_err(|v| format!("{option} {v:?}: the value is not Unicode"))
 }
 
 fn path(parser: &mut lexopt::Parser, option: &str) -> Result<PathBuf, String> {
-    parser.value().map(PathBuf::from).map_err(|_| format!("{option}: a file is missing"))
+    parser.value().map(PathBuf::from).map_err(|_| format!("{option}: missing file"))
 }
 
 #[cfg(test)]
@@ -371,13 +295,25 @@ mod tests {
     }
 
     #[test]
-    fn comparing_is_done_at_full_hd_unless_asked_otherwise() {
+    fn former_names_of_options_are_valid() {
+        let costs = |option: &str| args(&[option]).map(|found| found.decide.effect_costs);
+        assert_eq!((costs("--effect-costs"), costs("--what-it-costs")), (Ok(true), Ok(true)));
+        let both = args(&["--effect-costs", "--what-it-costs"]).map(drop);
+        assert_eq!(both, Err("--effect-costs: specified twice; remove one".into()));
+        for name in ["punctual-shadows", "lamp-shadows"] {
+            let conflict = args(&["--no-shadows", "--enable", name]).map(drop);
+            assert!(conflict.is_err_and(|error| error.starts_with("--enable punctual-shadows: cannot")), "{name}");
+        }
+    }
+
+    #[test]
+    fn post_processing_is_compared_at_full_hd_by_default() {
         let size = |words: &[&str]| args(words).map(|found| found.size_px);
         assert_eq!(size(&["--compare-post"]), Ok([1920, 1080]));
         assert_eq!(size(&["--size", "64x32", "--compare-post"]), Ok([64, 32]));
     }
 
-    /// Whatever the facts say of the scene, and whatever order the options have.
+    /// `--linear-out` keeps the half-float format, independent of feature culling and of the order of options.
     #[test]
     fn a_linear_picture_keeps_its_half_floats() {
         let kept = |words: &[&str]| args(words).map(|found| found.decide.enabled.contains(Effect::HdrTarget));
@@ -396,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_words_are_named_in_one_line() {
+    fn invalid_options_are_reported_in_one_line() {
         let cases: [(&[&str], &str); 44] = [
             (&["--threads", "0"], "--threads 0"),
             (&["--size", "0x0"], "--size 0x0"),
@@ -438,15 +374,15 @@ mod tests {
             (&["--out", "a.jpg"], "--out a.jpg"),
             (&["--linear-out", "a.png"], "--linear-out a.png"),
             (&["--linear-out", "a.exr", "--disable", "hdr-target"], "--linear-out: without hdr-target"),
-            (&["--disable", "hdr-target", "--linear-out=a.exr"], "leave out --disable hdr-target"),
+            (&["--disable", "hdr-target", "--linear-out=a.exr"], "remove --disable hdr-target"),
             (&["--frames", "0"], "--frames 0"),
             (&["--memory", "0MiB"], "--memory 0MiB"),
-            (&["--size", "1x1", "--size=2x2"], "--size: it is given twice"),
+            (&["--size", "1x1", "--size=2x2"], "--size: specified twice"),
             (&["--colour"], "--colour"),
             (&["spheres", "columns"], "columns"),
         ];
         for (words, named) in cases {
-            let error = args(words).expect_err("the command line is wrong");
+            let error = args(words).expect_err("the command line is invalid");
             assert!(error.contains(named) && !error.contains('\n'), "{words:?}: {error}");
         }
     }

@@ -1,4 +1,4 @@
-//! The frame within a budget: `--budget-ms`, `--max-error`.
+//! Frame within a budget: `--budget-ms` and `--max-error`.
 
 use crate::args::Args;
 use crate::run::{Failure, Frames, Prepared, WARM_UP, device, input, prepare, render};
@@ -9,43 +9,43 @@ use framegraph_passes::budget::{Bound, Choices, GROUPS, Measured, Offers, Settle
 use framegraph_passes::facts::{Decision, Facts};
 use framegraph_wgpu::read_texture;
 use lexopt::Parser;
-use program::input::{MOST_TEXT_BYTES, text};
+use program::input::{MAX_TEXT_BYTES, text};
 use program::outputs::Outputs;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// What `render --help` prints of them.
-pub const HELP: &str = "
+/// Help section.
+pub const HELP: &str = "\
 BUDGET
-  --budget-ms X        the most accurate frame that takes at most X ms here: options of edges, shadows, ambient occlusion,
-                       shading, precision, radiance, reflections and glass are chosen by what they were measured to take and
-                       to err by, tried on this scene, and compared with the finest frame (docs/accuracy.md)
-  --max-error X        the fastest frame that is no farther than X from the finest: root mean square in codes of 255
-  --record FILE.json   what was measured, by `accuracy --technique budget`; without it, the record of the repository
-                       (docs/accuracy.json), which was made with a software driver. With --preset, the preset's options are
-                       chosen from it
+  --budget-ms X        choose the most accurate frame within X ms on this device. Candidates for edges, shadows, ambient
+                       occlusion, shading, precision, HDR format, reflections and glass come from measured costs and errors
+                       (docs/accuracy.md), and are verified on this scene against the reference frame
+  --max-error X        choose the fastest frame whose root-mean-square error against the reference frame is at most X 8-bit
+                       steps
+  --record FILE.json   measurements of `accuracy --technique budget`; default: docs/accuracy.json, measured with a software
+                       driver. With --preset, the options of the preset are chosen from it
 ";
 
-/// What was measured in the repository.
+/// Measurements committed to the repository.
 const OWN: &str = include_str!("../../../../docs/accuracy.json");
 
-/// What a frame is held to.
+/// Limit of the frame and the measurements to choose from.
 #[derive(Clone, Debug, Default)]
 pub struct Budget {
-    /// Time or error; none: nothing is chosen.
+    /// Time or error limit; `None` disables the search.
     pub bound: Option<Bound>,
-    /// The record; none for that of the repository.
+    /// Record of measurements; `None` for the record of the repository.
     pub record: Option<PathBuf>,
 }
 
 impl Budget {
-    /// Takes an option of this file; false for others.
+    /// Parses the value of an option of this module; returns false for other options.
     ///
     /// # Errors
-    /// One line that names the option and what it takes.
+    /// One line that names the option and the expected value.
     pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
-        let mut value = || parser.value().map_err(|_| format!("--{name}: a value is missing"));
+        let mut value = || parser.value().map_err(|_| format!("--{name}: missing value"));
         match name {
             "budget-ms" => self.bound = Some(Bound::Ms(positive(name, &value()?.to_string_lossy())?)),
             "max-error" => self.bound = Some(Bound::Codes(positive(name, &value()?.to_string_lossy())?)),
@@ -58,10 +58,10 @@ impl Budget {
 
 fn positive(name: &str, text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|x| *x > 0.0 && x.is_finite());
-    number.ok_or_else(|| format!("--{name} {text}: a number above 0 is needed"))
+    number.ok_or_else(|| format!("--{name} {text}: expected a number above 0"))
 }
 
-/// Of a record, what is looked at.
+/// Fields of a record file that the search reads.
 #[derive(Deserialize)]
 struct Record {
     schema: String,
@@ -70,42 +70,42 @@ struct Record {
     budget: Option<Measured>,
 }
 
-/// What was measured, and on which adapter.
+/// Reads a record: the measurements and the name of the measured adapter.
 pub fn record(file: Option<&Path>) -> Result<(Measured, String), String> {
     let shown = file.map_or_else(|| "docs/accuracy.json".into(), |file| file.to_string_lossy());
-    let told = |what: &dyn std::fmt::Display| format!("--record {shown}: {what}");
+    let failed = |what: &dyn std::fmt::Display| format!("--record {shown}: {what}");
     let text = match file {
-        Some(file) => &text(file, MOST_TEXT_BYTES).map_err(|error| format!("--record {error}"))?,
+        Some(file) => &text(file, MAX_TEXT_BYTES).map_err(|error| format!("--record {error}"))?,
         None => OWN,
     };
-    let Record { schema, version, adapter, budget } = serde_json::from_str(text).map_err(|error| told(&error))?;
+    let Record { schema, version, adapter, budget } = serde_json::from_str(text).map_err(|error| failed(&error))?;
     if (schema.as_str(), version) != ("framegraph-accuracy", 2) {
-        return Err(told(&format!(
-            "it is {schema} of version {version}, and framegraph-accuracy of version 2 is read"
+        return Err(failed(&format!(
+            "unsupported schema {schema} version {version}; expected framegraph-accuracy version 2"
         )));
     }
     let budget = budget.ok_or_else(|| {
-        told(&"it has no `budget`; run `accuracy --technique budget` and give its record with --record")
+        failed(&"missing `budget`; run `accuracy --technique budget` and pass its record to --record")
     })?;
     Ok((budget, adapter.unwrap_or_default()))
 }
 
-/// A frame that was tried: its picture's codes, how long it took in ms, and what facts left out of it.
-struct Tried {
+/// Result of a candidate frame: its picture, its time in milliseconds, and the dropped effects.
+struct Candidate {
     picture: Vec<u8>,
     ms: f64,
     facts: Facts,
 }
 
-/// Chooses the frame, says which and how it turned out, and returns the command line that has it.
+/// Chooses the frame, prints the choice and the verified result, and returns the resulting command line.
 ///
 /// # Errors
-/// One line, by whose fault it is.
+/// An input or device failure with a one-line message.
 pub fn choose(args: &Args, bound: Bound) -> Result<Args, Failure> {
     let (measured, adapter) = record(args.budget.record.as_deref()).map_err(input)?;
     let base = args.frame();
     let finest = reference(&base);
-    let truth = attempt(&args.with(&finest))?;
+    let truth = draw_candidate(&args.with(&finest))?;
     let gpu = crate::run::open()?;
     let has = |option: &framegraph_passes::budget::FrameOption| {
         let mut frame = finest;
@@ -119,19 +119,19 @@ pub fn choose(args: &Args, bound: Bound) -> Result<Args, Failure> {
         choices.iter().zip(set).for_each(|((_, options), index)| (options[*index].apply)(&mut frame));
         frame
     };
-    let fastest = attempt(&args.with(&frame_of(&vec![0; choices.len()])))?;
+    let fastest = draw_candidate(&args.with(&frame_of(&vec![0; choices.len()])))?;
     let mut offers = measured.offers(&choices, fastest.ms.min(truth.ms), truth.ms);
     let settled = settle(&mut offers, bound, |set| {
-        let tried = attempt(&args.with(&frame_of(set)))?;
-        Ok::<_, Failure>(Trial { ms: tried.ms, squares: squares(&tried.picture, &truth.picture) })
+        let candidate = draw_candidate(&args.with(&frame_of(set)))?;
+        Ok::<_, Failure>(Trial { ms: candidate.ms, squares: squares(&candidate.picture, &truth.picture) })
     })?;
     program::print(table(&choices, &offers, &settled, &truth.facts));
     program::print(verdict(bound, &settled, &adapter, truth.ms));
     Ok(args.with(&frame_of(&settled.chosen.options)))
 }
 
-/// Draws a frame as often as is measured.
-fn attempt(args: &Args) -> Result<Tried, Failure> {
+/// Renders a frame and returns its median time.
+fn draw_candidate(args: &Args) -> Result<Candidate, Failure> {
     let mut prepared = prepare(args, &mut Outputs::default())?;
     let (options, execute) = prepared.options(args);
     let mut plan = Plan::new();
@@ -146,21 +146,21 @@ fn attempt(args: &Args) -> Result<Tried, Failure> {
     }
     took.sort_by(f64::total_cmp);
     let Prepared { gpu, io, facts, .. } = prepared;
-    let texture = executor.texture(&plan, io.output).ok_or_else(|| device("the frame left no picture"))?;
+    let texture = executor.texture(&plan, io.output).ok_or_else(|| device("the frame has no picture"))?;
     let picture = read_texture(&gpu, texture).map_err(device)?.rgba8();
-    Ok(Tried { picture, ms: took[took.len() / 2], facts })
+    Ok(Candidate { picture, ms: took[took.len() / 2], facts })
 }
 
-/// Mean square difference of two pictures, in codes squared; alpha is no color.
+/// Mean squared difference of the color channels, in squared 8-bit steps.
 fn squares(ours: &[u8], truth: &[u8]) -> f64 {
     let pixels = ours.chunks_exact(4).zip(truth.chunks_exact(4));
     let sum: f64 = pixels.flat_map(|(a, b)| (0..3).map(|c| (f64::from(a[c]) - f64::from(b[c])).powi(2))).sum();
     sum / (0.75 * ours.len() as f64)
 }
 
-/// A line for each group: what was chosen, what it takes beyond the fastest option, and how far it alone is off.
+/// Formats a row for each group: the chosen option, its cost over the fastest option, and its error alone.
 fn table(choices: &Choices, offers: &Offers, settled: &Settled, facts: &Facts) -> String {
-    let mut rows = vec![["choice", "chosen", "of", "ms", "codes"].map(String::from)];
+    let mut rows = vec![["group", "chosen", "of", "ms", "error"].map(String::from)];
     for group in &GROUPS {
         let own = choices.iter().position(|(own, _)| own.name == group.name);
         rows.push(match own {
@@ -179,7 +179,7 @@ fn table(choices: &Choices, offers: &Offers, settled: &Settled, facts: &Facts) -
                 let dropped = group.effects.iter().filter_map(|effect| facts.of(*effect));
                 let why = dropped.filter(|fact| fact.decision == Decision::Dropped).map(|fact| fact.reason.as_str());
                 let why = why.collect::<Vec<_>>().join("; ");
-                let why = if why.is_empty() { "the scene has none".to_owned() } else { why };
+                let why = if why.is_empty() { "not in the scene".to_owned() } else { why };
                 [group.name.into(), why, "0".into(), "0.00".into(), "0.00".into()]
             }
         });
@@ -187,16 +187,17 @@ fn table(choices: &Choices, offers: &Offers, settled: &Settled, facts: &Facts) -
     aligned(&rows, 2)
 }
 
-/// What was predicted and how it turned out.
+/// Formats the predicted and the measured result.
 fn verdict(bound: Bound, Settled { chosen, trial, holds }: &Settled, adapter: &str, reference_ms: f64) -> String {
     let asked = match bound {
         Bound::Ms(ms) => format!("at most {ms} ms"),
-        Bound::Codes(codes) => format!("at most {codes} codes"),
+        Bound::Codes(codes) => format!("at most {codes} 8-bit steps"),
     };
-    let kept = if *holds { "which it holds" } else { "which no frame was found to hold; this one is nearest" };
+    let kept = if *holds { "met" } else { "not met by any candidate frame; this one is nearest" };
     format!(
-        "predicted: {:.1} ms, {:.2} codes from the finest frame, by times of {adapter}\n\
-         drawn: {:.1} ms, {:.2} codes from the finest frame, which takes {reference_ms:.1} ms; asked for {asked}, {kept}\n",
+        "predicted: {:.1} ms, error {:.2} 8-bit steps, from times measured on {adapter}\n\
+         measured: {:.1} ms, error {:.2} 8-bit steps against the reference frame, which takes {reference_ms:.1} ms\n\
+         limit: {asked}, {kept}\n",
         chosen.ms,
         chosen.codes(),
         trial.ms,
@@ -205,7 +206,7 @@ fn verdict(bound: Bound, Settled { chosen, trial, holds }: &Settled, adapter: &s
 }
 
 impl Args {
-    /// The frame that the command line asks for.
+    /// Returns the frame settings of the command line.
     fn frame(&self) -> FrameSettings {
         let settings = framegraph_passes::Settings {
             samples: self.samples,
@@ -228,7 +229,7 @@ impl Args {
         }
     }
 
-    /// The same command line with what groups are about as a frame has it.
+    /// Returns the command line with the settings of `frame` that the search chooses.
     fn with(&self, frame: &FrameSettings) -> Self {
         let mut args = self.clone();
         let settings = frame.settings;

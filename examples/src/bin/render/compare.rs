@@ -1,7 +1,7 @@
-//! What post-processing costs: at the end of the color pass's shader, in one full-screen pass, in a pass for each effect.
+//! Cost of post-processing: inlined, in one full-screen pass, and in one pass per effect.
 
 use crate::args::Args;
-use crate::keep::{Own, declare};
+use crate::kept_shadows::{OwnResources, declare};
 use crate::load;
 use crate::run::{Failure, Frames, WARM_UP, device, executed, input, open, settings};
 use crate::table::{aligned, mebibytes, milliseconds};
@@ -14,15 +14,15 @@ use framegraph_shaders::layout::Grading;
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Executor, Imports};
 
-/// The ways: name, inlined where that is sound, a pass for each effect.
-const WAYS: [(&str, bool, bool); 3] = [
+/// Variants to compare: name, inlined where possible, one pass per effect.
+const VARIANTS: [(&str, bool, bool); 3] = [
     ("inlined", true, false),
     ("fused: one full-screen pass", false, false),
-    ("unfused: a pass for each effect", false, true),
+    ("unfused: one pass per effect", false, true),
 ];
 
-/// One way at one number of samples.
-struct Way {
+/// Variant at one sample count.
+struct Variant {
     name: &'static str,
     samples: u8,
     frame: Frame<World>,
@@ -30,23 +30,23 @@ struct Way {
     executor: Executor,
 }
 
-/// Measures all ways in turns, so that all see the same machine, and prints one table.
+/// Measures all variants alternately under equal conditions and prints one table.
 ///
 /// # Errors
-/// One line, by whose fault it is.
+/// An input or device failure with a one-line message.
 pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let gpu = open();
     let options = args.load_options(gpu.as_ref().map_or(BlockFormats::default(), block_formats));
     let mut loaded = load::load(args, &options).map_err(input)?;
-    args.moment.apply(&mut loaded.scene, 0.0).map_err(input)?;
+    args.animation.apply(&mut loaded.scene, 0.0).map_err(input)?;
     let colors = load::colors(args).map_err(input)?;
     let seen = load::view(args, &loaded).map_err(input)?;
     let gpu = gpu?;
     program::line(format_args!("adapter: {}", gpu.describe()));
-    args.shading.precision.check(&gpu).map_err(|told| input(format!("--{told}")))?;
+    args.shading.precision.check(&gpu).map_err(|error| input(format!("--{error}")))?;
     let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
     let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
-    // Every effect on, so that each is a pass in the last of the ways.
+    // Enable every effect, so that each becomes a pass in the last variant.
     let asked = settings(args, &loaded, &seen);
     let every = PostSettings {
         vignette_ev: asked.post.vignette_ev.max(0.5),
@@ -55,45 +55,44 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     };
     if asked.blended || asked.scene_levels > 0 {
         return Err(input(format!(
-            "--compare-post: the scene `{}` blends or transmits, so that nothing is inlined; choose one that does not",
+            "--compare-post: the scene `{}` has blended or transmissive materials, so nothing is inlined; choose another scene",
             args.scene
         )));
     }
     let mut world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
     world.grading.set_colors(colors);
-    let mut ways = Vec::new();
+    let mut variants = Vec::new();
     for samples in [1, 4] {
-        for (name, inline, split_post) in WAYS {
+        for (name, inline, split_post) in VARIANTS {
             let settings = Settings { samples, split_post, post: every, ..asked };
-            let (frame, ..) = declare(&settings, &Facts::default(), false, Own::default())?;
+            let (frame, ..) = declare(&settings, &Facts::default(), false, OwnResources::default())?;
             let mut plan = Plan::new();
             let options = Options { inline, ..Options::for_frame(args.size_px[0], args.size_px[1]) };
             compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;
-            ways.push(Way { name, samples, frame, plan, executor: Executor::new(&gpu) });
+            variants.push(Variant { name, samples, frame, plan, executor: Executor::new(&gpu) });
         }
     }
     let rounds = WARM_UP + args.frames;
     let mut shown = Frames::new(rounds);
     for round in 0..rounds {
         world.frame_index = FrameIndex(round);
-        for Way { frame, plan, executor, .. } in &mut ways {
+        for Variant { frame, plan, executor, .. } in &mut variants {
             executor.execute(plan, frame, &world, &Imports::new()).map_err(executed)?;
             gpu.wait().map_err(device)?;
         }
         shown.next()?;
     }
-    for way in &mut ways {
-        way.executor.catch_up().map_err(device)?;
+    for variant in &mut variants {
+        variant.executor.catch_up().map_err(device)?;
     }
-    program::print(table(&ways));
+    program::print(table(&variants));
     Ok(())
 }
 
-fn table(ways: &[Way]) -> String {
-    let head =
-        ["post-processing", "samples", "steps", "unresolves", "resolves", "loaded", "stored", "fetched", "GPU ms"];
+fn table(variants: &[Variant]) -> String {
+    let head = ["post-processing", "samples", "steps", "loads", "stores", "loaded", "stored", "fetched", "GPU ms"];
     let mut rows = vec![head.map(String::from)];
-    rows.extend(ways.iter().map(|Way { name, samples, plan, executor, .. }| {
+    rows.extend(variants.iter().map(|Variant { name, samples, plan, executor, .. }| {
         let (counts, traffic) = (plan.counts(), plan.traffic(plan.frame()));
         [
             (*name).to_owned(),
@@ -110,7 +109,7 @@ fn table(ways: &[Way]) -> String {
     aligned(&rows, 1)
 }
 
-/// Bytes that passes fetch at the same pixel from memory, where the read is not kept in the tile or inlined.
+/// Bytes of same-pixel reads from memory, which merging or inlining would avoid.
 fn fetched_bytes(plan: &Plan) -> u64 {
     let graph = plan.graph();
     let apart = plan.step_passes().iter().filter(|member| !matches!(member.join, Join::Inlined | Join::SamePixel));

@@ -1,4 +1,4 @@
-//! Options that look into the frame or bisect it, and what they print and write.
+//! Options that inspect or bisect the frame, and their output.
 
 use crate::args::Args;
 use crate::name::{short_name, with_ending};
@@ -19,27 +19,28 @@ use program::progress::Shown;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// What `render --help` prints of them.
-pub const HELP: &str = "
-  --inspect WHAT       look at a texture of the frame: NAME[@PASS|@vN|@sN][:MIP[:LAYER]], such as hdr@color: the newest
-                       version, that of a pass, by number, or after a step; a second plan is made for that, the frame's
-                       own stays as it is
-  --inspect-out FILE   .png to look at, .exr for the numbers (inspect.png)
+/// Help section.
+pub const HELP: &str = "\
+DEBUGGING
+  --inspect TEXTURE    write a texture of the frame: NAME[@PASS|@vN|@sN][:MIP[:LAYER]], such as hdr@color. Selects the
+                       newest version, the version that a pass wrote, a version by number, or the state after a step. A
+                       second plan is compiled for it; the plan of the frame is unchanged
+  --inspect-out FILE   .png to look at, .exr for exact values (inspect.png)
   --inspect-mode MODE  auto, color[:STOPS], depth[:NEAR_M], stretch[:r|g|b|a], plain[:r|g|b|a] or
-                       false[:r|g|b|a][:LOW,HIGH]; what is not finite is magenta (auto)
-  --inspect-sample N   one sample of a multisampled texture; default: the average, of depth the first
-  --inspect-all DIR    every version of every texture as a picture
-  --trace FILE.json    every frame with its steps on CPU and GPU, for chrome://tracing or Perfetto
-  --timing             a table of least times, quartiles and medians, wgpu's share, what was made and found, and memory;
-                       and latency, with one to three frames queued
-  --debug MODE,...     no-cull, no-merge, no-inline, no-alias, immediate (all of these, in declared order, nothing
-                       memoryless), poison (what nobody wrote is NaN or magenta)
-  --pick X,Y[:X,Y...]  print what opaque object the picture shows at a pixel from the left and the top, with its number, depth
+                       false[:r|g|b|a][:LOW,HIGH]; NaN and infinity are magenta (auto)
+  --inspect-sample N   sample of a multisampled texture; default: the average, for depth the first
+  --inspect-all DIR    write every version of every texture as a picture
+  --trace FILE.json    times of every frame and step on CPU and GPU, for chrome://tracing or Perfetto
+  --timing             print minima, quartiles and medians, the share of wgpu, created and reused objects, memory, and the
+                       latency with one to three frames queued
+  --debug MODE,...     no-cull, no-merge, no-inline, no-alias, immediate (all of these, in declared order, without memoryless
+                       attachments), poison (fill uninitialized memory with NaN or magenta)
+  --pick X,Y[:X,Y...]  print the frontmost opaque object at pixels, counted from the left and the top, with its number, depth
                        and position
-  --bisect             render under each debug mode, and say which changes the picture
+  --bisect             render under each debug mode and print the modes that change the picture
 ";
 
-/// What was asked for.
+/// Options of inspection, tracing and debug modes.
 #[derive(Clone, Debug)]
 pub struct Debugging {
     inspect: Option<Request>,
@@ -49,7 +50,7 @@ pub struct Debugging {
     trace: Option<PathBuf>,
     pub timing: bool,
     modes: Modes,
-    /// Compare debug modes instead of rendering a picture.
+    /// Compares debug modes instead of rendering a picture.
     pub bisect: bool,
     sample: Option<u8>,
     /// Pixels of which the object is printed.
@@ -74,29 +75,30 @@ impl Default for Debugging {
 }
 
 impl Debugging {
-    /// Takes the option `--name`, if it is one of these.
+    /// Parses the value of an option of this module; returns false for other options.
     ///
     /// # Errors
-    /// One line that names the option and what it takes.
+    /// One line that names the option and the expected value.
     pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
         let option = format!("--{name}");
         let mut text = || {
-            let value = parser.value().map_err(|_| format!("{option}: a value is missing"))?;
+            let value = parser.value().map_err(|_| format!("{option}: missing value"))?;
             value.into_string().map_err(|v| format!("{option} {v:?}: the value is not Unicode"))
         };
-        let told = |error: &dyn std::fmt::Display| format!("{option}: {error}");
+        let failed = |error: &dyn std::fmt::Display| format!("{option}: {error}");
         match name {
-            "inspect" => self.inspect = Some(text()?.parse().map_err(|e| told(&e))?),
+            "inspect" => self.inspect = Some(text()?.parse().map_err(|e| failed(&e))?),
             "inspect-out" => self.inspect_out = with_ending(text()?.into(), &option, &["png", "exr"])?,
-            "inspect-mode" => self.inspect_mode = text()?.parse().map_err(|e| told(&e))?,
+            "inspect-mode" => self.inspect_mode = text()?.parse().map_err(|e| failed(&e))?,
             "inspect-sample" => {
-                let given = text()?;
-                self.sample = Some(given.parse().map_err(|_| format!("{option} {given}: a small number is needed"))?);
+                let number = text()?;
+                self.sample =
+                    Some(number.parse().map_err(|_| format!("{option} {number}: expected a number from 0 to 255"))?);
             }
             "inspect-all" => self.inspect_all = Some(PathBuf::from(text()?)),
             "trace" => self.trace = Some(with_ending(text()?.into(), &option, &["json"])?),
             "timing" => self.timing = true,
-            "debug" => self.modes = text()?.parse().map_err(|e| told(&e))?,
+            "debug" => self.modes = text()?.parse().map_err(|e| failed(&e))?,
             "bisect" => self.bisect = true,
             "pick" => self.picks = pick::pixels(&text()?)?,
             _ => return Ok(false),
@@ -104,16 +106,16 @@ impl Debugging {
         Ok(true)
     }
 
-    /// Sets what the modes and the trace need.
+    /// Applies the debug modes and enables the trace.
     pub fn apply(&self, plan: &mut Options, execute: &mut ExecutorOptions) {
         self.modes.apply(plan, execute);
         execute.trace = self.trace.is_some();
     }
 
-    /// What is to be looked at, before any work is done, with the file that each goes to.
+    /// Resolves the textures to inspect before the frame is rendered, each with its output file.
     ///
     /// # Errors
-    /// When there is no such texture, version or part; the line says what there is.
+    /// Names the unknown texture, version or subresource and lists the existing ones.
     pub fn wanted(&self, plan: &Plan) -> Result<Vec<(PathBuf, InspectTarget)>, Failure> {
         let mut wanted = Vec::new();
         if let Some(request) = &self.inspect {
@@ -130,22 +132,23 @@ impl Debugging {
         Ok(wanted)
     }
 
-    /// The files that will be written, whatever the plan is.
+    /// Returns the output files that are independent of the plan.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         self.trace.as_deref().into_iter()
     }
 
-    /// The folder that pictures go into: it must be there.
+    /// Returns the existing folder for the pictures of all textures.
     pub fn folder(&self) -> Option<&Path> {
         self.inspect_all.as_deref()
     }
 }
 
-/// Prints and writes what was asked for beside the picture; `before` is what had been made before the measured frames.
-/// Returns what there is to say of each file.
+/// Prints and writes the results of debugging options, and returns a description of each written file.
+///
+/// `before` holds the object counts before the measured frames.
 ///
 /// # Errors
-/// One line, by whose fault it is.
+/// An input or device failure with a one-line message.
 pub fn report(
     args: &Args,
     prepared: &mut Prepared,
@@ -163,25 +166,25 @@ pub fn report(
     }
     if let Some(path) = &asked.trace {
         let json = executor.timing().trace().map(framegraph_wgpu::Trace::chrome_json);
-        let json = json.ok_or_else(|| device("no frame was written down"))?;
+        let json = json.ok_or_else(|| device("no frame was traced"))?;
         outputs.write(path, |file| file.write_all(json.as_bytes())).map_err(input)?;
     }
     let Prepared { gpu, frame, world, imports, near_m, .. } = prepared;
     let mut inspector = Inspector::new(gpu);
-    let mut told = Vec::new();
+    let mut notes = Vec::new();
     let mut shown = Shown::default();
     for (done, (path, seen)) in inspections.iter().enumerate() {
         let found = inspector.inspect_target(executor, plan, frame, world, imports, seen.clone());
         let found = found.map_err(|e| input(format!("{}: {e}", path.display())))?;
-        told.push((path.clone(), write_inspection(&found, asked.inspect_mode, *near_m, path, outputs)?));
+        notes.push((path.clone(), write_inspection(&found, asked.inspect_mode, *near_m, path, outputs)?));
         shown.step("inspecting textures", done + 1, inspections.len(), &path.display().to_string());
         interrupt::check().map_err(device)?;
     }
     shown.clear();
-    Ok(told)
+    Ok(notes)
 }
 
-/// Writes what was seen, and returns what there is to say of it.
+/// Writes an inspected texture and returns its description.
 fn write_inspection(
     found: &Inspection,
     mode: DisplayMode,
@@ -198,11 +201,12 @@ fn write_inspection(
     });
     written.map_err(input)?;
     let [width, height] = texels.size;
+    // `cargo xtask corpus` parses this number.
     let bad = if non_finite > 0 { format!(", {non_finite} texels not finite") } else { String::new() };
     Ok(format!(": {}, {width}x{height} {:?}, {low} to {high}{bad}", found.title(), texels.format))
 }
 
-/// Least, first quartile and median of each step and of the frame, on both sides.
+/// Formats minimum, first quartile and median of each step and of the frame, on CPU and GPU.
 fn times(plan: &Plan, executor: &Executor) -> String {
     let head = ["step", "passes", "CPU min", "p25", "median", "GPU min", "p25", "median", "frames"];
     let mut rows = vec![head.map(String::from)];
@@ -226,10 +230,10 @@ fn times(plan: &Plan, executor: &Executor) -> String {
         push(step.index().to_string(), names.collect::<Vec<_>>().join(" + "), executor.timing().step(step));
     }
     push("frame".into(), String::new(), executor.timing().frame());
-    format!("\nmilliseconds, after warming up\n{}", aligned(&rows, 2))
+    format!("\nmilliseconds, after warm-up\n{}", aligned(&rows, 2))
 }
 
-/// What the CPU does in a frame: the graph's part, measured here, and the executor's with wgpu's share.
+/// Formats the CPU time of a frame: declaring and compiling, measured here, and executing, with the share of wgpu.
 fn cpu_table(args: &Args, prepared: &mut Prepared, executor: &Executor) -> Result<String, Failure> {
     const REPEATS: usize = 201;
     let caps = prepared.gpu.caps();
@@ -254,17 +258,17 @@ fn cpu_table(args: &Args, prepared: &mut Prepared, executor: &Executor) -> Resul
     let median = |summary: Option<Summary>| summary.map_or(0.0, |s| s.median_ms * 1e3);
     let (whole, inside) = (median(executor.timing().frame().cpu), median(executor.timing().wgpu()));
     let rows = [
-        ["a frame on the CPU", "median, us"].map(String::from),
+        ["CPU time of a frame", "median, µs"].map(String::from),
         ["declare".into(), format!("{declared:.2}")],
         ["compile".into(), format!("{compiled:.2}")],
         ["compile, unchanged".into(), format!("{unchanged:.2}")],
         ["execute".into(), format!("{whole:.2}")],
-        ["of which inside wgpu: passes, submit, uploads, poll, error scopes".into(), format!("{inside:.2}")],
+        ["inside wgpu: passes, submit, uploads, poll, error scopes".into(), format!("{inside:.2}")],
     ];
     Ok(aligned(&rows, 1))
 }
 
-/// What the measured frames made, and what they found made.
+/// Formats the objects that the measured frames created, and those they reused.
 fn made_line(args: &Args, executor: &Executor, before: ObjectCounts) -> String {
     let made = executor.objects().since(&before);
     let rows: Vec<_> = made.rows().into_iter().map(|(name, count)| format!("{count} {name}")).collect();
@@ -274,19 +278,16 @@ fn made_line(args: &Args, executor: &Executor, before: ObjectCounts) -> String {
     let mut pools = vec![("textures", pool), ("buffers", executor.buffer_pool())];
     let blocks = executor.placed_blocks();
     if blocks.created > 0 {
-        pools.push(("blocks of memory in which they are placed", blocks));
+        pools.push(("memory blocks for placed resources", blocks));
     }
     let memory = pools.into_iter().map(|(name, pool)| {
         let [held, used, peak, budget] =
             [pool.bytes, pool.used_bytes, pool.peak_bytes, pool.budget_bytes].map(mebibytes);
-        format!(
-            "{} {name}, {held} ({used} used by the last frame, at most {peak} so far, budget {budget})",
-            pool.objects
-        )
+        format!("{} {name}, {held} ({used} used by the last frame, peak {peak}, budget {budget})", pool.objects)
     });
     let memory: Vec<_> = memory.collect();
     format!(
-        "made in {} frames: {}; found made since the beginning: {} textures, {}\nheld by the pools: {}; by histories: {}",
+        "created in {} frames: {}; reused since the start: {} textures, {}\nheld by pools: {}; by histories: {}",
         args.frames,
         rows.join(", "),
         pool.hits,
@@ -296,10 +297,10 @@ fn made_line(args: &Args, executor: &Executor, before: ObjectCounts) -> String {
     )
 }
 
-/// Renders under every mode and prints which changes the picture.
+/// Renders with every debug mode and prints the modes that change the picture.
 ///
 /// # Errors
-/// One line, by whose fault it is.
+/// An input or device failure with a one-line message.
 pub fn run_bisect(args: &Args) -> Result<(), Failure> {
     let mut prepared = prepare(args, &mut Outputs::default())?;
     let outcomes = bisect(|mode| {
@@ -309,7 +310,7 @@ pub fn run_bisect(args: &Args) -> Result<(), Failure> {
         let mut executor = prepared.executor(args, execute)?;
         executor.compile(prepared.frame.graph(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;
         render(&mut prepared, &plan, &mut executor, 0..WARM_UP, &mut Frames::new(WARM_UP))?;
-        let texture = executor.texture(&plan, prepared.io.output).ok_or_else(|| device("the frame left no picture"))?;
+        let texture = executor.texture(&plan, prepared.io.output).ok_or_else(|| device("the frame has no picture"))?;
         Ok(read_texture(&prepared.gpu, texture).map_err(device)?.rgba8())
     })?;
     let mut rows = vec![["mode", "picture", "pixels", "worst"].map(String::from)];
@@ -321,7 +322,7 @@ pub fn run_bisect(args: &Args) -> Result<(), Failure> {
     match outcomes.iter().find(|o| !o.is_same()) {
         Some(first) => {
             let (name, suspect) = (Outcome::name(first), first.likely_cause());
-            program::line(format_args!("{name} is the first to change the picture: {suspect}"));
+            program::line(format_args!("{name} is the first mode that changes the picture: {suspect}"));
         }
         None => program::line("no mode changes the picture"),
     }
@@ -359,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_words_are_named() {
+    fn invalid_options_are_reported() {
         let cases: [(&[&str], &str); 8] = [
             (&["--inspect", "@"], "--inspect: `@`"),
             (&["--inspect-out", "a.jpg"], "--inspect-out a.jpg: the file must end in .png or .exr"),
@@ -367,11 +368,11 @@ mod tests {
             (&["--inspect-sample", "-1"], "--inspect-sample -1"),
             (&["--trace", "t.txt"], "--trace t.txt: the file must end in .json"),
             (&["--debug", "fast"], "--debug: `fast` is not a debug mode"),
-            (&["--inspect"], "--inspect: a value is missing"),
+            (&["--inspect"], "--inspect: missing value"),
             (&["--no-such"], "--no-such: unknown"),
         ];
         for (words, named) in cases {
-            let error = taken(words).expect_err("the command line is wrong");
+            let error = taken(words).expect_err("the command line is invalid");
             assert!(error.contains(named) && !error.contains('\n'), "{words:?}: {error}");
         }
     }

@@ -1,4 +1,4 @@
-//! Options of the whole frame: presets, settings as files, and which effects facts may leave out.
+//! Options of the whole frame: presets, settings files, and feature culling.
 
 use crate::args::Args;
 use crate::effects::Effects;
@@ -16,106 +16,107 @@ use program::input;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-/// What `render --help` prints of them.
-pub const HELP: &str = "
+/// Help section.
+pub const HELP: &str = "\
 FRAME
-  --preset NAME        the whole frame: low, medium, high or ultra (docs/settings.md); other options change it;
-                       with --record, what that record chooses for it
-  --settings FILE.ron  the whole frame from a file (docs/settings.md); other options change it
-  --enable EFFECT      the effect in its default strength, whatever the scene calls for; may be given again
-  --disable EFFECT     not the effect, whatever the scene calls for; may be given again. EFFECT is NAMES
-  --force-effects      every effect that is asked for; without it, what facts about the scene prove to change nothing is left
-                       out, and said after the table with its reason (docs/facts.md)
-  --facts FILE.json    what was decided of each effect
-  --what-it-costs      beside the picture a table of what each effect takes: the frame with it and without it, in turns, all
-                       other decisions being made; times are medians of --frames, from recording to the end
-  --graph FILE.ron     the frame's graph, for the program `plan` (docs/graph-format.md)
-  --what-if WHICH      the plan's counts for a device that is not here, beside those for this one: desktop, tiler, wgpu, or a
-                       FILE.ron that describes one (docs/graph-format.md)
-  --turntable N DIR    no picture, but N of them as DIR/turntable_0000.png, …: the camera goes once around the scene
-  --sequence N DIR     N frames in a row, as DIR/frame_0000.png, …; with --time S an animation plays on from there, 30 frames a
-                       second
+  --preset NAME        settings of the whole frame: low, medium, high or ultra (docs/settings.md); other options override
+                       them. With --record, the preset's options are chosen from the record
+  --settings FILE.ron  settings of the whole frame from a file (docs/settings.md); other options override them
+  --enable EFFECT      always draw the effect, at its default strength; repeatable
+  --disable EFFECT     never draw the effect; repeatable. EFFECT is NAMES
+  --force-effects      draw every requested effect. By default, effects that provably change nothing in this scene are
+                       dropped, and listed with their reasons after the table (docs/facts.md)
+  --facts FILE.json    write the decision on each effect
+  --effect-costs       also print the cost of each effect: the frame with and without it, measured alternately, all other
+                       decisions unchanged. Times are medians of --frames, from recording to completion
+  --graph FILE.ron     write the graph of the frame, for the program `plan` (docs/graph-format.md)
+  --what-if DEVICE     compare the plan's counts with those on another device: desktop, tiler, wgpu, or a FILE.ron that
+                       describes one (docs/graph-format.md)
+  --turntable N DIR    write N pictures DIR/turntable_0000.png, … of one camera orbit around the scene instead of one picture
+  --sequence N DIR     write N consecutive frames DIR/frame_0000.png, … instead of one picture; with --time S an animation
+                       plays from there at 30 frames per second
 ";
 
-/// The help with the names of effects, in lines.
+/// Returns the help section with the names of all effects.
 pub fn help() -> String {
     let names = Effect::ALL.map(Effect::name);
     let lines: Vec<String> = names.chunks(7).map(|names| names.join(", ")).collect();
     HELP.replace("NAMES", &format!("one of\n                       {}", lines.join(",\n                       ")))
 }
 
-/// What was asked for.
+/// Options of the whole frame.
 #[derive(Clone, Debug, Default)]
 pub struct Decide {
-    /// Effects that are there in any case.
+    /// Effects that are always drawn.
     pub enabled: EffectSet,
-    /// Effects that are not.
+    /// Effects that are never drawn.
     pub disabled: EffectSet,
-    /// Facts are not asked.
+    /// Disables feature culling.
     pub forced: bool,
-    /// What was decided, as JSON.
+    /// Output file of the decisions, as JSON.
     pub json: Option<PathBuf>,
-    /// The graph as a file.
+    /// Output file of the graph.
     pub graph: Option<PathBuf>,
-    /// A device to plan for beside this one.
+    /// Device to compare the plan with.
     pub what_if: Option<String>,
-    /// The frame is measured with and without each effect.
-    pub what_it_costs: bool,
-    /// Several pictures.
+    /// Measures the frame with and without each effect.
+    pub effect_costs: bool,
+    /// Several pictures instead of one.
     pub sequence: Option<Sequence>,
 }
 
 /// Several pictures instead of one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sequence {
-    /// The camera goes around the scene.
+    /// Moves the camera around the scene.
     pub turns: bool,
-    /// How many.
+    /// Number of pictures.
     pub frames: u32,
-    /// Where they go.
+    /// Folder of the pictures.
     pub folder: PathBuf,
-    /// Frames a second of an animation.
+    /// Frame rate of the animation.
     pub per_second: f64,
 }
 
 impl Decide {
-    /// Takes an option of this file; false for others.
+    /// Parses the value of an option of this module; returns false for other options.
     ///
     /// # Errors
-    /// One line that names the option and what it takes.
+    /// One line that names the option and the expected value.
     pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
-        let mut raw = |what: &str| parser.value().map_err(|_| format!("--{name}: {what} is missing"));
-        let text = |value: OsString| value.into_string().map_err(|v| format!("--{name} {v:?}: it is not Unicode"));
+        let mut raw = |what: &str| parser.value().map_err(|_| format!("--{name}: missing {what}"));
+        let text =
+            |value: OsString| value.into_string().map_err(|v| format!("--{name} {v:?}: the value is not Unicode"));
         match name {
-            "enable" => self.enabled = self.enabled.with(effect(name, &text(raw("an effect")?)?)?),
-            "disable" => self.disabled = self.disabled.with(effect(name, &text(raw("an effect")?)?)?),
+            "enable" => self.enabled = self.enabled.with(effect(name, &text(raw("effect")?)?)?),
+            "disable" => self.disabled = self.disabled.with(effect(name, &text(raw("effect")?)?)?),
             "force-effects" => self.forced = true,
-            "what-it-costs" => self.what_it_costs = true,
-            "facts" => self.json = Some(crate::name::with_ending(raw("a file")?.into(), "--facts", &["json"])?),
-            "graph" => self.graph = Some(crate::name::with_ending(raw("a file")?.into(), "--graph", &["ron"])?),
-            "what-if" => self.what_if = Some(text(raw("a device")?)?),
+            "effect-costs" | "what-it-costs" => self.effect_costs = true,
+            "facts" => self.json = Some(crate::name::with_ending(raw("file")?.into(), "--facts", &["json"])?),
+            "graph" => self.graph = Some(crate::name::with_ending(raw("file")?.into(), "--graph", &["ron"])?),
+            "what-if" => self.what_if = Some(text(raw("device")?)?),
             "turntable" | "sequence" => {
-                let count = text(raw("a number of pictures")?)?;
-                let wrong = || format!("--{name} {count}: a number of pictures from 1 to 9999 is needed");
+                let count = text(raw("number of pictures")?)?;
+                let wrong = || format!("--{name} {count}: expected a number of pictures from 1 to 9999");
                 let frames = count.parse().ok().filter(|n| (1..=9999).contains(n)).ok_or_else(wrong)?;
                 self.sequence = Some(Sequence {
                     turns: name == "turntable",
                     frames,
-                    folder: raw("a folder")?.into(),
+                    folder: raw("folder")?.into(),
                     per_second: 30.0,
                 });
             }
-            // Read by `base`, before all others.
-            "preset" | "settings" => _ = raw("a value")?,
+            // `base` has parsed them before all other options.
+            "preset" | "settings" => _ = raw("value")?,
             _ => return Ok(false),
         }
         if let Some(both) = self.enabled.and(self.disabled).iter().next() {
-            return Err(format!("--enable {0} does not go together with --disable {0}", both.name()));
+            return Err(format!("--enable {0}: cannot be used with --disable {0}", both.name()));
         }
         Ok(true)
     }
 
-    /// The settings with what is enabled and without what is disabled.
+    /// Enables and disables effects in the settings.
     pub fn of(&self, settings: Settings) -> Settings {
         let enabled = self.enabled.iter().fold(settings, Settings::with);
         self.disabled.iter().fold(enabled, Settings::without)
@@ -124,22 +125,22 @@ impl Decide {
 
 fn effect(option: &str, name: &str) -> Result<Effect, String> {
     let known = || Effect::ALL.map(Effect::name).join(", ");
-    Effect::from_name(name).ok_or_else(|| format!("--{option} {name}: unknown effect; there are {}", known()))
+    Effect::from_name(name).ok_or_else(|| format!("--{option} {name}: unknown effect; expected one of {}", known()))
 }
 
-/// The frame that a command line begins with: that of `--preset` or `--settings`, if it has one; and the file that was read.
+/// Returns the base settings from `--preset` or `--settings`, and the settings file.
 ///
 /// # Errors
-/// One line that names the option, and the file with the place.
+/// One line that names the option, and the place in the file.
 pub fn base(args: &[OsString]) -> Result<(Option<FrameSettings>, Option<PathBuf>), String> {
     let (preset, file) = (value(args, "--preset"), value(args, "--settings"));
     match (preset, file) {
-        (Some(_), Some(_)) => Err("--settings does not go together with --preset: each is the whole frame".into()),
+        (Some(_), Some(_)) => Err("--settings: cannot be used with --preset; both set the whole frame".into()),
         (None, None) => Ok((None, None)),
         (Some(name), None) => {
             let name = name.to_string_lossy();
             let known = || Preset::ALL.map(Preset::name).join(", ");
-            let unknown = || format!("--preset {name}: unknown preset; there are {}", known());
+            let unknown = || format!("--preset {name}: unknown preset; expected one of {}", known());
             let preset = Preset::from_name(&name).ok_or_else(unknown)?;
             let Some(record) = value(args, "--record") else { return Ok((Some(preset.frame()), None)) };
             let (measured, _) = crate::budget::record(Some(Path::new(&record)))?;
@@ -149,14 +150,14 @@ pub fn base(args: &[OsString]) -> Result<(Option<FrameSettings>, Option<PathBuf>
         (None, Some(path)) => {
             let shown = path.to_string_lossy();
             let text =
-                input::text(Path::new(&path), input::MOST_TEXT_BYTES).map_err(|error| format!("--settings {error}"))?;
+                input::text(Path::new(&path), input::MAX_TEXT_BYTES).map_err(|error| format!("--settings {error}"))?;
             let frame = FrameSettings::from_ron(&shown, &text).map_err(|error| format!("--settings {error}"))?;
             Ok((Some(frame), Some(path.into())))
         }
     }
 }
 
-/// The value of an option, as `--option value` or `--option=value`; none where it is missing, which parsing will say.
+/// Returns the value of `--option value` or `--option=value`. A missing value is reported by the parser later.
 fn value(args: &[OsString], option: &str) -> Option<OsString> {
     let own = |arg: &OsStr| arg.to_str()?.strip_prefix(option)?.strip_prefix('=').map(OsString::from);
     let after = args.iter().position(|arg| arg == option).and_then(|at| args.get(at + 1)).cloned();
@@ -164,7 +165,7 @@ fn value(args: &[OsString], option: &str) -> Option<OsString> {
 }
 
 impl Args {
-    /// Begins with a frame, which other options change.
+    /// Starts with the settings of a frame, which other options override.
     pub fn begin_with(&mut self, frame: &FrameSettings) {
         let FrameSettings { quality, lights, lod_error_px, visible_layers, inline, settings } = *frame;
         (self.quality, self.lighting.lights, self.inline) = (quality, lights, inline);
@@ -204,19 +205,19 @@ impl Args {
     }
 }
 
-/// What facts are decided with, kept from frame to frame.
+/// Inputs of feature culling that persist between frames.
 #[derive(Debug)]
-pub struct Deciding {
+pub struct FeatureCulling {
     survey: Survey,
     memory: FactMemory,
     forced: EffectSet,
     off: bool,
 }
 
-impl Deciding {
+impl FeatureCulling {
     pub fn new(asked: &Decide, loaded: &Loaded, settings: &Settings) -> Self {
         let mut forced = asked.enabled;
-        // What tints by cascades shows those that were asked for.
+        // Cascade tinting requires the cascades.
         if settings.shadows.is_some_and(|shadows| shadows.show_cascades) {
             forced = forced.with(Effect::SunShadows).with(Effect::Cascades);
         }
@@ -224,12 +225,12 @@ impl Deciding {
         Self { survey: Survey::new(&loaded.scene), memory, forced, off: asked.forced }
     }
 
-    /// Reads the surfaces of the scene again, after an animation has changed materials.
+    /// Summarizes the materials of the scene again after an animation changed them.
     pub fn resurvey(&mut self, scene: &Scene) {
         self.survey = Survey::new(scene);
     }
 
-    /// What the facts say of a view; nothing where effects are forced.
+    /// Returns the decisions on all effects of a view; none if effects are forced.
     pub fn facts(
         &mut self,
         loaded: &Loaded,
@@ -271,13 +272,13 @@ mod tests {
             assert_eq!(base(&words(line)), Ok((Some(Preset::Ultra.frame()), None)));
         }
         for (line, named) in [
-            ("--preset best", "--preset best: unknown preset; there are low, medium, high, ultra"),
+            ("--preset best", "--preset best: unknown preset; expected one of low, medium, high, ultra"),
             ("--preset low --record no/such.json", "--record no/such.json: "),
-            ("--preset low --settings a.ron", "--settings does not go together with --preset"),
+            ("--preset low --settings a.ron", "--settings: cannot be used with --preset"),
             ("--settings no/such.ron", "--settings no/such.ron: "),
         ] {
-            let told = base(&words(line)).expect_err("that is wrong");
-            assert!(told.starts_with(named), "{told}");
+            let error = base(&words(line)).expect_err("the command line is invalid");
+            assert!(error.starts_with(named), "{error}");
         }
     }
 }

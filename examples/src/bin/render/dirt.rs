@@ -1,4 +1,4 @@
-//! Dirt on the lens: a picture that bloom is seen through.
+//! Lens dirt texture for bloom.
 
 use crate::run::{Failure, input};
 use framegraph::{Entry, Exit, Extent, Format, Texture, TextureDesc};
@@ -8,23 +8,23 @@ use framegraph_scene::picture::read_rgba8_within;
 use framegraph_wgpu::{Frame, Gpu, Imports};
 use std::path::Path;
 
-/// A picture on the device, laid over the whole frame.
+/// Lens dirt on the device, stretched over the frame.
 #[derive(Clone, Debug)]
 pub struct Dirt(wgpu::Texture);
 
 impl Dirt {
-    /// Reads a PNG or JPEG picture within a budget: what is white lets all of the glow light up, what is black none.
+    /// Loads a PNG or JPEG picture within a memory budget. White scatters all of the glow, black none.
     ///
     /// # Errors
     /// One line that names the file and the reason.
     pub fn load(gpu: &Gpu, file: &Path, memory: &Memory) -> Result<Self, Failure> {
         let (size, rgba8, _loan) =
             read_rgba8_within(file, memory).map_err(|error| input(format!("--dirt: {error}")))?;
-        let most = gpu.caps().max_texture_texels;
-        if size.into_iter().any(|side| side > most) {
+        let max = gpu.caps().max_texture_texels;
+        if size.into_iter().any(|side| side > max) {
             let [width, height] = size;
             return Err(input(format!(
-                "--dirt {}: it has {width}x{height} texels; the adapter's limit is {most}x{most}",
+                "--dirt {}: {width}x{height} texels exceed the adapter's limit of {max}x{max}; use a smaller picture",
                 file.display()
             )));
         }
@@ -45,7 +45,7 @@ impl Dirt {
         Ok(Self(texture))
     }
 
-    /// Declares it as what the frame's bloom is seen through.
+    /// Imports the texture as lens dirt of the frame.
     pub fn declare(&self, frame: &mut Frame<World>, handles: Handles, imports: &mut Imports) -> Handles {
         let extent = Extent::absolute(self.0.width(), self.0.height());
         let desc = TextureDesc::new(extent, Format::Rgba8UnormSrgb);

@@ -1,7 +1,7 @@
-//! Options of effects: ambient occlusion, reflections, glass through glass, fog, bloom, depth of field,
-//! anti-aliasing over time; levels of detail and visible layers.
+//! Options of effects: ambient occlusion, reflections, glass layers, fog, bloom, depth of field, temporal anti-aliasing,
+//! levels of detail, transparency and visible layers.
 
-use crate::look::number;
+use crate::parse::number;
 use framegraph_passes::transmission::MOST_GLASS_LAYERS;
 use framegraph_passes::upscale::{DynamicResolution, UpscaleFilter};
 use framegraph_passes::{
@@ -12,95 +12,97 @@ use framegraph_scene::draw_options::DEFAULT_MASK;
 use lexopt::Parser;
 use std::path::PathBuf;
 
-/// What `render --help` prints of them.
-pub const HELP: &str = "
-  --ao METHOD[:KEY=X,...]  ambient occlusion from what the picture shows: off (default), sao (taps on a spiral) or gtao
-                       (horizons in slices, nearer the truth). resolution=full|half, radius=M (0.3), bias=X (share of the
-                       distance), intensity=X (1), power=X (1), horizon=DEG (least angle, 0), blur=off|medium|high,
-                       threshold=M (between surfaces, 0.05), normals=fine|coarse, place=exact|filament (of taps),
-                       bent-normals=on|off (for reflections), cone=on|off (contact shadow of the sun); sao:
-                       quality=low|medium|high|ultra, taps=N, turns=N; gtao: slices=N, steps=N, step-power=X,
-                       occluders=solid|fading|M (that thick)
-  --ssr off|on[:KEY=X,...]  reflections of what the picture shows, from the frame before (off). thickness=M (of surfaces, 0.1),
-                       bias=M (where rays begin, 0.01), distance=M (where they end, 3), stride=TEXELS (2),
-                       roughness=R (from which on there are none, 0.7071)
-  --fog off|on[:KEY=X,...]  fog that lies about a height (off). density=X (there, in 1/m, 0.1), height=M (0), falloff=X (of density
-                       with height, in 1/m, 1), start=M (clear from the eye, 0), cut-off=M (none farther away, inf),
-                       opacity=X (the most, 1), color=environment|R:G:B (nits; environment), tint=R:G:B (of the environment,
-                       1:1:1), sharp=M (where that is blurred less, 100), sharp-levels=N (by how much, 1; all: 16),
-                       glow=off|SIZE (about the sun, off), glow-start=M (0), mean=exact|filament (density where the start is clear)
-  --bloom off|on[:KEY=X,...]  what is bright glows (off). strength=X (0.1), height=N (of the largest level in texels, 384), levels=N
-                       (6), quality=low|medium|high (low), blend=add|interpolate (add), threshold=off|soft|hard (soft), at=X
-                       (pre-exposed, 1), highlight=X (what it nears, 1000), fireflies=on|off (count less, on), kernel=wide|narrow (wide), dirt=X (0.2),
-                       flare=on|off (of the lens, off), and with it starburst=on|off (on), aberration=X (0.005),
-                       ghosts=N (4), ghost-spacing=X (0.6), ghost-at=X (10), halo=X (thickness, 0.1), halo-radius=X (0.4),
-                       halo-at=X (10), flare-multiple=PX (centered in a picture of such sides, 16 as Filament; 1: in the picture)
-  --dirt FILE          a PNG or JPEG picture of dirt on the lens, laid over the frame, through which bloom is seen; goes
-                       together with bloom
-  --dof off|on[:KEY=X,...]  what is out of focus is blurred as by a lens (off). focus=M (5), aperture=F (f-number, 2.8),
-                       focal=M|view (length, of the view's angle on film of 24 mm), scale=X (of circles, 1),
-                       resolution=full|half (half), before=PX, behind=PX (largest radii, 32), rings-before=N, rings-behind=N,
-                       rings-even=N (of taps, 5), median=on|off (on), blended=before|after (the blur are blended surfaces drawn
-                       that --transparency draws in any order; at --msaa 1 without --taa; before)
-  --taa off|on[:KEY=X,...]  anti-aliasing over frames, of which --frames says how many there are (off): feedback=X (share of a
-                       new frame, 0.12), width=X (of its filter, 1), jitter=rgss4|helix4|halton8|halton16|halton32,
-                       box=bounds|variance|both (of colors that the sum is held to), clip=accurate|clamp|none, gamma=X
-                       (deviations, 1), filter-history=on|off, filter-input=on|off, ycocg=on|off, steady=on|off (against
-                       flickering), reproject=on|off, sharpness=X (afterwards, 0), converge=on|off
-                       (while nothing moves, to the mean of all frames)
-  --resolve linear|tone  the mean of a texel's samples: of light, or as a display shows them, which keeps edges before what
-                       is bright smooth where bloom, --dof or --taa read the radiance (linear)
-  --scale X            draw X times as wide and high as shown, 0.25 to 1 (1); --linear-out has the drawn size
-  --upscale bilinear|fsr  how the picture is made larger then (fsr)
-  --sharpness X        how much it is sharpened then, 0 to 1 (0.9)
-  --dynamic-resolution MS[:LEAST]  in --turntable and --sequence, draw each frame as large as those before let it be, so that
-                       it takes MS milliseconds; no smaller than LEAST percent of its sides, 25 to 100 (50)
-  --lod PX             meshes are drawn in fewer triangles where they are no farther than so many pixels from where they are, or
-                       texels of shadow maps, 0 to 16; 0 draws all triangles (0)
-  --transparency METHOD[:KEY=X,...]  how blended surfaces are put in order: sorted (by object, default), two-passes (and back
-                       faces before front faces of double-sided ones), weighted (an average, nearer ones count more), moments
-                       (an average by where surfaces absorb) or peeled (layer by layer, exact); moments: precision=half|full
-                       (half), overestimation=X (0.25); peeled: layers=N (1 to 32, 4)
-  --glass-layers N     layers of glass that is seen through glass, 1 to 4; 1 shows what is opaque alone (1)
-  --layers MASK        layers of the scene that are shown, a bit each, such as 3, 0x03 or 0b11; objects in none of them neither
-                       show nor cast shadows (1)
+/// Help section.
+pub const HELP: &str = "\
+EFFECTS
+  --ao METHOD[:KEY=X,...]  screen-space ambient occlusion: off (default), sao (taps on a spiral) or gtao (horizon search in
+                       slices, more accurate). resolution=full|half, radius=M (0.3), bias=X (relative to distance),
+                       intensity=X (1), power=X (1), horizon=DEG (minimum angle, 0), blur=off|medium|high,
+                       threshold=M (depth difference between surfaces, 0.05), normals=fine|coarse,
+                       place=exact|filament (position of taps), bent-normals=on|off (for reflections),
+                       cone=on|off (contact shadow of the sun). sao: quality=low|medium|high|ultra, taps=N, turns=N.
+                       gtao: slices=N, steps=N, step-power=X, occluders=solid|fading|M (thickness)
+  --ssr off|on[:KEY=X,...]  screen-space reflections of the previous frame (off). thickness=M (of surfaces, 0.1),
+                       bias=M (start of rays, 0.01), distance=M (maximum ray length, 3), stride=TEXELS (2),
+                       roughness=R (maximum roughness, 0.7071)
+  --fog off|on[:KEY=X,...]  height fog (off). density=X (at the fog height, in 1/m, 0.1), height=M (0), falloff=X (height
+                       falloff, in 1/m, 1), start=M (distance from the eye, 0), cut-off=M (no fog beyond, inf),
+                       opacity=X (maximum, 1), color=environment|R:G:B (nits; environment), tint=R:G:B (of the environment,
+                       1:1:1), sharp=M (distance from which it is blurred less, 100), sharp-levels=N (mip
+                       levels less, 1; all: 16),
+                       glow=off|SIZE (around the sun, off), glow-start=M (0), mean=exact|filament (mean density with start)
+  --bloom off|on[:KEY=X,...]  bloom (off). strength=X (0.1), height=N (of the largest level in texels, 384), levels=N (6),
+                       quality=low|medium|high (low), blend=add|interpolate (add), threshold=off|soft|hard (soft),
+                       at=X (pre-exposed, 1), highlight=X (limit of compressed highlights, 1000), fireflies=on|off (reduce
+                       them, on), kernel=wide|narrow (wide), dirt=X (0.2), flare=on|off (lens flare, off). Lens flare:
+                       starburst=on|off (on), aberration=X (0.005), ghosts=N (4), ghost-spacing=X (0.6), ghost-at=X (10),
+                       halo=X (thickness, 0.1), halo-radius=X (0.4), halo-at=X (10), flare-multiple=PX (center the flare in
+                       a picture with sides rounded to a multiple of PX: 16 as Filament, 1 for the exact size)
+  --dirt FILE          PNG or JPEG picture of lens dirt, stretched over the frame, for bloom; requires bloom
+  --dof off|on[:KEY=X,...]  depth of field (off). focus=M (5), aperture=F (f-number, 2.8), focal=M|view (focal length; view:
+                       from the field of view on 24 mm film), scale=X (of circles of confusion, 1), resolution=full|half
+                       (half), before=PX, behind=PX (maximum radii, 32), rings-before=N, rings-behind=N, rings-even=N (of
+                       taps, 5), median=on|off (on), blended=before|after (draw blended surfaces before or after the blur, before;
+                       after needs an order-independent --transparency)
+  --taa off|on[:KEY=X,...]  temporal anti-aliasing over --frames frames (off). feedback=X (weight of a new frame, 0.12),
+                       width=X (of its filter, 1), jitter=rgss4|helix4|halton8|halton16|halton32,
+                       box=bounds|variance|both (color box that clips the history), clip=accurate|clamp|none,
+                       gamma=X (standard deviations, 1), filter-history=on|off, filter-input=on|off, ycocg=on|off,
+                       steady=on|off (reduces flicker), reproject=on|off, sharpness=X (sharpening afterwards, 0),
+                       converge=on|off (average all frames while nothing moves)
+  --resolve linear|tone  MSAA resolve of radiance, or of tone-mapped values, which keeps edges smooth in front of bright
+                       areas when bloom, --dof or --taa read the radiance (linear)
+  --scale X            render at X times the width and height, 0.25 to 1, and upscale (1); --linear-out has the rendered size
+  --upscale bilinear|fsr  upscaling filter (fsr)
+  --sharpness X        sharpening after upscaling, 0 to 1 (0.9)
+  --dynamic-resolution MS[:MIN]  in --turntable and --sequence, scale each frame so that it takes MS milliseconds, but not
+                       below MIN percent of the sides, 25 to 100 (50)
+  --lod PX             draw simplified meshes while the geometric error is at most PX pixels, or shadow-map texels, 0 to 16;
+                       0 draws all triangles (0)
+  --transparency METHOD[:KEY=X,...]  blended surfaces: sorted (by object, default), two-passes (also back faces before front
+                       faces of double-sided surfaces), weighted (weighted average), moments (weighted by moments of
+                       absorbance) or peeled (layer by layer, exact). moments: precision=half|full (half), overestimation=X
+                       (0.25). peeled: layers=N (1 to 32, 4)
+  --glass-layers N     layers of glass visible through glass, 1 to 4; 1 shows only opaque surfaces behind glass (1)
+  --layers MASK        visible layers of the scene, one bit each, such as 3, 0x03 or 0b11; objects in none of them are not drawn
+                       and cast no shadows (1)
 ";
 
-/// What was asked for.
+/// Settings of the effects.
 #[derive(Clone, Debug)]
 pub struct Effects {
     /// Ambient occlusion.
     pub occlusion: Option<OcclusionSettings>,
-    /// Reflections of what the picture shows.
+    /// Screen-space reflections.
     pub reflections: Option<ReflectionSettings>,
     /// Depth of field.
     pub dof: Option<DofSettings>,
     /// Bloom and lens flare.
     pub bloom: Option<BloomSettings>,
-    /// The picture of dirt on the lens.
+    /// Picture of lens dirt.
     pub dirt: Option<PathBuf>,
-    /// Fog.
+    /// Height fog.
     pub fog: Option<FogSettings>,
-    /// Anti-aliasing over time.
+    /// Temporal anti-aliasing.
     pub taa: Option<TaaSettings>,
-    /// Samples are averaged as a display shows them.
+    /// Resolves MSAA samples after tone mapping.
     pub tone_resolve: bool,
-    /// Drawn smaller than shown.
+    /// Upscaling.
     pub upscale: Option<Upscale>,
-    /// Drawn as large as a time lets it be.
+    /// Dynamic resolution.
     pub dynamic: Option<DynamicResolution>,
-    /// How far a mesh may be drawn from where it is, in pixels; 0 draws it whole.
+    /// Maximum geometric error of levels of detail, in pixels; 0 draws all triangles.
     pub lod_error_px: f32,
-    /// How blended surfaces are put in order.
+    /// Method for blended surfaces.
     pub transparency: Transparency,
-    /// Layers of glass.
+    /// Maximum number of glass layers.
     pub glass_layers: u8,
     /// Layers of the scene that are shown, a bit each.
     pub visible_layers: u8,
 }
 
 impl Default for Effects {
-    /// None of them, whole meshes, and glass in one layer.
+    /// Returns settings without effects, without levels of detail, and with one glass layer.
     fn default() -> Self {
         Self {
             occlusion: None,
@@ -122,52 +124,55 @@ impl Default for Effects {
 }
 
 impl Effects {
-    /// Returns the width and height in which a picture of `shown_px` is drawn, in pixels.
+    /// Returns the rendered width and height in pixels for a picture of size `shown_px`.
     pub fn drawn_px(&self, shown_px: [u32; 2]) -> [u32; 2] {
         Settings { upscale: self.upscale, ..Settings::DEFAULT }.drawn_px(shown_px)
     }
 
-    /// Returns how a frame that is drawn at `percent` of the width and height is enlarged; none for a whole frame.
+    /// Returns the upscaling for a frame rendered at `percent` of the sides; `None` at 100 %.
     pub fn enlarging(&self, percent: f64) -> Option<Upscale> {
         let smaller = Upscale { percent: percent.round() as u16, ..self.upscale.unwrap_or_default() };
         (smaller.percent < 100).then_some(smaller)
     }
 
-    /// Takes an option of this file; false for others.
+    /// Parses the value of an option of this module; returns false for other options.
     ///
     /// # Errors
-    /// One line that names the option and what it takes.
+    /// One line that names the option and the expected value.
     pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
         if name == "dirt" {
-            self.dirt = Some(parser.value().map_err(|_| "--dirt: a file is missing")?.into());
+            self.dirt = Some(parser.value().map_err(|_| "--dirt: missing file")?.into());
             return Ok(true);
         }
         let mut value = || {
-            let value = parser.value().map_err(|_| format!("--{name}: a value is missing"))?;
+            let value = parser.value().map_err(|_| format!("--{name}: missing value"))?;
             value.into_string().map_err(|v| format!("--{name} {v:?}: the value is not Unicode"))
         };
         match name {
-            "ao" => self.occlusion = OcclusionSettings::from_text(&value()?).map_err(|told| format!("--ao {told}"))?,
+            "ao" => {
+                self.occlusion = OcclusionSettings::from_text(&value()?).map_err(|error| format!("--ao {error}"))?;
+            }
             "ssr" => {
-                self.reflections = ReflectionSettings::from_text(&value()?).map_err(|told| format!("--ssr {told}"))?;
+                self.reflections =
+                    ReflectionSettings::from_text(&value()?).map_err(|error| format!("--ssr {error}"))?;
             }
             "bloom" => {
-                self.bloom = BloomSettings::from_text(&value()?).map_err(|told| format!("--bloom {told}"))?;
+                self.bloom = BloomSettings::from_text(&value()?).map_err(|error| format!("--bloom {error}"))?;
             }
-            "dof" => self.dof = DofSettings::from_text(&value()?).map_err(|told| format!("--dof {told}"))?,
-            "fog" => self.fog = FogSettings::from_text(&value()?).map_err(|told| format!("--fog {told}"))?,
-            "taa" => self.taa = TaaSettings::from_text(&value()?).map_err(|told| format!("--taa {told}"))?,
+            "dof" => self.dof = DofSettings::from_text(&value()?).map_err(|error| format!("--dof {error}"))?,
+            "fog" => self.fog = FogSettings::from_text(&value()?).map_err(|error| format!("--fog {error}"))?,
             "transparency" => {
                 self.transparency =
-                    Transparency::from_text(&value()?).map_err(|told| format!("--transparency {told}"))?;
+                    Transparency::from_text(&value()?).map_err(|error| format!("--transparency {error}"))?;
             }
+            "taa" => self.taa = TaaSettings::from_text(&value()?).map_err(|error| format!("--taa {error}"))?,
             "scale" => {
                 self.upscale = self.enlarging(f64::from(100.0 * number("--scale", &value()?, 0.25..=1.0)?));
             }
             "upscale" => {
                 let text = value()?;
                 let found = UpscaleFilter::ALL.into_iter().find(|filter| filter.name() == text);
-                let filter = found.ok_or_else(|| format!("--upscale {text}: `bilinear` or `fsr` is needed"))?;
+                let filter = found.ok_or_else(|| format!("--upscale {text}: expected `bilinear` or `fsr`"))?;
                 self.upscale.get_or_insert_default().filter = filter;
             }
             "sharpness" => {
@@ -178,13 +183,13 @@ impl Effects {
                 self.tone_resolve = match value()?.as_str() {
                     "linear" => false,
                     "tone" => true,
-                    other => return Err(format!("--resolve {other}: `linear` or `tone` is needed")),
+                    other => return Err(format!("--resolve {other}: expected `linear` or `tone`")),
                 }
             }
             "dynamic-resolution" => self.dynamic = Some(dynamic(&value()?)?),
             "glass-layers" => {
                 let text = value()?;
-                let wrong = || format!("--glass-layers {text}: a number from 1 to {MOST_GLASS_LAYERS} is needed");
+                let wrong = || format!("--glass-layers {text}: expected a number from 1 to {MOST_GLASS_LAYERS}");
                 let layers = text.parse().ok().filter(|layers| (1..=MOST_GLASS_LAYERS).contains(layers));
                 self.glass_layers = layers.ok_or_else(wrong)?;
             }
@@ -200,7 +205,7 @@ impl Effects {
     }
 }
 
-/// Eight bits, as a decimal, hexadecimal or binary number.
+/// Parses eight bits from a decimal, hexadecimal or binary number.
 fn mask(text: &str) -> Option<u8> {
     let radix =
         [("0x", 16), ("0b", 2)].into_iter().find_map(|(prefix, radix)| Some((text.strip_prefix(prefix)?, radix)));
@@ -208,16 +213,16 @@ fn mask(text: &str) -> Option<u8> {
     u8::from_str_radix(digits, radix).ok().filter(|_| !digits.starts_with('+'))
 }
 
-/// A time in ms, and behind a colon the least share of the sides in percent.
+/// Parses a frame time in milliseconds, and an optional minimum scale in percent after a colon.
 fn dynamic(text: &str) -> Result<DynamicResolution, String> {
-    let (target, least) = text.split_once(':').unwrap_or((text, "50"));
-    let of = |part: &str, most: f64| part.parse::<f64>().ok().filter(|x| *x > 0.0 && *x <= most);
-    match (of(target, 1e6), of(least, 100.0).filter(|least| *least >= 25.0)) {
+    let (target, min) = text.split_once(':').unwrap_or((text, "50"));
+    let of = |part: &str, max: f64| part.parse::<f64>().ok().filter(|x| *x > 0.0 && *x <= max);
+    match (of(target, 1e6), of(min, 100.0).filter(|min| *min >= 25.0)) {
         (Some(target_ms), Some(least_percent)) => {
             Ok(DynamicResolution { target_ms, least_percent, ..DynamicResolution::DEFAULT })
         }
         _ => Err(format!(
-            "--dynamic-resolution {text}: milliseconds above 0 are needed, and behind a colon 25 to 100 percent"
+            "--dynamic-resolution {text}: expected milliseconds above 0, with an optional minimum scale of 25 to 100 percent after a colon"
         )),
     }
 }

@@ -1,60 +1,59 @@
-//! Options of color grading, the tone curve, and the edges of the picture.
+//! Options of color grading, tone curve and edge fade.
 
-use crate::look::pairs;
+use crate::parse::pairs;
 use framegraph_passes::PostSettings;
 use framegraph_passes::grading::{GradeBy, Look, tone_map};
 use framegraph_shaders::layout::EdgeFade;
 use lexopt::Parser;
 use std::path::PathBuf;
 
-/// What `render --help` prints of them.
-pub const HELP: &str = "
+/// Help section.
+pub const HELP: &str = "\
 GRADING
-  --tone-map NAME      linear, hill (ACES as fitted by Hill; default), filmic, neutral, aces (as Filament computes it),
-                       aces-legacy (brighter by 1/0.6), linear-2020 (cut off in the primaries of Rec.2020), agx, agx-golden,
-                       agx-punchy, gt7, display-range (a color a stop), mobile (cheap, sRGB encoding included), or
-                       generic[:CONTRAST:IN:OUT:WHITE]
-  --grade KEY=X,...    in Filament's order, in Rec.2020: exposure=EV, night=X (0 to 1), temperature, tint (-1 to 1; 0),
-                       mixer-red|green|blue=R:G:B, shadows|midtones|highlights=R:G:B:ADDED (1:1:1:0),
+  --tone-map NAME      linear, hill (ACES fit by Hill; default), filmic, neutral, aces (as in Filament), aces-legacy
+                       (brighter by 1/0.6), linear-2020 (clipped in Rec.2020), agx, agx-golden, agx-punchy, gt7,
+                       display-range (one color per stop), mobile (cheap, with the sRGB encoding), or generic[:CONTRAST:IN:OUT:WHITE]
+  --grade KEY=X,...    color grading in Filament's order, in Rec.2020: exposure=EV, night=X (0 to 1), temperature, tint
+                       (-1 to 1; 0), mixer-red|green|blue=R:G:B, shadows|midtones|highlights=R:G:B:OFFSET (1:1:1:0),
                        ranges=A:B:C:D (of luminance, 0:0.333:0.55:1), slope, offset, power=R:G:B (of LogC), contrast,
                        vibrance, saturation (0 to 2; 1), shadow-gamma, mid-point, highlight-scale=R:G:B (curves),
-                       luminance-scaling=on|off (the curve for luminance alone), gamut-mapping=on|off
-  --grade-by WAY       direct (each pixel computed; default), or table[:SIZE[:rgb10|f16]] (looked up; 16 to 64 entries a
-                       side, 32, f16)
-  --look FILE.cube     a table of colors that the picture's codes go through at the end; needs --grade-by table
-  --edge-fade KEY=X,...  the picture fades toward its edges, as Filament's vignette does: middle, roundness, feather
-                       (0 to 1; 0.5), color=R:G:B (a factor on light, 0:0:0)
+                       luminance-scaling=on|off (apply the tone curve to luminance only), gamut-mapping=on|off
+  --grade-by METHOD    direct (computed per pixel; default), or table[:SIZE[:rgb10|f16]] (lookup table of 16 to 64 entries
+                       per side; 32, f16)
+  --look FILE.cube     color lookup table applied to the final picture; requires --grade-by table
+  --edge-fade KEY=X,...  fade toward the edges as Filament's vignette: middle, roundness, feather (0 to 1; 0.5),
+                       color=R:G:B (factor on linear color, 0:0:0)
 ";
 
-/// What was asked for.
+/// Options of color grading, tone curve and edge fade.
 #[derive(Clone, Debug, Default)]
 pub struct Grade {
     look: Look,
     by: GradeBy,
     edge_fade: Option<EdgeFade>,
-    /// A file of colors.
-    pub colors: Option<PathBuf>,
+    /// Path of a color lookup table.
+    pub color_table: Option<PathBuf>,
 }
 
 impl Grade {
-    /// That of a frame.
+    /// Starts with the grading of a frame.
     pub fn with(post: &PostSettings) -> Self {
-        Self { look: post.look, by: post.by, edge_fade: post.edge_fade, colors: None }
+        Self { look: post.look, by: post.by, edge_fade: post.edge_fade, color_table: None }
     }
 
-    /// Takes an option of this file; false for others.
+    /// Parses the value of an option of this module; returns false for other options.
     ///
     /// # Errors
-    /// One line that names the option and what it takes.
+    /// One line that names the option and the expected value.
     pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
         if name == "look" {
-            self.colors = Some(parser.value().map_err(|_| "--look: a file is missing")?.into());
+            self.color_table = Some(parser.value().map_err(|_| "--look: missing file")?.into());
             return Ok(true);
         }
         if !matches!(name, "tone-map" | "grade" | "grade-by" | "edge-fade") {
             return Ok(false);
         }
-        let value = parser.value().map_err(|_| format!("--{name}: a value is missing"))?;
+        let value = parser.value().map_err(|_| format!("--{name}: missing value"))?;
         let value = value.into_string().map_err(|v| format!("--{name} {v:?}: the value is not Unicode"))?;
         match name {
             "tone-map" => self.look.tone_map = tone_map(&value).map_err(|error| format!("--tone-map {error}"))?,
@@ -75,13 +74,13 @@ impl Grade {
         Ok(true)
     }
 
-    /// Puts what was asked for into the settings.
+    /// Writes the options into the post-processing settings.
     ///
     /// # Errors
-    /// When a file of colors has no table to go into.
+    /// A color lookup table is specified without `--grade-by table`.
     pub fn apply(&self, post: &mut PostSettings) -> Result<(), String> {
-        if self.colors.is_some() && self.by == GradeBy::Direct {
-            return Err("--look: a file of colors goes into a table; add --grade-by table".into());
+        if self.color_table.is_some() && self.by == GradeBy::Direct {
+            return Err("--look: requires a lookup table; add --grade-by table".into());
         }
         (post.look, post.by, post.edge_fade) = (self.look, self.by, self.edge_fade);
         Ok(())
@@ -89,9 +88,9 @@ impl Grade {
 }
 
 fn set_fade(fade: &mut EdgeFade, key: &str, value: &str) -> Result<(), String> {
-    let number = |text: &str, most: f32| {
-        let wrong = || format!("--edge-fade {key}={value}: numbers go from 0 to {most}");
-        text.parse::<f32>().ok().filter(|x| (0.0..=most).contains(x)).ok_or_else(wrong)
+    let number = |text: &str, max: f32| {
+        let wrong = || format!("--edge-fade {key}={value}: out of range; expected 0 to {max}");
+        text.parse::<f32>().ok().filter(|x| (0.0..=max).contains(x)).ok_or_else(wrong)
     };
     match key {
         "middle" => fade.middle = number(value, 1.0)?,
@@ -100,11 +99,11 @@ fn set_fade(fade: &mut EdgeFade, key: &str, value: &str) -> Result<(), String> {
         "color" => {
             let parts: Vec<&str> = value.split(':').collect();
             let [r, g, b] = parts[..] else {
-                return Err(format!("--edge-fade color={value}: three numbers separated by `:` are needed"));
+                return Err(format!("--edge-fade color={value}: expected three numbers separated by `:`"));
             };
             fade.color = [number(r, 1000.0)?, number(g, 1000.0)?, number(b, 1000.0)?];
         }
-        _ => return Err(format!("--edge-fade {key}: unknown key; there are middle, roundness, feather, color")),
+        _ => return Err(format!("--edge-fade {key}: unknown key; expected middle, roundness, feather, color")),
     }
     Ok(())
 }
@@ -119,7 +118,7 @@ mod tests {
         let mut grade = Grade::default();
         let mut parser = Parser::from_args(words.iter().map(OsString::from));
         while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
-            let lexopt::Arg::Long(name) = arg else { return Err("an option is needed".into()) };
+            let lexopt::Arg::Long(name) = arg else { return Err("expected an option".into()) };
             let name = name.to_owned();
             assert!(grade.take(&name, &mut parser)?, "{name}");
         }
@@ -129,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn choices_arrive() {
+    fn options_are_parsed() {
         let post = parsed(&[
             "--grade",
             "contrast=1.25,tint=-0.5,luminance-scaling=on",
@@ -151,20 +150,20 @@ mod tests {
     }
 
     #[test]
-    fn wrong_words_are_named() {
+    fn invalid_options_are_reported() {
         for (words, named) in [
-            (["--grade", "contrast"], "--grade contrast: KEY=X"),
+            (["--grade", "contrast"], "--grade contrast: expected KEY=X"),
             (["--grade", "hue=1"], "--grade hue: unknown choice"),
             (["--grade", "tint=2"], "--grade tint=2"),
             (["--tone-map", "sepia"], "--tone-map sepia: unknown choice; there are linear, hill"),
             (["--grade-by", "lut"], "--grade-by=lut: `direct` or"),
-            (["--look", "a.cube"], "--look: a file of colors goes into a table; add --grade-by table"),
+            (["--look", "a.cube"], "--look: requires a lookup table; add --grade-by table"),
             (["--edge-fade", "size=1"], "--edge-fade size: unknown key"),
-            (["--edge-fade", "middle=2"], "--edge-fade middle=2: numbers go from 0 to 1"),
-            (["--edge-fade", "color=1:2"], "--edge-fade color=1:2: three numbers"),
+            (["--edge-fade", "middle=2"], "--edge-fade middle=2: out of range; expected 0 to 1"),
+            (["--edge-fade", "color=1:2"], "--edge-fade color=1:2: expected three numbers"),
         ] {
-            let told = parsed(&words).expect_err("that is wrong");
-            assert!(told.contains(named) && !told.contains('\n'), "{told}");
+            let error = parsed(&words).expect_err("the command line is invalid");
+            assert!(error.contains(named) && !error.contains('\n'), "{error}");
         }
     }
 }

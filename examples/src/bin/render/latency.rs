@@ -1,4 +1,4 @@
-//! How far a picture is behind its input, by how many frames may be queued.
+//! Latency from input to picture by the number of queued frames.
 
 use crate::args::Args;
 use crate::run::{Failure, Prepared, WARM_UP, device, executed};
@@ -9,16 +9,17 @@ use framegraph_wgpu::{Executor, FramesInFlight};
 use std::num::NonZeroU32;
 use std::time::Instant;
 
-/// Draws the frame again, with one, two and three frames queued at most: the time from the begin of a frame until the device is done
-/// with it, and the time from frame to frame.
+/// Renders the frame with at most one, two and three queued frames, and formats latencies and frame times.
+///
+/// Latency is the time from the start of a frame until the device has completed it.
 ///
 /// # Errors
-/// One line: what the device refuses.
+/// One line with the error of the device.
 pub fn table(args: &Args, prepared: &mut Prepared, plan: &Plan, executor: &mut Executor) -> Result<String, Failure> {
     let mut rows = vec![["frames queued", "latency p25", "median", "frame to frame"].map(String::from)];
-    for most in (1..=3).filter_map(NonZeroU32::new) {
+    for max in (1..=3).filter_map(NonZeroU32::new) {
         let mut flight = FramesInFlight::new(&prepared.gpu);
-        flight.set_max(most);
+        flight.set_max(max);
         let begun = Instant::now();
         for index in 0..args.frames {
             flight.begin().map_err(device)?;
@@ -36,7 +37,7 @@ pub fn table(args: &Args, prepared: &mut Prepared, plan: &Plan, executor: &mut E
             Some(latency) => [latency.p25_ms, latency.median_ms].map(|ms| format!("{ms:.3}")),
             None => ["-"; 2].map(String::from),
         };
-        rows.push([most.to_string(), p25, median, format!("{each_ms:.3}")]);
+        rows.push([max.to_string(), p25, median, format!("{each_ms:.3}")]);
     }
-    Ok(format!("\nmilliseconds, from the begin of a frame until the device is done with it\n{}", aligned(&rows, 1)))
+    Ok(format!("\nmilliseconds, from the start of a frame until the device has completed it\n{}", aligned(&rows, 1)))
 }

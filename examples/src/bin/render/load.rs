@@ -1,7 +1,7 @@
-//! From the command line to a scene, its light and its view; shows what it is doing.
+//! Loads the scene, its light and its view from the command line, with progress output.
 
 use crate::args::Args;
-use crate::light::{Around, Behind, Sun};
+use crate::light::{BackgroundSource, EnvironmentSource, Sun};
 use crate::run::{Failure, device, input};
 use framegraph_passes::ibl::cache::Cache;
 use framegraph_passes::lighting::LightingError;
@@ -16,33 +16,33 @@ use program::progress::Shown;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-/// Width of the map that a clear sky is evaluated into: it has no detail that more would show.
+/// Width of the environment map of a clear sky, in texels. A larger map would add no detail.
 const SKY_MAP_TEXELS: u32 = 512;
 
-/// A scene with what lights it.
+/// Scene with its environment and background.
 pub struct Loaded {
     /// The scene.
     pub scene: Scene,
-    /// What lights it from all around.
+    /// Environment light.
     pub environment: Environment,
-    /// What stands behind it.
+    /// Visible background.
     pub background: Background,
-    /// The exposure value for this light, before a factor on it.
+    /// Metered exposure value at ISO 100, without the environment intensity.
     pub metered_ev100: f32,
 }
 
-/// The table of colors that the command line names, if it names one.
+/// Loads the color lookup table of `--look`.
 ///
 /// # Errors
 /// One line that names the file, the line and the reason.
 pub fn colors(args: &Args) -> Result<Option<ColorTable>, String> {
     let load = |file: &PathBuf| ColorTable::load(file).map_err(|error| format!("--look: {error}"));
-    let colors = args.grade.colors.as_ref().map(load).transpose()?;
+    let colors = args.grade.color_table.as_ref().map(load).transpose()?;
     colors.iter().flat_map(|colors| &colors.warnings).for_each(|warning| warn(warning));
     Ok(colors)
 }
 
-/// Loads what the command line names.
+/// Loads the scene and the environment.
 ///
 /// # Errors
 /// One line that names the file and the reason.
@@ -53,26 +53,26 @@ pub fn load(args: &Args, options: &LoadOptions) -> Result<Loaded, SceneError> {
         scene.make_levels(&mut |p| show(&mut shown, p))?;
     }
     let asked = &args.lighting;
-    let mut environment = match &asked.around {
-        Around::File(path) => Environment::load_with(path, options, &mut |p| show(&mut shown, p))?,
-        Around::Uniform(nits) => Environment::uniform(*nits)?,
-        Around::Sky => sky(args, &scene).environment(SKY_MAP_TEXELS)?,
+    let mut environment = match &asked.environment {
+        EnvironmentSource::File(path) => Environment::load_with(path, options, &mut |p| show(&mut shown, p))?,
+        EnvironmentSource::Uniform(nits) => Environment::uniform(*nits)?,
+        EnvironmentSource::Sky => sky(args, &scene).environment(SKY_MAP_TEXELS)?,
     };
-    let background = match (&asked.around, asked.behind) {
-        (_, Behind::Constant(nits)) => Background::Constant(nits.as_vec3()),
-        (Around::Sky, _) | (_, Behind::Sky) => Background::clear_sky(&sky(args, &scene)),
-        (_, Behind::Environment) => Background::Environment,
+    let background = match (&asked.environment, asked.background) {
+        (_, BackgroundSource::Constant(nits)) => Background::Constant(nits.as_vec3()),
+        (EnvironmentSource::Sky, _) | (_, BackgroundSource::Sky) => Background::clear_sky(&sky(args, &scene)),
+        (_, BackgroundSource::Environment) => Background::Environment,
     };
-    // The sun of a map is light without a shadow, and what filters the map cannot hold it.
+    // A sun inside the map casts no shadow, and prefiltering cannot represent it.
     let extraction = if asked.sun == Sun::InMap { SunExtraction::Apart } else { environment.extract_sun() };
-    let own = matches!(extraction, SunExtraction::Extracted { .. }) && asked.sun == Sun::Own;
+    let own = matches!(extraction, SunExtraction::Extracted { .. }) && asked.sun == Sun::FromScene;
     match asked.sun {
-        Sun::Own | Sun::InMap => {}
+        Sun::FromScene | Sun::InMap => {}
         Sun::Off => {
             environment.sun = None;
             scene.lights.retain(|light| !matches!(light.kind, LightKind::Directional { .. }));
         }
-        Sun::Given { toward, illuminance_lux, diameter_deg } => {
+        Sun::Custom { toward, illuminance_lux, diameter_deg } => {
             environment.sun = Some(Light {
                 kind: LightKind::Directional {
                     illuminance_lux: illuminance_lux as f32,
@@ -89,7 +89,7 @@ pub fn load(args: &Args, options: &LoadOptions) -> Result<Loaded, SceneError> {
     shown.clear();
     if own {
         program::note(format_args!("{}: {extraction}", environment.name));
-        // What was part of the environment is brighter with it.
+        // An extracted sun scales with its environment.
         environment.sun = environment.sun.map(|sun| times(sun, asked.intensity));
     }
     for warning in scene.warnings.iter().chain(&environment.warnings) {
@@ -98,7 +98,7 @@ pub fn load(args: &Args, options: &LoadOptions) -> Result<Loaded, SceneError> {
     Ok(Loaded { scene, environment, background, metered_ev100 })
 }
 
-/// A directional light, `factor` times as bright.
+/// Returns a directional light with `factor` times the illuminance.
 fn times(mut light: Light, factor: f32) -> Light {
     if let LightKind::Directional { illuminance_lux, .. } = &mut light.kind {
         *illuminance_lux *= factor;
@@ -106,20 +106,20 @@ fn times(mut light: Light, factor: f32) -> Light {
     light
 }
 
-/// The clear sky about the sun that was asked for, if that stands above the horizon, and over the ground of the scene.
+/// Returns the clear sky for a custom sun above the horizon, over the ground of the scene.
 fn sky(args: &Args, scene: &Scene) -> Sky {
     let usual = Sky::default();
     let ground_albedo = scene.ground_albedo.map_or(usual.ground_albedo, |albedo| albedo.as_dvec3());
     match args.lighting.sun {
-        Sun::Given { toward, .. } if toward.y > 0.0 => Sky { toward_sun: toward, ground_albedo, ..usual },
+        Sun::Custom { toward, .. } if toward.y > 0.0 => Sky { toward_sun: toward, ground_albedo, ..usual },
         _ => Sky { ground_albedo, ..usual },
     }
 }
 
-/// The view that the command line asks for.
+/// Returns the view settings of the command line.
 ///
 /// # Errors
-/// When the scene has no camera of that name, or none at all where one of its own is asked for.
+/// The named camera does not exist, or `--camera-from-gltf` is set and the scene has no camera.
 pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
     let [width, height] = args.size_px;
     let aspect = f64::from(width) / f64::from(height);
@@ -145,10 +145,10 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
     })
 }
 
-/// Makes light of the environment, or finds it in the cache.
+/// Prefilters the environment, or loads the result from the cache.
 ///
 /// # Errors
-/// One line that names what was refused.
+/// One line that names the failure.
 pub fn light(gpu: &Gpu, args: &Args, loaded: &Loaded) -> Result<Lighting, LightingError> {
     let mut shown = Shown::default();
     let settings = args.shading.light(args.quality);
@@ -159,7 +159,7 @@ pub fn light(gpu: &Gpu, args: &Args, loaded: &Loaded) -> Result<Lighting, Lighti
     Ok(lighting)
 }
 
-/// Copies what was loaded to the device. The scene's images are gone then.
+/// Uploads the scene and frees its images.
 ///
 /// # Errors
 /// One line that names the file and the reason.
@@ -182,7 +182,7 @@ fn warn(warning: &str) {
     program::note(format_args!("warning: {warning}"));
 }
 
-/// Shows a step of the work, and asks it to stop once a signal came.
+/// Shows a step of the work and stops it after a signal.
 fn show(shown: &mut Shown, Progress { stage, done, total, item }: Progress<'_>) -> ControlFlow<()> {
     shown.step(stage, done, total, item);
     interrupt::flow()

@@ -1,22 +1,23 @@
-//! Renders a scene through the compiled render graph, headless: the main job of the project.
+//! Renders a scene with the compiled render graph, without a window.
 
+mod animation;
 mod args;
 mod budget;
 mod compare;
 mod debug;
 mod decide;
 mod dirt;
+mod effect_costs;
 mod effects;
-mod given;
+mod explicit;
 mod grade;
-mod keep;
+mod help;
+mod kept_shadows;
 mod latency;
-mod leave_out;
 mod light;
 mod load;
-mod look;
-mod moment;
 mod name;
+mod parse;
 mod pick;
 mod run;
 mod sequence;
@@ -34,7 +35,7 @@ fn main() -> ExitCode {
     let args = match args::parse(std::env::args_os().skip(1)) {
         Ok(Command::Render(args)) => args,
         Ok(Command::Help) => {
-            program::line(args::help());
+            program::line(help::help());
             return program::exit(0);
         }
         Err(message) => return fail(2, &message),
@@ -53,7 +54,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// One line on standard error.
+/// Prints one line on standard error and returns the exit code.
 fn fail(code: u8, message: &str) -> ExitCode {
     program::error(message);
     program::exit(code)

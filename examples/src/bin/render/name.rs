@@ -1,15 +1,15 @@
-//! Names of files that are written.
+//! Names of output files.
 
 use program::outputs::is_special;
 use std::path::{Path, PathBuf};
 
-/// Bytes of the longest name that file systems take.
+/// Maximum length of a file name in bytes on common file systems.
 const LONGEST: usize = 255;
 
-/// A path that must end in one of these, unless it is a pipe or a device, whose names say nothing.
+/// Checks the extension of a path. Pipes and devices may have any name.
 ///
 /// # Errors
-/// One line that names the option and the endings.
+/// One line that names the option and the valid extensions.
 pub fn with_ending(path: PathBuf, option: &str, endings: &[&str]) -> Result<PathBuf, String> {
     let fits = path.extension().is_some_and(|e| endings.iter().any(|ending| e.eq_ignore_ascii_case(ending)));
     if fits || is_special(&path) {
@@ -19,13 +19,13 @@ pub fn with_ending(path: PathBuf, option: &str, endings: &[&str]) -> Result<Path
     }
 }
 
-/// The path with another ending, its stem cut where the name would be too long; none beside a pipe or a device.
+/// Returns the path with another extension, its stem shortened if necessary; `None` for a pipe or a device.
 pub fn neighbour(path: &Path, ending: &str) -> Option<PathBuf> {
     let stem = path.file_stem()?.to_string_lossy();
     (!is_special(path)).then(|| path.with_file_name(short_name(&stem, ending)))
 }
 
-/// A name of at most [`LONGEST`] bytes that keeps its ending.
+/// Returns a name of at most [`LONGEST`] bytes that keeps its extension.
 pub fn short_name(stem: &str, ending: &str) -> String {
     let mut most = stem.len().min(LONGEST - ending.len());
     while !stem.is_char_boundary(most) {
@@ -34,7 +34,7 @@ pub fn short_name(stem: &str, ending: &str) -> String {
     format!("{}{ending}", &stem[..most])
 }
 
-/// The text file and the graph file: what was asked for and its neighbour.
+/// Returns the paths of the plan as text and as a graph: the specified file and its neighbor.
 pub fn plan_files(asked: Option<PathBuf>, picture: &Path) -> (Option<PathBuf>, Option<PathBuf>) {
     match asked {
         Some(dot) if dot.extension().is_some_and(|e| e.eq_ignore_ascii_case("dot")) => {

@@ -1,14 +1,14 @@
-//! The run itself: device, graph, frames, files.
+//! A run: device, graph, frames and output files.
 
 use crate::args::Args;
 use crate::budget;
 use crate::debug::report;
-use crate::decide::Deciding;
+use crate::decide::FeatureCulling;
 use crate::dirt::Dirt;
-use crate::keep::{Kept, Own, declare, first_frame};
+use crate::effect_costs;
+use crate::kept_shadows::{Kept, OwnResources, declare, first_frame};
 use crate::latency;
-use crate::leave_out;
-use crate::light::Around;
+use crate::light::EnvironmentSource;
 use crate::load::{self, Loaded};
 use crate::pick;
 use crate::sequence;
@@ -34,14 +34,14 @@ use program::progress::Shown;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-/// Frames before the measured ones: shaders are compiled in the first.
+/// Number of warm-up frames; the first one compiles shaders.
 pub const WARM_UP: u32 = Timing::WARM_UP;
 
-/// Why nothing was rendered.
+/// Reason that nothing was rendered.
 pub enum Failure {
-    /// The user's input.
+    /// Invalid input.
     Input(String),
-    /// The device, or a fault of ours.
+    /// Device failure or internal error.
     Device(String),
 }
 
@@ -53,35 +53,35 @@ pub fn device(error: impl Display) -> Failure {
     Failure::Device(error.to_string())
 }
 
-/// Everything that frames are executed with, but plan and executor.
+/// State for executing frames, except the plan and the executor.
 pub struct Prepared {
     pub gpu: Gpu,
     pub settings: Settings,
     pub frame: Frame<World>,
     pub io: FrameIo,
     pub world: World,
-    /// What the frame imports.
+    /// Imported resources of the frame.
     pub imports: Imports,
-    /// Shadow maps that are kept, if they are.
+    /// Kept shadow maps with `--shadow keep=on`.
     pub kept: Option<Kept>,
-    /// Dirt on the lens, if there is some.
+    /// Lens dirt with `--dirt`.
     pub dirt: Option<Dirt>,
     /// Distance of the camera's near plane in meters.
     pub near_m: f32,
-    /// The frame as it is asked for; `settings` has what facts leave of it.
+    /// Requested settings; `settings` excludes dropped effects.
     pub asked: Settings,
-    /// What they say.
+    /// Decisions of feature culling.
     pub facts: Facts,
-    /// What they are decided with.
-    pub deciding: Deciding,
+    /// Inputs of feature culling.
+    pub culling: FeatureCulling,
     /// The scene without its images.
     pub loaded: Loaded,
-    /// How it is seen; its shadows are those that are asked for.
+    /// View settings with the requested shadows.
     pub seen: ViewSettings,
 }
 
 impl Prepared {
-    /// What plans and executors are made with.
+    /// Returns the options for compiling plans and creating executors.
     pub fn options(&self, args: &Args) -> (Options, ExecutorOptions) {
         let [width, height] = args.size_px;
         let mut options = Options { inline: args.inline, alias: args.alias, ..Options::for_frame(width, height) };
@@ -90,10 +90,10 @@ impl Prepared {
         (options, execute)
     }
 
-    /// Executes frames with these options, on as many threads as the command line says.
+    /// Creates an executor with these options and the number of threads of the command line.
     ///
     /// # Errors
-    /// When the system refuses a thread.
+    /// The system cannot create a thread.
     pub fn executor(&self, args: &Args, options: ExecutorOptions) -> Result<Executor, Failure> {
         let workers = if args.threads == 0 { Workers::new() } else { Workers::with_threads(args.threads) };
         let mut executor = Executor::with(&self.gpu, options);
@@ -102,20 +102,20 @@ impl Prepared {
     }
 }
 
-/// Opens the device, loads what the command line names, declares the frame, and uploads.
+/// Opens the device, loads the scene, declares the frame, and uploads.
 ///
 /// # Errors
-/// One line, by whose fault it is; also when an output would be written over a file that the scene was read from.
+/// An input or device failure with a one-line message. An output file must not be an input file of the scene.
 pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> {
-    // Images are decoded to what the device samples. Without a device, what is wrong with the input is still said first.
+    // Images are decoded to formats that the device samples. Invalid input is reported even without a device.
     let gpu = open();
     let options = args.load_options(gpu.as_ref().map_or(BlockFormats::default(), block_formats));
     let mut loaded = load::load(args, &options).map_err(input)?;
-    args.moment.apply(&mut loaded.scene, 0.0).map_err(input)?;
+    args.animation.apply(&mut loaded.scene, 0.0).map_err(input)?;
     for file in &loaded.scene.files {
         outputs.reads(file).map_err(input)?;
     }
-    for file in args.grade.colors.iter().chain(&args.settings).chain(&args.effects.dirt) {
+    for file in args.grade.color_table.iter().chain(&args.settings).chain(&args.effects.dirt) {
         outputs.reads(file).map_err(input)?;
     }
     let colors = load::colors(args).map_err(input)?;
@@ -124,19 +124,19 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     if !args.trial {
         program::line(format_args!("adapter: {}", gpu.describe()));
     }
-    args.shading.precision.check(&gpu).map_err(|told| input(format!("--{told}")))?;
+    args.shading.precision.check(&gpu).map_err(|error| input(format!("--{error}")))?;
     let [width, height] = args.size_px;
-    let most = gpu.caps().max_texture_texels;
-    if width.max(height) > most {
-        return Err(input(format!("--size {width}x{height}: the adapter's limit is {most}x{most}")));
+    let max = gpu.caps().max_texture_texels;
+    if width.max(height) > max {
+        return Err(input(format!("--size {width}x{height}: exceeds the adapter's limit of {max}x{max}")));
     }
     let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
     let mut asked = settings(args, &loaded, &seen);
     if args.round_hdr {
         asked.stored = Some(StoreRounding::measure(&gpu).map_err(device)?);
     }
-    let mut deciding = Deciding::new(&args.decide, &loaded, &asked);
-    let facts = deciding.facts(&loaded, &lighting.image, &seen, &asked, Measurement::Off);
+    let mut culling = FeatureCulling::new(&args.decide, &loaded, &asked);
+    let facts = culling.facts(&loaded, &lighting.image, &seen, &asked, Measurement::Off);
     let settings = facts.apply(&asked);
     let shown = ViewSettings { shadows: settings.shadows, ..seen.clone() };
     let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &shown);
@@ -144,29 +144,31 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
         program::line(format_args!("lights: {}", moment.light_report));
     }
     if moment.light_lists.is_some() && !LightLists::can_be_bound(&gpu.device.limits()) {
-        program::note(format_args!("the adapter binds too few storage buffers for lists: all lights are looked at"));
+        program::note(format_args!(
+            "the adapter has too few storage buffer bindings for light lists; shading loops over all lights"
+        ));
     }
     let mut kept = moment.shadows.as_ref().filter(|_| args.shadows.keep).map(|_| Kept::default());
     if asked.bloom.is_none() && args.effects.dirt.is_some() {
-        return Err(input("--dirt: it goes together with bloom only; `--bloom on` asks for that"));
+        return Err(input("--dirt: requires bloom; add --bloom on"));
     }
     let dirt = args.effects.dirt.as_deref().map(|file| Dirt::load(&gpu, file, &options.memory)).transpose()?;
-    let given = kept.as_mut().zip(moment.shadows.as_ref()).map(|(kept, shadows)| (&gpu, kept, shadows));
-    let own = Own { kept: given, dirt: dirt.as_ref() };
+    let kept_shadows = kept.as_mut().zip(moment.shadows.as_ref()).map(|(kept, shadows)| (&gpu, kept, shadows));
+    let own = OwnResources { kept: kept_shadows, dirt: dirt.as_ref() };
     let (frame, io, imports) = declare(&settings, &facts, args.linear_out.is_some(), own)?;
     let near_m = seen.camera.projection.near_m() as f32;
     let mut world = load::upload(&gpu, &mut loaded, &options, lighting, moment)?;
     world.grading.set_colors(colors);
     let mut prepared =
-        Prepared { gpu, settings, frame, io, world, imports, kept, dirt, near_m, asked, facts, deciding, loaded, seen };
+        Prepared { gpu, settings, frame, io, world, imports, kept, dirt, near_m, asked, facts, culling, loaded, seen };
     first_frame(args, &mut prepared)?;
     Ok(prepared)
 }
 
-/// Opens the adapter: the best there is, unless the environment says otherwise.
+/// Opens the best adapter, or the one that environment variables select.
 ///
 /// # Errors
-/// What the environment says wrong is the user's fault, the rest is the device's.
+/// An invalid environment variable is an input failure, everything else a device failure.
 pub fn open() -> Result<Gpu, Failure> {
     Gpu::open(&AdapterRequest::from_env()).map_err(|error| match error {
         OpenError::UnknownBackend { .. } => input(error),
@@ -174,7 +176,7 @@ pub fn open() -> Result<Gpu, Failure> {
     })
 }
 
-/// By whose fault a frame was not executed.
+/// Classifies an execution error as an input or a device failure.
 pub fn executed(error: ExecuteError) -> Failure {
     match error {
         ExecuteError::Record { error: RecordError::Content(_), .. } => input(error),
@@ -182,10 +184,10 @@ pub fn executed(error: ExecuteError) -> Failure {
     }
 }
 
-/// Executes frames, waits for each and shows how many there were.
+/// Executes frames, waits for each and shows the progress.
 ///
 /// # Errors
-/// One line that names what the device refused, or that a signal asked to stop.
+/// One line with the error of the device, or a signal.
 pub fn render(
     prepared: &mut Prepared,
     plan: &Plan,
@@ -205,7 +207,7 @@ pub fn render(
     Ok(())
 }
 
-/// Frames that are drawn of those that will be.
+/// Progress of rendered frames.
 pub struct Frames {
     shown: Shown,
     done: usize,
@@ -217,10 +219,10 @@ impl Frames {
         Self { shown: Shown::default(), done: 0, total: total as usize }
     }
 
-    /// One more is drawn.
+    /// Counts one more rendered frame.
     ///
     /// # Errors
-    /// When a signal asked to stop.
+    /// A signal arrived.
     pub fn next(&mut self) -> Result<(), Failure> {
         self.done += 1;
         self.shown.step("rendering frames", self.done, self.total, "");
@@ -231,10 +233,10 @@ impl Frames {
     }
 }
 
-/// Renders what the command line asks for and writes the files.
+/// Renders the frame of the command line and writes the files.
 ///
 /// # Errors
-/// One line, by whose fault it is.
+/// An input or device failure with a one-line message.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let mut outputs = outputs(args)?;
     pick::check(args).map_err(input)?;
@@ -271,7 +273,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
     let Prepared { gpu, io, .. } = &prepared;
     let fetch = |handle: Texture| -> Result<Pixels, Failure> {
-        let texture = executor.texture(&plan, handle).ok_or_else(|| device("the frame left no picture"))?;
+        let texture = executor.texture(&plan, handle).ok_or_else(|| device("the frame has no picture"))?;
         read_texture(gpu, texture).map_err(device)
     };
     let picture = fetch(io.output)?.rgba8();
@@ -290,13 +292,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let text = to_ron(prepared.frame.graph(), &args.scene, args.size_px);
         outputs.write(path, |file| file.write_all(text.as_bytes())).map_err(input)?;
     }
-    let told = report(args, &mut prepared, &plan, &executor, before, &inspections, &mut outputs)?;
+    let notes = report(args, &mut prepared, &plan, &executor, before, &inspections, &mut outputs)?;
     if args.debug.timing {
         program::print(latency::table(args, &mut prepared, &plan, &mut executor)?);
     }
-    if args.decide.what_it_costs {
-        saved = leave_out::measure(args, &mut prepared)?;
-        program::print(leave_out::table(&prepared, &saved));
+    if args.decide.effect_costs {
+        saved = effect_costs::measure(args, &mut prepared)?;
+        program::print(effect_costs::table(&prepared, &saved));
     }
     for line in pick::lines(args, &prepared)? {
         program::line(line);
@@ -304,24 +306,24 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if let Some(path) = &args.decide.json {
         outputs.write(path, |file| file.write_all(prepared.facts.json(&saved).as_bytes())).map_err(input)?;
     }
-    written(outputs, &told)
+    written(outputs, &notes)
 }
 
-/// Gives the files their names, and says which there are.
-fn written(outputs: Outputs, told: &[(PathBuf, String)]) -> Result<(), Failure> {
+/// Renames the files into place and lists them.
+fn written(outputs: Outputs, notes: &[(PathBuf, String)]) -> Result<(), Failure> {
     interrupt::check().map_err(device)?;
     for path in outputs.commit().map_err(input)? {
-        let about = told.iter().find(|(of, _)| *of == path).map_or("", |(_, about)| about.as_str());
+        let about = notes.iter().find(|(of, _)| *of == path).map_or("", |(_, about)| about.as_str());
         program::line(format_args!("wrote {}{about}", path.display()));
     }
     Ok(())
 }
 
-/// The files that are known before anything is loaded: what cannot be written is better said now than after the work.
+/// Registers the output files that are known before loading, so that unwritable paths are reported before the work.
 fn outputs(args: &Args) -> Result<Outputs, Failure> {
     let mut outputs = Outputs::default();
     outputs.reads(Path::new(&args.scene)).map_err(input)?;
-    if let Around::File(environment) = &args.lighting.around {
+    if let EnvironmentSource::File(environment) = &args.lighting.environment {
         outputs.reads(environment).map_err(input)?;
     }
     for file in args.settings.iter().chain(&args.budget.record) {
@@ -350,7 +352,7 @@ fn outputs(args: &Args) -> Result<Outputs, Failure> {
     Ok(outputs)
 }
 
-/// What the command line and the scene make of the standard frame, before facts.
+/// Returns the standard frame settings of the command line and the scene, before feature culling.
 pub fn settings(args: &Args, loaded: &Loaded, seen: &ViewSettings) -> Settings {
     let settings = Settings {
         samples: args.samples,

@@ -1,8 +1,8 @@
-//! Several pictures: the camera around the scene, or frames in a row.
+//! Picture sequences: a turntable or consecutive frames.
 
 use crate::args::Args;
 use crate::decide::Sequence;
-use crate::keep::{Own, declare};
+use crate::kept_shadows::{OwnResources, declare};
 use crate::load;
 use crate::run::{Failure, Prepared, device, executed, input};
 use framegraph::{Plan, Scratch};
@@ -21,19 +21,20 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// The files of a sequence.
+/// Returns the files of a sequence.
 pub fn files(sequence: &Sequence) -> impl Iterator<Item = PathBuf> {
     let name = if sequence.turns { "turntable" } else { "frame" };
     let folder = sequence.folder.clone();
     (0..sequence.frames).map(move |index| folder.join(format!("{name}_{index:04}.png")))
 }
 
-/// Renders the pictures and puts them into `outputs`. Facts are decided for each, with what the frames before decided and were
-/// measured to have; where the camera turns or an animation plays, what adds frames up is told what moved. With a time that
-/// frames are to keep, each is drawn as large as those before let it be.
+/// Renders the pictures into `outputs`.
+///
+/// Feature culling decides for each frame, with the decisions and readbacks of earlier frames. If the camera turns or an
+/// animation plays, temporal effects receive motion vectors. With dynamic resolution, earlier frame times choose the scale.
 ///
 /// # Errors
-/// One line, by whose fault it is, or that a signal asked to stop.
+/// An input or device failure with a one-line message, or a signal.
 pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs: &mut Outputs) -> Result<(), Failure> {
     let (options, execute) = prepared.options(args);
     let (mut plan, mut scratch) = (Plan::new(), Scratch::new());
@@ -44,14 +45,14 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
     let (mut plans, mut planned, mut measuring) = (0_u32, None, Measuring::new());
     let (mut percents, mut times_ms) = (Vec::new(), Vec::new());
     for (path, index) in files(sequence).zip(0..) {
-        let plays = args.moment.plays() && !sequence.turns && index > 0;
+        let plays = args.animation.plays() && !sequence.turns && index > 0;
         if plays {
-            args.moment.apply(&mut prepared.loaded.scene, f64::from(index) / sequence.per_second).map_err(input)?;
+            args.animation.apply(&mut prepared.loaded.scene, f64::from(index) / sequence.per_second).map_err(input)?;
             prepared.world.scene.repose(&prepared.gpu, &prepared.loaded.scene).map_err(device)?;
             if !prepared.loaded.scene.motion.rest.materials.is_empty() {
-                prepared.deciding.resurvey(&prepared.loaded.scene);
+                prepared.culling.resurvey(&prepared.loaded.scene);
             }
-            // The camera may hang on a node.
+            // The camera may be attached to an animated node.
             prepared.seen.camera = load::view(args, &prepared.loaded).map_err(input)?.camera;
         }
         let turned = if sequence.turns { f64::from(index) / f64::from(sequence.frames) * TAU } else { 0.0 };
@@ -60,13 +61,13 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
             let next = dynamic.next_percent(percents.last().copied().unwrap_or(dynamic.most_percent), &times_ms);
             let asked = Settings { upscale: args.effects.enlarging(next), ..prepared.asked };
             seen.size_px = asked.drawn_px(args.size_px);
-            // A smaller picture has fewer levels.
+            // A smaller picture has fewer mip levels.
             prepared.asked = asked.for_scene(&prepared.loaded.scene, seen.size_px);
             percents.push(next);
         }
         let light = &prepared.world.lighting.image;
         let measured = measuring.known(&prepared.gpu).map_err(device)?;
-        let facts = prepared.deciding.facts(&prepared.loaded, light, &seen, &prepared.asked, measured);
+        let facts = prepared.culling.facts(&prepared.loaded, light, &seen, &prepared.asked, measured);
         let mut settings = facts.apply(&prepared.asked);
         let seen = ViewSettings { shadows: settings.shadows, ..seen };
         if plays {
@@ -74,7 +75,7 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         }
         let view = CameraView::prepared(&prepared.loaded.scene, &placed, light, &prepared.loaded.background, &seen);
         let Prepared { gpu, world, loaded, dirt, .. } = &mut *prepared;
-        // What is found in the frame before is found from where that was seen.
+        // Temporal effects reproject from the view of the previous frame.
         let before = &world.views.get(ViewId::MAIN).map_err(device)?.view;
         let mut view = if index == 0 { view } else { view.after(before) };
         if plays {
@@ -87,7 +88,7 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         let stand = view.stand();
         world.set_view(gpu, ViewId::MAIN, view).map_err(device)?;
         world.frame_index = FrameIndex(index);
-        let own = Own { kept: None, dirt: dirt.as_ref() };
+        let own = OwnResources { kept: None, dirt: dirt.as_ref() };
         let (frame, io, imports) = declare(&settings, &facts, false, own)?;
         executor.compile(frame.graph(), &options, &mut scratch, &mut plan).map_err(input)?;
         plans += u32::from(planned.replace(settings) != Some(settings));
@@ -98,7 +99,7 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
             times_ms.push(begun.elapsed().as_secs_f64() * 1e3);
         }
         measuring.begin(gpu, (&executor, &plan), io.measured, stand).map_err(device)?;
-        let texture = executor.texture(&plan, io.output).ok_or_else(|| device("the frame left no picture"))?;
+        let texture = executor.texture(&plan, io.output).ok_or_else(|| device("the frame has no picture"))?;
         let picture = read_texture(gpu, texture).map_err(device)?.rgba8();
         outputs.write(&path, |file| encode_png(file, args.size_px, &picture)).map_err(input)?;
         shown.step("rendering pictures", index as usize + 1, sequence.frames as usize, "");
@@ -108,31 +109,31 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
     if let Some(dynamic) = &args.effects.dynamic {
         program::line(held(dynamic, &percents, times_ms));
     }
-    program::line(format_args!("{} pictures, of {plans} frames that differ by their effects", sequence.frames));
+    program::line(format_args!("{} pictures with {plans} different frame settings", sequence.frames));
     Ok(())
 }
 
-/// The scene as views take it, made on the threads that record.
+/// Prepares the scene for views on the recording threads.
 fn placed_on(executor: &Executor, scene: &Scene) -> PreparedScene {
     let mut placed = PreparedScene::new(scene);
     placed.workers = executor.workers().cloned();
     placed
 }
 
-/// How large frames were drawn, and whether they took what they were to take.
+/// Describes the range of scales, and the frame time against its target.
 fn held(dynamic: &DynamicResolution, percents: &[f64], mut times_ms: Vec<f64>) -> String {
     times_ms.sort_by(f64::total_cmp);
     let median = times_ms.get(times_ms.len() / 2).copied().unwrap_or(0.0);
-    let (least, most) = percents.iter().fold((100.0_f64, 0.0_f64), |(least, most), p| (least.min(*p), most.max(*p)));
+    let (min, max) = percents.iter().fold((100.0_f64, 0.0_f64), |(min, max), p| (min.min(*p), max.max(*p)));
     let last = percents.last().copied().unwrap_or(100.0);
     format!(
-        "drawn at {least:.0} to {most:.0} % of the sides, the last at {last:.0} %; half of the frames took at most {median:.1} ms \
-         of {:.1} ms",
+        "rendered at {min:.0} to {max:.0} % of the sides, the last at {last:.0} %; median frame time {median:.1} ms, \
+         target {:.1} ms",
         dynamic.target_ms
     )
 }
 
-/// A view turned about the vertical through a place.
+/// Rotates a view about the vertical axis through `center`.
 fn around(seen: &ViewSettings, center: DVec3, angle_rad: f64) -> ViewSettings {
     let turn = DQuat::from_rotation_y(angle_rad);
     let mut seen = seen.clone();

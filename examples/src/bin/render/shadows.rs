@@ -1,6 +1,6 @@
-//! Options of shadows.
+//! Shadow options.
 
-use crate::look::pairs;
+use crate::parse::pairs;
 use framegraph_passes::shadow::{
     ContactShadows, Fit, MOST_MAPS, ShadowFilter, ShadowSettings, Splits, local_layers, local_maps,
 };
@@ -9,64 +9,69 @@ use framegraph_scene::{Light, Scene};
 use glam::DVec3;
 use lexopt::Parser;
 
-/// What `render --help` prints of them.
-pub const HELP: &str = "
+/// Help section.
+pub const HELP: &str = "\
 SHADOWS
-  --shadows NAME       off, pcf (a tent of 3x3 texels), dpcf or pcss (penumbrae), vsm or evsm (moments in 16 or 32 bits) (pcf)
-  --cascades N         maps of the sun by distance, 1 to 4 (1)
-  --shadow KEY=X,...   texels=N (across a map; 2048), fit=lispsm|tight|stable (lispsm), splits=uniform|log|practical:L|A:B:C
-                       (of the range, 0.125:0.25:0.5), far=M (fade out before; none), constant-bias=M (0.001),
-                       normal-bias=X (half texels; 2), slope-bias=X (2), bulb=M|disc (width of penumbrae; the light's
-                       disc), blur=TEXELS, levels=N, samples=1|4, bleed=X (of moments; 0, 1, 1, 0.15), local=N (most maps
-                       of spot and point lights; 12), layers=N (most layers that those share, each as large as a map of
-                       the sun; as many as they take), contact=on|off|STEPS:M (a ray of M meters through the picture's
-                       depth; off), keep=on|off (maps are drawn by a first frame, and by the measured ones where one would
-                       change; off)
-  --show-cascades      tint what is lit by the number of its cascade
-  --no-shadows         as --shadows off
+  --shadows FILTER     off, pcf (3x3 tent), dpcf or pcss (variable penumbra), vsm or evsm (16- or 32-bit moments) (pcf)
+  --cascades N         cascades of the sun's shadow map, 1 to 4 (1)
+  --shadow KEY=X,...   map-size=N (side of a shadow map in texels, 2048), fit=lispsm|tight|stable (lispsm),
+                       splits=uniform|log|practical:L|A:B:C (relative to the range, 0.125:0.25:0.5),
+                       far=M (maximum distance with a fade; none), constant-bias=M (0.001), normal-bias=X (half texels, 2),
+                       slope-bias=X (2), bulb=M|disc (light size for penumbrae; disc: the light's own size).
+                       Moments: blur=TEXELS, levels=N, samples=1|4, bleed=X (light-bleeding reduction) (0, 1, 1, 0.15).
+                       Punctual lights: punctual=N (maximum number of maps, 12), layers=N (maximum number of texture layers
+                       for these maps, each as large as a map of the sun; as needed).
+                       contact=on|off|STEPS:M (screen-space contact shadows, rays of M meters; off),
+                       keep=on|off (draw maps in the first frame, later only those that change; off)
+  --show-cascades      tint surfaces by their cascade
+  --no-shadows         same as --shadows off
 ";
 
-/// Maps of local lights where nothing else is asked for: two point lights.
-const LOCAL_MAPS: u8 = 12;
+/// Default maximum number of shadow maps of punctual lights: two point lights.
+const PUNCTUAL_MAPS: u8 = 12;
 
-/// What was asked for.
+/// Shadow settings of the command line.
 #[derive(Clone, Copy, Debug)]
 pub struct Shadows {
     settings: ShadowSettings,
     off: bool,
-    /// Maps are kept from frame to frame.
+    /// Keeps shadow maps from frame to frame.
     pub keep: bool,
 }
 
 impl Default for Shadows {
     fn default() -> Self {
-        Self { settings: ShadowSettings { local_maps: LOCAL_MAPS, ..ShadowSettings::DEFAULT }, off: false, keep: false }
+        Self {
+            settings: ShadowSettings { local_maps: PUNCTUAL_MAPS, ..ShadowSettings::DEFAULT },
+            off: false,
+            keep: false,
+        }
     }
 }
 
 impl Shadows {
-    /// Those of a frame.
+    /// Starts with the shadows of a frame.
     pub fn with(settings: Option<ShadowSettings>) -> Self {
         Self { settings: settings.unwrap_or(Self::default().settings), off: settings.is_none(), keep: false }
     }
 
-    /// What a frame asks for of any scene; none where shadows are off.
+    /// Returns the requested shadow settings of any scene; `None` if shadows are off.
     pub fn asked(&self) -> Option<ShadowSettings> {
         (!self.off).then_some(self.settings)
     }
 
-    /// Takes the shadows of another frame; whether maps are kept stays.
+    /// Adopts the shadows of another frame, but keeps the choice of [`Self::keep`].
     pub fn hold(&mut self, settings: Option<ShadowSettings>) {
         *self = Self { keep: self.keep, ..Self::with(settings) };
     }
 
-    /// Takes an option of this file; false for others.
+    /// Parses the value of an option of this module; returns false for other options.
     ///
     /// # Errors
-    /// One line that names the option and what it takes.
+    /// One line that names the option and the expected value.
     pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
         let mut value = || {
-            let value = parser.value().map_err(|_| format!("--{name}: a value is missing"))?;
+            let value = parser.value().map_err(|_| format!("--{name}: missing value"))?;
             value.into_string().map_err(|v| format!("--{name} {v:?}: the value is not Unicode"))
         };
         match name {
@@ -77,7 +82,7 @@ impl Shadows {
                 self.off = value == "off";
                 if !self.off {
                     let names = || ShadowFilter::ALL.map(ShadowFilter::name).join(", ");
-                    let unknown = || format!("--shadows {value}: there are off, {}", names());
+                    let unknown = || format!("--shadows {value}: unknown filter; expected off, {}", names());
                     self.settings.filter = ShadowFilter::from_name(&value).ok_or_else(unknown)?;
                 }
             }
@@ -97,13 +102,13 @@ impl Shadows {
         let option = format!("--shadow {key}");
         let number = |low, high| number(&option, value, low, high);
         match key {
-            "texels" => settings.map_texels = number(16.0, 16384.0)? as u32,
+            "map-size" | "texels" => settings.map_texels = number(16.0, 16384.0)? as u32,
             "fit" => {
                 settings.fit = match value {
                     "lispsm" => Fit::Tight { lispsm: true },
                     "tight" => Fit::Tight { lispsm: false },
                     "stable" => Fit::Stable,
-                    _ => return Err(format!("{option}={value}: `lispsm`, `tight` or `stable` is needed")),
+                    _ => return Err(format!("{option}={value}: expected `lispsm`, `tight` or `stable`")),
                 }
             }
             "splits" => settings.splits = splits(&option, value)?,
@@ -124,24 +129,25 @@ impl Shadows {
                         steps: self::number(&option, steps, 1.0, 256.0)? as u32,
                         distance_m: self::number(&option, distance_m, 0.001, 100.0)? as f32,
                     }),
-                    _ => return Err(format!("{option}={value}: `on`, `off` or STEPS:METERS is needed")),
+                    _ => return Err(format!("{option}={value}: expected `on`, `off` or STEPS:METERS")),
                 }
             }
             "keep" => {
                 self.keep = match value {
                     "on" => true,
                     "off" => false,
-                    _ => return Err(format!("{option}={value}: `on` or `off` is needed")),
+                    _ => return Err(format!("{option}={value}: expected `on` or `off`")),
                 }
             }
             "layers" => settings.local_layers = number(1.0, f64::from(MOST_MAPS))? as u8,
-            "local" => settings.local_maps = number(0.0, f64::from(MOST_MAPS - 4))? as u8,
-            _ => return Err(format!("--shadow {key}: there is no such choice; `render --help` lists them")),
+            "punctual" | "local" => settings.local_maps = number(0.0, f64::from(MOST_MAPS - 4))? as u8,
+            _ => return Err(format!("--shadow {key}: unknown key; see `render --help`")),
         }
         Ok(())
     }
 
-    /// How shadows are made of a scene with this sun of its environment, seen from `eye`; none where nothing casts.
+    /// Returns the shadow settings for a scene seen from `eye`, with the sun of its environment; `None` if no light casts
+    /// shadows.
     pub fn of(&self, scene: &Scene, own_sun: Option<&Light>, eye: DVec3) -> Option<ShadowSettings> {
         let cascades = if has_sun(scene, own_sun) { self.settings.cascades } else { 0 };
         let local_maps = local_maps(scene, cascades).min(self.settings.local_maps);
@@ -159,14 +165,14 @@ fn splits(option: &str, value: &str) -> Result<Splits, String> {
         ["log"] => Splits::Logarithmic,
         ["practical", lambda] => Splits::Practical(share(lambda)?),
         [a, b, c] => Splits::At([share(a)?, share(b)?, share(c)?]),
-        _ => return Err(format!("{option}={value}: `uniform`, `log`, `practical:L` or three shares A:B:C are needed")),
+        _ => return Err(format!("{option}={value}: expected `uniform`, `log`, `practical:L` or A:B:C")),
     })
 }
 
 fn number(option: &str, text: &str, low: f64, high: f64) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if (low..=high).contains(&value) => Ok(value),
-        _ => Err(format!("{option} {text}: a number from {low} to {high} is needed")),
+        _ => Err(format!("{option} {text}: expected a number from {low} to {high}")),
     }
 }
 
@@ -179,7 +185,7 @@ mod tests {
         let mut shadows = Shadows::default();
         let mut parser = Parser::from_args(words.iter().map(OsString::from));
         while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
-            let lexopt::Arg::Long(name) = arg else { return Err("an option is needed".into()) };
+            let lexopt::Arg::Long(name) = arg else { return Err("expected an option".into()) };
             let name = name.to_owned();
             assert!(shadows.take(&name, &mut parser)?, "{name}");
         }
@@ -187,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn choices_arrive() {
+    fn options_are_parsed() {
         let words =
             ["--shadows", "pcss", "--cascades", "3", "--shadow", "fit=stable,splits=practical:0.5,bulb=0.1,far=50"];
         let found = parsed(&words).expect("sound options").settings;
@@ -198,7 +204,15 @@ mod tests {
     }
 
     #[test]
-    fn wrong_words_are_named() {
+    fn former_keys_are_valid() {
+        let of = |keys: &str| parsed(&["--shadow", keys]).map(|shadows| shadows.settings);
+        let current = of("map-size=64,punctual=3");
+        assert_eq!(of("texels=64,local=3"), current);
+        assert_ne!(of(""), current);
+    }
+
+    #[test]
+    fn invalid_options_are_reported() {
         for words in [
             ["--shadows", "soft"],
             ["--cascades", "5"],
@@ -209,8 +223,8 @@ mod tests {
             ["--shadow", "fit=loose"],
             ["--shadow", "keep=some"],
         ] {
-            let told = parsed(&words).expect_err("that is wrong");
-            assert!(told.contains(words[0]) && !told.contains('\n'), "{told}");
+            let error = parsed(&words).expect_err("the command line is invalid");
+            assert!(error.contains(words[0]) && !error.contains('\n'), "{error}");
         }
     }
 }

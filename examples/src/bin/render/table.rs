@@ -1,13 +1,13 @@
-//! The one table that a run prints: each step with its passes, what it moves and how long it takes.
+//! Main table of a run: each step with its passes, memory traffic and times.
 
 use framegraph::{Alias, Join, Plan, StepId};
 use framegraph_passes::facts::{Cost, Decision, Facts, Saved};
 use framegraph_wgpu::{Executor, Summary, Times, Timing};
 
-/// The table, one line a step, then the totals. Times are medians in milliseconds.
+/// Formats one line per step, then the totals. Times are medians in milliseconds.
 pub fn table(plan: &Plan, timing: &Timing) -> String {
     let mut rows =
-        vec![["step", "passes", "unresolves", "resolves", "loaded", "stored", "CPU ms", "GPU ms"].map(String::from)];
+        vec![["step", "passes", "loads", "stores", "loaded", "stored", "CPU ms", "GPU ms"].map(String::from)];
     rows.extend(plan.step_ids().map(|step| row(plan, step, timing.step(step))));
     let (counts, traffic) = (plan.counts(), plan.traffic(plan.frame()));
     let Times { cpu, gpu } = timing.frame();
@@ -24,21 +24,21 @@ pub fn table(plan: &Plan, timing: &Timing) -> String {
     aligned(&rows, 2)
 }
 
-/// What the driver gave for textures and buffers, where they share one block or were meant to.
+/// Formats the memory that the driver allocated for textures and buffers with `--alias heap`.
 pub fn memory(plan: &Plan, executor: &Executor) -> String {
     if plan.options().alias != Alias::Heap {
         return String::new();
     }
     let allocated = executor.allocated();
     let block = match executor.not_placed() {
-        Some(why) => format!("--alias heap: {why}; textures of one shape share memory in its place"),
+        Some(why) => format!("--alias heap: {why}; textures of equal description share memory instead"),
         None => format!(
-            "in one block: {} allocated, for what the driver asks {} for one by one",
+            "in one block: {} allocated, {} without placement",
             mebibytes(allocated.placed),
             mebibytes(allocated.unshared)
         ),
     };
-    format!("{block}; wgpu has allocated {}\n", mebibytes(allocated.by_wgpu))
+    format!("{block}; wgpu allocated {}\n", mebibytes(allocated.by_wgpu))
 }
 
 fn row(plan: &Plan, step: StepId, times: Times) -> [String; 8] {
@@ -63,7 +63,7 @@ fn row(plan: &Plan, step: StepId, times: Times) -> [String; 8] {
     ]
 }
 
-/// What facts leave out, a line each: effect, class of the proof, why, and what that saves.
+/// Formats the dropped effects, one line each: effect, class of the proof, reason and savings.
 pub fn facts_table(facts: &Facts, saved: &[Saved]) -> String {
     let mut rows = vec![["dropped", "class", "why", "passes", "moved", "memory"].map(String::from)];
     for row in facts.rows.iter().filter(|row| row.decision == Decision::Dropped) {
@@ -84,17 +84,17 @@ pub fn facts_table(facts: &Facts, saved: &[Saved]) -> String {
     if rows.len() == 1 { String::new() } else { format!("\n{}", aligned(&rows, 3)) }
 }
 
-/// Bytes in MiB.
+/// Formats bytes in MiB.
 pub fn mebibytes(bytes: u64) -> String {
     format!("{:.2} MiB", bytes as f64 / f64::from(1 << 20))
 }
 
-/// The median, or a dash where nothing was measured.
+/// Formats the median; a dash without measurements.
 pub fn milliseconds(times: Option<Summary>) -> String {
     times.map_or("-".into(), |t| format!("{:.2}", t.median_ms))
 }
 
-/// Columns side by side, under the first row as head: the first `words` columns to the left, numbers to the right.
+/// Formats aligned columns under a header row. The first `words` columns are left-aligned, the others right-aligned.
 pub fn aligned<const N: usize>(rows: &[[String; N]], words: usize) -> String {
     let width = |column: usize| rows.iter().map(|r| r[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..N).map(width).collect();

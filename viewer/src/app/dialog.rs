@@ -1,0 +1,85 @@
+//! File dialogs of the desktop, on a separate thread so that frames continue.
+
+use crate::job::Job;
+use crate::session::Role;
+use crate::view::View;
+use egui::Context;
+use rfd::AsyncFileDialog;
+use std::path::PathBuf;
+
+/// Purpose of a file dialog.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Opens a file.
+    Open(Role),
+    /// Saves the settings of the frame.
+    SaveSettings,
+    /// Exports a view or the plan.
+    Export(View),
+    /// Exports frame times.
+    Trace,
+}
+
+impl Purpose {
+    /// Returns the file filters with their extensions.
+    const fn kinds(self) -> &'static [(&'static str, &'static [&'static str])] {
+        match self {
+            Self::Open(_) => &[
+                ("all supported files", &["json", "ron", "gltf", "glb", "hdr", "exr", "ktx", "ktx2"]),
+                ("plans, traces, records", &["json"]),
+                ("graphs, settings", &["ron"]),
+                ("scenes", &["gltf", "glb"]),
+                ("environments", &["hdr", "exr", "ktx", "ktx2"]),
+            ],
+            Self::SaveSettings => &[("settings", &["ron"])],
+            Self::Export(_) => &[("a view", &["svg", "png", "txt"]), ("the plan", &["json", "ron", "dot", "mmd"])],
+            Self::Trace => &[("frame times for Perfetto", &["json"])],
+        }
+    }
+
+    /// Returns the suggested name of a new file; `None` for opening a file.
+    fn suggested_name(self) -> Option<String> {
+        match self {
+            Self::Open(_) => None,
+            Self::SaveSettings => Some("settings.ron".into()),
+            Self::Export(view) => Some(format!("{}.svg", view.word())),
+            Self::Trace => Some("trace.json".into()),
+        }
+    }
+}
+
+/// State of the file dialog.
+#[derive(Debug, Default)]
+pub(super) struct Dialog {
+    open: Option<(Purpose, Job<Option<PathBuf>>)>,
+}
+
+impl Dialog {
+    /// Opens a dialog unless one is open. The answer wakes the window.
+    pub fn ask(&mut self, purpose: Purpose, ctx: &Context) {
+        if self.open.is_some() {
+            return;
+        }
+        let mut dialog = AsyncFileDialog::new();
+        for (name, endings) in purpose.kinds() {
+            dialog = dialog.add_filter(*name, endings);
+        }
+        // Created on this thread, because some systems require the thread of the window.
+        let suggested = purpose.suggested_name();
+        let answer: Box<dyn Future<Output = Option<rfd::FileHandle>> + Send + Unpin> = match suggested {
+            None => Box::new(Box::pin(dialog.pick_file())),
+            Some(name) => Box::new(Box::pin(dialog.set_file_name(name).save_file())),
+        };
+        let ctx = ctx.clone();
+        let wait = move |_: &crate::job::Handle| pollster::block_on(answer).map(|file| file.path().to_owned());
+        self.open = Some((purpose, Job::start("choosing a file", move || ctx.request_repaint(), wait)));
+    }
+
+    /// Returns a newly chosen file with its purpose.
+    pub fn answer(&mut self) -> Option<(Purpose, PathBuf)> {
+        let (purpose, job) = self.open.as_ref()?;
+        let (purpose, answer) = (*purpose, job.poll()?);
+        self.open = None;
+        Some((purpose, answer.ok()??))
+    }
+}

@@ -1,0 +1,247 @@
+//! Panes and their arrangement.
+
+use super::strip::Strip;
+use crate::drawing::{Drawing, Item};
+use crate::panel::{self, Canvas, Clicked, List, Shown};
+use crate::session::Session;
+use crate::view::{self, View};
+use egui::{Ui, WidgetText};
+use egui_tiles::{Behavior, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// Content of a pane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+pub enum Pane {
+    /// View of the plan.
+    View(View),
+    /// Search.
+    List,
+    /// The what-if panel.
+    WhatIf,
+    /// Live frame.
+    Viewport,
+    /// Settings of the live frame.
+    Settings,
+    /// Effects of the live frame and the decisions of feature culling.
+    Effects,
+    /// Camera and light.
+    Lens,
+    /// Scene.
+    Scene,
+    /// Debug modes and budgets.
+    Debugging,
+    /// Contents of a texture.
+    Preview,
+}
+
+impl Pane {
+    /// Returns the name on the tab.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::View(view) => view.word(),
+            Self::List => "search",
+            Self::WhatIf => "what-if",
+            Self::Viewport => "viewport",
+            Self::Settings => "settings",
+            Self::Effects => "effects",
+            Self::Lens => "camera",
+            Self::Scene => "scene",
+            Self::Debugging => "debug",
+            Self::Preview => "texture",
+        }
+    }
+}
+
+/// Returns the default arrangement.
+///
+/// Search and what-if are on the left, views as tabs in the center, the inspector on the right. With a live frame, its
+/// settings are on the left, the frame in the center, and its textures on the right.
+pub(super) fn arranged(live: bool) -> Tree<Pane> {
+    let mut tiles = Tiles::default();
+    let views = View::ALL.into_iter().filter(|view| *view != View::Inspector).map(Pane::View);
+    let drawn = |panes: &[Pane]| if live { panes.to_vec() } else { Vec::new() };
+    let mut tabs = |panes: Vec<Pane>| {
+        let panes = panes.into_iter().map(|pane| tiles.insert_pane(pane)).collect();
+        tiles.insert_tab_tile(panes)
+    };
+    let set = [Pane::Settings, Pane::Effects, Pane::Lens, Pane::Scene, Pane::Debugging];
+    let asked = [Pane::List, Pane::WhatIf];
+    let left = tabs(if live { set.to_vec() } else { asked.to_vec() });
+    let middle = tabs(drawn(&[Pane::Viewport]).into_iter().chain(views).collect());
+    let beside = drawn(&[Pane::Preview, asked[0], asked[1]]);
+    let inspector = tabs([Pane::View(View::Inspector)].into_iter().chain(beside).collect());
+    let mut row = egui_tiles::Linear::new(egui_tiles::LinearDir::Horizontal, vec![left, middle, inspector]);
+    let shares = if live { [1.15, 2.4, 1.1] } else { [0.98, 2.6, 1.0] };
+    for (tile, share) in [left, middle, inspector].into_iter().zip(shares) {
+        row.shares.set_share(tile, share);
+    }
+    let root = tiles.insert_container(row);
+    Tree::new(egui::Id::unique("panes"), root, tiles)
+}
+
+/// Returns whether an arrangement contains every pane once.
+pub(super) fn is_whole(tree: &Tree<Pane>, live: bool) -> bool {
+    let panes = |tree: &Tree<Pane>| -> Vec<Pane> {
+        let of = tree.tiles.tiles().filter_map(|tile| match tile {
+            Tile::Pane(pane) => Some(*pane),
+            Tile::Container(_) => None,
+        });
+        of.collect()
+    };
+    let (found, all) = (panes(tree), panes(&arranged(live)));
+    found.len() == all.len() && found.into_iter().collect::<BTreeSet<_>>() == all.into_iter().collect()
+}
+
+/// Pans every view to the selected item, or to a related item if the view does not show it.
+pub(super) fn reveal(canvases: &mut BTreeMap<View, Canvas>, drawings: &BTreeMap<View, Drawing>, lit: &[Item]) {
+    for (view, canvas) in canvases {
+        if let Some(drawing) = drawings.get(view)
+            && let Some(item) = lit.iter().find(|item| drawing.hits.iter().any(|hit| hit.item == Some(**item)))
+        {
+            canvas.reveal(drawing, *item);
+        }
+    }
+}
+
+/// State required to show the panes.
+pub(super) struct Panes<'a> {
+    pub session: &'a mut Session,
+    pub list: &'a mut List,
+    pub canvases: &'a mut BTreeMap<View, Canvas>,
+    pub drawings: &'a BTreeMap<View, Drawing>,
+    pub strip: &'a mut Strip,
+    #[cfg(feature = "window")]
+    pub live: &'a mut Option<crate::live::Live>,
+    /// Typed paths of a scene and an environment.
+    #[cfg(feature = "window")]
+    pub typed: &'a mut [String; 2],
+}
+
+impl Panes<'_> {
+    fn select(&mut self, item: Option<Item>) {
+        self.session.selected = item;
+        reveal(self.canvases, self.drawings, &self.session.lit());
+    }
+
+    fn view(&mut self, ui: &mut Ui, view: View) {
+        let plan = self.session.plan.clone();
+        let Some(plan) = plan.or_else(|| (!view.is_of_a_plan()).then(Arc::default)) else {
+            ui.centered_and_justified(|ui| {
+                ui.label("Open a plan (JSON) or a graph (RON): type its path above, or drop it here")
+            });
+            return;
+        };
+        if view == View::Inspector {
+            let sections = view::inspector::sections(&plan, self.session.selected);
+            if let Some(item) = panel::inspector(ui, &sections) {
+                self.select(Some(item));
+            }
+            return;
+        }
+        let Some(drawing) = self.drawings.get(&view) else { return };
+        ui.horizontal(|ui| {
+            let canvas = self.canvases.entry(view).or_default();
+            if ui.small_button("Fit").on_hover_text("Show the whole view (F)").clicked() {
+                canvas.fit();
+            }
+            if ui.small_button("Copy").on_hover_text("Copy the view as text").clicked() {
+                ui.ctx().copy_text(drawing.words());
+            }
+            if ui.small_button("SVG").on_hover_text("Copy the view as an SVG document").clicked() {
+                ui.ctx().copy_text(crate::drawing::svg(drawing, panel::theme(ui)));
+            }
+            if view == View::Accuracy
+                && let Some(data) = self.session.accuracy.clone()
+            {
+                if let Some([fastest, finest]) = data.span_ms() {
+                    let mut budget_ms = self.session.budget_ms;
+                    let slider = egui::Slider::new(&mut budget_ms, fastest..=finest).suffix(" ms").text("time budget");
+                    ui.add(slider)
+                        .on_hover_text("Choose the most accurate frame within this time, as `render --budget-ms` does");
+                    self.session.allow_ms(budget_ms);
+                }
+                self.strip.choose(ui, &data);
+            }
+        });
+        if view == View::Accuracy {
+            self.strip.show(ui);
+        }
+        let lit = self.session.lit();
+        let canvas = self.canvases.entry(view).or_default();
+        match canvas.show(ui, view.word(), drawing, &lit) {
+            Clicked::No => {}
+            Clicked::Empty => self.session.selected = None,
+            Clicked::Item(item) => self.session.selected = Some(item),
+        }
+    }
+
+    /// Shows a pane of the live frame.
+    #[cfg(feature = "window")]
+    fn drawn(&mut self, ui: &mut Ui, pane: Pane) {
+        use crate::live::panel as live;
+        let [scene, light] = &mut *self.typed;
+        let Some(drawn) = &mut *self.live else { return };
+        match pane {
+            Pane::Viewport => live::viewport(ui, drawn, self.session),
+            Pane::Settings => live::settings(ui, drawn),
+            Pane::Effects => live::effects(ui, drawn),
+            Pane::Lens => live::lens(ui, drawn, light),
+            Pane::Scene => live::scene(ui, drawn, scene, self.session),
+            Pane::Debugging => live::debugging(ui, drawn, self.session),
+            Pane::Preview => live::preview(ui, drawn, self.session),
+            Pane::View(_) | Pane::List | Pane::WhatIf => {}
+        }
+    }
+
+    /// Live frames require the feature `window`.
+    #[cfg(not(feature = "window"))]
+    fn drawn(&mut self, _: &mut Ui, _: Pane) {}
+
+    fn questions(&mut self, ui: &mut Ui) {
+        let planning = self.session.doing().is_some();
+        let (base, now) = (self.session.base(), self.session.plan.clone());
+        let Some(mut questions) = self.session.questions.take() else {
+            ui.label("A saved plan contains no graph. Open the graph (FRAME.ron) to try other conditions.");
+            return;
+        };
+        let changed = questions.show(ui, Shown { base: base.as_deref(), now: now.as_deref(), planning });
+        self.session.questions = Some(questions);
+        if changed {
+            self.session.ask();
+        }
+    }
+}
+
+impl Behavior<Pane> for Panes<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _: TileId, pane: &mut Pane) -> UiResponse {
+        let pane = *pane;
+        egui::Frame::new().inner_margin(6.0).show(ui, |ui| match pane {
+            Pane::View(view) => self.view(ui, view),
+            Pane::Viewport
+            | Pane::Settings
+            | Pane::Effects
+            | Pane::Lens
+            | Pane::Scene
+            | Pane::Debugging
+            | Pane::Preview => self.drawn(ui, pane),
+            Pane::WhatIf => self.questions(ui),
+            Pane::List => {
+                if let Some(plan) = self.session.plan.clone()
+                    && let Some(item) = self.list.show(ui, &plan, self.session.selected)
+                {
+                    self.select(Some(item));
+                }
+            }
+        });
+        UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
+        pane.word().into()
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+    }
+}

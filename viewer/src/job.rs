@@ -1,0 +1,82 @@
+//! Background work with progress and cancellation: panels poll for the result and never block.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::time::Duration;
+
+/// State shared by the work and its owner.
+#[derive(Clone, Debug, Default)]
+pub struct Handle {
+    cancelled: Arc<AtomicBool>,
+    /// Completed and total units; 0 and 0 while unknown.
+    progress: Arc<[AtomicU64; 2]>,
+}
+
+impl Handle {
+    /// Returns whether the owner cancelled the work, which should then return at once.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Reports that `done` of `total` units are completed.
+    pub fn step(&self, done: u64, total: u64) {
+        self.progress[0].store(done, Ordering::Relaxed);
+        self.progress[1].store(total, Ordering::Relaxed);
+    }
+}
+
+/// Running work, cancelled on drop.
+#[derive(Debug)]
+pub struct Job<T> {
+    /// Description for the user, such as `reading frame.ron`.
+    pub doing: String,
+    handle: Handle,
+    result: Receiver<T>,
+}
+
+impl<T: Send + 'static> Job<T> {
+    /// Starts the work on a new thread. `wake` is called when a result is available to [`poll`](Self::poll).
+    pub fn start(
+        doing: impl Into<String>,
+        wake: impl FnOnce() + Send + 'static,
+        work: impl FnOnce(&Handle) -> T + Send + 'static,
+    ) -> Self {
+        let (sender, result) = channel();
+        let handle = Handle::default();
+        let theirs = handle.clone();
+        std::thread::spawn(move || {
+            // Sending fails if the owner is gone.
+            if sender.send(work(&theirs)).is_ok() {
+                wake();
+            }
+        });
+        Self { doing: doing.into(), handle, result }
+    }
+
+    /// Returns the result if available; `Some(Err(()))` if the work ended without one.
+    pub fn poll(&self) -> Option<Result<T, ()>> {
+        match self.result.try_recv() {
+            Ok(result) => Some(Ok(result)),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => Some(Err(())),
+        }
+    }
+
+    /// Waits for the result, at most the given time.
+    pub fn wait(&self, at_most: Duration) -> Option<T> {
+        self.result.recv_timeout(at_most).ok()
+    }
+
+    /// Returns the completed fraction, 0 to 1; `None` while unknown.
+    pub fn progress(&self) -> Option<f32> {
+        let [done, total] = [0, 1].map(|i| self.handle.progress[i].load(Ordering::Relaxed));
+        (total > 0).then(|| done as f32 / total as f32)
+    }
+}
+
+impl<T> Drop for Job<T> {
+    fn drop(&mut self) {
+        self.handle.cancelled.store(true, Ordering::Relaxed);
+    }
+}

@@ -1,0 +1,407 @@
+//! Live frame next to its plan: the standard frame of `framegraph_passes`, drawn on the device of the window.
+//!
+//! | file | content |
+//! | --- | --- |
+//! | `screen.rs` | the device, and registration of textures with egui |
+//! | `loading.rs` | a scene and its light, loaded in the background |
+//! | `capture.rs`, `factors.rs`, `camera.rs` | exposure, lens, light and animation; edited materials; the interactive camera |
+//! | `frame.rs` | the frame, executed repeatedly |
+//! | `settings_panel.rs`, `file_request.rs` | state of the settings panel; file dialogs that panels request |
+//! | `times.rs` | frame times for the views |
+//! | `preview.rs`, `bisecting.rs` | contents of textures; bisection of debug modes |
+//! | `panel/` | the panels |
+
+pub mod bisecting;
+pub mod camera;
+pub mod capture;
+pub mod factors;
+pub mod file_request;
+pub mod frame;
+pub mod loading;
+pub mod panel;
+pub mod preview;
+pub mod screen;
+pub mod settings_panel;
+mod times;
+
+use crate::history::History;
+use crate::job::Job;
+use crate::plan_data::PlanData;
+use crate::session::Session;
+use bisecting::Bisecting;
+use capture::{Document, Sun};
+use file_request::FileRequest;
+use frame::{DrawOptions, Running};
+use loading::{EnvironmentSource, Lit, Loaded};
+use preview::Preview;
+use program::input;
+use program::outputs::Outputs;
+use screen::Screen;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Frames drawn after a change: feature culling settles in eight, histories and temporal effects soon after.
+const AFTER_CHANGE: u32 = 16;
+/// Frames drawn after a change with temporal anti-aliasing.
+const AFTER_CHANGE_TAA: u32 = 48;
+/// Interval between two updates of the times, in seconds.
+const TIMES_S: f32 = 0.5;
+
+/// Result of a job.
+type JobResult<T> = Result<T, String>;
+
+/// Live frame with all its settings.
+pub struct Live {
+    screen: Screen,
+    wake: Arc<dyn Fn() + Send + Sync>,
+    /// Running frame; `None` until the scene is loaded.
+    pub running: Option<Running>,
+    /// Settings and capture with undo and redo.
+    pub history: History<Document>,
+    /// Debug modes and animation state.
+    pub options: DrawOptions,
+    /// Draws continuously, even without changes.
+    pub continuous: bool,
+    /// Fraction of the viewport's pixels drawn along each side.
+    pub share: f32,
+    /// Texture preview.
+    pub preview: Preview,
+    /// File dialog that a panel requests.
+    pub file_request: Option<FileRequest>,
+    /// Index of the material being edited.
+    pub material: Option<usize>,
+    /// Running bisection of debug modes.
+    pub bisecting: Option<Bisecting>,
+    /// Typed budget limits.
+    pub budget: String,
+    /// Typed path of a settings file.
+    pub path: String,
+    /// State of the settings panel.
+    pub settings: settings_panel::SettingsPanel,
+    loading: Option<Job<JobResult<(Loaded, Vec<String>)>>>,
+    relighting: Option<Job<JobResult<Lit>>>,
+    wanted: EnvironmentSource,
+    /// Number of frames still to draw.
+    left: u32,
+    reported_plans: u64,
+    drawn_with: (Document, framegraph_wgpu::debug::Modes),
+    refused: Option<String>,
+    times_at: Option<Instant>,
+    clock: times::Clock,
+    size_px: [u32; 2],
+}
+
+impl Live {
+    /// Starts loading a scene: a built-in name or a path. Other threads call `wake` when a result is available.
+    pub fn new(
+        screen: Screen,
+        document: Document,
+        scene: &str,
+        environment: Option<&Path>,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) -> Self {
+        let wanted = environment.map_or(EnvironmentSource::Sky(None), |path| EnvironmentSource::File(path.to_owned()));
+        let mut live = Self {
+            screen,
+            wake: Arc::new(wake),
+            running: None,
+            history: History::new(document),
+            options: DrawOptions::default(),
+            continuous: false,
+            share: 1.0,
+            preview: Preview::default(),
+            file_request: None,
+            material: None,
+            bisecting: None,
+            budget: String::new(),
+            path: String::new(),
+            settings: settings_panel::SettingsPanel::default(),
+            loading: None,
+            relighting: None,
+            wanted,
+            left: AFTER_CHANGE,
+            reported_plans: 0,
+            drawn_with: Default::default(),
+            refused: None,
+            times_at: None,
+            clock: times::Clock::default(),
+            size_px: [0; 2],
+        };
+        live.load(scene);
+        live
+    }
+
+    /// Loads a scene in the background. The displayed scene stays until loading succeeds.
+    pub fn load(&mut self, name: &str) {
+        let shown = self.running.as_ref().map(|running| &running.loaded).filter(|loaded| loaded.name == name);
+        let variant = shown.and_then(|loaded| loaded.variant.clone());
+        self.load_variant(name, variant);
+    }
+
+    /// Loads a scene with a material variant, like [`load`](Self::load).
+    pub fn load_variant(&mut self, name: &str, variant: Option<String>) {
+        let (gpu, name, environment) = (self.screen.gpu.clone(), name.to_owned(), self.wanted.clone());
+        let (settings, levels) = (self.light_settings(), self.document().frame.lod_error_px > 0.0);
+        let wake = self.wake.clone();
+        self.relighting = None;
+        self.loading = Some(Job::start(
+            format!("loading {name}"),
+            move || wake(),
+            move |handle| loading::load(&gpu, &name, &environment, &settings, (levels, variant), handle),
+        ));
+    }
+
+    /// Opens a scene, an environment or a settings file by its extension; returns false for other files.
+    pub fn open(&mut self, path: &Path, session: &mut Session) -> bool {
+        let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
+            Some("gltf" | "glb") => self.load(&path.to_string_lossy()),
+            Some("hdr" | "exr" | "ktx" | "ktx2") => self.wanted = EnvironmentSource::File(path.to_owned()),
+            Some("ron") => {
+                let name = path.to_string_lossy();
+                let says_frame = || input::text(path, input::MAX_TEXT_BYTES).is_ok_and(|t| t.contains("frame: ("));
+                match crate::standard_frame::settings(&name) {
+                    Ok(frame) => self.set(Document { frame, ..self.document().clone() }, false),
+                    // Graphs also end in `.ron`. Only settings files report their errors.
+                    Err(_) if !says_frame() => return false,
+                    Err(error) => session.say(error),
+                }
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    /// Returns the current settings and capture.
+    pub fn document(&self) -> &Document {
+        self.history.now()
+    }
+
+    /// Changes settings and capture. While `going_on` is set, such as during a drag, all changes form one undo step.
+    pub fn set(&mut self, document: Document, going_on: bool) {
+        self.history.set(document, going_on);
+        self.again();
+    }
+
+    /// Draws more frames after a change.
+    pub fn again(&mut self) {
+        let over_time = self.document().frame.settings.taa.is_some();
+        self.left = if over_time { AFTER_CHANGE_TAA } else { AFTER_CHANGE };
+        self.refused = None;
+    }
+
+    /// Returns the description and progress of the background work.
+    pub fn doing(&self) -> Option<(&str, Option<f32>)> {
+        let loading = self.loading.as_ref().map(|job| (job.doing.as_str(), job.progress()));
+        loading.or(self.relighting.as_ref().map(|job| (job.doing.as_str(), job.progress())))
+    }
+
+    /// Cancels the background work and keeps the displayed frame.
+    pub fn cancel(&mut self) {
+        self.loading = None;
+        if self.relighting.take().is_some()
+            && let Some(running) = &self.running
+        {
+            self.wanted = running.loaded.environment.clone();
+        }
+    }
+
+    /// Returns the light settings of the current settings.
+    fn light_settings(&self) -> framegraph_passes::shading::LightSettings {
+        let frame = &self.document().frame;
+        frame.settings.shading.light(frame.quality)
+    }
+
+    /// Applies finished background work and advances the animation.
+    pub fn tick(&mut self, session: &mut Session, passed_s: f32) {
+        if let Some(result) = self.loading.as_ref().and_then(Job::poll) {
+            self.loading = None;
+            match result {
+                Ok(Ok((loaded, warnings))) => {
+                    warnings.into_iter().take(3).for_each(|warning| session.say(warning));
+                    self.preview = Preview::default();
+                    self.bisecting = None;
+                    self.wanted = loaded.environment.clone();
+                    let mut capture = self.document().capture;
+                    capture.animation = None;
+                    let materials = std::collections::BTreeMap::new();
+                    self.history.set(Document { capture, materials, ..self.document().clone() }, false);
+                    self.material = None;
+                    self.options.playing = false;
+                    self.running = Some(Running::new(&self.screen, loaded));
+                    self.reported_plans = 0;
+                    self.again();
+                }
+                Ok(Err(error)) => session.say(error),
+                Err(()) => session.say("internal error: loading ended without a result".into()),
+            }
+        }
+        self.relight(session);
+        if self.options.playing && passed_s > 0.0 {
+            self.options.time_s += f64::from(passed_s.min(0.25));
+            let length_s = self.running.as_ref().and_then(|running| {
+                let animation = running.loaded.scene.motion.animations.get(self.document().capture.animation?)?;
+                Some(animation.duration_s())
+            });
+            if let Some(length_s) = length_s.filter(|length| *length > 0.0) {
+                self.options.time_s %= length_s;
+            }
+            self.again();
+        }
+    }
+
+    /// Waits until all background work is done; returns false after `at_most`.
+    pub fn settle(&mut self, session: &mut Session, at_most: Duration) -> bool {
+        let end = Instant::now() + at_most;
+        while Instant::now() < end {
+            self.tick(session, 0.0);
+            if self.doing().is_none() {
+                return true;
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        false
+    }
+
+    /// Creates new light if the settings or the sun of a clear sky require it.
+    fn relight(&mut self, session: &mut Session) {
+        if let Some(result) = self.relighting.as_ref().and_then(Job::poll) {
+            self.relighting = None;
+            match (result, &mut self.running) {
+                (Ok(Ok(lit)), Some(running)) => {
+                    running.relight(lit);
+                    self.again();
+                }
+                (Ok(Err(error)), Some(running)) => {
+                    session.say(error);
+                    self.wanted = running.loaded.environment.clone();
+                }
+                _ => {}
+            }
+        }
+        let sun = self.document().capture.sun;
+        if let EnvironmentSource::Sky(own) = &mut self.wanted {
+            *own = if let Sun::Custom { .. } = sun { sun.toward() } else { None };
+        }
+        let (settings, levels) = (self.light_settings(), self.document().frame.lod_error_px > 0.0);
+        let Some(loaded) = self.running.as_mut().map(|running| &mut running.loaded) else { return };
+        if self.loading.is_none() && levels && !std::mem::replace(&mut loaded.levels, true) {
+            let name = loaded.name.clone();
+            return self.load(&name);
+        }
+        let other = loaded.environment != self.wanted || loaded.light_settings != settings;
+        if !other || self.relighting.is_some() || self.loading.is_some() || self.refused.is_some() {
+            return;
+        }
+        let (gpu, environment, wake) = (self.screen.gpu.clone(), self.wanted.clone(), self.wake.clone());
+        // Light depends on the ground color and the lights, but not on materials.
+        let scene = framegraph_scene::Scene {
+            ground_albedo: loaded.scene.ground_albedo,
+            lights: loaded.lights.clone(),
+            ..framegraph_scene::Scene::default()
+        };
+        self.relighting = Some(Job::start(
+            "preparing light",
+            move || wake(),
+            move |handle| loading::light(&gpu, &scene, &environment, &settings, handle),
+        ));
+    }
+
+    /// Returns whether a frame should be drawn.
+    pub fn wants_frame(&self) -> bool {
+        self.running.is_some() && (self.left > 0 || self.continuous || self.options.playing)
+    }
+
+    /// Draws the frame at a size if required, and passes its plan and times to the session.
+    pub fn draw(&mut self, size_px: [u32; 2], session: &mut Session) {
+        if !self.wants_frame() || size_px.contains(&0) {
+            return;
+        }
+        self.left = self.left.saturating_sub(1);
+        let document = self.history.now().clone();
+        let Some(running) = &mut self.running else { return };
+        // Until new light is available, draw with the existing light.
+        let mut drawn = document.clone();
+        let lit = running.loaded.light_settings;
+        drawn.frame.settings.shading.bands = lit.image.bands;
+        drawn.frame.settings.shading.table = lit.dfg.visibility;
+        if let Err(error) = running.draw(size_px, &drawn, &self.options) {
+            if self.refused.as_ref() != Some(&error) {
+                session.say(error.clone());
+            }
+            (self.refused, self.left) = (Some(error), 0);
+            return;
+        }
+        self.clock.tick(Instant::now());
+        self.report(session);
+    }
+
+    /// Passes plan and times to the session if it shows this frame.
+    fn report(&mut self, session: &mut Session) {
+        let Some(running) = &self.running else { return };
+        let shows = session.is_live() || session.plan.is_none();
+        if shows && running.plans() != self.reported_plans {
+            let name = format!("live frame, {}", running.loaded.name);
+            let drawn = (self.history.now().clone(), self.options.modes.clone());
+            let changed = self.reported_plans > 0 && drawn != self.drawn_with;
+            match PlanData::of(running.plan(), &name) {
+                Ok(plan) => {
+                    let (planner, base) = running.planner(self.history.now(), &self.options.modes);
+                    session.show_live(planner, base, Arc::new(plan), changed);
+                }
+                Err(error) => session.say(error.to_string()),
+            }
+            self.reported_plans = running.plans();
+            self.drawn_with = drawn;
+        }
+        if shows && self.times_at.is_none_or(|at| at.elapsed().as_secs_f32() >= TIMES_S) {
+            self.times_at = Some(Instant::now());
+            if let Some(trace) = running.frames().executor().timing().trace() {
+                session.take_times(times::of(trace));
+            }
+        }
+    }
+
+    /// Shows the plan of this frame again after a file was shown.
+    pub fn show_plan(&mut self, session: &mut Session) {
+        session.forget_plan();
+        self.reported_plans = 0;
+        self.again();
+    }
+
+    /// Sets the size of the viewport and returns whether it changed.
+    pub fn take_size(&mut self, size_px: [u32; 2]) -> bool {
+        std::mem::replace(&mut self.size_px, size_px) != size_px
+    }
+
+    /// Returns the recent frames per second.
+    pub fn frames_per_s(&self) -> Option<f32> {
+        self.clock.frames_per_s()
+    }
+
+    /// Saves the settings to a file.
+    ///
+    /// # Errors
+    /// One line that names the file.
+    pub fn save(&self, path: &Path) -> Result<(), String> {
+        let text = self.document().frame.to_ron()?;
+        Outputs::one_beside(path, text.as_bytes(), &self.read()).map_err(|error| error.to_string())
+    }
+
+    /// Returns the input files of the displayed frame.
+    pub fn read(&self) -> Vec<PathBuf> {
+        self.running.iter().flat_map(|running| running.loaded.files()).cloned().collect()
+    }
+
+    /// Returns the name of the current or requested environment.
+    pub fn environment(&self) -> String {
+        self.wanted.to_string()
+    }
+
+    /// Lights the scene with a clear sky or an environment picture.
+    pub fn set_environment(&mut self, path: Option<PathBuf>) {
+        self.wanted = path.map_or(EnvironmentSource::Sky(None), EnvironmentSource::File);
+        self.again();
+    }
+}

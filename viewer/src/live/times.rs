@@ -1,0 +1,56 @@
+//! Times of the live frame for the views.
+
+use crate::trace_data::{TraceData, TracedFrame, TracedStep};
+use framegraph_wgpu::Trace;
+use std::collections::VecDeque;
+use std::time::Instant;
+
+/// Number of frames in the views.
+const SHOWN: usize = 240;
+
+/// Returns the latest frames with their steps.
+pub(super) fn of(trace: &Trace) -> TraceData {
+    let mut data = TraceData::default();
+    for frame in trace.latest(SHOWN) {
+        let (cpu_ms, gpu_ms) = (frame.cpu_ms, frame.gpu_ms);
+        data.frames.push(TracedFrame { number: frame.number, warm_up: frame.warm_up, cpu_ms, gpu_ms });
+        for step in frame.steps.iter().filter(|_| !frame.warm_up) {
+            let index = data.steps.iter().position(|known| known.name == step.name).unwrap_or_else(|| {
+                data.steps.push(TracedStep { name: step.name.to_owned(), ..TracedStep::default() });
+                data.steps.len() - 1
+            });
+            data.steps[index].cpu_ms.extend(step.cpu_ms);
+            data.steps[index].gpu_ms.extend(step.gpu_ms);
+        }
+    }
+    for step in &mut data.steps {
+        step.cpu_ms.sort_unstable_by(f64::total_cmp);
+        step.gpu_ms.sort_unstable_by(f64::total_cmp);
+    }
+    data
+}
+
+/// Times of the latest frames.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Clock(VecDeque<Instant>);
+
+impl Clock {
+    /// Records a drawn frame.
+    pub fn tick(&mut self, now: Instant) {
+        // A pause must not count as a slow frame.
+        if self.0.back().is_some_and(|last| now.duration_since(*last).as_secs_f32() > 2.0) {
+            self.0.clear();
+        }
+        self.0.push_back(now);
+        if self.0.len() > 32 {
+            self.0.pop_front();
+        }
+    }
+
+    /// Returns frames per second; `None` for fewer than four frames.
+    pub fn frames_per_s(&self) -> Option<f32> {
+        let (first, last) = (self.0.front()?, self.0.back()?);
+        let passed = last.duration_since(*first).as_secs_f32();
+        (self.0.len() >= 4 && passed > 0.0).then(|| (self.0.len() - 1) as f32 / passed)
+    }
+}
