@@ -1,4 +1,4 @@
-//! Plans as text and pictures. Every form is a pure function of the plan and the same to the byte for equal plans.
+//! Plans as text, JSON and graphics. All forms are deterministic: equal plans give byte-identical output.
 
 mod dot;
 mod flow;

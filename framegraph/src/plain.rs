@@ -1,8 +1,8 @@
-//! Names as outputs show them: on one line, without control characters, and short.
+//! Sanitizes names for output: one line, no control characters, limited length.
 
 use std::borrow::Cow;
 
-/// Text on one line, whatever is in a name: control characters are written as Rust would (`\n`, `\u{1b}`).
+/// Escapes control characters as Rust does (`\n`, `\u{1b}`), so that the text fits on one line.
 pub fn plain(text: &str) -> Cow<'_, str> {
     if !text.contains(char::is_control) {
         return Cow::Borrowed(text);
@@ -18,25 +18,25 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// Characters of a name that an error shows at most.
+/// Maximum number of characters of a name in an error.
 const MOST_OF_A_NAME: usize = 120;
 
-/// Characters of an error at most.
+/// Maximum number of characters of an error.
 const MOST_OF_A_LINE: usize = 4000;
 
-/// The line of an error: [`plain`], each name in backticks shortened, and the whole too.
+/// Formats an error as one line: escapes control characters, and shortens long names in backticks and the whole line.
 pub fn line(text: &str) -> String {
     let pieces = text.split('`').enumerate();
     let pieces = pieces.map(|(i, piece)| if i % 2 == 1 { short(piece, MOST_OF_A_NAME) } else { piece.into() });
     plain(&short(&pieces.collect::<Vec<_>>().join("`"), MOST_OF_A_LINE)).into_owned()
 }
 
-/// A name in an error: [`plain`], and shortened.
+/// Formats a name for an error: escapes control characters and shortens it.
 pub fn name(text: &str) -> String {
     plain(&short(text, MOST_OF_A_NAME)).into_owned()
 }
 
-/// `text`, or if it has more than `most` characters, so many of them and how many there are.
+/// Shortens `text` to `most` characters and appends its length if it is longer.
 fn short(text: &str, most: usize) -> Cow<'_, str> {
     match text.char_indices().nth(most) {
         Some((end, _)) => format!("{}… ({} characters)", &text[..end], text.chars().count()).into(),

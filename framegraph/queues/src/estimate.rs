@@ -1,9 +1,11 @@
-//! Costs where nothing was measured.
+//! Estimated costs of steps, for use without measurements.
 
 use framegraph::Plan;
 
-/// What each step costs in microseconds if all it does is to move the bytes of what it touches, each resource once, at
-/// `bytes_per_us` bytes a microsecond: a gigabyte a second is a thousand. A stand-in for times, which say more.
+/// Estimates the cost of each step in microseconds from the bytes of the resources it uses, each counted once.
+///
+/// `bytes_per_us` is the bandwidth in bytes per microsecond; 1000 is one gigabyte per second. Measured times are more
+/// accurate.
 #[must_use]
 pub fn estimate_us(plan: &Plan, bytes_per_us: f64) -> Vec<f64> {
     let bytes_of = |step| {

@@ -1,23 +1,23 @@
-//! Memory that goes from one resource to another within a queue: semaphores order queues, and not a queue's own work.
+//! Aliasing barriers within a queue. Semaphores order different queues, but not the work of a single queue.
 
 use crate::hazards::accesses_by_resource;
 use crate::memory::SharedMemory;
 use crate::schedule::Schedule;
 use framegraph::{Plan, ResourceId, StepId};
 
-/// A resource gets memory of another that the queue of a step has touched.
+/// A resource reuses memory of another one that the same queue has used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HandOver {
-    /// The step that touches `to`, with none before it that does.
+    /// A step that uses `to`, without an earlier one that does.
     pub before: StepId,
-    /// Who had the memory.
+    /// The previous resource.
     pub from: ResourceId,
-    /// Who gets it.
+    /// The new resource.
     pub to: ResourceId,
 }
 
-/// The hand-overs of memory that is shared by a schedule, in the order of the steps that wait. Where another queue touched what lay
-/// there, a semaphore of the schedule is behind it, and nothing is said here.
+/// Returns the aliasing barriers of memory shared by a schedule, in the order of the waiting steps. Uses on other
+/// queues are covered by semaphores and not included.
 pub fn hand_overs(plan: &Plan, schedule: &Schedule, shared: &SharedMemory) -> Vec<HandOver> {
     let touched = accesses_by_resource(plan);
     let is_texture = |resource: usize| plan.graph().resources()[resource].desc.texture().is_some();

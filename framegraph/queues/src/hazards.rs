@@ -1,9 +1,9 @@
-//! Which steps of a plan must be over before which: for contents, and for memory that resources share.
+//! Dependencies between the steps of a plan: through contents, and through shared memory.
 
 use framegraph::{Access, Placement, Plan, ResourceId};
 use std::collections::HashSet;
 
-/// Of each step, the earlier steps that it depends on, the latest first; more than need be said, since some follow from others.
+/// Returns the earlier steps that each step depends on, latest first. May include implied dependencies.
 pub fn dependencies(plan: &Plan) -> Vec<Vec<u32>> {
     let mut found = vec![Vec::new(); plan.steps().len()];
     let touched = accesses_by_resource(plan);
@@ -16,7 +16,7 @@ pub fn dependencies(plan: &Plan) -> Vec<Vec<u32>> {
                 let ordered = changes(*step, access) || changes(*earlier, other);
                 if earlier != step && ordered && plan.graph().overlap(resource, &access.range, &other.range) {
                     found[*step as usize].push(*earlier);
-                    // Whoever was before a change of all of it is waited for by that change.
+                    // Earlier users are covered by this change of the whole range.
                     if changes(*earlier, other) && other.range == access.range {
                         break;
                     }
@@ -32,14 +32,14 @@ pub fn dependencies(plan: &Plan) -> Vec<Vec<u32>> {
     found
 }
 
-/// The textures whose layout changes in front of a step: whoever reads them before and after must be ordered too, since a
+/// Returns the textures whose layout changes before a step. Reads before and after must be ordered, because a
 /// transition is a write (Vulkan 1.3, 7.7.4).
 fn moved(plan: &Plan) -> HashSet<(u32, ResourceId)> {
     let rows = plan.barriers().iter().filter(|row| row.from != row.to);
     rows.map(|row| (row.before.index() as u32, row.resource)).collect()
 }
 
-/// Of each resource, the steps that access it, in order, with how.
+/// Returns for each resource the steps that access it, in order, with their accesses.
 pub fn accesses_by_resource(plan: &Plan) -> Vec<Vec<(u32, Access)>> {
     let mut touched = vec![Vec::new(); plan.resources().len()];
     for step in plan.step_ids() {
@@ -52,7 +52,7 @@ pub fn accesses_by_resource(plan: &Plan) -> Vec<Vec<(u32, Access)>> {
     touched
 }
 
-/// Who gets memory waits for all who touched what lay there.
+/// Adds dependencies of resources on all previous users of their memory.
 fn share_memory(plan: &Plan, touched: &[Vec<(u32, Access)>], found: &mut [Vec<u32>]) {
     let mut placed: Vec<(usize, u64, u64)> = Vec::new();
     for (resource, row) in plan.resources().iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Schedules to read: as text, and as a picture of lanes.
+//! Schedules as text and as SVG.
 
 use crate::schedule::Schedule;
 use framegraph::plain::plain;
@@ -10,7 +10,8 @@ fn name(plan: &Plan, step: StepId) -> Cow<'_, str> {
     plain(plan.passes_of(step).first().map_or("", |member| plan.graph().pass_name(member.pass)))
 }
 
-/// The schedule as text: totals, the steps of each queue with their times and what they wait for, transfers, shared resources.
+/// Returns the schedule as text: totals, the steps of each queue with their times and waits, transfers and concurrent
+/// resources.
 #[must_use]
 pub fn text(plan: &Plan, schedule: &Schedule) -> String {
     let Schedule { layout, lanes, waits, joins, transfers, concurrent, times_us, total_us, alone_us, .. } = schedule;
@@ -43,16 +44,16 @@ pub fn text(plan: &Plan, schedule: &Schedule) -> String {
             }
         };
         let resource = plain(plan.graph().resource_name(transfer.resource));
-        let _ = writeln!(out, "  {resource}: {} to {}", place(transfer.from, "behind"), place(transfer.to, "before"));
+        let _ = writeln!(out, "  {resource}: {} to {}", place(transfer.from, "after"), place(transfer.to, "before"));
     }
     if !concurrent.is_empty() {
         let names: Vec<_> = concurrent.iter().map(|resource| plain(plan.graph().resource_name(*resource))).collect();
-        let _ = writeln!(out, "\nshared by queues: {}", names.join(", "));
+        let _ = writeln!(out, "\nconcurrent: {}", names.join(", "));
     }
     out
 }
 
-/// The schedule as an SVG: a lane a queue, a box a step as long as it takes, a line a semaphore.
+/// Returns the schedule as SVG: a lane per queue, a box per step with its duration, and a line per semaphore.
 #[must_use]
 pub fn svg(plan: &Plan, schedule: &Schedule) -> String {
     const LANE: f64 = 44.0;
@@ -83,7 +84,7 @@ pub fn svg(plan: &Plan, schedule: &Schedule) -> String {
              <title>{shown}: {begin:.1} … {end:.1} µs</title></rect>",
             top(lane)
         );
-        // As many letters as fit.
+        // Only the characters that fit.
         let fits = (width / 6.5) as usize;
         if fits >= 2 {
             let short: String = name(plan, step).chars().take(fits).collect();

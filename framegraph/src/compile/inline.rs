@@ -1,9 +1,9 @@
-//! Phase 4, the third way into a step: point-wise passes as epilogues of their producer's shaders.
+//! Phase 4, inlining: point-wise passes as epilogues of their producer's shaders.
 //!
-//! Grading colors in the shader that shades them keeps the intermediate out of memory on devices without framebuffer
-//! fetch. It is sound when every fragment that lands in the intermediate is final when it is shaded: nothing blends,
-//! no other pass reads the intermediate, and both targets are written from scratch. With multisampling each sample passes
-//! through the epilogue before the resolve.
+//! Applying color grading in the lighting shader, for example, avoids the intermediate texture on devices without
+//! framebuffer fetch. Inlining is valid if every fragment written to the intermediate is final when it is shaded:
+//! nothing blends, no other pass reads the intermediate, and both targets are cleared or overwritten. With
+//! multisampling, the epilogue runs for each sample before the resolve.
 
 use super::join::Candidate;
 use super::step_attachments::StepAttachments;
@@ -16,7 +16,7 @@ use crate::plan::StepPass;
 use crate::resolve::ResolveMode;
 use crate::resource::Kind;
 
-/// How often surviving passes touch each resource, and whether it is exported.
+/// Number of accesses to each resource by kept passes, and its export flag.
 #[derive(Debug, Default)]
 pub(crate) struct Uses {
     touches: Vec<u32>,
@@ -41,18 +41,18 @@ impl Uses {
     }
 }
 
-/// A pass that can be inlined, with what its epilogue replaces.
+/// A pass that can be inlined, and the attachment that its epilogue replaces.
 pub(crate) struct Inlining {
     /// The last pass that writes the intermediate.
     pub(crate) producer: PassId,
     slot: u8,
     pub(crate) intermediate: ResourceId,
     target: AccessId,
-    /// The multisampled attachment that is resolved into the intermediate, where there is one.
+    /// The multisampled attachment that is resolved into the intermediate, if any.
     pub(crate) samples: Option<ResourceId>,
 }
 
-/// How the open step touched the parts of an access so far.
+/// How the current step has accessed a range so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Touched {
     No,
@@ -60,7 +60,7 @@ pub(crate) enum Touched {
     Written,
 }
 
-/// Whether the pass can become an epilogue of the passes that write its same-pixel input in the open step.
+/// Checks if a pass can become an epilogue of the passes that write its same-pixel input in the current step.
 pub(crate) fn inlinable(
     candidate: &Candidate<'_>,
     attached: &StepAttachments,
@@ -133,7 +133,7 @@ pub(crate) fn inlinable(
         return Err(Refusal::SampledElsewhere);
     }
     let producer = check_producers(graph, members, inlined_into, &[Some(intermediate), samples])?;
-    // The reader and what the step's passes draw are all there may be.
+    // The only uses may be the inlined read and the draws of the step.
     let inside = count_inside(graph, members, intermediate);
     if uses.touches[intermediate.index()] != inside + 1 {
         return Err(Refusal::NeededAsTexture);
@@ -158,8 +158,8 @@ fn count_inside(graph: &Tables, members: &[StepPass], resource: ResourceId) -> u
     accesses.filter(|a| a.resource == resource && draws(a)).count() as u32
 }
 
-/// Every pass of the step that draws into the intermediate must take the epilogue, not blend, and the first must start
-/// from scratch. Returns the last of them.
+/// Checks the passes that draw into the intermediate: each must accept an epilogue and must not blend, and the first
+/// must not use previous contents. Returns the last of them.
 fn check_producers(
     graph: &Tables,
     members: &[StepPass],
@@ -186,7 +186,7 @@ fn check_producers(
     producer.ok_or(Refusal::NoEpilogue)
 }
 
-/// Puts the target in the place of the intermediate.
+/// Replaces the intermediate by the target.
 pub(crate) fn apply(
     graph: &Tables,
     attached: &mut StepAttachments,

@@ -1,15 +1,17 @@
-//! Phase 4: which consecutive raster passes share one step.
+//! Phase 4: merging of consecutive raster passes into steps.
 //!
-//! Every step boundary costs a tile-based GPU a round trip of its attachments through memory. From left to right, each
-//! pass joins the open step when nothing stands against it; otherwise the first objection is logged and a new step opens.
-//! Three ways in: the pass draws into attachments of the step ([`Join::Attachments`]; it may bring more of its own as
-//! long as it shares one), it reads them at the same pixel ([`Join::SamePixel`], where the device can), or it is
-//! point-wise and becomes an epilogue of the shaders that produce its input ([`Join::Inlined`], see `inline`).
+//! On a tile-based GPU, every step boundary costs a round trip of the attachments through memory. The phase goes
+//! through the passes in order. A pass joins the current step unless there is an objection; otherwise the first
+//! objection is logged, and the pass begins a new step. A pass can join in three ways:
 //!
-//! The last two ways can do harm: with an earlier pass in the step, a later one may not fit any more. So beside each step
-//! that such a pass joined runs a *rival*: the step as it would be if same-pixel reads were sampled. A pass that fits into
-//! the rival and not into the step cuts the step where the rival began ([`Refusal::RoomForLater`]). Steps are then unions
-//! of those that sampling gives, and reading at the same pixel costs no load, store or step more than sampling.
+//! - It draws into attachments of the step ([`Join::Attachments`]). It may add attachments as long as it shares one.
+//! - It reads attachments at the same pixel, if the device supports that ([`Join::SamePixel`]).
+//! - It is point-wise and becomes an epilogue of the shaders that produce its input ([`Join::Inlined`], see `inline`).
+//!
+//! The last two can prevent later merges, because the earlier pass occupies the step. To avoid that, the phase tracks
+//! the *sampled alternative* of the step: the step that would result if same-pixel reads were sampled. If a pass fits
+//! only into the alternative, the step is split where the alternative began ([`Refusal::RoomForLater`]). Same-pixel
+//! reads therefore never cost more loads, stores or steps than sampling.
 
 use super::framebuffer::{Framebuffer, framebuffer_of_pass};
 use super::inline::{self, Uses};
@@ -28,43 +30,43 @@ use crate::id::{AccessId, PassId, ResourceId, Span, StepId};
 use crate::options::Options;
 use crate::plan::{Join, Step, StepPass};
 
-/// Memory of the phase, kept between compiles.
+/// Memory of the phase, reused between compilations.
 #[derive(Debug, Default)]
 pub(crate) struct MergeScratch {
     touches: Vec<Touch>,
     attached: StepAttachments,
-    /// The first pass of the open step is noted in `touches` and `attached`: put off until a pass wants to join that fits by
-    /// size, layers and samples.
+    /// The first pass of the current step is recorded in `touches` and `attached`. This is deferred until another pass
+    /// with the same framebuffer may join.
     noted: bool,
     uses: Uses,
     rival: Rival,
     undo: Vec<Undo>,
 }
 
-/// What the phase fills.
+/// Outputs of the phase.
 pub(crate) struct Merged<'a> {
     pub(crate) steps: &'a mut Vec<Step>,
     pub(crate) step_passes: &'a mut Vec<StepPass>,
-    /// For each resource, the access that draws in its stead since its reader was inlined; none for most, and empty when
-    /// no pass that could be inlined was met.
+    /// For each resource, the access that replaces it because its reader was inlined; otherwise none. Empty if no pass
+    /// is a candidate for inlining.
     pub(crate) inlined_into: &'a mut Vec<AccessId>,
-    /// For each resource, the resource whose format it is made with since its reader was inlined; as long as
-    /// `inlined_into`.
+    /// For each resource, the resource that determines its format because its reader was inlined; otherwise none. As
+    /// long as `inlined_into`.
     pub(crate) format_of: &'a mut Vec<ResourceId>,
     pub(crate) decisions: &'a mut Vec<Decision>,
 }
 
-/// What an inlined pass changed.
+/// Undo record of an inlined pass.
 #[derive(Clone, Copy, Debug)]
 struct Undo {
-    /// Where the pass is in `step_passes`.
+    /// Index of the pass in `step_passes`.
     at: usize,
     intermediate: ResourceId,
-    /// The samples behind it, and what they had the format of before.
+    /// The multisampled attachment, and the previous value of its `format_of`.
     samples: Option<(ResourceId, ResourceId)>,
 }
 
-/// Groups `order` into steps, and fills the step of each declared pass: none for culled ones.
+/// Groups `order` into steps, and fills the step of each declared pass; none for culled passes.
 #[inline(never)]
 pub(crate) fn merge(
     graph: &Tables,
@@ -88,7 +90,7 @@ pub(crate) fn merge(
     let merging = options.merge && caps.merge_attachments;
     let mut last_raster = PassId::NONE;
     let mut open = Open::NONE;
-    // The next pass, and the one in front of which a step was cut: all before it stays as it is.
+    // Index of the next pass, and of the pass before which a step was split; earlier passes are final.
     let (mut at, mut cut) = (0, usize::MAX);
     while let Some(&pass) = order.get(at) {
         let declared = &graph.passes[pass.index()];
@@ -159,13 +161,13 @@ pub(crate) fn merge(
             (open.last, open.alone) = (pass, open.alone | alone);
         }
         out.step_passes.push(StepPass { pass, join });
-        // There are no more steps than passes, and passes were counted.
+        // Cannot overflow: there are at most as many steps as passes.
         pass_steps[pass.index()] = StepId::unchecked(out.steps.len() - 1);
         at += 1;
     }
 }
 
-/// Takes the open step back to where its rival began.
+/// Truncates the current step to where its alternative began.
 #[cold]
 fn cut_back(open: &mut Open, scratch: &mut MergeScratch, out: &mut Merged<'_>) {
     let MergeScratch { rival, undo, .. } = scratch;
@@ -185,7 +187,7 @@ fn cut_back(open: &mut Open, scratch: &mut MergeScratch, out: &mut Merged<'_>) {
     rival.end();
 }
 
-/// Logs why a pass opens a step in front of which one was cut.
+/// Logs why a pass begins a step after a split.
 #[cold]
 fn cut_off(pass: PassId, pointwise: bool, before: PassId, out: &mut Merged<'_>) {
     if pointwise {
@@ -194,7 +196,7 @@ fn cut_off(pass: PassId, pointwise: bool, before: PassId, out: &mut Merged<'_>) 
     log(out.decisions, pass, Reason::Split(before, Refusal::RoomForLater));
 }
 
-/// Prepares what inlining needs, when the first pass is met that may be inlined.
+/// Prepares the tables for inlining, when the first candidate is met.
 #[inline(never)]
 fn start_inlining(graph: &Tables, order: &[PassId], scratch: &mut MergeScratch, out: &mut Merged<'_>) {
     scratch.uses.count(graph, order);
@@ -207,8 +209,8 @@ fn log(decisions: &mut Vec<Decision>, pass: PassId, reason: Reason) {
     decisions.push(Decision { subject: Subject::Pass(pass), reason });
 }
 
-/// Joins the pass to the open step, or logs why not: as an epilogue if it is `pointwise`, else by its attachments unless
-/// there is an objection already.
+/// Joins the pass to the current step or logs why not: as an epilogue if it is `pointwise`, otherwise by its
+/// attachments unless there is already an objection.
 #[inline(never)]
 fn try_join(
     candidate: &Candidate<'_>,
@@ -248,7 +250,7 @@ fn try_join(
     joined
 }
 
-/// Makes the pass an epilogue of the open step's shaders, or logs why not.
+/// Inlines the pass into the shaders of the current step, or logs why not.
 fn try_inline(candidate: &Candidate<'_>, open: Open, scratch: &mut MergeScratch, out: &mut Merged<'_>) -> bool {
     note_first(candidate, open, scratch, out);
     let MergeScratch { touches, attached, uses, undo, .. } = scratch;
@@ -275,8 +277,8 @@ fn try_inline(candidate: &Candidate<'_>, open: Open, scratch: &mut MergeScratch,
     }
 }
 
-/// What stands against a pass that reads nothing at the same pixel, next to a step of one pass that is not noted yet: mostly
-/// that it samples what that pass draws.
+/// Fast check of a pass without same-pixel reads against a step of one unrecorded pass. Usually the pass samples what
+/// the step draws.
 fn early_objection(candidate: &Candidate<'_>, open: Open, scratch: &MergeScratch) -> Option<Refusal> {
     let in_tile = |access: &Access| access.kind == AccessKind::SamePixel;
     if scratch.noted || candidate.accesses.iter().any(in_tile) {
@@ -285,7 +287,7 @@ fn early_objection(candidate: &Candidate<'_>, open: Open, scratch: &MergeScratch
     objects_to_pass(candidate, candidate.graph.accesses_of(open.last))
 }
 
-/// Notes the first pass of the open step, unless that is done.
+/// Records the first pass of the current step, unless that is done.
 fn note_first(candidate: &Candidate<'_>, open: Open, scratch: &mut MergeScratch, out: &Merged<'_>) {
     if std::mem::replace(&mut scratch.noted, true) {
         return;

@@ -1,9 +1,11 @@
-//! Phase 8 on back ends without placed resources: resources of one shape take turns in physical textures.
+//! Phase 8 for back ends without placed resources: resources of one shape share physical textures and buffers.
 //!
-//! A shape is what a texture is created with, the sRGB transfer function aside (two formats that differ only in it share
-//! memory through view formats); uses are united. Within one shape, lifetimes are intervals, and giving each resource the
-//! slot that was freed last, in the order of first use, needs as many slots as are ever live at once: no assignment needs
-//! fewer. So the pool is optimal for its kind, and proved so.
+//! A shape consists of the creation parameters without the sRGB transfer function, because view formats allow both
+//! variants. The usage of a slot is the union of the usages of its resources.
+//!
+//! Within a shape, lifetimes are intervals. Each resource, in order of its first step, gets the most recently freed
+//! slot. The number of slots then equals the maximum number of live resources, so the pool is provably optimal for its
+//! kind.
 
 use super::layout::Layout;
 use super::measure::Measured;
@@ -17,65 +19,65 @@ use crate::plan::{Memory, Placement, Planned, Slot};
 use crate::resource::{Desc, Extent, TextureDesc};
 use framegraph_pack::classes::{Classes, NIL};
 
-/// Memory of the phase, kept between compiles.
+/// Memory of the phase, reused between compilations.
 #[derive(Debug, Default)]
 pub(crate) struct PoolScratch {
     classes: Classes,
     /// Parallel to the resources.
     tenants: Vec<Tenant>,
-    /// By step.
+    /// Indexed by step.
     lists: Vec<Lists>,
     /// Parallel to the slots.
     tenancies: Vec<Tenancy>,
 }
 
-/// A resource that takes part in sharing.
+/// A resource that shares memory.
 #[derive(Clone, Copy, Debug)]
 struct Tenant {
     /// The next resource that starts in the same step; once the resource has started, its slot.
     start: u32,
     /// The next resource that ends in the same step.
     end: u32,
-    /// The number of its shape; [`NIL`] when nothing is shared.
+    /// Index of its shape; [`NIL`] if nothing is shared.
     class: u32,
-    /// The number of its format.
+    /// Index of its format.
     format: u8,
 }
 
-/// The first resources that start and end in a step; lists go on in [`Tenant`], in the order of ids.
+/// Heads of the lists of resources that start and end in a step. Linked through [`Tenant`], ordered by id.
 #[derive(Clone, Copy, Debug)]
 struct Lists {
     start: u32,
     end: u32,
 }
 
-/// How a slot is used.
+/// The state of a slot.
 #[derive(Clone, Copy, Debug)]
 struct Tenancy {
-    /// The resource that had it last.
+    /// Its last user.
     last: ResourceId,
     /// The next free slot of its shape, while it is free.
     next_free: u32,
-    /// Every use by any tenant.
+    /// All usages of its resources.
     usage: Usage,
-    /// The format of its first tenant, and the bits in which another's differs.
+    /// Format of its first resource, and the bits in which others differ.
     format: u8,
     mixed_formats: u8,
 }
 
 impl Tenancy {
-    /// That of a slot's first tenant.
+    /// Returns the state of a slot with its first resource.
     const fn first(last: ResourceId, row: &Planned, tenant: &Tenant) -> Self {
         Self { last, next_free: NIL, usage: row.usage, format: tenant.format, mixed_formats: row.srgb_views as u8 }
     }
 }
 
-/// Whether a resource takes part in sharing: touched, not placed yet (memoryless, own, external), and wanted.
+/// Returns `true` if a resource shares memory: used by a step and not placed yet.
 fn takes_part(row: &Planned) -> bool {
     row.placement == Placement::Unused && !row.first.is_none()
 }
 
-/// Gives every resource that is still unplaced a slot, `share` off each its own, and sums up the memory.
+/// Assigns a slot to every unplaced resource, each its own unless `share` is set. Returns the memory statistics.
 #[inline(never)]
 pub(crate) fn pool(
     graph: &Tables,
@@ -93,7 +95,7 @@ pub(crate) fn pool(
     enlist(graph, measures, steps, share, resources, scratch, &mut tally);
     let PoolScratch { classes, tenants, lists, tenancies } = scratch;
     let alone = if share { Reason::SlotFirst } else { Reason::AliasingOff };
-    // Rows of one resource: one check of its number serves for all.
+    // Equal lengths, so that one bounds check serves all arrays.
     let count = resources.len();
     let (tenants, declared, measures) = (&mut tenants[..count], &graph.resources[..count], &measures[..count]);
     for (step, heads) in lists.iter().enumerate() {
@@ -134,7 +136,7 @@ pub(crate) fn pool(
     tally.finish(steps, resources)
 }
 
-/// Lists what takes part by first and by last step, with its shape, and counts the rest.
+/// Lists the sharing resources by first and last step, with their shapes, and counts the others.
 #[inline(never)]
 fn enlist(
     graph: &Tables,
@@ -170,14 +172,14 @@ fn enlist(
     }
 }
 
-/// What a resource is made with whose format an inlined epilogue replaced: few are.
+/// Returns the layout of a resource whose format was replaced by an inlined epilogue. Rarely called.
 #[cold]
 #[inline(never)]
 fn reformatted(layout: Layout, format: Format) -> Layout {
     layout.with_format(format)
 }
 
-/// Adds the slot that a resource is the first tenant of: size and levels counted out.
+/// Adds a slot for its first resource, with absolute size and level count.
 #[inline]
 fn open_slot(declared: &Desc, row: &Planned, measured: &Measured, slots: &mut Vec<Slot>) {
     let (usage, bytes) = (row.usage, row.bytes);
@@ -196,7 +198,7 @@ fn open_slot(declared: &Desc, row: &Planned, measured: &Measured, slots: &mut Ve
     }
 }
 
-/// The slot of a shape that was freed last, which is free no more.
+/// Removes and returns the most recently freed slot of a shape.
 #[inline]
 fn take_free<'t>(classes: &mut Classes, class: u32, tenancies: &'t mut [Tenancy]) -> Option<(u32, &'t mut Tenancy)> {
     let free = classes.free(class)?;
@@ -206,7 +208,7 @@ fn take_free<'t>(classes: &mut Classes, class: u32, tenancies: &'t mut [Tenancy]
     Some((slot, tenancy))
 }
 
-/// Notes that a slot is free.
+/// Adds a slot to the free list of its shape.
 #[inline]
 fn give_back(classes: &mut Classes, class: u32, slot: u32, tenancies: &mut [Tenancy]) {
     if let Some(free) = classes.free(class) {

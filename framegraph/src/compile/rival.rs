@@ -1,20 +1,20 @@
-//! Phase 4, the rival of the open step: the step that would be open if same-pixel reads were sampled.
+//! Phase 4, the sampled alternative of the current step: the step that would exist if same-pixel reads were sampled.
 //!
-//! Steps of both kinds begin together. They part where a pass joins the step that would not join it if it sampled; there
-//! the rival begins anew. As long as each pass that joins the rival joins the step too, steps are unions of what the
-//! rivals are. `merge` cuts a step where that would not hold.
+//! Step and alternative begin together. They diverge when a pass joins the step that could not join if it sampled; a
+//! new alternative begins there. Steps are unions of alternatives as long as each pass that joins the alternative also
+//! joins the step. `merge` splits a step otherwise.
 
 use super::join::{Candidate, Touch, Touched, join_kind, touch};
 use super::open::Open;
 use super::step_attachments::StepAttachments;
 use crate::plan::{Join, StepPass};
 
-/// See the [module](self).
+/// The sampled alternative; see the [module](self).
 #[derive(Debug)]
 pub(super) struct Rival {
-    /// It differs from the open step.
+    /// The alternative differs from the current step.
     apart: bool,
-    /// Where it begins in the order, and how long the log was before.
+    /// State of the alternative, and length of the log before it began.
     pub(super) open: Open,
     pub(super) log: usize,
     touches: Vec<Touch>,
@@ -30,19 +30,19 @@ impl Default for Rival {
 }
 
 impl Rival {
-    /// Whether it differs from the open step.
+    /// Returns `true` if the alternative differs from the current step.
     #[inline]
     pub(super) const fn is_apart(&self) -> bool {
         self.apart
     }
 
-    /// Is the open step from now on.
+    /// Makes the alternative identical to the current step.
     #[inline]
     pub(super) const fn end(&mut self) {
         self.apart = false;
     }
 
-    /// Begins with a pass, of which the log says nothing yet.
+    /// Begins an alternative with a pass that is not logged yet.
     pub(super) fn begin(&mut self, candidate: &Candidate<'_>, open: Open, log: usize) {
         if self.number == 0 {
             self.touches.clear();
@@ -54,7 +54,8 @@ impl Rival {
         self.note(candidate);
     }
 
-    /// Whether a pass joins that has no plain objection, which widens it; `passes` are those of all steps.
+    /// Checks if a pass can join, and adds it if so. `passes` are the passes of all steps. The caller has checked the
+    /// objections that do not depend on attachments.
     pub(super) fn takes(&mut self, candidate: &Candidate<'_>, passes: &[StepPass]) -> bool {
         let Self { open, touches, number, attached, .. } = self;
         let members = &passes[open.first..];
@@ -70,7 +71,7 @@ impl Rival {
         touch(&mut self.touches, self.number, candidate.accesses, Join::First, &self.attached, &[]);
     }
 
-    /// Forgets what it touched: resources may be others from now on.
+    /// Forgets recorded accesses, because resources may have changed.
     pub(super) const fn reset(&mut self) {
         (self.apart, self.number) = (false, 0);
     }

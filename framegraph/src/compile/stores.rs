@@ -1,9 +1,10 @@
-//! Phase 6, backward half: what becomes of each attachment at the end of its step.
+//! Phase 6, backward half: the store operation of each attachment.
 //!
-//! A plane whose contents are needed after the step is stored, all others are discarded. A plane that was only read is
-//! neither; once its contents are not needed any more, the last step that reads it discards them, if it can. A color
-//! attachment is cleared instead of loaded where its old contents have no effect. One sweep from the last step to the
-//! first; `single_part` does without where it can.
+//! A written plane is stored if its contents are used after the step, otherwise discarded. A plane that was only read
+//! is left unchanged. Once its contents are no longer needed, the last step that reads it discards them if possible. A
+//! color attachment is cleared instead of loaded if its previous contents have no effect.
+//!
+//! One sweep from the last step to the first; `single_part` replaces it where possible.
 
 use super::cull::need_before;
 use super::loads::{attached_range, is_resolved};
@@ -17,14 +18,15 @@ use crate::format::{Aspect, Format};
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Attachment, LoadOp, Role, Step, StoreOp};
 
-/// Starts a color attachment whose old contents have no effect from zero: blending still reads a defined value.
+/// Clears a color attachment to zero because its previous contents have no effect. Blending still reads defined values.
 pub(super) fn start_from_zero(attachment: &mut Attachment) -> Reason {
     (attachment.load, attachment.stencil_load) = (LoadOp::Clear, LoadOp::Clear);
     attachment.clear = Attachment::ZERO;
     Reason::ClearUnneeded
 }
 
-/// Fills the store ops of `attachments`; `needs` is scratch. The log ends with the rows on their loads.
+/// Fills the store operations of `attachments`; `needs` is scratch memory. The log must end with the decisions on their
+/// loads.
 #[inline(never)]
 pub(crate) fn stores(
     view: StepView<'_>,
@@ -59,7 +61,7 @@ pub(crate) fn stores(
         }
         for at in (0..members.passes.len()).rev() {
             let pass = members.passes[at].pass;
-            // No two accesses of one pass exclude each other, so they need no order.
+            // Accesses of one pass do not conflict, so their order does not matter.
             for access in members.accesses(at) {
                 let (resource, range) = members.touched(access);
                 parts.replace(needs, resource, range, Need::is_needed, |after| {
@@ -78,7 +80,7 @@ pub(crate) fn stores(
     }
 }
 
-/// What becomes of a plane that the step writes and, when `resolved`, averages into another attachment.
+/// Returns the store operation of a plane that the step writes and, if `resolved`, resolves into another attachment.
 #[inline(never)]
 pub(super) fn written(need: Need, resolved: bool) -> (StoreOp, Reason) {
     match need.stored() {
@@ -89,8 +91,8 @@ pub(super) fn written(need: Need, resolved: bool) -> (StoreOp, Reason) {
     }
 }
 
-/// Decides both planes of one attachment of a step of these passes from what is `needed` of each plane after the step, and
-/// says why, the stored plane first.
+/// Sets the store operations of both planes of an attachment. `needed` returns the next use of a plane after the step.
+/// Returns the reason, preferring that of a stored plane.
 #[inline(never)]
 pub(super) fn decide(
     members: Members<'_>,
@@ -109,7 +111,7 @@ pub(super) fn decide(
             true => (StoreOp::None, Reason::StoreUnchanged),
             false => written(need, resolved),
         };
-        // A plane that no access of the step touches is left as it is.
+        // A plane that no access of the step uses is left unchanged.
         let op = if touched == StoreOp::None { StoreOp::None } else { op };
         let stronger = reason.is_none() || op == StoreOp::Store;
         reason = if stronger && touched != StoreOp::None { Some(because) } else { reason };
@@ -126,8 +128,8 @@ pub(super) fn decide(
     reason.unwrap_or(Reason::StoreUnchanged)
 }
 
-/// Whether one of these passes reads a plane of a depth attachment otherwise too: then it must be read only, and nothing
-/// that is read only can be dropped.
+/// Returns `true` if a pass of the step also reads a depth attachment in another way. The attachment must then be
+/// read-only, and its contents cannot be discarded.
 fn is_read_beside(members: Members<'_>, attachment: &Attachment, format: Format) -> bool {
     let attached: Range = attached_range(attachment, Aspect::All);
     let reads = |a: &Access| {
@@ -136,7 +138,7 @@ fn is_read_beside(members: Members<'_>, attachment: &Attachment, format: Format)
     members.passes.iter().any(|m| members.graph.accesses_of(m.pass).iter().any(reads))
 }
 
-/// Whether one of these passes changes that plane of the attachment.
+/// Returns `true` if a pass of the step writes this plane of the attachment.
 fn is_written(members: Members<'_>, attachment: &Attachment, aspect: Aspect) -> bool {
     if attachment.role != Role::Depth {
         return attachment.role != Role::DepthReadOnly;

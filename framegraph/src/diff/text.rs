@@ -1,4 +1,4 @@
-//! A diff as text: a line a change, `-` for what was and `+` for what is.
+//! Text form of a diff: one line per change, with `-` for the first and `+` for the second plan.
 
 use super::{Change, Diff};
 use crate::dump;
@@ -73,12 +73,24 @@ fn total(f: &mut fmt::Formatter<'_>, change: &Change<u64>) -> fmt::Result {
     let &Change { ref what, before, after } = change;
     let sign = if after >= before { '+' } else { '-' };
     let by = after.abs_diff(before);
+    let name = total_name(what);
     if what.ends_with("_bytes") {
         let (before, after, by) = (dump::bytes(before), dump::bytes(after), dump::bytes(by));
-        writeln!(f, "  {what}: {before} -> {after} ({sign}{by})")
+        writeln!(f, "  {name}: {before} -> {after} ({sign}{by})")
     } else if what == "optimal" {
-        writeln!(f, "  {what}: {} -> {}", before != 0, after != 0)
+        writeln!(f, "  {name}: {} -> {}", before != 0, after != 0)
     } else {
-        writeln!(f, "  {what}: {before} -> {after} ({sign}{by})")
+        writeln!(f, "  {name}: {before} -> {after} ({sign}{by})")
+    }
+}
+
+/// Returns the name of a total in text, where loads and stores have the names of their operations.
+fn total_name(what: &str) -> &str {
+    match what {
+        "unresolves" => "loads",
+        "resolves" => "stores",
+        "unresolve_bytes" => "loaded_bytes",
+        "resolve_bytes" => "stored_bytes",
+        other => other,
     }
 }

@@ -1,4 +1,4 @@
-//! The plan as text: the golden format of tests and the file that `render --plan` writes.
+//! Plans as text, for golden tests and for `render --plan`.
 
 use super::words::{bytes, joined, part, place, role_words, shape, uses, written};
 use crate::barrier::{Barrier, Stages};
@@ -8,10 +8,10 @@ use crate::plain::plain;
 use crate::plan::{Attachment, Join, Placement, Plan};
 use std::fmt::Write;
 
-/// The version of the format, in the first line.
-pub const TEXT_VERSION: u32 = 1;
+/// Version of the format, printed in the first line.
+pub const TEXT_VERSION: u32 = 2;
 
-/// The whole plan: totals, steps with their attachments, resources, barriers, and every decision.
+/// Returns the plan as text: totals, steps with their attachments, resources, barriers and all decisions.
 pub fn text(plan: &Plan) -> String {
     written(|out| write(plan, out))
 }
@@ -24,7 +24,7 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
     writeln!(out, "plan {TEXT_VERSION} for {} at {w}x{h}", plain(&plan.caps().name))?;
     writeln!(
         out,
-        "counts: {} unresolves, {} resolves, {} clears, {} discards, {} multisample resolves, {} memoryless, {} inlined, \
+        "counts: {} loads, {} stores, {} clears, {} discards, {} multisample resolves, {} memoryless, {} inlined, \
          {} steps, {} passes, {} culled",
         counts.unresolves,
         counts.resolves,
@@ -110,7 +110,7 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-/// A barrier: where it stands, parts, states, stages, and whose memory is taken over.
+/// Writes a barrier: step, subresources, states, stages, and the previous resource in the same memory.
 fn write_barrier(plan: &Plan, barrier: &Barrier, out: &mut String) -> std::fmt::Result {
     let Barrier { before, resource, first_part, parts, from, to, from_stages, to_stages, after, hand_over } = *barrier;
     let graph = plan.graph();
@@ -124,12 +124,12 @@ fn write_barrier(plan: &Plan, barrier: &Barrier, out: &mut String) -> std::fmt::
         write!(out, " after step {}", after.index())?;
     }
     if let Some(tenant) = hand_over.some() {
-        write!(out, ", takes over from {}", plain(graph.resource_name(tenant)))?;
+        write!(out, ", aliases {}", plain(graph.resource_name(tenant)))?;
     }
     writeln!(out)
 }
 
-/// One attachment: role, name, part, ops.
+/// Returns one attachment: role, name, range and operations.
 fn attachment_line(plan: &Plan, attachment: &Attachment) -> String {
     let graph = plan.graph();
     let name = plain(graph.resource_name(attachment.resource));

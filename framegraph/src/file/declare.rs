@@ -1,5 +1,4 @@
-//! From a file to a graph: resources first, then passes in the order that `versions` found, each through the same calls
-//! that code makes, and refused by the same checks.
+//! Declares a file's resources and passes in the order found by `versions`. Uses the same methods and checks as code.
 
 use super::error::{FileError, FileErrors, FileReason};
 use super::features::Features;
@@ -14,14 +13,14 @@ use crate::error::DeclareError;
 use crate::graph::{Graph, PassKind};
 use crate::resource::TextureDesc;
 
-/// Levels × layers × planes of all textures together: what the compiler follows one by one. Sixteen million take it a few
-/// hundred megabytes.
+/// Maximum number of subresources of all textures. The compiler tracks each of them; the maximum needs a few hundred
+/// megabytes.
 const MOST_SUBRESOURCES: u64 = 1 << 24;
 
-/// Resources by row of the selection: the handle of the newest version.
+/// Handle of the newest version of each resource of the selection.
 pub(super) type Handles = Vec<Option<Handle>>;
 
-/// What the functions here share.
+/// Context of declaring.
 #[derive(Clone, Copy)]
 pub(super) struct Declaring<'a, 'f> {
     pub(super) source: Source<'f>,
@@ -29,8 +28,8 @@ pub(super) struct Declaring<'a, 'f> {
     pub(super) selected: &'a Selected<'f>,
 }
 
-/// Declares everything that is switched on and not in error into `host`; what is refused goes to `errors`. What would need
-/// the result of a pass in error is left out.
+/// Declares every enabled and valid entry into `host` and collects errors. Skips entries that depend on an invalid
+/// pass.
 pub(super) fn all<'f, H: Host + ?Sized>(
     source: Source<'f>,
     features: &Features,
@@ -142,7 +141,7 @@ impl<'f> Declaring<'_, 'f> {
         }
     }
 
-    /// The image of a history that a mention means; none when it means the resource itself.
+    /// Returns the history image that a mention refers to; `None` if it refers to the resource itself.
     pub(super) fn previous(
         &self,
         mention: &Mention<'f>,

@@ -1,4 +1,4 @@
-//! Passes that plugins declare: slots bound by name, results taken back.
+//! Passes declared by plugins: binds slots by name and takes back results.
 
 use super::declare::{Declaring, Handles};
 use super::error::{FileError, FileErrors, FileReason};
@@ -10,7 +10,7 @@ use super::spanned::Spanned;
 use super::value::ValueFault;
 
 impl<'f> Declaring<'_, 'f> {
-    /// Declares one entry through its plugin.
+    /// Declares one entry with its plugin.
     pub(super) fn plugin<H: Host + ?Sized>(
         &self,
         row: &PassRow<'f>,
@@ -20,7 +20,7 @@ impl<'f> Declaring<'_, 'f> {
         host: &mut H,
     ) -> Result<(), FileError> {
         let kind = form.kind.value.as_str();
-        // Kinds that are not known were reported before anything was declared.
+        // Unknown kinds were reported before.
         let Some(plugin) = registry.get(kind) else {
             return Ok(());
         };
@@ -56,8 +56,8 @@ impl<'f> Declaring<'_, 'f> {
             if binding.given.is_none() {
                 let reason = FileReason::Plugin {
                     plugin: kind.into(),
-                    message: format!("it did not write its slot `{}`", binding.slot.name),
-                    hint: "leave the slot unbound, or mend the plugin (`Call::give`)".into(),
+                    message: format!("slot `{}` was not written", binding.slot.name),
+                    hint: "leave the slot unbound, or fix the plugin (`Call::give`)".into(),
                 };
                 return Err(self.source.error(mention.at, reason));
             }
@@ -79,7 +79,7 @@ impl<'f> Declaring<'_, 'f> {
         error.of_pass(&row.id.value)
     }
 
-    /// Kinds that nothing has, slots that the kind has not, and slots that are missing.
+    /// Reports unknown plugin kinds, unknown slots and missing slots.
     pub(super) fn check<H: ?Sized>(
         &self,
         row: &PassRow<'f>,
@@ -103,7 +103,7 @@ impl<'f> Declaring<'_, 'f> {
             refuse(bound, FileReason::unknown("slot", &bound.value, slots.iter().map(|s| s.name)));
             misspelt = true;
         }
-        // One that is missing is probably the one that is misspelt.
+        // A missing slot is probably the misspelled one.
         if misspelt {
             return;
         }

@@ -1,4 +1,4 @@
-//! Files that a file includes.
+//! Included files.
 
 use super::error::{FileError, FileErrors};
 use super::form::IncludeForm;
@@ -7,22 +7,23 @@ use super::syntax;
 use super::value::ValueFault;
 use super::version::without_mark;
 
-/// The most files that one may include, itself left out, and what they include in turn.
+/// Maximum number of files that a file includes, directly or indirectly.
 const MOST_FILES: usize = 64;
 
-/// The files that a graph file includes, with their texts: each once, those that are included before those that include
-/// them.
+/// The files that a graph file includes, with their texts. Each file occurs once, after the files that it includes.
 #[derive(Debug, Default)]
 pub struct Included {
     pub(super) files: Vec<(String, String)>,
 }
 
 impl Included {
-    /// Asks `read` for the text of every file that the file called `path` includes, and that those include. Paths are
-    /// relative to the file that names them, and lead to its folder or below.
+    /// Loads every file that the file at `path` includes, directly or indirectly, with the callback `read`.
+    ///
+    /// Paths are relative to the including file and must stay in its folder or below.
     ///
     /// # Errors
-    /// Text that is no RON, paths that lead elsewhere, more than 64 files, and what `read` says, at the place of the path.
+    /// Returns an error with its position if a text is not valid RON, a path leads out of the folder, more than 64
+    /// files are included, or `read` fails.
     pub fn load(
         path: &str,
         text: &str,
@@ -34,7 +35,7 @@ impl Included {
         Ok(out)
     }
 
-    /// Paths of the files, as `read` was asked for them.
+    /// Paths of the files, as passed to `read`.
     pub fn paths(&self) -> impl Iterator<Item = &str> {
         self.files.iter().map(|(path, _)| path.as_str())
     }
@@ -46,7 +47,7 @@ impl Included {
         seen: &mut Vec<String>,
         read: &mut dyn FnMut(&str) -> Result<String, String>,
     ) -> Result<(), FileError> {
-        // Most files include none, and are not read for that.
+        // Fast path for files without includes.
         if !text.contains("include") {
             return Ok(());
         }
@@ -69,7 +70,7 @@ impl Included {
     }
 }
 
-/// The path of a file that lies beside or below the file at `path`.
+/// Returns the path of a file in the folder of `path` or below.
 fn beside(path: &str, name: &Spanned<String>) -> Option<String> {
     let name = name.value.as_str();
     let below =

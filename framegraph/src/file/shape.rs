@@ -1,4 +1,4 @@
-//! Shapes as files spell them: numbers checked and made to fit.
+//! Descriptors in files: validates and converts numbers.
 
 use super::entries::Count;
 use super::error::FileError;
@@ -8,7 +8,7 @@ use super::spanned::{Source, Spanned};
 use super::value::ValueFault;
 use crate::resource::{BufferSize, Extent, TextureDesc};
 
-/// The shape of a texture.
+/// Returns the descriptor of a texture.
 pub(super) fn texture(source: Source<'_>, features: &Features, form: &TextureForm) -> Result<TextureDesc, FileError> {
     let number = |at: &Option<Spanned<Count>>, what, max, all| match at {
         None => Ok(1),
@@ -27,7 +27,7 @@ pub(super) fn texture(source: Source<'_>, features: &Features, form: &TextureFor
     })
 }
 
-/// The size of a buffer.
+/// Returns the size of a buffer.
 pub(super) fn buffer(source: Source<'_>, features: &Features, form: &BufferForm) -> Result<BufferSize, FileError> {
     if let Origin::History { .. } = form.kind {
         return Err(source.value(&form.name, ValueFault::BufferHistory));
@@ -40,7 +40,7 @@ pub(super) fn buffer(source: Source<'_>, features: &Features, form: &BufferForm)
     Ok(BufferSize::PerTexel { bytes: bytes as u32, extent: extent(source, texels)? })
 }
 
-/// A number from 1 to `max`; 0 stands for all where that is allowed.
+/// Returns a number from 1 to `max`, or 0 for "all" where allowed.
 fn count(
     source: Source<'_>,
     features: &Features,
@@ -63,7 +63,8 @@ fn count(
     Err(source.value(number, fault))
 }
 
-/// The value beside the first condition that holds. All of them are looked at, so that none hides a misspelt name.
+/// Returns the value of the first condition that holds. Evaluates all conditions, so that misspelled names are always
+/// reported.
 fn choice(
     source: Source<'_>,
     features: &Features,

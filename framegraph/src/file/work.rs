@@ -1,4 +1,4 @@
-//! Passes that are spelled out: each access through the call that code would make.
+//! Passes with listed accesses: each access uses the same method as code.
 
 use super::access_form::{AccessForm, ResolvedPlane};
 use super::declare::{Declaring, Handles};
@@ -13,7 +13,7 @@ use crate::graph::{Graph, PassKind};
 use crate::handle::{BufferPart, ReadOnly, Texture};
 use crate::pass_builder::{MAX_COLORS, PassBuilder};
 
-/// Why an access was refused: by the graph, or before it was asked.
+/// Reason why an access is invalid: reported by the graph, or found before.
 enum Refused {
     Graph(DeclareError),
     File(FileReason),
@@ -37,11 +37,11 @@ impl From<ValueFault> for Refused {
     }
 }
 
-/// The color attachments of a pass so far by slot, and its depth attachment as [`Access::DEPTH`].
+/// The attachments of a pass so far by slot; depth as [`Access::DEPTH`].
 type Attached = Vec<(u8, Texture)>;
 
 impl<'f> Declaring<'_, 'f> {
-    /// Declares a pass. When an access is refused, the whole pass is, and the error stands at the access.
+    /// Declares a pass. An invalid access rejects the whole pass; the error has the position of the access.
     pub(super) fn work(
         &self,
         row: &PassRow<'f>,
@@ -101,7 +101,7 @@ fn set(pass: &mut PassBuilder<'_>, flag: Flag) {
     }
 }
 
-/// Declares one access; returns the new version of what it writes.
+/// Declares one access. Returns the new version of a written resource.
 fn declare(
     pass: &mut PassBuilder<'_>,
     access: &AccessForm,

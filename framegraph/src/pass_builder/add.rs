@@ -1,7 +1,7 @@
-//! Adding an access: at once where one comparison of bits shows that it is sound, else after every check.
+//! Adds accesses: directly if a bit mask proves them valid, otherwise after the full check.
 //!
-//! The comparison is compiled into the caller's code, where kind, mode and range are mostly constants: that halves it.
-//! The checks are not.
+//! The bit mask test is inlined into the caller, where kind, mode and range are mostly constants. That halves its cost.
+//! The full check is not inlined.
 
 use super::PassBuilder;
 use super::admit::{conflicts, incapable, mixed, wrong_kind};
@@ -16,12 +16,12 @@ use crate::resource::{BufferSize, Desc};
 use std::panic::Location;
 
 impl PassBuilder<'_> {
-    /// Adds a read of the whole of a resource; `kind` is one of reads. None when it needs every check.
+    /// Adds a read of a whole resource. Returns `None` if the access needs the full check.
     #[inline(always)]
     pub(super) fn quick_read(&mut self, tag: Tag, version: VersionId, kind: AccessKind) -> Option<AccessId> {
         let row = self.tables.versions.get_mut(version.index())?;
         let allowed = row.open.without(self.full_check).has(Kinds::one(kind).union(Kinds::DEFINED));
-        // What the pass wrote itself would be a conflict.
+        // A version that the pass itself wrote would be a conflict.
         if tag != self.tables.tag || !allowed || row.writer == self.pass {
             return None;
         }
@@ -30,7 +30,7 @@ impl PassBuilder<'_> {
         Some(self.push_access(resource, version, Range::ALL, Manner::read(kind), 0))
     }
 
-    /// Adds a write of the whole of a resource; the kind is one of writes. None when it needs every check.
+    /// Adds a write of a whole resource. Returns `None` if the access needs the full check.
     #[inline(always)]
     pub(super) fn quick_write(
         &mut self,
@@ -42,7 +42,7 @@ impl PassBuilder<'_> {
         let row = self.tables.versions.get_mut(version.index())?;
         let contents = if manner.mode.needs_contents() { Kinds::DEFINED } else { Kinds::NONE };
         let allowed = row.open.without(self.full_check).has(Kinds::one(manner.kind).union(contents));
-        // What the pass reads or wrote itself would be a conflict.
+        // A version that the pass itself reads or wrote would be a conflict.
         if tag != self.tables.tag || !allowed || row.writer == self.pass || row.reader == self.pass {
             return None;
         }
@@ -52,7 +52,7 @@ impl PassBuilder<'_> {
         Some(version)
     }
 
-    /// Checks an access in full and adds it; a write also gets its new version.
+    /// Checks an access in full and adds it. Returns its id and, for a write, the new version.
     #[cold]
     #[inline(never)]
     pub(super) fn add_checked(
@@ -80,7 +80,7 @@ impl PassBuilder<'_> {
             (Desc::Texture(texture), _) if !r.range.is_all() => r.range.canonical(texture),
             (Desc::Buffer(buffer), Some((offset, bytes))) if buffer.size != BufferSize::Bytes(bytes) => {
                 self.tables.contents_uncertain = true;
-                // There are no more of these than accesses.
+                // Cannot overflow: at most one byte range per access.
                 let named = BytesId::unchecked(self.tables.byte_ranges.len());
                 self.tables.byte_ranges.push(ByteRange { resource, offset, bytes });
                 Range { bytes: named, ..Range::ALL }
@@ -97,7 +97,7 @@ impl PassBuilder<'_> {
         })
     }
 
-    /// Adds a write that was checked, of the version `previous`, which was open for `open`.
+    /// Adds a validated write that replaces `previous`, a version that allowed the kinds in `open`.
     #[inline(always)]
     fn push_write(
         &mut self,
@@ -153,7 +153,7 @@ impl PassBuilder<'_> {
         access
     }
 
-    /// Why an access cannot be made, if so.
+    /// Returns the reason why an access is invalid, if any.
     fn objection(&self, resource: ResourceId, r: &Request) -> Option<DeclareReason> {
         let row = &self.tables.resources[resource.index()];
         let own = self.own();
@@ -198,7 +198,7 @@ mod tests {
     use crate::resource::Desc;
     use crate::testing::generate::{self, Entropy, Profile};
 
-    /// Makes the resources of `graph` that came to be before that many versions did.
+    /// Copies the resources of `graph` that were created before its first `versions` versions.
     fn make_resources(graph: &Graph, tables: &mut Tables, versions: usize) {
         while tables.versions.len() < versions {
             let resource = &graph.resources[tables.resources.len()];
@@ -209,7 +209,7 @@ mod tests {
         }
     }
 
-    /// Declares the passes of `graph` anew, each access with every check.
+    /// Declares the passes of `graph` again, with the full check for each access.
     fn declared_with_every_check(graph: &Graph) -> Graph {
         let mut again = Graph::new();
         for row in &graph.passes {
@@ -228,7 +228,7 @@ mod tests {
                 assert_eq!(
                     added.map(|(_, version)| version),
                     Ok(version),
-                    "{kind:?} was let through by the quick check"
+                    "{kind:?} passes the fast check, but not the full one"
                 );
             }
             pass.kind(row.kind).expect("a kind that was declared or inferred");
@@ -251,9 +251,9 @@ mod tests {
             assert_eq!(kinds(&quick), kinds(&full), "seed {seed}");
             let unwritten = |e: &Export| quick.versions[e.version.index()].writer.is_none();
             let uncertain = full.contents_uncertain || quick.exports.iter().any(unwritten);
-            // A pass that was refused may have raised the flag too.
+            // A rejected pass may have set the flag too.
             assert!(quick.contents_uncertain || !uncertain, "seed {seed}");
-            // What the quick check relies on: the newest version of each resource is open, and no other.
+            // Invariant of the fast check: only the newest version of each resource allows accesses.
             for (index, (version, again)) in quick.versions.iter().zip(&full.versions).enumerate() {
                 let resource = &quick.resources[version.resource.index()];
                 let written = if version.writer.is_none() { Kinds::NONE } else { Kinds::DEFINED };

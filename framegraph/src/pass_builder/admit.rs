@@ -1,4 +1,4 @@
-//! What a single access can be refused for.
+//! Validity checks of a single access.
 
 use super::request::{Manner, Request};
 use crate::access::{Access, AccessKind, Kinds, Range};
@@ -6,8 +6,10 @@ use crate::error::DeclareReason;
 use crate::graph::{PassKind, Tables};
 use crate::resource::{BufferDesc, BufferSize, Desc, Dimension, Kind, Resource, TextureDesc, halved};
 
-/// Two accesses of one pass to one resource exclude each other when they overlap and one of them writes. All of a buffer
-/// is in one use during a pass (WebGPU's usage scopes), so beside a write other bytes too can only be written, alike.
+/// Returns `true` if two accesses of one pass to one resource conflict: they overlap, and one of them writes.
+///
+/// A buffer has one usage during a pass (WebGPU's usage scopes). Next to a write, other bytes of the buffer may only be
+/// accessed in the same way.
 pub(super) fn conflicts(tables: &Tables, earlier: &Access, later: &Request) -> bool {
     if !earlier.mode.writes() && !later.manner.mode.writes() {
         return false;
@@ -34,7 +36,7 @@ pub(super) fn wrong_kind(kind: PassKind, access: AccessKind) -> Option<DeclareRe
     (!fits).then_some(DeclareReason::WrongPassKind { kind, access })
 }
 
-/// Copies are a pass of their own, whether its kind is named or not: neither can follow the other's accesses.
+/// Checks that copies do not share a pass with other accesses, even if the pass has no explicit kind.
 pub(super) fn mixed(tables: &Tables, own: &[Access], used: Kinds, access: AccessKind) -> Option<DeclareReason> {
     let copy = Kinds::COPIES.has(Kinds::one(access));
     let others = if copy { Kinds::ALL.without(Kinds::COPIES) } else { Kinds::COPIES };
@@ -49,7 +51,7 @@ pub(super) fn mixed(tables: &Tables, own: &[Access], used: Kinds, access: Access
     })
 }
 
-/// The kind of a pass that makes accesses of the kinds in `used`.
+/// Returns the kind of a pass with accesses of the kinds in `used`.
 pub(super) const fn inferred_kind(used: Kinds) -> PassKind {
     if used.meets(Kinds::RASTER) {
         PassKind::Raster
@@ -60,7 +62,7 @@ pub(super) const fn inferred_kind(used: Kinds) -> PassKind {
     }
 }
 
-/// The kinds that a pass of that kind cannot make, or not without every check.
+/// Returns the access kinds that passes of this kind may not use, or not without the full check.
 pub(super) const fn barred(kind: PassKind) -> Kinds {
     match kind {
         PassKind::Raster => Kinds::COPIES,
@@ -69,7 +71,7 @@ pub(super) const fn barred(kind: PassKind) -> Kinds {
     }
 }
 
-/// What the resource's shape or kind rules out.
+/// Returns the reason why the resource does not support the access, if any.
 pub(super) fn incapable(row: &Resource, r: &Request) -> Option<DeclareReason> {
     let Manner { kind: access, mode, .. } = r.manner;
     if let (Kind::HistoryPrevious { .. }, true) = (row.kind, mode.writes()) {
@@ -87,7 +89,7 @@ pub(super) fn incapable(row: &Resource, r: &Request) -> Option<DeclareReason> {
     }
 }
 
-/// Bytes that the buffer has not, as far as its size is known without the frame's.
+/// Checks that a byte range lies inside the buffer, as far as its size is known without the frame size.
 fn outside(buffer: &BufferDesc, r: &Request) -> Option<DeclareReason> {
     let (offset, bytes) = r.bytes?;
     let size = match buffer.size {

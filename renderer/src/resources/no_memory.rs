@@ -7,7 +7,7 @@ pub enum NoMemory {
     #[error("the frame has not been realized")]
     NotRealized,
     /// No pass that the plan kept touches it.
-    #[error("no kept pass touches it")]
+    #[error("no kept pass accesses it")]
     Unused,
     /// The plan made its reader part of its writer's shader.
     #[error("its reader is part of its writer's shader")]

@@ -34,7 +34,7 @@ pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
     // Where a device keeps them in heaps of their own, offsets of both start at 0.
     let apart = form.alias == "heap" && textures.iter().any(|(_, t)| buffers.iter().any(|(_, b)| overlap(t, b)));
     if textures.is_empty() && buffers.is_empty() {
-        drawing.text([0.0, y], SIZE, Ink::Faint, "no resource takes shared memory");
+        drawing.text([0.0, y], SIZE, Ink::Faint, "no resource uses shared memory");
         y += 20.0;
     } else if apart {
         y = map(plan, "heap of textures", &textures, &mut drawing, y);

@@ -1,10 +1,10 @@
-//! Names that stand in the place of ids, and so must differ.
+//! Unique names of passes and resources, used instead of ids.
 
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
 use std::collections::{HashMap, HashSet};
 
-/// The name of each pass and resource; of several with one name, the second has `#2` behind it, and so on.
+/// The name of each pass and resource. Duplicates get the suffix `#2`, `#3` and so on.
 pub(super) struct Names {
     passes: Vec<String>,
     resources: Vec<String>,
@@ -26,7 +26,7 @@ impl Names {
     }
 }
 
-/// The names with numbers behind those that came before. A number that makes another's name is passed over.
+/// Adds suffixes to duplicates. Skips suffixes that would collide with another name.
 fn told_apart(names: Vec<&str>) -> Vec<String> {
     let given: HashSet<&str> = names.iter().copied().collect();
     let mut counts: HashMap<&str, u32> = HashMap::new();

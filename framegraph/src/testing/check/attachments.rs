@@ -1,4 +1,4 @@
-//! The attachments of a step against what its passes declare: ranges, roles, slots, order, one size, no overlap, limits.
+//! Compares the attachments of a step with its passes: ranges, roles, slots, order, size, overlap and limits.
 
 use super::case::{Case, layers_of};
 use super::finding::Rule;
@@ -20,14 +20,14 @@ pub(super) fn attachments(case: &Case<'_>) {
             limits(case, step);
         } else {
             let none = case.plan.attachments_of(step).is_empty();
-            case.report.require(none, Rule::Attachments, step, "it draws nothing, and has attachments");
+            case.report.require(none, Rule::Attachments, step, "it has attachments, but draws nothing");
         }
         sizes(case, step);
     }
 }
 
-/// Each attachment access has its attachment in its slot, each attachment its access, and depth is read-only exactly
-/// when no pass writes it.
+/// Checks that each attachment access has an attachment in its slot, and each attachment an access. Depth must be
+/// read-only if and only if no pass writes it.
 fn declared(case: &Case<'_>, step: StepId) {
     let start = case.step(step).attachments.start as usize;
     let rows = case.plan.attachments_of(step);
@@ -41,7 +41,7 @@ fn declared(case: &Case<'_>, step: StepId) {
         }
         let place = (step, member.pass, touch.resource);
         let Some((at, attachment)) = case.attachment(step, kind, touch.resource, touch.range) else {
-            let why = format_args!("declared as `{}`, and not attached so", kind.word());
+            let why = format_args!("declared as `{}`, but not attached as such", kind.word());
             case.report.violation(Rule::Attachments, place, why);
             continue;
         };
@@ -54,14 +54,19 @@ fn declared(case: &Case<'_>, step: StepId) {
     }
     for (index, attachment) in rows.iter().enumerate() {
         let place = (step, attachment.resource);
-        case.report.require(used[index], Rule::Attachments, place, "attached, and no pass declares it");
+        case.report.require(used[index], Rule::Attachments, place, "attached, but no pass declares it");
         let right = (attachment.role == Role::DepthReadOnly) != written[index];
-        case.report.require(right, Rule::Attachments, place, "attached read-only exactly when no pass writes it");
+        case.report.require(
+            right,
+            Rule::Attachments,
+            place,
+            "it must be attached read-only if and only if no pass writes it",
+        );
     }
 }
 
-/// The slot of a color attachment: the one that its first pass asks for; where that is taken and the device maps slots, the
-/// lowest free one. None when a pass would find it elsewhere.
+/// Returns the slot of a color attachment: the one its first pass requests, or the lowest free one if that is in use
+/// and the device maps slots. `None` if a pass would find it in another slot.
 fn place_color(case: &Case<'_>, slots: &mut Vec<(usize, u8)>, attachment: usize, wanted: u8) -> Option<u8> {
     let remaps = case.plan.caps().slot_mapping;
     if let Some((_, slot)) = slots.iter().find(|(at, _)| *at == attachment) {
@@ -73,12 +78,12 @@ fn place_color(case: &Case<'_>, slots: &mut Vec<(usize, u8)>, attachment: usize,
     Some(slot)
 }
 
-/// No two attachments in one slot or of one range; colors by slot, then depth, then resolve targets.
+/// Checks that attachments have different slots and ranges, and are ordered: colors by slot, depth, resolve targets.
 fn pairs(case: &Case<'_>, step: StepId) {
     let rows = case.plan.attachments_of(step);
     for pair in rows.windows(2) {
         let (a, b) = (pair[0].role, pair[1].role);
-        case.report.require(rank(a) < rank(b), Rule::Attachments, step, format_args!("{a:?} stands before {b:?}"));
+        case.report.require(rank(a) < rank(b), Rule::Attachments, step, format_args!("{a:?} is listed before {b:?}"));
     }
     for (index, a) in rows.iter().enumerate() {
         for b in &rows[..index] {
@@ -99,7 +104,7 @@ const fn rank(role: Role) -> (u8, u8) {
     }
 }
 
-/// All attachments have the extent, layers and samples of the step; a resolve target has one sample.
+/// Checks that all attachments have the extent, layers and samples of the step. A resolve target has one sample.
 fn sizes(case: &Case<'_>, step: StepId) {
     let row = case.step(step);
     let own = (row.extent, row.layers, row.samples);
@@ -115,7 +120,7 @@ fn sizes(case: &Case<'_>, step: StepId) {
         let flat = case
             .texture(resource)
             .is_none_or(|t| t.dimension != Dimension::D3 || u32::from(t.layers) >> attachment.mip.min(31) <= 1);
-        case.report.require(flat, Rule::Attachments, step, "an attachment has several slices, of which one is drawn");
+        case.report.require(flat, Rule::Attachments, step, "an attachment has several slices, but only one is drawn");
         if resolves::is_target(attachment.role) {
             let why = format_args!("a resolve from {} to {} samples", own.2, found.2);
             case.report.require(found.2 == 1 && own.2 > 1, Rule::Resolve, step, why);
@@ -142,14 +147,15 @@ fn sizes(case: &Case<'_>, step: StepId) {
     }
 }
 
-/// How many color attachments, and how many bytes a sample they take in the tile.
+/// Returns the number of color attachments and their bytes per sample in the tile.
 pub(super) fn weight(formats: impl Iterator<Item = Format>) -> (u32, u32) {
     formats.fold((0, 0), |(count, bytes), format| (count + 1, bytes + format.tile_bytes()))
 }
 
-/// The device's limits on color attachments and tile memory. Where same-pixel reads stay in the tile, each pass has the
-/// number of attachments to itself, and all share the tile. A pass that alone takes more than the tile has cannot be
-/// helped.
+/// Checks the limits on color attachments and tile memory.
+///
+/// If same-pixel reads stay in the tile, the attachment limit applies to each pass, and the tile is shared. A single
+/// pass may exceed the tile memory, because it cannot be split.
 fn limits(case: &Case<'_>, step: StepId) {
     let caps = case.plan.caps();
     let colors = case.plan.attachments_of(step).iter().filter(|a| matches!(a.role, Role::Color(_)));
@@ -162,13 +168,13 @@ fn limits(case: &Case<'_>, step: StepId) {
         let drawn = case.touches(member).filter(|t| t.access.kind == AccessKind::Color && !t.in_shader);
         let own = weight(drawn.filter_map(|t| case.format(t.resource)));
         alone = own.1.max(alone);
-        let why = format_args!("{} color attachments of {} bytes a sample", own.0, own.1);
+        let why = format_args!("{} color attachments of {} bytes per sample", own.0, own.1);
         case.report.require(fits(own), Rule::Limits, (step, member.pass), why);
     }
-    let why = format_args!("{count} color attachments of {bytes} bytes a sample");
+    let why = format_args!("{count} color attachments of {bytes} bytes per sample");
     case.report.require(caps.same_pixel || fits((count, bytes)), Rule::Limits, step, why);
     let tile = caps.tile_bytes_per_pixel;
     let needed = bytes * u32::from(case.step(step).samples);
-    let why = format_args!("{needed} bytes a pixel in the tile, the device has {tile}");
+    let why = format_args!("{needed} bytes per pixel in the tile, the device has {tile}");
     case.report.require(tile == 0 || needed <= tile || bytes <= alone, Rule::Limits, step, why);
 }

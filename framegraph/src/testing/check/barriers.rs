@@ -1,11 +1,14 @@
-//! Barriers: every use of a part finds it in the layout that it wants and waits for whatever it must not overtake.
+//! Checks the barriers: every use of a part must have its layout and wait for conflicting uses.
 //!
-//! A second small machine beside the one for contents. For each part it keeps the layout, whether the last use wrote,
-//! the stages that used it since its last barrier (*pending*), and the stages that this barrier let through (*admitted*).
-//! A use of a step needs a barrier when it is the first, when it or the use before it writes, or when the layout differs;
-//! otherwise its stages must have been admitted, since the barrier that made the contents visible did so only to the
-//! stages it names. A barrier waits for exactly what is pending; a chain of barriers carries the rest. The first use of a
-//! tenant waits for what is pending on all who had its memory.
+//! A second state machine next to the one for contents. For each part it tracks the layout, and if the last use wrote.
+//! It also tracks the stages of uses since the last barrier (*pending*), and the destination stages of that barrier
+//! (*admitted*).
+//!
+//! A use needs a barrier if it is the first, if it or the previous use writes, or if the layout differs. Otherwise its
+//! stages must be admitted, because the last barrier made the contents visible only to its destination stages.
+//!
+//! A barrier waits for exactly the pending stages; a chain of barriers covers earlier ones. The first use of a resource
+//! waits for the pending stages of all previous resources in its memory.
 
 use super::case::{Case, Touch};
 use super::finding::{Place, Rule};
@@ -18,20 +21,20 @@ use crate::plan::Placement;
 use crate::resource::{Entry, Kind};
 use std::collections::BTreeMap;
 
-/// What is known of one part.
+/// The synchronization state of one part.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sync {
     state: State,
     wrote: bool,
     pending: Stages,
     admitted: Stages,
-    /// The barrier that admitted them.
+    /// The barrier that admitted the stages.
     barrier: Option<usize>,
-    /// The step that used it last.
+    /// The step that used the part last.
     last: StepId,
 }
 
-/// How one step uses one part.
+/// The use of one part by one step.
 #[derive(Clone, Copy, Debug)]
 struct Need {
     part: usize,
@@ -45,7 +48,12 @@ struct Need {
 pub(super) fn barriers(case: &Case<'_>, earlier: &EarlierTenants) {
     let rows = case.plan.barriers();
     if !case.plan.caps().explicit_barriers {
-        return case.report.require(rows.is_empty(), Rule::Barrier, (), "the device needs no barriers");
+        return case.report.require(
+            rows.is_empty(),
+            Rule::Barrier,
+            (),
+            "the plan has barriers, but the device needs none",
+        );
     }
     let key = |b: &Barrier| (b.before, b.resource, b.first_part);
     let sorted = rows.windows(2).all(|w| key(&w[0]) < key(&w[1]));
@@ -79,14 +87,14 @@ pub(super) fn barriers(case: &Case<'_>, earlier: &EarlierTenants) {
         }
         for barrier in over.into_values() {
             let place = (step, rows[barrier].resource);
-            case.report.violation(Rule::Barrier, place, "a barrier on what the step does not use");
+            case.report.violation(Rule::Barrier, place, "a barrier on a part that the step does not use");
         }
     }
     for (barrier, admitted) in rows.iter().zip(admitted) {
         let (found, expected) = (names(barrier.to_stages), names(admitted));
         case.report.equal(found, expected, Rule::Barrier, (barrier.before, barrier.resource), "to_stages");
     }
-    case.report.require(used == rows.len(), Rule::Barrier, (), "a barrier stands before no step");
+    case.report.require(used == rows.len(), Rule::Barrier, (), "a barrier precedes no step");
 }
 
 fn on_entry(case: &Case<'_>) -> Vec<Sync> {
@@ -106,7 +114,7 @@ fn on_entry(case: &Case<'_>) -> Vec<Sync> {
     syncs
 }
 
-/// The numbers of the parts that a barrier covers: its own numbering runs over levels first, then layers, then planes.
+/// Returns the parts that a barrier covers. Its numbering runs over levels first, then layers, then planes.
 fn covered(case: &Case<'_>, barrier: &Barrier) -> Vec<usize> {
     let (mips, layers) = case.parts.counts(barrier.resource);
     let all = case.parts.all(barrier.resource);
@@ -120,7 +128,7 @@ fn covered(case: &Case<'_>, barrier: &Barrier) -> Vec<usize> {
     numbers.map(part).collect()
 }
 
-/// The layout and stages that one access wants.
+/// Returns the layout and stages of one access.
 fn wanted(kind: PassKind, touch: &Touch, in_tile: bool) -> (State, Stages) {
     let shader = match kind {
         PassKind::Raster => Stages::SHADER,
@@ -143,8 +151,8 @@ fn wanted(kind: PassKind, touch: &Touch, in_tile: bool) -> (State, Stages) {
     }
 }
 
-/// What a step does to each part: writers decide the layout, then attachments; all stages count. An attachment is used with
-/// all of its planes.
+/// Returns the use of each part by a step. Writers determine the layout, then attachments; all stages count. An
+/// attachment uses all its planes.
 fn needs(case: &Case<'_>, step: StepId) -> Vec<Need> {
     let kind = case.step(step).kind;
     let mut needs: BTreeMap<usize, Need> = BTreeMap::new();
@@ -160,7 +168,7 @@ fn needs(case: &Case<'_>, step: StepId) -> Vec<Need> {
         let writes = touch.access.mode.writes();
         for part in case.parts.covered(touch.resource, touch.range) {
             let need = needs.entry(part).or_insert(Need { part, resource: touch.resource, state, stages, writes });
-            // A storage texture has the layout in which it can be sampled as well.
+            // The layout of a storage texture also supports sampling.
             let rank = |writes: bool, state: State| (!writes, state != State::Storage, state);
             if rank(writes, state) < rank(need.writes, need.state) {
                 need.state = state;
@@ -168,7 +176,7 @@ fn needs(case: &Case<'_>, step: StepId) -> Vec<Need> {
             need.stages = need.stages.union(stages);
             need.writes |= writes;
         }
-        // The store of colors reads the samples of depth.
+        // Depth is resolved in the color output stage.
         let depth = touch.access.kind == AccessKind::Resolve && touch.access.slot == Access::DEPTH;
         let samples = Some(()).filter(|()| depth).and_then(|()| case.averaged(member, &touch));
         if let Some(samples) = samples {
@@ -182,20 +190,20 @@ fn needs(case: &Case<'_>, step: StepId) -> Vec<Need> {
     needs.into_values().collect()
 }
 
-/// One use against the barrier before it, or its absence.
+/// Checks one use against the barrier before it, if any.
 fn judge(case: &Case<'_>, syncs: &[Sync], need: &Need, barrier: Option<&Barrier>, owners: &[ResourceId], place: Place) {
     let sync = syncs[need.part];
     let first = sync.last.is_none();
     let conflict = first || need.writes || sync.wrote || sync.state != need.state;
     let Some(barrier) = barrier else {
-        // A buffer has no layout: new memory needs nothing said.
+        // A buffer has no layout, so new memory needs no barrier.
         let external = case.placement(need.resource) == Placement::External;
         let silent = first && case.texture(need.resource).is_none() && !external && owners.is_empty();
         let why = format_args!("used as {:?} after {:?} without a barrier", need.state, sync.state);
         case.report.require(silent || !conflict, Rule::Barrier, place, why);
         if !silent && !conflict && !sync.admitted.contains(need.stages) {
             let names: Vec<_> = need.stages.names().collect();
-            let why = format_args!("used by {} without a barrier that lets it through", names.join(", "));
+            let why = format_args!("used by {}, but not admitted by a barrier", names.join(", "));
             case.report.violation(Rule::Barrier, place, why);
         }
         return;
@@ -207,7 +215,7 @@ fn judge(case: &Case<'_>, syncs: &[Sync], need: &Need, barrier: Option<&Barrier>
             let stages = syncs[case.parts.all(*owner)].iter().map(|s| s.pending);
             pending = stages.fold(pending, Stages::union);
         }
-        // Of several owners that ended in one step, any may be named.
+        // If several previous resources end in the same step, the barrier may name any of them.
         let last = |r: ResourceId| case.planned(r).last;
         if let Some(latest) = owners.iter().map(|r| last(*r)).max() {
             let among = |r: &ResourceId| last(*r) == latest;
@@ -223,7 +231,7 @@ fn judge(case: &Case<'_>, syncs: &[Sync], need: &Need, barrier: Option<&Barrier>
     case.report.equal(barrier.hand_over, before, Rule::Barrier, place, "hand_over");
 }
 
-/// The names of stages, which say more in a report than their bits.
+/// Returns the names of stages, for readable reports.
 fn names(stages: Stages) -> Vec<&'static str> {
     stages.names().collect()
 }

@@ -1,7 +1,7 @@
-//! The decision log: it has its rows, and each of them is true.
+//! Checks the decision log: required rows are present, and every row is true.
 //!
-//! Truth is judged from the reference semantics and from what the run of the plan left behind, never from how the
-//! compiler came to its decision. A row that says why something was *not* done must name an objection that stands.
+//! Rows are checked against the reference semantics and the results of the run, not against the compiler's reasoning. A
+//! row that explains why something was *not* done must name an objection that really exists.
 
 mod epilogues;
 mod merges;

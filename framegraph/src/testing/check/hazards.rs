@@ -1,7 +1,7 @@
-//! Hazards inside of a step, and which passes may share one.
+//! Checks hazards inside of steps, and conditions for sharing a step.
 //!
-//! Nothing separates the passes of a step in memory: no barrier, no flush of the tile. So two of them may touch a part in
-//! memory only if neither writes it, and no pass may read in memory what the step draws.
+//! The passes of a step are not separated by barriers or tile flushes. Two of them may access the same part in memory
+//! only if neither writes it, and no pass may read from memory what the step draws.
 
 use super::case::{Case, Replaced};
 use super::finding::Rule;
@@ -10,16 +10,16 @@ use crate::graph::PassFlags;
 use crate::id::{PassId, ResourceId, StepId};
 use crate::plan::{Attachment, Join, Placement};
 
-/// How a pass touches a part within a step.
+/// How a pass uses a part within a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Way {
-    /// Attached, and not changed by this access.
+    /// Attached and not changed by this access.
     Shown,
     /// Drawn into.
     Drawn,
-    /// Read in memory.
+    /// Read from memory.
     Read,
-    /// Written in memory.
+    /// Written to memory.
     Written,
 }
 
@@ -36,7 +36,7 @@ pub(super) fn hazards(case: &Case<'_>) {
     }
 }
 
-/// The touches of one step that exclude each other.
+/// Checks the uses of one step for conflicts.
 fn memory(case: &Case<'_>, step: StepId) {
     let mut ways: Vec<(usize, Way, usize, PassId, ResourceId)> = Vec::new();
     let spot = |resource, part| case.spot(resource, part);
@@ -60,7 +60,7 @@ fn memory(case: &Case<'_>, step: StepId) {
     for of_part in ways.chunk_by(|a, b| a.0 == b.0) {
         for (index, &(_, way, part, pass, resource)) in of_part.iter().enumerate() {
             for &(_, before, beside, other, _) in &of_part[..index] {
-                // What one pass does with two planes is its own matter.
+                // Conflicts between two planes in one pass are checked elsewhere.
                 if beside != part && (other == pass || other.is_none() || pass.is_none()) {
                     continue;
                 }
@@ -71,20 +71,20 @@ fn memory(case: &Case<'_>, step: StepId) {
                     _ => false,
                 };
                 let place = ((step, pass, resource), case.parts.name(resource, part));
-                let why = format_args!("{way:?} by one pass and {before:?} by another in one step");
+                let why = format_args!("conflicting uses in one step: {before:?} by one pass, {way:?} by another");
                 case.report.require(!clash, Rule::Hazard, place, why);
             }
         }
     }
 }
 
-/// Whether the passes of a step may share it, and whether each says rightly how it came in.
+/// Checks that the passes of a step may share it, and that their joins are correct.
 fn joins(case: &Case<'_>, step: StepId) {
     let (caps, options) = (case.plan.caps(), case.plan.options());
     let members = case.plan.passes_of(step);
     let alone = members.iter().find(|m| case.flag(m.pass, PassFlags::NEVER_MERGE));
     if let (Some(alone), true) = (alone, members.len() > 1) {
-        case.report.violation(Rule::Merging, (step, alone.pass), "it asks to stay alone");
+        case.report.violation(Rule::Merging, (step, alone.pass), "it is declared `never_merge`");
     }
     for (index, member) in members.iter().enumerate().skip(1) {
         let place = (step, member.pass);
@@ -93,7 +93,7 @@ fn joins(case: &Case<'_>, step: StepId) {
             Join::Inlined => options.inline && caps.inline,
             _ => options.merge && caps.merge_attachments,
         };
-        let why = format_args!("options or device rule {:?} out", member.join);
+        let why = format_args!("options or device do not allow {:?}", member.join);
         case.report.require(allowed, Rule::Merging, place, why);
         let mut touches = case.touches(*member);
         let right = match member.join {
@@ -103,16 +103,16 @@ fn joins(case: &Case<'_>, step: StepId) {
             Join::Attachments => touches
                 .any(|t| t.access.kind.is_attachment() && case.attached_by(&members[..index], t.resource, t.range)),
         };
-        let why = format_args!("it did not come in by {:?}", member.join);
+        let why = format_args!("its join is not {:?}", member.join);
         case.report.require(right, Rule::Merging, place, why);
     }
 }
 
-/// Whether the pass that replaces `input` can be an epilogue of the passes that draw it.
+/// Checks that the pass that replaces `input` is a valid epilogue of the passes that draw it.
 ///
-/// The input may be nothing but what those passes draw, from scratch and without blending, in this step; what is resolved
-/// into it may be nothing else either; the target has its shape. The epilogue is only a shader: it blends nothing, and
-/// does nothing that no resource shows.
+/// The input, and the samples resolved into it, must be drawn only by those passes, in this step, without previous
+/// contents and without blending. The target must have the same shape. The pass must not blend or have a side effect,
+/// because an epilogue is only a shader.
 fn inlining(case: &Case<'_>, input: ResourceId, replaced: Replaced) {
     let graph = case.graph;
     let step = case.plan.pass_steps()[replaced.by.index()];
@@ -122,11 +122,11 @@ fn inlining(case: &Case<'_>, input: ResourceId, replaced: Replaced) {
     require(case.is_transient(input), "its input must survive as a texture");
     let own = |flag| case.flag(replaced.by, flag);
     require(own(PassFlags::POINTWISE), "it is not declared point-wise");
-    require(!own(PassFlags::SIDE_EFFECT), "it has a side effect, which an epilogue would lose");
+    require(!own(PassFlags::SIDE_EFFECT), "it has a side effect, which an epilogue loses");
     require(!own(PassFlags::BLENDS), "it blends, which an epilogue cannot");
     let output = graph.accesses_of(replaced.by).iter().find(|a| a.mode.writes());
-    require(output.is_some_and(|a| a.mode != Mode::Modify), "it adds to older contents of its target");
-    require(same_shape(case, input, replaced), "its target differs in more than the format");
+    require(output.is_some_and(|a| a.mode != Mode::Modify), "it modifies previous contents of its target");
+    require(same_shape(case, input, replaced), "its target differs in more than its format");
 
     let samples = samples_of(case, step, input);
     for resource in std::iter::once(&input).chain(&samples) {
@@ -134,28 +134,28 @@ fn inlining(case: &Case<'_>, input: ResourceId, replaced: Replaced) {
         for (index, (pass, access)) in users.enumerate() {
             let draws = matches!(access.kind, AccessKind::Color | AccessKind::Resolve);
             let here = case.plan.pass_steps()[pass.index()] == step;
-            require(draws && here, "its input is used by others than its producers");
+            require(draws && here, "its input has uses other than its producers");
             if access.kind == AccessKind::Color && !is_inlined(case, *pass) {
-                require(case.flag(*pass, PassFlags::TAKES_EPILOGUE), "a producer takes no epilogue");
+                require(case.flag(*pass, PassFlags::TAKES_EPILOGUE), "a producer does not accept an epilogue");
                 require(!case.flag(*pass, PassFlags::BLENDS), "a producer blends");
             }
-            require(index > 0 || access.mode != Mode::Modify, "its input builds on older contents");
+            require(index > 0 || access.mode != Mode::Modify, "its input uses previous contents");
         }
     }
     for sample in samples {
         let mut kept = case.plan.attachments_of(step).iter().filter(|a| a.resource == sample);
         let stored = kept.any(Attachment::stores);
-        require(case.is_transient(sample) && !stored, "the samples behind its input must survive");
+        require(case.is_transient(sample) && !stored, "the samples resolved into its input must survive");
     }
-    require(case.placement(input) == Placement::Inlined, "its input is placed somewhere");
+    require(case.placement(input) == Placement::Inlined, "its input has a placement");
 }
 
-/// Whether a running pass is an epilogue.
+/// Returns `true` if a running pass is an epilogue.
 fn is_inlined(case: &Case<'_>, pass: PassId) -> bool {
     case.member(pass).is_some_and(|m| m.join == Join::Inlined)
 }
 
-/// The multisampled attachments that passes of the step resolve into `input`.
+/// Returns the multisampled attachments that passes of the step resolve into `input`.
 fn samples_of(case: &Case<'_>, step: StepId, input: ResourceId) -> Vec<ResourceId> {
     let mut found = Vec::new();
     for member in case.plan.passes_of(step) {
@@ -169,7 +169,8 @@ fn samples_of(case: &Case<'_>, step: StepId, input: ResourceId) -> Vec<ResourceI
     found
 }
 
-/// The target of an inlined pass covers exactly what its input covered: one level, one layer, one sample, one size.
+/// Returns `true` if the target of an inlined pass has the shape of its input: one level, layer and sample of the same
+/// size.
 pub(super) fn same_shape(case: &Case<'_>, input: ResourceId, replaced: Replaced) -> bool {
     let (Some(from), Some(to)) = (case.texture(input), case.texture(replaced.target)) else {
         return false;

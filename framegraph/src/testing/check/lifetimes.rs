@@ -1,4 +1,4 @@
-//! First and last step, uses, format, bytes and placement of each resource, worked out anew from the steps.
+//! Recomputes lifetime, usage, format, size and placement of each resource from the steps.
 
 use super::case::Case;
 use super::finding::{Place, Rule, WasteKind};
@@ -28,12 +28,12 @@ pub(super) fn lifetimes(case: &Case<'_>) {
     }
 }
 
-/// Too few flags are wrong, too many are waste.
+/// Reports missing flags as violations and superfluous ones as waste.
 pub(super) fn uses(case: &Case<'_>, found: Usage, expected: Usage, place: Place) {
     let names = |u: Usage| u.names().collect::<Vec<_>>().join(", ");
     let (missing, extra) = (expected.without(found), found.without(expected));
     if !missing.is_empty() {
-        let why = format_args!("it is used as {}, and no flag says so", names(missing));
+        let why = format_args!("it is used as {}, but the flags are missing", names(missing));
         case.report.violation(Rule::Usage, place, why);
     }
     if !extra.is_empty() {
@@ -41,7 +41,7 @@ pub(super) fn uses(case: &Case<'_>, found: Usage, expected: Usage, place: Place)
     }
 }
 
-/// The rows as the steps make them, placement aside.
+/// Returns the rows that follow from the steps, without placements.
 fn rows(case: &Case<'_>) -> Vec<Planned> {
     let resources = case.graph.resources().iter().zip(replaced_formats(case));
     let unused = |(resource, format): (&crate::resource::Resource, _)| Planned {
@@ -72,7 +72,7 @@ fn rows(case: &Case<'_>) -> Vec<Planned> {
     rows
 }
 
-/// The formats that inlined epilogues give to the samples that are resolved into their targets.
+/// Returns the formats of multisampled attachments whose resolve targets were replaced by inlining.
 fn replaced_formats(case: &Case<'_>) -> Vec<Option<Format>> {
     let mut formats = vec![None; case.graph.resources().len()];
     for &member in case.plan.step_passes() {
@@ -90,7 +90,7 @@ fn replaced_formats(case: &Case<'_>) -> Vec<Option<Format>> {
     formats
 }
 
-/// What a resource takes where it is: in a heap with what the driver pads.
+/// Returns the size of a resource in its placement; in a heap, including padding by the driver.
 fn padded(case: &Case<'_>, resource: ResourceId, expected: &Planned) -> u64 {
     let desc = case.graph.resources()[resource.index()].desc.texture();
     let shared = case.kind(resource) == Kind::Transient && matches!(case.placement(resource), Placement::Heap { .. });
@@ -103,7 +103,7 @@ fn padded(case: &Case<'_>, resource: ResourceId, expected: &Planned) -> u64 {
     padding.map_or(expected.bytes, |(_, bytes)| expected.bytes.max(*bytes))
 }
 
-/// Bytes of all subresources, without padding.
+/// Returns the size of all subresources, without padding.
 fn bytes(case: &Case<'_>, desc: &Desc, format: Option<Format>) -> u64 {
     let texture = match desc {
         Desc::Buffer(buffer) => return buffer.bytes(case.plan.frame()),
@@ -118,7 +118,7 @@ fn bytes(case: &Case<'_>, desc: &Desc, format: Option<Format>) -> u64 {
         let blocks = u128::from(w.div_ceil(bw)) * u128::from(h.div_ceil(bh));
         let depth = match texture.dimension {
             Dimension::D2 => u128::from(texture.layers),
-            // Huge sides have more levels than a depth has bits.
+            // Huge extents have more levels than the depth has bits.
             Dimension::D3 => u128::from(u64::from(texture.layers) >> mip).max(1),
         };
         sum += blocks * depth * u128::from(texture.samples) * u128::from(format.block_bytes());
@@ -126,7 +126,7 @@ fn bytes(case: &Case<'_>, desc: &Desc, format: Option<Format>) -> u64 {
     u64::try_from(sum).unwrap_or(u64::MAX)
 }
 
-/// Where the image of a history is that is `age` frames old: behind the current one, in the order of age.
+/// Returns the placement of the history image of this age: behind the current one, ordered by age.
 fn image(case: &Case<'_>, current: ResourceId, age: u8) -> Placement {
     match case.placement(current) {
         Placement::Heap { offset } => {
@@ -137,7 +137,7 @@ fn image(case: &Case<'_>, current: ResourceId, age: u8) -> Placement {
     }
 }
 
-/// Whether a resource may live where it does.
+/// Checks the placement of a resource.
 fn placement(case: &Case<'_>, resource: ResourceId, expected: &Planned) {
     let (caps, options) = (case.plan.caps(), case.plan.options());
     let found = case.placement(resource);
@@ -161,18 +161,22 @@ fn placement(case: &Case<'_>, resource: ResourceId, expected: &Planned) {
             Placement::External | Placement::Own => false,
         },
     };
-    let why = format_args!("it is {found:?}, which its kind, its uses or the options rule out");
+    let why = format_args!("its placement {found:?} contradicts its kind, its uses or the options");
     case.report.require(allowed, Rule::Placement, resource, why);
     if let Placement::Heap { offset } = found {
         let rest = offset % alignment(case.plan, resource);
         case.report.equal(rest, 0, Rule::Placement, resource, "its misalignment");
     }
     if found != Placement::Memoryless && could_be_memoryless(case, resource, expected) {
-        case.report.waste(WasteKind::Memory, resource, format_args!("it never leaves the tile, and is {found:?}"));
+        case.report.waste(
+            WasteKind::Memory,
+            resource,
+            format_args!("it never leaves the tile, but its placement is {found:?}"),
+        );
     }
 }
 
-/// Whether a resource is nothing but an attachment of one step that starts and ends there.
+/// Returns `true` if a resource is only an attachment of a single step, without load and store.
 fn could_be_memoryless(case: &Case<'_>, resource: ResourceId, expected: &Planned) -> bool {
     let inside = Usage::ATTACHMENT.union(Usage::INPUT_ATTACHMENT);
     let layers = |t: &crate::TextureDesc| t.layers == 1 || case.plan.caps().memoryless_layers;

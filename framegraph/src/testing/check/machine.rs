@@ -1,7 +1,6 @@
-//! The machine that runs a plan, step by step, on symbols: reads and writes of main memory, and what is left when the
-//! frame ends.
+//! Runs a plan on symbolic values: reads and writes of main memory, and the state at the end of the frame.
 //!
-//! See the module documentation of `check` for the lattice and the transfer functions.
+//! The documentation of the module `check` defines the lattice and the transfer functions.
 
 use super::case::{Case, Touch};
 use super::finding::{Place, Rule, WasteKind};
@@ -18,7 +17,7 @@ pub(super) struct Machine<'c, 'p> {
 }
 
 impl Machine<'_, '_> {
-    /// The reads that a pass makes in main memory, among those that `chosen` picks.
+    /// Performs the reads of a pass from main memory for which `chosen` is true.
     pub(super) fn reads(&mut self, step: StepId, member: StepPass, chosen: impl Fn(&Touch) -> bool) {
         let case = self.case;
         for touch in case.touches(member) {
@@ -26,11 +25,11 @@ impl Machine<'_, '_> {
             if elsewhere || !touch.access.mode.needs_contents() || !chosen(&touch) {
                 continue;
             }
-            // What an inlined pass replaced exists nowhere, so it is looked for under its own name.
+            // A replaced resource has no memory, so it is looked up under its own name.
             let resource = touch.access.resource;
             let place = (step, member.pass, resource);
             if !self.memory.exists(resource) {
-                case.report.violation(Rule::NoMemory, place, "it is read, and has no memory");
+                case.report.violation(Rule::NoMemory, place, "it is read, but has no memory");
                 continue;
             }
             for read in case.reads(touch.id) {
@@ -42,7 +41,7 @@ impl Machine<'_, '_> {
         }
     }
 
-    /// The writes that a pass makes in main memory.
+    /// Performs the writes of a pass to main memory.
     pub(super) fn writes(&mut self, step: StepId, member: StepPass) {
         let case = self.case;
         let touches = case.touches(member).map(|t| t.access);
@@ -50,7 +49,7 @@ impl Machine<'_, '_> {
             let resource = access.resource;
             if !self.memory.exists(resource) {
                 let place = (step, member.pass, resource);
-                case.report.violation(Rule::NoMemory, place, "it is written, and has no memory");
+                case.report.violation(Rule::NoMemory, place, "it is written, but has no memory");
                 continue;
             }
             if !access.mode.needs_contents() {
@@ -64,7 +63,7 @@ impl Machine<'_, '_> {
         }
     }
 
-    /// What a read found against what it must find.
+    /// Compares the value of a read with the expected one.
     pub(super) fn compare(&self, found: Value, expected: Value, place: Place, touch: &Touch, part: usize) {
         if found == expected {
             return;
@@ -75,10 +74,10 @@ impl Machine<'_, '_> {
         let (finds, should) = (found.sentence(case.graph), expected.sentence(case.graph));
         let rule = if found.is_garbage() { Rule::Garbage } else { Rule::Version };
         let place = (place, own, case.parts.name(own, part));
-        case.report.violation(rule, place, format_args!("`{word}` finds {finds}, should find {should}"));
+        case.report.violation(rule, place, format_args!("`{word}` finds {finds}, expected {should}"));
     }
 
-    /// What must survive the frame, and does it?
+    /// Checks the contents that must survive the frame.
     pub(super) fn exit(&mut self) {
         let Case { graph, parts, reference, report, .. } = self.case;
         for (resource, part) in graph.resource_ids().flat_map(|r| parts.all(r).map(move |part| (r, part))) {
@@ -90,17 +89,17 @@ impl Machine<'_, '_> {
                 self.memory.records[source].survived = true;
             }
             let found = self.memory.value(resource, part);
-            // What no pass wrote in the declared frame cannot be lost.
+            // Contents that no pass of the declared frame wrote cannot be lost.
             if expected == Value::Garbage(Cause::NeverWritten) || found == expected {
                 continue;
             }
             let (why, holds, should) = (why.sentence(), found.sentence(graph), expected.sentence(graph));
-            let detail = format_args!("{why}, and holds {holds} when the frame ends, should hold {should}");
+            let detail = format_args!("{why}, but contains {holds} at the end of the frame, expected {should}");
             report.violation(Rule::Exit, (resource, parts.name(resource, part)), detail);
         }
     }
 
-    /// Stores that nothing reads, and contents that were left or stored once more for nothing.
+    /// Reports stores that no pass reads, and contents kept or stored again without a use.
     pub(super) fn wasted(&self) {
         let plan = self.case.plan;
         for record in &self.memory.records {
@@ -108,12 +107,12 @@ impl Machine<'_, '_> {
                 _ if !record.readers.is_empty() || record.survived || record.bound => continue,
                 StoreOp::Discard => continue,
                 StoreOp::Store => (WasteKind::Store, "stored"),
-                StoreOp::None => (WasteKind::Discard, "left in memory"),
+                StoreOp::None => (WasteKind::Discard, "kept in memory"),
             };
             let step = plan.step_ids().find(|s| self.case.step(*s).attachments.range().contains(&record.attachment));
             let place = (step.unwrap_or_default(), plan.attachments()[record.attachment].resource);
             let plane = record.plane;
-            self.case.report.waste(kind, place, format_args!("plane {plane} is {what}, and no pass reads it there"));
+            self.case.report.waste(kind, place, format_args!("plane {plane} is {what}, but no pass reads it there"));
         }
     }
 }
@@ -122,7 +121,7 @@ impl Wanted {
     fn sentence(self) -> &'static str {
         match self {
             Self::Export => "it is exported",
-            Self::Import => "it is imported and must survive",
+            Self::Import => "it is imported with `Exit::Keep`",
             Self::History => "later frames read it",
         }
     }

@@ -1,5 +1,5 @@
-//! Resolves: which of them a plan makes, in the store of a step or by full-screen passes, and whether each is what its pass
-//! declares.
+//! Resolves: which of them the plan performs, while storing or with full-screen passes, and if they match the
+//! declaration.
 
 use super::case::{Case, Touch};
 use super::finding::Rule;
@@ -10,22 +10,22 @@ use crate::id::{PassId, StepId};
 use crate::plan::{Attachment, Join, Role, StepPass};
 use crate::resolve::ResolveMode;
 
-/// A resolve that is made by a full-screen pass: as what that pass does.
+/// A resolve performed by a full-screen pass, as accesses of that pass.
 pub(super) struct FullScreen {
-    /// Who declares it.
+    /// The pass that declares the resolve.
     pub(super) pass: PassId,
     /// Index of the resolve in the graph.
     pub(super) id: usize,
-    /// The samples, fetched from memory.
+    /// The samples, read from memory.
     pub(super) samples: Access,
-    /// What they must hold.
+    /// The expected values of the samples.
     pub(super) reads: Vec<Read>,
-    /// The target, drawn into.
+    /// The target, as an attachment.
     pub(super) target: Access,
 }
 
 impl Case<'_> {
-    /// Fills `dropped` from the attachments of the plan: the average is made for the last pass of the step that declares it.
+    /// Fills `dropped` from the attachments of the plan. The last pass of the step that declares a resolve performs it.
     pub(super) fn find_dropped(&mut self) {
         for step in self.plan.step_ids() {
             let mut made = Vec::new();
@@ -54,7 +54,7 @@ impl Case<'_> {
         }
     }
 
-    /// What a full-screen pass does for a resolve.
+    /// Returns the accesses of a full-screen pass for a resolve.
     fn full_screen(&self, pass: PassId, id: usize, resolve: &Access) -> Option<FullScreen> {
         let (own, attached) = self.accesses_of(pass).find(|(_, a)| attaches_samples(a, resolve))?;
         let format = self.texture(attached.resource)?.format;
@@ -72,7 +72,7 @@ impl Case<'_> {
         Some(FullScreen { pass, id, reads: reads.collect(), samples, target })
     }
 
-    /// The resolve target of a step that gets what a pass resolves so.
+    /// Returns the resolve target of a step that a resolve of a pass writes.
     fn resolved_into(&self, step: StepId, member: StepPass, resolve: &Access) -> Option<usize> {
         let spot = |a: &Access| self.effective(a.resource, a.range);
         let samples = self.graph.accesses_of(member.pass).iter().find(|a| attaches_samples(a, resolve))?;
@@ -83,18 +83,18 @@ impl Case<'_> {
         takes_samples(target.role, samples.role).then_some(at)
     }
 
-    /// The attachment whose samples a resolve of a pass takes: that of its own which has the resolve's slot, or depth.
+    /// Returns the attachment access whose samples a resolve of the same pass reads.
     pub(super) fn averaged(&self, member: StepPass, resolve: &Touch) -> Option<Touch> {
         self.touches(member).find(|t| attaches_samples(&t.access, &resolve.access))
     }
 
-    /// Whether a full-screen pass makes the resolve of that index.
+    /// Returns `true` if a full-screen pass performs the resolve with this index.
     pub(super) fn is_full_screen(&self, resolve: usize) -> bool {
         self.full_screen.iter().any(|m| m.id == resolve)
     }
 }
 
-/// Whether an access attaches what a resolve of the same pass takes.
+/// Returns `true` if an access attaches the source of a resolve of the same pass.
 pub(super) fn attaches_samples(access: &Access, resolve: &Access) -> bool {
     match resolve.slot {
         Access::DEPTH => matches!(access.kind, AccessKind::Depth | AccessKind::DepthReadOnly),
@@ -102,12 +102,12 @@ pub(super) fn attaches_samples(access: &Access, resolve: &Access) -> bool {
     }
 }
 
-/// Whether an attachment is the target of a resolve.
+/// Returns `true` for the role of a resolve target.
 pub(super) const fn is_target(role: Role) -> bool {
     matches!(role, Role::ResolveTarget(..) | Role::ResolveDepth(_))
 }
 
-/// Whether a target takes the samples of an attachment of its step.
+/// Returns `true` if a resolve target receives the samples of an attachment with role `samples`.
 pub(super) const fn takes_samples(target: Role, samples: Role) -> bool {
     match (target, samples) {
         (Role::ResolveTarget(slot, _), Role::Color(color)) => slot == color,
@@ -116,7 +116,7 @@ pub(super) const fn takes_samples(target: Role, samples: Role) -> bool {
     }
 }
 
-/// Each target gets the samples that its pass declares, by its mode, where the device makes it.
+/// Checks that each target receives the declared samples with the declared mode, and that the device supports it.
 pub(super) fn resolves(case: &Case<'_>, step: StepId) {
     for &member in case.plan.passes_of(step) {
         for touch in case.touches(member).filter(|t| t.access.kind == AccessKind::Resolve) {
@@ -125,18 +125,23 @@ pub(super) fn resolves(case: &Case<'_>, step: StepId) {
             let samples = case.averaged(member, &touch);
             let samples = samples.and_then(|t| case.attachment(step, t.access.kind, t.resource, t.range));
             let (Some((_, target)), Some((_, samples))) = (target, samples) else {
-                case.report.violation(Rule::Resolve, place, "it resolves nothing that is attached");
+                case.report.violation(Rule::Resolve, place, "its source is not attached");
                 continue;
             };
             let takes = takes_samples(target.role, samples.role);
-            let why = format_args!("{:?} does not take the samples of {:?}", target.role, samples.role);
+            let why = format_args!("{:?} does not receive the samples of {:?}", target.role, samples.role);
             case.report.require(takes, Rule::Resolve, place, why);
             if let Role::ResolveTarget(_, mode) | Role::ResolveDepth(mode) = target.role {
                 case.report.equal(mode, touch.access.resolve, Rule::Resolve, place, "its mode");
             }
             let seen = |a: &Attachment| a.view.or(case.format(a.resource));
             fits(case, seen(target), seen(samples), place);
-            case.report.require(in_store(case, &touch.access), Rule::Resolve, place, "the device does not store so");
+            case.report.require(
+                in_store(case, &touch.access),
+                Rule::Resolve,
+                place,
+                "the device cannot resolve it while storing",
+            );
         }
         if member.join == Join::Resolve {
             full_screen(case, step, member);
@@ -144,7 +149,7 @@ pub(super) fn resolves(case: &Case<'_>, step: StepId) {
     }
 }
 
-/// A step that is a full-screen pass makes nothing but resolves which the device does not make in its store.
+/// Checks that a full-screen resolve step performs only resolves that the device cannot perform while storing.
 fn full_screen(case: &Case<'_>, step: StepId, member: StepPass) {
     let mut made = 0;
     for resolve in case.full_screen.iter().filter(|m| m.pass == member.pass) {
@@ -153,14 +158,14 @@ fn full_screen(case: &Case<'_>, step: StepId, member: StepPass) {
         let seen = |a: Access| a.range.view.or(case.format(a.resource));
         fits(case, seen(target), seen(samples), place);
         let declared = &case.graph.accesses()[resolve.id];
-        case.report.require(!in_store(case, declared), Rule::Resolve, place, "the device stores so");
+        case.report.require(!in_store(case, declared), Rule::Resolve, place, "the device can resolve it while storing");
         made += 1;
     }
     let rows = case.plan.attachments_of(step).len();
     case.report.equal(rows, made, Rule::Resolve, (step, member.pass), "its targets");
 }
 
-/// A target has the format of its samples, or that of their depth plane.
+/// Checks that a target has the format of its source, or of its depth plane.
 fn fits(case: &Case<'_>, target: Option<Format>, samples: Option<Format>, place: impl Into<super::finding::Place>) {
     let samples = samples.map(|format| match format {
         Format::Depth24PlusStencil8 => Format::Depth24Plus,
@@ -170,7 +175,7 @@ fn fits(case: &Case<'_>, target: Option<Format>, samples: Option<Format>, place:
     case.report.equal(target, samples, Rule::Resolve, place, "its format");
 }
 
-/// Whether the device makes a resolve in its store.
+/// Returns `true` if the device performs a resolve while storing.
 pub(super) fn in_store(case: &Case<'_>, resolve: &Access) -> bool {
     let caps = case.plan.caps();
     let modes = if resolve.slot == Access::DEPTH { caps.depth_resolves } else { caps.color_resolves };

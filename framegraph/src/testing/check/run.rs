@@ -1,4 +1,4 @@
-//! Runs a plan on symbols, from entry to exit.
+//! Runs a plan on symbolic values.
 
 use super::case::Case;
 use super::machine::Machine;
@@ -7,15 +7,15 @@ use super::reference::Value;
 use super::stores;
 use super::tile::{self, Tile};
 
-/// What a run leaves for the phases that judge the decision log.
+/// Results of a run, used to check the decision log.
 pub(super) struct Trace {
-    /// Every op at the end of a step, with what became of it.
+    /// Every store operation with the later uses of its contents.
     pub(super) records: Vec<StoreRecord>,
-    /// Every value that a load op brought into the tile: attachment of the plan, value.
+    /// Every value loaded into the tile, as (attachment of the plan, value).
     pub(super) loaded: Vec<(usize, Value)>,
 }
 
-/// Runs the plan from entry to exit.
+/// Runs the plan from the start to the end of the frame.
 pub(super) fn run(case: &Case<'_>) -> Trace {
     let mut machine = Machine { case, memory: Memory::on_entry(case.plan, &case.parts), loaded: Vec::new() };
     let mut tile = Tile::new(case.parts.total());

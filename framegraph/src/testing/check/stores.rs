@@ -1,4 +1,4 @@
-//! The end of a raster step: its store ops, and whether its ops are the ones that its passes call for.
+//! The end of a raster step: performs its store operations and checks that they are appropriate.
 
 use super::case::Case;
 use super::finding::{Rule, WasteKind};
@@ -9,7 +9,7 @@ use super::tile::{Cell, Tile, ops};
 use crate::id::StepId;
 use crate::plan::{Attachment, LoadOp, Role, StoreOp};
 
-/// The store ops: what memory holds when the step is over.
+/// Performs the store operations, which determine the contents of memory after the step.
 pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
     let case = machine.case;
     for (index, attachment) in case.attachments(step) {
@@ -26,7 +26,7 @@ pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId
             let touched = written || cells.iter().any(|c| c.touched);
             let (load, store) = ops(attachment, plane);
             let memory = machine.memory.exists(resource);
-            let why = format_args!("the store op of plane {plane} is {store:?}, and it has no memory");
+            let why = format_args!("the store op of plane {plane} is {store:?}, but it has no memory");
             case.report.require(memory || store == StoreOp::Discard, Rule::NoMemory, place, why);
             if !cells.iter().any(|c| c.used) {
                 judge_load(case, load, plane, place);
@@ -39,8 +39,7 @@ pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId
                 StoreOp::Store => written,
                 StoreOp::Discard => touched && !bound,
             };
-            let why =
-                format_args!("the store op of plane {plane} is {store:?}, touched: {touched}, written: {written}");
+            let why = format_args!("the store op of plane {plane} is {store:?}, used: {touched}, written: {written}");
             case.report.require(fits, Rule::StoreOp, place, why);
             if store == StoreOp::None && !touched {
                 continue;
@@ -69,7 +68,8 @@ pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId
     }
 }
 
-/// Whether a pass of the step reads the level and layers of a depth attachment otherwise too, in whichever plane.
+/// Returns `true` if a pass of the step also reads the level and layers of a depth attachment in another way, in any
+/// plane.
 fn is_read_beside(case: &Case<'_>, step: StepId, attachment: &Attachment) -> bool {
     let place = |part| {
         let name = case.parts.name(attachment.resource, part);
@@ -81,11 +81,11 @@ fn is_read_beside(case: &Case<'_>, step: StepId, attachment: &Attachment) -> boo
     reads.any(|t| case.parts.covered(t.resource, t.range).any(|part| attached.contains(&place(part))))
 }
 
-/// The load op of one plane of which no pass uses what it brought.
+/// Reports the load operation of a plane whose loaded value no pass uses.
 fn judge_load(case: &Case<'_>, load: LoadOp, plane: u32, place: (StepId, crate::ResourceId)) {
     let (kind, what) = match load {
-        LoadOp::Load => (WasteKind::Load, "loaded, and no pass uses what was there"),
-        LoadOp::Clear => (WasteKind::Clear, "cleared, and no pass declares it"),
+        LoadOp::Load => (WasteKind::Load, "loaded, but no pass uses the contents"),
+        LoadOp::Clear => (WasteKind::Clear, "cleared, but no pass declares it"),
         LoadOp::DontCare => return,
     };
     case.report.waste(kind, place, format_args!("plane {plane} is {what}"));

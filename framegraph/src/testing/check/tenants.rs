@@ -1,4 +1,4 @@
-//! Which resources share memory: tenants of one region take turns, and a slot fits all of its tenants.
+//! Checks shared memory: resources in one region have disjoint lifetimes, and a slot fits all its resources.
 
 use super::case::Case;
 use super::finding::Rule;
@@ -11,7 +11,7 @@ use crate::plan::Slot;
 use crate::resource::{Desc, Extent, Kind, TextureDesc};
 use std::collections::BTreeMap;
 
-/// The shape with which a resource is created.
+/// Returns the descriptor with which a resource is created.
 fn created(case: &Case<'_>, resource: ResourceId) -> Desc {
     match case.graph.resources()[resource.index()].desc {
         Desc::Buffer(buffer) => Desc::Buffer(buffer),
@@ -28,7 +28,7 @@ fn created(case: &Case<'_>, resource: ResourceId) -> Desc {
     }
 }
 
-/// The shape without the sRGB transfer function of its format.
+/// Returns the descriptor without the sRGB transfer function of its format.
 pub(super) fn without_srgb(desc: Desc) -> Desc {
     match desc {
         Desc::Texture(texture) => Desc::Texture(texture.format(texture.format.without_srgb())),
@@ -36,8 +36,8 @@ pub(super) fn without_srgb(desc: Desc) -> Desc {
     }
 }
 
-/// Tenants of one region, in the order of their first steps, must not be live at once; slots have the shape of the first
-/// and the uses of all.
+/// Checks that resources in one region are not live at the same time. Slots must have the shape of their first resource
+/// and the usages of all.
 pub(super) fn tenants(case: &Case<'_>) {
     let life = |r: ResourceId| life(case, r);
     let shares = |region: &Region| matches!(region, Region::Slot(_) | Region::Bytes { .. });
@@ -50,7 +50,7 @@ pub(super) fn tenants(case: &Case<'_>) {
         live.retain(|(_, other)| life(*other).1 >= life(resource).0);
         for (_, other) in live.iter().filter(|(other, _)| overlap(*other, region)) {
             let name = case.graph.resource_name(*other);
-            let why = format_args!("it is live at once with `{name}` in one place");
+            let why = format_args!("it is live at the same time as `{name}` in the same memory");
             case.report.violation(Rule::Overlap, resource, why);
         }
         live.push((region, resource));
@@ -63,8 +63,8 @@ pub(super) fn tenants(case: &Case<'_>) {
     }
 }
 
-/// From which step to which memory is needed. The images of a history are needed all the time, since which of them is
-/// written rotates from frame to frame.
+/// Returns the first and last step in which memory is needed. Histories need it during the whole frame, because the
+/// written image changes from frame to frame.
 pub(super) fn life(case: &Case<'_>, resource: ResourceId) -> (StepId, StepId) {
     let row = case.planned(resource);
     match (case.kind(resource), case.plan.steps().len().checked_sub(1)) {
@@ -73,7 +73,7 @@ pub(super) fn life(case: &Case<'_>, resource: ResourceId) -> (StepId, StepId) {
     }
 }
 
-/// The region of a resource with its padding; earlier images of a history are part of the ring of the current one.
+/// Returns the region of a resource with padding. Earlier history images are part of the current one's region.
 pub(super) fn reserved(case: &Case<'_>, resource: ResourceId) -> Region {
     match (region_of(case.plan, resource), case.kind(resource)) {
         (Region::Bytes { .. }, Kind::HistoryPrevious { .. }) => Region::None,
@@ -85,7 +85,7 @@ pub(super) fn reserved(case: &Case<'_>, resource: ResourceId) -> Region {
     }
 }
 
-/// Whether two regions have memory in common.
+/// Returns `true` if two regions overlap.
 fn overlap(a: Region, b: Region) -> bool {
     match (a, b) {
         (Region::Slot(a), Region::Slot(b)) => a == b,
@@ -98,12 +98,12 @@ fn overlap(a: Region, b: Region) -> bool {
 
 fn examine_slot(case: &Case<'_>, index: usize, slot: &Slot, tenants: &[ResourceId]) {
     let Some(&first) = tenants.first() else {
-        return case.report.violation(Rule::Slot, (), format_args!("slot {index} has no tenant"));
+        return case.report.violation(Rule::Slot, (), format_args!("slot {index} has no resource"));
     };
     case.report.equal(slot.desc, created(case, first), Rule::Slot, first, "its slot's shape");
     case.report.equal(slot.bytes, case.planned(first).bytes, Rule::Slot, first, "its slot's bytes");
     let alone = case.plan.options().alias != Alias::Off || tenants.len() == 1;
-    case.report.require(alone, Rule::Slot, first, "its slot is shared, and sharing is switched off");
+    case.report.require(alone, Rule::Slot, first, "its slot is shared, but aliasing is disabled");
     let (mut usage, mut views) = (Usage::NONE, false);
     for &tenant in tenants {
         let desc = created(case, tenant);
@@ -116,18 +116,17 @@ fn examine_slot(case: &Case<'_>, index: usize, slot: &Slot, tenants: &[ResourceI
     case.report.equal(slot.srgb_views, views, Rule::Slot, first, "its slot's sRGB views");
 }
 
-/// By resource: the tenants that had a part of its memory when it came, in the order of their bytes. Empty for what shares
-/// no memory.
+/// By resource: the previous resources in its memory, ordered by offset. Empty for resources that do not share memory.
 pub(super) type EarlierTenants = Vec<Vec<ResourceId>>;
 
-/// The earlier tenants of every resource.
+/// Returns the previous resources in the memory of every resource.
 pub(super) fn earlier_tenants(case: &Case<'_>) -> EarlierTenants {
     let row = |r: ResourceId| case.planned(r);
     let mut tenants: Vec<ResourceId> = case.graph.resource_ids().collect();
     tenants.retain(|r| case.kind(*r) == Kind::Transient && !row(*r).first.is_none());
     tenants.sort_by_key(|r| (row(*r).first, *r));
     let mut earlier = vec![Vec::new(); case.graph.resources().len()];
-    // Ranges by place and first byte: end and owner. They do not overlap.
+    // Ranges by region and first byte: end and owner. They do not overlap.
     let mut owned: BTreeMap<(usize, u64), (u64, ResourceId)> = BTreeMap::new();
     for tenant in tenants {
         let (place, start, end) = match region_of(case.plan, tenant) {

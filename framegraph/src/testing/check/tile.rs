@@ -1,4 +1,4 @@
-//! Tile memory: one raster step, from its load ops through its passes; its store ops follow in `stores`.
+//! Tile memory: runs a raster step from its load operations through its passes. Store operations are in `stores`.
 
 use super::case::{Case, Touch};
 use super::finding::Rule;
@@ -9,17 +9,17 @@ use crate::access::{AccessKind, Mode};
 use crate::id::{PassId, StepId};
 use crate::plan::{Attachment, Join, LoadOp, StepPass, StoreOp};
 
-/// One subresource in the tile.
+/// One part in the tile.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
     pub(super) part: usize,
     pub(super) plane: u32,
     pub(super) value: Value,
-    /// Where the contents are from that memory held before the step.
+    /// The source of the contents in memory before the step.
     source: Source,
-    /// No pass has written it yet: it holds what the load op left.
+    /// No pass has written it yet, so it has the value of the load operation.
     initial: bool,
-    /// A pass used what the load op left.
+    /// A pass used the value of the load operation.
     pub(super) used: bool,
     /// A pass drew into it or read it.
     pub(super) touched: bool,
@@ -27,12 +27,11 @@ pub(super) struct Cell {
     pub(super) written: bool,
 }
 
-/// The tile: cells of the attachments of the open step, and which cell each subresource has.
+/// The tile: the parts of the attachments of the current step, and an index by part.
 pub(super) struct Tile {
     cells: Vec<Cell>,
     of_part: Vec<Option<usize>>,
-    /// Resolves that the end of the step will make: the pass that declares each, a subresource of the samples, and what it
-    /// holds behind the pass.
+    /// Resolves at the end of the step: the declaring pass, a part of the samples, and its value after the pass.
     resolves: Vec<(PassId, usize, Value)>,
 }
 
@@ -46,7 +45,7 @@ impl Tile {
         self.cells.get_mut(at)
     }
 
-    /// Empties the tile for the next step.
+    /// Clears the tile for the next step.
     pub(super) fn close(&mut self) {
         for cell in self.cells.drain(..) {
             self.of_part[cell.part] = None;
@@ -54,12 +53,13 @@ impl Tile {
     }
 }
 
-/// Load and store op of one plane of an attachment; `plane` is 1 for the stencil of a format with depth too.
+/// Returns load and store operation of one plane of an attachment; `plane` is 1 for stencil of a format that also has
+/// depth.
 pub(super) const fn ops(attachment: &Attachment, plane: u32) -> (LoadOp, StoreOp) {
     if plane == 0 { (attachment.load, attachment.store) } else { (attachment.stencil_load, attachment.stencil_store) }
 }
 
-/// Runs one raster step up to its store ops.
+/// Runs one raster step up to its store operations.
 pub(super) fn raster(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
     let case = machine.case;
     load(machine, tile, step);
@@ -73,21 +73,21 @@ pub(super) fn raster(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepI
     }
 }
 
-/// The load ops: what the tile holds when the first pass begins.
+/// Performs the load operations.
 fn load(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
     let case = machine.case;
     for (index, attachment) in case.attachments(step) {
         let resource = attachment.resource;
         for part in case.attached(attachment) {
             if tile.of_part[part].is_some() {
-                continue; // two attachments of one range are reported elsewhere
+                continue; // overlapping attachments are reported elsewhere
             }
             let plane = case.parts.name(resource, part).plane;
             let source = machine.memory.source(part);
             let value = match ops(attachment, plane).0 {
                 LoadOp::Load => {
                     let exists = machine.memory.exists(resource);
-                    case.report.require(exists, Rule::NoMemory, (step, resource), "it is loaded, and has no memory");
+                    case.report.require(exists, Rule::NoMemory, (step, resource), "it is loaded, but has no memory");
                     let value = machine.memory.value(resource, part);
                     machine.loaded.push((index, value));
                     value
@@ -102,8 +102,8 @@ fn load(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
     }
 }
 
-/// One pass that draws: first what it reads, then what it writes. An inlined pass runs inside the shader that draws its
-/// input, so what the tile holds in place of that input becomes its output.
+/// Runs one raster pass: first its reads, then its writes. An inlined pass runs inside of the shader that draws its
+/// input, so its output replaces the input in the tile.
 fn draw(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass) {
     let case = machine.case;
     let inlined = member.join == Join::Inlined;
@@ -122,7 +122,7 @@ fn draw(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, member: St
     }
 }
 
-/// What a pass needs of what the tile holds.
+/// Checks the values that a pass reads from the tile.
 fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: PassId, touch: &Touch) {
     let case = machine.case;
     let access = touch.access;
@@ -140,12 +140,12 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
         cell.touched = true;
         let found = cell.value;
         let refuse = |should: &str| {
-            let why = format_args!("the tile holds {}, should hold {should}", found.sentence(case.graph));
+            let why = format_args!("the tile contains {}, expected {should}", found.sentence(case.graph));
             case.report.violation(Rule::ClearValue, place, why);
         };
         match access.mode {
             Mode::Read | Mode::Modify if in_vain => {
-                // Contents that no pass needs are not to be loaded, and blending needs some.
+                // Contents that are not used must not be loaded, but blending needs a defined value.
                 let fits = match cell.value {
                     Value::Cleared(index) => !cell.initial || index == Attachment::ZERO,
                     value => !cell.initial || !value.is_garbage(),
@@ -183,7 +183,7 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
     }
 }
 
-/// What a pass leaves in the tile.
+/// Sets the values that a pass leaves in the tile.
 fn produce(machine: &Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass, touch: &Touch) {
     let case = machine.case;
     if touch.access.kind == AccessKind::Resolve {
@@ -198,13 +198,12 @@ fn produce(machine: &Machine<'_, '_>, tile: &mut Tile, step: StepId, member: Ste
             (cell.initial, cell.written) = (false, true);
         } else {
             let place = (step, member.pass, touch.access.resource);
-            case.report.violation(Rule::Attachments, place, "it is drawn into, and not attached");
+            case.report.violation(Rule::Attachments, place, "it is drawn into, but not attached");
         }
     }
 }
 
-/// The subresources of the attachment whose samples a resolve takes, stencil left out: in the plan it must be the one that
-/// the target's role names.
+/// Returns the parts of the source of a resolve, without stencil. The source must be attached in the plan.
 fn averaged_parts(case: &Case<'_>, step: StepId, member: StepPass, resolve: &Touch) -> Vec<usize> {
     let averaged = case.averaged(member, resolve);
     averaged

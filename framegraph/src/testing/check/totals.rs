@@ -1,4 +1,4 @@
-//! Sums over the memory of the plan, worked out anew, with the lower bound.
+//! Recomputes the memory statistics of the plan and its lower bound.
 
 use super::case::Case;
 use super::finding::Rule;
@@ -10,7 +10,7 @@ use crate::plan::{Memory, Placement};
 use crate::resource::Kind;
 use std::collections::HashMap;
 
-/// The figures of the memory that is shared, and of what is not.
+/// Compares the statistics of shared and unshared memory.
 pub(super) fn totals(case: &Case<'_>) {
     let found = case.plan.memory();
     let heap = case.plan.options().alias == Alias::Heap && case.plan.caps().placed;
@@ -19,7 +19,7 @@ pub(super) fn totals(case: &Case<'_>) {
         let row = case.planned(resource);
         match (row.placement, case.kind(resource)) {
             (Placement::Memoryless | Placement::Inlined, _) => add(&mut sums.avoided_bytes, row.bytes),
-            // Earlier images are part of the ring of the current one.
+            // Earlier images are part of the current one's ring.
             (Placement::Own, Kind::HistoryPrevious { .. }) => {}
             (Placement::Own, _) => add(&mut sums.own_bytes, row.bytes.saturating_mul(images(case.plan, resource))),
             _ => {}
@@ -32,7 +32,7 @@ fn add(sum: &mut u64, bytes: u64) {
     *sum = sum.saturating_add(bytes);
 }
 
-/// Live bytes at each step.
+/// Returns the live bytes of each step.
 fn live(case: &Case<'_>, items: &[(StepId, StepId, u64)]) -> Vec<u64> {
     let mut changes = vec![0i128; case.plan.steps().len() + 1];
     for (first, last, bytes) in items {
@@ -46,7 +46,7 @@ fn live(case: &Case<'_>, items: &[(StepId, StepId, u64)]) -> Vec<u64> {
     sums.take(case.plan.steps().len()).collect()
 }
 
-/// The figures of a pool.
+/// Returns the statistics of a pool.
 fn slots(case: &Case<'_>) -> Memory {
     let rows = case.plan.resources().iter();
     let shared = rows.filter(|r| matches!(r.placement, Placement::Slot(_)) && !r.first.is_none());
@@ -65,8 +65,8 @@ fn slots(case: &Case<'_>) -> Memory {
     }
 }
 
-/// The figures of the heaps. A bound above the peak of live bytes comes from alignment or from a search; it can be judged
-/// only by what it must lie between, and by brute force, which tests do.
+/// Returns the statistics of the heaps. A lower bound above the maximum of live bytes comes from alignment or from a
+/// search. It is only checked to lie in its valid interval; tests compare it with brute force.
 fn heaps(case: &Case<'_>, found: &Memory) -> Memory {
     let mut sums = Memory::default();
     let (mut peaks, mut highest, mut at_peak) = (0u64, 0, false);
@@ -93,9 +93,9 @@ fn heaps(case: &Case<'_>, found: &Memory) -> Memory {
         items.iter().for_each(|i| add(&mut sums.unaliased_bytes, i.2));
     }
     let bound = found.lower_bound_bytes;
-    let why = format_args!("the lower bound is {bound}, the peak {peaks}, taken are {}", sums.bytes);
+    let why = format_args!("the lower bound {bound} is not between the peak {peaks} and the size {}", sums.bytes);
     case.report.require(peaks <= bound && bound <= sums.bytes, Rule::Memory, (), why);
-    let why = format_args!("{:?} is not where the most bytes are live", found.peak);
+    let why = format_args!("{:?} is not the step with the most live bytes", found.peak);
     case.report.require(at_peak || highest == 0, Rule::Memory, (), why);
     sums.lower_bound_bytes = bound;
     sums.optimal = bound == sums.bytes;
@@ -103,7 +103,7 @@ fn heaps(case: &Case<'_>, found: &Memory) -> Memory {
     sums
 }
 
-/// The least bytes that sharing by shape can take: for each shape, as many slots as are ever live at once.
+/// Returns the minimum size of a pool: for each shape, as many slots as resources that are live at the same time.
 fn least_pool(case: &Case<'_>) -> u64 {
     let shared = case.plan.options().alias != Alias::Off;
     let mut shapes: HashMap<_, Vec<ResourceId>> = HashMap::new();
@@ -115,7 +115,7 @@ fn least_pool(case: &Case<'_>) -> u64 {
         }
     }
     let of_shape = |tenants: &Vec<ResourceId>| {
-        // Births before deaths within a step: both tenants are live there.
+        // Starts are sorted before ends, because both resources are live in a common step.
         let rows = tenants.iter().map(|r| case.planned(*r));
         let mut changes: Vec<(StepId, i64)> = rows.flat_map(|row| [(row.first, -1), (row.last, 1)]).collect();
         changes.sort_unstable();

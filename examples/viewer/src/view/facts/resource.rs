@@ -25,7 +25,7 @@ pub(super) fn sections(plan: &PlanData, index: usize) -> Vec<Section> {
     }
     match (resource.first_step, resource.last_step) {
         (Some(first), Some(last)) => head.say(format!("lives from step {first} to step {last}")),
-        _ => head.say("no kept pass touches it"),
+        _ => head.say("no kept pass accesses it"),
     }
     if let Some(entry) = &resource.entry {
         let holds = if entry.defined { "holds contents" } else { "holds nothing" };

@@ -1,4 +1,4 @@
-//! Inlining: which passes the producers are, and whether an objection to an epilogue stands.
+//! Inlining: producers of an inlined pass, and objections to an epilogue.
 
 use super::merges::Candidate;
 use crate::access::{Access, AccessKind, Mode, Range};
@@ -12,12 +12,12 @@ use crate::testing::check::case::{Replaced, only};
 use crate::testing::check::hazards::same_shape;
 
 impl Candidate<'_, '_> {
-    /// The one access that the pass makes at the same pixel.
+    /// Returns the only same-pixel read of the pass.
     fn input(&self) -> Option<&Access> {
         only(self.accesses, |a| a.kind == AccessKind::SamePixel)
     }
 
-    /// The last pass of the step that draws what an inlined pass reads, itself no epilogue.
+    /// Returns the last pass of the step, other than epilogues, that draws the input of an inlined pass.
     pub(super) fn last_producer(&self) -> Option<PassId> {
         let output = only(self.accesses, |a| a.kind == AccessKind::Color)?;
         let target = self.case.effective(output.resource, output.range);
@@ -30,7 +30,7 @@ impl Candidate<'_, '_> {
         running.find(|m| draws(**m)).map(|m| m.pass)
     }
 
-    /// The attachments that are resolved into what the pass reads at the same pixel.
+    /// Returns the attachments that are resolved into the pass's same-pixel input.
     fn samples(&self) -> Vec<ResourceId> {
         let Some(input) = self.input() else {
             return Vec::new();
@@ -44,7 +44,7 @@ impl Candidate<'_, '_> {
         self.colors().filter(|a| slot.is_some_and(|s| a.role == Role::Color(s))).map(|a| a.resource).collect()
     }
 
-    /// Whether the objection to becoming an epilogue stands.
+    /// Returns `true` if the objection to becoming an epilogue exists.
     pub(super) fn not_inlined(&self, why: Refusal) -> bool {
         let flag = |pass: &PassId, flag| self.case.flag(*pass, flag);
         if why == Refusal::NeverMerge {
@@ -103,7 +103,7 @@ impl Candidate<'_, '_> {
         }
     }
 
-    /// The passes of the step that draw into a resource or into the samples behind it, in order.
+    /// Returns the passes of the step that draw into a resource, or into the samples resolved into it, in order.
     fn producers(&self, input: ResourceId) -> Vec<PassId> {
         let (target, _) = self.case.effective(input, Range::ALL);
         let samples = self.samples();
@@ -117,7 +117,8 @@ impl Candidate<'_, '_> {
         found
     }
 
-    /// A resource, or the samples behind it, must survive or is used by others than the step's producers.
+    /// Returns `true` if a resource, or the samples resolved into it, must survive or has uses other than the step's
+    /// producers.
     fn needed_as_texture(&self, input: ResourceId) -> bool {
         let case = self.case;
         self.samples().into_iter().chain([input]).any(|resource| {
@@ -131,7 +132,8 @@ impl Candidate<'_, '_> {
         })
     }
 
-    /// With the target in the place of the input, the step has more color attachments than the device or its tile holds.
+    /// Returns `true` if the step would exceed the attachment limit or the tile memory with the target instead of the
+    /// input.
     fn too_heavy(&self, input: &Access, output: &Access) -> bool {
         let caps = self.case.plan.caps();
         let input = self.case.effective(input.resource, input.range).0;

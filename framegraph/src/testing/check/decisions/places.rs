@@ -1,4 +1,4 @@
-//! Rows on resources: where each lives, and why an attachment of one step takes memory all the same.
+//! Rows about resources: placement, and reasons why an attachment of a single step needs memory.
 
 use super::rows::{judge, number};
 use crate::access::Usage;
@@ -10,10 +10,11 @@ use crate::resource::{Dimension, Kind, TextureDesc};
 use crate::testing::check::case::Case;
 use crate::testing::check::resolves::is_target;
 
-/// One row on the placement, and one on the need of memory where an attachment of one step has it.
+/// Checks the row about the placement, and the row about the need for memory if the resource is an attachment of a
+/// single step.
 pub(super) fn places(case: &Case<'_>, resource: ResourceId, earlier: &[ResourceId], reasons: &[Reason]) {
     let memoryless = case.placement(resource) == Placement::Memoryless;
-    // Of the earlier tenants, the one that had the memory last.
+    // The last of the earlier resources in the same memory.
     let before = earlier.iter().max_by_key(|r| (case.planned(**r).last, **r)).copied();
     let mut needs = 0;
     for &reason in reasons {
@@ -27,10 +28,10 @@ pub(super) fn places(case: &Case<'_>, resource: ResourceId, earlier: &[ResourceI
     }
     number(case, resource, "its placement", reasons.len() - needs, 1);
     let expected = if memoryless { 0 } else { attached(case, resource).count() };
-    number(case, resource, "its need of memory", needs, expected);
+    number(case, resource, "its need for memory", needs, expected);
 }
 
-/// The attachments of a transient resource that lives in one step.
+/// Returns the attachments of a transient resource that is used in a single step.
 fn attached<'p>(case: &Case<'p>, resource: ResourceId) -> impl Iterator<Item = &'p Attachment> {
     let row = case.planned(resource);
     let one_step = case.kind(resource) == Kind::Transient && row.first == row.last;
@@ -62,7 +63,7 @@ fn placed(case: &Case<'_>, resource: ResourceId, before: Option<ResourceId>, rea
     }
 }
 
-/// Whether that is a reason for an attachment of one step to take memory.
+/// Returns `true` if the reason for an attachment of a single step to need memory is correct.
 fn needs_memory(case: &Case<'_>, resource: ResourceId, why: MemoryNeed) -> bool {
     let mut rows = attached(case, resource);
     match why {

@@ -1,4 +1,4 @@
-//! Rows on passes: kept, culled, moved.
+//! Rows about passes: kept, culled, moved.
 
 use super::rows::{judge, number, predecessor};
 use crate::access::Access;
@@ -9,12 +9,12 @@ use crate::options::Order;
 use crate::testing::check::case::Case;
 use crate::testing::check::reference::{Value, Wanted};
 
-/// One verdict, and a row on the order when the pass was moved.
+/// Checks that there is one correct verdict, and a row about the order if the pass was moved.
 pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
     let (mut verdicts, mut moves, mut averages, mut full_screen) = (0, 0, 0, 0);
     let by_full_screen = || case.full_screen.iter().filter(|m| m.pass == pass);
     let dropped = || case.accesses_of(pass).filter(|(id, _)| case.dropped[*id]);
-    // As many rows as there are such resolves: one too many of a target is one too few of another.
+    // The number of rows must equal the number of such resolves; a surplus for one target is a lack for another.
     let rows = |reason| reasons.iter().filter(|r| **r == reason).count();
     for &reason in reasons {
         let holds = match reason {
@@ -32,7 +32,7 @@ pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
                 full_screen += 1;
                 by_full_screen().filter(|m| m.target.resource == resource).count() == rows(reason)
             }
-            // Judged by `merges`.
+            // Checked by `merges`.
             Reason::MergedAttachments(_)
             | Reason::MergedSamePixel(_)
             | Reason::MergedInline(_)
@@ -52,7 +52,7 @@ pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
     number(case, pass, "its order", moves, usize::from(was_moved(case, pass)));
 }
 
-/// Whether a pass runs after another one than in declaration order.
+/// Returns `true` if a pass follows another pass than in declaration order.
 fn was_moved(case: &Case<'_>, pass: PassId) -> bool {
     if case.plan.options().order == Order::Declared {
         return false;
@@ -65,14 +65,14 @@ fn was_moved(case: &Case<'_>, pass: PassId) -> bool {
     declared != Some(before)
 }
 
-/// The parts that a pass writes of a resource.
+/// Returns the parts of a resource that a pass writes.
 fn written(case: &Case<'_>, pass: PassId, resource: ResourceId) -> Vec<usize> {
     let accesses = case.graph.accesses_of(pass).iter();
     let writes = accesses.filter(|a| a.resource == resource && a.mode.writes());
     writes.flat_map(|a| case.covered(a)).collect()
 }
 
-/// Whether a verdict on a pass is true; none for what is no verdict.
+/// Returns if a verdict about a pass is correct; `None` for rows that are not verdicts.
 fn stands(case: &Case<'_>, pass: PassId, reason: Reason) -> Option<bool> {
     let reference = &case.reference;
     let runs = |p: PassId| case.position[p.index()].is_some();
@@ -91,7 +91,7 @@ fn stands(case: &Case<'_>, pass: PassId, reason: Reason) -> Option<bool> {
         Reason::KeptReadBy(r, reader) => kept && runs(reader) && read_by(r, reader),
         Reason::KeptCullingOff => kept && !case.plan.options().cull && !keeps_itself(case, pass),
         Reason::CulledNoOutput => !kept && !case.graph.accesses_of(pass).iter().any(|a| a.mode.writes()),
-        // No pass reads it, and none writes over it either.
+        // No pass reads or overwrites it.
         Reason::CulledUnread(r) => !kept && any(r, &|part| unread(part) && !overwrites(case, pass, part, |_| true)),
         Reason::CulledReaderCulled(r, reader) => !kept && !runs(reader) && read_by(r, reader),
         Reason::CulledOverwritten(r, writer) => {
@@ -101,14 +101,14 @@ fn stands(case: &Case<'_>, pass: PassId, reason: Reason) -> Option<bool> {
     })
 }
 
-/// Whether a pass has a better reason to be kept than that culling is off.
+/// Returns `true` if a pass has a reason to be kept other than disabled culling.
 fn keeps_itself(case: &Case<'_>, pass: PassId) -> bool {
     let mut writes = case.graph.accesses_of(pass).iter().filter(|a| a.mode.writes());
     let needed = |a: &Access| case.covered(a).any(|part| case.is_needed(pass, part));
     case.flag(pass, PassFlags::SIDE_EFFECT) || writes.any(needed)
 }
 
-/// Whether a later pass of which `chosen` is true writes over a part without need of what it held.
+/// Returns `true` if a later pass for which `chosen` is true overwrites a part without using its contents.
 fn overwrites(case: &Case<'_>, pass: PassId, part: usize, chosen: impl Fn(PassId) -> bool) -> bool {
     let later = (pass.index() + 1..case.graph.passes().len()).map(PassId::at);
     later.filter(|p| chosen(*p)).any(|p| {
