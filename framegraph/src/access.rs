@@ -3,9 +3,9 @@
 mod kinds;
 mod range;
 
+use crate::enum_names::{bits, enum_names};
 use crate::id::{ResourceId, VersionId};
 use crate::resolve::ResolveMode;
-use crate::words::{bits, words};
 pub(crate) use kinds::Kinds;
 pub use range::{ByteRange, Range};
 
@@ -77,14 +77,14 @@ impl AccessKind {
     }
 }
 
-words! {
+enum_names! {
     AccessKind:
     Color "color", Depth "depth", DepthReadOnly "depth_read_only", Resolve "resolve", SamePixel "same_pixel",
     Sampled "sampled", StorageRead "storage_read", StorageWrite "storage_write", Uniform "uniform", Vertex "vertex",
     Index "index", Indirect "indirect", CopySource "copy_source", CopyTarget "copy_target"
 }
 
-/// What a write does with the previous contents. Determines loads, stores and culling.
+/// Effect of a write on the previous contents. Determines loads, stores and culling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Intent {
@@ -161,7 +161,7 @@ impl Mode {
     }
 }
 
-words! { Mode: Read "read", Clear "clear", Overwrite "overwrite", Modify "modify" }
+enum_names! { Mode: Read "read", Clear "clear", Overwrite "overwrite", Modify "modify" }
 
 /// One row of [`Graph::accesses`](crate::graph::Tables::accesses).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Barriers as data, for back ends with explicit synchronization.
 
+use crate::enum_names::{bits, enum_names};
 use crate::id::{ResourceId, StepId};
-use crate::words::{bits, words};
 
 /// Layout or usage of a subresource. Covers the Vulkan image layouts that a graph can request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -39,7 +39,7 @@ pub enum State {
     CopyTarget,
 }
 
-words! {
+enum_names! {
     State:
     Undefined "undefined", Entry "entry", ColorAttachment "color_attachment", DepthAttachment "depth_attachment",
     DepthReadOnly "depth_read_only", InputAttachment "input_attachment", Sampled "sampled", Storage "storage",
@@ -141,7 +141,7 @@ pub struct Barrier {
     /// them.
     pub after: StepId,
     /// The previous resource in the same memory if this is an aliasing barrier; otherwise none.
-    pub hand_over: ResourceId,
+    pub aliases: ResourceId,
 }
 
 #[cfg(test)]

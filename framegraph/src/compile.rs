@@ -1,7 +1,9 @@
 //! The compiler: derives a plan from a graph. This file lists the phases in order.
 
+mod attachment_set;
 mod barriers;
 mod cull;
+mod current_step;
 mod error;
 mod framebuffer;
 mod heap;
@@ -9,14 +11,14 @@ mod inline;
 mod join;
 mod layout;
 mod lifetimes;
+mod liveness;
 mod loads;
 mod lower;
 mod measure;
 mod memory;
 mod memoryless;
 mod merge;
-mod need;
-mod open;
+mod ops_fast_path;
 mod order;
 mod ownership;
 mod parts;
@@ -24,16 +26,14 @@ mod phases;
 mod place;
 mod pool;
 mod reorder;
-mod rival;
+mod sampled_alternative;
 mod schedule;
-mod single_part;
-mod step_attachments;
 mod steps;
 mod stores;
 mod trim;
 mod validate;
 
-pub use error::{CompileError, CompileErrors, CompileReason, ShapeFault};
+pub use error::{CompileError, CompileErrors, CompileReason, ShapeReason};
 
 use crate::caps::Caps;
 use crate::error::DeclareError;
@@ -97,8 +97,8 @@ fn compile_keeping(
     let measures = &mut scratch.measures;
     measure::measure(graph, caps, options.frame, measures, &mut errors);
     // Subresources have no numbers if there are too many of them.
-    let crowd = |e: &CompileError| matches!(e.reason, CompileReason::Shape(ShapeFault::Crowd { .. }));
-    if errors.more == 0 && !errors.listed.iter().any(crowd) {
+    let too_many = |e: &CompileError| matches!(e.reason, CompileReason::Shape(ShapeReason::TooManySubresources { .. }));
+    if errors.more == 0 && !errors.listed.iter().any(too_many) {
         let Scratch { measures, parts, defined, .. } = scratch;
         parts.number(graph, measures);
         validate::validate(graph, caps, parts, measures, defined, &mut errors);

@@ -9,7 +9,7 @@ pub use reason::{MemoryNeed, Reason, Refusal};
 
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId, StepId};
-use crate::plain::plain;
+use crate::sanitize::plain;
 
 /// The subject of a decision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -77,7 +77,7 @@ impl Graph {
         location: &'static Location<'static>,
         declare: impl FnOnce(&mut PassBuilder<'_>) -> Result<T, DeclareError>,
     ) -> Result<T, DeclareError> {
-        let (tables, prefix) = self.open();
+        let (tables, prefix) = self.tables_mut();
         let mut pass = PassBuilder::new(tables, prefix, name, location);
         match declare(&mut pass) {
             Ok(io) => {
@@ -106,7 +106,7 @@ impl Graph {
     /// Notes do not influence compilation. Dumps of a plan show them before its decisions. `about` gets the prefix of
     /// the open scopes, like the name of a pass.
     pub fn note(&mut self, about: &str, text: impl Display) {
-        let (tables, prefix) = self.open();
+        let (tables, prefix) = self.tables_mut();
         let about = tables.push_name(prefix, about);
         let start = tables.names.len();
         write!(tables.names, "{text}").expect("writing to a string cannot fail");
@@ -115,13 +115,13 @@ impl Graph {
 
     /// Creates a transient texture. Its contents are undefined until a pass writes it.
     pub fn texture(&mut self, name: &str, desc: TextureDesc) -> Texture {
-        let (tables, prefix) = self.open();
+        let (tables, prefix) = self.tables_mut();
         tables.texture(prefix, name, desc, Kind::Transient)
     }
 
     /// Creates a transient buffer, with a fixed size in bytes or a [`BufferSize`] relative to the frame.
     pub fn buffer(&mut self, name: &str, size: impl Into<BufferSize>) -> Buffer {
-        let (tables, prefix) = self.open();
+        let (tables, prefix) = self.tables_mut();
         tables.buffer(prefix, name, size.into(), Kind::Transient)
     }
 
@@ -129,13 +129,13 @@ impl Graph {
     ///
     /// `entry` describes its contents at the start of the frame. `exit` says if its contents must survive the frame.
     pub fn import_texture(&mut self, name: &str, desc: TextureDesc, entry: Entry, exit: Exit) -> Texture {
-        let (tables, prefix) = self.open();
+        let (tables, prefix) = self.tables_mut();
         tables.texture(prefix, name, desc, Kind::Imported { entry, exit })
     }
 
     /// Imports a buffer that the caller owns, with a fixed size in bytes or a [`BufferSize`] relative to the frame.
     pub fn import_buffer(&mut self, name: &str, size: impl Into<BufferSize>, entry: Entry, exit: Exit) -> Buffer {
-        let (tables, prefix) = self.open();
+        let (tables, prefix) = self.tables_mut();
         tables.buffer(prefix, name, size.into(), Kind::Imported { entry, exit })
     }
 
@@ -153,9 +153,9 @@ impl Graph {
         if frames == 0 {
             let resource = Named { id: ResourceId::at(self.resources.len()), name: name.to_owned() };
             let (reason, location) = (DeclareReason::EmptyHistory, Location::caller());
-            self.open().0.errors.push(DeclareError { reason, pass: None, resource: Some(resource), location });
+            self.tables_mut().0.errors.push(DeclareError { reason, pass: None, resource: Some(resource), location });
         }
-        let (tables, prefix) = self.open();
+        let (tables, prefix) = self.tables_mut();
         let history = tables.texture(prefix, name, desc, Kind::HistoryCurrent { frames });
         let (own, earlier) = tables.resources.split_last().expect("the history was just added");
         let namesake = |r: &Resource| {
@@ -196,7 +196,7 @@ impl Graph {
         let version = match known {
             Some(index) => self.resources[index].current,
             None => {
-                let (tables, _) = self.open();
+                let (tables, _) = self.tables_mut();
                 let span = tables.resources[current.index()].name;
                 let start = tables.names.len();
                 tables.names.extend_from_within(span.range());
@@ -215,7 +215,7 @@ impl Graph {
     /// Returns an error if the handle belongs to another graph or is stale.
     #[track_caller]
     pub fn export(&mut self, texture: Texture) -> Result<(), DeclareError> {
-        self.open().0.push_export(texture.tag, texture.version, ExportKind::Keep, Location::caller())
+        self.tables_mut().0.push_export(texture.tag, texture.version, ExportKind::Keep, Location::caller())
     }
 
     /// Exports a texture that the CPU reads after the frame.
@@ -224,7 +224,7 @@ impl Graph {
     /// Returns the errors of [`Graph::export`].
     #[track_caller]
     pub fn readback(&mut self, texture: Texture) -> Result<(), DeclareError> {
-        self.open().0.push_export(texture.tag, texture.version, ExportKind::Readback, Location::caller())
+        self.tables_mut().0.push_export(texture.tag, texture.version, ExportKind::Readback, Location::caller())
     }
 
     /// Exports a buffer: its contents must exist when the frame ends.
@@ -233,7 +233,7 @@ impl Graph {
     /// Returns the errors of [`Graph::export`].
     #[track_caller]
     pub fn export_buffer(&mut self, buffer: Buffer) -> Result<(), DeclareError> {
-        self.open().0.push_export(buffer.tag, buffer.version, ExportKind::Keep, Location::caller())
+        self.tables_mut().0.push_export(buffer.tag, buffer.version, ExportKind::Keep, Location::caller())
     }
 
     /// Exports a buffer that the CPU reads after the frame.
@@ -242,7 +242,7 @@ impl Graph {
     /// Returns the errors of [`Graph::export`].
     #[track_caller]
     pub fn readback_buffer(&mut self, buffer: Buffer) -> Result<(), DeclareError> {
-        self.open().0.push_export(buffer.tag, buffer.version, ExportKind::Readback, Location::caller())
+        self.tables_mut().0.push_export(buffer.tag, buffer.version, ExportKind::Readback, Location::caller())
     }
 
     /// Returns the descriptor of a texture; `None` if the handle belongs to another graph.
@@ -330,7 +330,7 @@ impl Tables {
             access: AccessId::NONE,
             previous: VersionId::NONE,
             reader: PassId::NONE,
-            open: Kinds::on_entry(&desc, kind),
+            allowed: Kinds::on_entry(&desc, kind),
         });
         self.resources.push(Resource { name, current, kind, desc });
         current

@@ -3,13 +3,13 @@
 mod forward;
 
 use crate::access::{AccessKind, Range};
-use crate::faults::{errors, faults, show};
+use crate::error_macros::{error_enum, impl_error, show};
 use crate::format::Format;
 use crate::graph::rows::PassKind;
 use crate::id::{PassId, ResourceId};
 use crate::resolve::ResolveMode;
 use crate::resource::TextureDesc;
-pub use forward::ForwardFault;
+pub use forward::ForwardReason;
 use std::fmt;
 use std::panic::Location;
 
@@ -25,7 +25,7 @@ pub struct Named<I> {
 /// Error of a method that declares something. Nothing of the call stays in the graph.
 #[derive(Clone, PartialEq, Eq)]
 pub struct DeclareError {
-    /// What is wrong.
+    /// The error.
     pub reason: DeclareReason,
     /// The pass being declared; `None` for a method of the graph.
     pub pass: Option<Named<PassId>>,
@@ -35,7 +35,7 @@ pub struct DeclareError {
     pub location: &'static Location<'static>,
 }
 
-faults! {
+error_enum! {
     /// Reason why a declaration is invalid. `asked` is the argument of the call, `later` the rejected access.
     DeclareReason {
         /// The handle refers to an older version.
@@ -115,7 +115,7 @@ faults! {
         MixedKinds { earlier: AccessKind, /** The resource of the earlier access. */ of: String, later: AccessKind }
             "`{later}` cannot share a pass with `{earlier}` of `{of}`", "move the copies to a separate pass";
         /// The texture cannot be forwarded.
-        Forward(fault: ForwardFault) => fault.words();
+        Forward(fault: ForwardReason) => fault.words();
         /// Custom error of the pass.
         Custom { message: String, hint: String } => (message.clone(), hint.clone());
     }
@@ -192,4 +192,4 @@ pub(crate) fn named<I>(whom: &Option<Named<I>>) -> Option<&str> {
     whom.as_ref().map(|named| named.name.as_str())
 }
 
-errors!(DeclareError);
+impl_error!(DeclareError);

@@ -40,7 +40,7 @@
 //!
 //! let typo = text.replace("Color(to: \"glow\"", "Color(to: \"glo\"");
 //! let errors = GraphFile::parse("frame.ron", &typo)?.graph(&[("bloom".into(), true)]).unwrap_err();
-//! assert_eq!(errors.to_string(), "frame.ron:13:23: there is no resource `glo`; did you mean `glow`?");
+//! assert_eq!(errors.to_string(), "frame.ron:13:23: unknown resource `glo`; did you mean `glow`?");
 //! # Ok::<(), framegraph::file::FileErrors>(())
 //! ```
 
@@ -76,8 +76,8 @@ pub use document::{document, to_document};
 pub use error::{FileError, FileErrors, FileReason};
 pub use include::Included;
 pub use plugin::{Call, Host, Plugin, PluginError, Registry};
-pub use slot::{PluginSlot, Takes};
-pub use value::ValueFault;
+pub use slot::{PluginSlot, SlotType};
+pub use value::ValueReason;
 pub use version::GRAPH_VERSION;
 pub use write::to_ron;
 
@@ -131,17 +131,17 @@ impl<'t> GraphFile<'t> {
         if included.files.is_empty()
             && let Some(first) = own.include.first()
         {
-            let fault = ValueFault::Unreadable("this program does not support includes".into());
+            let fault = ValueReason::Unreadable("this program does not support includes".into());
             return Err(source.value(first, fault).into());
         }
         form.append(own);
         let mut errors = FileErrors::default();
         let entries = expand::expand(source, &mut form, &mut errors);
         for (name, _) in form.features.0.iter().filter(|(name, _)| !features::is_name(&name.value)) {
-            errors.push(|| source.value(name, ValueFault::FeatureName(name.value.clone())));
+            errors.push(|| source.value(name, ValueReason::FeatureName(name.value.clone())));
         }
         if let Some(frame) = form.frame.as_ref().filter(|f| f.value.0 == 0 || f.value.1 == 0) {
-            errors.push(|| source.value(frame, ValueFault::EmptyFrame));
+            errors.push(|| source.value(frame, ValueReason::EmptyFrame));
         }
         let mut features: Vec<(String, bool)> = Vec::new();
         for (name, on) in &form.features.0 {

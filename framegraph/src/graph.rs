@@ -19,7 +19,7 @@ use triomphe::Arc;
 /// Maximum number of spare array sets that a graph keeps.
 ///
 /// This many plans can hold arrays of one graph before a reset has to allocate.
-const MOST_SPARES: usize = 4;
+const MAX_SPARES: usize = 4;
 
 /// The passes, resources and accesses declared for one frame. Dereferences to its [`Tables`].
 ///
@@ -56,7 +56,7 @@ impl Graph {
             resets: 0,
             prefix: String::new(),
         };
-        graph.open().0.tag = graph.next_tag();
+        graph.tables_mut().0.tag = graph.next_tag();
         graph
     }
 
@@ -67,7 +67,7 @@ impl Graph {
         if Arc::count(&self.tables) > 1 {
             let free = self.spares.iter().position(|spare| Arc::count(spare) == 1);
             let next = free.map(|at| self.spares.remove(at)).unwrap_or_default();
-            if self.spares.len() == MOST_SPARES {
+            if self.spares.len() == MAX_SPARES {
                 self.spares.remove(0);
             }
             self.spares.push(std::mem::replace(&mut self.tables, next));
@@ -75,7 +75,7 @@ impl Graph {
         self.prefix.clear();
         self.resets = self.resets.wrapping_add(1);
         let tag = self.next_tag();
-        let (tables, _) = self.open();
+        let (tables, _) = self.tables_mut();
         tables.clear();
         tables.tag = tag;
     }
@@ -91,7 +91,7 @@ impl Graph {
     ///
     /// Copies the arrays first if a plan or another graph shares them.
     #[inline]
-    pub(crate) fn open(&mut self) -> (&mut Tables, &str) {
+    pub(crate) fn tables_mut(&mut self) -> (&mut Tables, &str) {
         (Arc::make_mut(&mut self.tables), &self.prefix)
     }
 

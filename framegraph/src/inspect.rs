@@ -38,7 +38,7 @@ impl Graph {
         let writers = self.versions[..=version.index()].iter().filter_map(|v| v.writer.some());
         let last = row.writer.some().or_else(|| writers.max()).unwrap_or_default();
         let mut cut = self.clone();
-        let (tables, _) = cut.open();
+        let (tables, _) = cut.tables_mut();
         tables.cut_after(last);
         for resource in &mut tables.resources {
             resource.kind = match resource.kind {

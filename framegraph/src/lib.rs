@@ -6,8 +6,8 @@
 //!
 //! # When to use it
 //!
-//! - A renderer on a tile-based GPU, or one that should run on several APIs: load and store operations, memoryless
-//!   attachments, merged render passes and barriers are derived, not written by hand.
+//! - A renderer on a tile-based GPU or on several APIs. Load and store operations, memoryless attachments, merged
+//!   render passes and barriers are derived.
 //! - A frame that changes with its settings: unused passes are culled, and transient resources share memory.
 //! - Tools and tests: a plan is plain data. It can be compared, budgeted, dumped and checked without a GPU.
 //!
@@ -79,7 +79,6 @@
 pub mod access;
 mod backend;
 pub mod barrier;
-mod capped;
 pub mod caps;
 pub mod compile;
 pub mod counts;
@@ -87,8 +86,10 @@ pub mod decision;
 pub mod declare;
 pub mod diff;
 pub mod dump;
+mod enum_names;
 pub mod error;
-mod faults;
+mod error_list;
+mod error_macros;
 #[cfg(feature = "files")]
 pub mod file;
 pub mod format;
@@ -99,26 +100,27 @@ pub mod id;
 mod inspect;
 pub mod options;
 pub mod pass_builder;
-pub mod plain;
 pub mod plan;
 pub mod resolve;
 pub mod resource;
+pub mod sanitize;
 #[cfg(feature = "testing")]
 pub mod testing;
 mod warning;
-mod words;
 
 pub use access::{Access, AccessKind, ByteRange, ClearValue, Intent, Mode, Range, Usage};
 pub use backend::Scope;
 pub use barrier::{Barrier, Stages, State};
-pub use capped::Errors;
 pub use caps::Caps;
-pub use compile::{CompileError, CompileErrors, CompileReason, Scratch, ShapeFault, compile, compile_after, recompile};
+pub use compile::{
+    CompileError, CompileErrors, CompileReason, Scratch, ShapeReason, compile, compile_after, recompile,
+};
 pub use counts::{Counts, Traffic};
 pub use decision::{Decision, MemoryNeed, Reason, Refusal, Subject};
 pub use declare::Pass;
 pub use diff::{Diff, diff};
-pub use error::{DeclareError, DeclareReason, ForwardFault, Named, StaleUser};
+pub use error::{DeclareError, DeclareReason, ForwardReason, Named, StaleUser};
+pub use error_list::Errors;
 pub use format::{Aspect, Format, Numeric};
 pub use framegraph_pack as pack;
 pub use graph::{Declared, Export, ExportKind, Graph, PassFlags, PassKind, Version};

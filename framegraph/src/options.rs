@@ -1,7 +1,7 @@
 //! Options of a compilation: frame size, pass order, aliasing, and switches that disable single optimizations.
 
+use crate::enum_names::enum_names;
 pub use crate::pack::Effort;
-use crate::words::words;
 
 /// Order in which the kept passes run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,9 +15,9 @@ pub enum Order {
     Optimized,
 }
 
-words! { Order: Declared "declared", Optimized "optimized" }
+enum_names! { Order: Declared "declared", Optimized "optimized" }
 
-/// How transient resources share memory.
+/// Memory sharing between transient resources.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Alias {
@@ -31,7 +31,7 @@ pub enum Alias {
     Heap,
 }
 
-words! { Alias: Off "off", Pool "pool", Heap "heap" }
+enum_names! { Alias: Off "off", Pool "pool", Heap "heap" }
 
 /// Options of a compilation. A plan depends only on the graph, the caps and these options.
 ///

@@ -1,4 +1,4 @@
-//! The builder with which a pass declares its accesses.
+//! The builder that a pass uses to declare its accesses.
 
 mod accesses;
 mod add;
@@ -145,7 +145,7 @@ impl<'g> PassBuilder<'g> {
         found.ok_or_else(|| self.refuse(DeclareReason::Foreign, ResourceId::NONE, Location::caller()))
     }
 
-    /// Marks the pass as having an effect outside of its declared resources. Such a pass is never culled.
+    /// Marks the pass as having an effect outside of its declared resources. It is never culled.
     #[inline]
     pub fn side_effect(&mut self) {
         self.flag(PassFlags::SIDE_EFFECT);

@@ -8,13 +8,13 @@ use crate::access::Usage;
 use crate::barrier::Barrier;
 use crate::caps::Caps;
 use crate::decision::{Decision, Reason, Subject};
+use crate::enum_names::enum_names;
 use crate::format::{Aspect, Format};
 use crate::graph::{Graph, PassKind};
 use crate::id::{PassId, ResourceId, SlotId, Span, StepId};
 use crate::options::Options;
 use crate::resolve::ResolveMode;
 use crate::resource::Desc;
-use crate::words::words;
 
 /// Load operation: how the contents of an attachment enter the tile at the start of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -27,7 +27,7 @@ pub enum LoadOp {
     DontCare,
 }
 
-words! { LoadOp: Load "load", Clear "clear", DontCare "dont_care" }
+enum_names! { LoadOp: Load "load", Clear "clear", DontCare "dont_care" }
 
 /// Store operation: what happens to the contents of an attachment at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -40,7 +40,7 @@ pub enum StoreOp {
     None,
 }
 
-words! { StoreOp: Store "store", Discard "discard", None "none" }
+enum_names! { StoreOp: Store "store", Discard "discard", None "none" }
 
 /// Role of an attachment in its step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -106,7 +106,7 @@ pub enum Join {
     Resolve,
 }
 
-words! {
+enum_names! {
     Join: First "first", Attachments "attachments", SamePixel "same_pixel", Inlined "inlined", Resolve "resolve"
 }
 
@@ -136,7 +136,7 @@ pub struct Step {
     pub layers: u32,
 }
 
-/// Where the memory of a resource is.
+/// Location of a resource's memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Placement {
     /// No memory: no kept pass accesses the resource.
@@ -158,7 +158,7 @@ pub enum Placement {
     Own,
 }
 
-words! {
+enum_names! {
     Placement:
     Unused "unused", Memoryless "memoryless", Inlined "inlined", Slot "slot", Heap "heap", External "external", Own "own"
 }
@@ -178,7 +178,7 @@ pub struct Planned {
     pub srgb_views: bool,
     /// Size in bytes, without padding; 0 for memoryless and inlined resources.
     pub bytes: u64,
-    /// Where its memory is.
+    /// Location of its memory.
     pub placement: Placement,
 }
 

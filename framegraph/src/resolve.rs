@@ -1,9 +1,9 @@
 //! Modes of multisample resolves.
 
+use crate::enum_names::enum_names;
 use crate::format::{Format, Numeric};
-use crate::words::words;
 
-/// How a resolve combines the samples of a texel (`VkResolveModeFlagBits`; Metal's multisample resolve filters).
+/// Operation that combines the samples of a texel (`VkResolveModeFlagBits`; Metal's multisample resolve filters).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
@@ -31,7 +31,7 @@ impl ResolveMode {
     }
 }
 
-words! { ResolveMode: Average "average", Sample0 "sample_0", Min "min", Max "max" }
+enum_names! { ResolveMode: Average "average", Sample0 "sample_0", Min "min", Max "max" }
 
 /// A set of resolve modes. Serialized as a list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -4,9 +4,9 @@ mod buffer;
 mod extent;
 
 use crate::barrier::{Stages, State};
+use crate::enum_names::enum_names;
 use crate::format::Format;
 use crate::id::{ResourceId, Span, VersionId};
-use crate::words::words;
 pub use buffer::{BufferDesc, BufferSize};
 pub use extent::Extent;
 
@@ -253,7 +253,7 @@ pub enum Kind {
     },
 }
 
-words! {
+enum_names! {
     Kind: Transient "transient", Imported "imported", HistoryCurrent "history", HistoryPrevious "previous"
 }
 

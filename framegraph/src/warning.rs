@@ -1,7 +1,7 @@
 //! Warnings: plans that are valid but probably unintended.
 
+use crate::enum_names::enum_names;
 use crate::plan::Plan;
-use crate::words::words;
 
 /// A property of a plan that is probably unintended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,7 +11,7 @@ pub enum Warning {
     NothingRuns,
 }
 
-words! { Warning: NothingRuns "nothing_runs" }
+enum_names! { Warning: NothingRuns "nothing_runs" }
 
 impl Warning {
     /// Returns the problem and a way to fix it.

@@ -4,7 +4,7 @@ use framegraph::{PassId, Plan, ResourceId, plain};
 use std::fmt;
 
 /// A pass or resource that an error is about: its row in the graph, and its full name, which outlives the graph. Shown on one
-/// line and shortened, as [`framegraph::plain::name`] has it.
+/// line and shortened, as [`framegraph::sanitize::name`] has it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Named<I> {
     /// The row in the graph that was executed.
@@ -27,7 +27,7 @@ impl Named<ResourceId> {
 
 impl<I> fmt::Display for Named<I> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&plain::name(&self.name))
+        f.write_str(&sanitize::name(&self.name))
     }
 }
 

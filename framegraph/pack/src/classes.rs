@@ -35,15 +35,15 @@ pub struct Classes {
 
 impl Classes {
     /// Minimum length of the table. All lengths are powers of two.
-    const LEAST: usize = 64;
+    const MIN_LEN: usize = 64;
 
     /// Removes all shapes. The table keeps the length they required.
     pub fn clear(&mut self) {
-        let enough = (self.classes.len() * 4).next_power_of_two().max(Self::LEAST);
+        let enough = (self.classes.len() * 4).next_power_of_two().max(Self::MIN_LEN);
         self.table.truncate(enough);
         self.table.fill(NIL);
         if self.table.is_empty() {
-            self.table.resize(Self::LEAST, NIL);
+            self.table.resize(Self::MIN_LEN, NIL);
         }
         self.shift = self.table.len().leading_zeros() + 1;
         self.classes.clear();

@@ -4,8 +4,8 @@
 //! `offset`. This is the format of the MiniMalloc benchmarks: an item is live from `lower` up to, but not including,
 //! `upper`.
 //!
-//! Older files use the columns `buffer,start,end,size`, with the meaning of MiniMalloc: `start` (or `begin`) is
-//! `lower`, and `end` is the last step at which the item is live, one less than `upper`. Output always uses `lower` and
+//! Older files use the columns `buffer,start,end,size`, with the meaning of MiniMalloc. `start` (or `begin`) is
+//! `lower`. `end` is the last step at which the item is live, one less than `upper`. Output always uses `lower` and
 //! `upper`.
 //!
 //! Ids may repeat and are kept unchanged, including spaces. They cannot contain commas, because quoting is not
@@ -115,7 +115,7 @@ const OLD_NAMES: [(&str, usize); 5] =
 /// The name of the upper column that denotes the last step of the lifetime.
 const LAST: &str = "end";
 /// Maximum number of characters of a field in an error.
-const MOST_SHOWN: usize = 60;
+const MAX_SHOWN: usize = 60;
 const ID: usize = 0;
 const LOWER: usize = 1;
 const UPPER: usize = 2;
@@ -148,7 +148,7 @@ pub fn read(text: &str) -> Result<Table, CsvError> {
             text.parse().ok().filter(|&value: &u64| value <= max).ok_or_else(|| CsvError::Number {
                 line,
                 name: NAMES[column],
-                text: text.chars().take(MOST_SHOWN).collect(),
+                text: text.chars().take(MAX_SHOWN).collect(),
                 max,
             })
         };
@@ -157,7 +157,7 @@ pub fn read(text: &str) -> Result<Table, CsvError> {
         let size = number(SIZE, u64::MAX)?;
         let id = fields[ID].to_owned();
         if lower >= upper {
-            let id = id.chars().take(MOST_SHOWN).collect();
+            let id = id.chars().take(MAX_SHOWN).collect();
             return Err(CsvError::EmptyLifetime { line, id, lower, upper });
         }
         table.ids.push(id);
@@ -172,7 +172,7 @@ fn read_header(line: usize, header: &str) -> Result<([usize; 4], bool), CsvError
     for (found, name) in header.split(',').map(str::trim).enumerate() {
         let known = NAMES.into_iter().zip(0..).chain(OLD_NAMES);
         let Some((known, column)) = known.into_iter().find(|(known, _)| name.eq_ignore_ascii_case(known)) else {
-            return Err(CsvError::UnknownColumn { line, name: name.chars().take(MOST_SHOWN).collect() });
+            return Err(CsvError::UnknownColumn { line, name: name.chars().take(MAX_SHOWN).collect() });
         };
         last |= known == LAST;
         if columns.contains(&column) {

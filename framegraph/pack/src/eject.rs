@@ -2,8 +2,8 @@
 //!
 //! Initially, the items of the best packing that end above the capacity are unplaced. An unplaced item is placed where
 //! it overlaps the least weight, and the overlapped items become unplaced. Ejected items become heavier, so items that
-//! are hard to place tend to stay (after Nagata and Bräysy 2009, "A powerful route minimization heuristic for the
-//! vehicle routing problem with time windows"). From time to time, all placed items are moved down or up, which joins
+//! are hard to place tend to stay. (Follows Nagata and Bräysy 2009, "A powerful route minimization heuristic for the
+//! vehicle routing problem with time windows".) From time to time, all placed items are moved down or up, which joins
 //! gaps.
 //!
 //! The search proves nothing. It lowers the top of instances with too many items for the exact search.

@@ -2,7 +2,7 @@
 
 /// A source of random decisions. Equal sources give equal decisions on every machine.
 ///
-/// When the bytes are used up, every decision is the first option. That ends loops and keeps graphs small, so that a
+/// When the bytes are used up, every decision is the first option. Loops then end and graphs stay small, so that a
 /// fuzzer can shorten its input.
 #[derive(Clone, Debug)]
 pub struct Entropy<'a> {

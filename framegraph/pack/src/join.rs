@@ -1,13 +1,13 @@
 //! Joined items: items that fit together exactly are packed as one.
 //!
-//! Items with equal lifetimes are stacked. Of items with equal sizes, one may directly follow another in time. Five
+//! Items with equal lifetimes are stacked. Two items with equal sizes can follow each other directly in time. Five
 //! items can form a wheel: four around a middle one. Joining never raises the live bytes of a section, so the peak is
-//! unchanged and fewer items must be placed. (Buchsbaum, Karloff, Kenyon, Reingold and Thorup 2003, "OPT versus LOAD in
-//! dynamic storage allocation", box items similarly, with waste.)
+//! unchanged and fewer items must be placed. A similar method with waste is described by Buchsbaum, Karloff, Kenyon,
+//! Reingold and Thorup 2003, "OPT versus LOAD in dynamic storage allocation".
 //!
-//! The best packing may not contain the joined items. That is less likely if such a good fit is unlikely by chance.
-//! Items are therefore joined in the order of the expected number of partners by chance. The last joins are the first
-//! to be [undone](Joined::cut).
+//! The best packing may not contain the joined items. This is less likely for fits that are improbable by chance. Items
+//! are therefore joined in the order of the expected number of partners by chance. The last joins are the first to be
+//! [undone](Joined::cut).
 
 use super::problem::{Interval, Problem};
 use super::random::Random;

@@ -2,8 +2,8 @@
 //!
 //! The exact search runs first and has the default budget for itself, which suffices for most frames. The remaining
 //! budget is shared with two other searches. One is the [ejection search](super::eject). The other runs cycles over
-//! [joined items](super::join), which are packed first and then taken apart step by step, with an ejection search at
-//! each step (the multilevel scheme of graph partitioning, Karypis and Kumar 1998).
+//! [joined items](super::join). They are packed first and then taken apart step by step, with an ejection search at
+//! each step. (This is the multilevel scheme of graph partitioning, Karypis and Kumar 1998.)
 
 use super::eject::Eject;
 use super::exact::{self, Exact};

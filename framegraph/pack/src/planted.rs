@@ -15,7 +15,7 @@
 use crate::Interval;
 use crate::entropy::Entropy;
 
-/// How the rectangle is cut.
+/// Direction and pattern of the cuts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cuts {
     /// Mostly across the longer side of a piece, relative to the rectangle.
@@ -57,7 +57,7 @@ pub struct Planted {
     pub units: u32,
     /// Bytes per unit, a power of two; every item is aligned to it.
     pub unit_bytes: u64,
-    /// How the rectangle is cut.
+    /// Direction and pattern of the cuts.
     pub cuts: Cuts,
     /// Percentage of pieces that are left out. Above 0, the height is not a lower bound.
     pub left_out_percent: u32,

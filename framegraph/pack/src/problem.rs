@@ -1,8 +1,8 @@
 //! A prepared instance, shared by all solvers: items ordered by birth, and time compressed to sections.
 //!
 //! A *section* is a maximal period of time whose live set is not contained in another one. Two items are live at the
-//! same time if and only if they share a section, and only sections can be full. (Sections are the maximal cliques of
-//! an interval graph, in time order.)
+//! same time if and only if they share a section. Only sections can be full. Sections are the maximal cliques of an
+//! interval graph, in time order.
 
 use crate::error::PackError;
 
@@ -50,8 +50,8 @@ pub(super) struct Problem {
     events: Vec<u8>,
 }
 
-/// An instance is dense above this number of (item, section) pairs (128 MiB) and this number of pairs per item, or
-/// above twice as many pairs of items that are live at the same time.
+/// Limit of (item, section) pairs, which need 128 MiB, and limit of pairs per item. An instance that exceeds both is
+/// dense, or one with twice as many pairs of items that are live at the same time.
 const DENSE_PAIRS: u64 = 1 << 25;
 const DENSE_PER_ITEM: u64 = 128;
 const BIRTH: u8 = 1;
@@ -240,7 +240,7 @@ impl Problem {
         member_at.pop();
     }
 
-    /// Returns the greatest unit of all offsets of a packing without slack. Such offsets are sums of sizes, rounded up
+    /// Returns the greatest unit of all offsets of a packing without slack. These offsets are sums of sizes, rounded up
     /// to alignments.
     pub fn unit(&self) -> u64 {
         let sizes = self.size.iter().fold(0, |unit, &size| gcd(unit, size));

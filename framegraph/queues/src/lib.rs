@@ -43,11 +43,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod aliasing;
 mod assign;
 mod check;
 mod clocks;
 mod estimate;
-mod hand_over;
 mod hazards;
 mod layout;
 mod memory;

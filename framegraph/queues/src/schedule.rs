@@ -27,7 +27,7 @@ pub struct Schedule {
     pub layout: QueueLayout,
     /// The queue of each step, in the order of the plan's steps.
     pub lanes: Vec<QueueId>,
-    /// The semaphores, in the order of the waiting steps. None is implied by the others.
+    /// The semaphores, in the order of the waiting steps. They do not imply each other.
     pub waits: Vec<Wait>,
     /// The last step of each queue except the first, for which the first waits at the end of the frame.
     pub joins: Vec<StepId>,

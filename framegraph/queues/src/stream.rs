@@ -1,6 +1,6 @@
 //! A plan as a sequence of commands in terms of Vulkan, for a back end without knowledge of graphs.
 
-use crate::hand_over::hand_overs;
+use crate::aliasing::aliasing_barriers;
 use crate::layout::QueueId;
 use crate::memory::SharedMemory;
 use crate::schedule::{Schedule, Wait};
@@ -61,7 +61,7 @@ pub enum Command {
     },
     /// Waits for all previous work of the queue on a resource, and flushes its writes, because another resource reuses
     /// its memory. Barriers of the other resource follow; its contents are undefined.
-    HandOver {
+    AliasingBarrier {
         /// The queue.
         queue: QueueId,
         /// The previous resource.
@@ -75,7 +75,7 @@ pub enum Command {
         queue: QueueId,
         /// Index into [`framegraph::Plan::barriers`].
         barrier: u32,
-        /// A semaphore or a [`HandOver`](Command::HandOver) already waits for the barrier's source. The barrier must
+        /// A semaphore or a [`AliasingBarrier`](Command::AliasingBarrier) already waits for the barrier's source. The barrier must
         /// use the waiting stages as source stages, so that it is ordered after that wait. Also set for each first use
         /// of a part in memory shared by a schedule.
         behind_semaphore: bool,
@@ -133,7 +133,8 @@ pub fn stream(plan: &Plan, schedule: Option<&Schedule>) -> Vec<Command> {
 
 fn commands(plan: &Plan, schedule: Option<&Schedule>, shared: Option<&SharedMemory>) -> Vec<Command> {
     let mut commands = memory(plan, schedule.map_or(&[], |schedule| &schedule.concurrent), shared);
-    let handed = schedule.zip(shared).map_or_else(Vec::new, |(schedule, shared)| hand_overs(plan, schedule, shared));
+    let handed =
+        schedule.zip(shared).map_or_else(Vec::new, |(schedule, shared)| aliasing_barriers(plan, schedule, shared));
     let queue_of = |step: StepId| schedule.map_or(QueueId::MAIN, |schedule| schedule.lanes[step.index()]);
     // One semaphore per wait, and one for the end of each other queue.
     let waits: &[Wait] = schedule.map_or(&[], |schedule| &schedule.waits);
@@ -153,7 +154,7 @@ fn commands(plan: &Plan, schedule: Option<&Schedule>, shared: Option<&SharedMemo
         let acquired = numbered().filter(|(_, t)| t.to.1 == Some(step));
         commands.extend(acquired.map(|(transfer, _)| Command::Acquire { queue, transfer }));
         let handed = handed.iter().filter(|row| row.before == step);
-        commands.extend(handed.map(|row| Command::HandOver { queue, from: row.from, to: row.to }));
+        commands.extend(handed.map(|row| Command::AliasingBarrier { queue, from: row.from, to: row.to }));
         while let Some((barrier, row)) = barriers.next_if(|(_, row)| row.before == step) {
             let behind_semaphore = match row.after.is_none() {
                 true => shared.is_some_and(|shared| shared.offset(row.resource).is_some()),
@@ -205,7 +206,7 @@ pub trait PlanStream {
 
     /// Returns the commands for the queues of a schedule, with memory shared by [`share_memory`](crate::share_memory).
     ///
-    /// Contains a [`Command::HandOver`] wherever a queue reuses memory that it has used before.
+    /// Contains a [`Command::AliasingBarrier`] wherever a queue reuses memory that it has used before.
     ///
     /// # Panics
     /// Panics if `schedule` or `shared` belongs to another plan.

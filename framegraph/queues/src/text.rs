@@ -1,7 +1,7 @@
 //! Schedules as text and as SVG.
 
 use crate::schedule::Schedule;
-use framegraph::plain::plain;
+use framegraph::sanitize::plain;
 use framegraph::{Plan, StepId};
 use std::borrow::Cow;
 use std::fmt::Write;

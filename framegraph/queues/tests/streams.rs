@@ -92,7 +92,7 @@ impl Machine<'_> {
                 }
                 Ok(())
             }
-            Command::HandOver { queue, from, to } => match self.open.contains_key(&queue) {
+            Command::AliasingBarrier { queue, from, to } => match self.open.contains_key(&queue) {
                 true => Err(format!("queue {queue:?} waits within a step")),
                 false => {
                     self.handed.insert((queue, from, to));
@@ -346,11 +346,13 @@ fn a_machine_runs_streams_that_share_memory() -> TestResult {
         run(&plan, Some(&found), &commands).map_err(|e| format!("seed {seed}: {e}"))?;
         let heaps: u64 = commands.iter().map(|c| if let Command::Heap { bytes, .. } = c { *bytes } else { 0 }).sum();
         assert_eq!(heaps, memory.bytes(), "seed {seed}");
-        let is_hand_over = |c: &&Command| matches!(c, Command::HandOver { .. });
+        let is_hand_over = |c: &&Command| matches!(c, Command::AliasingBarrier { .. });
         let rest: Vec<_> = commands.iter().filter(|c| !is_hand_over(c)).copied().collect();
         let count = commands.len() - rest.len();
-        elsewhere +=
-            commands.iter().filter(|c| matches!(c, Command::HandOver { queue, .. } if *queue != QueueId::MAIN)).count();
+        elsewhere += commands
+            .iter()
+            .filter(|c| matches!(c, Command::AliasingBarrier { queue, .. } if *queue != QueueId::MAIN))
+            .count();
         assert!(!plan.stream_on(&found).iter().any(|c| is_hand_over(&c)), "seed {seed}");
         ran += usize::from(count > 0);
         handed += count;

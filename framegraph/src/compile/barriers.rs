@@ -135,7 +135,7 @@ pub(crate) fn barriers(
                     from_stages: before.stages,
                     to_stages: first.stages,
                     after: before.step,
-                    hand_over: ResourceId::NONE,
+                    aliases: ResourceId::NONE,
                 });
             }
             for used in &now[at..end] {
@@ -152,7 +152,7 @@ pub(crate) fn barriers(
             at = end;
         }
     }
-    hand_overs(graph, caps, parts, resources, scratch, barriers);
+    aliasing_barriers(graph, caps, parts, resources, scratch, barriers);
     barriers.retain(|b| !is_silent(graph, resources, b));
     barriers.sort_unstable_by_key(|b| (b.before, b.resource, b.first_part));
 }
@@ -227,7 +227,7 @@ struct Before {
 
 /// Turns the first barriers of resources that reuse memory into aliasing barriers. They wait for all previous resources
 /// in that memory, and name the latest one.
-fn hand_overs(
+fn aliasing_barriers(
     graph: &Tables,
     caps: &Caps,
     parts: &Parts,
@@ -268,7 +268,7 @@ fn hand_overs(
     for barrier in barriers.iter_mut().filter(|b| b.after.is_none()) {
         let before = befores[barrier.resource.index()];
         if !before.previous.is_none() {
-            (barrier.hand_over, barrier.after) = (before.previous, before.after);
+            (barrier.aliases, barrier.after) = (before.previous, before.after);
             barrier.from_stages = before.stages;
         }
     }

@@ -7,8 +7,8 @@
 //! contents that it only blends into without a later use. Chains of unused passes of any length are culled in one
 //! sweep. Unused multisample resolves of kept passes are dropped.
 
+use super::liveness::{NextUse, uses_at_exit};
 use super::measure::Measures;
-use super::need::{Need, needs_at_exit};
 use super::parts::Parts;
 use crate::access::{Access, AccessKind};
 use crate::decision::{Decision, Reason, Subject};
@@ -21,9 +21,9 @@ pub(crate) struct Culled<'a> {
     pub(crate) order: &'a mut Vec<PassId>,
     /// For each access of a kept pass, the next use of the resource after the pass. If a pass has several accesses to a
     /// resource, the first one holds the value. Filled only if every resource has one subresource.
-    pub(crate) after: &'a mut Vec<Need>,
+    pub(crate) after: &'a mut Vec<NextUse>,
     /// Next use of each subresource; scratch memory.
-    pub(crate) needs: &'a mut Vec<Need>,
+    pub(crate) needs: &'a mut Vec<NextUse>,
     /// Dropped multisample resolves of kept passes, in declaration order.
     pub(crate) dropped: &'a mut Vec<(PassId, AccessId)>,
 }
@@ -42,10 +42,10 @@ pub(crate) fn cull(
     dropped.clear();
     order.resize(graph.passes.len(), PassId::NONE);
     let mut first_kept = order.len();
-    after.resize(graph.accesses.len(), Need::Unread);
+    after.resize(graph.accesses.len(), NextUse::Unread);
     // Equal lengths, so that one bounds check serves both arrays.
     let after = &mut after[..graph.accesses.len()];
-    needs_at_exit(graph, parts, measures, needs);
+    uses_at_exit(graph, parts, measures, needs);
     let trims = enabled && graph.resolves;
     let first = decisions.len();
     let unknown = Decision { subject: Subject::Pass(PassId::NONE), reason: Reason::CulledNoOutput };
@@ -56,7 +56,7 @@ pub(crate) fn cull(
         let accesses = &graph.accesses[span.clone()];
         let (resource, need) = needed(parts, needs, accesses);
         // Fast path: almost all passes are kept because a pass reads their output.
-        if let Need::Reader(reader) = need
+        if let NextUse::Reader(reader) = need
             && !declared.flags.has(PassFlags::SIDE_EFFECT)
         {
             *decision = Decision { subject: Subject::Pass(pass), reason: Reason::KeptReadBy(resource, reader) };
@@ -94,14 +94,14 @@ pub(crate) fn cull(
 #[inline(never)]
 fn keep_averages(
     parts: &Parts,
-    needs: &mut [Need],
+    needs: &mut [NextUse],
     pass: PassId,
     accesses: &[Access],
     first: usize,
-    after: &mut [Need],
+    after: &mut [NextUse],
     dropped: &mut Vec<(PassId, AccessId)>,
 ) {
-    let needed = |needs: &[Need], a: &Access| parts.any(needs, a.resource, a.range, Need::is_needed);
+    let needed = |needs: &[NextUse], a: &Access| parts.any(needs, a.resource, a.range, NextUse::is_needed);
     let resolves = accesses.iter().filter(|a| a.kind == AccessKind::Resolve && needed(needs, a));
     let averaged: u16 = resolves.fold(0, |slots, a| slots | 1 << a.slot);
     for (at, access) in accesses.iter().enumerate() {
@@ -109,12 +109,12 @@ fn keep_averages(
         let in_vain = !needed(needs, access);
         if in_vain && kind == AccessKind::Resolve {
             parts.update(needs, resource, range, |need| *need = need.or_culled_writer(pass));
-            after[first + at] = Need::Unread;
+            after[first + at] = NextUse::Unread;
             dropped.push((pass, AccessId::at(first + at)));
         } else {
             after[first + at] = keep_input(parts, needs, pass, accesses, access);
             if in_vain && kind == AccessKind::Color && averaged & 1 << slot == 0 {
-                parts.fill(needs, resource, range, Need::Overwritten(pass));
+                parts.fill(needs, resource, range, NextUse::Overwritten(pass));
             }
         }
     }
@@ -122,7 +122,7 @@ fn keep_averages(
 
 /// Returns the reason to keep a pass with this next use of an output, if any.
 #[inline(never)]
-fn kept(flags: PassFlags, output: ResourceId, need: Need, enabled: bool) -> Option<Reason> {
+fn kept(flags: PassFlags, output: ResourceId, need: NextUse, enabled: bool) -> Option<Reason> {
     if flags.has(PassFlags::SIDE_EFFECT) {
         Some(Reason::KeptSideEffect)
     } else if need.is_needed() {
@@ -132,25 +132,25 @@ fn kept(flags: PassFlags, output: ResourceId, need: Need, enabled: bool) -> Opti
     }
 }
 
-/// Returns the first output of the pass that is used, and its next use; none and [`Need::Unread`] if there is none.
+/// Returns the first output of the pass that is used, and its next use; none and [`NextUse::Unread`] if there is none.
 #[inline]
-fn needed(parts: &Parts, needs: &[Need], accesses: &[Access]) -> (ResourceId, Need) {
+fn needed(parts: &Parts, needs: &[NextUse], accesses: &[Access]) -> (ResourceId, NextUse) {
     for access in accesses {
         if !access.mode.writes() {
             continue;
         }
-        let need = parts.find(needs, access.resource, access.range, Need::is_needed);
+        let need = parts.find(needs, access.resource, access.range, NextUse::is_needed);
         if let Some(need) = need {
             return (access.resource, need);
         }
     }
-    (ResourceId::NONE, Need::Unread)
+    (ResourceId::NONE, NextUse::Unread)
 }
 
 /// Updates the next uses from after a kept pass to before it, and stores the former in `after`. Accesses of one pass do
 /// not conflict, so their order does not matter.
 #[inline]
-fn keep_inputs(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], after: &mut [Need]) {
+fn keep_inputs(parts: &Parts, needs: &mut [NextUse], pass: PassId, accesses: &[Access], after: &mut [NextUse]) {
     for (access, after) in accesses.iter().zip(after) {
         *after = keep_input(parts, needs, pass, accesses, access);
     }
@@ -158,17 +158,17 @@ fn keep_inputs(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Acce
 
 /// Updates the next use before one access of a kept pass. Returns the next use after it.
 #[inline(always)]
-fn keep_input(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], access: &Access) -> Need {
-    parts.replace(needs, access.resource, access.range, Need::is_needed, |need| {
-        need_before(pass, accesses, access, || need.is_needed())
+fn keep_input(parts: &Parts, needs: &mut [NextUse], pass: PassId, accesses: &[Access], access: &Access) -> NextUse {
+    parts.replace(needs, access.resource, access.range, NextUse::is_needed, |need| {
+        use_before(pass, accesses, access, || need.is_needed())
     })
 }
 
 /// Returns the next use of a resource before an access of a kept pass. `after` returns `true` if the contents that the
 /// access leaves are used.
 #[inline]
-pub(super) fn need_before(pass: PassId, accesses: &[Access], access: &Access, after: impl FnOnce() -> bool) -> Need {
-    if reads(accesses, access, after) { Need::Reader(pass) } else { Need::Overwritten(pass) }
+pub(super) fn use_before(pass: PassId, accesses: &[Access], access: &Access, after: impl FnOnce() -> bool) -> NextUse {
+    if reads(accesses, access, after) { NextUse::Reader(pass) } else { NextUse::Overwritten(pass) }
 }
 
 /// Returns `true` if the previous contents influence any result of an access.
@@ -189,11 +189,11 @@ fn is_resolved_by(accesses: &[Access], slot: u8) -> bool {
 
 /// Culls a pass and returns the reason, which is the next use of its first output.
 #[inline(never)]
-fn drop_pass(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access]) -> Reason {
+fn drop_pass(parts: &Parts, needs: &mut [NextUse], pass: PassId, accesses: &[Access]) -> Reason {
     let output = accesses.iter().find(|a| a.mode.writes());
     let reason = output.map_or(Reason::CulledNoOutput, |a| {
         let found = parts.find(needs, a.resource, a.range, |_| true);
-        found.unwrap_or(Need::Unread).culled(a.resource)
+        found.unwrap_or(NextUse::Unread).culled(a.resource)
     });
     for access in accesses {
         let read = access.mode.needs_contents();

@@ -1,9 +1,9 @@
 //! Errors of a graph as a whole, with the names involved, the source location and a hint.
 
 use crate::access::{AccessKind, ClearValue};
-use crate::capped::Errors;
 use crate::error::{DeclareError, Named, named};
-use crate::faults::{errors, faults, show};
+use crate::error_list::Errors;
+use crate::error_macros::{error_enum, impl_error, show};
 use crate::format::Format;
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
@@ -13,7 +13,7 @@ use std::panic::Location;
 /// One error of a graph.
 #[derive(Clone, PartialEq, Eq)]
 pub struct CompileError {
-    /// What is wrong.
+    /// The error.
     pub reason: CompileReason,
     /// The pass concerned, if any.
     pub pass: Option<Named<PassId>>,
@@ -32,7 +32,7 @@ impl CompileError {
     }
 }
 
-faults! {
+error_enum! {
     /// Reason why a graph does not compile.
     CompileReason {
         /// A method of the graph reported an error.
@@ -96,7 +96,7 @@ faults! {
                 Some(_) => "clear it to a color in the range of its format, without NaN, or to zero",
             };
         /// The descriptor is invalid, or exceeds the limits of the device.
-        Shape(fault: ShapeFault) => fault.words();
+        Shape(fault: ShapeReason) => fault.words();
         Attachments { colors: u32, /** A sample. */ bytes: u32, max_colors: u8, max_bytes: u32 }
             "{colors} color attachments with {bytes} bytes per sample, the device allows {max_colors} with {max_bytes}",
             "split the pass, or pack outputs into fewer or smaller attachments";
@@ -112,11 +112,11 @@ faults! {
     }
 }
 
-faults! {
+error_enum! {
     /// Reason why a descriptor is invalid. Extents are width and height in texels at the current frame size; `max` is
     /// the limit of the device.
     #[derive(Copy)]
-    ShapeFault {
+    ShapeReason {
         EmptyBuffer "the buffer has 0 bytes", "{NOTHING}";
         LargeBuffer { bytes: u64, max: u64 } "{bytes} bytes, the device allows {max}", "{LIMIT}";
         /// A texture without texels, layers or samples.
@@ -137,7 +137,7 @@ faults! {
             "a multisampled texture has one level and two dimensions";
         Volume { /** Of depth or stencil. */ format: Format } "{format:?} with three dimensions",
             "use a two-dimensional depth-stencil texture with layers";
-        Crowd { /** Up to this resource. */ parts: u64, max: u64 }
+        TooManySubresources { /** Up to this resource. */ parts: u64, max: u64 }
             "the resources have {parts} subresources (level, layer and plane), the maximum is {max}",
             "use fewer levels or layers";
     }
@@ -147,11 +147,11 @@ const NOTHING: &str = "use at least one texel, layer and sample, or one byte";
 const LIMIT: &str = "make it smaller, or use another device";
 
 /// Maximum number of passes of a cycle that an error lists.
-const MOST_OF_A_CYCLE: usize = 12;
+const MAX_LISTED_PASSES: usize = 12;
 
 /// Lists the first passes of a cycle.
 fn ring(passes: &[String]) -> String {
-    let shown: Vec<_> = passes.iter().take(MOST_OF_A_CYCLE).map(|pass| format!("`{pass}`")).collect();
+    let shown: Vec<_> = passes.iter().take(MAX_LISTED_PASSES).map(|pass| format!("`{pass}`")).collect();
     let more = passes.len() - shown.len();
     let more = if more == 0 { String::new() } else { format!(" and {more} more") };
     format!("{}{more}", shown.join(" -> "))
@@ -164,7 +164,7 @@ impl fmt::Display for CompileError {
     }
 }
 
-errors!(CompileError);
+impl_error!(CompileError);
 
 /// The errors of a graph, ordered by pass: the first hundred, and the number of further errors.
 pub type CompileErrors = Errors<CompileError>;

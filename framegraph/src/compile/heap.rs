@@ -6,7 +6,7 @@
 //! The ring of a history is one item that lives during the whole frame. Its images are adjacent; the image that is
 //! written changes from frame to frame. Textures and buffers use separate heaps if the device requires it.
 
-use super::memory::Tally;
+use super::memory::MemoryStats;
 use super::ownership::{Owned, take_over};
 use crate::caps::Caps;
 use crate::decision::{Decision, Reason, Subject};
@@ -73,9 +73,9 @@ pub(crate) fn heap(
         resources[owner.index()].placement = Placement::Heap { offset: *offset };
     }
     place_rings(graph, caps, resources);
-    let mut tally = Tally::new();
-    graph.resources.iter().zip(&*resources).for_each(|(declared, row)| tally.apart(declared.kind, row));
-    (sum.avoided_bytes, sum.own_bytes) = tally.apart_bytes();
+    let mut stats = MemoryStats::new();
+    graph.resources.iter().zip(&*resources).for_each(|(declared, row)| stats.apart(declared.kind, row));
+    (sum.avoided_bytes, sum.own_bytes) = stats.apart_bytes();
     let HeapScratch { order, owned, .. } = scratch;
     log(graph, caps, resources, order, owned, decisions);
     Some(sum)

@@ -1,12 +1,12 @@
 //! Phase 4, inlining: point-wise passes as epilogues of their producer's shaders.
 //!
 //! Applying color grading in the lighting shader, for example, avoids the intermediate texture on devices without
-//! framebuffer fetch. Inlining is valid if every fragment written to the intermediate is final when it is shaded:
-//! nothing blends, no other pass reads the intermediate, and both targets are cleared or overwritten. With
+//! framebuffer fetch. Inlining is valid if every fragment written to the intermediate is final when it is shaded.
+//! Nothing may blend, no other pass may read the intermediate, and both targets must be cleared or overwritten. With
 //! multisampling, the epilogue runs for each sample before the resolve.
 
+use super::attachment_set::AttachmentSet;
 use super::join::Candidate;
-use super::step_attachments::StepAttachments;
 use super::steps::{InlinedInto, Spot, touched as touched_in_plan};
 use crate::access::{Access, AccessKind, Mode};
 use crate::decision::Refusal;
@@ -52,9 +52,9 @@ pub(crate) struct Inlining {
     pub(crate) samples: Option<ResourceId>,
 }
 
-/// How the current step has accessed a range so far.
+/// Previous use of a range by the current step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Touched {
+pub(crate) enum PriorAccess {
     No,
     Read,
     Written,
@@ -63,11 +63,11 @@ pub(crate) enum Touched {
 /// Checks if a pass can become an epilogue of the passes that write its same-pixel input in the current step.
 pub(crate) fn inlinable(
     candidate: &Candidate<'_>,
-    attached: &StepAttachments,
+    attached: &AttachmentSet,
     members: &[StepPass],
     uses: &Uses,
     inlined_into: &InlinedInto,
-    touched: impl Fn(&Access) -> Touched,
+    touched: impl Fn(&Access) -> PriorAccess,
 ) -> Result<Inlining, Refusal> {
     let Candidate { graph, options, accesses, .. } = *candidate;
     let flags = |pass: PassId| graph.passes[pass.index()].flags;
@@ -129,7 +129,7 @@ pub(crate) fn inlinable(
         return Err(Refusal::TargetShape);
     }
     let mut others = accesses.iter().filter(|a| !a.mode.writes() && a.resource != intermediate);
-    if touched(output) != Touched::No || others.any(|a| touched(a) == Touched::Written) {
+    if touched(output) != PriorAccess::No || others.any(|a| touched(a) == PriorAccess::Written) {
         return Err(Refusal::SampledElsewhere);
     }
     let producer = check_producers(graph, members, inlined_into, &[Some(intermediate), samples])?;
@@ -189,7 +189,7 @@ fn check_producers(
 /// Replaces the intermediate by the target.
 pub(crate) fn apply(
     graph: &Tables,
-    attached: &mut StepAttachments,
+    attached: &mut AttachmentSet,
     found: &Inlining,
     inlined_into: &mut InlinedInto,
     format_of: &mut [ResourceId],

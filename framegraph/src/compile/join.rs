@@ -1,6 +1,6 @@
 //! Phase 4, one pass against the current step: checks if the pass can join, and updates the step.
 
-use super::step_attachments::StepAttachments;
+use super::attachment_set::AttachmentSet;
 use super::steps::{InlinedInto, is_inlined};
 use crate::access::{Access, AccessKind, Mode};
 use crate::caps::Caps;
@@ -11,9 +11,9 @@ use crate::id::PassId;
 use crate::options::Options;
 use crate::plan::{Join, StepPass};
 
-/// How the current step accesses a resource. Stamped with the step's number, so that it needs no clearing.
+/// Kinds of access of the current step to a resource. Stamped with the step's number, so that it needs no clearing.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Touch {
+pub(super) struct AccessFlags {
     step: u32,
     flags: u8,
 }
@@ -34,9 +34,9 @@ pub(crate) struct Candidate<'a> {
 
 /// The accesses of the current step.
 #[derive(Clone, Copy)]
-pub(super) struct Touched<'a> {
+pub(super) struct StepAccesses<'a> {
     /// Indexed by resource.
-    pub(super) touches: &'a [Touch],
+    pub(super) access_flags: &'a [AccessFlags],
     /// The stamp of the step's accesses.
     pub(super) number: u32,
     pub(super) members: &'a [StepPass],
@@ -45,7 +45,7 @@ pub(super) struct Touched<'a> {
     pub(super) sampled: bool,
 }
 
-/// How a pass joins a step.
+/// The way in which a pass joins a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Joined {
     pub(super) join: Join,
@@ -53,10 +53,10 @@ pub(super) struct Joined {
     pub(super) by_tile: bool,
 }
 
-impl Touched<'_> {
+impl StepAccesses<'_> {
     /// Returns how the step has accessed the range of an access so far, tracking subresources separately.
-    pub(super) fn by(self, candidate: &Candidate<'_>, attached: &StepAttachments, access: &Access) -> u8 {
-        let touch = self.touches[access.resource.index()];
+    pub(super) fn by(self, candidate: &Candidate<'_>, attached: &AttachmentSet, access: &Access) -> u8 {
+        let touch = self.access_flags[access.resource.index()];
         if touch.step != self.number || touch.flags == 0 {
             0
         } else if access.range.is_all() {
@@ -67,7 +67,7 @@ impl Touched<'_> {
             let met = accesses.filter(|(_, a)| meets(candidate, a, access));
             met.fold(0, |flags, (member, a)| {
                 let join = if self.sampled { Join::First } else { member.join };
-                flags | touch_of(a, join, attached, self.inlined_into)
+                flags | flags_of(a, join, attached, self.inlined_into)
             })
         }
     }
@@ -77,8 +77,8 @@ impl Touched<'_> {
 /// unchanged.
 pub(super) fn join_kind(
     candidate: &Candidate<'_>,
-    step: Touched<'_>,
-    attached: &mut StepAttachments,
+    step: StepAccesses<'_>,
+    attached: &mut AttachmentSet,
 ) -> Result<Joined, Refusal> {
     let caps = candidate.caps;
     let (mut inside, mut by_tile) = (false, false);
@@ -104,7 +104,7 @@ pub(super) fn join_kind(
 }
 
 #[inline]
-fn is_attached(attached: &StepAttachments, access: &Access) -> bool {
+fn is_attached(attached: &AttachmentSet, access: &Access) -> bool {
     let spot = (access.resource, access.range);
     match access.kind {
         AccessKind::Color => attached.color_slot(spot).is_some(),
@@ -154,7 +154,7 @@ fn hazard(caps: &Caps, kind: AccessKind, flags: u8) -> Option<Refusal> {
 }
 
 /// Adds the attachments of the pass to the step. Returns `true` if they share one.
-fn attach_all(candidate: &Candidate<'_>, attached: &mut StepAttachments) -> Result<bool, Refusal> {
+fn attach_all(candidate: &Candidate<'_>, attached: &mut AttachmentSet) -> Result<bool, Refusal> {
     let mut shares = false;
     for access in candidate.accesses.iter().filter(|a| a.kind.is_attachment()) {
         let known = is_attached(attached, access);
@@ -198,7 +198,7 @@ const fn flag(kind: AccessKind) -> u8 {
 
 /// Returns the flag of an access, taking into account how its pass joined the step.
 #[inline]
-fn touch_of(access: &Access, join: Join, attached: &StepAttachments, inlined_into: &InlinedInto) -> u8 {
+fn flags_of(access: &Access, join: Join, attached: &AttachmentSet, inlined_into: &InlinedInto) -> u8 {
     match access.kind {
         AccessKind::SamePixel if join != Join::First && is_inlined(inlined_into, access.resource) => 0,
         AccessKind::SamePixel if join == Join::SamePixel && attached.shows((access.resource, access.range)) => {
@@ -209,19 +209,19 @@ fn touch_of(access: &Access, join: Join, attached: &StepAttachments, inlined_int
 }
 
 /// Records the accesses of a pass in the step with this number.
-pub(super) fn touch(
-    touches: &mut [Touch],
+pub(super) fn record_accesses(
+    access_flags: &mut [AccessFlags],
     number: u32,
     accesses: &[Access],
     join: Join,
-    attached: &StepAttachments,
+    attached: &AttachmentSet,
     inlined_into: &InlinedInto,
 ) {
     for access in accesses {
-        let flags = touch_of(access, join, attached, inlined_into);
-        let touch = &mut touches[access.resource.index()];
+        let flags = flags_of(access, join, attached, inlined_into);
+        let touch = &mut access_flags[access.resource.index()];
         if touch.step != number {
-            *touch = Touch { step: number, flags: 0 };
+            *touch = AccessFlags { step: number, flags: 0 };
         }
         touch.flags |= flags;
     }

@@ -2,7 +2,7 @@
 //!
 //! Computes relative extents, full mip chains and byte sizes once for all phases.
 
-use super::error::{CompileError, CompileErrors, CompileReason, ShapeFault};
+use super::error::{CompileError, CompileErrors, CompileReason, ShapeReason};
 use super::layout::Layout;
 use crate::access::Access;
 use crate::caps::Caps;
@@ -54,7 +54,7 @@ pub(crate) fn measure(
     let Measures { rows, outside, several } = &mut *measures;
     *several = !graph.byte_ranges.is_empty();
     outside.clear();
-    let most_texels = if caps.max_texture_layers == 0 || caps.max_samples == 0 { 0 } else { caps.max_texture_texels };
+    let max_texels = if caps.max_texture_layers == 0 || caps.max_samples == 0 { 0 } else { caps.max_texture_texels };
     // Every row is overwritten, so old rows are not cleared.
     rows.resize(graph.resources.len(), Measured::default());
     for (index, (row, measured)) in graph.resources.iter().zip(rows).enumerate() {
@@ -62,7 +62,7 @@ pub(crate) fn measure(
             outside.push(ResourceId::at(index));
         }
         let plain = match &row.desc {
-            Desc::Texture(t) => plain_texture(t, frame, most_texels),
+            Desc::Texture(t) => plain_texture(t, frame, max_texels),
             Desc::Buffer(BufferDesc { size: BufferSize::Bytes(bytes) })
                 if *bytes != 0 && *bytes <= caps.max_buffer_bytes =>
             {
@@ -85,7 +85,7 @@ pub(crate) fn measure(
 }
 
 /// Maximum number of subresources of all resources together. Phases keep one value for each.
-const MOST_PARTS: u64 = 1 << 24;
+const MAX_SUBRESOURCES: u64 = 1 << 24;
 
 /// Reports the resource that exceeds the maximum number of subresources.
 fn limit_parts(graph: &Tables, frame: [u32; 2], errors: &mut CompileErrors) {
@@ -93,10 +93,10 @@ fn limit_parts(graph: &Tables, frame: [u32; 2], errors: &mut CompileErrors) {
     let mut parts = 2 * graph.byte_ranges.len() as u64;
     let beyond = graph.resources.iter().position(|row| {
         parts += u64::from(row.desc.subresources(frame));
-        parts > MOST_PARTS
+        parts > MAX_SUBRESOURCES
     });
     if let Some(index) = beyond {
-        let reason = CompileReason::Shape(ShapeFault::Crowd { parts, max: MOST_PARTS });
+        let reason = CompileReason::Shape(ShapeReason::TooManySubresources { parts, max: MAX_SUBRESOURCES });
         errors.push(|| CompileError::new(graph, reason, PassId::NONE, ResourceId::at(index)));
     }
 }
@@ -116,10 +116,10 @@ fn inside(graph: &Tables, rows: &[Measured], errors: &mut CompileErrors) {
     }
 }
 
-/// Fast path: measures a texture with one level, layer, plane and sample and a side of at most `most_texels`. Returns
+/// Fast path: measures a texture with one level, layer, plane and sample and a side of at most `max_texels`. Returns
 /// `None` for others.
 #[inline]
-fn plain_texture(t: &TextureDesc, frame: [u32; 2], most_texels: u32) -> Option<Measured> {
+fn plain_texture(t: &TextureDesc, frame: [u32; 2], max_texels: u32) -> Option<Measured> {
     let &TextureDesc { extent, format, mips: 1, samples: 1, layers: 1, dimension: Dimension::D2 } = t else {
         return None;
     };
@@ -127,7 +127,7 @@ fn plain_texture(t: &TextureDesc, frame: [u32; 2], most_texels: u32) -> Option<M
         Extent::Absolute { width, height } => [width, height],
         Extent::Relative { .. } => follow(extent, frame),
     };
-    let within = |side: u32| side != 0 && side <= most_texels;
+    let within = |side: u32| side != 0 && side <= max_texels;
     let texel_bytes = TEXEL_BYTES[format as usize];
     if texel_bytes == 0 || !within(width) || !within(height) {
         return None;
@@ -178,39 +178,39 @@ fn measure_and_judge(
     }
 }
 
-fn fault(row: &Resource, caps: &Caps, frame: [u32; 2]) -> Option<ShapeFault> {
+fn fault(row: &Resource, caps: &Caps, frame: [u32; 2]) -> Option<ShapeReason> {
     let max = caps.max_buffer_bytes;
     match row.desc {
         Desc::Texture(ref t) => texture_fault(t, caps, frame, row.kind),
         Desc::Buffer(buffer) => match buffer.bytes(frame) {
-            0 => Some(ShapeFault::EmptyBuffer),
-            bytes => (bytes > max).then_some(ShapeFault::LargeBuffer { bytes, max }),
+            0 => Some(ShapeReason::EmptyBuffer),
+            bytes => (bytes > max).then_some(ShapeReason::LargeBuffer { bytes, max }),
         },
     }
 }
 
-fn texture_fault(t: &TextureDesc, caps: &Caps, frame: [u32; 2], kind: Kind) -> Option<ShapeFault> {
+fn texture_fault(t: &TextureDesc, caps: &Caps, frame: [u32; 2], kind: Kind) -> Option<ShapeReason> {
     let TextureDesc { layers, samples, .. } = *t;
     let extent = t.extent.texels(frame);
     let (side, mips) = (extent[0].max(extent[1]), t.mip_count(frame));
     if extent.contains(&0) || layers == 0 || samples == 0 {
-        return Some(ShapeFault::Empty { extent, layers, samples });
+        return Some(ShapeReason::Empty { extent, layers, samples });
     }
     // Imported textures exist, so device limits do not apply.
     let made = !matches!(kind, Kind::Imported { .. });
     let full = side.ilog2() + 1;
     if made && side > caps.max_texture_texels {
-        Some(ShapeFault::Large { extent, max: caps.max_texture_texels })
+        Some(ShapeReason::Large { extent, max: caps.max_texture_texels })
     } else if mips > full {
-        Some(ShapeFault::Levels { mips: t.mips, extent, full })
+        Some(ShapeReason::Levels { mips: t.mips, extent, full })
     } else if made && u32::from(layers) > caps.max_texture_layers {
-        Some(ShapeFault::Layers { layers, max: caps.max_texture_layers })
+        Some(ShapeReason::Layers { layers, max: caps.max_texture_layers })
     } else if !samples.is_power_of_two() || (made && samples > caps.max_samples) {
-        Some(ShapeFault::Samples { samples, max: caps.max_samples })
+        Some(ShapeReason::Samples { samples, max: caps.max_samples })
     } else if samples > 1 && (mips > 1 || t.dimension != Dimension::D2) {
-        Some(ShapeFault::Multisampled { samples, mips })
+        Some(ShapeReason::Multisampled { samples, mips })
     } else if t.dimension == Dimension::D3 && t.format.is_depth_stencil() {
-        Some(ShapeFault::Volume { format: t.format })
+        Some(ShapeReason::Volume { format: t.format })
     } else {
         None
     }

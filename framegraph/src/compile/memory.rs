@@ -6,7 +6,7 @@ use crate::resource::Kind;
 
 /// Memory statistics, updated while resources are placed step by step.
 #[derive(Debug)]
-pub(crate) struct Tally {
+pub(crate) struct MemoryStats {
     memory: Memory,
     /// Sum of the sizes of all resources that share memory.
     wanted: u128,
@@ -14,7 +14,7 @@ pub(crate) struct Tally {
     live: u64,
 }
 
-impl Tally {
+impl MemoryStats {
     /// Creates empty statistics.
     pub(crate) fn new() -> Self {
         Self { memory: Memory { optimal: true, ..Memory::default() }, wanted: 0, live: 0 }
@@ -115,7 +115,7 @@ mod tests {
     use crate::id::SlotId;
 
     /// Computes the statistics of resources given as (first step, last step, bytes).
-    fn tallied(lives: &[(usize, usize, u64)]) -> Memory {
+    fn collected(lives: &[(usize, usize, u64)]) -> Memory {
         let row = |&(first, last, bytes): &(usize, usize, u64)| Planned {
             first: StepId::at(first),
             last: StepId::at(last),
@@ -125,19 +125,19 @@ mod tests {
             bytes,
             placement: Placement::Slot(SlotId::at(0)),
         };
-        let (mut tally, steps) = (Tally::new(), 4);
-        lives.iter().for_each(|life| tally.want(life.2));
+        let (mut stats, steps) = (MemoryStats::new(), 4);
+        lives.iter().for_each(|life| stats.want(life.2));
         for step in 0..steps {
-            lives.iter().filter(|life| life.0 == step).for_each(|life| tally.begin(life.2));
-            tally.begun(StepId::at(step));
-            lives.iter().filter(|life| life.1 == step).for_each(|life| tally.end(life.2));
+            lives.iter().filter(|life| life.0 == step).for_each(|life| stats.begin(life.2));
+            stats.begun(StepId::at(step));
+            lives.iter().filter(|life| life.1 == step).for_each(|life| stats.end(life.2));
         }
-        tally.finish(steps, &lives.iter().map(row).collect::<Vec<_>>())
+        stats.finish(steps, &lives.iter().map(row).collect::<Vec<_>>())
     }
 
     #[test]
     fn the_peak_is_the_first_step_with_the_most_live_bytes() {
-        let memory = tallied(&[(0, 1, 5), (1, 2, 3), (2, 3, 4), (3, 3, 4)]);
+        let memory = collected(&[(0, 1, 5), (1, 2, 3), (2, 3, 4), (3, 3, 4)]);
         assert_eq!((memory.lower_bound_bytes, memory.peak), (8, StepId::at(1)));
         assert_eq!(memory.unaliased_bytes, 16);
     }
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn more_bytes_than_64_bits_count_are_told_apart() {
         let most = u64::MAX;
-        let memory = tallied(&[(0, 0, 7), (1, 1, most - 1), (2, 3, most), (3, 3, 9)]);
+        let memory = collected(&[(0, 0, 7), (1, 1, most - 1), (2, 3, most), (3, 3, 9)]);
         // Live bytes: 7, 2⁶⁴ − 2, 2⁶⁴ − 1, then more than 64 bits can represent.
         assert_eq!((memory.lower_bound_bytes, memory.peak), (most, StepId::at(3)));
         assert_eq!(memory.unaliased_bytes, most);

@@ -60,7 +60,7 @@ fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment,
         // For example, another layer of it is written as storage.
         Some(MemoryNeed::OtherUse)
     } else {
-        // Such a resource has no contents before or after its step.
+        // The resource has no contents before or after its step.
         None
     }
 }

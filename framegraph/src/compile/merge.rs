@@ -13,15 +13,16 @@
 //! only into the alternative, the step is split where the alternative began ([`Refusal::RoomForLater`]). Same-pixel
 //! reads therefore never cost more loads, stores or steps than sampling.
 
+use super::attachment_set::AttachmentSet;
+use super::current_step::CurrentStep;
 use super::framebuffer::{Framebuffer, framebuffer_of_pass};
 use super::inline::{self, Uses};
 use super::join::{
-    ATTACHED_WRITE, Candidate, Joined, STORAGE_WRITE, Touch, Touched, join_kind, objects_to_pass, touch,
+    ATTACHED_WRITE, AccessFlags, Candidate, Joined, STORAGE_WRITE, StepAccesses, join_kind, objects_to_pass,
+    record_accesses,
 };
 use super::measure::Measured;
-use super::open::Open;
-use super::rival::Rival;
-use super::step_attachments::StepAttachments;
+use super::sampled_alternative::SampledAlternative;
 use crate::access::{Access, AccessKind};
 use crate::caps::Caps;
 use crate::decision::{Decision, Reason, Refusal, Subject};
@@ -33,13 +34,13 @@ use crate::plan::{Join, Step, StepPass};
 /// Memory of the phase, reused between compilations.
 #[derive(Debug, Default)]
 pub(crate) struct MergeScratch {
-    touches: Vec<Touch>,
-    attached: StepAttachments,
-    /// The first pass of the current step is recorded in `touches` and `attached`. This is deferred until another pass
+    access_flags: Vec<AccessFlags>,
+    attached: AttachmentSet,
+    /// The first pass of the current step is recorded in `access_flags` and `attached`. This is deferred until another pass
     /// with the same framebuffer may join.
     noted: bool,
     uses: Uses,
-    rival: Rival,
+    alternative: SampledAlternative,
     undo: Vec<Undo>,
 }
 
@@ -50,8 +51,8 @@ pub(crate) struct Merged<'a> {
     /// For each resource, the access that replaces it because its reader was inlined; otherwise none. Empty if no pass
     /// is a candidate for inlining.
     pub(crate) inlined_into: &'a mut Vec<AccessId>,
-    /// For each resource, the resource that determines its format because its reader was inlined; otherwise none. As
-    /// long as `inlined_into`.
+    /// For each resource, the resource that determines its format because its reader was inlined; otherwise none. Has
+    /// the length of `inlined_into`.
     pub(crate) format_of: &'a mut Vec<ResourceId>,
     pub(crate) decisions: &'a mut Vec<Decision>,
 }
@@ -84,12 +85,12 @@ pub(crate) fn merge(
     out.format_of.clear();
     pass_steps.clear();
     pass_steps.resize(graph.passes.len(), StepId::NONE);
-    scratch.touches.clear();
-    scratch.rival.reset();
+    scratch.access_flags.clear();
+    scratch.alternative.reset();
     let inlining = options.inline && caps.inline;
     let merging = options.merge && caps.merge_attachments;
     let mut last_raster = PassId::NONE;
-    let mut open = Open::NONE;
+    let mut current = CurrentStep::NONE;
     // Index of the next pass, and of the pass before which a step was split; earlier passes are final.
     let (mut at, mut cut) = (0, usize::MAX);
     while let Some(&pass) = order.get(at) {
@@ -98,15 +99,15 @@ pub(crate) fn merge(
         let raster = kind == PassKind::Raster;
         let framebuffer = if raster { framebuffer_of_pass(graph, measures, declared) } else { Framebuffer::NONE };
         let alone = flags.has(PassFlags::NEVER_MERGE);
-        let opened = || Open { raster, alone, framebuffer, first: at, last: pass };
-        let join = if raster && open.raster {
+        let opened = || CurrentStep { raster, alone, framebuffer, first: at, last: pass };
+        let join = if raster && current.raster {
             let pointwise = inlining && flags.has(PassFlags::POINTWISE);
-            let objection = open.plain_objection(merging, flags, framebuffer);
+            let objection = current.basic_objection(merging, flags, framebuffer);
             if cut == at {
-                cut_off(pass, pointwise, open.last, out);
+                cut_off(pass, pointwise, current.last, out);
                 Join::First
-            } else if objection.is_some() && !pointwise && !scratch.rival.is_apart() {
-                log(out.decisions, pass, Reason::Split(open.last, objection.unwrap_or(Refusal::Disabled)));
+            } else if objection.is_some() && !pointwise && !scratch.alternative.is_apart() {
+                log(out.decisions, pass, Reason::Split(current.last, objection.unwrap_or(Refusal::Disabled)));
                 Join::First
             } else {
                 if pointwise && out.inlined_into.is_empty() {
@@ -114,51 +115,51 @@ pub(crate) fn merge(
                 }
                 let candidate = Candidate { graph, caps, options, pass, accesses: graph.accesses_of(pass) };
                 let logged = out.decisions.len();
-                let joined = try_join(&candidate, pointwise, objection, open, scratch, out);
-                let rival = &mut scratch.rival;
-                if rival.is_apart() {
-                    let fits = rival.open.plain_objection(merging, flags, framebuffer).is_none()
-                        && rival.takes(&candidate, out.step_passes);
+                let joined = try_join(&candidate, pointwise, objection, current, scratch, out);
+                let alternative = &mut scratch.alternative;
+                if alternative.is_apart() {
+                    let fits = alternative.current.basic_objection(merging, flags, framebuffer).is_none()
+                        && alternative.takes(&candidate, out.step_passes);
                     if fits && joined.join == Join::First {
-                        (at, cut) = (rival.open.first, rival.open.first);
-                        cut_back(&mut open, scratch, out);
+                        (at, cut) = (alternative.current.first, alternative.current.first);
+                        cut_back(&mut current, scratch, out);
                         continue;
                     }
                     if joined.join != Join::First && !fits {
-                        rival.begin(&candidate, opened(), logged);
+                        alternative.begin(&candidate, opened(), logged);
                     }
                 } else if joined.by_tile {
-                    rival.begin(&candidate, opened(), logged);
+                    alternative.begin(&candidate, opened(), logged);
                 }
                 joined.join
             }
         } else {
-            if open.raster {
-                last_raster = open.last;
+            if current.raster {
+                last_raster = current.last;
             }
             if raster && !last_raster.is_none() {
                 log(out.decisions, pass, Reason::Split(last_raster, Refusal::ComputeBetween));
-            } else if !open.last.is_none() {
-                log(out.decisions, pass, Reason::Split(open.last, Refusal::NotRaster));
+            } else if !current.last.is_none() {
+                log(out.decisions, pass, Reason::Split(current.last, Refusal::NotRaster));
             }
             Join::First
         };
         if join == Join::First {
-            open = opened();
+            current = opened();
             scratch.noted = false;
             scratch.undo.clear();
-            scratch.rival.end();
+            scratch.alternative.end();
             out.steps.push(Step {
                 kind,
                 samples: framebuffer.samples(),
-                passes: Span::new(open.first, open.first + 1),
+                passes: Span::new(current.first, current.first + 1),
                 attachments: Span::default(),
                 extent: framebuffer.extent(),
                 layers: framebuffer.layers(),
             });
         } else if let Some(step) = out.steps.last_mut() {
             step.passes.len += 1;
-            (open.last, open.alone) = (pass, open.alone | alone);
+            (current.last, current.alone) = (pass, current.alone | alone);
         }
         out.step_passes.push(StepPass { pass, join });
         // Cannot overflow: there are at most as many steps as passes.
@@ -169,22 +170,22 @@ pub(crate) fn merge(
 
 /// Truncates the current step to where its alternative began.
 #[cold]
-fn cut_back(open: &mut Open, scratch: &mut MergeScratch, out: &mut Merged<'_>) {
-    let MergeScratch { rival, undo, .. } = scratch;
-    let first = rival.open.first;
+fn cut_back(current: &mut CurrentStep, scratch: &mut MergeScratch, out: &mut Merged<'_>) {
+    let MergeScratch { alternative, undo, .. } = scratch;
+    let first = alternative.current.first;
     while let Some(last) = undo.pop_if(|u| u.at >= first) {
         out.inlined_into[last.intermediate.index()] = AccessId::NONE;
         if let Some((samples, like)) = last.samples {
             out.format_of[samples.index()] = like;
         }
     }
-    out.decisions.truncate(rival.log);
+    out.decisions.truncate(alternative.log);
     out.step_passes.truncate(first);
-    open.last = out.step_passes[first - 1].pass;
+    current.last = out.step_passes[first - 1].pass;
     if let Some(step) = out.steps.last_mut() {
-        step.passes = Span::new(open.first, first);
+        step.passes = Span::new(current.first, first);
     }
-    rival.end();
+    alternative.end();
 }
 
 /// Logs why a pass begins a step after a split.
@@ -216,62 +217,67 @@ fn try_join(
     candidate: &Candidate<'_>,
     pointwise: bool,
     objection: Option<Refusal>,
-    open: Open,
+    current: CurrentStep,
     scratch: &mut MergeScratch,
     out: &mut Merged<'_>,
 ) -> Joined {
-    if pointwise && try_inline(candidate, open, scratch, out) {
+    if pointwise && try_inline(candidate, current, scratch, out) {
         return Joined { join: Join::Inlined, by_tile: true };
     }
     let number = out.steps.len() as u32;
     let found = match objection {
         Some(why) => Err(why),
-        None => match early_objection(candidate, open, scratch) {
+        None => match early_objection(candidate, current, scratch) {
             Some(why) => Err(why),
             None => {
-                note_first(candidate, open, scratch, out);
-                let MergeScratch { touches, attached, .. } = scratch;
-                let (members, inlined_into) = (&out.step_passes[open.first..], &*out.inlined_into);
-                let step = Touched { touches, number, members, inlined_into, sampled: false };
+                note_first(candidate, current, scratch, out);
+                let MergeScratch { access_flags, attached, .. } = scratch;
+                let (members, inlined_into) = (&out.step_passes[current.first..], &*out.inlined_into);
+                let step = StepAccesses { access_flags, number, members, inlined_into, sampled: false };
                 join_kind(candidate, step, attached)
             }
         },
     };
     let (joined, reason) = match found {
-        Ok(joined) if joined.join == Join::SamePixel => (joined, Reason::MergedSamePixel(open.last)),
-        Ok(joined) => (joined, Reason::MergedAttachments(open.last)),
-        Err(why) => (Joined { join: Join::First, by_tile: false }, Reason::Split(open.last, why)),
+        Ok(joined) if joined.join == Join::SamePixel => (joined, Reason::MergedSamePixel(current.last)),
+        Ok(joined) => (joined, Reason::MergedAttachments(current.last)),
+        Err(why) => (Joined { join: Join::First, by_tile: false }, Reason::Split(current.last, why)),
     };
     if joined.join != Join::First {
-        let MergeScratch { touches, attached, .. } = scratch;
-        touch(touches, number, candidate.accesses, joined.join, attached, out.inlined_into);
+        let MergeScratch { access_flags, attached, .. } = scratch;
+        record_accesses(access_flags, number, candidate.accesses, joined.join, attached, out.inlined_into);
     }
     log(out.decisions, candidate.pass, reason);
     joined
 }
 
 /// Inlines the pass into the shaders of the current step, or logs why not.
-fn try_inline(candidate: &Candidate<'_>, open: Open, scratch: &mut MergeScratch, out: &mut Merged<'_>) -> bool {
-    note_first(candidate, open, scratch, out);
-    let MergeScratch { touches, attached, uses, undo, .. } = scratch;
-    let (members, number) = (&out.step_passes[open.first..], out.steps.len() as u32);
-    let step = Touched { touches, number, members, inlined_into: out.inlined_into, sampled: false };
+fn try_inline(
+    candidate: &Candidate<'_>,
+    current: CurrentStep,
+    scratch: &mut MergeScratch,
+    out: &mut Merged<'_>,
+) -> bool {
+    note_first(candidate, current, scratch, out);
+    let MergeScratch { access_flags, attached, uses, undo, .. } = scratch;
+    let (members, number) = (&out.step_passes[current.first..], out.steps.len() as u32);
+    let step = StepAccesses { access_flags, number, members, inlined_into: out.inlined_into, sampled: false };
     let is_touched = |access: &Access| match step.by(candidate, attached, access) {
-        0 => inline::Touched::No,
-        flags if flags & (ATTACHED_WRITE | STORAGE_WRITE) == 0 => inline::Touched::Read,
-        _ => inline::Touched::Written,
+        0 => inline::PriorAccess::No,
+        flags if flags & (ATTACHED_WRITE | STORAGE_WRITE) == 0 => inline::PriorAccess::Read,
+        _ => inline::PriorAccess::Written,
     };
     match inline::inlinable(candidate, attached, members, uses, out.inlined_into, is_touched) {
         Ok(found) => {
             let samples = found.samples.map(|samples| (samples, out.format_of[samples.index()]));
             undo.push(Undo { at: out.step_passes.len(), intermediate: found.intermediate, samples });
             inline::apply(candidate.graph, attached, &found, out.inlined_into, out.format_of);
-            touch(touches, number, candidate.accesses, Join::Inlined, attached, out.inlined_into);
+            record_accesses(access_flags, number, candidate.accesses, Join::Inlined, attached, out.inlined_into);
             log(out.decisions, candidate.pass, Reason::MergedInline(found.producer));
             true
         }
         Err(why) => {
-            log(out.decisions, candidate.pass, Reason::NotInlined(open.last, why));
+            log(out.decisions, candidate.pass, Reason::NotInlined(current.last, why));
             false
         }
     }
@@ -279,22 +285,22 @@ fn try_inline(candidate: &Candidate<'_>, open: Open, scratch: &mut MergeScratch,
 
 /// Fast check of a pass without same-pixel reads against a step of one unrecorded pass. Usually the pass samples what
 /// the step draws.
-fn early_objection(candidate: &Candidate<'_>, open: Open, scratch: &MergeScratch) -> Option<Refusal> {
+fn early_objection(candidate: &Candidate<'_>, current: CurrentStep, scratch: &MergeScratch) -> Option<Refusal> {
     let in_tile = |access: &Access| access.kind == AccessKind::SamePixel;
     if scratch.noted || candidate.accesses.iter().any(in_tile) {
         return None;
     }
-    objects_to_pass(candidate, candidate.graph.accesses_of(open.last))
+    objects_to_pass(candidate, candidate.graph.accesses_of(current.last))
 }
 
 /// Records the first pass of the current step, unless that is done.
-fn note_first(candidate: &Candidate<'_>, open: Open, scratch: &mut MergeScratch, out: &Merged<'_>) {
+fn note_first(candidate: &Candidate<'_>, current: CurrentStep, scratch: &mut MergeScratch, out: &Merged<'_>) {
     if std::mem::replace(&mut scratch.noted, true) {
         return;
     }
-    let accesses = candidate.graph.accesses_of(open.last);
-    let MergeScratch { touches, attached, .. } = scratch;
-    touches.resize(candidate.graph.resources.len(), Touch::default());
-    attached.open(accesses, open.framebuffer.samples());
-    touch(touches, out.steps.len() as u32, accesses, Join::First, attached, out.inlined_into);
+    let accesses = candidate.graph.accesses_of(current.last);
+    let MergeScratch { access_flags, attached, .. } = scratch;
+    access_flags.resize(candidate.graph.resources.len(), AccessFlags::default());
+    attached.reset_to(accesses, current.framebuffer.samples());
+    record_accesses(access_flags, out.steps.len() as u32, accesses, Join::First, attached, out.inlined_into);
 }

@@ -1,13 +1,13 @@
 //! The phases after pass ordering: from ordered passes to a plan.
 
+use super::liveness::NextUse;
 use super::lower::Lowering;
 use super::measure::Measures;
 use super::merge::{self, Merged};
-use super::need::Need;
 use super::parts::Parts;
 use super::reorder::OrderScratch;
 use super::steps::StepView;
-use super::{barriers, heap, lifetimes, loads, memoryless, place, pool, schedule, single_part, stores};
+use super::{barriers, heap, lifetimes, loads, memoryless, ops_fast_path, place, pool, schedule, stores};
 use crate::caps::Caps;
 use crate::decision::Decision;
 use crate::graph::Tables;
@@ -22,8 +22,8 @@ pub struct Scratch {
     pub(super) measures: Measures,
     pub(super) parts: Parts,
     pub(super) defined: Vec<bool>,
-    pub(super) needs: Vec<Need>,
-    pub(super) after: Vec<Need>,
+    pub(super) needs: Vec<NextUse>,
+    pub(super) after: Vec<NextUse>,
     pub(super) dropped: Vec<(PassId, AccessId)>,
     pub(super) trimmed: Tables,
     pub(super) order: Vec<PassId>,
@@ -90,7 +90,7 @@ pub(super) fn plan_order(
     // The liveness found by culling is also valid for steps, unless passes were moved or inlined.
     let as_declared = options.order == Order::Declared && inlined_into.is_empty();
     if as_declared && in_store && !parts.has_several() {
-        single_part::ops(view, steps, after, stores, attachments, decisions);
+        ops_fast_path::ops(view, steps, after, stores, attachments, decisions);
     } else {
         loads::loads(view, parts, steps, writers, attachments, decisions);
         stores::stores(view, parts, measures, steps, needs, attachments, decisions);

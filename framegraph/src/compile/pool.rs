@@ -9,7 +9,7 @@
 
 use super::layout::Layout;
 use super::measure::Measured;
-use super::memory::Tally;
+use super::memory::MemoryStats;
 use crate::access::Usage;
 use crate::decision::{Decision, Reason, Subject};
 use crate::format::Format;
@@ -24,16 +24,16 @@ use framegraph_pack::classes::{Classes, NIL};
 pub(crate) struct PoolScratch {
     classes: Classes,
     /// Parallel to the resources.
-    tenants: Vec<Tenant>,
+    tenants: Vec<SharedResource>,
     /// Indexed by step.
     lists: Vec<Lists>,
     /// Parallel to the slots.
-    tenancies: Vec<Tenancy>,
+    slot_states: Vec<SlotState>,
 }
 
 /// A resource that shares memory.
 #[derive(Clone, Copy, Debug)]
-struct Tenant {
+struct SharedResource {
     /// The next resource that starts in the same step; once the resource has started, its slot.
     start: u32,
     /// The next resource that ends in the same step.
@@ -44,7 +44,7 @@ struct Tenant {
     format: u8,
 }
 
-/// Heads of the lists of resources that start and end in a step. Linked through [`Tenant`], ordered by id.
+/// Heads of the lists of resources that start and end in a step. Linked through [`SharedResource`], ordered by id.
 #[derive(Clone, Copy, Debug)]
 struct Lists {
     start: u32,
@@ -53,7 +53,7 @@ struct Lists {
 
 /// The state of a slot.
 #[derive(Clone, Copy, Debug)]
-struct Tenancy {
+struct SlotState {
     /// Its last user.
     last: ResourceId,
     /// The next free slot of its shape, while it is free.
@@ -65,9 +65,9 @@ struct Tenancy {
     mixed_formats: u8,
 }
 
-impl Tenancy {
+impl SlotState {
     /// Returns the state of a slot with its first resource.
-    const fn first(last: ResourceId, row: &Planned, tenant: &Tenant) -> Self {
+    const fn first(last: ResourceId, row: &Planned, tenant: &SharedResource) -> Self {
         Self { last, next_free: NIL, usage: row.usage, format: tenant.format, mixed_formats: row.srgb_views as u8 }
     }
 }
@@ -90,10 +90,10 @@ pub(crate) fn pool(
     decisions: &mut Vec<Decision>,
 ) -> Memory {
     slots.clear();
-    let mut tally = Tally::new();
-    scratch.tenancies.clear();
-    enlist(graph, measures, steps, share, resources, scratch, &mut tally);
-    let PoolScratch { classes, tenants, lists, tenancies } = scratch;
+    let mut stats = MemoryStats::new();
+    scratch.slot_states.clear();
+    enlist(graph, measures, steps, share, resources, scratch, &mut stats);
+    let PoolScratch { classes, tenants, lists, slot_states } = scratch;
     let alone = if share { Reason::SlotFirst } else { Reason::AliasingOff };
     // Equal lengths, so that one bounds check serves all arrays.
     let count = resources.len();
@@ -103,17 +103,17 @@ pub(crate) fn pool(
         while at != NIL {
             let resource = ResourceId::unchecked(at as usize);
             let (row, tenant) = (&mut resources[resource.index()], &mut tenants[resource.index()]);
-            tally.begin(row.bytes);
-            let (slot, reason) = match take_free(classes, tenant.class, tenancies) {
-                Some((slot, tenancy)) => {
-                    tenancy.usage = tenancy.usage.union(row.usage);
-                    tenancy.mixed_formats |= (tenancy.format ^ tenant.format) | u8::from(row.srgb_views);
-                    (slot, Reason::SlotAfter(std::mem::replace(&mut tenancy.last, resource)))
+            stats.begin(row.bytes);
+            let (slot, reason) = match take_free(classes, tenant.class, slot_states) {
+                Some((slot, state)) => {
+                    state.usage = state.usage.union(row.usage);
+                    state.mixed_formats |= (state.format ^ tenant.format) | u8::from(row.srgb_views);
+                    (slot, Reason::SlotAfter(std::mem::replace(&mut state.last, resource)))
                 }
                 None => {
-                    tally.take(row.bytes);
+                    stats.take(row.bytes);
                     open_slot(&declared[resource.index()].desc, row, &measures[resource.index()], slots);
-                    tenancies.push(Tenancy::first(resource, row, tenant));
+                    slot_states.push(SlotState::first(resource, row, tenant));
                     (slots.len() as u32 - 1, alone)
                 }
             };
@@ -121,19 +121,19 @@ pub(crate) fn pool(
             at = std::mem::replace(&mut tenant.start, slot);
             decisions.push(Decision { subject: Subject::Resource(resource), reason });
         }
-        tally.begun(StepId::unchecked(step));
+        stats.begun(StepId::unchecked(step));
         let mut at = heads.end;
         while at != NIL {
-            let Tenant { start: slot, end, class, .. } = tenants[at as usize];
-            tally.end(resources[at as usize].bytes);
-            give_back(classes, class, slot, tenancies);
+            let SharedResource { start: slot, end, class, .. } = tenants[at as usize];
+            stats.end(resources[at as usize].bytes);
+            give_back(classes, class, slot, slot_states);
             at = end;
         }
     }
-    for (slot, tenancy) in slots.iter_mut().zip(tenancies) {
-        (slot.usage, slot.srgb_views) = (tenancy.usage, tenancy.mixed_formats != 0);
+    for (slot, state) in slots.iter_mut().zip(slot_states) {
+        (slot.usage, slot.srgb_views) = (state.usage, state.mixed_formats != 0);
     }
-    tally.finish(steps, resources)
+    stats.finish(steps, resources)
 }
 
 /// Lists the sharing resources by first and last step, with their shapes, and counts the others.
@@ -145,30 +145,30 @@ fn enlist(
     share: bool,
     resources: &[Planned],
     scratch: &mut PoolScratch,
-    tally: &mut Tally,
+    stats: &mut MemoryStats,
 ) {
     let PoolScratch { classes, tenants, lists, .. } = scratch;
     classes.clear();
     lists.clear();
     lists.resize(steps, Lists { start: NIL, end: NIL });
-    tenants.resize(resources.len(), Tenant { start: NIL, end: NIL, class: NIL, format: 0 });
+    tenants.resize(resources.len(), SharedResource { start: NIL, end: NIL, class: NIL, format: 0 });
     let rows = resources.iter().zip(measures).zip(&graph.resources).zip(tenants);
     for (index, (((row, measured), declared), tenant)) in rows.enumerate().rev() {
         if !takes_part(row) {
-            tally.apart(declared.kind, row);
+            stats.apart(declared.kind, row);
             continue;
         }
         let layout = match row.format {
             Some(format) => reformatted(measured.layout, format),
             None => measured.layout,
         };
-        *tenant = Tenant {
+        *tenant = SharedResource {
             start: std::mem::replace(&mut lists[row.first.index()].start, index as u32),
             end: std::mem::replace(&mut lists[row.last.index()].end, index as u32),
             class: if share { classes.of(measured.extent, layout.linear().bits()) } else { NIL },
             format: layout.format(),
         };
-        tally.want(row.bytes);
+        stats.want(row.bytes);
     }
 }
 
@@ -200,18 +200,22 @@ fn open_slot(declared: &Desc, row: &Planned, measured: &Measured, slots: &mut Ve
 
 /// Removes and returns the most recently freed slot of a shape.
 #[inline]
-fn take_free<'t>(classes: &mut Classes, class: u32, tenancies: &'t mut [Tenancy]) -> Option<(u32, &'t mut Tenancy)> {
+fn take_free<'t>(
+    classes: &mut Classes,
+    class: u32,
+    slot_states: &'t mut [SlotState],
+) -> Option<(u32, &'t mut SlotState)> {
     let free = classes.free(class)?;
     let slot = *free;
-    let tenancy = tenancies.get_mut(slot as usize)?;
-    *free = tenancy.next_free;
-    Some((slot, tenancy))
+    let state = slot_states.get_mut(slot as usize)?;
+    *free = state.next_free;
+    Some((slot, state))
 }
 
 /// Adds a slot to the free list of its shape.
 #[inline]
-fn give_back(classes: &mut Classes, class: u32, slot: u32, tenancies: &mut [Tenancy]) {
+fn give_back(classes: &mut Classes, class: u32, slot: u32, slot_states: &mut [SlotState]) {
     if let Some(free) = classes.free(class) {
-        tenancies[slot as usize].next_free = std::mem::replace(free, slot);
+        slot_states[slot as usize].next_free = std::mem::replace(free, slot);
     }
 }

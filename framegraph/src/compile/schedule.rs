@@ -210,8 +210,8 @@ fn cheapest(window: &[u32], delta: impl Fn(u32) -> i128) -> usize {
     best.0
 }
 
-/// Returns `true` if a pass might join the step formed by the passes in `step`: it draws into one of their attachments
-/// or reads it at the same pixel, and samples none of them.
+/// Returns `true` if a pass might join the step formed by the passes in `step`. It must draw into one of their
+/// attachments or read it at the same pixel, and must not sample any of them.
 pub(crate) fn could_join(graph: &Tables, declared: &[PassId], step: &[u32], pass: u32) -> bool {
     let id = declared[pass as usize];
     if graph.passes[id.index()].kind != PassKind::Raster || step.is_empty() {

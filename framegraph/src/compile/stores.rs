@@ -4,12 +4,12 @@
 //! is left unchanged. Once its contents are no longer needed, the last step that reads it discards them if possible. A
 //! color attachment is cleared instead of loaded if its previous contents have no effect.
 //!
-//! One sweep from the last step to the first; `single_part` replaces it where possible.
+//! One sweep from the last step to the first; `ops_fast_path` replaces it where possible.
 
-use super::cull::need_before;
+use super::cull::use_before;
+use super::liveness::{NextUse, uses_at_exit};
 use super::loads::{attached_range, is_resolved};
 use super::measure::Measures;
-use super::need::{Need, needs_at_exit};
 use super::parts::Parts;
 use super::steps::{Members, StepView};
 use crate::access::{Access, AccessKind, Range};
@@ -33,11 +33,11 @@ pub(crate) fn stores(
     parts: &Parts,
     measures: &Measures,
     steps: &[Step],
-    needs: &mut Vec<Need>,
+    needs: &mut Vec<NextUse>,
     attachments: &mut [Attachment],
     decisions: &mut Vec<Decision>,
 ) {
-    needs_at_exit(view.graph, parts, measures, needs);
+    uses_at_exit(view.graph, parts, measures, needs);
     let first = decisions.len();
     let loads = first - attachments.len();
     let unknown = Decision { subject: Subject::Store(StepId::NONE, ResourceId::NONE), reason: Reason::DiscardUnread };
@@ -53,8 +53,8 @@ pub(crate) fn stores(
             let resolved = is_resolved(of_step, &attachment);
             let need = |aspect| {
                 let range = attached_range(&attachment, aspect);
-                let find = |holds: fn(Need) -> bool| parts.find(needs, resource, range, holds);
-                find(Need::is_needed).or_else(|| find(|_| true)).unwrap_or(Need::Unread)
+                let find = |holds: fn(NextUse) -> bool| parts.find(needs, resource, range, holds);
+                find(NextUse::is_needed).or_else(|| find(|_| true)).unwrap_or(NextUse::Unread)
             };
             let reason = decide(members, &mut of_step[at], resolved, need);
             decisions[decided + at] = Decision { subject: Subject::Store(step_id, resource), reason };
@@ -64,15 +64,15 @@ pub(crate) fn stores(
             // Accesses of one pass do not conflict, so their order does not matter.
             for access in members.accesses(at) {
                 let (resource, range) = members.touched(access);
-                parts.replace(needs, resource, range, Need::is_needed, |after| {
-                    need_before(pass, view.graph.accesses_of(pass), access, || after.is_needed())
+                parts.replace(needs, resource, range, NextUse::is_needed, |after| {
+                    use_before(pass, view.graph.accesses_of(pass), access, || after.is_needed())
                 });
             }
         }
         for (at, attachment) in of_step.iter_mut().enumerate() {
             let loaded = attachment.load == LoadOp::Load && matches!(attachment.role, Role::Color(_));
             let range = attached_range(attachment, Aspect::All);
-            if loaded && !parts.any(needs, attachment.resource, range, Need::is_needed) {
+            if loaded && !parts.any(needs, attachment.resource, range, NextUse::is_needed) {
                 let load = loads + step.attachments.start as usize + at;
                 decisions[load].reason = start_from_zero(attachment);
             }
@@ -82,7 +82,7 @@ pub(crate) fn stores(
 
 /// Returns the store operation of a plane that the step writes and, if `resolved`, resolves into another attachment.
 #[inline(never)]
-pub(super) fn written(need: Need, resolved: bool) -> (StoreOp, Reason) {
+pub(super) fn written(need: NextUse, resolved: bool) -> (StoreOp, Reason) {
     match need.stored() {
         Some(because) => (StoreOp::Store, because),
         None if resolved => (StoreOp::Discard, Reason::DiscardResolved),
@@ -98,7 +98,7 @@ pub(super) fn decide(
     members: Members<'_>,
     attachment: &mut Attachment,
     resolved: bool,
-    needed: impl Fn(Aspect) -> Need,
+    needed: impl Fn(Aspect) -> NextUse,
 ) -> Reason {
     let Some(format) = members.graph.resources[attachment.resource.index()].desc.texture().map(|t| t.format) else {
         return Reason::DiscardUnread;

@@ -33,7 +33,7 @@ pub(crate) fn validate(
     if graph.contents_uncertain {
         contents(graph, parts, measures, defined, errors);
     }
-    let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MOST_TILE_BYTES;
+    let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MAX_TILE_BYTES;
     for (index, pass) in graph.passes.iter().enumerate() {
         // Fast path: a pass with one color attachment with one part can only have a wrong clear value.
         let plain = roomy && !pass.sole_color.is_none();
@@ -48,7 +48,7 @@ pub(crate) fn validate(
 }
 
 /// Maximum size in the tile over all formats, in bytes per sample.
-const MOST_TILE_BYTES: u32 = {
+const MAX_TILE_BYTES: u32 = {
     let (mut most, mut at) = (0, 0);
     while at < Format::ALL.len() {
         let bytes = Format::ALL[at].tile_bytes();

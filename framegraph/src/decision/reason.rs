@@ -4,7 +4,7 @@
 
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId, StepId};
-use crate::plain::plain;
+use crate::sanitize::plain;
 
 /// Ids and causes that a reason contains.
 #[derive(Clone, Copy, Debug, Default)]
@@ -89,7 +89,7 @@ macro_rules! causes {
                 self.row()[1]
             }
 
-            /// How to avoid the cause.
+            /// Returns how to avoid the cause.
             pub const fn hint(self) -> &'static str {
                 self.row()[2]
             }
@@ -241,7 +241,7 @@ impl Reason {
         self.row().word
     }
 
-    /// How to avoid this decision, independent of the graph; empty if there is no alternative.
+    /// Returns how to avoid this decision, independent of the graph; empty if there is no alternative.
     /// [`Plan::hint`](crate::Plan::hint) also takes the plan into account.
     pub const fn hint(self) -> &'static str {
         let Row { hint, names, .. } = self.row();

@@ -5,7 +5,7 @@
 //! compiler and the back end need no support for it.
 
 use crate::access::{Access, Kinds, Range};
-use crate::error::{DeclareError, DeclareReason, ForwardFault, StaleUser};
+use crate::error::{DeclareError, DeclareReason, ForwardReason, StaleUser};
 use crate::graph::{Graph, Tables};
 use crate::handle::{Part, Texture};
 use crate::id::{ResourceId, VersionId};
@@ -48,7 +48,7 @@ impl Graph {
     #[track_caller]
     pub fn forward(&mut self, texture: Texture, into: impl Into<Part>) -> Result<Texture, DeclareError> {
         let (into, location) = (into.into(), Location::caller());
-        let (tables, _) = self.open();
+        let (tables, _) = self.tables_mut();
         let refused = |tables: &Tables, reason, resource| DeclareError {
             reason,
             pass: None,
@@ -87,17 +87,17 @@ struct Move {
 
 impl Tables {
     /// Checks a forward and returns how to rewrite the accesses.
-    fn forwarded(&self, from: ResourceId, to: ResourceId, range: Range) -> Result<Move, ForwardFault> {
+    fn forwarded(&self, from: ResourceId, to: ResourceId, range: Range) -> Result<Move, ForwardReason> {
         let row = &self.resources[from.index()];
         let (Some(own), Some(target)) = (row.desc.texture(), self.resources[to.index()].desc.texture()) else {
-            return Err(ForwardFault::NotTransient);
+            return Err(ForwardReason::NotTransient);
         };
         let written = self.versions[row.current.index()].writer.some().is_some();
         if from == to || row.kind != Kind::Transient || self.exports.iter().any(|e| e.resource == from) {
-            return Err(ForwardFault::NotTransient);
+            return Err(ForwardReason::NotTransient);
         }
         if !written {
-            return Err(ForwardFault::Unwritten);
+            return Err(ForwardReason::Unwritten);
         }
         let range = place(own, target, range)?;
         let of = |resource| move |(_, a): &(usize, &Access)| a.resource == resource;
@@ -106,7 +106,7 @@ impl Tables {
         let declared = self.resources[to.index()].current;
         let newer = touches(from).any(|index| self.accesses[index].version < declared);
         if newer {
-            return Err(ForwardFault::TargetLater);
+            return Err(ForwardReason::TargetLater);
         }
         let of_pass = |index: usize| self.passes.partition_point(|p| (p.accesses.start as usize) <= index) - 1;
         let before = touches(to).all(|index| of_pass(index) < of_pass(first));
@@ -114,7 +114,7 @@ impl Tables {
         let open = unwritten && !self.resources[to.index()].kind.defined_on_entry();
         let behind = open && touches(to).all(|index| of_pass(index) > of_pass(last));
         if !before && !behind {
-            return Err(ForwardFault::Touched);
+            return Err(ForwardReason::Touched);
         }
         for index in touches(from) {
             let access = &self.accesses[index];
@@ -122,7 +122,7 @@ impl Tables {
             let fits = seen.without_srgb() == target.format.without_srgb();
             let capable = Kinds::of_format(target.format).has(Kinds::one(access.kind));
             if !fits || !capable {
-                return Err(ForwardFault::Format { format: target.format, access: access.kind });
+                return Err(ForwardReason::Format { format: target.format, access: access.kind });
             }
         }
         Ok(Move { range, read_behind: !before })
@@ -161,8 +161,8 @@ impl Tables {
                 }
             }
         }
-        self.versions[target.index()].open = Kinds::NONE;
-        self.versions[newest.index()].open =
+        self.versions[target.index()].allowed = Kinds::NONE;
+        self.versions[newest.index()].allowed =
             Kinds::on_entry(&desc, self.resources[to.index()].kind).union(Kinds::DEFINED);
         self.resources[to.index()].current = newest;
         // Every handle of the forwarded texture is stale now.
@@ -184,7 +184,7 @@ impl Tables {
 }
 
 /// Returns the range for accesses to a texture of shape `own`; `None` to keep their ranges.
-fn place(own: &TextureDesc, target: &TextureDesc, range: Range) -> Result<Option<Range>, ForwardFault> {
+fn place(own: &TextureDesc, target: &TextureDesc, range: Range) -> Result<Option<Range>, ForwardReason> {
     let shape = |t: &TextureDesc| (t.mips, t.layers, t.dimension);
     if range.canonical(target).is_all() && shape(own) == shape(target) {
         return Ok(None);
@@ -193,7 +193,7 @@ fn place(own: &TextureDesc, target: &TextureDesc, range: Range) -> Result<Option
     let one = mips.len() == 1 && layers.len() == 1 && range.view.is_none();
     let inside = mips.end <= u32::from(target.mips) && layers.end <= target.tracked_layers();
     if target.dimension == Dimension::D3 && halved(target.layers.into(), range.mip.into()) != u32::from(own.layers) {
-        return Err(ForwardFault::Slices);
+        return Err(ForwardReason::Slices);
     }
     let flat = own.mips == 1 && own.layers == 1 && own.dimension == target.dimension;
     let all_levels = target.mips == TextureDesc::ALL_MIPS && range.mips == 1;
@@ -201,5 +201,5 @@ fn place(own: &TextureDesc, target: &TextureDesc, range: Range) -> Result<Option
         let (mip, layer) = (range.mip, range.layer);
         return Ok(Some(Range { mip, mips: 1, layer, layers: 1, ..Range::ALL }));
     }
-    Err(ForwardFault::Parts)
+    Err(ForwardReason::Parts)
 }

@@ -38,7 +38,7 @@ impl Tables {
             let resource = &mut self.resources[version.resource.index()];
             resource.current = version.previous;
             let defined = row.writer.some().is_some() || resource.kind.defined_on_entry();
-            row.open = if defined { version.open } else { version.open.without(Kinds::DEFINED) };
+            row.allowed = if defined { version.allowed } else { version.allowed.without(Kinds::DEFINED) };
         }
     }
 }

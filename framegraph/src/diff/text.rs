@@ -2,7 +2,7 @@
 
 use super::{Change, Diff};
 use crate::dump;
-use crate::plain::plain;
+use crate::sanitize::plain;
 use std::fmt;
 
 impl fmt::Display for Diff {

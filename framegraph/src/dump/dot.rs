@@ -1,9 +1,9 @@
 //! Plans as Graphviz graphs: steps as clusters of passes, resources as ellipses, reads and writes as edges.
 
-use super::words::{place, shape, written};
+use super::describe::{place, shape, written};
 use crate::id::{PassId, ResourceId};
-use crate::plain::plain;
 use crate::plan::{Join, Placement, Plan};
+use crate::sanitize::plain;
 use std::fmt::Write;
 
 /// Returns the plan in the DOT language.

@@ -12,9 +12,9 @@ pub(crate) use value::{Json, field, object};
 
 use names::Names;
 
+use super::describe;
 use super::flow::{Flow, data_flow};
 use super::reasons::Reasons;
-use super::words;
 use crate::barrier::{Barrier, Stages};
 use crate::decision::{self, Decision, MemoryNeed, Refusal, Subject};
 use crate::id::{PassId, ResourceId, StepId};
@@ -89,7 +89,7 @@ pub fn totals(plan: &Plan) -> [(&'static str, u64); 21] {
 /// Returns the step with the most live bytes and the live resources; `None` if no memory is shared.
 fn peak(plan: &Plan, names: &Names) -> Option<Json> {
     let step = plan.memory().peak.some()?;
-    let live = |r: &ResourceId| words::held(plan, *r).is_some_and(|(first, last)| first <= step && step <= last);
+    let live = |r: &ResourceId| describe::held(plan, *r).is_some_and(|(first, last)| first <= step && step <= last);
     let live = plan.graph().resource_ids().filter(live);
     Some(object([
         field("step", step.index()),
@@ -129,7 +129,7 @@ fn barrier(names: &Names, barrier: &Barrier) -> Json {
         field("from_stages", stages(barrier.from_stages)),
         field("to_stages", stages(barrier.to_stages)),
         field("after_step", barrier.after.some().map(StepId::index)),
-        field("hand_over", barrier.hand_over.some().map(name)),
+        field("hand_over", barrier.aliases.some().map(name)),
     ])
 }
 

@@ -1,13 +1,13 @@
 //! Plans as Mermaid flow charts, which browsers, forges and notebooks can render.
 
+use super::describe::{bytes, is_shared, joined, written};
 use super::flow::{Flow, data_flow, reduced};
-use super::words::{bytes, is_shared, joined, written};
-use crate::plain::plain;
 use crate::plan::{Join, Placement, Plan};
+use crate::sanitize::plain;
 use std::fmt::Write;
 
 /// Maximum number of passes for the transitive reduction of arrows, which is quadratic.
-const MOST_REDUCED: usize = 2000;
+const MAX_REDUCED: usize = 2000;
 
 /// Returns the plan as a Mermaid flow chart.
 ///
@@ -44,7 +44,7 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
         writeln!(out, "  p{}[\"{name}<br/>culled\"]:::culled", pass.index())?;
     }
     let (flows, passes) = (data_flow(graph), graph.passes().len());
-    let flows = if passes <= MOST_REDUCED { reduced(&flows, passes) } else { flows };
+    let flows = if passes <= MAX_REDUCED { reduced(&flows, passes) } else { flows };
     for Flow { from, to, resources } in flows {
         let label = |r: &crate::id::ResourceId| {
             let row = &plan.resources()[r.index()];

@@ -6,8 +6,8 @@ mod culled;
 mod matrix;
 mod memory;
 
+use super::describe::bytes;
 use super::reasons::Reasons;
-use super::words::bytes;
 use crate::plan::Plan;
 use canvas::{Canvas, Ink, MARGIN};
 

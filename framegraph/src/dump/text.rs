@@ -1,11 +1,11 @@
 //! Plans as text, for golden tests and for `render --plan`.
 
-use super::words::{bytes, joined, part, place, role_words, shape, uses, written};
+use super::describe::{bytes, joined, part, place, role_words, shape, uses, written};
 use crate::barrier::{Barrier, Stages};
 use crate::format::Aspect;
 use crate::id::{ResourceId, StepId};
-use crate::plain::plain;
 use crate::plan::{Attachment, Join, Placement, Plan};
+use crate::sanitize::plain;
 use std::fmt::Write;
 
 /// Version of the format, printed in the first line.
@@ -112,7 +112,7 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
 
 /// Writes a barrier: step, subresources, states, stages, and the previous resource in the same memory.
 fn write_barrier(plan: &Plan, barrier: &Barrier, out: &mut String) -> std::fmt::Result {
-    let Barrier { before, resource, first_part, parts, from, to, from_stages, to_stages, after, hand_over } = *barrier;
+    let Barrier { before, resource, first_part, parts, from, to, from_stages, to_stages, after, aliases } = *barrier;
     let graph = plan.graph();
     let stages = |s: Stages| s.names().collect::<Vec<_>>().join("+");
     write!(out, "  before step {}: {}", before.index(), plain(graph.resource_name(resource)))?;
@@ -123,7 +123,7 @@ fn write_barrier(plan: &Plan, barrier: &Barrier, out: &mut String) -> std::fmt::
     if let Some(after) = after.some() {
         write!(out, " after step {}", after.index())?;
     }
-    if let Some(tenant) = hand_over.some() {
+    if let Some(tenant) = aliases.some() {
         write!(out, ", aliases {}", plain(graph.resource_name(tenant)))?;
     }
     writeln!(out)

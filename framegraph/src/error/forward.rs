@@ -1,13 +1,13 @@
 //! Errors of forwarding a texture.
 
 use crate::access::AccessKind;
-use crate::faults::faults;
+use crate::error_macros::error_enum;
 use crate::format::Format;
 
-faults! {
+error_enum! {
     /// Reason why a texture cannot be forwarded.
     #[derive(Copy)]
-    ForwardFault {
+    ForwardReason {
         /// The texture is imported, a history, exported, or the target itself.
         NotTransient "only a transient texture that is not exported can be forwarded to another texture",
             "write the target directly, or copy";

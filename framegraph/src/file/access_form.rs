@@ -45,7 +45,7 @@ pub(super) struct AccessForm {
     pub(super) kind: AccessKind,
     /// The accessed resource.
     pub(super) of: Spanned<String>,
-    /// What a write does with the previous contents; `None` for a read.
+    /// Intent of a write; `None` for a read.
     pub(super) intent: Option<IntentForm>,
     /// Slot of a color attachment, if given, or of the attachment that is resolved.
     pub(super) slot: Option<u8>,
@@ -66,7 +66,7 @@ pub(super) struct AccessForm {
 
 impl AccessForm {
     /// Returns the range given by the optional fields. A first level without a count means one level; without both, all
-    /// levels. The same rule applies to layers.
+    /// levels. Layers follow the same rule.
     pub(super) fn range(&self) -> Range {
         let (mip, layer) = (self.mip.number(), self.layer.number());
         Range {

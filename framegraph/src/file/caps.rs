@@ -3,7 +3,7 @@
 use super::error::{FileError, FileErrors, FileReason};
 use super::spanned::{Source, Spanned};
 use super::syntax;
-use super::value::ValueFault;
+use super::value::ValueReason;
 use super::version::{check_version, without_mark};
 use crate::caps::Caps;
 use crate::resolve::ResolveModes;
@@ -70,17 +70,17 @@ fn faults(source: Source<'_>, form: &CapsForm) -> Vec<FileError> {
     let mut errors = Vec::new();
     let alignments = [&form.texture_alignment_bytes, &form.buffer_alignment_bytes];
     for at in alignments.into_iter().flatten().filter(|a| !a.value.is_power_of_two() || a.value > 1 << 32) {
-        errors.push(source.value(at, ValueFault::Alignment(at.value)));
+        errors.push(source.value(at, ValueReason::Alignment(at.value)));
     }
     for at in form.max_samples.iter().filter(|s| !s.value.is_power_of_two()) {
-        errors.push(source.value(at, ValueFault::MaxSamples(at.value)));
+        errors.push(source.value(at, ValueReason::MaxSamples(at.value)));
     }
     for at in form.max_color_attachments.iter().filter(|c| !(1..=8).contains(&c.value)) {
-        errors.push(source.value(at, ValueFault::MaxColors(at.value)));
+        errors.push(source.value(at, ValueReason::MaxColors(at.value)));
     }
     let sides = [&form.max_texture_texels, &form.max_texture_layers];
     for at in sides.into_iter().flatten().filter(|s| s.value == 0 || s.value > 1 << 20) {
-        errors.push(source.value(at, ValueFault::MaxSide(at.value)));
+        errors.push(source.value(at, ValueReason::MaxSide(at.value)));
     }
     errors
 }

@@ -5,9 +5,9 @@ use super::error::{FileError, FileErrors, FileReason};
 use super::form::PluginForm;
 use super::plugin::{Binding, Call, Handle, Host, PluginError, Registry};
 use super::selected::{PassRow, Wanted};
-use super::slot::Takes;
+use super::slot::SlotType;
 use super::spanned::Spanned;
-use super::value::ValueFault;
+use super::value::ValueReason;
 
 impl<'f> Declaring<'_, 'f> {
     /// Declares one entry with its plugin.
@@ -33,14 +33,14 @@ impl<'f> Declaring<'_, 'f> {
             let previous = self.previous(mention, handles, host.graph())?;
             let handle = previous.or(handles[mention.resource]);
             let name = self.selected.resources[mention.resource];
-            let fault = match (slot.takes, handle) {
-                (Takes::Texture, Some(Handle::Texture(_) | Handle::ReadOnly(_)))
-                | (Takes::Buffer, Some(Handle::Buffer(_)))
-                | (Takes::Target, Some(Handle::Texture(_)) | None)
-                | (Takes::TargetBuffer, Some(Handle::Buffer(_)) | None) => None,
-                (_, None) if mention.version == Wanted::Entry => Some(ValueFault::MadeEmpty),
-                (_, None) => Some(ValueFault::MadeLater),
-                (takes, Some(_)) => Some(ValueFault::SlotType { slot: slot.name.into(), takes }),
+            let fault = match (slot.ty, handle) {
+                (SlotType::Texture, Some(Handle::Texture(_) | Handle::ReadOnly(_)))
+                | (SlotType::Buffer, Some(Handle::Buffer(_)))
+                | (SlotType::Target, Some(Handle::Texture(_)) | None)
+                | (SlotType::TargetBuffer, Some(Handle::Buffer(_)) | None) => None,
+                (_, None) if mention.version == Wanted::Entry => Some(ValueReason::MadeEmpty),
+                (_, None) => Some(ValueReason::MadeLater),
+                (ty, Some(_)) => Some(ValueReason::SlotType { slot: slot.name.into(), ty }),
             };
             if let Some(fault) = fault {
                 return Err(self.source.value(mention.at, fault).of_pass(&row.id.value).of_resource(name));

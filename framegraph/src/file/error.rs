@@ -2,11 +2,11 @@
 
 use super::suggest::nearest;
 use super::syntax::listed;
-use super::value::ValueFault;
-use crate::capped::Errors;
+use super::value::ValueReason;
 use crate::compile::CompileReason;
 use crate::error::DeclareReason;
-use crate::faults::{errors, faults, show};
+use crate::error_list::Errors;
+use crate::error_macros::{error_enum, impl_error, show};
 use std::fmt;
 
 /// One error of a file. Displays as one line: `path:line:column: reason; hint`.
@@ -22,11 +22,11 @@ pub struct FileError {
     pub pass: Option<String>,
     /// The resource concerned, as named in the file or the graph.
     pub resource: Option<String>,
-    /// What is wrong.
+    /// The error.
     pub reason: Box<FileReason>,
 }
 
-faults! {
+error_enum! {
     /// Reason why a file is invalid. `what` is the expected kind of item: pass, resource, feature, plugin or slot.
     FileReason {
         /// The text is not valid RON, or has an unsupported form.
@@ -51,7 +51,7 @@ faults! {
         SwitchedOff { what: &'static str, name: String, /** Its condition. */ when: String }
             "{what} `{name}` is disabled, it requires `{when}`", "add the same `when` here";
         /// The value is out of range or conflicts with another one.
-        Value(fault: ValueFault) => fault.words();
+        Value(fault: ValueReason) => fault.words();
         /// `resource@pass`, but the pass does not write the resource.
         NotWrittenBy { pass: String, writers: Vec<String> } "pass `{pass}` does not write it", "{hint}",
             hint = match writers.as_slice() {
@@ -87,8 +87,8 @@ impl FileReason {
     }
 }
 
-impl From<ValueFault> for FileReason {
-    fn from(fault: ValueFault) -> Self {
+impl From<ValueReason> for FileReason {
+    fn from(fault: ValueReason) -> Self {
         Self::Value(fault)
     }
 }
@@ -119,7 +119,7 @@ impl fmt::Display for FileError {
     }
 }
 
-errors!(FileError);
+impl_error!(FileError);
 
 /// The errors of a file, in the order of the file: the first hundred, and the number of further errors.
 pub type FileErrors = Errors<FileError>;

@@ -11,10 +11,10 @@ use super::form::{
 };
 use super::params::Word;
 use super::spanned::{Source, Spanned};
-use super::value::ValueFault;
+use super::value::ValueReason;
 
 /// Maximum number of entries created by loops and templates.
-const MOST_ENTRIES: usize = 1 << 17;
+const MAX_ENTRIES: usize = 1 << 17;
 
 /// Meanings of the names in braces, innermost last.
 type Names<'n> = Vec<(&'n str, Meaning<'n>)>;
@@ -93,7 +93,7 @@ impl Writer<'_, '_> {
             PassEntry::Each(each) => return self.each(&each, names, Self::pass),
             // Nested templates are not supported, which also rules out recursion.
             PassEntry::Use(used) if self.within => {
-                return self.errors.push(|| self.source.value(&used.template, ValueFault::TemplateInTemplate));
+                return self.errors.push(|| self.source.value(&used.template, ValueReason::TemplateInTemplate));
             }
             PassEntry::Use(used) => return self.used(&used, names),
             PassEntry::Raster(form) => PassForm::Raster(self.work(form, names)),
@@ -143,7 +143,7 @@ impl Writer<'_, '_> {
         self.fill(text, names);
         let number = text.value.parse().ok().filter(|number: &u32| *number <= max.into());
         if number.is_none() {
-            let fault = ValueFault::Number { text: text.value.clone(), max: max.into() };
+            let fault = ValueReason::Number { text: text.value.clone(), max: max.into() };
             self.errors.push(|| self.source.value(text, fault));
         }
         *level = Level::Number(number.and_then(|number| number.try_into().ok()).unwrap_or(max));
@@ -206,7 +206,7 @@ impl Writer<'_, '_> {
             match with.iter().find(|(given, _)| given.value == *param) {
                 Some((_, word)) => inner.push((param, Meaning::Word(word))),
                 None => {
-                    let fault = ValueFault::Parameter(param.clone());
+                    let fault = ValueReason::Parameter(param.clone());
                     return self.errors.push(|| self.source.value(&used.template, fault));
                 }
             }
@@ -238,10 +238,10 @@ impl Writer<'_, '_> {
     /// Counts another entry. Returns `false` if the maximum is exceeded, and reports that once.
     fn room(&mut self, at: &Spanned<String>) -> bool {
         self.made += 1;
-        if self.made == MOST_ENTRIES + 1 {
-            self.errors.push(|| self.source.value(at, ValueFault::Entries { max: MOST_ENTRIES as u64 }));
+        if self.made == MAX_ENTRIES + 1 {
+            self.errors.push(|| self.source.value(at, ValueReason::Entries { max: MAX_ENTRIES as u64 }));
         }
-        self.made <= MOST_ENTRIES
+        self.made <= MAX_ENTRIES
     }
 
     /// Replaces names in braces: `{i}`, `{i+1}`, `{i-1}`. Outside of loops and templates, braces have no meaning.

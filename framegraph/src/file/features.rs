@@ -5,7 +5,7 @@
 
 use super::error::{FileError, FileReason};
 use super::spanned::{Source, Spanned};
-use super::value::ValueFault;
+use super::value::ValueReason;
 
 /// The features of a file and their settings.
 #[derive(Clone, Debug)]
@@ -57,7 +57,7 @@ impl Features {
             None => (factor, true),
         };
         if !is_name(name) {
-            return Err(FileReason::Value(ValueFault::Condition(factor.into())));
+            return Err(FileReason::Value(ValueReason::Condition(factor.into())));
         }
         match self.rows.iter().find(|(n, _)| n == name) {
             Some((_, on)) => Ok(*on == wanted),

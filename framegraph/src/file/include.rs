@@ -4,11 +4,11 @@ use super::error::{FileError, FileErrors};
 use super::form::IncludeForm;
 use super::spanned::{Source, Spanned};
 use super::syntax;
-use super::value::ValueFault;
+use super::value::ValueReason;
 use super::version::without_mark;
 
 /// Maximum number of files that a file includes, directly or indirectly.
-const MOST_FILES: usize = 64;
+const MAX_FILES: usize = 64;
 
 /// The files that a graph file includes, with their texts. Each file occurs once, after the files that it includes.
 #[derive(Debug, Default)]
@@ -54,15 +54,15 @@ impl Included {
         let source = Source { path, text: without_mark(text), included: &[] };
         let form: IncludeForm = syntax::options().from_str(source.text).map_err(|error| source.refused(&error))?;
         for name in &form.include {
-            let full = beside(path, name).ok_or_else(|| source.value(name, ValueFault::Path(name.value.clone())))?;
+            let full = beside(path, name).ok_or_else(|| source.value(name, ValueReason::Path(name.value.clone())))?;
             if seen.contains(&full) {
                 continue;
             }
             seen.push(full.clone());
-            if seen.len() > MOST_FILES + 1 {
-                return Err(source.value(name, ValueFault::Entries { max: MOST_FILES as u64 }));
+            if seen.len() > MAX_FILES + 1 {
+                return Err(source.value(name, ValueReason::Entries { max: MAX_FILES as u64 }));
             }
-            let text = read(&full).map_err(|message| source.value(name, ValueFault::Unreadable(message)))?;
+            let text = read(&full).map_err(|message| source.value(name, ValueReason::Unreadable(message)))?;
             self.add(&full, &text, seen, read)?;
             self.files.push((full, text));
         }

@@ -5,7 +5,7 @@ use super::features::Features;
 use super::form::PassForm;
 use super::selected::{Declared, ENTRY, Mention, PassRow, SlotsOf, Wanted};
 use super::spanned::{Source, Spanned};
-use super::value::ValueFault;
+use super::value::ValueReason;
 use std::collections::HashMap;
 
 /// Names and the rows they refer to.
@@ -104,7 +104,7 @@ impl<'f> Lookup<'_, '_, 'f> {
             .reference(at, errors.is_full())
         {
             Ok((_, Wanted::Previous(_))) if writes => {
-                errors.push(|| self.source.value(at, ValueFault::WritesEarlierFrame));
+                errors.push(|| self.source.value(at, ValueReason::WritesEarlierFrame));
             }
             Ok((resource, version)) => row.mentions.push(Mention { index, resource, version, writes, at }),
             Err(error) => {
@@ -124,7 +124,7 @@ impl<'f> Lookup<'_, '_, 'f> {
                 let slots = slots_of(&p.kind.value).unwrap_or_default();
                 for (index, (slot, bound)) in p.slots.0.iter().enumerate() {
                     if let Some(known) = slots.iter().find(|s| s.name == slot.value) {
-                        mention(index, bound, known.takes.is_target(), errors);
+                        mention(index, bound, known.ty.is_target(), errors);
                     }
                 }
             }

@@ -5,7 +5,7 @@ use super::params::Params;
 use super::slot::PluginSlot;
 use super::spanned::Source;
 use crate::error::DeclareError;
-use crate::faults::faults;
+use crate::error_macros::error_enum;
 use crate::graph::Graph;
 use crate::handle::{Buffer, ReadOnly, Target, Texture};
 use serde::de::DeserializeOwned;
@@ -83,7 +83,7 @@ impl<H: ?Sized> std::fmt::Debug for Registry<'_, H> {
     }
 }
 
-faults! {
+error_enum! {
     /// Reason why a plugin declared nothing.
     PluginError {
         /// The graph rejected a declaration.

@@ -11,7 +11,7 @@ use super::form::{ExportForm, PassForm, ResourceForm};
 use super::names::{Lookup, Names};
 use super::selected::{Declared, Mention, PassRow, Selected, SlotsOf};
 use super::spanned::{Source, Spanned};
-use super::value::ValueFault;
+use super::value::ValueReason;
 
 /// Resolves all names and collects errors.
 pub(super) fn select<'f>(
@@ -107,7 +107,7 @@ fn resources<'f>(
             continue;
         }
         if head.id.value.is_empty() || head.id.value.contains('@') {
-            errors.push(|| source.value(head.id, ValueFault::Id(head.id.value.clone())));
+            errors.push(|| source.value(head.id, ValueReason::Id(head.id.value.clone())));
         }
         if names.resources.insert(&head.id.value, out.resources.len()).is_some() {
             errors.push(|| duplicate(source, "resource", head.id));
@@ -119,7 +119,7 @@ fn resources<'f>(
 
 /// Adds the resources that plugins create: names bound to a target slot that no resource has.
 ///
-/// An unknown slot counts as a target, because it may be misspelled. That avoids further errors in passes that use its
+/// An unknown slot counts as a target, because it may be misspelled. This avoids further errors in passes that use its
 /// result.
 fn name_what_plugins_make<'f>(out: &mut Selected<'f>, names: &mut Names<'f>, slots_of: &SlotsOf<'_>) {
     for row in &out.passes {
@@ -129,7 +129,7 @@ fn name_what_plugins_make<'f>(out: &mut Selected<'f>, names: &mut Names<'f>, slo
         let slots = slots_of(&plugin.kind.value);
         for (slot, bound) in &plugin.slots.0 {
             let known = slots.and_then(|slots| slots.iter().find(|s| s.name == slot.value));
-            let target = known.is_none_or(|slot| slot.takes.is_target());
+            let target = known.is_none_or(|slot| slot.ty.is_target());
             let id = bound.value.as_str();
             let free = !names.resources.contains_key(id) && !names.resources_off.contains_key(id);
             if target && free && !id.contains('@') && !id.is_empty() {

@@ -5,7 +5,7 @@ use super::error::FileError;
 use super::features::Features;
 use super::form::{BufferForm, Origin, Size, TextureForm};
 use super::spanned::{Source, Spanned};
-use super::value::ValueFault;
+use super::value::ValueReason;
 use crate::resource::{BufferSize, Extent, TextureDesc};
 
 /// Returns the descriptor of a texture.
@@ -30,7 +30,7 @@ pub(super) fn texture(source: Source<'_>, features: &Features, form: &TextureFor
 /// Returns the size of a buffer.
 pub(super) fn buffer(source: Source<'_>, features: &Features, form: &BufferForm) -> Result<BufferSize, FileError> {
     if let Origin::History { .. } = form.kind {
-        return Err(source.value(&form.name, ValueFault::BufferHistory));
+        return Err(source.value(&form.name, ValueReason::BufferHistory));
     }
     let most = if form.per_texel_of.is_some() { u64::from(u32::MAX) } else { u64::MAX };
     let bytes = count(source, features, &form.bytes, "bytes", most, false)?;
@@ -51,13 +51,13 @@ fn count(
 ) -> Result<u64, FileError> {
     let fault = match &number.value {
         Count::All if all => return Ok(0),
-        Count::All => ValueFault::All { what },
+        Count::All => ValueReason::All { what },
         Count::Fixed(value) if (1..=max).contains(value) => return Ok(*value),
-        Count::Fixed(value) => ValueFault::Count { what, value: *value, max, all },
+        Count::Fixed(value) => ValueReason::Count { what, value: *value, max, all },
         Count::Choice(choices) => match choice(source, features, choices)? {
             Some(value) if (1..=max).contains(&value) => return Ok(value),
-            Some(value) => ValueFault::Count { what, value, max, all },
-            None => ValueFault::NoChoice { what },
+            Some(value) => ValueReason::Count { what, value, max, all },
+            None => ValueReason::NoChoice { what },
         },
     };
     Err(source.value(number, fault))
@@ -88,5 +88,5 @@ fn extent(source: Source<'_>, size: &Spanned<Size>) -> Result<Extent, FileError>
         Size::Scale { align: 0, .. } => "an alignment of 0 texels",
         size => return Ok(size.into()),
     };
-    Err(source.value(size, ValueFault::Zero(zero)))
+    Err(source.value(size, ValueReason::Zero(zero)))
 }

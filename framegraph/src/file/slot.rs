@@ -2,7 +2,7 @@
 
 /// Type of a plugin slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Takes {
+pub enum SlotType {
     /// A texture that is read, including earlier history images.
     Texture,
     /// A buffer that is read.
@@ -13,7 +13,7 @@ pub enum Takes {
     TargetBuffer,
 }
 
-impl Takes {
+impl SlotType {
     /// Returns `true` if the plugin writes the resource.
     pub(super) const fn is_target(self) -> bool {
         matches!(self, Self::Target | Self::TargetBuffer)
@@ -26,19 +26,19 @@ pub struct PluginSlot {
     /// Name in files.
     pub name: &'static str,
     /// Type of the slot.
-    pub takes: Takes,
+    pub ty: SlotType,
     /// The slot may be left unbound.
     pub optional: bool,
 }
 
 impl PluginSlot {
     /// Creates a slot that must be bound.
-    pub const fn required(name: &'static str, takes: Takes) -> Self {
-        Self { name, takes, optional: false }
+    pub const fn required(name: &'static str, ty: SlotType) -> Self {
+        Self { name, ty, optional: false }
     }
 
     /// Creates a slot that may be left unbound.
-    pub const fn optional(name: &'static str, takes: Takes) -> Self {
-        Self { name, takes, optional: true }
+    pub const fn optional(name: &'static str, ty: SlotType) -> Self {
+        Self { name, ty, optional: true }
     }
 }

@@ -5,7 +5,7 @@
 
 use super::error::{FileError, FileReason};
 use super::syntax;
-use super::value::ValueFault;
+use super::value::ValueReason;
 use ron::value::RawValue;
 use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error};
 
@@ -134,7 +134,7 @@ impl<'t> Source<'t> {
     }
 
     /// Creates an error about an invalid value.
-    pub(super) fn value<T>(&self, at: &Spanned<T>, fault: ValueFault) -> FileError {
+    pub(super) fn value<T>(&self, at: &Spanned<T>, fault: ValueReason) -> FileError {
         self.error(at, FileReason::Value(fault))
     }
 

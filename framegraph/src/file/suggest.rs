@@ -1,14 +1,14 @@
 //! Suggestions for misspelled names.
 
 /// Maximum length of names that are compared, in bytes.
-const MOST_BYTES: usize = 200;
+const MAX_BYTES: usize = 200;
 
 /// Maximum edit distance of a suggestion.
-const MOST_SLIPS: usize = 12;
+const MAX_DISTANCE: usize = 12;
 
 /// Maximum number of compared character pairs, about ten milliseconds. Names of usual length reach it at ten thousand
 /// candidates.
-const MOST_PAIRS: usize = 1 << 22;
+const MAX_PAIRS: usize = 1 << 22;
 
 /// Returns the closest candidate to `name`. Its distance must be at most a third of the length, at most twelve, and
 /// less than the length.
@@ -19,15 +19,15 @@ pub(super) fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c s
 /// Returns the closest candidate and the number of compared character pairs.
 fn search<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> (Option<&'c str>, usize) {
     let (mut best, mut pairs) = (None, 0);
-    if name.len() > MOST_BYTES {
+    if name.len() > MAX_BYTES {
         return (best, pairs);
     }
     let letters: Vec<char> = name.to_lowercase().chars().collect();
-    let allowed = (letters.len() / 3).clamp(1, MOST_SLIPS).min(letters.len().saturating_sub(1));
+    let allowed = (letters.len() / 3).clamp(1, MAX_DISTANCE).min(letters.len().saturating_sub(1));
     // Only a closer candidate can replace the best so far.
     let mut limit = Some(allowed);
-    for candidate in candidates.into_iter().filter(|candidate| candidate.len() <= MOST_BYTES) {
-        let Some(most) = limit.filter(|_| pairs < MOST_PAIRS) else { break };
+    for candidate in candidates.into_iter().filter(|candidate| candidate.len() <= MAX_BYTES) {
+        let Some(most) = limit.filter(|_| pairs < MAX_PAIRS) else { break };
         let other: Vec<char> = candidate.to_lowercase().chars().collect();
         if let Some(found) = distance(&letters, &other, most, &mut pairs) {
             (best, limit) = (Some(candidate), found.checked_sub(1));
@@ -116,12 +116,12 @@ mod tests {
     fn the_work_is_bounded() {
         // Very different words end after a few rows of the band.
         let (mut pairs, [a, b]) = (0, ["a", "b"].map(|letter| letter.repeat(190).chars().collect::<Vec<_>>()));
-        assert_eq!(distance(&a, &b, MOST_SLIPS, &mut pairs), None);
-        assert!(pairs <= (MOST_SLIPS + 1) * (2 * MOST_SLIPS + 2), "{pairs}");
+        assert_eq!(distance(&a, &b, MAX_DISTANCE, &mut pairs), None);
+        assert!(pairs <= (MAX_DISTANCE + 1) * (2 * MAX_DISTANCE + 2), "{pairs}");
         // Words that differ only at the end need all rows; the limit on pairs stops the search.
         let names: Vec<String> = (0..40_000).map(|n| format!("{}{n:018}", "a".repeat(172))).collect();
         let (_, pairs) = search(&format!("{}{}", "a".repeat(172), "x".repeat(18)), names.iter().map(String::as_str));
         // The last comparison is completed.
-        assert!(pairs < MOST_PAIRS + 200 * (2 * MOST_SLIPS + 2), "{pairs}");
+        assert!(pairs < MAX_PAIRS + 200 * (2 * MAX_DISTANCE + 2), "{pairs}");
     }
 }

@@ -1,11 +1,11 @@
 //! Errors of values: out of range, or in conflict with another value.
 
-use super::slot::Takes;
-use crate::faults::faults;
+use super::slot::SlotType;
+use crate::error_macros::error_enum;
 
-faults! {
+error_enum! {
     /// Reason why a value is invalid. `what` is the counted item, `max` the maximum.
-    ValueFault {
+    ValueReason {
         FeatureName(name: String) "`{name}` is not a valid feature name",
             "use letters, digits, `_`, `-` and `.`; `else` is reserved";
         Condition(text: String) "`{text}` is not a condition",
@@ -34,12 +34,12 @@ faults! {
         TemplateInTemplate "a template uses another template", "insert the entries of the other template here";
         Entries { max: u64 } "loops, templates or includes create more than {max} entries",
             "use fewer repetitions, or split the frame";
-        SlotType { slot: String, takes: Takes } "slot `{slot}` requires a {wanted}", "bind a resource of that type",
-            wanted = match takes {
-                Takes::Texture => "texture to read",
-                Takes::Buffer => "buffer to read",
-                Takes::Target => "texture to write",
-                Takes::TargetBuffer => "buffer to write",
+        SlotType { slot: String, ty: SlotType } "slot `{slot}` requires a {wanted}", "bind a resource of that type",
+            wanted = match ty {
+                SlotType::Texture => "texture to read",
+                SlotType::Buffer => "buffer to read",
+                SlotType::Target => "texture to write",
+                SlotType::TargetBuffer => "buffer to write",
             };
         WritesEarlierFrame "history images of earlier frames cannot be written", "write the history by its plain name";
         ExportsEarlierFrame "history images of earlier frames cannot be exported",

@@ -8,7 +8,7 @@
 use super::error::{FileError, FileErrors, FileReason};
 use super::selected::{Mention, Selected, Wanted};
 use super::spanned::Source;
-use super::value::ValueFault;
+use super::value::ValueReason;
 use crate::compile::CompileReason;
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
@@ -153,7 +153,7 @@ fn exports(source: Source<'_>, selected: &Selected<'_>, versions: &Versions, err
                 let none = FileReason::NotWrittenBy { pass: id(pass), writers: Vec::new() };
                 if written { Ok(Some(pass)) } else { Err(none) }
             }
-            Wanted::Previous(_) => Err(FileReason::Value(ValueFault::ExportsEarlierFrame)),
+            Wanted::Previous(_) => Err(FileReason::Value(ValueReason::ExportsEarlierFrame)),
         };
         let next = |version| versions.next.get(&(mention.resource, version));
         let reason = match version.map(next) {

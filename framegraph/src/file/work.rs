@@ -6,7 +6,7 @@ use super::error::{FileError, FileReason};
 use super::form::{Flag, WorkForm};
 use super::plugin::Handle;
 use super::selected::{PassRow, Wanted};
-use super::value::ValueFault;
+use super::value::ValueReason;
 use crate::access::{Access, AccessKind, Intent, Range};
 use crate::error::{DeclareError, DeclareReason};
 use crate::graph::{Graph, PassKind};
@@ -31,8 +31,8 @@ impl From<DeclareReason> for Refused {
     }
 }
 
-impl From<ValueFault> for Refused {
-    fn from(fault: ValueFault) -> Self {
+impl From<ValueReason> for Refused {
+    fn from(fault: ValueReason) -> Self {
         Self::File(FileReason::Value(fault))
     }
 }
@@ -111,9 +111,9 @@ fn declare(
 ) -> Result<Option<Handle>, Refused> {
     let AccessForm { kind, bytes, slot, samples, mode, .. } = *access;
     let (range, intent) = (access.range(), access.intent.map(Intent::from));
-    let missing = || if entry { ValueFault::MadeEmpty } else { ValueFault::MadeLater };
+    let missing = || if entry { ValueReason::MadeEmpty } else { ValueReason::MadeLater };
     let (texture, intent) = match (handle.ok_or_else(missing)?, intent) {
-        (Handle::Buffer(_), _) if range != Range::ALL => return Err(ValueFault::BufferRange.into()),
+        (Handle::Buffer(_), _) if range != Range::ALL => return Err(ValueReason::BufferRange.into()),
         (Handle::Buffer(buffer), intent) => {
             let part = BufferPart { buffer, bytes };
             return Ok(match intent {
@@ -121,7 +121,7 @@ fn declare(
                 None => pass.read_buffer(part, kind).map(|_| None)?,
             });
         }
-        _ if bytes.is_some() => return Err(ValueFault::TextureBytes.into()),
+        _ if bytes.is_some() => return Err(ValueReason::TextureBytes.into()),
         (Handle::Texture(texture), None) => {
             read(pass, kind, texture.range(range).read_only())?;
             attached.extend((kind == AccessKind::DepthReadOnly).then_some((Access::DEPTH, texture)));

@@ -1,8 +1,8 @@
 //! Row types of a graph's arrays: passes, versions, notes and exports.
 
 use crate::access::Kinds;
+use crate::enum_names::enum_names;
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
-use crate::words::words;
 use std::panic::Location;
 
 /// The kind of work that a pass does.
@@ -17,7 +17,7 @@ pub enum PassKind {
     Copy,
 }
 
-words! { PassKind: Raster "raster", Compute "compute", Copy "copy" }
+enum_names! { PassKind: Raster "raster", Compute "compute", Copy "copy" }
 
 /// Properties of a pass beyond its accesses, as a set of bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -99,13 +99,13 @@ pub struct Version {
     /// The last pass that read this version.
     pub(crate) reader: PassId,
     /// Access kinds to the whole resource that its format and kind allow; empty once a newer version exists.
-    pub(crate) open: Kinds,
+    pub(crate) allowed: Kinds,
 }
 
 impl PartialEq for Version {
     /// Compares what was declared, not the fields that only serve declaring.
     fn eq(&self, other: &Self) -> bool {
-        let Self { resource, writer, access, previous, reader: _, open: _ } = *self;
+        let Self { resource, writer, access, previous, reader: _, allowed: _ } = *self;
         (resource, writer, access, previous) == (other.resource, other.writer, other.access, other.previous)
     }
 }

@@ -1,6 +1,6 @@
 //! Texture accesses of a pass.
 
-use super::request::{Manner, Request};
+use super::request::{AccessDesc, Request};
 use super::{MAX_COLORS, PassBuilder};
 use crate::access::{Access, AccessKind, Intent, Mode};
 use crate::error::{DeclareError, DeclareReason};
@@ -15,8 +15,12 @@ impl PassBuilder<'_> {
     /// Declares a sampled texture, read through a sampler or by texel fetch.
     ///
     /// # Errors
-    /// Returns an error if the handle is stale or belongs to another graph, the range lies outside of the texture, the
-    /// access conflicts with another one of the pass, or the format lacks the capability.
+    /// Returns an error if
+    ///
+    /// - the handle is stale or belongs to another graph,
+    /// - the range lies outside of the texture,
+    /// - the access conflicts with another one of the pass, or
+    /// - the format does not support the access.
     #[inline]
     #[track_caller]
     pub fn sampled(&mut self, texture: impl Into<ReadOnly>) -> Result<View, DeclareError> {
@@ -140,8 +144,8 @@ impl PassBuilder<'_> {
     /// instead.
     ///
     /// # Errors
-    /// Returns the errors of [`PassBuilder::color`], and an error if `multisampled` is not a color or depth attachment
-    /// of this pass, or its format does not support `mode`: depth and integer formats cannot be averaged.
+    /// Returns the errors of [`PassBuilder::color`]. Returns an error if `multisampled` is not a color or depth
+    /// attachment of this pass, or if its format does not support `mode`. Depth and integer formats cannot be averaged.
     #[inline]
     #[track_caller]
     pub fn resolve_as(
@@ -209,11 +213,11 @@ impl PassBuilder<'_> {
         let ReadOnly { tag, version, range } = part;
         // Known at compile time for handles of whole textures, so that only one of the two calls remains.
         if range.is_all()
-            && let Some(access) = self.quick_read(tag, version, kind)
+            && let Some(access) = self.try_read_fast(tag, version, kind)
         {
             return Ok(View { tag, access });
         }
-        let request = Request { tag, version, range, bytes: None, manner: Manner::read(kind), clear: 0 };
+        let request = Request { tag, version, range, bytes: None, desc: AccessDesc::read(kind), clear: 0 };
         let (access, _) = self.add_checked(&request, location)?;
         Ok(View { tag, access })
     }
@@ -230,13 +234,13 @@ impl PassBuilder<'_> {
     ) -> Result<Texture, DeclareError> {
         let Part { texture: Texture { tag, version }, range } = part;
         let (mode, clear) = self.mode(intent);
-        let manner = Manner { kind, mode, slot };
+        let desc = AccessDesc { kind, mode, slot };
         if range.is_all()
-            && let Some(version) = self.quick_write(tag, version, manner, clear)
+            && let Some(version) = self.try_write_fast(tag, version, desc, clear)
         {
             return Ok(Texture { tag, version });
         }
-        let version = self.write_checked(&Request { tag, version, range, bytes: None, manner, clear }, location)?;
+        let version = self.write_checked(&Request { tag, version, range, bytes: None, desc, clear }, location)?;
         Ok(Texture { tag, version })
     }
 
@@ -249,7 +253,7 @@ impl PassBuilder<'_> {
         location: &'static Location<'static>,
     ) -> Result<VersionId, DeclareError> {
         let added = self.add_checked(r, location);
-        if added.is_err() && r.manner.mode == Mode::Clear {
+        if added.is_err() && r.desc.mode == Mode::Clear {
             self.tables.clears.truncate(r.clear as usize);
         }
         added.map(|(_, version)| version)

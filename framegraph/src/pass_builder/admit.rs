@@ -1,6 +1,6 @@
 //! Validity checks of a single access.
 
-use super::request::{Manner, Request};
+use super::request::{AccessDesc, Request};
 use crate::access::{Access, AccessKind, Kinds, Range};
 use crate::error::DeclareReason;
 use crate::graph::{PassKind, Tables};
@@ -11,7 +11,7 @@ use crate::resource::{BufferDesc, BufferSize, Desc, Dimension, Kind, Resource, T
 /// A buffer has one usage during a pass (WebGPU's usage scopes). Next to a write, other bytes of the buffer may only be
 /// accessed in the same way.
 pub(super) fn conflicts(tables: &Tables, earlier: &Access, later: &Request) -> bool {
-    if !earlier.mode.writes() && !later.manner.mode.writes() {
+    if !earlier.mode.writes() && !later.desc.mode.writes() {
         return false;
     }
     match &tables.resources[earlier.resource.index()].desc {
@@ -21,7 +21,7 @@ pub(super) fn conflicts(tables: &Tables, earlier: &Access, later: &Request) -> b
             let apart = bytes.is_some_and(|(earlier, (offset, bytes))| {
                 offset >= earlier.end() || earlier.offset >= offset.saturating_add(bytes)
             });
-            !apart || earlier.kind != later.manner.kind
+            !apart || earlier.kind != later.desc.kind
         }
     }
 }
@@ -73,7 +73,7 @@ pub(super) const fn barred(kind: PassKind) -> Kinds {
 
 /// Returns the reason why the resource does not support the access, if any.
 pub(super) fn incapable(row: &Resource, r: &Request) -> Option<DeclareReason> {
-    let Manner { kind: access, mode, .. } = r.manner;
+    let AccessDesc { kind: access, mode, .. } = r.desc;
     if let (Kind::HistoryPrevious { .. }, true) = (row.kind, mode.writes()) {
         return Some(DeclareReason::WritesEarlierFrame { access });
     }
@@ -101,7 +101,7 @@ fn outside(buffer: &BufferDesc, r: &Request) -> Option<DeclareReason> {
 }
 
 fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
-    let access = r.manner.kind;
+    let access = r.desc.kind;
     let Range { mip, mips, layer, layers, aspect, view, bytes: _ } = r.range;
     let outside = |first: u32, count: u32, all: bool, has: u32| {
         if all { first >= has } else { count == 0 || first + count > has }

@@ -1,7 +1,7 @@
 //! Buffer accesses of a pass.
 
 use super::PassBuilder;
-use super::request::{Manner, Request};
+use super::request::{AccessDesc, Request};
 use crate::access::{AccessKind, Intent, Kinds, Range};
 use crate::error::DeclareError;
 use crate::handle::{Buffer, BufferPart, BufferView};
@@ -147,11 +147,11 @@ impl PassBuilder<'_> {
         let BufferPart { buffer: Buffer { tag, version }, bytes } = part;
         if bytes.is_none()
             && Kinds::READS.has(Kinds::one(kind))
-            && let Some(access) = self.quick_read(tag, version, kind)
+            && let Some(access) = self.try_read_fast(tag, version, kind)
         {
             return Ok(BufferView { tag, access });
         }
-        let request = Request { tag, version, range: Range::ALL, bytes, manner: Manner::read(kind), clear: 0 };
+        let request = Request { tag, version, range: Range::ALL, bytes, desc: AccessDesc::read(kind), clear: 0 };
         let (access, _) = self.add_checked(&request, location)?;
         Ok(BufferView { tag, access })
     }
@@ -166,14 +166,14 @@ impl PassBuilder<'_> {
     ) -> Result<Buffer, DeclareError> {
         let BufferPart { buffer: Buffer { tag, version }, bytes } = part;
         let (mode, clear) = self.mode(intent);
-        let manner = Manner { kind, mode, slot: 0 };
+        let desc = AccessDesc { kind, mode, slot: 0 };
         if bytes.is_none()
             && !Kinds::READS.has(Kinds::one(kind))
-            && let Some(version) = self.quick_write(tag, version, manner, clear)
+            && let Some(version) = self.try_write_fast(tag, version, desc, clear)
         {
             return Ok(Buffer { tag, version });
         }
-        let request = Request { tag, version, range: Range::ALL, bytes, manner, clear };
+        let request = Request { tag, version, range: Range::ALL, bytes, desc, clear };
         let version = self.write_checked(&request, location)?;
         Ok(Buffer { tag, version })
     }

@@ -6,7 +6,7 @@ use crate::id::VersionId;
 
 /// Kind, mode and color slot of an access.
 #[derive(Clone, Copy)]
-pub(super) struct Manner {
+pub(super) struct AccessDesc {
     pub(super) kind: AccessKind,
     pub(super) mode: Mode,
     pub(super) slot: u8,
@@ -20,11 +20,11 @@ pub(super) struct Request {
     pub(super) range: Range,
     /// Offset and size in bytes; `None` for a whole buffer or a texture.
     pub(super) bytes: Option<(u64, u64)>,
-    pub(super) manner: Manner,
+    pub(super) desc: AccessDesc,
     pub(super) clear: u32,
 }
 
-impl Manner {
+impl AccessDesc {
     /// Returns the description of a read.
     #[inline]
     pub(super) const fn read(kind: AccessKind) -> Self {

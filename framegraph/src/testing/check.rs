@@ -52,8 +52,8 @@
 //! | end of the frame | contents that must survive must be in `main` |
 //!
 //! Memoryless and inlined resources have no `main`: accessing it is a violation. A plane with load op `DontCare` and
-//! store op `None` is not used by any pass of the step, and memory keeps it (a read-only plane in WebGPU, load op
-//! `NONE` in Vulkan).
+//! store op `None` is not used by any pass of the step, and memory keeps it. It is a read-only plane in WebGPU and has
+//! load op `NONE` in Vulkan.
 //!
 //! A clear of an attachment that inlining replaced has the value declared by the producer. The back end passes it
 //! through the epilogue, like every fragment.
@@ -69,7 +69,6 @@
 
 mod attachments;
 mod barriers;
-mod case;
 mod decisions;
 mod finding;
 mod hazards;
@@ -78,6 +77,7 @@ mod machine;
 mod memory;
 mod reference;
 mod resolves;
+mod rule_input;
 mod run;
 mod stores;
 mod structure;
@@ -93,8 +93,8 @@ use crate::graph::PassFlags;
 use crate::id::PassId;
 use crate::options::Order;
 use crate::plan::{Plan, StepPass};
-use case::Case;
 use finding::Findings;
+use rule_input::RuleInput;
 
 /// Checks that a plan is correct: it does what was declared, and describes itself correctly.
 ///
@@ -127,63 +127,63 @@ pub fn examine(plan: &Plan) -> Report {
     if !findings.is_sound() {
         return findings.into_report();
     }
-    let case = Case::new(plan);
-    culling(&case);
-    order(&case);
-    attachments::attachments(&case);
-    hazards::hazards(&case);
-    let trace = run::run(&case);
-    lifetimes::lifetimes(&case);
-    tenants::tenants(&case);
-    totals::totals(&case);
-    let earlier = tenants::earlier_tenants(&case);
-    barriers::barriers(&case, &earlier);
-    decisions::decisions(&case, &trace, &earlier);
-    case.report.into_report()
+    let ctx = RuleInput::new(plan);
+    culling(&ctx);
+    order(&ctx);
+    attachments::attachments(&ctx);
+    hazards::hazards(&ctx);
+    let trace = run::run(&ctx);
+    lifetimes::lifetimes(&ctx);
+    tenants::tenants(&ctx);
+    totals::totals(&ctx);
+    let earlier = tenants::earlier_tenants(&ctx);
+    barriers::barriers(&ctx, &earlier);
+    decisions::decisions(&ctx, &trace, &earlier);
+    ctx.report.into_report()
 }
 
 /// Checks that needed passes run, and that others do not, unless culling is disabled.
-fn culling(case: &Case<'_>) {
-    let cull = case.plan.options().cull;
-    for pass in case.graph.pass_ids() {
-        let runs = case.position[pass.index()].is_some();
-        let needed = case.reference.needed[pass.index()];
+fn culling(ctx: &RuleInput<'_>) {
+    let cull = ctx.plan.options().cull;
+    for pass in ctx.graph.pass_ids() {
+        let runs = ctx.position[pass.index()].is_some();
+        let needed = ctx.reference.needed[pass.index()];
         let why = "culled, but an exported result or a side effect depends on it";
-        case.report.require(runs || !needed, Rule::Culling, pass, why);
-        case.report.require(runs || cull, Rule::Culling, pass, "culled, but culling is disabled");
+        ctx.report.require(runs || !needed, Rule::Culling, pass, why);
+        ctx.report.require(runs || cull, Rule::Culling, pass, "culled, but culling is disabled");
         if runs && cull && !needed {
             let why = "it runs, but no exported result depends on it";
-            case.report.waste(WasteKind::Pass, pass, why);
+            ctx.report.waste(WasteKind::Pass, pass, why);
         }
-        if let Some(at) = case.position[pass.index()] {
-            averages(case, case.running[at]);
+        if let Some(at) = ctx.position[pass.index()] {
+            averages(ctx, ctx.running[at]);
         }
     }
 }
 
 /// Checks that multisample resolves are dropped only by culling, and performed only if used. The run shows that used
 /// results exist.
-fn averages(case: &Case<'_>, member: StepPass) {
-    let cull = case.plan.options().cull;
-    for (id, access) in case.accesses_of(member.pass).filter(|(_, a)| a.kind == AccessKind::Resolve) {
+fn averages(ctx: &RuleInput<'_>, member: StepPass) {
+    let cull = ctx.plan.options().cull;
+    for (id, access) in ctx.accesses_of(member.pass).filter(|(_, a)| a.kind == AccessKind::Resolve) {
         let place = (member.pass, access.resource);
-        if case.dropped[id] {
+        if ctx.dropped[id] {
             let why = "declared as `resolve`, but not attached as such";
-            case.report.require(cull, Rule::Attachments, place, why);
-        } else if cull && !case.covered(access).any(|part| case.is_needed(member.pass, part)) {
-            case.report.waste(WasteKind::Resolve, place, "it is resolved, but the result is not used");
+            ctx.report.require(cull, Rule::Attachments, place, why);
+        } else if cull && !ctx.covered(access).any(|part| ctx.is_needed(member.pass, part)) {
+            ctx.report.waste(WasteKind::Resolve, place, "it is resolved, but the result is not used");
         }
     }
 }
 
 /// Checks declaration order if requested, and the order of passes with side effects in any case.
-fn order(case: &Case<'_>) {
-    let declared = case.plan.options().order == Order::Declared;
-    let fixed = |p: &&PassId| declared || case.flag(**p, PassFlags::SIDE_EFFECT);
-    let ordered: Vec<_> = case.order.iter().filter(fixed).collect();
+fn order(ctx: &RuleInput<'_>) {
+    let declared = ctx.plan.options().order == Order::Declared;
+    let fixed = |p: &&PassId| declared || ctx.flag(**p, PassFlags::SIDE_EFFECT);
+    let ordered: Vec<_> = ctx.order.iter().filter(fixed).collect();
     for pair in ordered.windows(2) {
-        let name = case.graph.pass_name(*pair[0]);
+        let name = ctx.graph.pass_name(*pair[0]);
         let why = format_args!("it runs after `{name}`, which is declared later");
-        case.report.require(pair[0] < pair[1], Rule::Order, *pair[1], why);
+        ctx.report.require(pair[0] < pair[1], Rule::Order, *pair[1], why);
     }
 }

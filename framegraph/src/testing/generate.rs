@@ -132,7 +132,7 @@ pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
 #[must_use]
 pub fn sampling(graph: &Graph) -> Graph {
     let mut graph = graph.clone();
-    for access in graph.open().0.accesses.iter_mut().filter(|a| a.kind == AccessKind::SamePixel) {
+    for access in graph.tables_mut().0.accesses.iter_mut().filter(|a| a.kind == AccessKind::SamePixel) {
         access.kind = AccessKind::Sampled;
     }
     graph

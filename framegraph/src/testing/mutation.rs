@@ -115,8 +115,8 @@ pub fn excuse(good: &Plan, mutant: &Mutant) -> Option<&'static str> {
             let told = !examine(plan).is_clean();
             (free && told).then_some("any order with correct reads is valid")
         }
-        "barrier.hand_over" => {
-            let named = |p: &Plan| p.resources[p.barriers[*row].hand_over.index()].last;
+        "barrier.aliases" => {
+            let named = |p: &Plan| p.resources[p.barriers[*row].aliases.index()].last;
             let tie = named(good) == named(plan);
             tie.then_some("both resources used the memory until the same step")
         }

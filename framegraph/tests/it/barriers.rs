@@ -27,7 +27,7 @@ fn a_chain_transitions_each_texture_twice() {
     assert_eq!((a[1].from_stages, a[1].to_stages), (Stages::COLOR, Stages::SHADER));
     assert_eq!(a.len(), 2);
     // `two_out` is exported and not aliased; `a` is unused when it is written, but not aliased either.
-    assert!(of(&p, "two_out").iter().all(|b| b.hand_over.is_none()));
+    assert!(of(&p, "two_out").iter().all(|b| b.aliases.is_none()));
 }
 
 #[test]
@@ -47,7 +47,7 @@ fn memory_is_handed_over_after_its_last_use() {
     let p = plan(&g, &explicit());
     // `t0` and `f1` share two slots: `f2` reuses the memory of `t0`, which `f1` sampled in step 1.
     let f2 = of(&p, "f2_out")[0];
-    assert_eq!(f2.hand_over, g.find_resource("t0").unwrap());
+    assert_eq!(f2.aliases, g.find_resource("t0").unwrap());
     assert_eq!((f2.after.index(), f2.before.index(), f2.from), (1, 2, State::Undefined));
     assert_eq!(f2.from_stages, Stages::SHADER);
 }

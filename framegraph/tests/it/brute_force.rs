@@ -42,7 +42,7 @@ fn meet(a: &Item, b: &Item) -> bool {
 
 /// Returns the minimum size over all partitions of the items into slots. Items of a slot have equal shape and disjoint
 /// lifetimes.
-fn least_pool(plan: &Plan, items: &[Item], slots: &mut Vec<Vec<Item>>) -> u64 {
+fn min_pool(plan: &Plan, items: &[Item], slots: &mut Vec<Vec<Item>>) -> u64 {
     let Some((item, rest)) = items.split_first() else {
         return slots.iter().map(|s| s[0].3).sum();
     };
@@ -56,13 +56,13 @@ fn least_pool(plan: &Plan, items: &[Item], slots: &mut Vec<Vec<Item>>) -> u64 {
         })
     };
     slots.push(vec![*item]);
-    let mut least = least_pool(plan, rest, slots);
+    let mut least = min_pool(plan, rest, slots);
     slots.pop();
     for slot in 0..slots.len() {
         let fits = |other: &Item| !meet(item, other) && shape(item.0) == shape(other.0);
         if slots[slot].iter().all(fits) {
             slots[slot].push(*item);
-            least = least.min(least_pool(plan, rest, slots));
+            least = least.min(min_pool(plan, rest, slots));
             slots[slot].pop();
         }
     }
@@ -71,7 +71,7 @@ fn least_pool(plan: &Plan, items: &[Item], slots: &mut Vec<Vec<Item>>) -> u64 {
 
 /// Finds the minimum top over all placements. Sorted by their offsets in an optimal placement, items can be placed as
 /// low as possible one after another without raising the top. So trying every order is sufficient.
-fn least_heap(items: &[Item], align: u64, placed: &mut Vec<(Item, u64)>, best: &mut u64) {
+fn min_heap(items: &[Item], align: u64, placed: &mut Vec<(Item, u64)>, best: &mut u64) {
     let top = placed.iter().map(|(i, at)| at + size(i, align)).max();
     let top = top.unwrap_or(0);
     if top >= *best && !items.is_empty() {
@@ -92,7 +92,7 @@ fn least_heap(items: &[Item], align: u64, placed: &mut Vec<(Item, u64)>, best: &
             at = below + size(other, align);
         }
         placed.push((item, at));
-        least_heap(&rest, align, placed, best);
+        min_heap(&rest, align, placed, best);
         placed.pop();
     }
 }
@@ -107,7 +107,7 @@ fn the_pool_takes_the_least_there_is() {
     let options = Options { cull: false, ..declared() };
     for (seed, graph) in tiny(1500) {
         let plan = compiled(&graph, &Caps::desktop(), &options);
-        let least = least_pool(&plan, &items(&plan), &mut Vec::new());
+        let least = min_pool(&plan, &items(&plan), &mut Vec::new());
         assert_eq!(plan.memory().bytes, least, "seed {seed}");
         assert!(plan.memory().optimal, "seed {seed}");
         shared += usize::from(least < plan.memory().unaliased_bytes);
@@ -124,7 +124,7 @@ fn the_heap_takes_the_least_there_is() {
             let options = Options { alias: Alias::Heap, effort, cull: seed % 2 == 0, ..declared() };
             let plan = compiled(&graph, &caps, &options);
             let mut least = u64::MAX;
-            least_heap(&items(&plan), align, &mut Vec::new(), &mut least);
+            min_heap(&items(&plan), align, &mut Vec::new(), &mut least);
             let memory = plan.memory();
             assert!(memory.lower_bound_bytes <= least, "seed {seed}: {memory:?}, {least}");
             if effort == Effort::Exact || memory.optimal {

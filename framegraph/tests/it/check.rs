@@ -101,7 +101,7 @@ fn a_buffer_that_takes_memory_over_waits_for_it() {
     assert_eq!(placement(&plan, "first"), placement(&plan, "second"));
     let mut of_second = plan.barriers().iter().filter(|b| b.resource == id("second"));
     let first_use = of_second.next().expect("the first use has a barrier");
-    assert_eq!(first_use.hand_over, id("first"));
+    assert_eq!(first_use.aliases, id("first"));
     assert_eq!(first_use.from_stages, Stages::COMPUTE);
 }
 

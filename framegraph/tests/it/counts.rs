@@ -39,8 +39,9 @@ fn prepass_frame(samples: u8, prepass_merges: bool) -> Graph {
 
 #[test]
 fn unmerged_prepass_stores_and_loads_depth() {
-    // prepass: depth clear -> store: 1 clear, 1 store. color: depth load (read-only) -> discarded by its last reader;
-    // hdr clear -> store: 1 load, 1 clear, 1 store, 1 discard. post: screen dont_care -> store: 1 store.
+    // - prepass: depth clear -> store, so 1 clear and 1 store.
+    // - color: depth load (read-only) -> discard; hdr clear -> store, so 1 load, 1 clear, 1 store and 1 discard.
+    // - post: screen dont_care -> store, so 1 store.
     let plan = plan(&prepass_frame(1, false), &Caps::wgpu());
     let c = plan.counts();
     assert_eq!((c.unresolves, c.resolves, c.clears, c.discards, c.multisample_resolves), (1, 3, 2, 1, 0));

@@ -46,7 +46,8 @@ fn a_pass_that_moves_says_behind_which_and_what_for() {
     let plan = plan_with(&interleaved(Entry::Defined), &Caps::wgpu(), &optimized);
     assert_eq!(check(&plan), Ok(()));
     assert_eq!(steps(&plan), [vec!["first", "again"], vec!["between"]]);
-    let moved = |name| sentences(&plan, name).into_iter().find(|s| s.contains(": moved after") || s.contains(": runs after"));
+    let moved =
+        |name| sentences(&plan, name).into_iter().find(|s| s.contains(": moved after") || s.contains(": runs after"));
     assert_eq!(moved("again").as_deref(), Some("pass `again`: moved after `first` to share its step"));
     let bytes = "pass `between`: runs after `again` because the frame needs fewer steps or bytes in this order";
     assert_eq!(moved("between").as_deref(), Some(bytes));

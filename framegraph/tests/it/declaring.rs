@@ -90,7 +90,7 @@ fn a_level_of_one_slice_is_attached_and_the_others_are_written_whole() {
     let z = g.texture("z", TextureDesc { dimension: Dimension::D3, ..depth() });
     let z = g.add_fn("draw", |p| p.depth(z, FAR)).unwrap();
     g.export(z).unwrap();
-    let reason = CompileReason::Shape(ShapeFault::Volume { format: Format::Depth32Float });
+    let reason = CompileReason::Shape(ShapeReason::Volume { format: Format::Depth32Float });
     assert_eq!(errors(&g)[0].reason, reason);
 }
 

@@ -71,8 +71,8 @@ fn notes_are_told() {
     assert_eq!(g.notes().len(), 0);
 }
 
-/// Compares every byte of the text with a plan derived by hand. Depth and hdr share a step; depth is cleared by the
-/// prepass, tested by the scene, and never leaves the tile. 64 × 32 texels: hdr has 16384 bytes, depth 8192.
+/// Compares every byte of the text with a plan derived by hand. Depth and hdr share a step. Depth is cleared by the
+/// prepass, tested by the scene, and never leaves the tile. With 64 × 32 texels, hdr has 16384 bytes and depth 8192.
 #[test]
 fn text_is_the_golden_format() {
     let expected = "\

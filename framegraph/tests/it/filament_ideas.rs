@@ -321,34 +321,34 @@ fn what_cannot_be_forwarded_is_refused_and_stays() {
         DeclareReason::Forward(fault) => fault,
         reason => panic!("{reason:?}"),
     };
-    assert_eq!(fault(&mut g, screen, other.into()), ForwardFault::NotTransient);
-    assert_eq!(fault(&mut g, other, screen.into()), ForwardFault::Unwritten);
+    assert_eq!(fault(&mut g, screen, other.into()), ForwardReason::NotTransient);
+    assert_eq!(fault(&mut g, other, screen.into()), ForwardReason::Unwritten);
     let drawn = draw(&mut g, "draw", color(Format::Rgba8UnormSrgb));
-    assert_eq!(fault(&mut g, drawn, drawn.into()), ForwardFault::NotTransient);
+    assert_eq!(fault(&mut g, drawn, drawn.into()), ForwardReason::NotTransient);
     let later = g.texture("later", color(Format::Rgba8UnormSrgb));
-    assert_eq!(fault(&mut g, drawn, later.into()), ForwardFault::TargetLater);
-    assert_eq!(fault(&mut g, drawn, screen.mip(1)), ForwardFault::Parts);
+    assert_eq!(fault(&mut g, drawn, later.into()), ForwardReason::TargetLater);
+    assert_eq!(fault(&mut g, drawn, screen.mip(1)), ForwardReason::Parts);
     let chain = g.texture("chain", color(Format::Rgba8UnormSrgb).mips(2));
     let into_chain = draw(&mut g, "second", color(Format::Rgba8UnormSrgb));
-    assert_eq!(fault(&mut g, into_chain, chain.into()), ForwardFault::Parts);
+    assert_eq!(fault(&mut g, into_chain, chain.into()), ForwardReason::Parts);
     // Only one of several slices would be drawn, but all would count as cleared.
     let volume = |layers| TextureDesc { dimension: Dimension::D3, ..sized(8, 8) }.layers(layers);
     let (deep, flat) = (g.texture("deep", volume(4).mips(3)), g.texture("flat", volume(1)));
     let slice = draw(&mut g, "slice", volume(1));
-    assert_eq!(fault(&mut g, slice, deep.mip(0)), ForwardFault::Slices);
-    assert_eq!(fault(&mut g, slice, deep.mip(1)), ForwardFault::Slices);
+    assert_eq!(fault(&mut g, slice, deep.mip(0)), ForwardReason::Slices);
+    assert_eq!(fault(&mut g, slice, deep.mip(1)), ForwardReason::Slices);
     let slice = g.forward(slice, deep.mip(2)).unwrap();
     let last = g.accesses().last().unwrap();
     assert_eq!((last.resource, last.range.mip), (g.find_resource("deep").unwrap(), 2));
     let _ = (slice, flat);
     let stored = g.texture("stored", hdr());
     let stored = g.add_fn("store", |p| p.storage_write(stored, Intent::Overwrite)).unwrap();
-    let srgb = ForwardFault::Format { format: Format::Rgba8UnormSrgb, access: AccessKind::StorageWrite };
+    let srgb = ForwardReason::Format { format: Format::Rgba8UnormSrgb, access: AccessKind::StorageWrite };
     assert_eq!(fault(&mut g, stored, screen.into()), srgb);
     // A use in between: a pass that draws on the screen while the image is computed would be overwritten.
     let screen = g.add_fn("between", |p| p.color(screen, BLACK)).unwrap();
     let drawn = g.add_fn("on", |p| p.color(drawn, Intent::Modify)).unwrap();
-    assert!(matches!(fault(&mut g, drawn, screen.into()), ForwardFault::TargetLater | ForwardFault::Touched));
+    assert!(matches!(fault(&mut g, drawn, screen.into()), ForwardReason::TargetLater | ForwardReason::Touched));
     assert!(g.forward_of(g.find_resource("draw out").unwrap()).is_none());
     // The forwarded texture has no valid handle.
     let mut g = Graph::new();

@@ -11,7 +11,7 @@ use std::fmt;
 #[derive(Clone, PartialEq, thiserror::Error)]
 pub enum InspectError {
     /// No such resource.
-    #[error("there is no texture `{shown}`; the frame has {}", listed(.known.iter().map(|known| format!("`{}`", plain::name(known)))), shown = plain::name(.name))]
+    #[error("there is no texture `{shown}`; the frame has {}", listed(.known.iter().map(|known| format!("`{}`", sanitize::name(known)))), shown = sanitize::name(.name))]
     NoTexture {
         /// What was asked for.
         name: String,
@@ -19,13 +19,13 @@ pub enum InspectError {
         known: Vec<String>,
     },
     /// The name is that of a buffer.
-    #[error("`{shown}` is a buffer, which has no picture; read it with `read_buffer`", shown = plain::name(.name))]
+    #[error("`{shown}` is a buffer, which has no picture; read it with `read_buffer`", shown = sanitize::name(.name))]
     Buffer {
         /// What was asked for.
         name: String,
     },
     /// No such version.
-    #[error("`{shown}` has no version {}; it has {}", asked_version(.asked, *.steps), listed(.known.iter().map(VersionName::to_string)), shown = plain::name(.name))]
+    #[error("`{shown}` has no version {}; it has {}", asked_version(.asked, *.steps), listed(.known.iter().map(VersionName::to_string)), shown = sanitize::name(.name))]
     NoVersion {
         /// The inspected texture.
         name: String,
@@ -37,7 +37,7 @@ pub enum InspectError {
         known: Vec<VersionName>,
     },
     /// No such level, layer, plane or sample.
-    #[error("`{shown}` has no {part}", shown = plain::name(.name))]
+    #[error("`{shown}` has no {part}", shown = sanitize::name(.name))]
     NoPart {
         /// The inspected texture.
         name: String,
@@ -47,7 +47,7 @@ pub enum InspectError {
     /// An import that the frame writes over what it holds, and of which no copy can be made.
     #[error(
         "looking at `{shown}` runs passes that write the import `{import}`, and no copy of that can be made; create it with \
-         COPY_SRC", shown = plain::name(.name))]
+         COPY_SRC", shown = sanitize::name(.name))]
     Import {
         /// The texture asked for.
         name: String,
@@ -55,7 +55,7 @@ pub enum InspectError {
         import: Named<ResourceId>,
     },
     /// The inspection's own pass was refused.
-    #[error("`{shown}` cannot be read: {error}", shown = plain::name(.name))]
+    #[error("`{shown}` cannot be read: {error}", shown = sanitize::name(.name))]
     Declare {
         /// The inspected texture.
         name: String,
@@ -63,7 +63,7 @@ pub enum InspectError {
         error: Box<DeclareError>,
     },
     /// The inspected frame does not compile: the part asked for was not written yet, mostly.
-    #[error("`{shown}` cannot be looked at there: {error}", shown = plain::name(.name))]
+    #[error("`{shown}` cannot be looked at there: {error}", shown = sanitize::name(.name))]
     Compile {
         /// The inspected texture.
         name: String,
@@ -71,7 +71,7 @@ pub enum InspectError {
         error: Box<CompileError>,
     },
     /// The inspected frame could not be executed.
-    #[error("looking at `{shown}`: {error}", shown = plain::name(.name))]
+    #[error("looking at `{shown}`: {error}", shown = sanitize::name(.name))]
     Execute {
         /// The inspected texture.
         name: String,
@@ -79,7 +79,7 @@ pub enum InspectError {
         error: Box<ExecuteError>,
     },
     /// The result could not be read back.
-    #[error("looking at `{shown}`: {error}", shown = plain::name(.name))]
+    #[error("looking at `{shown}`: {error}", shown = sanitize::name(.name))]
     Readback {
         /// The inspected texture.
         name: String,
@@ -149,7 +149,7 @@ pub struct VersionName {
 impl fmt::Display for VersionName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.writer {
-            Some(writer) => write!(f, "v{} (`{}`)", self.number, plain::name(writer)),
+            Some(writer) => write!(f, "v{} (`{}`)", self.number, sanitize::name(writer)),
             None => write!(f, "v{} (on entry)", self.number),
         }
     }
@@ -158,7 +158,7 @@ impl fmt::Display for VersionName {
 fn asked_version(asked: &VersionSelector, steps: usize) -> String {
     match asked {
         VersionSelector::Newest => "that a pass wrote".to_owned(),
-        VersionSelector::After(pass) => format!("of a pass `{}`", plain::name(pass)),
+        VersionSelector::After(pass) => format!("of a pass `{}`", sanitize::name(pass)),
         VersionSelector::Number(number) => format!("v{number}"),
         VersionSelector::Step(step) => format!("at step {step} of {steps}"),
     }

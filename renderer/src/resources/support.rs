@@ -12,7 +12,7 @@ use wgpu::{AdapterInfo, Features, TextureFormatFeatures, TextureUsages};
 
 /// The device offers no such texture or buffer.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{}` {}", plain::name(.name), .reason.sentence(&describe(.adapter)))]
+#[error("`{}` {}", sanitize::name(.name), .reason.sentence(&describe(.adapter)))]
 pub struct Unsupported {
     /// Full name of the resource.
     pub name: String,

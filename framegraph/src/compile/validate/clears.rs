@@ -29,11 +29,11 @@ fn holds(format: Option<Format>, value: ClearValue) -> bool {
             format.is_depth_stencil() && (0.0..=1.0).contains(&depth) && (stencil <= 255 || !format.has_stencil())
         }
         (ClearValue::Color(color), Some(format)) => {
-            let Some(Channels { count, least, most, whole, infinite }) = channels(format) else {
+            let Some(Channels { count, min, max, whole, infinite }) = channels(format) else {
                 return false;
             };
-            let fits = |c: f64| (least..=most).contains(&c) && (!whole || c.fract() == 0.0);
-            let endless = |c: f64| infinite && c.is_infinite() && (c > 0.0 || least < 0.0);
+            let fits = |c: f64| (min..=max).contains(&c) && (!whole || c.fract() == 0.0);
+            let endless = |c: f64| infinite && c.is_infinite() && (c > 0.0 || min < 0.0);
             let alpha = |at: usize, c: f64| format != Format::Rgb10a2Uint || at != 3 || c <= 3.0;
             let used = color.iter().take(count).enumerate();
             !color.iter().any(|c| c.is_nan())
@@ -45,8 +45,8 @@ fn holds(format: Option<Format>, value: ClearValue) -> bool {
 /// Value range of the channels of a color format.
 struct Channels {
     count: usize,
-    least: f64,
-    most: f64,
+    min: f64,
+    max: f64,
     /// Integers only.
     whole: bool,
     /// Includes infinities.
@@ -56,14 +56,13 @@ struct Channels {
 /// Returns the channels of an uncompressed color format.
 fn channels(format: Format) -> Option<Channels> {
     use Format::*;
-    let normalized = |count, least| Channels { count, least, most: 1.0, whole: false, infinite: false };
-    let unsigned =
-        |count, bits| Channels { count, least: 0.0, most: f64::exp2(bits) - 1.0, whole: true, infinite: false };
+    let normalized = |count, min| Channels { count, min, max: 1.0, whole: false, infinite: false };
+    let unsigned = |count, bits| Channels { count, min: 0.0, max: f64::exp2(bits) - 1.0, whole: true, infinite: false };
     let signed = |count, bits: f64| {
         let half = f64::exp2(bits - 1.0);
-        Channels { count, least: -half, most: half - 1.0, whole: true, infinite: false }
+        Channels { count, min: -half, max: half - 1.0, whole: true, infinite: false }
     };
-    let float = |count, most: f64| Channels { count, least: -most, most, whole: false, infinite: true };
+    let float = |count, max: f64| Channels { count, min: -max, max, whole: false, infinite: true };
     // Maxima of half and single precision, of unsigned 11- and 10-bit floats, and of shared-exponent formats.
     const HALF: f64 = 65504.0;
     const SINGLE: f64 = f32::MAX as f64;
@@ -101,8 +100,8 @@ fn channels(format: Format) -> Option<Channels> {
         R32Float => float(1, SINGLE),
         Rg32Float => float(2, SINGLE),
         Rgba32Float => float(4, SINGLE),
-        Rg11b10Ufloat => Channels { least: 0.0, ..float(3, SMALL) },
-        Rgb9e5Ufloat => Channels { least: 0.0, infinite: false, ..float(3, SHARED) },
+        Rg11b10Ufloat => Channels { min: 0.0, ..float(3, SMALL) },
+        Rgb9e5Ufloat => Channels { min: 0.0, infinite: false, ..float(3, SHARED) },
         _ => return None,
     })
 }

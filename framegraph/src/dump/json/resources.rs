@@ -4,7 +4,7 @@ use super::names::Names;
 use super::value::{Json, field, object};
 use crate::access::Usage;
 use crate::barrier::{Stages, State};
-use crate::dump::words::{held, offsets, shape};
+use crate::dump::describe::{held, offsets, shape};
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Placement, Plan, Planned};
 use crate::resource::{Desc, Entry, Exit, Kind};

@@ -3,8 +3,8 @@
 use super::names::Names;
 use super::value::{Json, field, object};
 use crate::decision::Subject;
+use crate::dump::describe::part;
 use crate::dump::reasons::Reasons;
-use crate::dump::words::part;
 use crate::format::Aspect;
 use crate::id::{PassId, StepId};
 use crate::plan::{Attachment, Join, Plan, Role};

@@ -1,6 +1,6 @@
 //! Shapes and text as SVG elements, and their bounding box.
 
-use crate::plain::plain;
+use crate::sanitize::plain;
 use std::fmt::Write;
 
 /// Margin around the image, in user units (pixels at 100 %).

@@ -3,11 +3,11 @@
 use super::canvas::{Canvas, Ink, MARGIN, NAMES, STEP, shortened, step_x};
 use crate::access::AccessKind;
 use crate::decision::Subject;
+use crate::dump::describe::{bytes, place, shape};
 use crate::dump::reasons::Reasons;
-use crate::dump::words::{bytes, place, shape};
 use crate::id::{ResourceId, StepId};
-use crate::plain::plain;
 use crate::plan::{Attachment, Join, LoadOp, Placement, Plan, StoreOp};
+use crate::sanitize::plain;
 
 /// Height of a row.
 const ROW: f64 = 20.0;

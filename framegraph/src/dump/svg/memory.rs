@@ -1,10 +1,10 @@
 //! The map of shared memory: offsets upwards, steps across, each resource a box over its lifetime.
 
 use super::canvas::{Canvas, Ink, MARGIN, NAMES, STEP, shortened, step_x};
-use crate::dump::words::{bytes, held, offsets};
+use crate::dump::describe::{bytes, held, offsets};
 use crate::id::ResourceId;
-use crate::plain::plain;
 use crate::plan::{Placement, Plan};
+use crate::sanitize::plain;
 
 /// Height of the map.
 const HEIGHT: f64 = 360.0;

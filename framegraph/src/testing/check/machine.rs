@@ -2,25 +2,25 @@
 //!
 //! The documentation of the module `check` defines the lattice and the transfer functions.
 
-use super::case::{Case, Touch};
 use super::finding::{Place, Rule, WasteKind};
 use super::memory::Memory;
 use super::reference::{Cause, Value, Wanted};
+use super::rule_input::{PlannedAccess, RuleInput};
 use crate::id::StepId;
 use crate::plan::{StepPass, StoreOp};
 
 /// The state of a run.
 pub(super) struct Machine<'c, 'p> {
-    pub(super) case: &'c Case<'p>,
+    pub(super) ctx: &'c RuleInput<'p>,
     pub(super) memory: Memory,
     pub(super) loaded: Vec<(usize, Value)>,
 }
 
 impl Machine<'_, '_> {
     /// Performs the reads of a pass from main memory for which `chosen` is true.
-    pub(super) fn reads(&mut self, step: StepId, member: StepPass, chosen: impl Fn(&Touch) -> bool) {
-        let case = self.case;
-        for touch in case.touches(member) {
+    pub(super) fn reads(&mut self, step: StepId, member: StepPass, chosen: impl Fn(&PlannedAccess) -> bool) {
+        let ctx = self.ctx;
+        for touch in ctx.planned_accesses(member) {
             let elsewhere = touch.access.kind.is_attachment() || touch.in_shader;
             if elsewhere || !touch.access.mode.needs_contents() || !chosen(&touch) {
                 continue;
@@ -29,10 +29,10 @@ impl Machine<'_, '_> {
             let resource = touch.access.resource;
             let place = (step, member.pass, resource);
             if !self.memory.exists(resource) {
-                case.report.violation(Rule::NoMemory, place, "it is read, but has no memory");
+                ctx.report.violation(Rule::NoMemory, place, "it is read, but has no memory");
                 continue;
             }
-            for read in case.reads(touch.id) {
+            for read in ctx.reads(touch.id) {
                 let found = self.memory.value(resource, read.part);
                 self.compare(found, read.value, place.into(), &touch, read.part);
                 let source = self.memory.source(read.part);
@@ -43,43 +43,43 @@ impl Machine<'_, '_> {
 
     /// Performs the writes of a pass to main memory.
     pub(super) fn writes(&mut self, step: StepId, member: StepPass) {
-        let case = self.case;
-        let touches = case.touches(member).map(|t| t.access);
+        let ctx = self.ctx;
+        let touches = ctx.planned_accesses(member).map(|t| t.access);
         for access in touches.filter(|a| !a.kind.is_attachment() && a.mode.writes()) {
             let resource = access.resource;
             if !self.memory.exists(resource) {
                 let place = (step, member.pass, resource);
-                case.report.violation(Rule::NoMemory, place, "it is written, but has no memory");
+                ctx.report.violation(Rule::NoMemory, place, "it is written, but has no memory");
                 continue;
             }
             if !access.mode.needs_contents() {
-                for part in case.covered(&access) {
+                for part in ctx.covered(&access) {
                     self.memory.overwritten(self.memory.source(part));
                 }
             }
-            for part in case.covered(&access) {
+            for part in ctx.covered(&access) {
                 self.memory.set(part, Value::Written(member.pass), None);
             }
         }
     }
 
     /// Compares the value of a read with the expected one.
-    pub(super) fn compare(&self, found: Value, expected: Value, place: Place, touch: &Touch, part: usize) {
+    pub(super) fn compare(&self, found: Value, expected: Value, place: Place, touch: &PlannedAccess, part: usize) {
         if found == expected {
             return;
         }
-        let case = self.case;
+        let ctx = self.ctx;
         let own = touch.access.resource;
         let word = touch.access.kind.word();
-        let (finds, should) = (found.sentence(case.graph), expected.sentence(case.graph));
+        let (finds, should) = (found.sentence(ctx.graph), expected.sentence(ctx.graph));
         let rule = if found.is_garbage() { Rule::Garbage } else { Rule::Version };
-        let place = (place, own, case.parts.name(own, part));
-        case.report.violation(rule, place, format_args!("`{word}` finds {finds}, expected {should}"));
+        let place = (place, own, ctx.parts.name(own, part));
+        ctx.report.violation(rule, place, format_args!("`{word}` finds {finds}, expected {should}"));
     }
 
     /// Checks the contents that must survive the frame.
     pub(super) fn exit(&mut self) {
-        let Case { graph, parts, reference, report, .. } = self.case;
+        let RuleInput { graph, parts, reference, report, .. } = self.ctx;
         for (resource, part) in graph.resource_ids().flat_map(|r| parts.all(r).map(move |part| (r, part))) {
             let expected = reference.exit[part];
             let Some(why) = reference.wanted[part] else {
@@ -101,7 +101,7 @@ impl Machine<'_, '_> {
 
     /// Reports stores that no pass reads, and contents kept or stored again without a use.
     pub(super) fn wasted(&self) {
-        let plan = self.case.plan;
+        let plan = self.ctx.plan;
         for record in &self.memory.records {
             let (kind, what) = match record.op {
                 _ if !record.readers.is_empty() || record.survived || record.bound => continue,
@@ -109,10 +109,10 @@ impl Machine<'_, '_> {
                 StoreOp::Store => (WasteKind::Store, "stored"),
                 StoreOp::None => (WasteKind::Discard, "kept in memory"),
             };
-            let step = plan.step_ids().find(|s| self.case.step(*s).attachments.range().contains(&record.attachment));
+            let step = plan.step_ids().find(|s| self.ctx.step(*s).attachments.range().contains(&record.attachment));
             let place = (step.unwrap_or_default(), plan.attachments()[record.attachment].resource);
             let plane = record.plane;
-            self.case.report.waste(kind, place, format_args!("plane {plane} is {what}, but no pass reads it there"));
+            self.ctx.report.waste(kind, place, format_args!("plane {plane} is {what}, but no pass reads it there"));
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Resolves: which of them the plan performs, while storing or with full-screen passes, and if they match the
 //! declaration.
 
-use super::case::{Case, Touch};
 use super::finding::Rule;
 use super::reference::{Read, Value};
+use super::rule_input::{PlannedAccess, RuleInput};
 use crate::access::{Access, AccessKind, Mode, Range};
 use crate::format::{Aspect, Format};
 use crate::id::{PassId, StepId};
@@ -24,7 +24,7 @@ pub(super) struct FullScreen {
     pub(super) target: Access,
 }
 
-impl Case<'_> {
+impl RuleInput<'_> {
     /// Fills `dropped` from the attachments of the plan. The last pass of the step that declares a resolve performs it.
     pub(super) fn find_dropped(&mut self) {
         for step in self.plan.step_ids() {
@@ -84,8 +84,8 @@ impl Case<'_> {
     }
 
     /// Returns the attachment access whose samples a resolve of the same pass reads.
-    pub(super) fn averaged(&self, member: StepPass, resolve: &Touch) -> Option<Touch> {
-        self.touches(member).find(|t| attaches_samples(&t.access, &resolve.access))
+    pub(super) fn averaged(&self, member: StepPass, resolve: &PlannedAccess) -> Option<PlannedAccess> {
+        self.planned_accesses(member).find(|t| attaches_samples(&t.access, &resolve.access))
     }
 
     /// Returns `true` if a full-screen pass performs the resolve with this index.
@@ -117,69 +117,69 @@ pub(super) const fn takes_samples(target: Role, samples: Role) -> bool {
 }
 
 /// Checks that each target receives the declared samples with the declared mode, and that the device supports it.
-pub(super) fn resolves(case: &Case<'_>, step: StepId) {
-    for &member in case.plan.passes_of(step) {
-        for touch in case.touches(member).filter(|t| t.access.kind == AccessKind::Resolve) {
+pub(super) fn resolves(ctx: &RuleInput<'_>, step: StepId) {
+    for &member in ctx.plan.passes_of(step) {
+        for touch in ctx.planned_accesses(member).filter(|t| t.access.kind == AccessKind::Resolve) {
             let place = (step, member.pass, touch.resource);
-            let target = case.attachment(step, AccessKind::Resolve, touch.resource, touch.range);
-            let samples = case.averaged(member, &touch);
-            let samples = samples.and_then(|t| case.attachment(step, t.access.kind, t.resource, t.range));
+            let target = ctx.attachment(step, AccessKind::Resolve, touch.resource, touch.range);
+            let samples = ctx.averaged(member, &touch);
+            let samples = samples.and_then(|t| ctx.attachment(step, t.access.kind, t.resource, t.range));
             let (Some((_, target)), Some((_, samples))) = (target, samples) else {
-                case.report.violation(Rule::Resolve, place, "its source is not attached");
+                ctx.report.violation(Rule::Resolve, place, "its source is not attached");
                 continue;
             };
             let takes = takes_samples(target.role, samples.role);
             let why = format_args!("{:?} does not receive the samples of {:?}", target.role, samples.role);
-            case.report.require(takes, Rule::Resolve, place, why);
+            ctx.report.require(takes, Rule::Resolve, place, why);
             if let Role::ResolveTarget(_, mode) | Role::ResolveDepth(mode) = target.role {
-                case.report.equal(mode, touch.access.resolve, Rule::Resolve, place, "its mode");
+                ctx.report.equal(mode, touch.access.resolve, Rule::Resolve, place, "its mode");
             }
-            let seen = |a: &Attachment| a.view.or(case.format(a.resource));
-            fits(case, seen(target), seen(samples), place);
-            case.report.require(
-                in_store(case, &touch.access),
+            let seen = |a: &Attachment| a.view.or(ctx.format(a.resource));
+            fits(ctx, seen(target), seen(samples), place);
+            ctx.report.require(
+                in_store(ctx, &touch.access),
                 Rule::Resolve,
                 place,
                 "the device cannot resolve it while storing",
             );
         }
         if member.join == Join::Resolve {
-            full_screen(case, step, member);
+            full_screen(ctx, step, member);
         }
     }
 }
 
 /// Checks that a full-screen resolve step performs only resolves that the device cannot perform while storing.
-fn full_screen(case: &Case<'_>, step: StepId, member: StepPass) {
+fn full_screen(ctx: &RuleInput<'_>, step: StepId, member: StepPass) {
     let mut made = 0;
-    for resolve in case.full_screen.iter().filter(|m| m.pass == member.pass) {
+    for resolve in ctx.full_screen.iter().filter(|m| m.pass == member.pass) {
         let (samples, target) = (resolve.samples, resolve.target);
         let place = (step, member.pass, target.resource);
-        let seen = |a: Access| a.range.view.or(case.format(a.resource));
-        fits(case, seen(target), seen(samples), place);
-        let declared = &case.graph.accesses()[resolve.id];
-        case.report.require(!in_store(case, declared), Rule::Resolve, place, "the device can resolve it while storing");
+        let seen = |a: Access| a.range.view.or(ctx.format(a.resource));
+        fits(ctx, seen(target), seen(samples), place);
+        let declared = &ctx.graph.accesses()[resolve.id];
+        ctx.report.require(!in_store(ctx, declared), Rule::Resolve, place, "the device can resolve it while storing");
         made += 1;
     }
-    let rows = case.plan.attachments_of(step).len();
-    case.report.equal(rows, made, Rule::Resolve, (step, member.pass), "its targets");
+    let rows = ctx.plan.attachments_of(step).len();
+    ctx.report.equal(rows, made, Rule::Resolve, (step, member.pass), "its targets");
 }
 
 /// Checks that a target has the format of its source, or of its depth plane.
-fn fits(case: &Case<'_>, target: Option<Format>, samples: Option<Format>, place: impl Into<super::finding::Place>) {
+fn fits(ctx: &RuleInput<'_>, target: Option<Format>, samples: Option<Format>, place: impl Into<super::finding::Place>) {
     let samples = samples.map(|format| match format {
         Format::Depth24PlusStencil8 => Format::Depth24Plus,
         Format::Depth32FloatStencil8 => Format::Depth32Float,
         other => other,
     });
-    case.report.equal(target, samples, Rule::Resolve, place, "its format");
+    ctx.report.equal(target, samples, Rule::Resolve, place, "its format");
 }
 
 /// Returns `true` if the device performs a resolve while storing.
-pub(super) fn in_store(case: &Case<'_>, resolve: &Access) -> bool {
-    let caps = case.plan.caps();
+pub(super) fn in_store(ctx: &RuleInput<'_>, resolve: &Access) -> bool {
+    let caps = ctx.plan.caps();
     let modes = if resolve.slot == Access::DEPTH { caps.depth_resolves } else { caps.color_resolves };
     let apart = resolve.resolve == ResolveMode::Average
-        && case.texture(resolve.resource).is_some_and(|t| caps.not_averaged.contains(&t.format));
+        && ctx.texture(resolve.resource).is_some_and(|t| caps.not_averaged.contains(&t.format));
     modes.has(resolve.resolve) && !apart
 }

@@ -1,9 +1,9 @@
 //! Runs a plan on symbolic values.
 
-use super::case::Case;
 use super::machine::Machine;
 use super::memory::{Memory, StoreRecord};
 use super::reference::Value;
+use super::rule_input::RuleInput;
 use super::stores;
 use super::tile::{self, Tile};
 
@@ -16,16 +16,16 @@ pub(super) struct Trace {
 }
 
 /// Runs the plan from the start to the end of the frame.
-pub(super) fn run(case: &Case<'_>) -> Trace {
-    let mut machine = Machine { case, memory: Memory::on_entry(case.plan, &case.parts), loaded: Vec::new() };
-    let mut tile = Tile::new(case.parts.total());
-    for step in case.plan.step_ids() {
-        if case.is_raster(step) {
+pub(super) fn run(ctx: &RuleInput<'_>) -> Trace {
+    let mut machine = Machine { ctx, memory: Memory::on_entry(ctx.plan, &ctx.parts), loaded: Vec::new() };
+    let mut tile = Tile::new(ctx.parts.total());
+    for step in ctx.plan.step_ids() {
+        if ctx.is_raster(step) {
             tile::raster(&mut machine, &mut tile, step);
             stores::store(&mut machine, &mut tile, step);
             tile.close();
         } else {
-            for member in case.plan.passes_of(step) {
+            for member in ctx.plan.passes_of(step) {
                 machine.reads(step, *member, |_| true);
                 machine.writes(step, *member);
             }

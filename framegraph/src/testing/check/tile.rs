@@ -1,10 +1,10 @@
 //! Tile memory: runs a raster step from its load operations through its passes. Store operations are in `stores`.
 
-use super::case::{Case, Touch};
 use super::finding::Rule;
 use super::machine::Machine;
 use super::memory::Source;
 use super::reference::{Cause, Value};
+use super::rule_input::{PlannedAccess, RuleInput};
 use crate::access::{AccessKind, Mode};
 use crate::id::{PassId, StepId};
 use crate::plan::{Attachment, Join, LoadOp, StepPass, StoreOp};
@@ -61,33 +61,33 @@ pub(super) const fn ops(attachment: &Attachment, plane: u32) -> (LoadOp, StoreOp
 
 /// Runs one raster step up to its store operations.
 pub(super) fn raster(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
-    let case = machine.case;
+    let ctx = machine.ctx;
     load(machine, tile, step);
-    for &member in case.plan.passes_of(step) {
+    for &member in ctx.plan.passes_of(step) {
         draw(machine, tile, step, member);
     }
     for (pass, samples, value) in std::mem::take(&mut tile.resolves) {
         let unchanged = tile.cell(samples).is_some_and(|c| c.value == value);
         let why = "the samples changed after the pass that resolves them";
-        case.report.require(unchanged, Rule::Resolve, (step, pass), why);
+        ctx.report.require(unchanged, Rule::Resolve, (step, pass), why);
     }
 }
 
 /// Performs the load operations.
 fn load(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
-    let case = machine.case;
-    for (index, attachment) in case.attachments(step) {
+    let ctx = machine.ctx;
+    for (index, attachment) in ctx.attachments(step) {
         let resource = attachment.resource;
-        for part in case.attached(attachment) {
+        for part in ctx.attached(attachment) {
             if tile.of_part[part].is_some() {
                 continue; // overlapping attachments are reported elsewhere
             }
-            let plane = case.parts.name(resource, part).plane;
+            let plane = ctx.parts.name(resource, part).plane;
             let source = machine.memory.source(part);
             let value = match ops(attachment, plane).0 {
                 LoadOp::Load => {
                     let exists = machine.memory.exists(resource);
-                    case.report.require(exists, Rule::NoMemory, (step, resource), "it is loaded, but has no memory");
+                    ctx.report.require(exists, Rule::NoMemory, (step, resource), "it is loaded, but has no memory");
                     let value = machine.memory.value(resource, part);
                     machine.loaded.push((index, value));
                     value
@@ -105,16 +105,16 @@ fn load(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
 /// Runs one raster pass: first its reads, then its writes. An inlined pass runs inside of the shader that draws its
 /// input, so its output replaces the input in the tile.
 fn draw(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass) {
-    let case = machine.case;
+    let ctx = machine.ctx;
     let inlined = member.join == Join::Inlined;
-    let in_tile = |t: &Touch| {
-        if inlined { t.in_shader } else { t.access.kind.is_attachment() || case.in_tile(step, member, t) }
+    let in_tile = |t: &PlannedAccess| {
+        if inlined { t.in_shader } else { t.access.kind.is_attachment() || ctx.in_tile(step, member, t) }
     };
     machine.reads(step, member, |t| inlined || !in_tile(t));
-    for touch in case.touches(member).filter(|t| in_tile(t) && !(inlined && t.access.mode.writes())) {
+    for touch in ctx.planned_accesses(member).filter(|t| in_tile(t) && !(inlined && t.access.mode.writes())) {
         consume(machine, tile, step, member.pass, &touch);
     }
-    for touch in case.touches(member).filter(|t| in_tile(t) && t.access.mode.writes()) {
+    for touch in ctx.planned_accesses(member).filter(|t| in_tile(t) && t.access.mode.writes()) {
         produce(machine, tile, step, member, &touch);
     }
     if !inlined {
@@ -123,13 +123,13 @@ fn draw(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, member: St
 }
 
 /// Checks the values that a pass reads from the tile.
-fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: PassId, touch: &Touch) {
-    let case = machine.case;
+fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: PassId, touch: &PlannedAccess) {
+    let ctx = machine.ctx;
     let access = touch.access;
     let place = (step, pass, access.resource);
-    let in_vain = case.reference.in_vain[touch.id];
-    for (at, part) in case.parts.covered(touch.resource, touch.range).enumerate() {
-        let read = case.reads(touch.id).get(at);
+    let in_vain = ctx.reference.in_vain[touch.id];
+    for (at, part) in ctx.parts.covered(touch.resource, touch.range).enumerate() {
+        let read = ctx.reads(touch.id).get(at);
         let Some(cell) = tile.cell(part) else {
             if let Some(read) = read.filter(|_| access.mode.needs_contents()) {
                 let nothing = Value::Garbage(Cause::NotAttached);
@@ -140,8 +140,8 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
         cell.touched = true;
         let found = cell.value;
         let refuse = |should: &str| {
-            let why = format_args!("the tile contains {}, expected {should}", found.sentence(case.graph));
-            case.report.violation(Rule::ClearValue, place, why);
+            let why = format_args!("the tile contains {}, expected {should}", found.sentence(ctx.graph));
+            ctx.report.violation(Rule::ClearValue, place, why);
         };
         match access.mode {
             Mode::Read | Mode::Modify if in_vain => {
@@ -165,13 +165,13 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
                 }
             }
             Mode::Clear => {
-                let value = |index: u32| case.graph.clears().get(index as usize);
+                let value = |index: u32| ctx.graph.clears().get(index as usize);
                 let same = match cell.value {
                     Value::Cleared(found) => value(found).is_some() && value(found) == value(access.clear),
                     _ => false,
                 };
                 if !same {
-                    refuse(&Value::Cleared(access.clear).sentence(case.graph));
+                    refuse(&Value::Cleared(access.clear).sentence(ctx.graph));
                 }
                 cell.used |= cell.initial;
             }
@@ -184,33 +184,33 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
 }
 
 /// Sets the values that a pass leaves in the tile.
-fn produce(machine: &Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass, touch: &Touch) {
-    let case = machine.case;
+fn produce(machine: &Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass, touch: &PlannedAccess) {
+    let ctx = machine.ctx;
     if touch.access.kind == AccessKind::Resolve {
-        for part in averaged_parts(case, step, member, touch) {
+        for part in averaged_parts(ctx, step, member, touch) {
             let value = tile.cell(part).map_or(Value::Garbage(Cause::NotAttached), |cell| cell.value);
             tile.resolves.push((member.pass, part, value));
         }
     }
-    for part in case.parts.covered(touch.resource, touch.range) {
+    for part in ctx.parts.covered(touch.resource, touch.range) {
         if let Some(cell) = tile.cell(part) {
             cell.value = Value::Written(member.pass);
             (cell.initial, cell.written) = (false, true);
         } else {
             let place = (step, member.pass, touch.access.resource);
-            case.report.violation(Rule::Attachments, place, "it is drawn into, but not attached");
+            ctx.report.violation(Rule::Attachments, place, "it is drawn into, but not attached");
         }
     }
 }
 
 /// Returns the parts of the source of a resolve, without stencil. The source must be attached in the plan.
-fn averaged_parts(case: &Case<'_>, step: StepId, member: StepPass, resolve: &Touch) -> Vec<usize> {
-    let averaged = case.averaged(member, resolve);
+fn averaged_parts(ctx: &RuleInput<'_>, step: StepId, member: StepPass, resolve: &PlannedAccess) -> Vec<usize> {
+    let averaged = ctx.averaged(member, resolve);
     averaged
-        .filter(|t| case.attachment(step, t.access.kind, t.resource, t.range).is_some())
+        .filter(|t| ctx.attachment(step, t.access.kind, t.resource, t.range).is_some())
         .map(|t| {
-            let parts = case.parts.covered(t.resource, t.range);
-            parts.filter(|part| case.parts.name(t.resource, *part).plane == 0).collect()
+            let parts = ctx.parts.covered(t.resource, t.range);
+            parts.filter(|part| ctx.parts.name(t.resource, *part).plane == 0).collect()
         })
         .unwrap_or_default()
 }

@@ -138,8 +138,8 @@ pub(super) fn barriers(m: &mut Mutator<'_>) {
             }
         }
         for resource in plan.graph.resource_ids().chain([ResourceId::NONE]) {
-            if resource != barrier.hand_over {
-                m.with("barrier.hand_over", row, |p| p.barriers[row].hand_over = resource);
+            if resource != barrier.aliases {
+                m.with("barrier.aliases", row, |p| p.barriers[row].aliases = resource);
             }
             if resource != barrier.resource {
                 m.with("barrier.resource", row, |p| p.barriers[row].resource = resource);

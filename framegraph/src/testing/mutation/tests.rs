@@ -155,8 +155,8 @@ fn the_later_of_two_earlier_tenants_hands_over() {
     assert_eq!(plan.memory().bytes, 256 * 192 * 4, "the third overlaps both");
     let offset = |name| graph.find_resource(name).map(|r| plan.resources()[r.index()].placement);
     assert_eq!(offset("a"), Some(Placement::Heap { offset: 0 }), "the one at offset 0 is read first");
-    let mut takers = plan.barriers().iter().filter(|b| !b.hand_over.is_none());
-    assert_eq!(takers.next().map(|b| graph.resource_name(b.hand_over)), Some("b"));
+    let mut takers = plan.barriers().iter().filter(|b| !b.aliases.is_none());
+    assert_eq!(takers.next().map(|b| graph.resource_name(b.aliases)), Some("b"));
     kill_all(&plan, "two tenants");
 }
 

@@ -23,7 +23,7 @@ impl Default for SceneParams {
 
 impl Plugin<Graph> for Scene {
     fn slots(&self) -> &[PluginSlot] {
-        const { &[PluginSlot::required("color", Takes::Target), PluginSlot::optional("lights", Takes::Buffer)] }
+        const { &[PluginSlot::required("color", SlotType::Target), PluginSlot::optional("lights", SlotType::Buffer)] }
     }
 
     fn declare(&self, graph: &mut Graph, call: &mut Call<'_>) -> Result<(), PluginError> {
@@ -56,7 +56,7 @@ struct Blur;
 
 impl Plugin<Graph> for Blur {
     fn slots(&self) -> &[PluginSlot] {
-        const { &[PluginSlot::required("input", Takes::Texture), PluginSlot::required("output", Takes::Target)] }
+        const { &[PluginSlot::required("input", SlotType::Texture), PluginSlot::required("output", SlotType::Target)] }
     }
 
     fn declare(&self, graph: &mut Graph, call: &mut Call<'_>) -> Result<(), PluginError> {
@@ -86,7 +86,7 @@ struct Idle;
 
 impl Plugin<Graph> for Idle {
     fn slots(&self) -> &[PluginSlot] {
-        const { &[PluginSlot::optional("output", Takes::Target)] }
+        const { &[PluginSlot::optional("output", SlotType::Target)] }
     }
 
     fn declare(&self, _: &mut Graph, _: &mut Call<'_>) -> Result<(), PluginError> {
@@ -286,7 +286,7 @@ struct Count;
 
 impl Plugin<Graph> for Count {
     fn slots(&self) -> &[PluginSlot] {
-        const { &[PluginSlot::required("sums", Takes::TargetBuffer)] }
+        const { &[PluginSlot::required("sums", SlotType::TargetBuffer)] }
     }
 
     fn declare(&self, graph: &mut Graph, call: &mut Call<'_>) -> Result<(), PluginError> {

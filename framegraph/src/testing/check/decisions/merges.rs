@@ -10,13 +10,13 @@ use crate::graph::{PassFlags, PassKind};
 use crate::id::{PassId, ResourceId, StepId};
 use crate::plan::{Attachment, Join, Role, StepPass};
 use crate::testing::check::attachments::weight;
-use crate::testing::check::case::{Case, Touch, layers_of};
 use crate::testing::check::resolves::{self, attaches_samples};
+use crate::testing::check::rule_input::{PlannedAccess, RuleInput, layers_of};
 use std::collections::BTreeSet;
 
 /// A pass, and the step that it did or did not join.
 pub(super) struct Candidate<'c, 'p> {
-    pub(super) case: &'c Case<'p>,
+    pub(super) ctx: &'c RuleInput<'p>,
     pub(super) pass: PassId,
     pub(super) accesses: &'p [Access],
     /// The step.
@@ -26,12 +26,12 @@ pub(super) struct Candidate<'c, 'p> {
 }
 
 /// Examines the rows about one pass.
-pub(super) fn merges(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
+pub(super) fn merges(ctx: &RuleInput<'_>, pass: PassId, reasons: &[Reason]) {
     let (mut merged, mut split, mut refused) = (0, 0, 0);
-    let candidate = Candidate::of(case, pass);
+    let candidate = Candidate::of(ctx, pass);
     let and = |holds: &dyn Fn(&Candidate<'_, '_>) -> bool| candidate.as_ref().is_some_and(holds);
-    let join = case.member(pass).map(|m| m.join);
-    let follows = |with| predecessor(case, pass) == Some(with);
+    let join = ctx.member(pass).map(|m| m.join);
+    let follows = |with| predecessor(ctx, pass) == Some(with);
     for &reason in reasons {
         let (count, holds) = match reason {
             Reason::MergedAttachments(with) => (&mut merged, join == Some(Join::Attachments) && follows(with)),
@@ -46,46 +46,46 @@ pub(super) fn merges(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
             _ => continue,
         };
         *count += 1;
-        judge(case, pass, reason, holds);
+        judge(ctx, pass, reason, holds);
     }
     let opens = join == Some(Join::First) && candidate.is_some();
     let joins = join.is_some_and(|j| j != Join::First);
-    number(case, pass, "its merge", merged, usize::from(joins));
-    number(case, pass, "its split", split, usize::from(opens));
+    number(ctx, pass, "its merge", merged, usize::from(joins));
+    number(ctx, pass, "its split", split, usize::from(opens));
     let wanted = and(&|c| c.wants_to_be_inlined()) && join != Some(Join::Inlined);
-    number(case, pass, "its inlining", refused, usize::from(wanted));
+    number(ctx, pass, "its inlining", refused, usize::from(wanted));
 }
 
 impl<'c, 'p> Candidate<'c, 'p> {
     /// Returns a running pass and the previous step; `None` for the first pass.
-    fn of(case: &'c Case<'p>, pass: PassId) -> Option<Self> {
-        let before = predecessor(case, pass)?;
-        let step = case.plan.pass_steps()[before.index()];
-        let members = case.plan.passes_of(step);
+    fn of(ctx: &'c RuleInput<'p>, pass: PassId) -> Option<Self> {
+        let before = predecessor(ctx, pass)?;
+        let step = ctx.plan.pass_steps()[before.index()];
+        let members = ctx.plan.passes_of(step);
         let end = members.iter().position(|m| m.pass == pass).unwrap_or(members.len());
-        Some(Self { case, pass, accesses: case.graph.accesses_of(pass), step, members: &members[..end] })
+        Some(Self { ctx, pass, accesses: ctx.graph.accesses_of(pass), step, members: &members[..end] })
     }
 
     /// Returns the earlier accesses of the step, without those of inlined passes, including resolves performed after
     /// the step.
-    pub(super) fn before(&self) -> impl Iterator<Item = (PassId, Touch)> {
+    pub(super) fn before(&self) -> impl Iterator<Item = (PassId, PlannedAccess)> {
         let drawn = self.members.iter().filter(|m| m.join != Join::Resolve);
-        let touches = drawn.flat_map(|m| self.case.declared_touches(*m).map(|t| (m.pass, t)));
+        let touches = drawn.flat_map(|m| self.ctx.declared_accesses(*m).map(|t| (m.pass, t)));
         touches.filter(|(_, t)| !t.in_shader)
     }
 
     /// Returns `true` if an earlier pass of the step attached the range of an access as color or depth.
     fn attached(&self, access: &Access) -> bool {
-        self.case.attached_by(self.members, access.resource, access.range)
+        self.ctx.attached_by(self.members, access.resource, access.range)
     }
 
     /// Returns `true` if an earlier pass of the step has an overlapping access for which `which` is true.
     pub(super) fn touched(&self, access: &Access, which: impl Fn(&Access) -> bool) -> bool {
-        let spots = |range| self.case.parts.covered(access.resource, range);
-        let spots = |range| spots(range).map(|part| self.case.spot(access.resource, part));
-        let meets = |t: &Touch| {
+        let spots = |range| self.ctx.parts.covered(access.resource, range);
+        let spots = |range| spots(range).map(|part| self.ctx.spot(access.resource, part));
+        let meets = |t: &PlannedAccess| {
             // A whole buffer has one usage, whichever bytes are accessed.
-            let whole = self.case.texture(access.resource).is_none();
+            let whole = self.ctx.texture(access.resource).is_none();
             let shared = || spots(access.range).any(|s| spots(t.range).any(|o| o == s));
             t.resource == access.resource && (whole || shared())
         };
@@ -97,12 +97,12 @@ impl<'c, 'p> Candidate<'c, 'p> {
     /// The previous step could hold the pass only because of same-pixel reads: of the pass itself, or of earlier passes
     /// of that step. A later pass of the step that the pass begins must not fit into the previous step.
     pub(super) fn room_for_later(&self) -> bool {
-        let plan = self.case.plan;
+        let plan = self.ctx.plan;
         let own = plan.pass_steps()[self.pass.index()];
         let shown = |a: &Access| {
-            let (resource, range) = self.case.effective(a.resource, a.range);
-            let (attached, target) = (self.case.attached_by(self.members, resource, range), AccessKind::Resolve);
-            attached || self.case.attachment(self.step, target, resource, range).is_some()
+            let (resource, range) = self.ctx.effective(a.resource, a.range);
+            let (attached, target) = (self.ctx.attached_by(self.members, resource, range), AccessKind::Resolve);
+            attached || self.ctx.attachment(self.step, target, resource, range).is_some()
         };
         let mut reads = self.accesses.iter().filter(|a| a.kind == AccessKind::SamePixel);
         let longer = self.members.iter().any(|m| matches!(m.join, Join::SamePixel | Join::Inlined));
@@ -115,17 +115,17 @@ impl<'c, 'p> Candidate<'c, 'p> {
     /// Returns `true` if a pass of step `own` has an objection against all passes before it, from those of this step
     /// on, or if their attachments exceed the limits.
     fn keeps_later_out(&self, own: StepId) -> bool {
-        let (case, plan) = (self.case, self.case.plan);
-        let (caps, samples) = (plan.caps(), u32::from(case.step(own).samples));
-        let (start, passes) = (case.step(self.step).passes.start as usize, case.step(own).passes.range());
+        let (ctx, plan) = (self.ctx, self.ctx.plan);
+        let (caps, samples) = (plan.caps(), u32::from(ctx.step(own).samples));
+        let (start, passes) = (ctx.step(self.step).passes.start as usize, ctx.step(own).passes.range());
         passes.skip(1).any(|at| {
             let (pass, members) = (plan.step_passes()[at].pass, &plan.step_passes()[start..at]);
-            let later = Self { case, pass, accesses: case.graph.accesses_of(pass), step: self.step, members };
+            let later = Self { ctx, pass, accesses: ctx.graph.accesses_of(pass), step: self.step, members };
             let with = plan.step_passes()[at - 1].pass;
             let objects = |why: &Refusal| *why != Refusal::RoomForLater && later.split(with, *why);
-            let drawn = case.touched_by(&plan.step_passes()[start..=at]).map(|(_, t)| t);
+            let drawn = ctx.accesses_by(&plan.step_passes()[start..=at]).map(|(_, t)| t);
             let drawn: BTreeSet<_> = drawn.filter(|t| t.access.kind == AccessKind::Color).map(|t| t.resource).collect();
-            let (count, bytes) = weight(drawn.into_iter().filter_map(|r| case.format(r)));
+            let (count, bytes) = weight(drawn.into_iter().filter_map(|r| ctx.format(r)));
             let many = count > caps.max_color_attachments.into() || bytes > caps.max_color_bytes_per_sample;
             let tile = caps.tile_bytes_per_pixel;
             Refusal::ALL.iter().any(objects) || many && !caps.same_pixel || tile != 0 && bytes * samples > tile
@@ -133,26 +133,26 @@ impl<'c, 'p> Candidate<'c, 'p> {
     }
 
     fn is_raster(&self, pass: PassId) -> bool {
-        self.case.graph.passes()[pass.index()].kind == PassKind::Raster
+        self.ctx.graph.passes()[pass.index()].kind == PassKind::Raster
     }
 
     fn wants_to_be_inlined(&self) -> bool {
-        let enabled = self.case.plan.options().inline && self.case.plan.caps().inline;
-        let rasters = self.is_raster(self.pass) && self.case.is_raster(self.step);
-        enabled && rasters && self.case.flag(self.pass, PassFlags::POINTWISE)
+        let enabled = self.ctx.plan.options().inline && self.ctx.plan.caps().inline;
+        let rasters = self.is_raster(self.pass) && self.ctx.is_raster(self.step);
+        enabled && rasters && self.ctx.flag(self.pass, PassFlags::POINTWISE)
     }
 
     /// Returns `true` if the pass, or an earlier one of the step, is declared `never_merge`.
     pub(super) fn stays_alone(&self) -> bool {
         let mut passes = self.members.iter().map(|m| m.pass).chain([self.pass]);
-        passes.any(|p| self.case.flag(p, PassFlags::NEVER_MERGE))
+        passes.any(|p| self.ctx.flag(p, PassFlags::NEVER_MERGE))
     }
 
     /// Returns `true` if the objection to sharing the step exists.
     fn split(&self, with: PassId, why: Refusal) -> bool {
-        let (case, caps, options) = (self.case, self.case.plan.caps(), self.case.plan.options());
+        let (ctx, caps, options) = (self.ctx, self.ctx.plan.caps(), self.ctx.plan.options());
         let raster = self.is_raster(self.pass);
-        let both = raster && case.is_raster(self.step);
+        let both = raster && ctx.is_raster(self.step);
         let partner = match why {
             Refusal::ComputeBetween => self.last_raster(),
             _ => self.members.last().map(|m| m.pass),
@@ -160,7 +160,7 @@ impl<'c, 'p> Candidate<'c, 'p> {
         if partner != Some(with) {
             return false;
         }
-        let row = case.step(self.step);
+        let row = ctx.step(self.step);
         match why {
             Refusal::NotRaster => !both && (!raster || self.last_raster().is_none()),
             Refusal::ComputeBetween => !both && raster,
@@ -210,8 +210,8 @@ impl<'c, 'p> Candidate<'c, 'p> {
 
     /// Returns the last raster pass before the pass.
     fn last_raster(&self) -> Option<PassId> {
-        let position = self.case.position[self.pass.index()]?;
-        self.case.order[..position].iter().rev().find(|p| self.is_raster(**p)).copied()
+        let position = self.ctx.position[self.pass.index()]?;
+        self.ctx.order[..position].iter().rev().find(|p| self.is_raster(**p)).copied()
     }
 
     /// Returns the color and depth attachments of the pass.
@@ -222,21 +222,21 @@ impl<'c, 'p> Candidate<'c, 'p> {
     /// Returns extent, samples and layers of the pass's attachments.
     fn size(&self) -> ([u32; 2], u8, u32) {
         let size = self.attachments().next().and_then(|a| {
-            let texture = self.case.texture(a.resource)?;
+            let texture = self.ctx.texture(a.resource)?;
             let layers = a.range.layer_range(texture.tracked_layers()).len() as u32;
-            Some((texture.mip_extent(self.case.plan.frame(), a.range.mip.into()), texture.samples, layers))
+            Some((texture.mip_extent(self.ctx.plan.frame(), a.range.mip.into()), texture.samples, layers))
         });
         size.unwrap_or(([0; 2], 1, 0))
     }
 
     /// Returns the color attachments of the step.
     pub(super) fn colors(&self) -> impl Iterator<Item = &'p Attachment> {
-        self.case.plan.attachments_of(self.step).iter().filter(|a| matches!(a.role, Role::Color(_)))
+        self.ctx.plan.attachments_of(self.step).iter().filter(|a| matches!(a.role, Role::Color(_)))
     }
 
     /// Returns `true` if an earlier pass of the step attaches a part of an access.
     fn drawn(&self, access: &Access) -> bool {
-        let parts = |range| self.case.parts.covered(access.resource, range);
+        let parts = |range| self.ctx.parts.covered(access.resource, range);
         self.before().any(|(_, t)| {
             t.access.kind.is_attachment()
                 && t.resource == access.resource
@@ -247,7 +247,7 @@ impl<'c, 'p> Candidate<'c, 'p> {
     /// Compares an attachment of the step with an access. Returns two flags: same level, layers and view format; some
     /// common layers.
     fn shows(&self, row: &Attachment, access: &Access) -> (bool, bool) {
-        let layers = access.range.layer_range(self.case.parts.counts(access.resource).1);
+        let layers = access.range.layer_range(self.ctx.parts.counts(access.resource).1);
         let own = layers_of(row);
         let level = row.resource == access.resource && row.mip == access.range.mip;
         let same = own == layers && row.view == access.range.view;
@@ -260,9 +260,9 @@ impl<'c, 'p> Candidate<'c, 'p> {
         let shares = self.attachments().any(|a| self.attached(a));
         let colors = || self.attachments().filter(|a| a.kind == AccessKind::Color);
         let taken = || colors().any(|a| self.colors().any(|r| r.role == Role::Color(a.slot) && !self.shows(r, a).0));
-        let mut rows = self.case.plan.attachments_of(self.step).iter();
+        let mut rows = self.ctx.plan.attachments_of(self.step).iter();
         let crosses = rows.any(|r| colors().any(|a| matches!(self.shows(r, a), (false, true)) || is_target(r, a)));
-        !shares || crosses || !self.case.plan.caps().slot_mapping && taken()
+        !shares || crosses || !self.ctx.plan.caps().slot_mapping && taken()
     }
 
     /// Returns `true` if the pass uses a color attachment of the step in another slot.
@@ -275,12 +275,12 @@ impl<'c, 'p> Candidate<'c, 'p> {
     fn weight(&self) -> (u32, u32) {
         let own = self.accesses.iter().filter(|a| a.kind == AccessKind::Color && !self.attached(a));
         let all = self.colors().map(|a| a.resource).chain(own.map(|a| a.resource));
-        weight(all.filter_map(|r| self.case.format(r)))
+        weight(all.filter_map(|r| self.ctx.format(r)))
     }
 
     /// Returns `true` if the pass reads from memory what the step draws, or draws what the step reads from memory.
     fn sampled_elsewhere(&self) -> bool {
-        let depth = self.case.plan.caps().sample_read_only_depth;
+        let depth = self.ctx.plan.caps().sample_read_only_depth;
         self.accesses.iter().any(|a| {
             if a.kind.is_attachment() {
                 (a.mode.writes() || !depth) && self.touched(a, |b| !b.kind.is_attachment())
@@ -299,7 +299,7 @@ impl<'c, 'p> Candidate<'c, 'p> {
         let resolved = |resource: ResourceId| {
             let mut made = self.before().filter(|(_, t)| t.access.kind == AccessKind::Resolve);
             made.any(|(pass, resolve)| {
-                let mut own = self.case.graph.accesses_of(pass).iter();
+                let mut own = self.ctx.graph.accesses_of(pass).iter();
                 own.any(|a| attaches_samples(a, &resolve.access) && a.resource == resource)
             })
         };

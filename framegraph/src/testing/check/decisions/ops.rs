@@ -4,32 +4,32 @@ use super::rows::{judge, number};
 use crate::decision::Reason;
 use crate::id::{PassId, ResourceId, StepId};
 use crate::plan::{Attachment, LoadOp, StoreOp};
-use crate::testing::check::case::Case;
 use crate::testing::check::memory::StoreRecord;
 use crate::testing::check::reference::{Value, Wanted};
 use crate::testing::check::resolves::takes_samples;
+use crate::testing::check::rule_input::RuleInput;
 use crate::testing::check::run::Trace;
 
 /// Examines the rows about one step.
 pub(super) fn ops(
-    case: &Case<'_>,
+    ctx: &RuleInput<'_>,
     trace: &Trace,
     step: StepId,
     loads: &[(ResourceId, Reason)],
     stores: &[(ResourceId, Reason)],
 ) {
-    let rows = case.plan.attachments_of(step);
-    number(case, step, "loads", loads.len(), rows.len());
-    number(case, step, "stores", stores.len(), rows.len());
-    for (index, (at, attachment)) in case.attachments(step).enumerate() {
+    let rows = ctx.plan.attachments_of(step);
+    number(ctx, step, "loads", loads.len(), rows.len());
+    number(ctx, step, "stores", stores.len(), rows.len());
+    for (index, (at, attachment)) in ctx.attachments(step).enumerate() {
         let place = (step, attachment.resource);
         if let Some(&(resource, reason)) = loads.get(index) {
             let holds = load(attachment, of(&trace.loaded, at, |(a, _)| *a), reason);
-            judge(case, place, reason, holds && resource == attachment.resource);
+            judge(ctx, place, reason, holds && resource == attachment.resource);
         }
         if let Some(&(resource, reason)) = stores.get(index) {
-            let holds = store(case, step, attachment, of(&trace.records, at, |r| r.attachment), reason);
-            judge(case, place, reason, holds && resource == attachment.resource);
+            let holds = store(ctx, step, attachment, of(&trace.records, at, |r| r.attachment), reason);
+            judge(ctx, place, reason, holds && resource == attachment.resource);
         }
     }
 }
@@ -56,20 +56,20 @@ fn load(attachment: &Attachment, loaded: &[(usize, Value)], reason: Reason) -> b
 }
 
 /// Returns `true` if the reason of a store operation is correct. Stores take precedence.
-fn store(case: &Case<'_>, step: StepId, attachment: &Attachment, records: &[StoreRecord], reason: Reason) -> bool {
+fn store(ctx: &RuleInput<'_>, step: StepId, attachment: &Attachment, records: &[StoreRecord], reason: Reason) -> bool {
     let of = |op: StoreOp| records.iter().filter(move |r| r.op == op);
     let stored = attachment.stores();
-    let resolved = case.plan.attachments_of(step).iter().any(|a| takes_samples(a.role, attachment.role));
+    let resolved = ctx.plan.attachments_of(step).iter().any(|a| takes_samples(a.role, attachment.role));
     // If the pass itself reads the contents before its full-screen resolve, it counts as the reader.
     let by_full_screen = |pass: PassId| {
-        let here = case.plan.pass_steps()[pass.index()] == step;
-        let mut made = case.full_screen.iter().filter(|m| m.pass == pass);
+        let here = ctx.plan.pass_steps()[pass.index()] == step;
+        let mut made = ctx.full_screen.iter().filter(|m| m.pass == pass);
         here && made.any(|m| m.samples.resource == attachment.resource)
     };
     let read_by = |pass: PassId| of(StoreOp::Store).any(|r| r.readers.contains(&pass));
     let survived = |why: Wanted| {
-        let wanted = case.parts.all(attachment.resource);
-        let mut wanted = case.reference.wanted[wanted].iter();
+        let wanted = ctx.parts.all(attachment.resource);
+        let mut wanted = ctx.reference.wanted[wanted].iter();
         of(StoreOp::Store).any(|r| r.survived) && wanted.any(|w| *w == Some(why))
     };
     let dropped = attachment.store == StoreOp::Discard || attachment.stencil_store == StoreOp::Discard;

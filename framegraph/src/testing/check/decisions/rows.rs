@@ -2,25 +2,25 @@
 
 use crate::decision::Reason;
 use crate::id::PassId;
-use crate::testing::check::case::Case;
 use crate::testing::check::finding::{Place, Rule};
+use crate::testing::check::rule_input::RuleInput;
 
 /// Reports a row that is not correct.
-pub(super) fn judge(case: &Case<'_>, place: impl Into<Place>, reason: Reason, holds: bool) {
+pub(super) fn judge(ctx: &RuleInput<'_>, place: impl Into<Place>, reason: Reason, holds: bool) {
     if !holds {
-        let why = format_args!("incorrect row in the log: {}", reason.sentence(case.graph));
-        case.report.violation(Rule::Decision, place, why);
+        let why = format_args!("incorrect row in the log: {}", reason.sentence(ctx.graph));
+        ctx.report.violation(Rule::Decision, place, why);
     }
 }
 
 /// Reports a wrong number of rows of a kind.
-pub(super) fn number(case: &Case<'_>, place: impl Into<Place>, what: &str, found: usize, expected: usize) {
+pub(super) fn number(ctx: &RuleInput<'_>, place: impl Into<Place>, what: &str, found: usize, expected: usize) {
     let why = format_args!("the log has {found} rows about {what}, expected {expected}");
-    case.report.require(found == expected, Rule::Decision, place, why);
+    ctx.report.require(found == expected, Rule::Decision, place, why);
 }
 
 /// Returns the pass that runs before `pass`, if any.
-pub(super) fn predecessor(case: &Case<'_>, pass: PassId) -> Option<PassId> {
-    let position = case.position[pass.index()]?;
-    position.checked_sub(1).map(|p| case.order[p])
+pub(super) fn predecessor(ctx: &RuleInput<'_>, pass: PassId) -> Option<PassId> {
+    let position = ctx.position[pass.index()]?;
+    position.checked_sub(1).map(|p| ctx.order[p])
 }

@@ -19,21 +19,21 @@ pub fn plain(text: &str) -> Cow<'_, str> {
 }
 
 /// Maximum number of characters of a name in an error.
-const MOST_OF_A_NAME: usize = 120;
+const MAX_NAME_CHARS: usize = 120;
 
 /// Maximum number of characters of an error.
-const MOST_OF_A_LINE: usize = 4000;
+const MAX_LINE_CHARS: usize = 4000;
 
 /// Formats an error as one line: escapes control characters, and shortens long names in backticks and the whole line.
 pub fn line(text: &str) -> String {
     let pieces = text.split('`').enumerate();
-    let pieces = pieces.map(|(i, piece)| if i % 2 == 1 { short(piece, MOST_OF_A_NAME) } else { piece.into() });
-    plain(&short(&pieces.collect::<Vec<_>>().join("`"), MOST_OF_A_LINE)).into_owned()
+    let pieces = pieces.map(|(i, piece)| if i % 2 == 1 { short(piece, MAX_NAME_CHARS) } else { piece.into() });
+    plain(&short(&pieces.collect::<Vec<_>>().join("`"), MAX_LINE_CHARS)).into_owned()
 }
 
 /// Formats a name for an error: escapes control characters and shortens it.
 pub fn name(text: &str) -> String {
-    plain(&short(text, MOST_OF_A_NAME)).into_owned()
+    plain(&short(text, MAX_NAME_CHARS)).into_owned()
 }
 
 /// Shortens `text` to `most` characters and appends its length if it is longer.

@@ -11,7 +11,7 @@ use crate::access::Range;
 
 /// The next use of the contents of a subresource, or the way they are lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Need {
+pub(crate) enum NextUse {
     /// This pass reads them.
     Reader(PassId),
     /// They are exported.
@@ -32,7 +32,7 @@ pub(crate) enum Need {
     Overwritten(PassId),
 }
 
-impl Need {
+impl NextUse {
     /// Returns the next use before a culled pass that reads contents which are not needed.
     #[inline]
     pub(crate) const fn or_culled_reader(self, pass: PassId) -> Self {
@@ -92,19 +92,19 @@ impl Need {
 }
 
 /// Fills `needs` with the uses at the end of the frame: histories, kept imports and exports.
-pub(crate) fn needs_at_exit(graph: &Tables, parts: &Parts, measures: &Measures, needs: &mut Vec<Need>) {
+pub(crate) fn uses_at_exit(graph: &Tables, parts: &Parts, measures: &Measures, needs: &mut Vec<NextUse>) {
     needs.clear();
-    needs.resize(parts.total(), Need::Unread);
+    needs.resize(parts.total(), NextUse::Unread);
     for &resource in &measures.outside {
         let need = match graph.resources[resource.index()].kind {
-            Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. } => Need::History,
-            kind if kind.kept_on_exit() => Need::Import,
+            Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. } => NextUse::History,
+            kind if kind.kept_on_exit() => NextUse::Import,
             _ => continue,
         };
         parts.fill(needs, resource, Range::ALL, need);
     }
     for export in &graph.exports {
-        parts.fill(needs, export.resource, Range::ALL, Need::Export);
+        parts.fill(needs, export.resource, Range::ALL, NextUse::Export);
     }
 }
 
@@ -115,13 +115,13 @@ mod tests {
     #[test]
     fn culled_passes_hide_no_kept_writer() {
         let [p, q] = [PassId::at(3), PassId::at(1)];
-        let overwritten = Need::Overwritten(p);
+        let overwritten = NextUse::Overwritten(p);
         for hidden in [overwritten.or_culled_reader(q), overwritten.or_culled_writer(q)] {
             assert!(hidden.is_overwritten() && hidden.or_culled_reader(q).is_overwritten() && !hidden.is_needed());
         }
-        for free in [Need::Unread, Need::Unread.or_culled_reader(q), Need::Unread.or_culled_writer(q)] {
+        for free in [NextUse::Unread, NextUse::Unread.or_culled_reader(q), NextUse::Unread.or_culled_writer(q)] {
             assert!(!free.is_overwritten() && !free.is_needed());
         }
-        assert!(!Need::Reader(p).is_overwritten() && !Need::Export.is_overwritten());
+        assert!(!NextUse::Reader(p).is_overwritten() && !NextUse::Export.is_overwritten());
     }
 }

@@ -16,7 +16,7 @@ const DEPTH: u8 = Access::DEPTH;
 
 /// Attachments of a step under construction. Masks mark the used slots, so that a reset clears only three words.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct StepAttachments {
+pub(crate) struct AttachmentSet {
     colors: [Spot; STEP_COLORS],
     resolves: [Spot; STEP_COLORS],
     depth: Spot,
@@ -38,7 +38,7 @@ pub(crate) type Taken = (u16, u16, Option<Planes>);
 
 const NOWHERE: Spot = (ResourceId::NONE, Range::ALL);
 
-impl Default for StepAttachments {
+impl Default for AttachmentSet {
     fn default() -> Self {
         Self {
             colors: [NOWHERE; STEP_COLORS],
@@ -67,9 +67,9 @@ impl Iterator for Slots {
     }
 }
 
-impl StepAttachments {
+impl AttachmentSet {
     /// Resets to the attachments of `accesses` with this sample count.
-    pub(crate) fn open(&mut self, accesses: &[Access], samples: u8) {
+    pub(crate) fn reset_to(&mut self, accesses: &[Access], samples: u8) {
         self.restore((0, 0, None));
         self.samples = samples;
         for access in accesses {

@@ -7,7 +7,7 @@ use framegraph::{Plan, ResourceId, StepId};
 
 /// A resource reuses memory of another one that the same queue has used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct HandOver {
+pub struct AliasingBarrier {
     /// A step that uses `to`, without an earlier one that does.
     pub before: StepId,
     /// The previous resource.
@@ -18,7 +18,7 @@ pub struct HandOver {
 
 /// Returns the aliasing barriers of memory shared by a schedule, in the order of the waiting steps. Uses on other
 /// queues are covered by semaphores and not included.
-pub fn hand_overs(plan: &Plan, schedule: &Schedule, shared: &SharedMemory) -> Vec<HandOver> {
+pub fn aliasing_barriers(plan: &Plan, schedule: &Schedule, shared: &SharedMemory) -> Vec<AliasingBarrier> {
     let touched = accesses_by_resource(plan);
     let is_texture = |resource: usize| plan.graph().resources()[resource].desc.texture().is_some();
     let span = |resource: usize| {
@@ -39,7 +39,7 @@ pub fn hand_overs(plan: &Plan, schedule: &Schedule, shared: &SharedMemory) -> Ve
                 let mut here = touched[*from].iter().filter(|(own, _)| schedule.lanes[*own as usize] == queue);
                 overlap && here.any(|(own, _)| *own < step)
             });
-            found.extend(had.map(|(from, _)| HandOver {
+            found.extend(had.map(|(from, _)| AliasingBarrier {
                 before: StepId::at(step as usize),
                 from: ResourceId::at(*from),
                 to: ResourceId::at(*to),

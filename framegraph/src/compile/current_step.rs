@@ -7,10 +7,10 @@ use crate::id::PassId;
 
 /// The current step.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Open {
+pub(super) struct CurrentStep {
     /// The step is a raster step.
     pub(super) raster: bool,
-    /// One of its passes is declared `never_merge`.
+    /// A pass of the step is declared `never_merge`.
     pub(super) alone: bool,
     pub(super) framebuffer: Framebuffer,
     /// Index of its first pass in `step_passes`.
@@ -19,14 +19,14 @@ pub(super) struct Open {
     pub(super) last: PassId,
 }
 
-impl Open {
+impl CurrentStep {
     /// State before the first step.
     pub(super) const NONE: Self =
         Self { raster: false, alone: false, framebuffer: Framebuffer::NONE, first: 0, last: PassId::NONE };
 
     /// Returns the objection against a pass that does not depend on its attachments, if any.
     #[inline]
-    pub(super) fn plain_objection(&self, merging: bool, flags: PassFlags, framebuffer: Framebuffer) -> Option<Refusal> {
+    pub(super) fn basic_objection(&self, merging: bool, flags: PassFlags, framebuffer: Framebuffer) -> Option<Refusal> {
         if !merging {
             Some(Refusal::Disabled)
         } else if self.alone || flags.has(PassFlags::NEVER_MERGE) {

@@ -4,7 +4,7 @@
 use std::fmt;
 
 /// Maximum number of errors that are kept.
-const MOST: usize = 100;
+const MAX_LISTED: usize = 100;
 
 /// Up to 100 errors in the order they were found, and the number of further errors. Displays one error per line.
 #[derive(Clone, PartialEq, Eq)]
@@ -34,7 +34,7 @@ impl<E> Errors<E> {
 
     /// Returns `true` if further errors are only counted.
     pub(crate) const fn is_full(&self) -> bool {
-        self.listed.len() >= MOST
+        self.listed.len() >= MAX_LISTED
     }
 
     /// Number of errors, listed or not.

@@ -12,7 +12,7 @@ use crate::plan::{Attachment, Join, Placement, Plan, Planned, Role, Step, StepPa
 use crate::resource::{Kind, TextureDesc};
 
 /// A plan, the reference semantics of its graph, and derived tables.
-pub(super) struct Case<'p> {
+pub(super) struct RuleInput<'p> {
     pub(super) plan: &'p Plan,
     pub(super) graph: &'p Graph,
     /// Findings so far.
@@ -50,7 +50,7 @@ pub(super) struct Replaced {
 
 /// An access of a running pass, and the resource it refers to in the plan.
 #[derive(Clone, Copy)]
-pub(super) struct Touch {
+pub(super) struct PlannedAccess {
     pub(super) access: Access,
     /// Index of the access in the graph. Both accesses of a full-screen resolve have that of the resolve.
     pub(super) id: usize,
@@ -61,7 +61,7 @@ pub(super) struct Touch {
     pub(super) in_shader: bool,
 }
 
-impl<'p> Case<'p> {
+impl<'p> RuleInput<'p> {
     /// Builds the tables of a plan with consistent arrays.
     pub(super) fn new(plan: &'p Plan) -> Self {
         let graph = plan.graph();
@@ -80,7 +80,7 @@ impl<'p> Case<'p> {
         }
         let replaced = vec![None; graph.resources().len()];
         let report = Findings::new(graph);
-        let mut case = Self {
+        let mut ctx = Self {
             plan,
             graph,
             report,
@@ -95,15 +95,15 @@ impl<'p> Case<'p> {
             position,
             exported,
         };
-        case.replace();
-        case.find_dropped();
-        for pass in &case.order {
-            for (_, access) in case.accesses_of(*pass).filter(|(id, _)| !case.dropped[*id]) {
-                case.users[access.resource.index()].push((*pass, access));
+        ctx.replace();
+        ctx.find_dropped();
+        for pass in &ctx.order {
+            for (_, access) in ctx.accesses_of(*pass).filter(|(id, _)| !ctx.dropped[*id]) {
+                ctx.users[access.resource.index()].push((*pass, access));
             }
         }
-        case.reference.settle(graph, &case.parts, &case.order, &case.dropped);
-        case
+        ctx.reference.settle(graph, &ctx.parts, &ctx.order, &ctx.dropped);
+        ctx
     }
 
     /// Fills `replaced` from the inlined passes of the plan.
@@ -142,25 +142,25 @@ impl<'p> Case<'p> {
     }
 
     /// Returns the accesses of a running pass in its step, without dropped ones.
-    pub(super) fn touches(&self, member: StepPass) -> impl Iterator<Item = Touch> {
+    pub(super) fn planned_accesses(&self, member: StepPass) -> impl Iterator<Item = PlannedAccess> {
         let full_screen = member.join == Join::Resolve;
         let of_full_screen = move |m: &&FullScreen| full_screen && m.pass == member.pass;
         let resolves =
             self.full_screen.iter().filter(of_full_screen).flat_map(|m| [(m.id, m.samples), (m.id, m.target)]);
         let touch = move |(id, access): (usize, Access)| {
             let (resource, range) = self.effective(access.resource, access.range);
-            Touch { access, id, resource, range, in_shader: false }
+            PlannedAccess { access, id, resource, range, in_shader: false }
         };
-        let here = move |t: &Touch| !full_screen && self.full_screen.iter().all(|m| m.id != t.id);
-        self.declared_touches(member).filter(here).chain(resolves.map(touch))
+        let here = move |t: &PlannedAccess| !full_screen && self.full_screen.iter().all(|m| m.id != t.id);
+        self.declared_accesses(member).filter(here).chain(resolves.map(touch))
     }
 
     /// Returns the accesses of a running pass as declared, including resolves performed by full-screen passes.
-    pub(super) fn declared_touches(&self, member: StepPass) -> impl Iterator<Item = Touch> {
+    pub(super) fn declared_accesses(&self, member: StepPass) -> impl Iterator<Item = PlannedAccess> {
         self.accesses_of(member.pass).filter(|(id, _)| !self.dropped[*id]).map(move |(id, access)| {
             let (resource, range) = self.effective(access.resource, access.range);
             let drawn = matches!(access.kind, AccessKind::SamePixel | AccessKind::Color);
-            Touch { access: *access, id, resource, range, in_shader: member.join == Join::Inlined && drawn }
+            PlannedAccess { access: *access, id, resource, range, in_shader: member.join == Join::Inlined && drawn }
         })
     }
 
@@ -170,8 +170,8 @@ impl<'p> Case<'p> {
     }
 
     /// Returns the accesses of the passes of a step, without those performed inside of another pass's shader.
-    pub(super) fn touched_by(&self, passes: &'p [StepPass]) -> impl Iterator<Item = (StepPass, Touch)> {
-        let touches = passes.iter().flat_map(|m| self.touches(*m).map(|t| (*m, t)));
+    pub(super) fn accesses_by(&self, passes: &'p [StepPass]) -> impl Iterator<Item = (StepPass, PlannedAccess)> {
+        let touches = passes.iter().flat_map(|m| self.planned_accesses(*m).map(|t| (*m, t)));
         touches.filter(|(_, t)| !t.in_shader)
     }
 
@@ -215,7 +215,7 @@ impl<'p> Case<'p> {
 
     /// Returns `true` if a same-pixel read finds its texels in the tile. Earlier passes of the step must have attached
     /// all its planes, and the pass must have joined because of it.
-    pub(super) fn in_tile(&self, step: StepId, member: StepPass, touch: &Touch) -> bool {
+    pub(super) fn in_tile(&self, step: StepId, member: StepPass, touch: &PlannedAccess) -> bool {
         touch.access.kind == AccessKind::SamePixel
             && member.join == Join::SamePixel
             && self.shown_by(self.before(step, member.pass), touch.resource, touch.range)
@@ -231,7 +231,7 @@ impl<'p> Case<'p> {
     /// layers.
     pub(super) fn shown_by(&self, passes: &[StepPass], resource: ResourceId, range: Range) -> bool {
         self.parts.covered(resource, range).all(|part| {
-            let shows = |t: Touch| self.parts.covered(t.resource, t.range).any(|p| p == part);
+            let shows = |t: PlannedAccess| self.parts.covered(t.resource, t.range).any(|p| p == part);
             let attaches = |m: &StepPass| self.attached_accesses(*m, resource, range).any(shows);
             passes.iter().any(attaches)
         })
@@ -242,12 +242,17 @@ impl<'p> Case<'p> {
         passes.iter().any(|m| self.attached_accesses(*m, resource, range).next().is_some())
     }
 
-    /// Returns the accesses with which a pass attaches the level and layers of a range as color or depth, in any plane.
-    fn attached_accesses(&self, member: StepPass, resource: ResourceId, range: Range) -> impl Iterator<Item = Touch> {
+    /// Returns the accesses that attach the level and layers of a range as color or depth, in any plane.
+    fn attached_accesses(
+        &self,
+        member: StepPass,
+        resource: ResourceId,
+        range: Range,
+    ) -> impl Iterator<Item = PlannedAccess> {
         let (_, count) = self.parts.counts(resource);
         let same =
             move |r: Range| (r.mip, r.view, r.layer_range(count)) == (range.mip, range.view, range.layer_range(count));
-        self.touches(member).filter(move |t| {
+        self.planned_accesses(member).filter(move |t| {
             let attached = t.access.kind.is_attachment() && t.access.kind != AccessKind::Resolve;
             attached && t.resource == resource && same(t.range)
         })

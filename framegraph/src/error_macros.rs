@@ -2,7 +2,7 @@
 //!
 //! Macros are needed because a function cannot define the variants of an enumeration.
 
-use crate::plain::line;
+use crate::sanitize::line;
 use std::fmt;
 use std::panic::Location;
 
@@ -10,7 +10,7 @@ use std::panic::Location;
 ///
 /// Messages and hints can use the fields and the values bound behind them in braces. The message is also the
 /// documentation of the variant. A row that wraps another error uses `=> expression` instead of the two strings.
-macro_rules! faults {
+macro_rules! error_enum {
     ($(#[$meta:meta])* $name:ident { $(
         $(#[$doc:meta])*
         $variant:ident $({ $($(#[$of_field:meta])* $field:ident: $type:ty),+ })? $(($inner:ident: $of:ty))?
@@ -48,16 +48,16 @@ macro_rules! faults {
 
         impl std::fmt::Display for $name {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                $crate::faults::show(f, "", (None, None), self.words(), None)
+                $crate::error_macros::show(f, "", (None, None), self.words(), None)
             }
         }
 
-        $crate::faults::errors!($name);
+        $crate::error_macros::impl_error!($name);
     };
 }
 
 /// Implements `Error` for types with `Display`, and `Debug` by the same text, because `unwrap` prints that.
-macro_rules! errors {
+macro_rules! impl_error {
     ($($error:ident),+) => { $(
         impl std::fmt::Debug for $error {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -69,7 +69,7 @@ macro_rules! errors {
     )+ };
 }
 
-pub(crate) use {errors, faults};
+pub(crate) use {error_enum, impl_error};
 
 /// Formats an error as one line: position in a file, pass, resource, message, position in code, hint.
 pub(crate) fn show(

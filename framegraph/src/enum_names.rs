@@ -1,7 +1,7 @@
 //! Macros that define the names of enumeration variants and of bits, as used in dumps, errors and JSON.
 
 /// Defines the names of an enumeration's variants.
-macro_rules! words {
+macro_rules! enum_names {
     ($name:ident: $($variant:ident $word:literal),+) => {
         impl $name {
             /// Name of the variant in dumps, errors and JSON.
@@ -55,4 +55,4 @@ macro_rules! bits {
     };
 }
 
-pub(crate) use {bits, words};
+pub(crate) use {bits, enum_names};

@@ -6,8 +6,8 @@
 
 use super::cull::reads;
 use super::framebuffer::sole_color;
+use super::liveness::NextUse;
 use super::loads::{gather, is_resolved, load_op, loaded_after, why_loaded};
-use super::need::Need;
 use super::steps::{Members, StepView};
 use super::stores::{decide, start_from_zero, written};
 use crate::access::Access;
@@ -22,7 +22,7 @@ use crate::plan::{Attachment, LoadOp, Role, Step, StepPass, StoreOp};
 pub(crate) fn ops(
     view: StepView<'_>,
     steps: &mut [Step],
-    after: &[Need],
+    after: &[NextUse],
     stores: &mut Vec<Decision>,
     attachments: &mut Vec<Attachment>,
     decisions: &mut Vec<Decision>,
@@ -59,7 +59,7 @@ fn only_color(
     graph: &Tables,
     step: StepId,
     access: &Access,
-    need: Need,
+    need: NextUse,
     stores: &mut Vec<Decision>,
     attachments: &mut Vec<Attachment>,
     decisions: &mut Vec<Decision>,
@@ -82,7 +82,7 @@ fn only_color(
         }
         LoadOp::DontCare => decisions.push(Decision { subject, reason: Reason::LoadOverwritten }),
     }
-    let store = if let Need::Reader(reader) = need {
+    let store = if let NextUse::Reader(reader) = need {
         stores.push(Decision { subject: of_store, reason: Reason::StoreReadBy(reader) });
         StoreOp::Store
     } else {
@@ -110,7 +110,7 @@ fn only_color(
 fn several(
     members: Members<'_>,
     step: StepId,
-    after: &[Need],
+    after: &[NextUse],
     stores: &mut Vec<Decision>,
     of_step: &mut [Attachment],
     decisions: &mut Vec<Decision>,
