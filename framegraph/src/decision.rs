@@ -9,7 +9,7 @@ pub use reason::{MemoryNeed, Reason, Refusal};
 
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId, StepId};
-use crate::sanitize::plain;
+use crate::sanitize::escape_controls;
 
 /// The subject of a decision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +42,6 @@ impl Decision {
             Subject::Store(s, r) => format!("store of `{}` in step {}", graph.resource_name(r), s.index()),
             Subject::Resource(r) => format!("resource `{}`", graph.resource_name(r)),
         };
-        plain(&format!("{subject}: {}", self.reason.sentence(graph))).into_owned()
+        escape_controls(&format!("{subject}: {}", self.reason.sentence(graph))).into_owned()
     }
 }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 /// Escapes control characters as Rust does (`\n`, `\u{1b}`), so that the text fits on one line.
-pub fn plain(text: &str) -> Cow<'_, str> {
+pub fn escape_controls(text: &str) -> Cow<'_, str> {
     if !text.contains(char::is_control) {
         return Cow::Borrowed(text);
     }
@@ -28,12 +28,12 @@ const MAX_LINE_CHARS: usize = 4000;
 pub fn line(text: &str) -> String {
     let pieces = text.split('`').enumerate();
     let pieces = pieces.map(|(i, piece)| if i % 2 == 1 { short(piece, MAX_NAME_CHARS) } else { piece.into() });
-    plain(&short(&pieces.collect::<Vec<_>>().join("`"), MAX_LINE_CHARS)).into_owned()
+    escape_controls(&short(&pieces.collect::<Vec<_>>().join("`"), MAX_LINE_CHARS)).into_owned()
 }
 
 /// Formats a name for an error: escapes control characters and shortens it.
 pub fn name(text: &str) -> String {
-    plain(&short(text, MAX_NAME_CHARS)).into_owned()
+    escape_controls(&short(text, MAX_NAME_CHARS)).into_owned()
 }
 
 /// Shortens `text` to `most` characters and appends its length if it is longer.
@@ -50,8 +50,8 @@ mod tests {
 
     #[test]
     fn control_characters_are_written_out() {
-        assert_eq!(plain("a\0b\u{1b}[31m\n\u{9b}\u{7f}ü"), "a\\u{0}b\\u{1b}[31m\\n\\u{9b}\\u{7f}ü");
-        assert!(matches!(plain("plain"), Cow::Borrowed("plain")));
+        assert_eq!(escape_controls("a\0b\u{1b}[31m\n\u{9b}\u{7f}ü"), "a\\u{0}b\\u{1b}[31m\\n\\u{9b}\\u{7f}ü");
+        assert!(matches!(escape_controls("plain"), Cow::Borrowed("plain")));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Passes and resources in errors.
 
-use framegraph::{PassId, Plan, ResourceId, plain};
+use framegraph::{PassId, Plan, ResourceId, sanitize};
 use std::fmt;
 
 /// A pass or resource that an error is about: its row in the graph, and its full name, which outlives the graph. Shown on one

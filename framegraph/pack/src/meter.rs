@@ -38,7 +38,7 @@ pub(super) struct Meter<'a> {
     /// End of the current search's turn, in spent steps.
     pub turn_end: u64,
     budget: u64,
-    told: u64,
+    reported: u64,
     watch: &'a mut Watch<'a>,
 }
 
@@ -47,7 +47,7 @@ const PAUSE: u64 = 1 << 14;
 
 impl<'a> Meter<'a> {
     pub fn new(bracket: Bracket, budget: u64, watch: &'a mut Watch<'a>) -> Self {
-        Self { bracket, spent: 0, turn_end: u64::MAX, budget, told: 0, watch }
+        Self { bracket, spent: 0, turn_end: u64::MAX, budget, reported: 0, watch }
     }
 
     /// Returns `true` if the budget is spent, the turn is over, or the watcher has ended the search.
@@ -58,8 +58,8 @@ impl<'a> Meter<'a> {
     /// Spends the steps for examining this number of array entries. A step is 64 entries, about 0.15 µs.
     pub fn spend(&mut self, entries: u64) {
         self.spent = self.budget.min(self.spent + entries / 64 + 1);
-        if self.spent - self.told >= PAUSE {
-            self.told = self.spent;
+        if self.spent - self.reported >= PAUSE {
+            self.reported = self.spent;
             let Bracket { top, bound } = self.bracket;
             if (self.watch)(Progress { top, lower_bound: bound, steps: self.spent }).is_break() {
                 self.budget = self.spent;

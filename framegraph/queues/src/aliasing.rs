@@ -19,16 +19,16 @@ pub struct AliasingBarrier {
 /// Returns the aliasing barriers of memory shared by a schedule, in the order of the waiting steps. Uses on other
 /// queues are covered by semaphores and not included.
 pub fn aliasing_barriers(plan: &Plan, schedule: &Schedule, shared: &SharedMemory) -> Vec<AliasingBarrier> {
-    let touched = accesses_by_resource(plan);
+    let accessed = accesses_by_resource(plan);
     let is_texture = |resource: usize| plan.graph().resources()[resource].desc.texture().is_some();
     let span = |resource: usize| {
         let begin = shared.offsets.get(resource).copied().flatten()?;
         Some((is_texture(resource), begin, begin + plan.resources()[resource].bytes))
     };
-    let placed: Vec<_> = (0..touched.len()).filter_map(|resource| Some((resource, span(resource)?))).collect();
+    let placed: Vec<_> = (0..accessed.len()).filter_map(|resource| Some((resource, span(resource)?))).collect();
     let mut found = Vec::new();
     for (to, (kind, begin, end)) in &placed {
-        let steps = || touched[*to].iter().map(|(step, _)| *step);
+        let steps = || accessed[*to].iter().map(|(step, _)| *step);
         let mut firsts: Vec<u32> =
             steps().filter(|step| !steps().any(|other| schedule.order.is_before(other, *step))).collect();
         firsts.dedup();
@@ -36,7 +36,7 @@ pub fn aliasing_barriers(plan: &Plan, schedule: &Schedule, shared: &SharedMemory
             let queue = schedule.lanes[step as usize];
             let had = placed.iter().filter(|(from, (other, other_begin, other_end))| {
                 let overlap = from != to && other == kind && other_begin < end && begin < other_end;
-                let mut here = touched[*from].iter().filter(|(own, _)| schedule.lanes[*own as usize] == queue);
+                let mut here = accessed[*from].iter().filter(|(own, _)| schedule.lanes[*own as usize] == queue);
                 overlap && here.any(|(own, _)| *own < step)
             });
             found.extend(had.map(|(from, _)| AliasingBarrier {

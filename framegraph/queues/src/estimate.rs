@@ -11,10 +11,10 @@ pub fn estimate_us(plan: &Plan, bytes_per_us: f64) -> Vec<f64> {
     let bytes_of = |step| {
         let members = plan.passes_of(step).iter();
         let accesses = members.flat_map(|member| plan.graph().accesses_of(member.pass));
-        let mut touched: Vec<_> = accesses.map(|access| access.resource).collect();
-        touched.sort_unstable();
-        touched.dedup();
-        touched.iter().map(|resource| plan.resources()[resource.index()].bytes as f64).sum::<f64>()
+        let mut accessed: Vec<_> = accesses.map(|access| access.resource).collect();
+        accessed.sort_unstable();
+        accessed.dedup();
+        accessed.iter().map(|resource| plan.resources()[resource.index()].bytes as f64).sum::<f64>()
     };
     plan.step_ids().map(|step| bytes_of(step) / bytes_per_us.max(1e-9)).collect()
 }

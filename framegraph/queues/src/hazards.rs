@@ -6,9 +6,9 @@ use std::collections::HashSet;
 /// Returns the earlier steps that each step depends on, latest first. May include implied dependencies.
 pub fn dependencies(plan: &Plan) -> Vec<Vec<u32>> {
     let mut found = vec![Vec::new(); plan.steps().len()];
-    let touched = accesses_by_resource(plan);
+    let accessed = accesses_by_resource(plan);
     let moved = moved(plan);
-    for (resource, accesses) in touched.iter().enumerate() {
+    for (resource, accesses) in accessed.iter().enumerate() {
         let resource = ResourceId::at(resource);
         let changes = |step: u32, access: &Access| access.mode.writes() || moved.contains(&(step, resource));
         for (later, (step, access)) in accesses.iter().enumerate() {
@@ -24,7 +24,7 @@ pub fn dependencies(plan: &Plan) -> Vec<Vec<u32>> {
             }
         }
     }
-    share_memory(plan, &touched, &mut found);
+    share_memory(plan, &accessed, &mut found);
     for earlier in &mut found {
         earlier.sort_unstable_by(|a, b| b.cmp(a));
         earlier.dedup();
@@ -41,19 +41,19 @@ fn moved(plan: &Plan) -> HashSet<(u32, ResourceId)> {
 
 /// Returns for each resource the steps that access it, in order, with their accesses.
 pub fn accesses_by_resource(plan: &Plan) -> Vec<Vec<(u32, Access)>> {
-    let mut touched = vec![Vec::new(); plan.resources().len()];
+    let mut accessed = vec![Vec::new(); plan.resources().len()];
     for step in plan.step_ids() {
         for member in plan.passes_of(step) {
             for access in plan.graph().accesses_of(member.pass) {
-                touched[access.resource.index()].push((step.index() as u32, *access));
+                accessed[access.resource.index()].push((step.index() as u32, *access));
             }
         }
     }
-    touched
+    accessed
 }
 
 /// Adds dependencies of resources on all previous users of their memory.
-fn share_memory(plan: &Plan, touched: &[Vec<(u32, Access)>], found: &mut [Vec<u32>]) {
+fn share_memory(plan: &Plan, accessed: &[Vec<(u32, Access)>], found: &mut [Vec<u32>]) {
     let mut placed: Vec<(usize, u64, u64)> = Vec::new();
     for (resource, row) in plan.resources().iter().enumerate() {
         let [begin, end] = match row.placement {
@@ -72,8 +72,8 @@ fn share_memory(plan: &Plan, touched: &[Vec<(u32, Access)>], found: &mut [Vec<u3
             if apart {
                 continue;
             }
-            for (step, _) in &touched[*later] {
-                let before = touched[*earlier].iter().map(|(before, _)| *before);
+            for (step, _) in &accessed[*later] {
+                let before = accessed[*earlier].iter().map(|(before, _)| *before);
                 found[*step as usize].extend(before.filter(|before| before < step));
             }
         }

@@ -125,7 +125,8 @@ impl QueueLayout {
 
 impl fmt::Display for QueueLayout {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let names: Vec<_> = self.queues.iter().map(|queue| framegraph::sanitize::plain(&queue.name)).collect();
+        let names: Vec<_> =
+            self.queues.iter().map(|queue| framegraph::sanitize::escape_controls(&queue.name)).collect();
         write!(f, "{}, {} µs per semaphore", names.join(", "), self.semaphore_us)
     }
 }

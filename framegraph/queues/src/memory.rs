@@ -25,19 +25,19 @@ pub struct SharedMemory {
 /// Panics if `schedule` belongs to another plan, or if `alignment` is 0.
 #[must_use]
 pub fn share_memory(plan: &Plan, schedule: &Schedule, alignment: u64) -> SharedMemory {
-    let touched = accesses_by_resource(plan);
+    let accessed = accesses_by_resource(plan);
     let is_texture = |resource: usize| plan.graph().resources()[resource].desc.texture().is_some();
     let is_transient =
         |resource: &usize| matches!(plan.resources()[*resource].placement, Placement::Slot(_) | Placement::Heap { .. });
     let bytes = |resource: usize| plan.resources()[resource].bytes.next_multiple_of(alignment);
-    let mut all: Vec<usize> = (0..touched.len()).filter(is_transient).collect();
+    let mut all: Vec<usize> = (0..accessed.len()).filter(is_transient).collect();
     all.sort_by_key(|resource| (std::cmp::Reverse(bytes(*resource)), *resource));
     let over = |a: usize, b: usize| {
-        touched[a]
+        accessed[a]
             .iter()
-            .all(|(first, _)| touched[b].iter().all(|(second, _)| schedule.order.is_before(*first, *second)))
+            .all(|(first, _)| accessed[b].iter().all(|(second, _)| schedule.order.is_before(*first, *second)))
     };
-    let mut shared = SharedMemory { offsets: vec![None; touched.len()], ..SharedMemory::default() };
+    let mut shared = SharedMemory { offsets: vec![None; accessed.len()], ..SharedMemory::default() };
     for resource in &all {
         let mut taken: Vec<(u64, u64)> = all
             .iter()

@@ -17,11 +17,11 @@ pub fn simulate(layout: &QueueLayout, lanes: &[QueueId], dependencies: &[Vec<u32
     let mut times = Times { begins_us: Vec::new(), ends_us: Vec::with_capacity(lanes.len()), total_us: 0.0 };
     let mut free_us = vec![0.0_f64; layout.queues.len()];
     for (step, lane) in lanes.iter().enumerate() {
-        let told = |earlier: &u32| {
+        let ready_us = |earlier: &u32| {
             let earlier = *earlier as usize;
             times.ends_us[earlier] + if lanes[earlier] == *lane { 0.0 } else { layout.semaphore_us }
         };
-        let begin_us = dependencies[step].iter().map(told).fold(free_us[lane.index()], f64::max);
+        let begin_us = dependencies[step].iter().map(ready_us).fold(free_us[lane.index()], f64::max);
         times.begins_us.push(begin_us);
         times.ends_us.push(begin_us + costs_us[step]);
         free_us[lane.index()] = begin_us + costs_us[step];

@@ -1,13 +1,13 @@
 //! Schedules as text and as SVG.
 
 use crate::schedule::Schedule;
-use framegraph::sanitize::plain;
+use framegraph::sanitize::escape_controls;
 use framegraph::{Plan, StepId};
 use std::borrow::Cow;
 use std::fmt::Write;
 
 fn name(plan: &Plan, step: StepId) -> Cow<'_, str> {
-    plain(plan.passes_of(step).first().map_or("", |member| plan.graph().pass_name(member.pass)))
+    escape_controls(plan.passes_of(step).first().map_or("", |member| plan.graph().pass_name(member.pass)))
 }
 
 /// Returns the schedule as text: totals, the steps of each queue with their times and waits, transfers and concurrent
@@ -22,7 +22,7 @@ pub fn text(plan: &Plan, schedule: &Schedule) -> String {
         transfers.len()
     );
     for (queue, id) in layout.queues.iter().zip(layout.ids()) {
-        let _ = writeln!(out, "\n{}:", plain(&queue.name));
+        let _ = writeln!(out, "\n{}:", escape_controls(&queue.name));
         for step in plan.step_ids().filter(|step| lanes[step.index()] == id) {
             let [begin, end] = times_us[step.index()];
             let _ = write!(out, "  {begin:9.1} … {end:9.1}  step {} {}", step.index(), name(plan, step));
@@ -37,17 +37,18 @@ pub fn text(plan: &Plan, schedule: &Schedule) -> String {
     }
     for transfer in transfers {
         let place = |(queue, step): (crate::QueueId, Option<StepId>), edge: &str| {
-            let queue = plain(&layout.queues[queue.index()].name);
+            let queue = escape_controls(&layout.queues[queue.index()].name);
             match step {
                 Some(step) => format!("{queue} ({edge} step {})", step.index()),
                 None => format!("{queue} ({edge} the frame)"),
             }
         };
-        let resource = plain(plan.graph().resource_name(transfer.resource));
+        let resource = escape_controls(plan.graph().resource_name(transfer.resource));
         let _ = writeln!(out, "  {resource}: {} to {}", place(transfer.from, "after"), place(transfer.to, "before"));
     }
     if !concurrent.is_empty() {
-        let names: Vec<_> = concurrent.iter().map(|resource| plain(plan.graph().resource_name(*resource))).collect();
+        let names: Vec<_> =
+            concurrent.iter().map(|resource| escape_controls(plan.graph().resource_name(*resource))).collect();
         let _ = writeln!(out, "\nconcurrent: {}", names.join(", "));
     }
     out
@@ -71,7 +72,7 @@ pub fn svg(plan: &Plan, schedule: &Schedule) -> String {
     );
     for (lane, queue) in layout.queues.iter().enumerate() {
         let y = top(lane) + 20.0;
-        let _ = writeln!(out, "<text x=\"8\" y=\"{y:.0}\">{}</text>", escaped(&plain(&queue.name)));
+        let _ = writeln!(out, "<text x=\"8\" y=\"{y:.0}\">{}</text>", escaped(&escape_controls(&queue.name)));
     }
     for step in plan.step_ids() {
         let ([begin, end], lane) = (times_us[step.index()], lanes[step.index()].index());

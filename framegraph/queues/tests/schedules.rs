@@ -114,9 +114,9 @@ fn forced_us(plan: &Plan, layout: &QueueLayout, costs: &[f64], leaves: &dyn Fn(S
     }
     let (mut free, mut ends) = ([0.0_f64; 2], Vec::new());
     for (step, lane) in lanes.iter().enumerate() {
-        let told =
+        let ready_us =
             waits.iter().filter(|(_, second)| *second == step).map(|(first, _)| ends[*first] + layout.semaphore_us);
-        let begin = told.fold(free[lane.index()], f64::max);
+        let begin = ready_us.fold(free[lane.index()], f64::max);
         free[lane.index()] = begin + costs[step];
         ends.push(begin + costs[step]);
     }
@@ -251,9 +251,9 @@ fn occlusion_runs_beside_shadows() -> TestResult {
     assert_eq!(found.concurrent.iter().map(|r| name(*r)).collect::<Vec<_>>(), ["depth"]);
     let moved: Vec<_> = found.transfers.iter().map(|t| (name(t.resource), t.from.0.0, t.to.0.0)).collect();
     assert_eq!(moved, [("blurred", 1, 0)]);
-    let told = text(&plan, &found);
-    assert!(told.contains("frame: 900.0 µs, 1250.0 µs on one queue; 2 semaphores, 1 joins, 1 transfers"), "{told}");
-    assert!(told.contains("blurred: compute (after step 2) to graphics (before step 4)"), "{told}");
+    let shown = text(&plan, &found);
+    assert!(shown.contains("frame: 900.0 µs, 1250.0 µs on one queue; 2 semaphores, 1 joins, 1 transfers"), "{shown}");
+    assert!(shown.contains("blurred: compute (after step 2) to graphics (before step 4)"), "{shown}");
     let drawn = svg(&plan, &found);
     assert!(drawn.matches("<rect").count() == 6 && drawn.matches("<line").count() == 2, "{drawn}");
     // Pinned steps stay, and a map that takes little longer than a semaphore leaves nothing to gain.

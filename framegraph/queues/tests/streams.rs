@@ -25,7 +25,7 @@ struct Machine<'a> {
     /// Aliasing barriers: queue, previous resource, new resource.
     handed: BTreeSet<(QueueId, ResourceId, ResourceId)>,
     /// The queues that used each resource.
-    touched: BTreeMap<ResourceId, BTreeSet<QueueId>>,
+    accessed: BTreeMap<ResourceId, BTreeSet<QueueId>>,
     /// Memory is shared by the schedule, not by the plan.
     shared: bool,
     /// Resources whose memory another resource reuses.
@@ -141,9 +141,9 @@ impl Machine<'_> {
             Some(Memory::Heap { offset }) => Some((*offset, offset + self.plan.resources()[id.index()].bytes)),
             _ => None,
         };
-        let known = self.touched.contains_key(&resource);
+        let known = self.accessed.contains_key(&resource);
         if let Some((begin, end)) = span(resource).filter(|_| self.shared && !known) {
-            for (other, queues) in &self.touched {
+            for (other, queues) in &self.accessed {
                 let Some((other_begin, other_end)) = span(*other) else { continue };
                 let overlap = is_texture(*other) == is_texture(resource) && other_begin < end && begin < other_end;
                 if overlap && queues.contains(&queue) && !self.handed.contains(&(queue, *other, resource)) {
@@ -161,7 +161,7 @@ impl Machine<'_> {
         if self.gone.contains(&resource) {
             return Err(format!("the memory of resource {} was reused", resource.index()));
         }
-        self.touched.entry(resource).or_default().insert(queue);
+        self.accessed.entry(resource).or_default().insert(queue);
         Ok(())
     }
 
@@ -244,7 +244,7 @@ fn run(plan: &Plan, schedule: Option<&Schedule>, commands: &[Command]) -> Result
         owners: BTreeMap::new(),
         states: BTreeMap::new(),
         handed: BTreeSet::new(),
-        touched: BTreeMap::new(),
+        accessed: BTreeMap::new(),
         shared: schedule.is_some() && commands.iter().any(in_heap),
         gone: BTreeSet::new(),
         signalled: BTreeSet::new(),

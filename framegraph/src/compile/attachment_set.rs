@@ -1,6 +1,6 @@
 //! The attachments of a raster step under construction.
 
-use super::steps::{Spot, overlapping, same_spot};
+use super::steps::{ResourceRange, overlapping, same_range};
 use crate::access::{Access, AccessKind, Mode, Range};
 use crate::caps::Caps;
 use crate::decision::Refusal;
@@ -17,9 +17,9 @@ const DEPTH: u8 = Access::DEPTH;
 /// Attachments of a step under construction. Masks mark the used slots, so that a reset clears only three words.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AttachmentSet {
-    colors: [Spot; STEP_COLORS],
-    resolves: [Spot; STEP_COLORS],
-    depth: Spot,
+    colors: [ResourceRange; STEP_COLORS],
+    resolves: [ResourceRange; STEP_COLORS],
+    depth: ResourceRange,
     color_slots: u16,
     resolve_slots: u16,
     has_depth: Option<Planes>,
@@ -36,7 +36,7 @@ pub(crate) struct Planes {
 /// Slots in use: colors, resolve targets, depth.
 pub(crate) type Taken = (u16, u16, Option<Planes>);
 
-const NOWHERE: Spot = (ResourceId::NONE, Range::ALL);
+const NOWHERE: ResourceRange = (ResourceId::NONE, Range::ALL);
 
 impl Default for AttachmentSet {
     fn default() -> Self {
@@ -102,7 +102,7 @@ impl AttachmentSet {
                 };
                 let used = if planes.used == own.used { own.used } else { Aspect::All };
                 self.has_depth = Some(Planes { used, cleared: planes.cleared | own.cleared });
-                same_spot(self.depth, spot)
+                same_range(self.depth, spot)
             }
             AccessKind::Resolve => {
                 let samples = pass.iter().find(|a| a.is_resolved_by(access)).map(|a| (a.resource, a.range));
@@ -122,15 +122,15 @@ impl AttachmentSet {
 
     /// Returns `true` if a range partly overlaps an attachment, or overlaps a resolve target. A layer cannot be
     /// attached twice.
-    pub(crate) fn crosses(&self, spot: Spot) -> bool {
-        let of = |(_, s): (u8, Spot)| s;
+    pub(crate) fn crosses(&self, spot: ResourceRange) -> bool {
+        let of = |(_, s): (u8, ResourceRange)| s;
         let depth = self.has_depth.map(|_| self.depth);
         let mut shown = self.colors().map(of).chain(depth);
-        shown.any(|s| overlapping(s, spot) && !same_spot(s, spot))
+        shown.any(|s| overlapping(s, spot) && !same_range(s, spot))
             || self.resolves().map(of).any(|s| overlapping(s, spot))
     }
 
-    fn attach_color(&mut self, wanted: u8, spot: Spot, remap: bool) -> bool {
+    fn attach_color(&mut self, wanted: u8, spot: ResourceRange, remap: bool) -> bool {
         if let Some(slot) = self.color_slot(spot) {
             return remap || slot == wanted;
         }
@@ -149,56 +149,56 @@ impl AttachmentSet {
     }
 
     /// The color attachments with their slots.
-    pub(crate) fn colors(&self) -> impl Iterator<Item = (u8, Spot)> + Clone {
+    pub(crate) fn colors(&self) -> impl Iterator<Item = (u8, ResourceRange)> + Clone {
         Slots(self.color_slots).map(|s| (s, self.colors[usize::from(s)]))
     }
 
     /// The resolve targets with the slots of their source; [`Access::DEPTH`] for depth.
-    pub(crate) fn resolves(&self) -> impl Iterator<Item = (u8, Spot)> {
+    pub(crate) fn resolves(&self) -> impl Iterator<Item = (u8, ResourceRange)> {
         Slots(self.resolve_slots).map(|s| (s, self.resolves[usize::from(s)]))
     }
 
     /// Returns the resolve target of a slot.
-    pub(crate) fn resolve_of(&self, slot: u8) -> Option<Spot> {
+    pub(crate) fn resolve_of(&self, slot: u8) -> Option<ResourceRange> {
         let has = self.resolve_slots & (1 << slot) != 0;
         has.then(|| self.resolves[usize::from(slot)])
     }
 
     /// Sets the attachment of a color slot.
-    pub(crate) fn set_color(&mut self, slot: u8, spot: Spot) {
+    pub(crate) fn set_color(&mut self, slot: u8, spot: ResourceRange) {
         self.colors[usize::from(slot)] = spot;
         self.color_slots |= 1 << slot;
     }
 
     /// Sets the resolve target of a color slot.
-    pub(crate) fn set_resolve(&mut self, slot: u8, spot: Spot) {
+    pub(crate) fn set_resolve(&mut self, slot: u8, spot: ResourceRange) {
         self.resolves[usize::from(slot)] = spot;
         self.resolve_slots |= 1 << slot;
     }
 
     /// Returns the slot in which a range is attached as color.
     #[inline]
-    pub(crate) fn color_slot(&self, spot: Spot) -> Option<u8> {
-        self.colors().find(|(_, c)| same_spot(*c, spot)).map(|(slot, _)| slot)
+    pub(crate) fn color_slot(&self, spot: ResourceRange) -> Option<u8> {
+        self.colors().find(|(_, c)| same_range(*c, spot)).map(|(slot, _)| slot)
     }
 
     /// Returns `true` if a range is the depth attachment.
     #[inline]
-    pub(crate) fn is_depth(&self, spot: Spot) -> bool {
-        self.has_depth.is_some() && same_spot(self.depth, spot)
+    pub(crate) fn is_depth(&self, spot: ResourceRange) -> bool {
+        self.has_depth.is_some() && same_range(self.depth, spot)
     }
 
     /// Returns `true` if a range is in the tile: a color attachment, or a plane of the depth attachment that the step
     /// uses.
     #[inline]
-    pub(crate) fn shows(&self, spot: Spot) -> bool {
+    pub(crate) fn shows(&self, spot: ResourceRange) -> bool {
         let used = |planes: Planes| planes.used == Aspect::All || planes.used == spot.1.aspect;
         self.color_slot(spot).is_some() || self.has_depth.is_some_and(used) && self.is_depth(spot)
     }
 
     /// Returns `true` if a plane of the depth attachment can still be cleared at the start of the step. No pass may use
     /// that plane, and the other plane must not be cleared, because both share one clear value.
-    pub(crate) fn can_clear(&self, spot: Spot) -> bool {
+    pub(crate) fn can_clear(&self, spot: ResourceRange) -> bool {
         let apart = |a: Aspect, b: Aspect| a != b && a != Aspect::All && b != Aspect::All;
         self.has_depth.is_some_and(|planes| !planes.cleared && apart(planes.used, spot.1.aspect))
     }
@@ -206,7 +206,7 @@ impl AttachmentSet {
     /// Checks that the color attachments fit the limits of the device. If same-pixel reads stay in the tile, the
     /// attachment limit applies to each pass; only the tile memory is shared.
     pub(crate) fn fits(&self, graph: &Tables, caps: &Caps) -> Result<(), Refusal> {
-        let format = |(_, (r, _)): (u8, Spot)| graph.resources[r.index()].desc.texture().map(|t| t.format);
+        let format = |(_, (r, _)): (u8, ResourceRange)| graph.resources[r.index()].desc.texture().map(|t| t.format);
         let formats = self.colors().filter_map(format);
         let count = formats.clone().count();
         let bytes: u32 = formats.map(Format::tile_bytes).sum();

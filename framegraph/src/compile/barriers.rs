@@ -182,7 +182,7 @@ fn gather(parts: &Parts, members: Members<'_>, attachments: &[Attachment], now: 
         let kind = members.graph.passes[member.pass.index()].kind;
         for access in members.accesses(at) {
             let (state, stages) = wanted(access, kind, members.in_tile(at, access));
-            let (resource, range) = members.touched(access);
+            let (resource, range) = members.resource_range(access);
             let writes = access.mode.writes();
             parts.runs(resource, range, |run| {
                 now.extend(run.map(|part| Use { part: part as u32, resource, state, stages, writes }));

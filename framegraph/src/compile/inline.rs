@@ -7,7 +7,7 @@
 
 use super::attachment_set::AttachmentSet;
 use super::join::Candidate;
-use super::steps::{InlinedInto, Spot, touched as touched_in_plan};
+use super::steps::{InlinedInto, ResourceRange, range_in_plan};
 use crate::access::{Access, AccessKind, Mode};
 use crate::decision::Refusal;
 use crate::graph::{PassFlags, Tables};
@@ -19,20 +19,20 @@ use crate::resource::Kind;
 /// Number of accesses to each resource by kept passes, and its export flag.
 #[derive(Debug, Default)]
 pub(crate) struct Uses {
-    touches: Vec<u32>,
+    access_counts: Vec<u32>,
     exported: Vec<bool>,
 }
 
 impl Uses {
     /// Counts the accesses of the passes in `order`.
     pub(crate) fn count(&mut self, graph: &Tables, order: &[PassId]) {
-        self.touches.clear();
-        self.touches.resize(graph.resources.len(), 0);
+        self.access_counts.clear();
+        self.access_counts.resize(graph.resources.len(), 0);
         self.exported.clear();
         self.exported.resize(graph.resources.len(), false);
         for pass in order {
             for access in graph.accesses_of(*pass) {
-                self.touches[access.resource.index()] += 1;
+                self.access_counts[access.resource.index()] += 1;
             }
         }
         for export in &graph.exports {
@@ -67,7 +67,7 @@ pub(crate) fn inlinable(
     members: &[StepPass],
     uses: &Uses,
     inlined_into: &InlinedInto,
-    touched: impl Fn(&Access) -> PriorAccess,
+    prior_access: impl Fn(&Access) -> PriorAccess,
 ) -> Result<Inlining, Refusal> {
     let Candidate { graph, options, accesses, .. } = *candidate;
     let flags = |pass: PassId| graph.passes[pass.index()].flags;
@@ -97,7 +97,7 @@ pub(crate) fn inlinable(
     let (Some(from), Some(to)) = (texture(intermediate), texture(output.resource)) else {
         return Err(Refusal::NotPointwise);
     };
-    let is_input = |(_, (r, _)): &(u8, Spot)| *r == intermediate;
+    let is_input = |(_, (r, _)): &(u8, ResourceRange)| *r == intermediate;
     let color = attached.colors().find(is_input).map(|(slot, _)| slot);
     let resolve = attached.resolves().find(is_input).map(|(slot, _)| slot);
     let Some(slot) = color.or(resolve) else {
@@ -129,18 +129,18 @@ pub(crate) fn inlinable(
         return Err(Refusal::TargetShape);
     }
     let mut others = accesses.iter().filter(|a| !a.mode.writes() && a.resource != intermediate);
-    if touched(output) != PriorAccess::No || others.any(|a| touched(a) == PriorAccess::Written) {
+    if prior_access(output) != PriorAccess::No || others.any(|a| prior_access(a) == PriorAccess::Written) {
         return Err(Refusal::SampledElsewhere);
     }
     let producer = check_producers(graph, members, inlined_into, &[Some(intermediate), samples])?;
     // The only uses may be the inlined read and the draws of the step.
     let inside = count_inside(graph, members, intermediate);
-    if uses.touches[intermediate.index()] != inside + 1 {
+    if uses.access_counts[intermediate.index()] != inside + 1 {
         return Err(Refusal::NeededAsTexture);
     }
     if let Some(samples) = samples {
         let persistent = graph.resources[samples.index()].kind != Kind::Transient || uses.exported[samples.index()];
-        if persistent || uses.touches[samples.index()] != count_inside(graph, members, samples) {
+        if persistent || uses.access_counts[samples.index()] != count_inside(graph, members, samples) {
             return Err(Refusal::NeededAsTexture);
         }
     }
@@ -168,7 +168,7 @@ fn check_producers(
 ) -> Result<PassId, Refusal> {
     let mut producer = None;
     for member in members.iter().filter(|m| m.join != crate::plan::Join::Inlined) {
-        let is_drawn = |a: &Access| drawn.contains(&Some(touched_in_plan(graph, inlined_into, a).0));
+        let is_drawn = |a: &Access| drawn.contains(&Some(range_in_plan(graph, inlined_into, a).0));
         let mut colors = graph.accesses_of(member.pass).iter().filter(|a| a.kind == AccessKind::Color && is_drawn(a));
         let Some(color) = colors.next() else { continue };
         let flags = graph.passes[member.pass.index()].flags;

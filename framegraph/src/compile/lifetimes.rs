@@ -73,7 +73,7 @@ fn touch_unusual(
     let in_tile = || members.passes.iter().position(|m| *m == member).is_some_and(|at| members.in_tile(at, access));
     let sampled = access.kind == AccessKind::SamePixel && !in_tile();
     let usage = if sampled { Usage::SAMPLED } else { access.kind.usage() };
-    let row = &mut rows[members.touched(access).0.index()];
+    let row = &mut rows[members.resource_range(access).0.index()];
     row.touch(step_id, usage);
     row.srgb_views |= access.range.view.is_some();
 }

@@ -38,7 +38,7 @@ pub(crate) fn loads(
         step.attachments = Span::new(start, attachments.len());
         for member in members.passes {
             for access in view.graph.accesses_of(member.pass).iter().filter(|a| a.mode.writes()) {
-                let (resource, range) = members.touched(access);
+                let (resource, range) = members.resource_range(access);
                 parts.fill(writers, resource, range, member.pass);
             }
         }
@@ -112,7 +112,7 @@ const fn rank(role: Role) -> u8 {
 
 /// Adds the attachment of one access to the step, or updates an existing one.
 fn attach(members: Members<'_>, at: usize, access: &Access, attachments: &mut Vec<Attachment>, start: usize) {
-    let (resource, range) = members.touched(access);
+    let (resource, range) = members.resource_range(access);
     let Some(texture) = members.graph.resources[resource.index()].desc.texture() else {
         return;
     };
@@ -158,7 +158,7 @@ fn role(members: Members<'_>, at: usize, access: &Access, taken: &[Attachment]) 
             let pass = members.graph.accesses_of(members.passes[at].pass);
             let averaged = pass.iter().find(|a| a.is_resolved_by(access));
             let slot = averaged.and_then(|c| {
-                let (resource, range) = members.touched(c);
+                let (resource, range) = members.resource_range(c);
                 taken.iter().find_map(|t| match t.role {
                     Role::Color(slot) if t.resource == resource && t.mip == range.mip && t.layer == range.layer => {
                         Some(slot)
@@ -187,9 +187,9 @@ fn refine(attachment: &mut Attachment, access: &Access, format: Format, first: b
     }
     let load = load_op(access.mode);
     let (has_depth, has_stencil) = (format.has_depth(), format.has_stencil());
-    let touches = |aspect: Aspect| access.range.aspect == Aspect::All || access.range.aspect == aspect;
+    let covers = |aspect: Aspect| access.range.aspect == Aspect::All || access.range.aspect == aspect;
     // The first access of a plane decides; `Store` marks the plane as accessed until the backward half.
-    let depth = if has_depth || has_stencil { has_depth && touches(Aspect::Depth) } else { true };
+    let depth = if has_depth || has_stencil { has_depth && covers(Aspect::Depth) } else { true };
     let cleared = |clear| {
         if load == LoadOp::Clear { access.clear } else { clear }
     };
@@ -201,7 +201,7 @@ fn refine(attachment: &mut Attachment, access: &Access, format: Format, first: b
         (attachment.stencil_load, attachment.stencil_store) = (attachment.load, attachment.store);
         return;
     }
-    if touches(Aspect::Stencil) && (first || attachment.stencil_store == StoreOp::None) {
+    if covers(Aspect::Stencil) && (first || attachment.stencil_store == StoreOp::None) {
         (attachment.stencil_load, attachment.stencil_store) = (load, StoreOp::Store);
         attachment.clear = cleared(attachment.clear);
     }

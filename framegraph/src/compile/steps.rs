@@ -7,7 +7,7 @@ use crate::id::{AccessId, ResourceId};
 use crate::plan::{Join, Step, StepPass};
 
 /// One level and some layers of one resource.
-pub(crate) type Spot = (ResourceId, Range);
+pub(crate) type ResourceRange = (ResourceId, Range);
 
 /// For each resource, the color access that replaces it because its reader was inlined; otherwise none. Empty if
 /// nothing was inlined.
@@ -57,8 +57,8 @@ impl<'a> Members<'a> {
 
     /// Returns the resource and range that an access refers to in the plan.
     #[inline]
-    pub(crate) fn touched(self, access: &Access) -> Spot {
-        touched(self.graph, self.inlined_into, access)
+    pub(crate) fn resource_range(self, access: &Access) -> ResourceRange {
+        range_in_plan(self.graph, self.inlined_into, access)
     }
 
     /// Returns `true` if an access of the pass at `at` is a same-pixel read from the tile. Earlier passes of the step
@@ -72,13 +72,13 @@ impl<'a> Members<'a> {
 
     #[inline(never)]
     fn attached_before(self, at: usize, access: &Access) -> bool {
-        let spot = self.touched(access);
+        let spot = self.resource_range(access);
         let shows = |plane: Aspect| {
             let attaches = |a: &Access| {
                 a.kind.is_attachment()
                     && a.kind != AccessKind::Resolve
                     && (a.range.aspect == Aspect::All || a.range.aspect == plane)
-                    && same_spot(self.touched(a), spot)
+                    && same_range(self.resource_range(a), spot)
             };
             self.passes[..at].iter().any(|m| self.graph.accesses_of(m.pass).iter().any(attaches))
         };
@@ -91,7 +91,7 @@ impl<'a> Members<'a> {
 
 /// Returns the resource and range that an access refers to in the plan, after inlining.
 #[inline]
-pub(crate) fn touched(graph: &Tables, inlined_into: &InlinedInto, access: &Access) -> Spot {
+pub(crate) fn range_in_plan(graph: &Tables, inlined_into: &InlinedInto, access: &Access) -> ResourceRange {
     let mut spot = (access.resource, access.range);
     if inlined_into.is_empty() {
         return spot;
@@ -112,14 +112,14 @@ pub(crate) fn is_inlined(inlined_into: &InlinedInto, resource: ResourceId) -> bo
 /// Returns `true` for the same resource, level, layers and view format. Planes may differ, because they are attached
 /// together.
 #[inline]
-pub(crate) fn same_spot(a: Spot, b: Spot) -> bool {
+pub(crate) fn same_range(a: ResourceRange, b: ResourceRange) -> bool {
     let layers = |r: Range| (r.layer, r.layers);
     a.0 == b.0 && a.1.mip == b.1.mip && layers(a.1) == layers(b.1) && a.1.view == b.1.view
 }
 
 /// Returns `true` if both ranges share a layer of one level of one resource.
 #[inline]
-pub(crate) fn overlapping(a: Spot, b: Spot) -> bool {
+pub(crate) fn overlapping(a: ResourceRange, b: ResourceRange) -> bool {
     let end = |r: Range| u32::from(r.layer) + u32::from(r.layers);
     let apart = |a: Range, b: Range| u32::from(b.layer) >= end(a);
     a.0 == b.0 && a.1.mip == b.1.mip && !apart(a.1, b.1) && !apart(b.1, a.1)

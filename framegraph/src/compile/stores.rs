@@ -63,7 +63,7 @@ pub(crate) fn stores(
             let pass = members.passes[at].pass;
             // Accesses of one pass do not conflict, so their order does not matter.
             for access in members.accesses(at) {
-                let (resource, range) = members.touched(access);
+                let (resource, range) = members.resource_range(access);
                 parts.replace(needs, resource, range, NextUse::is_needed, |after| {
                     use_before(pass, view.graph.accesses_of(pass), access, || after.is_needed())
                 });
@@ -105,16 +105,16 @@ pub(super) fn decide(
     };
     let bound = attachment.role == Role::DepthReadOnly && is_read_beside(members, attachment, format);
     let mut reason = None;
-    let mut plane = |aspect: Aspect, touched: StoreOp| -> StoreOp {
+    let mut plane = |aspect: Aspect, declared: StoreOp| -> StoreOp {
         let need = needed(aspect);
         let (op, because) = match bound || need.is_needed() && !is_written(members, attachment, aspect) {
             true => (StoreOp::None, Reason::StoreUnchanged),
             false => written(need, resolved),
         };
         // A plane that no access of the step uses is left unchanged.
-        let op = if touched == StoreOp::None { StoreOp::None } else { op };
+        let op = if declared == StoreOp::None { StoreOp::None } else { op };
         let stronger = reason.is_none() || op == StoreOp::Store;
-        reason = if stronger && touched != StoreOp::None { Some(because) } else { reason };
+        reason = if stronger && declared != StoreOp::None { Some(because) } else { reason };
         op
     };
     if format.has_depth() && format.has_stencil() {

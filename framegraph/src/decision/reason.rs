@@ -4,7 +4,7 @@
 
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId, StepId};
-use crate::sanitize::plain;
+use crate::sanitize::escape_controls;
 
 /// Ids and causes that a reason contains.
 #[derive(Clone, Copy, Debug, Default)]
@@ -265,8 +265,8 @@ impl Reason {
             let (text, name) = piece.split_once('{').unwrap_or((piece, ""));
             out += text;
             out += match name {
-                "pass}" => plain(pass.map_or("", |p| graph.pass_name(p))),
-                "resource}" => plain(resource.map_or("", |r| graph.resource_name(r))),
+                "pass}" => escape_controls(pass.map_or("", |p| graph.pass_name(p))),
+                "resource}" => escape_controls(resource.map_or("", |r| graph.resource_name(r))),
                 "why}" => refusal.map(Refusal::sentence).or(need.map(MemoryNeed::sentence)).unwrap_or_default().into(),
                 _ => "".into(),
             }

@@ -101,22 +101,22 @@ impl Tables {
         }
         let range = place(own, target, range)?;
         let of = |resource| move |(_, a): &(usize, &Access)| a.resource == resource;
-        let touches = |resource| self.accesses.iter().enumerate().filter(of(resource)).map(|(index, _)| index);
-        let (first, last) = (touches(from).next().unwrap_or_default(), touches(from).next_back().unwrap_or_default());
+        let uses = |resource| self.accesses.iter().enumerate().filter(of(resource)).map(|(index, _)| index);
+        let (first, last) = (uses(from).next().unwrap_or_default(), uses(from).next_back().unwrap_or_default());
         let declared = self.resources[to.index()].current;
-        let newer = touches(from).any(|index| self.accesses[index].version < declared);
+        let newer = uses(from).any(|index| self.accesses[index].version < declared);
         if newer {
             return Err(ForwardReason::TargetLater);
         }
         let of_pass = |index: usize| self.passes.partition_point(|p| (p.accesses.start as usize) <= index) - 1;
-        let before = touches(to).all(|index| of_pass(index) < of_pass(first));
+        let before = uses(to).all(|index| of_pass(index) < of_pass(first));
         let unwritten = self.versions[declared.index()].writer.is_none();
         let open = unwritten && !self.resources[to.index()].kind.defined_on_entry();
-        let behind = open && touches(to).all(|index| of_pass(index) > of_pass(last));
+        let behind = open && uses(to).all(|index| of_pass(index) > of_pass(last));
         if !before && !behind {
             return Err(ForwardReason::Touched);
         }
-        for index in touches(from) {
+        for index in uses(from) {
             let access = &self.accesses[index];
             let seen = access.range.view.unwrap_or(target.format);
             let fits = seen.without_srgb() == target.format.without_srgb();

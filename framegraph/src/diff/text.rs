@@ -2,7 +2,7 @@
 
 use super::{Change, Diff};
 use crate::dump;
-use crate::sanitize::plain;
+use crate::sanitize::escape_controls;
 use std::fmt;
 
 impl fmt::Display for Diff {
@@ -24,22 +24,28 @@ impl fmt::Display for Diff {
         one_sided(f, "passes", passes_removed, passes_added)?;
         section(f, "culling", culls, |f, c| {
             let now = if c.culled { "now culled" } else { "runs again" };
-            writeln!(f, "  {}: {now}: {}", plain(&c.pass), plain(&c.reason))
+            writeln!(f, "  {}: {now}: {}", escape_controls(&c.pass), escape_controls(&c.reason))
         })?;
         section(f, "steps", merges, |f, Change { what, before, after }| {
-            writeln!(f, "  {}: was {}, is {}", plain(what), plain(&mates(before)), plain(&mates(after)))
+            writeln!(
+                f,
+                "  {}: was {}, is {}",
+                escape_controls(what),
+                escape_controls(&mates(before)),
+                escape_controls(&mates(after))
+            )
         })?;
         section(f, "totals", totals, total)?;
         one_sided(f, "resources", resources_removed, resources_added)?;
         section(f, "placements", resources, |f, Change { what, before, after }| {
-            writeln!(f, "  {}: {} -> {}", plain(what), plain(before), plain(after))
+            writeln!(f, "  {}: {} -> {}", escape_controls(what), escape_controls(before), escape_controls(after))
         })?;
         section(f, "reasons", reasons, |f, Change { what, before, after }| {
-            writeln!(f, "  {}", plain(what))?;
+            writeln!(f, "  {}", escape_controls(what))?;
             let mut gone = before.iter().filter(|s| !after.contains(s));
-            gone.try_for_each(|s| writeln!(f, "    - {}", plain(s)))?;
+            gone.try_for_each(|s| writeln!(f, "    - {}", escape_controls(s)))?;
             let mut new = after.iter().filter(|s| !before.contains(s));
-            new.try_for_each(|s| writeln!(f, "    + {}", plain(s)))
+            new.try_for_each(|s| writeln!(f, "    + {}", escape_controls(s)))
         })
     }
 }
@@ -59,7 +65,7 @@ fn section<T>(
 
 fn one_sided(f: &mut fmt::Formatter<'_>, head: &str, gone: &[String], new: &[String]) -> fmt::Result {
     let rows: Vec<_> = gone.iter().map(|n| ('-', n)).chain(new.iter().map(|n| ('+', n))).collect();
-    section(f, head, &rows, |f, (sign, name)| writeln!(f, "  {sign} {}", plain(name)))
+    section(f, head, &rows, |f, (sign, name)| writeln!(f, "  {sign} {}", escape_controls(name)))
 }
 
 fn mates(names: &[String]) -> String {

@@ -3,7 +3,7 @@
 use super::describe::{place, shape, written};
 use crate::id::{PassId, ResourceId};
 use crate::plan::{Join, Placement, Plan};
-use crate::sanitize::plain;
+use crate::sanitize::escape_controls;
 use std::fmt::Write;
 
 /// Returns the plan in the DOT language.
@@ -89,5 +89,5 @@ fn write_arrows(plan: &Plan, pass: PassId, out: &mut String) -> std::fmt::Result
 }
 
 fn escaped(name: &str) -> String {
-    plain(name).replace('\\', "\\\\").replace('"', "\\\"")
+    escape_controls(name).replace('\\', "\\\\").replace('"', "\\\"")
 }

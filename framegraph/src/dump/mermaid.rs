@@ -3,7 +3,7 @@
 use super::describe::{bytes, is_shared, joined, written};
 use super::flow::{Flow, data_flow, reduced};
 use crate::plan::{Join, Placement, Plan};
-use crate::sanitize::plain;
+use crate::sanitize::escape_controls;
 use std::fmt::Write;
 
 /// Maximum number of passes for the transitive reduction of arrows, which is quadratic.
@@ -67,7 +67,7 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
 /// Escapes a name inside of quotes: special characters become entity codes.
 fn escaped(name: &str) -> String {
     let mut out = String::with_capacity(name.len());
-    for c in plain(name).chars() {
+    for c in escape_controls(name).chars() {
         match c {
             '"' | '#' | '%' | '<' | '>' | '&' | '`' | '|' | ';' => {
                 let _ = write!(out, "#{};", u32::from(c));

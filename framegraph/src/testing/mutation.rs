@@ -112,8 +112,8 @@ pub fn excuse(good: &Plan, mutant: &Mutant) -> Option<&'static str> {
         "step order" | "pass order" => {
             // The run shows that the exchanged passes are independent; only the log describes the old order.
             let free = good.options.order == Order::Optimized;
-            let told = !examine(plan).is_clean();
-            (free && told).then_some("any order with correct reads is valid")
+            let reported = !examine(plan).is_clean();
+            (free && reported).then_some("any order with correct reads is valid")
         }
         "barrier.aliases" => {
             let named = |p: &Plan| p.resources[p.barriers[*row].aliases.index()].last;

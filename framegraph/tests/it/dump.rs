@@ -62,8 +62,8 @@ fn notes_are_told() {
     assert!(!g.same_as(&plain));
     let plan = plan(&g, &Caps::wgpu());
     let text = dump::text(&plan);
-    let told = "decisions:\n  effect `left/glow`: asked for, 3 wide\\n\n  effect `mist`: left out: nothing is far away\n  pass";
-    assert!(text.contains(told), "{text}");
+    let expected = "decisions:\n  effect `left/glow`: asked for, 3 wide\\n\n  effect `mist`: left out: nothing is far away\n  pass";
+    assert!(text.contains(expected), "{text}");
     let value: serde_json::Value = serde_json::from_str(&dump::json(&plan, "")).expect("JSON");
     assert_eq!(value["notes"][1]["about"], "mist");
     assert_eq!(value["notes"][0]["sentence"], "asked for, 3 wide\n");

@@ -129,8 +129,8 @@ fn clear_values_must_fit() {
         .map(|e| (name(&e.resource).to_owned(), matches!(e.reason, CompileReason::ClearValue { .. })))
         .collect();
     assert_eq!(found, [("z".into(), true), ("c".into(), true), ("nan".into(), true)]);
-    let told = errors(&g)[2].to_string();
-    assert!(told.contains("cleared to depth NaN and stencil 0, which Depth32Float cannot represent"), "{told}");
+    let message = errors(&g)[2].to_string();
+    assert!(message.contains("cleared to depth NaN and stencil 0, which Depth32Float cannot represent"), "{message}");
 }
 
 #[test]

@@ -310,6 +310,6 @@ fn a_mark_in_front_of_utf_8_is_no_part_of_the_text() {
     let text = "\u{feff}(version: 1, name: \"marked\")";
     assert_eq!(GraphFile::parse("m.ron", text).map(|f| f.name().to_owned()), Ok("marked".into()));
     assert_eq!(caps("m.ron", "\u{feff}(version: 1, like: \"tiler\")"), Ok(Caps::tiler()));
-    let told = GraphFile::parse("m.ron", "\u{feff}(version: 1, nam: 3)").expect_err("a slip").to_string();
-    assert!(told.starts_with("m.ron:1:14: "), "columns as in an editor: {told}");
+    let message = GraphFile::parse("m.ron", "\u{feff}(version: 1, nam: 3)").expect_err("a slip").to_string();
+    assert!(message.starts_with("m.ron:1:14: "), "columns as in an editor: {message}");
 }

@@ -4,7 +4,7 @@ use crate::device::readback::ReadbackError;
 use crate::execute::error::ExecuteError;
 use crate::inspect::request::VersionSelector;
 use crate::named::Named;
-use framegraph::{Aspect, CompileError, DeclareError, Format, ResourceId, plain};
+use framegraph::{Aspect, CompileError, DeclareError, Format, ResourceId, sanitize};
 use std::fmt;
 
 /// A texture cannot be looked at. The frame under study and its plan are as they were.

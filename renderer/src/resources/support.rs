@@ -7,7 +7,7 @@ use crate::device::adapter::describe;
 use crate::device::format::{texture_format, texture_usages};
 use crate::device::gpu::Gpu;
 use crate::resources::physical::PhysicalTextureDesc;
-use framegraph::{Dimension, Format, Usage, plain};
+use framegraph::{Dimension, Format, Usage, sanitize};
 use wgpu::{AdapterInfo, Features, TextureFormatFeatures, TextureUsages};
 
 /// The device offers no such texture or buffer.

@@ -14,7 +14,7 @@ impl Names {
     pub(super) fn new(graph: &Tables) -> Self {
         let passes = graph.pass_ids().map(|p| graph.pass_name(p)).collect();
         let resources = graph.resource_ids().map(|r| graph.resource_name(r)).collect();
-        Self { passes: told_apart(passes), resources: told_apart(resources) }
+        Self { passes: deduplicate(passes), resources: deduplicate(resources) }
     }
 
     pub(super) fn pass(&self, pass: PassId) -> &str {
@@ -27,24 +27,24 @@ impl Names {
 }
 
 /// Adds suffixes to duplicates. Skips suffixes that would collide with another name.
-fn told_apart(names: Vec<&str>) -> Vec<String> {
+fn deduplicate(names: Vec<&str>) -> Vec<String> {
     let given: HashSet<&str> = names.iter().copied().collect();
     let mut counts: HashMap<&str, u32> = HashMap::new();
-    let told = names.into_iter().map(|name| {
+    let unique = names.into_iter().map(|name| {
         let count = counts.entry(name).or_default();
         *count += 1;
         if *count == 1 {
             return name.to_owned();
         }
         loop {
-            let told = format!("{name}#{count}");
-            if !given.contains(told.as_str()) {
-                return told;
+            let unique = format!("{name}#{count}");
+            if !given.contains(unique.as_str()) {
+                return unique;
             }
             *count += 1;
         }
     });
-    told.collect()
+    unique.collect()
 }
 
 #[cfg(test)]
@@ -53,6 +53,6 @@ mod tests {
 
     #[test]
     fn equal_names_are_told_apart() {
-        assert_eq!(told_apart(vec!["a", "b", "a", "a#2", "a", "b"]), ["a", "b", "a#3", "a#2", "a#4", "b#2"]);
+        assert_eq!(deduplicate(vec!["a", "b", "a", "a#2", "a", "b"]), ["a", "b", "a#3", "a#2", "a#4", "b#2"]);
     }
 }

@@ -1,6 +1,6 @@
 //! Shapes and text as SVG elements, and their bounding box.
 
-use crate::sanitize::plain;
+use crate::sanitize::escape_controls;
 use std::fmt::Write;
 
 /// Margin around the image, in user units (pixels at 100 %).
@@ -80,15 +80,18 @@ impl Canvas {
         self.reach(x + letters * ink.advance(), y + 4.0);
         let class = ink.class();
         // Writing to a string cannot fail; also below.
-        let _ =
-            writeln!(self.body, "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>", escaped(&plain(text)));
+        let _ = writeln!(
+            self.body,
+            "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>",
+            escaped(&escape_controls(text))
+        );
     }
 
     /// Adds text that rises to the right from `x`, `y`, for column heads.
     pub(super) fn slanted(&mut self, x: f64, y: f64, text: &str) {
         let length = text.chars().count() as f64 * Ink::Plain.advance();
         self.reach(x + 0.5 * length, y);
-        let text = escaped(&plain(text));
+        let text = escaped(&escape_controls(text));
         let _ = writeln!(
             self.body,
             "<text class=\"p\" x=\"{x:.1}\" y=\"{y:.1}\" transform=\"rotate(-60 {x:.1} {y:.1})\">{text}</text>"

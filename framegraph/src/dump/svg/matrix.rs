@@ -7,7 +7,7 @@ use crate::dump::describe::{bytes, place, shape};
 use crate::dump::reasons::Reasons;
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Placement, Plan, StoreOp};
-use crate::sanitize::plain;
+use crate::sanitize::escape_controls;
 
 /// Height of a row.
 const ROW: f64 = 20.0;
@@ -78,7 +78,7 @@ fn heads(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
     for step in plan.step_ids() {
         let x = step_x(step.index());
         canvas.slanted(x + 16.0, y - 18.0, &label(step));
-        let all: Vec<_> = plan.passes_of(step).iter().map(|m| plain(graph.pass_name(m.pass))).collect();
+        let all: Vec<_> = plan.passes_of(step).iter().map(|m| escape_controls(graph.pass_name(m.pass))).collect();
         let traffic = plan.step_traffic(step, plan.frame());
         let tip = format!(
             "step {}: {}\nloads {}, stores {}",
@@ -119,7 +119,8 @@ fn draw_row(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, resource: Resou
     };
     let (first, last) = (step_x(row.first.index()), step_x(row.last.index()) + STEP);
     let declared = &graph.resources()[resource.index()];
-    let mut tip = format!("{}\n{}, {}", plain(name), shape(plan, &declared.desc, row.format), bytes(row.bytes));
+    let mut tip =
+        format!("{}\n{}, {}", escape_controls(name), shape(plan, &declared.desc, row.format), bytes(row.bytes));
     for reason in reasons.of(Subject::Resource(resource)) {
         tip += &format!("\n{}", reason.sentence(graph));
     }
@@ -143,7 +144,7 @@ fn cell(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, resource: ResourceI
         glyph_store(canvas, strongest.store, x + 23.0, middle, &store);
         return;
     }
-    let word = match touched(plan, resource, step) {
+    let word = match used(plan, resource, step) {
         (true, true) => "rw",
         (true, false) => "r",
         (false, true) => "w",
@@ -161,7 +162,7 @@ fn stronger(a: &Attachment, b: &Attachment) -> Attachment {
 }
 
 /// Returns two flags: the step reads the resource, and it writes it.
-fn touched(plan: &Plan, resource: ResourceId, step: StepId) -> (bool, bool) {
+fn used(plan: &Plan, resource: ResourceId, step: StepId) -> (bool, bool) {
     let mut read = plan.full_screen_resolves(step).any(|(samples, _)| samples.resource == resource);
     let mut written = plan.full_screen_resolves(step).any(|(_, target)| target.resource == resource);
     for member in plan.passes_of(step).iter().filter(|m| m.join != Join::Resolve) {

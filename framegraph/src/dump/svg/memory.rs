@@ -4,7 +4,7 @@ use super::canvas::{Canvas, Ink, MARGIN, NAMES, STEP, shortened, step_x};
 use crate::dump::describe::{bytes, held, offsets};
 use crate::id::ResourceId;
 use crate::plan::{Placement, Plan};
-use crate::sanitize::plain;
+use crate::sanitize::escape_controls;
 
 /// Height of the map.
 const HEIGHT: f64 = 360.0;
@@ -95,7 +95,8 @@ fn draw_box(plan: &Plan, canvas: &mut Canvas, resource: ResourceId, offset: u64,
         Placement::Slot(slot) => format!("slot {}", slot.index()),
         _ => format!("offset {offset}"),
     };
-    let tip = format!("{}\n{} B, {place}, steps {} to {}", plain(name), row.bytes, first.index(), last.index());
+    let tip =
+        format!("{}\n{} B, {place}, steps {} to {}", escape_controls(name), row.bytes, first.index(), last.index());
     let fill = FILLS[resource.index() % FILLS.len()];
     canvas.rect([x + 0.5, y], [width - 1.0, height], fill, "#555", &tip);
     let letters = ((width - 6.0) / Ink::Small.advance()) as usize;

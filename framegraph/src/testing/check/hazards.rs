@@ -38,40 +38,40 @@ pub(super) fn hazards(ctx: &RuleInput<'_>) {
 
 /// Checks the uses of one step for conflicts.
 fn memory(ctx: &RuleInput<'_>, step: StepId) {
-    let mut ways: Vec<(usize, UseKind, usize, PassId, ResourceId)> = Vec::new();
+    let mut uses: Vec<(usize, UseKind, usize, PassId, ResourceId)> = Vec::new();
     let spot = |resource, part| ctx.spot(resource, part);
     for attachment in ctx.plan.attachments_of(step) {
         let (attached, resource) = (ctx.attached(attachment), attachment.resource);
-        ways.extend(attached.map(|part| (spot(resource, part), UseKind::Shown, part, PassId::NONE, resource)));
+        uses.extend(attached.map(|part| (spot(resource, part), UseKind::Shown, part, PassId::NONE, resource)));
     }
-    for (member, touch) in ctx.accesses_by(ctx.plan.passes_of(step)) {
-        let way = match (touch.access.kind.is_attachment(), touch.access.mode.writes()) {
+    for (member, planned) in ctx.accesses_by(ctx.plan.passes_of(step)) {
+        let use_kind = match (planned.access.kind.is_attachment(), planned.access.mode.writes()) {
             (true, true) => UseKind::Drawn,
             (true, false) => UseKind::Shown,
             (false, true) => UseKind::Written,
-            (false, false) if ctx.in_tile(step, member, &touch) => UseKind::Shown,
+            (false, false) if ctx.in_tile(step, member, &planned) => UseKind::Shown,
             (false, false) => UseKind::Read,
         };
-        let (parts, resource) = (ctx.parts.covered(touch.resource, touch.range), touch.resource);
-        ways.extend(parts.map(|part| (spot(resource, part), way, part, member.pass, resource)));
+        let (parts, resource) = (ctx.parts.covered(planned.resource, planned.range), planned.resource);
+        uses.extend(parts.map(|part| (spot(resource, part), use_kind, part, member.pass, resource)));
     }
-    ways.sort_unstable();
+    uses.sort_unstable();
     let depth = ctx.plan.caps().sample_read_only_depth;
-    for of_part in ways.chunk_by(|a, b| a.0 == b.0) {
-        for (index, &(_, way, part, pass, resource)) in of_part.iter().enumerate() {
+    for of_part in uses.chunk_by(|a, b| a.0 == b.0) {
+        for (index, &(_, use_kind, part, pass, resource)) in of_part.iter().enumerate() {
             for &(_, before, beside, other, _) in &of_part[..index] {
                 // Conflicts between two planes in one pass are checked elsewhere.
                 if beside != part && (other == pass || other.is_none() || pass.is_none()) {
                     continue;
                 }
-                let clash = match (before, way) {
+                let clash = match (before, use_kind) {
                     (UseKind::Drawn, UseKind::Read) | (UseKind::Drawn | UseKind::Shown, UseKind::Written) => true,
                     (UseKind::Shown, UseKind::Read) => !depth,
                     (UseKind::Read | UseKind::Written, UseKind::Written) => other != pass,
                     _ => false,
                 };
                 let place = ((step, pass, resource), ctx.parts.name(resource, part));
-                let why = format_args!("conflicting uses in one step: {before:?} by one pass, {way:?} by another");
+                let why = format_args!("conflicting uses in one step: {before:?} by one pass, {use_kind:?} by another");
                 ctx.report.require(!clash, Rule::Hazard, place, why);
             }
         }
@@ -95,13 +95,14 @@ fn joins(ctx: &RuleInput<'_>, step: StepId) {
         };
         let why = format_args!("options or device do not allow {:?}", member.join);
         ctx.report.require(allowed, Rule::Merging, place, why);
-        let mut touches = ctx.planned_accesses(*member);
+        let mut uses = ctx.planned_accesses(*member);
         let right = match member.join {
             Join::First | Join::Resolve => false,
             Join::Inlined => true,
-            Join::SamePixel => caps.same_pixel && touches.any(|t| ctx.in_tile(step, *member, &t)),
-            Join::Attachments => touches
-                .any(|t| t.access.kind.is_attachment() && ctx.attached_by(&members[..index], t.resource, t.range)),
+            Join::SamePixel => caps.same_pixel && uses.any(|t| ctx.in_tile(step, *member, &t)),
+            Join::Attachments => {
+                uses.any(|t| t.access.kind.is_attachment() && ctx.attached_by(&members[..index], t.resource, t.range))
+            }
         };
         let why = format_args!("its join is not {:?}", member.join);
         ctx.report.require(right, Rule::Merging, place, why);

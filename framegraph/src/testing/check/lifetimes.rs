@@ -55,14 +55,14 @@ fn rows(ctx: &RuleInput<'_>) -> Vec<Planned> {
     };
     let mut rows: Vec<Planned> = resources.map(unused).collect();
     for step in ctx.plan.step_ids() {
-        for (member, touch) in ctx.accesses_by(ctx.plan.passes_of(step)) {
-            let row = &mut rows[touch.resource.index()];
+        for (member, access) in ctx.accesses_by(ctx.plan.passes_of(step)) {
+            let row = &mut rows[access.resource.index()];
             row.first = row.first.some().unwrap_or(step);
             row.last = step;
-            let sampled = touch.access.kind == AccessKind::SamePixel && !ctx.in_tile(step, member, &touch);
-            let usage = if sampled { Usage::SAMPLED } else { touch.access.kind.usage() };
+            let sampled = access.access.kind == AccessKind::SamePixel && !ctx.in_tile(step, member, &access);
+            let usage = if sampled { Usage::SAMPLED } else { access.access.kind.usage() };
             row.usage = row.usage.union(usage);
-            row.srgb_views |= touch.access.range.view.is_some();
+            row.srgb_views |= access.access.range.view.is_some();
         }
     }
     for export in ctx.graph.exports().iter().filter(|e| e.kind == ExportKind::Readback) {
@@ -142,22 +142,22 @@ fn placement(ctx: &RuleInput<'_>, resource: ResourceId, expected: &Planned) {
     let (caps, options) = (ctx.plan.caps(), ctx.plan.options());
     let found = ctx.placement(resource);
     let heap = options.alias == Alias::Heap && caps.placed;
-    let touched = !expected.first.is_none();
+    let used = !expected.first.is_none();
     let replaced = ctx.replaced[resource.index()].is_some();
     let allowed = match ctx.kind(resource) {
         Kind::Imported { .. } => found == Placement::External,
-        Kind::HistoryCurrent { .. } if heap && caps.placed_histories && touched => {
+        Kind::HistoryCurrent { .. } if heap && caps.placed_histories && used => {
             matches!(found, Placement::Heap { .. })
         }
         Kind::HistoryCurrent { .. } => found == Placement::Own,
         Kind::HistoryPrevious { current, age } => found == image(ctx, current, age),
         Kind::Transient if ctx.exported[resource.index()] => found == Placement::Own,
         Kind::Transient => match found {
-            Placement::Unused => !touched && !replaced,
+            Placement::Unused => !used && !replaced,
             Placement::Inlined => replaced,
-            Placement::Memoryless => touched && caps.memoryless && options.memoryless,
-            Placement::Slot(_) => touched && !heap,
-            Placement::Heap { .. } => touched && heap,
+            Placement::Memoryless => used && caps.memoryless && options.memoryless,
+            Placement::Slot(_) => used && !heap,
+            Placement::Heap { .. } => used && heap,
             Placement::External | Placement::Own => false,
         },
     };

@@ -20,21 +20,21 @@ impl Machine<'_, '_> {
     /// Performs the reads of a pass from main memory for which `chosen` is true.
     pub(super) fn reads(&mut self, step: StepId, member: StepPass, chosen: impl Fn(&PlannedAccess) -> bool) {
         let ctx = self.ctx;
-        for touch in ctx.planned_accesses(member) {
-            let elsewhere = touch.access.kind.is_attachment() || touch.in_shader;
-            if elsewhere || !touch.access.mode.needs_contents() || !chosen(&touch) {
+        for planned in ctx.planned_accesses(member) {
+            let elsewhere = planned.access.kind.is_attachment() || planned.in_shader;
+            if elsewhere || !planned.access.mode.needs_contents() || !chosen(&planned) {
                 continue;
             }
             // A replaced resource has no memory, so it is looked up under its own name.
-            let resource = touch.access.resource;
+            let resource = planned.access.resource;
             let place = (step, member.pass, resource);
             if !self.memory.exists(resource) {
                 ctx.report.violation(Rule::NoMemory, place, "it is read, but has no memory");
                 continue;
             }
-            for read in ctx.reads(touch.id) {
+            for read in ctx.reads(planned.id) {
                 let found = self.memory.value(resource, read.part);
-                self.compare(found, read.value, place.into(), &touch, read.part);
+                self.compare(found, read.value, place.into(), &planned, read.part);
                 let source = self.memory.source(read.part);
                 self.memory.used(source, member.pass);
             }
@@ -44,8 +44,8 @@ impl Machine<'_, '_> {
     /// Performs the writes of a pass to main memory.
     pub(super) fn writes(&mut self, step: StepId, member: StepPass) {
         let ctx = self.ctx;
-        let touches = ctx.planned_accesses(member).map(|t| t.access);
-        for access in touches.filter(|a| !a.kind.is_attachment() && a.mode.writes()) {
+        let uses = ctx.planned_accesses(member).map(|t| t.access);
+        for access in uses.filter(|a| !a.kind.is_attachment() && a.mode.writes()) {
             let resource = access.resource;
             if !self.memory.exists(resource) {
                 let place = (step, member.pass, resource);
@@ -64,13 +64,13 @@ impl Machine<'_, '_> {
     }
 
     /// Compares the value of a read with the expected one.
-    pub(super) fn compare(&self, found: Value, expected: Value, place: Place, touch: &PlannedAccess, part: usize) {
+    pub(super) fn compare(&self, found: Value, expected: Value, place: Place, planned: &PlannedAccess, part: usize) {
         if found == expected {
             return;
         }
         let ctx = self.ctx;
-        let own = touch.access.resource;
-        let word = touch.access.kind.word();
+        let own = planned.access.resource;
+        let word = planned.access.kind.word();
         let (finds, should) = (found.sentence(ctx.graph), expected.sentence(ctx.graph));
         let rule = if found.is_garbage() { Rule::Garbage } else { Rule::Version };
         let place = (place, own, ctx.parts.name(own, part));

@@ -147,12 +147,12 @@ impl<'p> RuleInput<'p> {
         let of_full_screen = move |m: &&FullScreen| full_screen && m.pass == member.pass;
         let resolves =
             self.full_screen.iter().filter(of_full_screen).flat_map(|m| [(m.id, m.samples), (m.id, m.target)]);
-        let touch = move |(id, access): (usize, Access)| {
+        let planned = move |(id, access): (usize, Access)| {
             let (resource, range) = self.effective(access.resource, access.range);
             PlannedAccess { access, id, resource, range, in_shader: false }
         };
         let here = move |t: &PlannedAccess| !full_screen && self.full_screen.iter().all(|m| m.id != t.id);
-        self.declared_accesses(member).filter(here).chain(resolves.map(touch))
+        self.declared_accesses(member).filter(here).chain(resolves.map(planned))
     }
 
     /// Returns the accesses of a running pass as declared, including resolves performed by full-screen passes.
@@ -171,8 +171,8 @@ impl<'p> RuleInput<'p> {
 
     /// Returns the accesses of the passes of a step, without those performed inside of another pass's shader.
     pub(super) fn accesses_by(&self, passes: &'p [StepPass]) -> impl Iterator<Item = (StepPass, PlannedAccess)> {
-        let touches = passes.iter().flat_map(|m| self.planned_accesses(*m).map(|t| (*m, t)));
-        touches.filter(|(_, t)| !t.in_shader)
+        let uses = passes.iter().flat_map(|m| self.planned_accesses(*m).map(|t| (*m, t)));
+        uses.filter(|(_, t)| !t.in_shader)
     }
 
     /// Returns the accesses of a pass with their indices in the graph.
@@ -215,10 +215,10 @@ impl<'p> RuleInput<'p> {
 
     /// Returns `true` if a same-pixel read finds its texels in the tile. Earlier passes of the step must have attached
     /// all its planes, and the pass must have joined because of it.
-    pub(super) fn in_tile(&self, step: StepId, member: StepPass, touch: &PlannedAccess) -> bool {
-        touch.access.kind == AccessKind::SamePixel
+    pub(super) fn in_tile(&self, step: StepId, member: StepPass, planned: &PlannedAccess) -> bool {
+        planned.access.kind == AccessKind::SamePixel
             && member.join == Join::SamePixel
-            && self.shown_by(self.before(step, member.pass), touch.resource, touch.range)
+            && self.shown_by(self.before(step, member.pass), planned.resource, planned.range)
     }
 
     /// Returns the passes of a step that run before one of them.

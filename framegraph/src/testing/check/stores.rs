@@ -23,7 +23,7 @@ pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId
                 continue;
             }
             let written = cells.iter().any(|c| c.written);
-            let touched = written || cells.iter().any(|c| c.touched);
+            let accessed = written || cells.iter().any(|c| c.accessed);
             let (load, store) = ops(attachment, plane);
             let memory = machine.memory.exists(resource);
             let why = format_args!("the store op of plane {plane} is {store:?}, but it has no memory");
@@ -37,11 +37,11 @@ pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId
             let fits = match store {
                 StoreOp::None => !written,
                 StoreOp::Store => written,
-                StoreOp::Discard => touched && !bound,
+                StoreOp::Discard => accessed && !bound,
             };
-            let why = format_args!("the store op of plane {plane} is {store:?}, used: {touched}, written: {written}");
+            let why = format_args!("the store op of plane {plane} is {store:?}, used: {accessed}, written: {written}");
             ctx.report.require(fits, Rule::StoreOp, place, why);
-            if store == StoreOp::None && !touched {
+            if store == StoreOp::None && !accessed {
                 continue;
             }
             let source = Some(machine.memory.records.len());
@@ -76,8 +76,8 @@ fn is_read_beside(ctx: &RuleInput<'_>, step: StepId, attachment: &Attachment) ->
         (name.mip, name.layer)
     };
     let attached: Vec<_> = ctx.attached(attachment).map(place).collect();
-    let touches = ctx.plan.passes_of(step).iter().flat_map(|m| ctx.planned_accesses(*m));
-    let mut reads = touches.filter(|t| t.resource == attachment.resource && !t.access.kind.is_attachment());
+    let uses = ctx.plan.passes_of(step).iter().flat_map(|m| ctx.planned_accesses(*m));
+    let mut reads = uses.filter(|t| t.resource == attachment.resource && !t.access.kind.is_attachment());
     reads.any(|t| ctx.parts.covered(t.resource, t.range).any(|part| attached.contains(&place(part))))
 }
 

@@ -22,7 +22,7 @@ pub(super) struct Cell {
     /// A pass used the value of the load operation.
     pub(super) used: bool,
     /// A pass drew into it or read it.
-    pub(super) touched: bool,
+    pub(super) accessed: bool,
     /// A pass changed it.
     pub(super) written: bool,
 }
@@ -96,8 +96,8 @@ fn load(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
                 LoadOp::DontCare => Value::Garbage(Cause::DontCare),
             };
             tile.of_part[part] = Some(tile.cells.len());
-            let (used, touched, written) = (false, false, false);
-            tile.cells.push(Cell { part, plane, value, source, initial: true, used, touched, written });
+            let (used, accessed, written) = (false, false, false);
+            tile.cells.push(Cell { part, plane, value, source, initial: true, used, accessed, written });
         }
     }
 }
@@ -111,11 +111,11 @@ fn draw(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, member: St
         if inlined { t.in_shader } else { t.access.kind.is_attachment() || ctx.in_tile(step, member, t) }
     };
     machine.reads(step, member, |t| inlined || !in_tile(t));
-    for touch in ctx.planned_accesses(member).filter(|t| in_tile(t) && !(inlined && t.access.mode.writes())) {
-        consume(machine, tile, step, member.pass, &touch);
+    for planned in ctx.planned_accesses(member).filter(|t| in_tile(t) && !(inlined && t.access.mode.writes())) {
+        consume(machine, tile, step, member.pass, &planned);
     }
-    for touch in ctx.planned_accesses(member).filter(|t| in_tile(t) && t.access.mode.writes()) {
-        produce(machine, tile, step, member, &touch);
+    for planned in ctx.planned_accesses(member).filter(|t| in_tile(t) && t.access.mode.writes()) {
+        produce(machine, tile, step, member, &planned);
     }
     if !inlined {
         machine.writes(step, member);
@@ -123,21 +123,21 @@ fn draw(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, member: St
 }
 
 /// Checks the values that a pass reads from the tile.
-fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: PassId, touch: &PlannedAccess) {
+fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: PassId, planned: &PlannedAccess) {
     let ctx = machine.ctx;
-    let access = touch.access;
+    let access = planned.access;
     let place = (step, pass, access.resource);
-    let in_vain = ctx.reference.in_vain[touch.id];
-    for (at, part) in ctx.parts.covered(touch.resource, touch.range).enumerate() {
-        let read = ctx.reads(touch.id).get(at);
+    let in_vain = ctx.reference.in_vain[planned.id];
+    for (at, part) in ctx.parts.covered(planned.resource, planned.range).enumerate() {
+        let read = ctx.reads(planned.id).get(at);
         let Some(cell) = tile.cell(part) else {
             if let Some(read) = read.filter(|_| access.mode.needs_contents()) {
                 let nothing = Value::Garbage(Cause::NotAttached);
-                machine.compare(nothing, read.value, place.into(), touch, read.part);
+                machine.compare(nothing, read.value, place.into(), planned, read.part);
             }
             continue;
         };
-        cell.touched = true;
+        cell.accessed = true;
         let found = cell.value;
         let refuse = |should: &str| {
             let why = format_args!("the tile contains {}, expected {should}", found.sentence(ctx.graph));
@@ -157,7 +157,7 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
             }
             Mode::Read | Mode::Modify => {
                 if let Some(read) = read {
-                    machine.compare(cell.value, read.value, place.into(), touch, read.part);
+                    machine.compare(cell.value, read.value, place.into(), planned, read.part);
                 }
                 if cell.initial {
                     cell.used = true;
@@ -184,20 +184,20 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
 }
 
 /// Sets the values that a pass leaves in the tile.
-fn produce(machine: &Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass, touch: &PlannedAccess) {
+fn produce(machine: &Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass, planned: &PlannedAccess) {
     let ctx = machine.ctx;
-    if touch.access.kind == AccessKind::Resolve {
-        for part in averaged_parts(ctx, step, member, touch) {
+    if planned.access.kind == AccessKind::Resolve {
+        for part in averaged_parts(ctx, step, member, planned) {
             let value = tile.cell(part).map_or(Value::Garbage(Cause::NotAttached), |cell| cell.value);
             tile.resolves.push((member.pass, part, value));
         }
     }
-    for part in ctx.parts.covered(touch.resource, touch.range) {
+    for part in ctx.parts.covered(planned.resource, planned.range) {
         if let Some(cell) = tile.cell(part) {
             cell.value = Value::Written(member.pass);
             (cell.initial, cell.written) = (false, true);
         } else {
-            let place = (step, member.pass, touch.access.resource);
+            let place = (step, member.pass, planned.access.resource);
             ctx.report.violation(Rule::Attachments, place, "it is drawn into, but not attached");
         }
     }

@@ -287,8 +287,8 @@ fn files_say_depth_and_mode() {
     assert_eq!(dump::text(&clean(&again, &Caps::tiler())), dump::text(&clean(&graph, &Caps::tiler())));
     let slot = text.replace("of: Depth", "slot: 15");
     let refused = GraphFile::parse("frame.ron", &slot).unwrap().declare(&[], &Registry::new(), &mut Graph::new());
-    let told = refused.expect_err("no color attachment has this slot").to_string();
-    assert!(told.contains("`of: Depth`"), "{told}");
+    let message = refused.expect_err("no color attachment has this slot").to_string();
+    assert!(message.contains("`of: Depth`"), "{message}");
     let caps = file::caps("caps.ron", "(version: 1, like: \"desktop\", depth_resolves: [Sample0, Min])").unwrap();
     assert_eq!(clean(&graph, &caps).counts().steps, 2);
 }

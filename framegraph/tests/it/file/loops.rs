@@ -236,18 +236,18 @@ fn what_is_wrong_in_an_included_file_stands_there() {
         let included = Included::load("m.ron", main, read(&files))?;
         GraphFile::parse_with("m.ron", main, &included)?.graph(&[]).map(drop)
     };
-    let told = |main: &str, a: &str| load(main, a).expect_err("it is wrong").to_string();
+    let message = |main: &str, a: &str| load(main, a).expect_err("it is wrong").to_string();
     let wrong = "(version: 1,\n passes: [Raster(name: \"p\", accesses: [Sampled(of: \"b\")])])";
-    assert!(told(main, wrong).starts_with("a.ron:2:52: unknown resource `b`"), "{}", told(main, wrong));
-    assert!(told(main, "(version: 1, x: 1)").starts_with("a.ron:1:14: "));
-    assert!(told(main, "(version: 2)").starts_with("a.ron:1:11: the file has version 2"));
+    assert!(message(main, wrong).starts_with("a.ron:2:52: unknown resource `b`"), "{}", message(main, wrong));
+    assert!(message(main, "(version: 1, x: 1)").starts_with("a.ron:1:14: "));
+    assert!(message(main, "(version: 2)").starts_with("a.ron:1:11: the file has version 2"));
     assert!(
-        told(r#"(version: 1, include: ["c.ron"])"#, "")
+        message(r#"(version: 1, include: ["c.ron"])"#, "")
             .contains("m.ron:1:24: the file cannot be included: there is no file")
     );
     for path in ["../a.ron", "/etc/passwd", "a//b.ron", "", "c:\\\\a.ron", "./a.ron"] {
         let main = format!("(version: 1, include: [\"{path}\"])");
-        assert!(told(&main, "").contains("outside of the folder"), "{path}: {}", told(&main, ""));
+        assert!(message(&main, "").contains("outside of the folder"), "{path}: {}", message(&main, ""));
     }
     // A file that includes itself, or the file that includes it, is read once.
     assert!(load(main, r#"(version: 1, include: ["a.ron", "m.ron"])"#).is_ok());

@@ -24,8 +24,8 @@ impl Candidate<'_, '_> {
         let samples = self.samples();
         let mut running = self.members.iter().rev().filter(|m| m.join != Join::Inlined);
         let draws = |m| {
-            let mut touches = self.ctx.planned_accesses(m).filter(|t| t.access.kind == AccessKind::Color);
-            touches.any(|t| (t.resource, t.range) == target || samples.contains(&t.resource))
+            let mut uses = self.ctx.planned_accesses(m).filter(|t| t.access.kind == AccessKind::Color);
+            uses.any(|t| (t.resource, t.range) == target || samples.contains(&t.resource))
         };
         running.find(|m| draws(**m)).map(|m| m.pass)
     }

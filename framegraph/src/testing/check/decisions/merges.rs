@@ -70,8 +70,8 @@ impl<'c, 'p> Candidate<'c, 'p> {
     /// the step.
     pub(super) fn before(&self) -> impl Iterator<Item = (PassId, PlannedAccess)> {
         let drawn = self.members.iter().filter(|m| m.join != Join::Resolve);
-        let touches = drawn.flat_map(|m| self.ctx.declared_accesses(*m).map(|t| (m.pass, t)));
-        touches.filter(|(_, t)| !t.in_shader)
+        let uses = drawn.flat_map(|m| self.ctx.declared_accesses(*m).map(|t| (m.pass, t)));
+        uses.filter(|(_, t)| !t.in_shader)
     }
 
     /// Returns `true` if an earlier pass of the step attached the range of an access as color or depth.
