@@ -15,7 +15,7 @@ use super::problem::Problem;
 
 /// Steps of the exact search before the others start.
 const ALONE: u64 = 1 << 18;
-/// Denominator of the exact search's share after that: for few items, and for many.
+/// Denominator of the exact search's share of the steps while other searches run: for few items, and for many.
 const SHARES: (u64, u64) = (3, 16);
 /// Steps per turn of the ejection search.
 const TURN: u64 = 1 << 16;

@@ -18,7 +18,7 @@ use crate::entropy::Entropy;
 /// Direction and pattern of the cuts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cuts {
-    /// Mostly across the longer side of a piece, relative to the rectangle.
+    /// Mostly through the longer side of a piece. Sides are measured relative to those of the rectangle.
     Even,
     /// Mostly between addresses: long lifetimes and small sizes.
     Long,

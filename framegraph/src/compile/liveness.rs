@@ -28,7 +28,7 @@ pub(crate) enum NextUse {
     CulledReaderThenKept(PassId),
     /// This culled pass overwrites them, and no kept pass does.
     CulledWriter(PassId),
-    /// This pass overwrites them first, and this or a later kept pass overwrites them.
+    /// This pass overwrites them first. It is kept, or a later pass that overwrites them is.
     Overwritten(PassId),
 }
 

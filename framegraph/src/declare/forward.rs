@@ -114,7 +114,7 @@ impl Tables {
         let open = unwritten && !self.resources[to.index()].kind.defined_on_entry();
         let behind = open && uses(to).all(|index| of_pass(index) > of_pass(last));
         if !before && !behind {
-            return Err(ForwardReason::Touched);
+            return Err(ForwardReason::Interleaved);
         }
         for index in uses(from) {
             let access = &self.accesses[index];

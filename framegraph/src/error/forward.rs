@@ -19,7 +19,7 @@ error_enum! {
             "give both textures the same depth, or select a level with one slice";
         TargetLater "the target was declared or written after the first access of the forwarded texture",
             "declare the target before the pass with that access";
-        Touched "accesses of the target lie between accesses of the forwarded texture",
+        Interleaved "accesses of the target lie between accesses of the forwarded texture",
             "access the target before or after all of them, or copy";
         Format { /** That of the target. */ format: Format, access: AccessKind }
             "a pass uses the forwarded texture as `{access}`, which the target's {format:?} does not support",

@@ -164,7 +164,7 @@ impl<'t> Source<'t> {
         self.parse_for(raw, self.text_of(raw), |byte| byte)
     }
 
-    /// Parses `text` instead of an unparsed value; `in_value` maps a byte of it to one of the value.
+    /// Parses `text` in place of the value `raw`. For errors, `in_value` maps byte offsets in `text` to offsets in `raw`.
     pub(super) fn parse_for<'a, T: Deserialize<'a>>(
         &self,
         raw: &Raw,

@@ -348,7 +348,7 @@ fn what_cannot_be_forwarded_is_refused_and_stays() {
     // A use in between: a pass that draws on the screen while the image is computed would be overwritten.
     let screen = g.add_fn("between", |p| p.color(screen, BLACK)).unwrap();
     let drawn = g.add_fn("on", |p| p.color(drawn, Intent::Modify)).unwrap();
-    assert!(matches!(fault(&mut g, drawn, screen.into()), ForwardReason::TargetLater | ForwardReason::Touched));
+    assert!(matches!(fault(&mut g, drawn, screen.into()), ForwardReason::TargetLater | ForwardReason::Interleaved));
     assert!(g.forward_of(g.find_resource("draw out").unwrap()).is_none());
     // The forwarded texture has no valid handle.
     let mut g = Graph::new();

@@ -68,16 +68,18 @@ fn a_broken_budget_names_the_decisions_to_blame() {
     // Three loads of tested depth, eleven stores: see the case.
     let (code, text, error) = with("loads=3,stores=11");
     assert_eq!((code, error.as_str()), (Some(0), ""));
-    assert!(text.starts_with("plan 1"));
+    assert!(text.starts_with("plan 2"));
     let (code, text, error) = with("loads=2,stores=11");
     assert_eq!(code, Some(1));
-    assert!(text.starts_with("plan 1"), "the plan is printed all the same");
+    assert!(text.starts_with("plan 2"), "the plan is printed all the same");
     let lines: Vec<_> = error.lines().collect();
     assert_eq!(lines[0], "budget broken: loads 3, allowed 2");
     assert_eq!(lines.len(), 4, "{error}");
     for line in &lines[1..] {
         assert!(
-            line.contains("load of `structure` in step") && line.contains("`structure` wrote") && line.contains("; "),
+            line.contains("load of `structure` in step")
+                && line.contains("written by `structure`")
+                && line.contains("; "),
             "{line}"
         );
     }
@@ -106,7 +108,7 @@ fn two_frames_are_compared() {
         assert_eq!((code, error.as_str()), (Some(0), ""));
         assert_ne!(off, run(&args).1, "the switch does nothing");
         let (code, _, error) = run(&[&args[..], &["--set", "fxa=off"]].concat());
-        assert!(code == Some(2) && error.contains("no feature `fxa`"), "{error}");
+        assert!(code == Some(2) && error.contains("unknown feature `fxa`"), "{error}");
     }
 }
 
@@ -117,10 +119,7 @@ fn devices_come_from_files_too() {
         .expect("written");
     let (code, text, error) = run(&[&case("granite_on_tile.ron"), "--caps", &device.display().to_string()]);
     assert_eq!((code, error.as_str()), (Some(0), ""));
-    assert!(
-        text.starts_with("plan 2 for tiny") && text.contains("together they exceed the tile memory"),
-        "{text}"
-    );
+    assert!(text.starts_with("plan 2 for tiny") && text.contains("together they exceed the tile memory"), "{text}");
 }
 
 #[test]
@@ -139,7 +138,7 @@ fn bad_input_is_one_line_an_error_and_exit_code_2() {
         (&[&frame, "--caps", "toaster"], "--caps: `toaster` is neither desktop, tiler, wgpu nor a FILE.ron".into()),
         (&[&frame, "--size", "20000x20000"], "the device allows".into()),
         (&["nowhere.ron"], "nowhere.ron: cannot be read: ".into()),
-        (&[&shown], format!("{shown}:2:30: `R8Unrm` is no Format; did you mean `R8Unorm`?")),
+        (&[&shown], format!("{shown}:2:30: `R8Unrm` is not a variant of Format; did you mean `R8Unorm`?")),
         (&[latin.to_str().expect("the path is UTF-8")], ":2:1: the line is not UTF-8".into()),
     ];
     for (args, expected) in cases {

@@ -17,8 +17,8 @@ impl Canonical {
         self.arena.extend(self.keys.iter().map(|key| key.2));
     }
 
-    /// Selects the item of the component with the lowest position that was not refused there; the first of several in
-    /// the order.
+    /// Selects the item with the lowest possible position, among the items of the component that were not refused
+    /// there. Of several, the first one in the order is selected.
     pub(super) fn lowest(&mut self, component: Component) -> Choice {
         let (mut best, mut choice) = (u64::MAX, Choice::Done);
         for &i in &self.arena[component.first as usize..component.end as usize] {
