@@ -8,7 +8,7 @@ use framegraph::{Plan, ResourceId, StepId};
 /// A resource reuses memory of another one that the same queue has used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AliasingBarrier {
-    /// A step that uses `to`, without an earlier one that does.
+    /// A step that uses `to`, and before which no step uses it.
     pub before: StepId,
     /// The previous resource.
     pub from: ResourceId,
