@@ -18,7 +18,7 @@ impl Canonical {
     }
 
     /// Selects the item with the lowest possible position, among the items of the component that were not refused
-    /// there. Of several, the first one in the order is selected.
+    /// there. Ties are resolved by the order of the items.
     pub(super) fn lowest(&mut self, component: Component) -> Choice {
         let (mut best, mut choice) = (u64::MAX, Choice::Done);
         for &i in &self.arena[component.first as usize..component.end as usize] {
