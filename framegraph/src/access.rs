@@ -1,15 +1,15 @@
-//! How a pass touches a resource: kind of access, intent of a write, subresource range, and which pairs conflict.
+//! Accesses of passes to resources: kind, intent of a write, and range.
 
 mod kinds;
 mod range;
 
+use crate::enum_names::{bits, enum_names};
 use crate::id::{ResourceId, VersionId};
 use crate::resolve::ResolveMode;
-use crate::words::{bits, words};
 pub(crate) use kinds::Kinds;
 pub use range::{ByteRange, Range};
 
-/// The kind of an access. The comment says what a pass of which kind may use it for.
+/// The kind of an access. Kinds marked *Raster* require a raster pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
@@ -22,13 +22,13 @@ pub enum AccessKind {
     DepthReadOnly,
     /// Raster: the single-sample target of a multisampled color or depth attachment at the end of the step.
     Resolve,
-    /// Raster: the texel under the fragment itself; stays in the tile where the device can.
+    /// Raster: a read of the texel under the fragment; stays in the tile if the device supports it.
     SamePixel,
     /// A texture read through a sampler or by texel fetch.
     Sampled,
     /// A storage texture or buffer that is read.
     StorageRead,
-    /// A storage texture or buffer that is written (and read, when the intent is `Modify`).
+    /// A storage texture or buffer that is written, or read and written with `Modify`.
     StorageWrite,
     /// A uniform buffer.
     Uniform,
@@ -45,28 +45,28 @@ pub enum AccessKind {
 }
 
 impl AccessKind {
-    /// Whether the access lives in tile memory: attachments and same-pixel reads.
+    /// Returns `true` for attachments and resolve targets.
     #[inline]
     pub const fn is_attachment(self) -> bool {
         matches!(self, Self::Color | Self::Depth | Self::DepthReadOnly | Self::Resolve)
     }
 
-    /// Whether it is the depth-stencil attachment, written or not.
+    /// Returns `true` for depth-stencil attachments, read-only or not.
     #[inline]
     pub const fn is_depth(self) -> bool {
         matches!(self, Self::Depth | Self::DepthReadOnly)
     }
 
-    /// Whether it can only be made by a raster pass.
+    /// Returns `true` if the access requires a raster pass.
     #[inline]
     pub const fn needs_raster(self) -> bool {
         self.is_attachment() || matches!(self, Self::SamePixel | Self::Vertex | Self::Index)
     }
 
-    /// The usage flag that the physical resource must carry for it.
+    /// Returns the usage flag that the physical resource needs for this access.
     #[inline]
     pub const fn usage(self) -> Usage {
-        // A table in the order of the kinds, since compiling asks once for each access.
+        // A table in the order of the kinds, because it is used for every access.
         #[rustfmt::skip]
         const USAGES: [Usage; 14] = [
             Usage::ATTACHMENT, Usage::ATTACHMENT, Usage::ATTACHMENT, Usage::ATTACHMENT, Usage::INPUT_ATTACHMENT,
@@ -77,41 +77,41 @@ impl AccessKind {
     }
 }
 
-words! {
+enum_names! {
     AccessKind:
     Color "color", Depth "depth", DepthReadOnly "depth_read_only", Resolve "resolve", SamePixel "same_pixel",
     Sampled "sampled", StorageRead "storage_read", StorageWrite "storage_write", Uniform "uniform", Vertex "vertex",
     Index "index", Indirect "indirect", CopySource "copy_source", CopyTarget "copy_target"
 }
 
-/// What a write does with the contents that were there, from which loads, stores and culling follow.
+/// Effect of a write on the previous contents. Determines loads, stores and culling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Intent {
-    /// Every texel of the range is set to this value first; old contents are dead.
+    /// Sets every texel of the range to this value first; the previous contents are lost.
     Clear(ClearValue),
-    /// Every texel of the range is written by the pass; old contents are dead.
+    /// Writes every texel of the range; the previous contents are lost.
     Overwrite,
-    /// Old contents matter: blending, depth testing against what is there, partial writes.
+    /// Uses the previous contents: blending, depth testing, partial writes.
     Modify,
 }
 
-/// What a cleared attachment holds.
+/// The value of a cleared resource.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum ClearValue {
-    /// Red, green, blue, alpha; linear, in the units of the format.
+    /// Red, green, blue and alpha; linear, in the range of the format.
     Color([f64; 4]),
-    /// Depth in 0…1 (with reversed Z, 0 is the far plane), and stencil.
+    /// Depth from 0 to 1 (with reversed Z, 0 is the far plane), and stencil.
     DepthStencil(f32, u32),
-    /// All bytes zero: what a buffer or storage texture is cleared to.
+    /// All bytes zero, for buffers and storage textures.
     Zero,
 }
 
 impl ClearValue {
     /// Opaque black: color 0, alpha 1.
     pub const BLACK: Self = Self::Color([0.0, 0.0, 0.0, 1.0]);
-    /// Color zero in all four channels.
+    /// All four channels zero.
     pub const TRANSPARENT: Self = Self::Color([0.0; 4]);
     /// Depth 0: the far plane when Z is reversed. Stencil 0.
     pub const FAR_REVERSED: Self = Self::DepthStencil(0.0, 0);
@@ -120,7 +120,7 @@ impl ClearValue {
 }
 
 impl PartialEq for ClearValue {
-    /// Equal bit for bit, so that a NaN equals itself and −0 differs from 0.
+    /// Compares bit by bit: a NaN equals itself, and −0 differs from 0.
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Color(a), Self::Color(b)) => a.map(f64::to_bits) == b.map(f64::to_bits),
@@ -133,63 +133,62 @@ impl PartialEq for ClearValue {
 
 impl Eq for ClearValue {}
 
-/// Read or write, without the clear value: what the phases look at.
+/// The intent of an access without its clear value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Mode {
-    /// Contents are needed and stay as they are.
+    /// Uses the contents and leaves them unchanged.
     Read,
-    /// Old contents are dead; the range holds the clear value before the pass writes.
+    /// Discards the previous contents; the range holds the clear value before the pass writes.
     Clear,
-    /// Old contents are dead; the pass writes every texel of the range.
+    /// Discards the previous contents; the pass writes every texel of the range.
     Overwrite,
-    /// Old contents are needed and change.
+    /// Uses the previous contents and changes them.
     Modify,
 }
 
 impl Mode {
-    /// Whether the contents change.
+    /// Returns `true` if the contents change.
     #[inline]
     pub const fn writes(self) -> bool {
         !matches!(self, Self::Read)
     }
 
-    /// Whether what was there is needed.
+    /// Returns `true` if the previous contents are used.
     #[inline]
     pub const fn needs_contents(self) -> bool {
         matches!(self, Self::Read | Self::Modify)
     }
 }
 
-words! { Mode: Read "read", Clear "clear", Overwrite "overwrite", Modify "modify" }
+enum_names! { Mode: Read "read", Clear "clear", Overwrite "overwrite", Modify "modify" }
 
 /// One row of [`Graph::accesses`](crate::graph::Tables::accesses).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Access {
-    /// The resource that is touched.
+    /// The accessed resource.
     pub resource: ResourceId,
-    /// The version that is read; for a write, the version that it makes.
+    /// The version that is read; for a write, the version it creates.
     pub version: VersionId,
-    /// Which levels, layers and planes, or bytes.
+    /// Accessed levels, layers and planes, or bytes.
     pub range: Range,
-    /// How it is touched: as attachment, sampled, storage, …
+    /// Kind of the access: attachment, sampled, storage and so on.
     pub kind: AccessKind,
-    /// Read or write, and what becomes of old contents.
+    /// Read or write, and what happens to the previous contents.
     pub mode: Mode,
-    /// Color slot of a color attachment, or of the attachment whose samples a resolve target gets; [`Access::DEPTH`] for
-    /// depth.
+    /// Color slot of a color attachment, or of the attachment that a resolve reads; [`Access::DEPTH`] for depth.
     pub slot: u8,
-    /// What a resolve makes of the samples; means nothing for other accesses.
+    /// Mode of a resolve; unused for other accesses.
     pub resolve: ResolveMode,
-    /// Index into [`Graph::clears`](crate::graph::Tables::clears) when the mode is `Clear`.
+    /// Index into [`Graph::clears`](crate::graph::Tables::clears) if the mode is `Clear`.
     pub clear: u32,
 }
 
 impl Access {
-    /// In place of a color slot: a resolve of the depth attachment.
+    /// Value of `slot` for a resolve of the depth attachment.
     pub const DEPTH: u8 = 15;
 
-    /// Whether this access of the same pass attaches the samples that `resolve` resolves.
+    /// Returns `true` if this access attaches the samples that `resolve`, an access of the same pass, resolves.
     #[inline]
     pub const fn is_resolved_by(&self, resolve: &Self) -> bool {
         match self.kind {
@@ -201,7 +200,7 @@ impl Access {
 }
 
 bits! {
-    /// The uses that a physical resource must allow; a set of bits.
+    /// Usages of a physical resource, as a set of bits.
     Usage {
         /// Color or depth attachment, or resolve target.
         ATTACHMENT = 1 "attachment";
@@ -227,14 +226,14 @@ bits! {
 }
 
 impl Usage {
-    /// The uses of `self` that `other` has not.
+    /// Returns the usages of `self` that are not in `other`.
     #[inline]
     #[must_use]
     pub const fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// Whether there is no use at all.
+    /// Returns `true` if the set is empty.
     #[inline]
     pub const fn is_empty(self) -> bool {
         self.0 == 0

@@ -1,11 +1,11 @@
-//! What a back end asks of a graph: the access behind a handle or a token, and scopes that it opens for its own front.
+//! Queries for back ends: the access of a handle or token, and scopes that outlive a call.
 
 use crate::access::Access;
 use crate::graph::Graph;
 use crate::handle::{Buffer, BufferView, Previous, Tag, Texture, View};
 use crate::id::{AccessId, ResourceId, VersionId};
 
-/// An open scope of names; give it back to [`Graph::close_scope`].
+/// An open name scope, to be passed to [`Graph::close_scope`].
 #[derive(Debug)]
 #[must_use = "a scope stays open until it is closed"]
 pub struct Scope {
@@ -13,33 +13,35 @@ pub struct Scope {
 }
 
 impl Graph {
-    /// The access behind the token of a texture read; `None` for a token of another graph or an earlier declaration.
+    /// Returns the access of a texture read; `None` if the token belongs to another graph or an earlier declaration.
     pub fn access_of(&self, view: View) -> Option<&Access> {
         self.access_at(view.tag, view.access)
     }
 
-    /// The access behind the token of a buffer read; `None` for a token of another graph or an earlier declaration.
+    /// Returns the access of a buffer read; `None` if the token belongs to another graph or an earlier declaration.
     pub fn access_of_buffer(&self, view: BufferView) -> Option<&Access> {
         self.access_at(view.tag, view.access)
     }
 
-    /// The access that made this version of a texture: which part was written, and how. `None` for the contents on entry
-    /// and for a handle of another graph.
+    /// Returns the access that wrote this version of a texture; `None` for the initial version, or a handle of another
+    /// graph.
     pub fn writer_of(&self, texture: Texture) -> Option<&Access> {
         self.writer_at(texture.tag, texture.version)
     }
 
-    /// The access that made this version of a buffer; `None` as for [`Graph::writer_of`].
+    /// Returns the access that wrote this version of a buffer; `None` for the initial version, or a handle of another
+    /// graph.
     pub fn writer_of_buffer(&self, buffer: Buffer) -> Option<&Access> {
         self.writer_at(buffer.tag, buffer.version)
     }
 
-    /// The resource behind an earlier image of a history; `None` for a handle of another graph.
+    /// Returns the resource of an earlier history image; `None` for a handle of another graph.
     pub fn resource_of_previous(&self, previous: Previous) -> Option<ResourceId> {
         self.lookup(previous.tag, previous.version)
     }
 
-    /// Puts `name/` in front of every name that is declared until [`Graph::close_scope`]; [`Graph::scope`] does both.
+    /// Opens a scope: names declared until [`Graph::close_scope`] get the prefix `name/`. [`Graph::scope`] opens and
+    /// closes a scope in one call.
     pub fn open_scope(&mut self, name: &str) -> Scope {
         let prefix = self.prefix.len();
         self.prefix.push_str(name);
@@ -47,7 +49,7 @@ impl Graph {
         Scope { prefix }
     }
 
-    /// Ends a scope, and every scope that was opened inside it and left open.
+    /// Closes a scope and all scopes opened inside it.
     pub fn close_scope(&mut self, scope: Scope) {
         self.prefix.truncate(scope.prefix);
     }
@@ -72,7 +74,7 @@ mod tests {
         let mut graph = Graph::new();
         let desc = TextureDesc::new(Extent::absolute(8, 8), Format::Rgba8Unorm).mips(2);
         let entry = graph.texture("pyramid", desc);
-        assert_eq!(graph.writer_of(entry), None, "no pass wrote the contents on entry");
+        assert_eq!(graph.writer_of(entry), None, "no pass wrote the initial version");
         let written = graph.add_fn("fill", |p| p.color(entry.mip(1), Intent::Clear(ClearValue::BLACK)))?;
         let made = graph.writer_of(written).copied();
         assert_eq!(made.map(|a| (a.kind, a.range.mip, a.range.mips)), Some((AccessKind::Color, 1, 1)));
@@ -82,7 +84,7 @@ mod tests {
         let previous = graph.previous(history, 1)?;
         assert!(graph.resource_of_previous(previous).is_some());
         graph.reset();
-        assert_eq!(graph.access_of(view), None, "the token is of before the reset");
+        assert_eq!(graph.access_of(view), None, "the token was issued before the reset");
         assert_eq!(graph.writer_of(written), None);
         assert_eq!(graph.resource_of_previous(previous), None);
         Ok(())

@@ -1,17 +1,17 @@
-//! Barriers as data: what a back end with explicit synchronisation says between steps.
+//! Barriers as data, for back ends with explicit synchronization.
 
+use crate::enum_names::{bits, enum_names};
 use crate::id::{ResourceId, StepId};
-use crate::words::{bits, words};
 
-/// The layout or kind of use that a part is in; one of them for each image layout of Vulkan that a graph can ask for.
+/// Layout or usage of a subresource. Covers the Vulkan image layouts that a graph can request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum State {
-    /// Contents are of no use.
+    /// Contents are undefined.
     #[default]
     Undefined,
-    /// As whoever had it before the frame left it: the owner of an import that does not say ([`Entry::Left`] does), or the
-    /// earlier frame that wrote or read an image of a history.
+    /// Unknown state at the start of the frame: an import without a declared state ([`Entry::Left`]), or a history
+    /// image as the earlier frame left it.
     ///
     /// [`Entry::Left`]: crate::Entry::Left
     Entry,
@@ -19,15 +19,15 @@ pub enum State {
     ColorAttachment,
     /// Depth or depth-stencil attachment that is written.
     DepthAttachment,
-    /// Depth or depth-stencil attachment that is only tested; may be sampled meanwhile.
+    /// Read-only depth or depth-stencil attachment; may be sampled at the same time.
     DepthReadOnly,
-    /// Read at the same pixel, in the tile.
+    /// Same-pixel read in the tile (input attachment).
     InputAttachment,
-    /// Read in a shader through a sampler or by texel fetch.
+    /// Sampled texture or texel fetch in a shader.
     Sampled,
-    /// Storage texture or buffer, read or written in a shader.
+    /// Storage texture or buffer in a shader.
     Storage,
-    /// Uniform buffer, read in a shader.
+    /// Uniform buffer in a shader.
     Uniform,
     /// Vertex or index buffer.
     VertexInput,
@@ -39,7 +39,7 @@ pub enum State {
     CopyTarget,
 }
 
-words! {
+enum_names! {
     State:
     Undefined "undefined", Entry "entry", ColorAttachment "color_attachment", DepthAttachment "depth_attachment",
     DepthReadOnly "depth_read_only", InputAttachment "input_attachment", Sampled "sampled", Storage "storage",
@@ -70,7 +70,7 @@ impl State {
 }
 
 bits! {
-    /// The parts of the pipeline that make an access; a set of bits. In files, a list of the names.
+    /// Pipeline stages, as a set of bits. Serialized as a list of names.
     #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
     #[cfg_attr(feature = "files", serde(try_from = "Vec<String>", into = "Vec<&'static str>"))]
     Stages {
@@ -84,9 +84,9 @@ bits! {
         COMPUTE = 8 "compute";
         /// Copies between textures and buffers.
         COPY = 16 "copy";
-        /// Reading of vertices and indices.
+        /// Vertex and index fetch.
         VERTEX_INPUT = 32 "vertex_input";
-        /// Reading of indirect arguments.
+        /// Fetch of indirect arguments.
         INDIRECT = 64 "indirect";
     }
 }
@@ -100,47 +100,48 @@ impl From<Stages> for Vec<&'static str> {
 impl TryFrom<Vec<String>> for Stages {
     type Error = String;
 
-    /// The set of stages of these names.
+    /// Parses a list of stage names.
     fn try_from(names: Vec<String>) -> Result<Self, String> {
         let stage = |name: &String| {
             let known = Self::NAMES.iter().find(|(_, n)| n == name);
             known.map(|(s, _)| *s).ok_or_else(|| {
                 let names: Vec<_> = Self::NAMES.iter().map(|(_, n)| *n).collect();
-                format!("there is no stage `{name}`; stages are {}", names.join(", "))
+                format!("unknown stage `{name}`; use one of {}", names.join(", "))
             })
         };
         names.iter().try_fold(Self::NONE, |all, name| Ok(all.union(stage(name)?)))
     }
 }
 
-/// One barrier: consecutive parts of one resource change their use.
+/// One barrier: consecutive subresources of one resource change their state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Barrier {
-    /// It stands in front of this step.
+    /// The step that the barrier precedes.
     pub before: StepId,
-    /// The resource whose parts change their use.
+    /// The resource whose subresources change their state.
     pub resource: ResourceId,
-    /// First part: `(plane · layers + layer) · mips + mip`.
+    /// First subresource: `(plane · layers + layer) · mips + mip`.
     pub first_part: u32,
-    /// How many consecutive parts.
+    /// Number of consecutive subresources.
     pub parts: u32,
-    /// The state that they were in.
+    /// The state before the barrier.
     pub from: State,
-    /// The state that they must be in.
+    /// The state after the barrier.
     pub to: State,
-    /// The stages that must be over before: of step `after`, or of the work of the owner of an import ([`Entry::Left`]).
-    /// Empty when nothing of either is waited for. Earlier frames are not named: whoever overlaps frames waits for their
-    /// uses of the same memory.
+    /// Stages to wait for: of step `after`, or of the work of an import's owner ([`Entry::Left`]). Empty if there is
+    /// nothing to wait for.
+    ///
+    /// Does not include earlier frames: a back end that overlaps frames has to wait for their uses of the same memory.
     ///
     /// [`Entry::Left`]: crate::Entry::Left
     pub from_stages: Stages,
     /// The stages that wait.
     pub to_stages: Stages,
-    /// The step whose work is waited for; none for what happened before the frame. Where it is not the step in front, a
-    /// split barrier can span the steps between.
+    /// The step to wait for; none for work before the frame. If other steps lie in between, a split barrier can span
+    /// them.
     pub after: StepId,
-    /// The tenant that had the memory last, when this use takes it over; none otherwise.
-    pub hand_over: ResourceId,
+    /// The previous resource in the same memory if this is an aliasing barrier; otherwise none.
+    pub aliases: ResourceId,
 }
 
 #[cfg(test)]

@@ -1,81 +1,94 @@
-//! What a device can do, as data: the same graph can be asked what it would cost elsewhere, without that device.
+//! Device capabilities as plain data: a graph can be compiled for any device without having it.
 
 use crate::access::{Access, AccessKind};
 use crate::format::Format;
 use crate::resolve::{ResolveMode, ResolveModes};
 use crate::resource::{Desc, Extent, TextureDesc};
 
-/// A device as the compiler sees it. Limits follow WebGPU's names and meanings.
+/// Capabilities and limits of a device. Limits have the names and meanings of WebGPU.
+///
+/// ```
+/// use framegraph::Caps;
+///
+/// let caps = Caps { tile_bytes_per_pixel: 64, ..Caps::tiler() };
+/// assert!(caps.memoryless && caps.same_pixel);
+/// assert_eq!(Caps::preset("wgpu"), Some(Caps::wgpu()));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "files", serde(deny_unknown_fields))]
 pub struct Caps {
-    /// What to call it in reports.
+    /// Name of the device in reports.
     pub name: String,
-    /// Color attachments of one step.
+    /// Maximum number of color attachments of a step.
     pub max_color_attachments: u8,
-    /// Sum of [`Format::tile_bytes`](crate::Format::tile_bytes) over the color attachments of one step, in bytes per sample.
+    /// Maximum sum of [`Format::tile_bytes`](crate::Format::tile_bytes) over the color attachments of a step, in bytes
+    /// per sample.
     pub max_color_bytes_per_sample: u32,
-    /// Width and height of a two-dimensional texture, in texels.
+    /// Maximum width and height of a two-dimensional texture, in texels.
     pub max_texture_texels: u32,
-    /// Array layers of a texture.
+    /// Maximum number of array layers of a texture.
     pub max_texture_layers: u32,
-    /// Size of a buffer, in bytes.
+    /// Maximum size of a buffer, in bytes.
     pub max_buffer_bytes: u64,
-    /// Samples per texel that every renderable format offers: the largest of 1, 4 (WebGPU), 8, 16.
+    /// Maximum number of samples per texel that every renderable format supports: 1, 4 (WebGPU), 8 or 16.
     pub max_samples: u8,
-    /// Attachments that never leave the tile can go without memory.
+    /// Attachments that never leave the tile can be memoryless.
     pub memoryless: bool,
-    /// So can attachments of several layers.
+    /// Attachments with several layers can be memoryless too.
     pub memoryless_layers: bool,
-    /// Memory that `memoryless` really saves: on a device without tiles the flag is accepted and saves nothing.
+    /// Memoryless attachments really save memory. `false` on devices without tiles that accept the flag and allocate
+    /// anyway.
     pub memoryless_saves: bool,
-    /// Consecutive raster passes with the same attachments can be one step.
+    /// Consecutive raster passes with the same attachments can be merged into one step.
     pub merge_attachments: bool,
     /// Same-pixel reads can stay in the tile (input attachments, framebuffer fetch).
     pub same_pixel: bool,
-    /// A pass of a step can find the step's color attachments in slots of its own: attachment locations or subpasses map
-    /// what its shader writes to other slots.
+    /// Each pass of a step can map its color slots to other attachments of the step: subpasses, or Vulkan's attachment
+    /// locations.
     pub slot_mapping: bool,
-    /// Point-wise consumers can become an epilogue of the producer's shader: needs a back end that assembles shaders.
+    /// A point-wise pass can become an epilogue of its producer's shader. Requires a back end that assembles shaders.
     pub inline: bool,
-    /// Tile memory for the color attachments of one step, in bytes per pixel, samples included; 0 where there is no tile.
+    /// Tile memory for the color attachments of a step, in bytes per pixel including all samples; 0 for a device
+    /// without tiles.
     pub tile_bytes_per_pixel: u32,
-    /// A depth attachment that is only tested can be sampled in the same step.
+    /// A read-only depth attachment can be sampled in the same step.
     pub sample_read_only_depth: bool,
-    /// The planes of a depth-stencil texture can be used apart in one step: one drawn, the other sampled. Counts only
-    /// together with `sample_read_only_depth`, since the plane that is sampled is attached too.
+    /// One plane of a depth-stencil texture can be written while the other is sampled. Requires
+    /// `sample_read_only_depth`, because the sampled plane is attached too.
     pub separate_planes: bool,
-    /// How samples of colors are resolved while a step is stored; by other modes a full-screen pass resolves them.
+    /// Modes of color resolves that the device performs while it stores a step. Other modes need a full-screen pass.
     pub color_resolves: ResolveModes,
-    /// Formats whose samples are averaged in no store all the same: no part of a file.
+    /// Formats that cannot be averaged while storing, in spite of `color_resolves`. Not serialized.
     #[cfg_attr(feature = "files", serde(skip))]
     pub not_averaged: Vec<Format>,
-    /// How samples of depth are.
+    /// Modes of depth resolves that the device performs while it stores a step. Other modes need a full-screen pass.
     pub depth_resolves: ResolveModes,
     /// Textures and buffers can be placed at offsets of one allocation.
     pub placed: bool,
-    /// So are the images of histories; a back end that keeps them from plan to plan has them apart.
+    /// History images can be placed too. `false` for a back end that keeps them in separate allocations from frame to
+    /// frame.
     pub placed_histories: bool,
-    /// Bytes of placed textures that their driver pads, each by its shape with an absolute extent: no part of a file.
+    /// Allocation size in bytes of textures that the driver pads, by descriptor with an absolute extent. Not
+    /// serialized.
     #[cfg_attr(feature = "files", serde(skip))]
     pub padded: Vec<(TextureDesc, u64)>,
-    /// Textures and buffers cannot share one heap.
+    /// Textures and buffers need separate heaps.
     pub separate_heaps: bool,
     /// Alignment of a placed texture, in bytes; a power of two.
     pub texture_alignment_bytes: u64,
     /// Alignment of a placed buffer, in bytes; a power of two.
     pub buffer_alignment_bytes: u64,
-    /// The back end needs to be told about layout transitions and hand-overs.
+    /// The back end needs explicit layout transitions and aliasing barriers.
     pub explicit_barriers: bool,
-    /// A queue for compute and copies runs beside the first.
+    /// The device has a separate queue for compute and copies.
     pub compute_queue: bool,
-    /// So does one for copies.
+    /// The device has a separate queue for copies.
     pub copy_queue: bool,
 }
 
 impl Caps {
-    /// A desktop GPU behind an explicit API: no tiles, placed resources, explicit barriers.
+    /// A desktop GPU with an explicit API: no tiles, placed resources, explicit barriers.
     pub fn desktop() -> Self {
         Self {
             name: "desktop".into(),
@@ -97,7 +110,7 @@ impl Caps {
             separate_planes: true,
             color_resolves: ResolveModes::of(&[ResolveMode::Average]),
             not_averaged: Vec::new(),
-            // What every device with Vulkan 1.2 does; the other modes are optional.
+            // Supported by every Vulkan 1.2 device; the other modes are optional.
             depth_resolves: ResolveModes::of(&[ResolveMode::Sample0]),
             placed: true,
             placed_histories: true,
@@ -111,7 +124,7 @@ impl Caps {
         }
     }
 
-    /// A tile-based GPU behind an explicit API: input attachments, memoryless attachments, placed resources.
+    /// A tile-based GPU with an explicit API: input attachments, memoryless attachments, placed resources.
     pub fn tiler() -> Self {
         Self {
             name: "tiler".into(),
@@ -129,8 +142,10 @@ impl Caps {
         }
     }
 
-    /// What wgpu 30 offers on any adapter with WebGPU's default limits: merged attachments, transient attachments, shader
-    /// epilogues, automatic barriers; no input attachments, no resolves of depth, and no placed resources.
+    /// The capabilities of wgpu 30 on any adapter with WebGPU's default limits.
+    ///
+    /// Supports merged attachments, transient attachments, shader epilogues and automatic barriers. Does not support
+    /// input attachments, depth resolves and placed resources.
     pub fn wgpu() -> Self {
         Self {
             name: "wgpu".into(),
@@ -152,7 +167,7 @@ impl Caps {
         }
     }
 
-    /// The preset of that name: `desktop`, `tiler` or `wgpu`.
+    /// Returns the preset with this name: `desktop`, `tiler` or `wgpu`.
     pub fn preset(name: &str) -> Option<Self> {
         match name {
             "desktop" => Some(Self::desktop()),
@@ -162,10 +177,10 @@ impl Caps {
         }
     }
 
-    /// The names that [`Caps::preset`] knows.
+    /// Names accepted by [`Caps::preset`].
     pub const PRESETS: [&'static str; 3] = ["desktop", "tiler", "wgpu"];
 
-    /// Whether the device makes a resolve into a texture of that format while it stores the step.
+    /// Returns `true` if the device performs a resolve into a texture of this format while it stores the step.
     pub fn resolves_in_store(&self, access: &Access, format: Option<Format>) -> bool {
         debug_assert_eq!(access.kind, AccessKind::Resolve);
         let modes = if access.slot == Access::DEPTH { self.depth_resolves } else { self.color_resolves };
@@ -173,7 +188,7 @@ impl Caps {
         modes.has(access.resolve) && !format.is_some_and(apart)
     }
 
-    /// The bytes that `desc` takes in a heap, in a frame of `frame` texels, if its texels take `bytes`.
+    /// Returns the allocation size of `desc` in a heap, for a resource with `bytes` bytes of texels.
     pub(crate) fn padded_bytes(&self, desc: &Desc, format: Option<Format>, frame: [u32; 2], bytes: u64) -> u64 {
         let Some(mut shape) = desc.texture().copied().filter(|_| !self.padded.is_empty()) else { return bytes };
         let [width, height] = shape.extent.texels(frame);
@@ -181,7 +196,7 @@ impl Caps {
         self.padded.iter().find(|(known, _)| *known == shape).map_or(bytes, |(_, padded)| bytes.max(*padded))
     }
 
-    /// Becomes a copy of `source`, reusing the name's memory.
+    /// Overwrites `self` with `source` and reuses the memory of the name.
     pub(crate) fn copy_from(&mut self, source: &Self) {
         if self != source {
             self.clone_from(source);

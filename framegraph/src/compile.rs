@@ -1,7 +1,9 @@
-//! Compiling: from what was declared to what is executed, the phases in order on one screen.
+//! The compiler: derives a plan from a graph. This file lists the phases in order.
 
+mod attachment_set;
 mod barriers;
 mod cull;
+mod current_step;
 mod error;
 mod framebuffer;
 mod heap;
@@ -9,14 +11,14 @@ mod inline;
 mod join;
 mod layout;
 mod lifetimes;
+mod liveness;
 mod loads;
 mod lower;
 mod measure;
 mod memory;
 mod memoryless;
 mod merge;
-mod need;
-mod open;
+mod ops_fast_path;
 mod order;
 mod ownership;
 mod parts;
@@ -24,16 +26,14 @@ mod phases;
 mod place;
 mod pool;
 mod reorder;
-mod rival;
+mod sampled_alternative;
 mod schedule;
-mod single_part;
-mod step_attachments;
 mod steps;
 mod stores;
 mod trim;
 mod validate;
 
-pub use error::{CompileError, CompileErrors, CompileReason, ShapeFault};
+pub use error::{CompileError, CompileErrors, CompileReason, ShapeReason};
 
 use crate::caps::Caps;
 use crate::error::DeclareError;
@@ -45,13 +45,13 @@ use cull::Culled;
 pub use phases::Scratch;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Compiles `graph` for a device and a frame into `plan`.
+/// Compiles `graph` for a device and a frame size into `plan`.
 ///
-/// A pure function of graph, caps and options: equal inputs give equal plans, byte for byte, whatever `scratch` and `plan`
-/// held before.
+/// A pure function of graph, caps and options: equal inputs give byte-identical plans. Previous contents of `scratch`
+/// and `plan` have no influence.
 ///
 /// # Errors
-/// Everything that is wrong with the graph, all at once. `plan` is empty then.
+/// Returns all errors of the graph at once. `plan` is empty then.
 pub fn compile(
     graph: &Graph,
     caps: &Caps,
@@ -63,11 +63,13 @@ pub fn compile(
     compile_keeping(graph, caps, options, scratch, plan)
 }
 
-/// As [`compile`], and resources keep the heap offsets that those of the same name have in `earlier`, wherever that does not
-/// raise the heap's size: bind groups of an unchanged frame stay valid when a neighbour changes.
+/// Compiles like [`compile`], but keeps the heap offsets of an earlier plan.
+///
+/// Resources keep the offset of the resource with the same name in `earlier`, unless that would make the heap larger.
+/// Bind groups of unchanged resources stay valid.
 ///
 /// # Errors
-/// As [`compile`].
+/// Returns the errors of [`compile`].
 pub fn compile_after(
     graph: &Graph,
     caps: &Caps,
@@ -94,15 +96,15 @@ fn compile_keeping(
     graph.errors.iter().for_each(|e| errors.push(|| refused(e)));
     let measures = &mut scratch.measures;
     measure::measure(graph, caps, options.frame, measures, &mut errors);
-    // With more parts than can be followed there are no numbers for them.
-    let crowd = |e: &CompileError| matches!(e.reason, CompileReason::Shape(ShapeFault::Crowd { .. }));
-    if errors.more == 0 && !errors.listed.iter().any(crowd) {
+    // Subresources have no numbers if there are too many of them.
+    let too_many = |e: &CompileError| matches!(e.reason, CompileReason::Shape(ShapeReason::TooManySubresources { .. }));
+    if errors.more == 0 && !errors.listed.iter().any(too_many) {
         let Scratch { measures, parts, defined, .. } = scratch;
         parts.number(graph, measures);
         validate::validate(graph, caps, parts, measures, defined, &mut errors);
     }
     if let Err(errors) = errors.or(()) {
-        // An empty plan is of an empty graph: its arrays fit each other.
+        // Restores the invariant that an empty plan belongs to an empty graph.
         plan.graph.forget();
         return Err(errors);
     }
@@ -121,7 +123,7 @@ fn compile_keeping(
     Ok(())
 }
 
-/// Every phase from the order on.
+/// Runs every phase from pass ordering on.
 fn ordered(graph: &Tables, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
     match options.order {
         Order::Declared => {
@@ -131,11 +133,13 @@ fn ordered(graph: &Tables, caps: &Caps, options: &Options, scratch: &mut Scratch
     }
 }
 
-/// As [`compile`], unless `plan` was compiled from an equal graph for the same device and options: then nothing is done.
-/// Everything that was declared is compared, so nothing can be forgotten. Returns whether it compiled.
+/// Compiles like [`compile`], unless `plan` already belongs to an equal graph, the same device and the same options.
+/// Returns `true` if it compiled.
+///
+/// Compares everything that was declared.
 ///
 /// # Errors
-/// As [`compile`].
+/// Returns the errors of [`compile`].
 pub fn recompile(
     graph: &Graph,
     caps: &Caps,
@@ -151,13 +155,13 @@ pub fn recompile(
 }
 
 impl Plan {
-    /// Gives it a number that no other plan has.
+    /// Assigns a process-wide unique compilation number.
     pub(crate) fn number(&mut self) {
         static COMPILATIONS: AtomicU64 = AtomicU64::new(1);
         self.compilation = COMPILATIONS.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Empties the plan and notes what it will be made from.
+    /// Clears the plan and stores its inputs.
     fn begin(&mut self, source: &Graph, for_caps: &Caps, with: &Options) {
         let Self {
             graph,

@@ -1,9 +1,15 @@
-//! What a plan costs, counted: the words that tests, budgets and reports use.
+//! The cost of a plan in numbers, for tests, budgets and reports.
 //!
-//! An **unresolve** is a load of an attachment from memory into the tile at the start of a step; a **resolve** is a store
-//! from the tile to memory at its end. An attachment with depth and stencil counts once. A multisampled attachment that
-//! is averaged into a single-sample target makes one resolve, that of the target; the samples themselves are stored only
-//! if a pass or the frame needs them.
+//! The names follow the documentation of tile-based GPUs:
+//!
+//! - An **unresolve** is a *load*: an attachment is read from memory into the tile at the start of a step
+//!   (`LoadOp::Load`).
+//! - A **resolve** is a *store*: an attachment is written from the tile to memory at the end of a step
+//!   (`StoreOp::Store`).
+//! - A **multisample resolve** reduces a multisampled attachment to a single-sample target.
+//!
+//! An attachment with depth and stencil counts once. A multisample resolve also counts as one resolve, that of its
+//! target. The samples themselves are stored only if a pass or the frame needs them.
 
 use crate::decision::Reason;
 use crate::format::Aspect;
@@ -12,31 +18,49 @@ use crate::id::StepId;
 use crate::plan::{Attachment, Join, LoadOp, Placement, Plan, StoreOp};
 use std::ops::AddAssign;
 
-/// Counts over a plan, or one step of it.
+/// Counts of loads, stores, passes and steps, of a plan or of one step.
+///
+/// ```
+/// use framegraph::{Caps, ClearValue, Extent, Format, Graph, Intent, Options, Plan, Scratch, TextureDesc, compile};
+///
+/// let mut graph = Graph::new();
+/// let color = graph.add_fn("background", |pass| {
+///     let color = pass.texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
+///     pass.color(color, Intent::Clear(ClearValue::BLACK))
+/// })?;
+/// graph.export(color)?;
+///
+/// let mut plan = Plan::new();
+/// compile(&graph, &Caps::wgpu(), &Options::default(), &mut Scratch::new(), &mut plan)?;
+/// let counts = plan.counts();
+/// assert_eq!(counts.unresolves, 0); // loads
+/// assert_eq!(counts.resolves, 1); // stores
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct Counts {
-    /// Attachments loaded from memory.
+    /// Number of attachments loaded from memory.
     pub unresolves: u32,
-    /// Attachments stored to memory, targets of multisample resolves included.
+    /// Number of attachments stored to memory, including targets of multisample resolves.
     pub resolves: u32,
-    /// Attachments that start with a clear value.
+    /// Number of attachments that start with a clear value.
     pub clears: u32,
-    /// Attachments whose contents are dropped at the end of their step.
+    /// Number of attachments whose contents are dropped at the end of their step.
     pub discards: u32,
-    /// Multisampled attachments averaged into a single-sample target.
+    /// Number of multisample resolves performed while storing.
     pub multisample_resolves: u32,
-    /// Textures that take no memory.
+    /// Number of memoryless textures.
     pub memoryless: u32,
-    /// Textures that never exist because their reader was inlined.
+    /// Number of textures that do not exist because their reader was inlined.
     pub inlined: u32,
-    /// Raster, compute and copy steps.
+    /// Number of raster, compute and copy steps.
     pub steps: u32,
-    /// Raster steps: render passes.
+    /// Number of raster steps, each one a render pass.
     pub render_passes: u32,
-    /// Passes that run.
+    /// Number of passes that run.
     pub passes: u32,
-    /// Passes that were culled.
+    /// Number of culled passes.
     pub culled: u32,
 }
 
@@ -60,16 +84,16 @@ impl AddAssign for Counts {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct Traffic {
-    /// Loaded at the start of steps: unresolves.
+    /// Bytes loaded at the start of steps.
     pub loaded_bytes: u64,
-    /// Stored at the end of steps: resolves, multisample resolves included.
+    /// Bytes stored at the end of steps, including multisample resolves.
     pub stored_bytes: u64,
-    /// The share of `stored_bytes` that targets of multisample resolves are.
+    /// Part of `stored_bytes` that is written to targets of multisample resolves.
     pub multisample_resolve_bytes: u64,
 }
 
 impl Traffic {
-    /// Loaded and stored together.
+    /// Sum of loaded and stored bytes. Saturates.
     pub const fn total_bytes(&self) -> u64 {
         self.loaded_bytes.saturating_add(self.stored_bytes)
     }
@@ -89,10 +113,10 @@ impl Plan {
         counts
     }
 
-    /// Counts over one step; what belongs to no step (memoryless, inlined, culled) is 0.
+    /// Counts of one step. Memoryless, inlined and culled are 0, because they belong to no step.
     ///
     /// # Panics
-    /// When `step` is not of this plan.
+    /// Panics if `step` does not belong to this plan.
     pub fn step_counts(&self, step: StepId) -> Counts {
         let row = &self.steps()[step.index()];
         let mut counts = Counts {
@@ -103,7 +127,7 @@ impl Plan {
         };
         for attachment in self.attachments_of(step) {
             let resolve = attachment.role.is_resolve();
-            // An average that is not needed is not made: a resolve target is written to memory, or there is none.
+            // Resolves that are not needed are not performed: their target is not stored.
             if resolve && !attachment.stores() {
                 continue;
             }
@@ -119,7 +143,7 @@ impl Plan {
         counts
     }
 
-    /// Bytes between tile and memory over the whole plan, as if the frame were `frame` texels.
+    /// Bytes moved between tile and memory by the whole plan, for a frame of `frame` texels.
     pub fn traffic(&self, frame: [u32; 2]) -> Traffic {
         let mut sum = Traffic::default();
         for step in self.step_ids() {
@@ -131,10 +155,10 @@ impl Plan {
         sum
     }
 
-    /// Bytes between tile and memory over one step, as if the frame were `frame` texels.
+    /// Bytes moved between tile and memory by one step, for a frame of `frame` texels.
     ///
     /// # Panics
-    /// When `step` is not of this plan.
+    /// Panics if `step` does not belong to this plan.
     pub fn step_traffic(&self, step: StepId, frame: [u32; 2]) -> Traffic {
         let mut sum = Traffic::default();
         for attachment in self.attachments_of(step) {
@@ -171,7 +195,7 @@ impl Plan {
         (loaded, stored)
     }
 
-    /// Why a pass was culled, or why it was kept.
+    /// Returns the reason why a pass was culled or kept.
     pub fn verdict(&self, pass: crate::id::PassId) -> Option<Reason> {
         self.reasons(crate::decision::Subject::Pass(pass)).next()
     }

@@ -1,6 +1,6 @@
-//! Why the plan is as it is: one record for every decision, with a reason from a closed list.
+//! The decision log: one record for every decision of the compiler, with a reason from a closed list.
 //!
-//! The phases write the log while they decide; dumps, diff and tests read it. No reason is worked out afterwards.
+//! The phases write the log as they decide. Dumps, diffs and tests read it.
 
 mod reason;
 
@@ -9,32 +9,32 @@ pub use reason::{MemoryNeed, Reason, Refusal};
 
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId, StepId};
-use crate::plain::plain;
+use crate::sanitize::escape_controls;
 
-/// What a decision is about.
+/// The subject of a decision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
     /// A declared pass.
     Pass(PassId),
-    /// What happens to one resource at the start of a step.
+    /// The load of a resource at the start of a step.
     Load(StepId, ResourceId),
-    /// What happens to one resource at the end of a step.
+    /// The store of a resource at the end of a step.
     Store(StepId, ResourceId),
     /// A declared resource.
     Resource(ResourceId),
 }
 
-/// One decision of a compile: what it is about, and what was decided for which reason.
+/// One decision of a compilation and its reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decision {
-    /// The pass, resource, load or store that was decided about.
+    /// The subject: a pass, a resource, a load or a store.
     pub subject: Subject,
-    /// What was decided, and why.
+    /// The decision and its reason.
     pub reason: Reason,
 }
 
 impl Decision {
-    /// The decision in words, with names. [`Plan::explained`](crate::Plan::explained) has what to change along with it.
+    /// Returns the decision as a sentence with names. [`Plan::explained`](crate::Plan::explained) appends a hint.
     pub fn sentence(&self, graph: &Graph) -> String {
         let subject = match self.subject {
             Subject::Pass(p) => format!("pass `{}`", graph.pass_name(p)),
@@ -42,6 +42,6 @@ impl Decision {
             Subject::Store(s, r) => format!("store of `{}` in step {}", graph.resource_name(r), s.index()),
             Subject::Resource(r) => format!("resource `{}`", graph.resource_name(r)),
         };
-        plain(&format!("{subject}: {}", self.reason.sentence(graph))).into_owned()
+        escape_controls(&format!("{subject}: {}", self.reason.sentence(graph))).into_owned()
     }
 }

@@ -1,8 +1,7 @@
-//! Declaring: the trait that passes implement, and the calls on the graph itself.
+//! Declaring: the [`Pass`] trait, and the methods of [`Graph`] that add passes and resources.
 //!
-//! `trait Pass` is the face, flat arrays are the bone: a pass keeps the handles it reads as typed fields, declares once
-//! and returns the handles it wrote; what it declares goes into the arrays of [`Graph`], and only those arrays reach the
-//! compiler.
+//! A pass keeps the handles it reads as typed fields, declares its accesses once and returns the handles it wrote. The
+//! declarations are stored in the arrays of [`Graph`]; the compiler sees only those.
 
 mod forward;
 mod mark;
@@ -18,7 +17,7 @@ use crate::resource::{BufferDesc, BufferSize, Desc, Entry, Exit, Kind, Resource,
 use std::fmt::{Display, Write};
 use std::panic::Location;
 
-/// A unit of work, as the graph sees it: what it reads, what it writes and why.
+/// A unit of work that declares its reads and writes.
 ///
 /// ```
 /// use framegraph::{ClearValue, DeclareError, Extent, Format, Graph, Intent, Pass, PassBuilder, Texture, TextureDesc};
@@ -39,30 +38,30 @@ use std::panic::Location;
 /// # Ok::<(), DeclareError>(())
 /// ```
 pub trait Pass {
-    /// The handles and tokens this pass works with: what others read, and what its recorder looks up.
+    /// Handles and tokens of this pass: its outputs for other passes, and the views its recorder looks up.
     type Io: Clone;
 
     /// Declares every access of the pass.
     ///
     /// # Errors
-    /// Whatever the builder's calls refuse, or a reason of the pass's own ([`PassBuilder::error`]).
+    /// Returns the errors of the builder's methods, or a custom error ([`PassBuilder::error`]).
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Self::Io, DeclareError>;
 }
 
 impl Graph {
-    /// Declares a pass and returns what it gave back.
+    /// Adds a pass and returns the value that its declaration returned.
     ///
     /// # Errors
-    /// What the pass's declaration returned; nothing of the pass stays in the graph then.
+    /// Returns the error of the pass's declaration. The graph then contains nothing of the pass.
     #[track_caller]
     pub fn add<P: Pass + ?Sized>(&mut self, name: &str, pass: &P) -> Result<P::Io, DeclareError> {
         self.add_at(name, Location::caller(), |p| pass.declare(p))
     }
 
-    /// Declares a one-off pass with a closure.
+    /// Adds a pass that is declared by a closure.
     ///
     /// # Errors
-    /// What the closure returned; nothing of the pass stays in the graph then.
+    /// Returns the error of the closure. The graph then contains nothing of the pass.
     #[track_caller]
     pub fn add_fn<T>(
         &mut self,
@@ -78,7 +77,7 @@ impl Graph {
         location: &'static Location<'static>,
         declare: impl FnOnce(&mut PassBuilder<'_>) -> Result<T, DeclareError>,
     ) -> Result<T, DeclareError> {
-        let (tables, prefix) = self.open();
+        let (tables, prefix) = self.tables_mut();
         let mut pass = PassBuilder::new(tables, prefix, name, location);
         match declare(&mut pass) {
             Ok(io) => {
@@ -92,7 +91,7 @@ impl Graph {
         }
     }
 
-    /// Runs `body` with `name/` in front of every name declared in it; effects of several passes nest this way.
+    /// Runs `body` in a scope: every name declared in it gets the prefix `name/`. Scopes nest.
     pub fn scope<T>(&mut self, name: &str, body: impl FnOnce(&mut Self) -> T) -> T {
         let length = self.prefix.len();
         self.prefix.push_str(name);
@@ -102,56 +101,63 @@ impl Graph {
         out
     }
 
-    /// Notes why an effect of several passes is in the frame, or is not: what no access tells. It changes nothing, and stands
-    /// before the decisions of plans that are made of the graph. `about` gets the names of open scopes before it, as passes do.
+    /// Adds a note, for example the reason why an effect is or is not part of the frame.
+    ///
+    /// Notes do not influence compilation. Dumps of a plan show them before its decisions. `about` gets the prefix of
+    /// the open scopes, like the name of a pass.
     pub fn note(&mut self, about: &str, text: impl Display) {
-        let (tables, prefix) = self.open();
+        let (tables, prefix) = self.tables_mut();
         let about = tables.push_name(prefix, about);
         let start = tables.names.len();
-        write!(tables.names, "{text}").expect("strings take every text");
+        write!(tables.names, "{text}").expect("writing to a string cannot fail");
         tables.notes.push(Note { about, text: Span::new(start, tables.names.len()) });
     }
 
-    /// A transient texture: nothing is in it until a pass writes it.
+    /// Creates a transient texture. Its contents are undefined until a pass writes it.
     pub fn texture(&mut self, name: &str, desc: TextureDesc) -> Texture {
-        let (tables, prefix) = self.open();
+        let (tables, prefix) = self.tables_mut();
         tables.texture(prefix, name, desc, Kind::Transient)
     }
 
-    /// A transient buffer: of so many bytes, or of a [`BufferSize`] that follows the frame.
+    /// Creates a transient buffer, with a fixed size in bytes or a [`BufferSize`] relative to the frame.
     pub fn buffer(&mut self, name: &str, size: impl Into<BufferSize>) -> Buffer {
-        let (tables, prefix) = self.open();
+        let (tables, prefix) = self.tables_mut();
         tables.buffer(prefix, name, size.into(), Kind::Transient)
     }
 
-    /// A texture that the caller owns: what it holds on entry and whether it must survive.
+    /// Imports a texture that the caller owns.
+    ///
+    /// `entry` describes its contents at the start of the frame. `exit` says if its contents must survive the frame.
     pub fn import_texture(&mut self, name: &str, desc: TextureDesc, entry: Entry, exit: Exit) -> Texture {
-        let (tables, prefix) = self.open();
+        let (tables, prefix) = self.tables_mut();
         tables.texture(prefix, name, desc, Kind::Imported { entry, exit })
     }
 
-    /// A buffer that the caller owns, of so many bytes, or of a [`BufferSize`] that follows the frame.
+    /// Imports a buffer that the caller owns, with a fixed size in bytes or a [`BufferSize`] relative to the frame.
     pub fn import_buffer(&mut self, name: &str, size: impl Into<BufferSize>, entry: Entry, exit: Exit) -> Buffer {
-        let (tables, prefix) = self.open();
+        let (tables, prefix) = self.tables_mut();
         tables.buffer(prefix, name, size.into(), Kind::Imported { entry, exit })
     }
 
-    /// A texture whose last `frames` versions stay readable in later frames: the image that this frame writes.
+    /// Creates a texture whose last `frames` versions stay readable in later frames. Returns the image that this frame
+    /// writes.
     ///
-    /// The ring has `frames + 1` images. On the first frame, and after a reset of the history, the earlier images hold
-    /// zeros and the back end says that they are not valid. A back end knows a history from frame to frame by who declares it
-    /// (of `framegraph_wgpu` the `Frame`, not the executor) and its full name, so a graph has one history of a name; scopes
-    /// tell two views apart.
+    /// The back end keeps a ring of `frames + 1` images. On the first frame, and after a reset of the history, the
+    /// earlier images hold zeros and are reported as invalid.
+    ///
+    /// The back end identifies a history by its full name and by the graph's owner (in `framegraph_wgpu` the `Frame`,
+    /// not the executor). A graph must therefore not contain two histories of the same name; use scopes to separate
+    /// views.
     #[track_caller]
     pub fn history(&mut self, name: &str, desc: TextureDesc, frames: u8) -> Texture {
         if frames == 0 {
             let resource = Named { id: ResourceId::at(self.resources.len()), name: name.to_owned() };
             let (reason, location) = (DeclareReason::EmptyHistory, Location::caller());
-            self.open().0.errors.push(DeclareError { reason, pass: None, resource: Some(resource), location });
+            self.tables_mut().0.errors.push(DeclareError { reason, pass: None, resource: Some(resource), location });
         }
-        let (tables, prefix) = self.open();
+        let (tables, prefix) = self.tables_mut();
         let history = tables.texture(prefix, name, desc, Kind::HistoryCurrent { frames });
-        let (own, earlier) = tables.resources.split_last().expect("it was just declared");
+        let (own, earlier) = tables.resources.split_last().expect("the history was just added");
         let namesake = |r: &Resource| {
             matches!(r.kind, Kind::HistoryCurrent { .. })
                 && tables.names[r.name.range()] == tables.names[own.name.range()]
@@ -164,11 +170,11 @@ impl Graph {
         history
     }
 
-    /// The image of a history as it was `age` frames ago, `age` from 1 to the history's `frames`. Any handle of the
-    /// history names it, also a stale one.
+    /// Returns the image of a history as it was `age` frames ago; `age` ranges from 1 to the history's `frames`.
+    /// Accepts any handle of the history, even a stale one.
     ///
     /// # Errors
-    /// When the handle is not of a history, or the history is shorter.
+    /// Returns an error if the handle is not that of a history, or `age` is out of range.
     #[track_caller]
     pub fn previous(&mut self, history: Texture, age: u8) -> Result<Previous, DeclareError> {
         let location = Location::caller();
@@ -190,7 +196,7 @@ impl Graph {
         let version = match known {
             Some(index) => self.resources[index].current,
             None => {
-                let (tables, _) = self.open();
+                let (tables, _) = self.tables_mut();
                 let span = tables.resources[current.index()].name;
                 let start = tables.names.len();
                 tables.names.extend_from_within(span.range());
@@ -202,61 +208,62 @@ impl Graph {
         Ok(Previous { tag: self.tag, version })
     }
 
-    /// Says what the frame is for: `texture` must exist when it ends. The root of culling.
+    /// Exports a texture: its contents must exist when the frame ends. Exports keep the passes they depend on from
+    /// being culled.
     ///
     /// # Errors
-    /// A handle of another graph, or one that a pass has written a newer version of.
+    /// Returns an error if the handle belongs to another graph or is stale.
     #[track_caller]
     pub fn export(&mut self, texture: Texture) -> Result<(), DeclareError> {
-        self.open().0.push_export(texture.tag, texture.version, ExportKind::Keep, Location::caller())
+        self.tables_mut().0.push_export(texture.tag, texture.version, ExportKind::Keep, Location::caller())
     }
 
-    /// As [`Graph::export`], for contents that the CPU will read.
+    /// Exports a texture that the CPU reads after the frame.
     ///
     /// # Errors
-    /// As [`Graph::export`].
+    /// Returns the errors of [`Graph::export`].
     #[track_caller]
     pub fn readback(&mut self, texture: Texture) -> Result<(), DeclareError> {
-        self.open().0.push_export(texture.tag, texture.version, ExportKind::Readback, Location::caller())
+        self.tables_mut().0.push_export(texture.tag, texture.version, ExportKind::Readback, Location::caller())
     }
 
-    /// As [`Graph::export`], for a buffer.
+    /// Exports a buffer: its contents must exist when the frame ends.
     ///
     /// # Errors
-    /// As [`Graph::export`].
+    /// Returns the errors of [`Graph::export`].
     #[track_caller]
     pub fn export_buffer(&mut self, buffer: Buffer) -> Result<(), DeclareError> {
-        self.open().0.push_export(buffer.tag, buffer.version, ExportKind::Keep, Location::caller())
+        self.tables_mut().0.push_export(buffer.tag, buffer.version, ExportKind::Keep, Location::caller())
     }
 
-    /// As [`Graph::readback`], for a buffer.
+    /// Exports a buffer that the CPU reads after the frame.
     ///
     /// # Errors
-    /// As [`Graph::export`].
+    /// Returns the errors of [`Graph::export`].
     #[track_caller]
     pub fn readback_buffer(&mut self, buffer: Buffer) -> Result<(), DeclareError> {
-        self.open().0.push_export(buffer.tag, buffer.version, ExportKind::Readback, Location::caller())
+        self.tables_mut().0.push_export(buffer.tag, buffer.version, ExportKind::Readback, Location::caller())
     }
 
-    /// The shape of a texture; `None` for a handle of another graph.
+    /// Returns the descriptor of a texture; `None` if the handle belongs to another graph.
     pub fn desc(&self, texture: Texture) -> Option<TextureDesc> {
         let resource = self.lookup(texture.tag, texture.version)?;
         self.resources[resource.index()].desc.texture().copied()
     }
 
-    /// The resource that a texture handle names; `None` for a handle of another graph.
+    /// Returns the resource of a texture handle; `None` if the handle belongs to another graph.
     pub fn resource_of(&self, texture: Texture) -> Option<ResourceId> {
         self.lookup(texture.tag, texture.version)
     }
 
-    /// The resource that a buffer handle names; `None` for a handle of another graph.
+    /// Returns the resource of a buffer handle; `None` if the handle belongs to another graph.
     pub fn resource_of_buffer(&self, buffer: Buffer) -> Option<ResourceId> {
         self.lookup(buffer.tag, buffer.version)
     }
 }
 
 impl Tables {
-    /// A texture with its name, its row and the version that it holds on entry.
+    /// Adds a texture: its name, its row and its initial version.
     #[inline]
     pub(crate) fn texture(&mut self, prefix: &str, name: &str, desc: TextureDesc, kind: Kind) -> Texture {
         let name = self.push_name(prefix, name);
@@ -264,7 +271,7 @@ impl Tables {
         Texture { tag: self.tag, version }
     }
 
-    /// As [`Tables::texture`], for a buffer.
+    /// Adds a buffer: its name, its row and its initial version.
     #[inline]
     pub(crate) fn buffer(&mut self, prefix: &str, name: &str, size: BufferSize, kind: Kind) -> Buffer {
         let name = self.push_name(prefix, name);
@@ -294,10 +301,10 @@ impl Tables {
         Ok(())
     }
 
-    /// The name of the pass that wrote a version. There is none when its declaration panicked and that was caught.
+    /// Returns the name of the pass that wrote a version. A placeholder if a panic interrupted its declaration.
     pub(crate) fn writer_name(&self, version: VersionId) -> &str {
         let Some(row) = self.versions.get(version.index()) else {
-            return "(what forwarded it)";
+            return "(the forward)";
         };
         self.passes.get(row.writer.index()).map_or("(a pass that panicked)", |row| &self.names[row.name.range()])
     }
@@ -314,7 +321,7 @@ impl Tables {
 
     #[inline(always)]
     fn push_row(&mut self, name: Span, desc: Desc, kind: Kind) -> VersionId {
-        // There are no more resources than versions.
+        // Cannot overflow: there are at most as many resources as versions.
         let current = VersionId::at(self.versions.len());
         let resource = ResourceId::unchecked(self.resources.len());
         self.versions.push(Version {
@@ -323,7 +330,7 @@ impl Tables {
             access: AccessId::NONE,
             previous: VersionId::NONE,
             reader: PassId::NONE,
-            open: Kinds::on_entry(&desc, kind),
+            allowed: Kinds::on_entry(&desc, kind),
         });
         self.resources.push(Resource { name, current, kind, desc });
         current

@@ -1,8 +1,8 @@
-//! What changed between two plans: of two versions of a frame, two settings, two devices or two sizes.
+//! Differences between two plans: of two versions of a frame, two settings, two devices or two frame sizes.
 //!
-//! Passes and resources are matched by name (of several with one name, the first with the first), decisions by what they
-//! are about; the decisions of a step go by the name of its first pass, since step numbers shift. [`diff`] gives data,
-//! its `Display` a text of a line a change.
+//! Passes and resources are matched by name; duplicates of a name are matched in order. Decisions are matched by their
+//! subject. Steps are identified by the name of their first pass, because step numbers shift. [`Diff`] is data, and its
+//! `Display` prints one line per change.
 
 mod text;
 
@@ -12,48 +12,48 @@ use crate::id::{PassId, ResourceId, StepId};
 use crate::plan::{Placement, Plan};
 use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 
-/// Everything that changed from one plan, the *before*, to another, the *after*.
+/// All changes between two plans.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diff {
-    /// Passes that only the second has.
+    /// Passes that exist only in the second plan.
     pub passes_added: Vec<String>,
-    /// Passes that only the first has.
+    /// Passes that exist only in the first plan.
     pub passes_removed: Vec<String>,
-    /// Passes of both that run in one of them only.
+    /// Passes that run in one plan and are culled in the other.
     pub culls: Vec<CullChange>,
-    /// Passes that run in both, with the other passes of their steps where these are not the same.
+    /// Passes that run in both plans but share their steps with different passes.
     pub merges: Vec<Change<Vec<String>>>,
-    /// Counts and bytes of the whole plan that differ, by their names in [`totals`](crate::dump::totals) and in that order.
+    /// Changed totals, named and ordered as in [`totals`](crate::dump::totals).
     pub totals: Vec<Change<u64>>,
-    /// Resources that only the second has.
+    /// Resources that exist only in the second plan.
     pub resources_added: Vec<String>,
-    /// Resources that only the first has.
+    /// Resources that exist only in the first plan.
     pub resources_removed: Vec<String>,
-    /// Resources of both that take other bytes, or live elsewhere: shape, bytes and kind of placement.
+    /// Resources whose shape, size or kind of placement changed.
     pub resources: Vec<Change<String>>,
-    /// Decisions about what both have, that were taken otherwise or for another reason: their sentences.
+    /// Decisions that changed, or that have another reason, as sentences.
     pub reasons: Vec<Change<Vec<String>>>,
 }
 
-/// A pass that was culled, or is no longer.
+/// A pass that is culled in exactly one of two plans.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CullChange {
     /// The pass.
     pub pass: String,
-    /// Whether it is culled now.
+    /// The pass is culled in the second plan.
     pub culled: bool,
-    /// Why, in the second plan.
+    /// Reason in the second plan.
     pub reason: String,
 }
 
-/// Something that both plans have, and how it changed.
+/// A changed property that both plans have.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Change<V> {
-    /// The pass, resource or total; of reasons, what the decisions are about, in words.
+    /// Name of the pass, resource or total; for decisions, a description of their subject.
     pub what: String,
-    /// In the first plan.
+    /// Value in the first plan.
     pub before: V,
-    /// In the second plan.
+    /// Value in the second plan.
     pub after: V,
 }
 
@@ -79,11 +79,11 @@ pub fn diff(before: &Plan, after: &Plan) -> Diff {
     }
 }
 
-/// The version of the JSON form of a diff; it counts up whenever a field changes its meaning or goes.
+/// Version of the JSON form of a diff. Increases when a field changes its meaning or is removed.
 pub const DIFF_VERSION: u32 = 1;
 
 impl Diff {
-    /// The diff as JSON text, indented, ending in a line feed; `docs/plan-json.md` documents the fields.
+    /// Returns the diff as indented JSON text, ending in a line feed. `docs/plan-json.md` documents the fields.
     pub fn json(&self) -> String {
         let culls = self.culls.iter().map(|c| {
             object([field("pass", c.pass.as_str()), field("culled", c.culled), field("reason", c.reason.as_str())])
@@ -104,30 +104,30 @@ impl Diff {
         document.text()
     }
 
-    /// Whether nothing changed that a plan decides.
+    /// Returns `true` if the plans do not differ.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 }
 
-/// Changes as JSON objects, in which `key` says what changed.
+/// Returns changes as JSON objects; `key` is the field for the name of the changed item.
 fn changes<V: Clone + Into<Json>>(key: &'static str, rows: &[Change<V>]) -> Json {
     Json::list(rows.iter().map(|Change { what, before, after }| {
         object([field(key, what.as_str()), field("before", before.clone()), field("after", after.clone())])
     }))
 }
 
-/// What both sides have, as pairs of indices, and what one has alone, as names.
+/// Items of both sides as pairs of indices, and items of one side as names.
 struct Matched {
     both: Vec<(usize, usize)>,
     added: Vec<String>,
     removed: Vec<String>,
-    /// The names of both sides.
+    /// Names that occur on both sides.
     known: HashSet<String>,
 }
 
 impl Matched {
-    /// Matches by name; the first of several with the first, the second with the second.
+    /// Matches by name; duplicates are matched in order.
     fn new(before: Vec<String>, after: Vec<String>) -> Self {
         let mut waiting: HashMap<String, VecDeque<usize>> = HashMap::new();
         for (index, name) in before.iter().enumerate() {
@@ -151,7 +151,7 @@ impl Matched {
     }
 }
 
-/// What changed, if it did.
+/// Returns the change, or `None` if both values are equal.
 fn change<V: PartialEq>(what: &str, before: V, after: V) -> Option<Change<V>> {
     (before != after).then(|| Change { what: what.to_owned(), before, after })
 }
@@ -192,7 +192,7 @@ fn resource(before: &Plan, was: ResourceId, after: &Plan, is: ResourceId) -> Opt
     change(after.graph().resource_name(is), described(before, was), described(after, is))
 }
 
-/// Decisions about passes and resources that both plans have, and about steps that begin with such a pass.
+/// Compares decisions about passes and resources of both plans, and about steps that begin with such a pass.
 fn reasons(before: &Plan, after: &Plan, passes: &Matched, resources: &Matched) -> Vec<Change<Vec<String>>> {
     let mut changes: BTreeMap<Key<'_>, [Vec<String>; 2]> = BTreeMap::new();
     for (side, plan) in [before, after].into_iter().enumerate() {
@@ -208,7 +208,7 @@ fn reasons(before: &Plan, after: &Plan, passes: &Matched, resources: &Matched) -
     changes.into_iter().filter_map(|(key, [before, after])| change(&key.words(), before, after)).collect()
 }
 
-/// What a decision is about, in terms that two plans share.
+/// Subject of a decision, in terms that both plans share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Key<'p> {
     about: &'static str,

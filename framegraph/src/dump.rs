@@ -1,5 +1,6 @@
-//! Plans as text and pictures. Every form is a pure function of the plan and the same to the byte for equal plans.
+//! Plans as text, JSON and graphics. All forms are deterministic: equal plans give byte-identical output.
 
+mod describe;
 mod dot;
 mod flow;
 #[cfg(feature = "petgraph")]
@@ -9,7 +10,6 @@ mod mermaid;
 mod reasons;
 mod svg;
 mod text;
-mod words;
 
 pub use dot::dot;
 pub use flow::{Flow, data_flow, reduced};
@@ -19,4 +19,4 @@ pub use mermaid::mermaid;
 pub use svg::svg;
 pub use text::{TEXT_VERSION, text};
 
-pub(crate) use words::{bytes, shape};
+pub(crate) use describe::{bytes, shape};

@@ -1,13 +1,14 @@
-//! Graphs as files: the RON form of a graph, names to ids, plugins by name.
+//! Graphs as RON files.
 //!
-//! A file lists resources, passes and exports; `docs/graph-format.md` documents every field. Passes are spelled out with
-//! their accesses, or named by the kind of a [`Plugin`]. They may stand in any order: a plain name means the newest
-//! version at that place of the file, `"hdr@scene"` the version that pass `scene` wrote, and the passes are declared in
-//! the topological order nearest to the order of the file. So cycles and two writers of one version can be said, and are
-//! refused.
+//! A file lists resources, passes and exports; `docs/graph-format.md` documents every field. A pass lists its accesses,
+//! or refers to a [`Plugin`] by kind. Passes can be listed in any order.
 //!
-//! The text goes in as a string, since this crate does no I/O; every error names the path that the caller gave, line and
-//! column, the reason and a hint, in one line.
+//! A plain name refers to the newest version of a resource at that position of the file. `"hdr@scene"` refers to the
+//! version written by pass `scene`. Passes are declared in the topological order closest to the order of the file.
+//! Cycles, and two writers of one version, are errors.
+//!
+//! This crate performs no I/O, so the text is passed as a string. Every error is one line with the path given by the
+//! caller, line, column, reason and hint.
 //!
 //! ```
 //! use framegraph::file::GraphFile;
@@ -39,7 +40,7 @@
 //!
 //! let typo = text.replace("Color(to: \"glow\"", "Color(to: \"glo\"");
 //! let errors = GraphFile::parse("frame.ron", &typo)?.graph(&[("bloom".into(), true)]).unwrap_err();
-//! assert_eq!(errors.to_string(), "frame.ron:13:23: there is no resource `glo`; did you mean `glow`?");
+//! assert_eq!(errors.to_string(), "frame.ron:13:23: unknown resource `glo`; did you mean `glow`?");
 //! # Ok::<(), framegraph::file::FileErrors>(())
 //! ```
 
@@ -75,8 +76,8 @@ pub use document::{document, to_document};
 pub use error::{FileError, FileErrors, FileReason};
 pub use include::Included;
 pub use plugin::{Call, Host, Plugin, PluginError, Registry};
-pub use slot::{PluginSlot, Takes};
-pub use value::ValueFault;
+pub use slot::{PluginSlot, SlotType};
+pub use value::ValueReason;
 pub use version::GRAPH_VERSION;
 pub use write::to_ron;
 
@@ -93,7 +94,7 @@ use selected::Selected;
 use serde::Deserialize;
 use spanned::{Source, Spanned};
 
-/// A graph file, parsed and not yet declared.
+/// A parsed graph file. Nothing is declared yet.
 #[derive(Debug)]
 pub struct GraphFile<'t> {
     source: Source<'t>,
@@ -103,20 +104,22 @@ pub struct GraphFile<'t> {
 }
 
 impl<'t> GraphFile<'t> {
-    /// Parses `text`, which includes no file; `path` is what errors call it.
+    /// Parses `text`, which must not include other files. `path` is used in errors.
     ///
     /// # Errors
-    /// Text that is no RON, or not of this form or version.
+    /// Returns an error if `text` is not valid RON, or has an unsupported form or version.
     pub fn parse(path: &'t str, text: &'t str) -> Result<Self, FileErrors> {
         const NONE: &Included = &Included { files: Vec::new() };
         Self::parse_with(path, text, NONE)
     }
 
-    /// As [`GraphFile::parse`], with the files that it includes: their features, templates, resources, passes and exports
-    /// come before its own, and a feature that both name is set as here.
+    /// Parses `text` together with the files it includes.
+    ///
+    /// Features, templates, resources, passes and exports of included files come before those of `text`. If both set a
+    /// feature, the setting of `text` wins.
     ///
     /// # Errors
-    /// As [`GraphFile::parse`], of any of the files; a file that includes others which are not there.
+    /// Returns the errors of [`GraphFile::parse`] for any of the files, and an error if an included file is missing.
     pub fn parse_with(path: &'t str, text: &'t str, included: &'t Included) -> Result<Self, FileErrors> {
         let source = Source { path, text: version::without_mark(text), included: &included.files };
         let mut form = GraphForm::default();
@@ -128,17 +131,17 @@ impl<'t> GraphFile<'t> {
         if included.files.is_empty()
             && let Some(first) = own.include.first()
         {
-            let fault = ValueFault::Unreadable("the program that reads this file reads no others".into());
+            let fault = ValueReason::Unreadable("this program does not support includes".into());
             return Err(source.value(first, fault).into());
         }
         form.append(own);
         let mut errors = FileErrors::default();
         let entries = expand::expand(source, &mut form, &mut errors);
         for (name, _) in form.features.0.iter().filter(|(name, _)| !features::is_name(&name.value)) {
-            errors.push(|| source.value(name, ValueFault::FeatureName(name.value.clone())));
+            errors.push(|| source.value(name, ValueReason::FeatureName(name.value.clone())));
         }
         if let Some(frame) = form.frame.as_ref().filter(|f| f.value.0 == 0 || f.value.1 == 0) {
-            errors.push(|| source.value(frame, ValueFault::EmptyFrame));
+            errors.push(|| source.value(frame, ValueReason::EmptyFrame));
         }
         let mut features: Vec<(String, bool)> = Vec::new();
         for (name, on) in &form.features.0 {
@@ -150,50 +153,50 @@ impl<'t> GraphFile<'t> {
         errors.sorted().or(Self { source, form, entries, features })
     }
 
-    /// What errors call the file.
+    /// Path of the file, as used in errors.
     pub fn path(&self) -> &'t str {
         self.source.path
     }
 
-    /// What the frame is called; empty when the file does not say.
+    /// Name of the frame; empty if the file does not set one.
     pub fn name(&self) -> &str {
         &self.form.name
     }
 
-    /// The frame's size in texels, where the file says one.
+    /// Size of the frame in texels, if the file sets one.
     pub fn frame(&self) -> Option<[u32; 2]> {
         self.form.frame.as_ref().map(|f| [f.value.0, f.value.1])
     }
 
-    /// The features with their settings in the file, in its order.
+    /// The features and their settings, in the order of the file.
     pub fn features(&self) -> &[(String, bool)] {
         &self.features
     }
 
-    /// The `expect` section, which means nothing to the graph; none when there is none.
+    /// Returns the `expect` section, which has no influence on the graph; `None` if the file has none.
     ///
     /// # Errors
-    /// When it does not fit `T`, with the place in the file.
+    /// Returns an error with the position in the file if the section does not fit `T`.
     pub fn expect<T: Deserialize<'t>>(&self) -> Result<Option<T>, FileErrors> {
         let parsed = self.form.expect.as_ref().map(|raw| self.source.parse(raw));
         parsed.transpose().map_err(FileErrors::from)
     }
 
-    /// Declares the graph, with some features set otherwise than in the file. Plugins are unknown here.
+    /// Declares the graph. `switches` override the settings of features. Plugins are not available.
     ///
     /// # Errors
-    /// As [`GraphFile::declare`].
+    /// Returns the errors of [`GraphFile::declare`].
     pub fn graph(&self, switches: &[(String, bool)]) -> Result<Graph, FileErrors> {
         let mut graph = Graph::new();
         self.declare(switches, &Registry::new(), &mut graph)?;
         Ok(graph)
     }
 
-    /// Declares the graph into `host`, with some features set otherwise than in the file.
+    /// Declares the graph into `host`. `switches` override the settings of features.
     ///
     /// # Errors
-    /// Everything that shows without compiling, a hundred listed at once: names, versions, cycles, values out of range,
-    /// declarations that are refused. `host` is left with what is sound then.
+    /// Returns all errors that can be found without compiling, at most a hundred of them in detail: names, versions,
+    /// cycles, values out of range and invalid declarations. `host` then contains the valid declarations.
     pub fn declare<H: Host + ?Sized>(
         &self,
         switches: &[(String, bool)],
@@ -203,11 +206,11 @@ impl<'t> GraphFile<'t> {
         self.declare_soundly(switches, registry, host).1.sorted().or(())
     }
 
-    /// Declares and compiles; what is wrong with either is listed together.
+    /// Declares and compiles the graph. Errors of both are listed together.
     ///
     /// # Errors
-    /// As [`GraphFile::declare`], and everything that compiling refuses. What needs the result of a pass that was refused is
-    /// not judged. `plan` is empty then.
+    /// Returns the errors of [`GraphFile::declare`] and of compiling. Passes that depend on an invalid pass are not
+    /// checked. `plan` is empty in case of an error.
     pub fn plan<H: Host + ?Sized>(
         &self,
         switches: &[(String, bool)],
@@ -224,7 +227,7 @@ impl<'t> GraphFile<'t> {
         let declared = errors.count() == 0;
         let CompileErrors { mut listed, mut more } = compiled;
         if !declared && selected.blind {
-            // Who writes it may be among the passes that were left out. What is only counted may be of that kind too.
+            // The writer may be one of the omitted passes. Errors that are only counted may be of that kind too.
             listed.retain(|error| !matches!(error.reason, CompileReason::ReadUnwritten { .. }));
             more = 0;
         }
@@ -235,7 +238,7 @@ impl<'t> GraphFile<'t> {
         errors.sorted().or(())
     }
 
-    /// Declares what is sound; the rest is in error.
+    /// Declares everything that is valid and collects errors.
     fn declare_soundly<H: Host + ?Sized>(
         &self,
         switches: &[(String, bool)],
@@ -266,7 +269,7 @@ impl<'t> GraphFile<'t> {
         (selected, errors)
     }
 
-    /// What compiling the declared graph refused, with places in the file instead of places in code.
+    /// Replaces source locations in errors of compiling by positions in the file.
     pub fn explain(&self, errors: &CompileErrors) -> FileErrors {
         let explained = errors.listed.iter().map(|error| {
             let (pass, resource) = match &error.reason {
@@ -308,9 +311,9 @@ impl<'t> GraphFile<'t> {
     }
 }
 
-/// The form of one file.
+/// Parses one file.
 fn parsed(source: Source<'_>) -> Result<GraphForm, FileErrors> {
-    // Of another version, it may well be of another form.
+    // Check the version first, because another version may have another form.
     let form: GraphForm = match syntax::options().from_str(source.text) {
         Ok(form) => form,
         Err(error) => {
@@ -322,12 +325,12 @@ fn parsed(source: Source<'_>) -> Result<GraphForm, FileErrors> {
         version::known(source, version, GRAPH_VERSION)?;
         return Ok(form);
     }
-    // Refuses a file without one.
+    // Reports a missing version.
     version::check_version(source, GRAPH_VERSION)?;
     Ok(form)
 }
 
-/// Whether a pass or resource of that name belongs to the effect.
+/// Returns `true` if a pass or resource of this name belongs to the effect.
 fn within(name: &str, effect: &str) -> bool {
     name.strip_prefix(effect).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }

@@ -1,16 +1,16 @@
-//! Texel formats: bytes, aspects, blocks and what a texel costs in tile memory.
+//! Texel formats: memory size, planes, compression blocks and tile memory cost.
 //!
-//! The list is the one of the WebGPU specification (section "Texture Format Capabilities"), by the same names, so a back
-//! end maps them one to one; nothing here depends on a GPU API.
+//! Names and properties are those of the WebGPU specification, section "Texture Format Capabilities". Nothing here
+//! depends on a GPU API.
 
-/// Makes the enumeration of formats, and the list of them.
+/// Defines the enumeration of formats and the list of its variants.
 macro_rules! formats {
     ($($format:ident),+ $(,)?) => {
-        /// What a texel holds. Names follow WebGPU: channels with bits, then the numeric type.
+        /// Format of a texel. Names follow WebGPU: channels with their bits, then the numeric type.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
         #[repr(u8)]
-        #[allow(missing_docs, reason = "each name is its own definition: channels, bits, numeric type")]
+        #[allow(missing_docs, reason = "names define channels, bits and numeric type")]
         pub enum Format {
             $($format,)+
         }
@@ -41,22 +41,22 @@ formats! {
     Astc4x4Unorm, Astc4x4UnormSrgb, Astc8x8Unorm,
 }
 
-/// The planes of a format: a color format has one, a depth-stencil format up to two.
+/// Planes of a format: a color format has one, a depth-stencil format up to two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Aspect {
     /// Every plane of the format.
     All,
-    /// The depth plane alone.
+    /// The depth plane only.
     Depth,
-    /// The stencil plane alone.
+    /// The stencil plane only.
     Stencil,
 }
 
-/// The numeric class a shader sees: two attachments or a resolve pair must agree on it.
+/// Numeric type that a shader reads or writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Numeric {
-    /// Floating point or normalised.
+    /// Floating point or normalized.
     Float,
     /// Signed integer.
     Sint,
@@ -67,7 +67,7 @@ pub enum Numeric {
 }
 
 impl Format {
-    /// Bytes of one block in memory, all planes together (depth 24 counts 4, depth 32 with stencil 5).
+    /// Size of one block in memory in bytes, with all planes. `Depth24Plus` counts 4, `Depth32FloatStencil8` counts 5.
     pub const fn block_bytes(self) -> u32 {
         use Format::*;
         match self {
@@ -84,7 +84,7 @@ impl Format {
         }
     }
 
-    /// Width and height of one block in texels: 1×1 for everything that is not compressed.
+    /// Width and height of one block in texels; 1×1 for uncompressed formats.
     pub const fn block_texels(self) -> (u32, u32) {
         use Format::*;
         match self {
@@ -96,7 +96,7 @@ impl Format {
         }
     }
 
-    /// Bytes of one texel of one plane in memory: `All` is the sum of the planes.
+    /// Size in memory of one texel of a plane, in bytes; `All` is the sum of the planes.
     pub const fn texel_bytes(self, aspect: Aspect) -> u32 {
         use Format::*;
         match (self, aspect) {
@@ -109,8 +109,8 @@ impl Format {
         }
     }
 
-    /// Bytes that one sample of a color attachment takes in the tile: WebGPU's "render target pixel byte cost", which is
-    /// what the limit on color bytes per sample counts. Depth counts its memory size.
+    /// Bytes per sample in the tile: WebGPU's "render target pixel byte cost", to which its limit on color bytes per
+    /// sample applies. For depth, the size in memory.
     pub const fn tile_bytes(self) -> u32 {
         use Format::*;
         match self {
@@ -120,43 +120,44 @@ impl Format {
         }
     }
 
-    /// Whether the format holds depth, stencil or both.
+    /// Returns `true` if the format has a depth or a stencil plane.
     pub const fn is_depth_stencil(self) -> bool {
         self.has_depth() || self.has_stencil()
     }
 
-    /// Whether there is a depth plane.
+    /// Returns `true` if the format has a depth plane.
     pub const fn has_depth(self) -> bool {
         use Format::*;
         matches!(self, Depth16Unorm | Depth24Plus | Depth24PlusStencil8 | Depth32Float | Depth32FloatStencil8)
     }
 
-    /// Whether there is a stencil plane.
+    /// Returns `true` if the format has a stencil plane.
     pub const fn has_stencil(self) -> bool {
         matches!(self, Format::Stencil8 | Format::Depth24PlusStencil8 | Format::Depth32FloatStencil8)
     }
 
-    /// How many planes are tracked separately: 2 for depth with stencil, else 1.
+    /// Number of planes: 2 for depth with stencil, otherwise 1.
     pub const fn planes(self) -> u32 {
         if self.has_depth() && self.has_stencil() { 2 } else { 1 }
     }
 
-    /// Whether texels come in compressed blocks; such a format can only be sampled or copied.
+    /// Returns `true` for block-compressed formats, which can only be sampled and copied.
     pub const fn is_compressed(self) -> bool {
         self.block_texels().0 != 1
     }
 
-    /// Whether a color attachment of this format exists in WebGPU (`Rg11b10Ufloat` behind a feature).
+    /// Returns `true` if WebGPU allows color attachments of this format (`Rg11b10Ufloat` requires a feature).
     pub const fn is_color_renderable(self) -> bool {
         !self.is_depth_stencil() && !self.is_compressed() && !matches!(self, Format::Rgb9e5Ufloat)
     }
 
-    /// Whether the values are read back through the sRGB transfer function (IEC 61966-2-1).
+    /// Returns `true` for formats with the sRGB transfer function (IEC 61966-2-1).
     pub const fn is_srgb(self) -> bool {
         self.without_srgb() as u8 != self as u8
     }
 
-    /// The format without the sRGB transfer function. Two formats that differ in nothing else share memory through `view_formats`.
+    /// Returns the format without the sRGB transfer function. Formats that differ only in it can share memory through
+    /// `view_formats`.
     pub const fn without_srgb(self) -> Self {
         use Format::*;
         match self {
@@ -170,7 +171,7 @@ impl Format {
         }
     }
 
-    /// The numeric class a shader sees.
+    /// Returns the numeric type that a shader reads or writes.
     pub const fn numeric(self) -> Numeric {
         use Format::*;
         match self {
@@ -186,7 +187,7 @@ impl Format {
         }
     }
 
-    /// The format of the depth plane, of a format with depth and stencil; every other format itself.
+    /// Returns the format of the depth plane for depth with stencil; other formats are returned unchanged.
     pub const fn depth_alone(self) -> Self {
         match self {
             Self::Depth24PlusStencil8 => Self::Depth24Plus,
@@ -195,14 +196,14 @@ impl Format {
         }
     }
 
-    /// Whether a multisampled attachment of this format can be resolved by averaging: color and not integer.
+    /// Returns `true` if multisampled attachments of this format can be averaged: color, not integer.
     pub const fn is_resolvable(self) -> bool {
         self.is_color_renderable() && matches!(self.numeric(), Numeric::Float)
     }
 }
 
 impl Aspect {
-    /// Whether the two name a common plane of `format`.
+    /// Returns `true` if the aspect includes plane number `plane` of `format`.
     pub const fn selects_plane(self, format: Format, plane: u32) -> bool {
         match self {
             Self::All => true,
@@ -211,7 +212,7 @@ impl Aspect {
         }
     }
 
-    /// Whether `format` has what this aspect names.
+    /// Returns `true` if `format` has the planes of this aspect.
     pub const fn exists_in(self, format: Format) -> bool {
         match self {
             Self::All => true,

@@ -1,9 +1,11 @@
-//! What was declared: flat arrays, the compiler's only input.
+//! The declared frame: flat arrays that are the compiler's only input.
 //!
-//! A [`Graph`] is filled through [`Graph::add`] and the calls beside it, read by the phases, dumped, compared and copied;
-//! it holds no closure and no GPU object. Its arrays ([`Tables`]) are shared with the plans that are made from it, never
-//! copied: a graph that is declared anew ([`Graph::reset`]) goes on in arrays that no plan holds, so it and its plan take
-//! turns with two sets, and a warm graph allocates nothing.
+//! Passes and resources are added to a [`Graph`] with [`Graph::add`] and similar methods. A graph holds no closures and
+//! no GPU objects, so it can be compared, copied and dumped.
+//!
+//! A graph shares its arrays ([`Tables`]) with the plans compiled from it; nothing is copied. [`Graph::reset`] switches
+//! to arrays that no plan uses. A graph that is declared and compiled every frame alternates between two sets of arrays
+//! and stops allocating.
 
 pub(crate) mod rows;
 mod tables;
@@ -14,24 +16,38 @@ use std::ops::Deref;
 pub use tables::Tables;
 use triomphe::Arc;
 
-/// The most sets of arrays that a graph keeps for later beside its own: as many plans can be made from it in turns without
-/// allocating.
-const MOST_SPARES: usize = 4;
+/// Maximum number of spare array sets that a graph keeps.
+///
+/// This many plans can hold arrays of one graph before a reset has to allocate.
+const MAX_SPARES: usize = 4;
 
-/// Everything that was declared for a frame. Reads as its [`Tables`].
+/// The passes, resources and accesses declared for one frame. Dereferences to its [`Tables`].
+///
+/// ```
+/// use framegraph::{ClearValue, DeclareError, Extent, Format, Graph, Intent, TextureDesc};
+///
+/// let mut graph = Graph::new();
+/// let color = graph.add_fn("background", |pass| {
+///     let color = pass.texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
+///     pass.color(color, Intent::Clear(ClearValue::BLACK))
+/// })?;
+/// graph.export(color)?; // Without a use of its result, the pass would be culled.
+/// assert_eq!(graph.pass_name(graph.find_pass("background").unwrap()), "background");
+/// # Ok::<(), DeclareError>(())
+/// ```
 #[derive(Debug)]
 pub struct Graph {
     tables: Arc<Tables>,
-    /// Arrays of earlier declarations: to be used again once no plan holds them.
+    /// Array sets of earlier declarations, reused once no plan holds them.
     spares: Vec<Arc<Tables>>,
     identity: Box<u8>,
     resets: u32,
-    /// What open scopes put in front of names.
+    /// Prefix that the open scopes add to names.
     pub(crate) prefix: String,
 }
 
 impl Graph {
-    /// An empty graph.
+    /// Creates an empty graph.
     pub fn new() -> Self {
         let mut graph = Self {
             tables: Arc::default(),
@@ -40,16 +56,18 @@ impl Graph {
             resets: 0,
             prefix: String::new(),
         };
-        graph.open().0.tag = graph.next_tag();
+        graph.tables_mut().0.tag = graph.next_tag();
         graph
     }
 
-    /// Forgets what was declared and keeps the memory; handles of before are refused from now on.
+    /// Removes all declarations and keeps the allocated memory.
+    ///
+    /// Handles issued before the reset are rejected from now on.
     pub fn reset(&mut self) {
         if Arc::count(&self.tables) > 1 {
             let free = self.spares.iter().position(|spare| Arc::count(spare) == 1);
             let next = free.map(|at| self.spares.remove(at)).unwrap_or_default();
-            if self.spares.len() == MOST_SPARES {
+            if self.spares.len() == MAX_SPARES {
                 self.spares.remove(0);
             }
             self.spares.push(std::mem::replace(&mut self.tables, next));
@@ -57,37 +75,41 @@ impl Graph {
         self.prefix.clear();
         self.resets = self.resets.wrapping_add(1);
         let tag = self.next_tag();
-        let (tables, _) = self.open();
+        let (tables, _) = self.tables_mut();
         tables.clear();
         tables.tag = tag;
     }
 
-    /// What handles of this declaration carry.
+    /// Returns the tag that handles of the current declaration carry.
     fn next_tag(&self) -> Tag {
         let address = std::ptr::from_ref::<u8>(&*self.identity).addr() as u64;
         let mixed = (address ^ (u64::from(self.resets) << 40)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
         Tag((mixed >> 32) as u32)
     }
 
-    /// The arrays, to be changed, and what open scopes put in front of names. Where a plan or another graph holds the arrays
-    /// too, this one goes on with a copy.
+    /// Returns the arrays for writing, and the prefix of the open scopes.
+    ///
+    /// Copies the arrays first if a plan or another graph shares them.
     #[inline]
-    pub(crate) fn open(&mut self) -> (&mut Tables, &str) {
+    pub(crate) fn tables_mut(&mut self) -> (&mut Tables, &str) {
         (Arc::make_mut(&mut self.tables), &self.prefix)
     }
 
-    /// Whether the two would compile to the same plan: everything but source locations is equal, clear values bit for bit.
+    /// Returns `true` if both graphs compile to the same plan.
+    ///
+    /// Compares everything except source locations. Clear values are compared bit by bit.
     pub fn same_as(&self, other: &Self) -> bool {
         let shared = Arc::ptr_eq(&self.tables, &other.tables);
         self.errors.is_empty() && other.errors.is_empty() && (shared || self.tables.same_as(&other.tables))
     }
 
-    /// Reads as `source` from now on, whose handles work on it: the two share their arrays until one of them changes.
+    /// Replaces the content of this graph with that of `source`, and accepts its handles. The two graphs share their
+    /// arrays until one of them changes.
     pub(crate) fn share(&mut self, source: &Self) {
         self.tables = Arc::clone(&source.tables);
     }
 
-    /// Reads as a graph in which nothing was declared.
+    /// Replaces the content of this graph with that of an empty graph.
     pub(crate) fn forget(&mut self) {
         self.tables = Arc::default();
     }
@@ -109,7 +131,7 @@ impl Default for Graph {
 }
 
 impl Clone for Graph {
-    /// A copy that the same handles work on.
+    /// Returns a copy that accepts the handles of the original.
     fn clone(&self) -> Self {
         let Self { tables, spares: _, identity: _, resets, prefix } = self;
         Self { tables: Arc::clone(tables), resets: *resets, prefix: prefix.clone(), ..Self::new() }

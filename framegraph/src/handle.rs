@@ -1,41 +1,41 @@
-//! What passes hold: typed, versioned names of textures and buffers, parts of them, and the tokens of reads.
+//! Typed, versioned handles of textures and buffers, handles of parts of them, and tokens of reads.
 //!
-//! A handle names one version. Writing through it makes a new version and a new handle; the old one is stale from then
-//! on. The type says what may be done: a [`Previous`] image of a history has no method that writes.
+//! A handle names one version of a resource. A write returns a handle of the next version; older handles become stale.
+//! Types restrict the use of a handle: a [`Previous`] image of a history cannot be written.
 
 use crate::access::Range;
 use crate::format::{Aspect, Format};
 use crate::id::{AccessId, VersionId};
 
-/// Which graph, and which declaration of it, a handle belongs to.
+/// Identifies the graph, and the declaration between two resets, that a handle belongs to.
 ///
-/// Made from the address of an allocation that the graph owns and a count of its resets: two graphs that live at the same
-/// time differ, without any global counter. Never reaches a plan.
+/// Derived from the address of an allocation owned by the graph and the number of its resets. Graphs that live at the
+/// same time have different tags without a global counter. Not stored in plans.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct Tag(pub(crate) u32);
 
-/// A version of a texture, to be read or written next.
+/// A version of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Texture {
     pub(crate) tag: Tag,
     pub(crate) version: VersionId,
 }
 
-/// A version of a buffer, to be read or written next.
+/// A version of a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Buffer {
     pub(crate) tag: Tag,
     pub(crate) version: VersionId,
 }
 
-/// A history image as an earlier frame left it; read only.
+/// An image of a history from an earlier frame; read-only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Previous {
     pub(crate) tag: Tag,
     pub(crate) version: VersionId,
 }
 
-/// A texture that a pass may read and not write: `texture.read_only()`, or a [`Previous`] image. May be a part.
+/// A read-only texture or part of one: `texture.read_only()`, or a [`Previous`] image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ReadOnly {
     pub(crate) tag: Tag,
@@ -43,29 +43,29 @@ pub struct ReadOnly {
     pub(crate) range: Range,
 }
 
-/// Some levels, layers or planes of a texture.
+/// A range of levels, layers or planes of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Part {
     pub(crate) texture: Texture,
     pub(crate) range: Range,
 }
 
-/// Some bytes of a buffer, or all of them.
+/// A buffer, or a range of its bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BufferPart {
     pub(crate) buffer: Buffer,
-    /// Offset and size in bytes; none for all.
+    /// Offset and size in bytes; `None` for the whole buffer.
     pub(crate) bytes: Option<(u64, u64)>,
 }
 
-/// The token of a read of a texture: what a recorder looks the view up with.
+/// Token of a texture read. A recorder uses it to look up the view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct View {
     pub(crate) tag: Tag,
     pub(crate) access: AccessId,
 }
 
-/// The token of a read of a buffer.
+/// Token of a buffer read. A recorder uses it to look up the binding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BufferView {
     pub(crate) tag: Tag,
@@ -73,34 +73,35 @@ pub struct BufferView {
 }
 
 impl Texture {
-    /// Level `mip`, all layers and planes.
+    /// Returns mip level `mip`, with all layers and planes.
     pub const fn mip(self, mip: u8) -> Part {
         Part { texture: self, range: Range { mip, mips: 1, ..Range::ALL } }
     }
 
-    /// Array layer `layer`, all levels and planes.
+    /// Returns array layer `layer`, with all levels and planes.
     pub const fn layer(self, layer: u16) -> Part {
         Part { texture: self, range: Range { layer, layers: 1, ..Range::ALL } }
     }
 
-    /// One plane of a depth-stencil texture.
+    /// Returns one plane of a depth-stencil texture.
     pub const fn aspect(self, aspect: Aspect) -> Part {
         Part { texture: self, range: Range { aspect, ..Range::ALL } }
     }
 
-    /// All of it, seen through `format`: the sRGB twin of its own format, so that what is stored in `Rgba8UnormSrgb` is
-    /// read or written without the transfer function, or what is stored in `Rgba8Unorm` with it. An imported texture must
-    /// have been made with both formats among its views.
+    /// Returns the whole texture viewed in `format`, which must be its own format or the sRGB twin of it.
+    ///
+    /// A view of `Rgba8UnormSrgb` as `Rgba8Unorm` reads and writes without the transfer function, and vice versa.
+    /// Imported textures must be created with both view formats.
     pub const fn viewed_as(self, format: Format) -> Part {
         Part { texture: self, range: Range { view: Some(format), ..Range::ALL } }
     }
 
-    /// Any range of levels, layers and planes.
+    /// Returns a range of levels, layers and planes.
     pub const fn range(self, range: Range) -> Part {
         Part { texture: self, range }
     }
 
-    /// The same version, without the right to write it.
+    /// Returns a read-only handle of the texture.
     pub const fn read_only(self) -> ReadOnly {
         ReadOnly { tag: self.tag, version: self.version, range: Range::ALL }
     }
@@ -112,43 +113,43 @@ impl Part {
         self.texture
     }
 
-    /// The format that it is seen through, where that is another than the texture's.
+    /// The format of the view if it differs from that of the texture.
     pub const fn view_format(self) -> Option<Format> {
         self.range.view
     }
 
-    /// The same part, without the right to write it.
+    /// Returns a read-only handle of this part.
     pub const fn read_only(self) -> ReadOnly {
         ReadOnly { tag: self.texture.tag, version: self.texture.version, range: self.range }
     }
 }
 
-/// Gives a part the calls that narrow it down.
+/// Implements the methods that narrow a part.
 macro_rules! narrowed {
     ($($part:ident),+) => { $(
         impl $part {
-            /// Level `mip` of these layers and planes.
+            /// Restricts the part to mip level `mip`.
             #[must_use]
             pub const fn mip(mut self, mip: u8) -> Self {
                 (self.range.mip, self.range.mips) = (mip, 1);
                 self
             }
 
-            /// Layer `layer` of these levels and planes.
+            /// Restricts the part to array layer `layer`.
             #[must_use]
             pub const fn layer(mut self, layer: u16) -> Self {
                 (self.range.layer, self.range.layers) = (layer, 1);
                 self
             }
 
-            /// One plane of these levels and layers.
+            /// Restricts the part to one plane.
             #[must_use]
             pub const fn aspect(mut self, aspect: Aspect) -> Self {
                 self.range.aspect = aspect;
                 self
             }
 
-            /// The same part, seen through the sRGB twin of the texture's format: [`Texture::viewed_as`].
+            /// Views the part in the sRGB twin of the texture's format; see [`Texture::viewed_as`].
             #[must_use]
             pub const fn viewed_as(mut self, format: Format) -> Self {
                 self.range.view = Some(format);
@@ -161,13 +162,16 @@ macro_rules! narrowed {
 narrowed!(Part, ReadOnly);
 
 impl Buffer {
-    /// `bytes` bytes from `offset` on. What other bytes of the buffer hold is followed apart: writing some does not
-    /// touch the others, and they are read as the passes left them that wrote them. Ranges may overlap; a byte holds
-    /// what the last pass wrote that named it. A range does not follow the frame: where the buffer does, work it out from the
-    /// frame's size ([`Extent::texels`](crate::Extent::texels)) and declare the graph anew.
+    /// Returns the range of `bytes` bytes from `offset` on.
     ///
-    /// A device binds a buffer at multiples of its alignment alone (wgpu: 256 bytes for uniforms and storage, 4 for the
-    /// rest); nothing is rounded here.
+    /// The compiler tracks the contents of ranges separately: a write to one range does not affect other bytes. Ranges
+    /// may overlap; each byte holds the value of the last pass that wrote it.
+    ///
+    /// A range does not follow the frame size. For a buffer with a relative size, compute the range with
+    /// [`Extent::texels`](crate::Extent::texels) and declare the graph again after a resize.
+    ///
+    /// Devices require offsets to be multiples of an alignment (wgpu: up to 256 bytes for uniform and storage buffers,
+    /// 4 for others). Offsets are not rounded.
     pub const fn bytes(self, offset: u64, bytes: u64) -> BufferPart {
         BufferPart { buffer: self, bytes: Some((offset, bytes)) }
     }
@@ -203,13 +207,13 @@ impl From<Previous> for ReadOnly {
     }
 }
 
-/// Where a pass puts its result: a texture of its own making, or one that it is given.
+/// The destination of a pass's result: a new texture, or one chosen by the caller.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Target {
-    /// The pass declares a transient of the shape it prefers.
+    /// The pass creates a transient texture with its preferred descriptor.
     #[default]
     New,
-    /// The pass writes here.
+    /// The pass writes to this texture.
     Into(Part),
 }
 

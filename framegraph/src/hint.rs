@@ -1,4 +1,4 @@
-//! What to change to have a decision otherwise.
+//! Hints: how to change a decision of a plan.
 
 use crate::access::{Access, AccessKind, Mode};
 use crate::decision::{Decision, Reason, Refusal, Subject};
@@ -6,8 +6,9 @@ use crate::graph::{PassFlags, PassKind};
 use crate::plan::Plan;
 
 impl Plan {
-    /// What to change to have a decision of this plan otherwise; empty where there is nothing to want. Passes, device and
-    /// options are asked, so that nothing is advised that is so already or cannot be.
+    /// Returns how to change a decision of this plan; empty if there is no reason to change it.
+    ///
+    /// Takes the passes, the device and the options into account, so that the hint is not already fulfilled.
     pub fn hint(&self, decision: &Decision) -> &'static str {
         let (general, graph) = (decision.reason.hint(), self.graph());
         let inlining = self.options().inline && self.caps().inline;
@@ -21,22 +22,22 @@ impl Plan {
                 let samples = count(|a| a.kind == AccessKind::Sampled) != 0;
                 let flags = graph.passes()[pass.index()].flags;
                 if inlining && flags.has(PassFlags::POINTWISE) {
-                    "choose a device that can, or mend what keeps the pass from being inlined"
+                    "use a device that supports it, or fix what prevents inlining of the pass"
                 } else if inlining && one_of_each && !samples && !flags.has(PassFlags::SIDE_EFFECT) {
                     general
                 } else {
-                    "choose a device that can"
+                    "use a device that supports it"
                 }
             }
             (Reason::StoreReadBy(reader), Subject::Store(_, resource)) => {
                 let reads = |a: &&Access| a.resource == resource && a.mode == Mode::Read;
                 let mut reads = graph.accesses_of(reader).iter().filter(reads).map(|a| a.kind).peekable();
                 if !self.options().merge || !self.caps().same_pixel && !inlining {
-                    "choose a device that keeps same-pixel reads in the tile, and leave merging on"
+                    "use a device that keeps same-pixel reads in the tile, and enable merging"
                 } else if graph.passes()[reader.index()].kind != PassKind::Raster {
-                    "read it in a raster pass that shares the step, to keep it in the tile"
+                    "to keep it in the tile, read it in a raster pass of the same step"
                 } else if reads.peek().is_some() && reads.all(|kind| kind != AccessKind::Sampled) {
-                    "let the reader share the step, to keep it in the tile"
+                    "to keep it in the tile, let the reader share the step"
                 } else {
                     general
                 }
@@ -45,7 +46,7 @@ impl Plan {
         }
     }
 
-    /// A decision of this plan in words, with names; for passes that stay apart with what they would need to share a step.
+    /// Returns the decision as a sentence with names. For passes that were not merged or inlined, appends a hint.
     pub fn explained(&self, decision: &Decision) -> String {
         let sentence = decision.sentence(self.graph());
         let apart = matches!(decision.reason, Reason::Split(..) | Reason::NotInlined(..));

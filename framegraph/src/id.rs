@@ -1,7 +1,7 @@
-//! Checked `u32` identifiers and spans into flat arrays.
+//! Typed `u32` ids and spans of flat arrays.
 //!
-//! Every table of the graph and of the plan is a plain array; an id is an index into exactly one of them, so two
-//! coordinate systems (a declared pass, an executed step) are two types and cannot be mixed up.
+//! Graphs and plans consist of plain arrays. Each id type indexes exactly one of them, so that, for example, a declared
+//! pass and an executed step cannot be confused.
 
 use std::fmt;
 
@@ -12,25 +12,26 @@ macro_rules! id {
         pub struct $name(u32);
 
         impl $name {
-            /// The id that names nothing: the largest `u32`, which no array can reach.
+            /// The id of no element: `u32::MAX`.
             pub const NONE: Self = Self(u32::MAX);
 
-            /// The id of the element at `index`; `None` when `index` does not fit in 32 bits less one.
+            /// Returns the id of the element at `index`; `None` if `index` is `u32::MAX` or more.
             pub const fn new(index: usize) -> Option<Self> {
                 if index < u32::MAX as usize { Some(Self(index as u32)) } else { None }
             }
 
-            /// The id of the element at `index`, for indices that come from an array of this crate.
+            /// Returns the id of the element at `index`, for indices into arrays of this crate.
             ///
             /// # Panics
-            /// When the array outgrew 2³²−1 elements: no machine this crate runs on can hold such a graph.
+            /// Panics if `index` is `u32::MAX` or more.
             #[inline]
             pub const fn at(index: usize) -> Self {
                 assert!(index < u32::MAX as usize, "more than 2^32 - 2 elements in one table");
                 Self(index as u32)
             }
 
-            /// As `at`, where the length of the array is checked later and at once for many ids.
+            /// Returns the id without checking `index`. The caller checks the length of the array later, once for many
+            /// ids.
             #[inline]
             pub(crate) const fn unchecked(index: usize) -> Self {
                 Self(index as u32)
@@ -42,13 +43,13 @@ macro_rules! id {
                 self.0 as usize
             }
 
-            /// Whether this is [`Self::NONE`].
+            /// Returns `true` for [`Self::NONE`].
             #[inline]
             pub const fn is_none(self) -> bool {
                 self.0 == u32::MAX
             }
 
-            /// `None` for [`Self::NONE`], the id itself otherwise.
+            /// Returns `None` for [`Self::NONE`], otherwise the id.
             #[inline]
             pub const fn some(self) -> Option<Self> {
                 if self.is_none() { None } else { Some(self) }
@@ -56,7 +57,7 @@ macro_rules! id {
         }
 
         impl Default for $name {
-            /// [`Self::NONE`].
+            /// Returns [`Self::NONE`].
             fn default() -> Self {
                 Self::NONE
             }
@@ -75,23 +76,23 @@ id!(
     PassId, "p"
 );
 id!(
-    /// A declared (virtual) resource: an index into [`Graph::resources`](crate::graph::Tables::resources).
+    /// A declared resource: an index into [`Graph::resources`](crate::graph::Tables::resources).
     ResourceId, "r"
 );
 id!(
-    /// One version of one resource: what a handle points at.
+    /// A version of a resource: an index into [`Graph::versions`](crate::graph::Tables::versions).
     VersionId, "v"
 );
 id!(
-    /// One access of one pass to one resource: an index into [`Graph::accesses`](crate::graph::Tables::accesses).
+    /// An access of a pass to a resource: an index into [`Graph::accesses`](crate::graph::Tables::accesses).
     AccessId, "a"
 );
 id!(
-    /// Bytes of a buffer that an access names: an index into [`Graph::byte_ranges`](crate::graph::Tables::byte_ranges).
+    /// A range of buffer bytes: an index into [`Graph::byte_ranges`](crate::graph::Tables::byte_ranges).
     BytesId, "b"
 );
 id!(
-    /// An executed step (one or more merged passes): an index into [`Plan::steps`](crate::Plan::steps).
+    /// An executed step of one or more passes: an index into [`Plan::steps`](crate::Plan::steps).
     StepId, "s"
 );
 id!(
@@ -99,38 +100,38 @@ id!(
     SlotId, "m"
 );
 
-/// A run of consecutive elements of a flat array.
+/// A range of consecutive elements of a flat array.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Span {
     /// Index of the first element.
     pub start: u32,
-    /// How many elements.
+    /// Number of elements.
     pub len: u32,
 }
 
 impl Span {
-    /// The span of `start..end`.
+    /// Returns the span of `start..end`.
     #[inline]
     pub const fn new(start: usize, end: usize) -> Self {
         Self { start: start as u32, len: (end - start) as u32 }
     }
 
-    /// The indices of this span.
+    /// Returns the indices of this span.
     #[inline]
     pub const fn range(self) -> std::ops::Range<usize> {
         self.start as usize..self.start as usize + self.len as usize
     }
 
-    /// The elements of `array` that this span names.
+    /// Returns the elements of `array` in this span.
     ///
     /// # Panics
-    /// When the span belongs to another array.
+    /// Panics if the span exceeds the array.
     #[inline]
     pub fn of<T>(self, array: &[T]) -> &[T] {
         &array[self.range()]
     }
 
-    /// Whether the span has no element.
+    /// Returns `true` if the span has no elements.
     #[inline]
     pub const fn is_empty(self) -> bool {
         self.len == 0

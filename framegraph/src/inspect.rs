@@ -1,8 +1,8 @@
-//! A graph that ends where its user wants to look: the second graph of an inspection, beside the one under study.
+//! Truncated graphs, for inspecting the contents of a texture in the middle of a frame.
 //!
-//! What a texture holds after some pass is found by planning everything up to that pass anew, with the texture as the
-//! only thing that the frame is for. Whatever the plan under study does without (memory for an attachment that never
-//! leaves the tile, an intermediate that became part of a shader) the second plan has, and the first stays as it is.
+//! The contents of a texture after a pass are computed by a second plan. It runs everything up to that pass, and its
+//! only output is the texture. In the second plan, memoryless and inlined textures get memory; the first plan is not
+//! affected.
 
 use crate::access::Range;
 use crate::graph::{Graph, PassFlags, Tables};
@@ -11,21 +11,22 @@ use crate::id::{PassId, ResourceId, VersionId};
 use crate::resource::Kind;
 
 impl Graph {
-    /// The versions of a resource, oldest first: the contents on entry, then one for each access that writes it.
+    /// Returns the versions of a resource, oldest first: the initial version, then one for each write access.
     pub fn versions_of(&self, resource: ResourceId) -> impl DoubleEndedIterator<Item = VersionId> {
         let rows = self.versions.iter().enumerate();
         rows.filter(move |(_, v)| v.resource == resource).map(|(index, _)| VersionId::at(index))
     }
 
-    /// The graph as it stood when `version` had just been written, to declare a look at it: passes after that writer are
-    /// gone, nothing is exported. Handles and tokens of the passes that stay work on it, so their recorders do too.
+    /// Returns a copy of the graph that ends right after `version` was written, and the handle of `version` in it.
     ///
-    /// It can be executed beside the whole graph without disturbing it: imports whose contents on entry are undefined
-    /// have become transient textures, and side effects count for nothing. Imports with contents on entry are imports
-    /// still, so a caller who does not want them written binds copies.
+    /// Later passes and all exports are removed. Handles, tokens and recorders of the remaining passes stay valid.
     ///
-    /// Returns the graph and the handle of `version` in it; `None` when there is no such version, when it is the entry of
-    /// a resource that holds nothing then, or when it is of a buffer.
+    /// The copy can be executed without disturbing the original frame: imports with undefined initial contents become
+    /// transient textures, and side effects do not keep passes. Imports with defined contents stay imported, so the
+    /// caller should bind copies to protect them from writes.
+    ///
+    /// Returns `None` if the version does not exist, belongs to a buffer, or is an initial version with undefined
+    /// contents.
     pub fn ending_with(&self, version: VersionId) -> Option<(Self, ReadOnly)> {
         let row = *self.versions.get(version.index())?;
         let kind = self.resources[row.resource.index()].kind;
@@ -33,11 +34,11 @@ impl Graph {
         if !holds || self.resources[row.resource.index()].desc.texture().is_none() {
             return None;
         }
-        // What a resource holds on entry is there from its declaration on, which may come after some passes.
+        // The initial contents of a resource exist from its declaration on, which may come after some passes.
         let writers = self.versions[..=version.index()].iter().filter_map(|v| v.writer.some());
         let last = row.writer.some().or_else(|| writers.max()).unwrap_or_default();
         let mut cut = self.clone();
-        let (tables, _) = cut.open();
+        let (tables, _) = cut.tables_mut();
         tables.cut_after(last);
         for resource in &mut tables.resources {
             resource.kind = match resource.kind {
@@ -51,7 +52,7 @@ impl Graph {
 }
 
 impl Tables {
-    /// Takes back every pass after `last`, which may be none, and what only they declared.
+    /// Removes every pass after `last`, which may be none, and everything that only they declared.
     fn cut_after(&mut self, last: PassId) {
         let passes = last.some().map_or(0, |last| last.index() + 1);
         let accesses = self.passes.get(passes).map_or(self.accesses.len(), |next| next.accesses.start as usize);
@@ -76,7 +77,7 @@ mod tests {
 
     const CLEAR: Intent = Intent::Clear(ClearValue::BLACK);
 
-    /// Depth and samples live in the tile, hdr is inlined into the screen, and an overlay is drawn over it.
+    /// A frame with memoryless depth, an `hdr` texture that is inlined, and an overlay drawn over the result.
     fn frame() -> Result<Graph, DeclareError> {
         let mut graph = Graph::new();
         let desc = |format| TextureDesc::new(Extent::FRAME, format);
@@ -109,11 +110,11 @@ mod tests {
         plan
     }
 
-    /// What the resource is placed in when the graph is cut at its `nth` version and that is read.
+    /// Cuts the graph at the `nth` version of a resource, reads that version, and returns its placement.
     fn looked_at(graph: &Graph, name: &str, nth: usize) -> Result<(Plan, Placement), Box<dyn std::error::Error>> {
         let resource = graph.find_resource(name).ok_or("no resource")?;
         let version = graph.versions_of(resource).nth(nth).ok_or("no version")?;
-        let (mut cut, shown) = graph.ending_with(version).ok_or("it holds nothing")?;
+        let (mut cut, shown) = graph.ending_with(version).ok_or("undefined contents")?;
         let out = cut.texture("out", TextureDesc::new(Extent::FRAME, Format::Rgba32Uint));
         let out = cut.add_fn("look", |p| {
             p.sampled(shown)?;
@@ -135,13 +136,13 @@ mod tests {
         assert_eq!(
             (placed("depth"), placed("hdr")),
             (Some(Placement::Memoryless), Some(Placement::Inlined)),
-            "the frame under study must do without them, or this shows nothing"
+            "the original plan must not allocate them"
         );
         for (name, nth, passes) in [("depth", 1, 2), ("hdr", 1, 2), ("screen", 1, 3), ("late", 1, 2), ("screen", 2, 4)]
         {
             let (plan, placement) = looked_at(&graph, name, nth)?;
             assert!(matches!(placement, Placement::Slot(_)), "{name} {nth}: {placement:?}");
-            assert_eq!(plan.counts().passes, passes, "{name} {nth}: only what it takes is run");
+            assert_eq!(plan.counts().passes, passes, "{name} {nth}: only the required passes run");
         }
         assert_eq!(dump::text(&planned(&graph)), text);
         Ok(())
@@ -159,8 +160,8 @@ mod tests {
         let b = graph.resource_of(b).ok_or("no resource")?;
         let versions: Vec<_> = graph.versions_of(b).collect();
         assert_eq!(versions.len(), 3);
-        assert!(graph.ending_with(versions[0]).is_none(), "nothing is in it yet");
-        let (cut, _) = graph.ending_with(versions[1]).ok_or("it holds something")?;
+        assert!(graph.ending_with(versions[0]).is_none(), "the contents are undefined");
+        let (cut, _) = graph.ending_with(versions[1]).ok_or("defined contents")?;
         assert_eq!(cut.passes().len(), 2);
         assert_eq!(cut.access_of(view), graph.access_of(view));
         assert_eq!(cut.writer_of(second), graph.writer_of(second));
@@ -168,7 +169,7 @@ mod tests {
         Ok(())
     }
 
-    /// A write into an import that is not kept is sound as long as a later pass reads it; that one is cut off.
+    /// A write to an import that is not kept is valid if a later pass reads it. Truncation removes that reader.
     #[test]
     fn a_read_that_is_gone_leaves_no_write_without_a_reader() -> Result<(), Box<dyn std::error::Error>> {
         let mut graph = Graph::new();

@@ -1,9 +1,23 @@
-//! A render graph compiler: virtual resources, culling, lifetimes, tile operations and aliasing, with no GPU types.
+//! A render graph compiler that is independent of any graphics API.
 //!
-//! Passes declare what they read and write, and with which intent ([`Intent`]: clear, overwrite, modify). From that alone
-//! [`compile()`] derives a [`Plan`]: which passes run, which of them share a step, what is loaded into tile memory and what
-//! is stored back, what takes no memory at all, and which resources share memory. Each decision carries its reason
-//! ([`Plan::decisions`]).
+//! Passes declare the textures and buffers they read and write. [`compile()`] turns the declarations into a [`Plan`]:
+//! the passes that run, the render passes they are merged into, their load and store operations, and the memory layout.
+//! The plan also logs the reason of every decision ([`Plan::decisions`]).
+//!
+//! # When to use it
+//!
+//! - A renderer on a tile-based GPU or on several APIs. Load and store operations, memoryless attachments, merged
+//!   render passes and barriers are derived.
+//! - A frame that changes with its settings: unused passes are culled, and transient resources share memory.
+//! - Tools and tests: a plan is plain data. It can be compared, budgeted, dumped and checked without a GPU.
+//!
+//! This crate does not execute anything. `framegraph-wgpu` executes plans on wgpu; an engine with its own device reads
+//! the [`Plan`] instead. A frame of two or three fixed passes gains little from a render graph.
+//!
+//! # Example
+//!
+//! The compiler culls the pass `histogram`, because no other pass reads its result. The depth attachment is cleared and
+//! never stored, so it needs no memory.
 //!
 //! ```
 //! use framegraph::{
@@ -35,21 +49,36 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # Features
+//! # Map of the crate
 //!
-//! Without any, the crate depends on its packer of memory ([`pack`], a package of its own) and on an `Arc` without weak counts.
-//! `files` (on by default): graphs and devices as RON (the module `file`), and
-//! serde for formats, shapes, caps, options and counts. `petgraph`: the graph as a `petgraph` graph (the
-//! module `dump::graph`); comes with `files`, which finds cycles with it. `testing`: the independent
-//! oracle of plans, random graphs and mutants of plans.
+//! | module | content |
+//! | --- | --- |
+//! | [`graph`], [`declare`], [`pass_builder`] | declaring passes, resources and accesses |
+//! | [`resource`], [`format`](mod@format), [`access`], [`resolve`] | descriptions of textures, buffers and accesses |
+//! | [`handle`], [`id`] | typed handles for declaring, and ids for reading plans |
+//! | [`caps`], [`options`] | the inputs of the compiler next to the graph |
+//! | [`compile`](mod@compile) | the compiler and its errors |
+//! | [`plan`], [`barrier`], [`counts`] | the result, its barriers and its cost |
+//! | [`decision`] | the log: what was decided, and why |
+//! | [`diff`](mod@diff), [`dump`] | comparing plans; text, JSON, DOT, Mermaid and SVG output |
+//! | `file` | graphs and devices as RON files (feature `files`) |
+//! | `testing` | an independent plan checker and random graphs (feature `testing`) |
+//! | [`pack`] | the memory packer, a crate of its own |
 //!
-//! The phases, in order: validate, cull, order, merge, lifetimes, ops, usage, alias. Each is a free function over flat
-//! arrays in a file of its own under `compile/`.
+//! # Cargo features
+//!
+//! | feature | default | effect |
+//! | --- | --- | --- |
+//! | `files` | yes | the module `file`, and serde for formats, descriptors, caps, options and counts; enables `petgraph` |
+//! | `petgraph` | yes | exports the graph as a `petgraph` graph (the module `dump::graph`) |
+//! | `testing` | no | the plan checker, random graphs and mutations of plans, for tests |
+//!
+//! Without features, the crate depends only on the memory packer ([`pack`]) and on `triomphe`, an `Arc` without weak
+//! counts.
 
 pub mod access;
 mod backend;
 pub mod barrier;
-mod capped;
 pub mod caps;
 pub mod compile;
 pub mod counts;
@@ -57,8 +86,10 @@ pub mod decision;
 pub mod declare;
 pub mod diff;
 pub mod dump;
+mod enum_names;
 pub mod error;
-mod faults;
+mod error_list;
+mod error_macros;
 #[cfg(feature = "files")]
 pub mod file;
 pub mod format;
@@ -69,26 +100,27 @@ pub mod id;
 mod inspect;
 pub mod options;
 pub mod pass_builder;
-pub mod plain;
 pub mod plan;
 pub mod resolve;
 pub mod resource;
+pub mod sanitize;
 #[cfg(feature = "testing")]
 pub mod testing;
 mod warning;
-mod words;
 
 pub use access::{Access, AccessKind, ByteRange, ClearValue, Intent, Mode, Range, Usage};
 pub use backend::Scope;
 pub use barrier::{Barrier, Stages, State};
-pub use capped::Errors;
 pub use caps::Caps;
-pub use compile::{CompileError, CompileErrors, CompileReason, Scratch, ShapeFault, compile, compile_after, recompile};
+pub use compile::{
+    CompileError, CompileErrors, CompileReason, Scratch, ShapeReason, compile, compile_after, recompile,
+};
 pub use counts::{Counts, Traffic};
 pub use decision::{Decision, MemoryNeed, Reason, Refusal, Subject};
 pub use declare::Pass;
 pub use diff::{Diff, diff};
-pub use error::{DeclareError, DeclareReason, ForwardFault, Named, StaleUser};
+pub use error::{DeclareError, DeclareReason, ForwardReason, Named, StaleUser};
+pub use error_list::Errors;
 pub use format::{Aspect, Format, Numeric};
 pub use framegraph_pack as pack;
 pub use graph::{Declared, Export, ExportKind, Graph, PassFlags, PassKind, Version};

@@ -1,60 +1,67 @@
-//! What a compile is asked for beside the graph and the device: frame size, order, aliasing, and switches to find the
-//! optimization that breaks a frame.
+//! Options of a compilation: frame size, pass order, aliasing, and switches that disable single optimizations.
 
+use crate::enum_names::enum_names;
 pub use crate::pack::Effort;
-use crate::words::words;
 
-/// In which order surviving passes run.
+/// Order in which the kept passes run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Order {
-    /// In the order in which they were declared.
+    /// Declaration order.
     #[default]
     Declared,
-    /// Few steps, then few bytes of memory, then few bytes between tile and memory, as far as schedules and moves of passes
-    /// find them; never worse than declared.
+    /// The best order that the scheduler finds: fewest steps, then least memory, then least traffic between tile and
+    /// memory. Never worse than declaration order.
     Optimized,
 }
 
-words! { Order: Declared "declared", Optimized "optimized" }
+enum_names! { Order: Declared "declared", Optimized "optimized" }
 
-/// How transient resources share memory.
+/// Memory sharing between transient resources.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Alias {
-    /// Not at all.
+    /// No sharing.
     Off,
-    /// Resources of one shape share physical textures.
+    /// Resources of equal shape share physical textures and buffers.
     #[default]
     Pool,
-    /// Byte ranges of one heap are shared, whatever the shape; falls back to `Pool` where the device cannot place.
+    /// Resources share byte ranges of one heap, whatever their shape. Falls back to `Pool` if the device does not
+    /// support placed resources.
     Heap,
 }
 
-words! { Alias: Off "off", Pool "pool", Heap "heap" }
+enum_names! { Alias: Off "off", Pool "pool", Heap "heap" }
 
-/// What a compile is asked for. Plans depend on nothing else than graph, caps and this: never on time or machine.
+/// Options of a compilation. A plan depends only on the graph, the caps and these options.
+///
+/// ```
+/// use framegraph::{Alias, Options, Order};
+///
+/// let options = Options { order: Order::Optimized, alias: Alias::Heap, ..Options::for_frame(1280, 720) };
+/// assert_eq!(options.frame, [1280, 720]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "files", serde(default, deny_unknown_fields))]
 pub struct Options {
-    /// Width and height of the frame in texels, which relative extents follow.
+    /// Width and height of the frame in texels. Relative extents refer to it.
     pub frame: [u32; 2],
-    /// In which order the passes that are kept run.
+    /// Order in which the kept passes run.
     pub order: Order,
-    /// Sharing of memory.
+    /// Memory sharing between transient resources.
     pub alias: Alias,
-    /// How hard the heap is packed.
+    /// Effort spent on packing the heap.
     pub effort: Effort,
-    /// Steps of the exact search at most; a step looks at 64 array entries.
+    /// Maximum number of steps of the exact packing search; a step examines 64 array entries.
     pub budget_steps: u64,
-    /// Remove passes whose results are not needed.
+    /// Removes passes whose results are not used.
     pub cull: bool,
-    /// Run consecutive passes as one step where that is sound.
+    /// Merges consecutive passes into one step where possible.
     pub merge: bool,
-    /// Make point-wise passes epilogues of their producer's shader where that is sound.
+    /// Turns point-wise passes into epilogues of their producer's shader where possible.
     pub inline: bool,
-    /// Give attachments that live in one step no memory.
+    /// Allocates no memory for attachments that are used in a single step.
     pub memoryless: bool,
 }
 
@@ -75,13 +82,13 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The defaults for a frame of `width` × `height` texels.
+    /// Returns the default options for a frame of `width` × `height` texels.
     pub fn for_frame(width: u32, height: u32) -> Self {
         Self { frame: [width, height], ..Self::default() }
     }
 
-    /// Everything switched off that changes what the user wrote: no culling, reordering, merging, inlining, memoryless
-    /// attachments or aliasing. For finding the optimization that breaks a frame.
+    /// Disables culling, reordering, merging, inlining, memoryless attachments and aliasing. Useful for finding the
+    /// optimization that breaks a frame.
     pub fn immediate(self) -> Self {
         Self {
             order: Order::Declared,

@@ -1,4 +1,4 @@
-//! What a pass declares with: one call an access, checked on the spot.
+//! The builder that a pass uses to declare its accesses.
 
 mod accesses;
 mod add;
@@ -15,11 +15,13 @@ use crate::resource::{BufferSize, Kind, TextureDesc};
 use admit::{barred, inferred_kind, wrong_kind};
 use std::panic::Location;
 
-/// The most color attachments that a pass can have on any device.
+/// Maximum number of color attachments of a pass, on any device.
 pub const MAX_COLORS: u8 = 8;
 
-/// Declares the accesses of one pass. Each call checks what it is given and names pass, resource and place when it
-/// refuses; a refused pass leaves no trace in the graph.
+/// Declares the accesses of one pass.
+///
+/// Every method checks its arguments. Errors name the pass, the resource and the source location. A rejected pass
+/// leaves no trace in the graph.
 ///
 /// ```
 /// use framegraph::{ClearValue, DeclareError, Extent, Format, Graph, Intent, TextureDesc};
@@ -45,23 +47,22 @@ pub const MAX_COLORS: u8 = 8;
 #[derive(Debug)]
 pub struct PassBuilder<'g> {
     tables: &'g mut Tables,
-    /// What open scopes put in front of names.
+    /// Prefix that the open scopes add to names.
     prefix: &'g str,
     location: &'static Location<'static>,
     name: Span,
-    /// Where its accesses and versions begin.
+    /// Index of the pass's first access; `first_version` is that of its first version.
     first: usize,
     first_version: usize,
     pass: PassId,
-    /// Its attachment where it has a single one, the color attachment of a texture of one part, and reads nothing at the
+    /// The pass's only attachment, if it is a color attachment with one subresource and the pass reads nothing at the
     /// same pixel.
     sole: AccessId,
-    /// The kinds of its accesses.
+    /// Access kinds used so far.
     used: Kinds,
-    /// The kinds of access that need every check because of what the pass has declared already; the first copy always
-    /// does.
+    /// Access kinds that need the full check because of earlier accesses of the pass. The first copy always needs it.
     full_check: Kinds,
-    /// The color slot behind all that are taken.
+    /// The color slot after the highest one in use.
     colors: u32,
     flags: PassFlags,
     kind: Option<PassKind>,
@@ -92,10 +93,10 @@ impl<'g> PassBuilder<'g> {
         }
     }
 
-    /// Closes the pass: its row, with its kind inferred where none was named.
+    /// Adds the row of the pass. Infers its kind from its accesses if none was set.
     ///
     /// # Panics
-    /// When a table outgrew what an id can name: then ids that this pass was given are wrong.
+    /// Panics if a table has grown beyond `u32::MAX` rows, because ids would be ambiguous.
     #[inline]
     pub(crate) fn finish(self) {
         let Self { tables, name, first, sole, used, flags, kind, location, .. } = self;
@@ -106,24 +107,24 @@ impl<'g> PassBuilder<'g> {
         tables.passes.push(Declared { name, accesses, kind, flags, sole_color: sole, location });
     }
 
-    /// Removes the pass and all that it declared.
+    /// Removes the pass and everything it declared.
     pub(crate) fn take_back(self) {
         self.tables.take_pass_back(self.name, self.first, self.first_version);
     }
 
-    /// A transient texture of this pass's making.
+    /// Creates a transient texture.
     #[inline(always)]
     pub fn texture(&mut self, name: &str, desc: TextureDesc) -> Texture {
         self.tables.texture(self.prefix, name, desc, Kind::Transient)
     }
 
-    /// A transient buffer of this pass's making: of so many bytes, or of a [`BufferSize`] that follows the frame.
+    /// Creates a transient buffer, with a fixed size in bytes or a [`BufferSize`] relative to the frame.
     #[inline(always)]
     pub fn buffer(&mut self, name: &str, size: impl Into<BufferSize>) -> Buffer {
         self.tables.buffer(self.prefix, name, size.into(), Kind::Transient)
     }
 
-    /// The given target, or a new transient of that name and shape.
+    /// Returns the given target, or creates a transient texture with this name and descriptor.
     #[inline]
     pub fn target(&mut self, target: Target, name: &str, desc: TextureDesc) -> Part {
         match target {
@@ -132,10 +133,10 @@ impl<'g> PassBuilder<'g> {
         }
     }
 
-    /// The shape of a texture.
+    /// Returns the descriptor of a texture.
     ///
     /// # Errors
-    /// When the handle is of another graph.
+    /// Returns an error if the handle belongs to another graph.
     #[track_caller]
     pub fn desc(&self, texture: impl Into<ReadOnly>) -> Result<TextureDesc, DeclareError> {
         let ReadOnly { tag, version, .. } = texture.into();
@@ -144,47 +145,50 @@ impl<'g> PassBuilder<'g> {
         found.ok_or_else(|| self.refuse(DeclareReason::Foreign, ResourceId::NONE, Location::caller()))
     }
 
-    /// The pass does something that no resource shows: it is never culled.
+    /// Marks the pass as having an effect outside of its declared resources. It is never culled.
     #[inline]
     pub fn side_effect(&mut self) {
         self.flag(PassFlags::SIDE_EFFECT);
     }
 
-    /// Each output texel depends only on the pass's same-pixel inputs there; every texel is covered exactly once.
+    /// Marks the pass as point-wise: each output texel depends only on the same-pixel inputs at that texel, and every
+    /// texel is covered exactly once.
     #[inline]
     pub fn pointwise(&mut self) {
         self.flag(PassFlags::POINTWISE);
     }
 
-    /// The pass blends into its color attachments.
+    /// Marks the pass as blending into its color attachments.
     #[inline]
     pub fn blends(&mut self) {
         self.flag(PassFlags::BLENDS);
     }
 
-    /// The pass's shader can take a point-wise epilogue.
+    /// Marks the pass's shader as accepting a point-wise epilogue.
     #[inline]
     pub fn takes_epilogue(&mut self) {
         self.flag(PassFlags::TAKES_EPILOGUE);
     }
 
-    /// The pass must stay a step of its own.
+    /// Prevents merging: the pass stays a step of its own.
     #[inline]
     pub fn never_merge(&mut self) {
         self.flag(PassFlags::NEVER_MERGE);
     }
 
-    /// The pass must run on the first queue, whatever others a device has (`framegraph-queues`).
+    /// Pins the pass to the first queue of a device with several queues (`framegraph-queues`).
     #[inline]
     pub fn main_queue(&mut self) {
         self.flag(PassFlags::MAIN_QUEUE);
     }
 
-    /// Names the kind of the pass, instead of leaving it to its accesses (attachments, same-pixel reads, vertices and
-    /// indices make a raster pass, nothing but copies a copy, all else is compute).
+    /// Sets the kind of the pass.
+    ///
+    /// By default the kind is inferred from the accesses. Attachments, same-pixel reads, vertex and index buffers imply
+    /// raster; copies imply copy; everything else is compute.
     ///
     /// # Errors
-    /// When an access made so far needs another kind.
+    /// Returns an error if an earlier access requires another kind.
     #[track_caller]
     pub fn kind(&mut self, kind: PassKind) -> Result<(), DeclareError> {
         for access in &self.tables.accesses[self.first..] {
@@ -197,13 +201,13 @@ impl<'g> PassBuilder<'g> {
         Ok(())
     }
 
-    /// The kind that the pass has as long as none is named.
+    /// Returns the kind inferred from the accesses so far.
     #[cfg(feature = "files")]
     pub(crate) const fn inferred(&self) -> PassKind {
         inferred_kind(self.used)
     }
 
-    /// An error of the pass's own, with the pass's name and the caller's place.
+    /// Creates a custom error that carries the pass's name and the caller's source location.
     #[track_caller]
     pub fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> DeclareError {
         let reason = DeclareReason::Custom { message: message.into(), hint: hint.into() };
@@ -215,7 +219,7 @@ impl<'g> PassBuilder<'g> {
         self.flags.set(flag);
     }
 
-    /// The name of this pass.
+    /// Returns the name of this pass.
     fn own_name(&self) -> &str {
         &self.tables.names[self.name.range()]
     }

@@ -1,6 +1,6 @@
-//! What compiling produces: flat arrays that a back end executes and tools read.
+//! The result of compiling: flat arrays that a back end executes and tools read.
 //!
-//! A plan shares the arrays of the graph it was made from, so names, shapes and accesses are at hand wherever the plan goes.
+//! A plan shares the arrays of its graph, so it gives access to names, descriptors and accesses.
 
 mod resolves;
 
@@ -8,218 +8,239 @@ use crate::access::Usage;
 use crate::barrier::Barrier;
 use crate::caps::Caps;
 use crate::decision::{Decision, Reason, Subject};
+use crate::enum_names::enum_names;
 use crate::format::{Aspect, Format};
 use crate::graph::{Graph, PassKind};
 use crate::id::{PassId, ResourceId, SlotId, Span, StepId};
 use crate::options::Options;
 use crate::resolve::ResolveMode;
 use crate::resource::Desc;
-use crate::words::words;
 
-/// How an attachment's contents come into the tile at the start of a step.
+/// Load operation: how the contents of an attachment enter the tile at the start of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LoadOp {
-    /// From memory: an **unresolve**.
+    /// Reads the contents from memory. Counted as an **unresolve** in [`Counts`](crate::Counts).
     Load,
-    /// Filled with the clear value.
+    /// Fills the attachment with the clear value.
     Clear,
-    /// Anything may be there; every texel is written.
+    /// Leaves the contents undefined, because every texel is written.
     DontCare,
 }
 
-words! { LoadOp: Load "load", Clear "clear", DontCare "dont_care" }
+enum_names! { LoadOp: Load "load", Clear "clear", DontCare "dont_care" }
 
-/// What becomes of an attachment's contents at the end of a step.
+/// Store operation: what happens to the contents of an attachment at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StoreOp {
-    /// Written to memory: a **resolve**.
+    /// Writes the contents to memory. Counted as a **resolve** in [`Counts`](crate::Counts).
     Store,
-    /// Dropped: memory holds nothing of use afterwards.
+    /// Drops the contents; memory is undefined afterwards.
     Discard,
-    /// Neither: it was only read, and memory still holds it.
+    /// Does nothing: the attachment was only read, and memory still holds its contents.
     None,
 }
 
-words! { StoreOp: Store "store", Discard "discard", None "none" }
+enum_names! { StoreOp: Store "store", Discard "discard", None "none" }
 
-/// What an attachment is for.
+/// Role of an attachment in its step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
-    /// Color attachment of this slot.
+    /// Color attachment in this slot.
     Color(u8),
-    /// Depth or depth-stencil attachment.
+    /// Depth or depth-stencil attachment that is tested and written.
     Depth,
-    /// Depth or depth-stencil attachment that is only tested.
+    /// Read-only depth or depth-stencil attachment.
     DepthReadOnly,
-    /// Receives what the mode makes of the samples of the color attachment of this slot.
+    /// Target of a resolve of the color attachment in this slot.
     ResolveTarget(u8, ResolveMode),
-    /// Receives what the mode makes of the samples of the depth attachment.
+    /// Target of a resolve of the depth attachment.
     ResolveDepth(ResolveMode),
 }
 
-/// One attachment of one step.
+/// One attachment of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Attachment {
-    /// The texture that is attached.
+    /// The attached texture.
     pub resource: ResourceId,
-    /// The mip level that is attached.
+    /// The attached mip level.
     pub mip: u8,
-    /// Its first layer.
+    /// The first attached layer.
     pub layer: u16,
-    /// Number of layers, all of them when the whole texture is attached.
+    /// Number of attached layers.
     pub layers: u16,
-    /// The format that it is attached through: the sRGB twin of the texture's own; none for its own.
+    /// Format of the view if it is the sRGB twin of the texture's format; otherwise `None`.
     pub view: Option<Format>,
-    /// What it is for.
+    /// Role in the step.
     pub role: Role,
-    /// Color or depth plane at the start of the step.
+    /// Load operation of the color or depth plane.
     pub load: LoadOp,
-    /// Color or depth plane at the end of the step.
+    /// Store operation of the color or depth plane.
     pub store: StoreOp,
-    /// Stencil plane at the start; equal to `load` where the format has none.
+    /// Load operation of the stencil plane; equal to `load` for formats without stencil.
     pub stencil_load: LoadOp,
-    /// Stencil plane at the end; equal to `store` where the format has none.
+    /// Store operation of the stencil plane; equal to `store` for formats without stencil.
     pub stencil_store: StoreOp,
-    /// Index into [`Graph::clears`](crate::graph::Tables::clears) when an op is `Clear`; [`Attachment::ZERO`] for zero.
+    /// Index into [`Graph::clears`](crate::graph::Tables::clears) if an operation is `Clear`; [`Attachment::ZERO`] for
+    /// zero.
     pub clear: u32,
 }
 
 impl Attachment {
-    /// In place of the index of a clear value: zero, which no pass declares, in place of contents that are not needed.
+    /// Stands for a clear to zero that no pass declares. Used for blending into contents that are not needed.
     pub const ZERO: u32 = u32::MAX;
 }
 
-/// How a pass came into its step.
+/// Reason why a pass is part of its step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Join {
-    /// It opens the step.
+    /// First pass of the step.
     First,
-    /// It has the step's attachments.
+    /// Uses attachments of the step.
     Attachments,
-    /// It reads the step's attachments at the same pixel.
+    /// Reads attachments of the step at the same pixel.
     SamePixel,
-    /// It is an epilogue of the shader of the pass before it, and records nothing itself.
+    /// Inlined as an epilogue into the shader of the previous pass. Records no commands.
     Inlined,
-    /// It ran in an earlier step. This one is a full-screen pass, which records itself: it makes the resolves of the pass that
-    /// the device does not make in its store.
+    /// Full-screen resolve on behalf of a pass that ran in an earlier step, because the device cannot resolve while
+    /// storing. The back end records it.
     Resolve,
 }
 
-words! {
+enum_names! {
     Join: First "first", Attachments "attachments", SamePixel "same_pixel", Inlined "inlined", Resolve "resolve"
 }
 
-/// A pass within a step.
+/// A pass in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepPass {
     /// The declared pass.
     pub pass: PassId,
-    /// How it came into the step.
+    /// Reason why the pass is part of the step.
     pub join: Join,
 }
 
-/// What a back end runs as one unit: one render pass, or one compute or copy pass.
+/// A unit of execution: one render pass, or one compute or copy pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
     /// Raster, compute or copy.
     pub kind: PassKind,
-    /// Samples of the attachments; 1 without attachments.
+    /// Number of samples of the attachments; 1 for a step without attachments.
     pub samples: u8,
-    /// Its passes, in order: a span of [`Plan::step_passes`].
+    /// Passes of the step in execution order, as a span of [`Plan::step_passes`].
     pub passes: Span,
-    /// Its attachments, colors by slot, then depth, then resolve targets: a span of [`Plan::attachments`].
+    /// Attachments of the step: colors by slot, then depth, then resolve targets. A span of [`Plan::attachments`].
     pub attachments: Span,
-    /// Width and height of the attachments in texels; 0 without attachments.
+    /// Width and height of the attachments in texels; 0 for a step without attachments.
     pub extent: [u32; 2],
-    /// Layers of the attachments; 0 without attachments.
+    /// Number of layers of the attachments; 0 for a step without attachments.
     pub layers: u32,
 }
 
-/// Where a resource lives.
+/// Location of a resource's memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Placement {
-    /// Nowhere: no kept pass touches it.
+    /// No memory: no kept pass accesses the resource.
     Unused,
-    /// In tile memory only.
+    /// Tile memory only.
     Memoryless,
-    /// Nowhere: its reader was inlined into its writer's shader.
+    /// No memory: the texture does not exist, because its reader was inlined into its writer's shader.
     Inlined,
-    /// In a slot of the pool.
+    /// A slot of the pool.
     Slot(SlotId),
-    /// In the heap of its kind, at this offset in bytes.
+    /// A heap.
     Heap {
-        /// Bytes from the start of the heap.
+        /// Offset in the heap, in bytes.
         offset: u64,
     },
-    /// Owned outside of the graph: imported.
+    /// Memory of the caller: the resource is imported.
     External,
-    /// In an image of its own that outlives the frame: exported contents, or one of a history's ring.
+    /// A separate allocation that outlives the frame: an exported resource, or an image of a history.
     Own,
 }
 
-words! {
+enum_names! {
     Placement:
     Unused "unused", Memoryless "memoryless", Inlined "inlined", Slot "slot", Heap "heap", External "external", Own "own"
 }
 
-/// What was decided about one resource. Rows are parallel to [`Graph::resources`](crate::graph::Tables::resources).
+/// Decisions about one resource. Parallel to [`Graph::resources`](crate::graph::Tables::resources).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Planned {
-    /// First step that touches it; none when no kept pass does.
+    /// First step that accesses the resource; none if no kept pass does.
     pub first: StepId,
-    /// Last step that touches it. Contents that outlive the frame live on after it.
+    /// Last step that accesses the resource. Contents that outlive the frame stay valid after it.
     pub last: StepId,
-    /// Every use that survives culling.
+    /// All usages by kept passes.
     pub usage: Usage,
-    /// The format it is made with: the declared one, unless an inlined epilogue replaced it.
+    /// Format of the physical texture: the declared one, unless an inlined epilogue replaced it.
     pub format: Option<Format>,
-    /// A pass sees it through the sRGB twin of its format: views need both formats.
+    /// A pass uses a view in the sRGB twin of the format, so the texture needs both view formats.
     pub srgb_views: bool,
-    /// Bytes it takes, without padding; 0 for memoryless and inlined ones.
+    /// Size in bytes, without padding; 0 for memoryless and inlined resources.
     pub bytes: u64,
-    /// Where it lives.
+    /// Location of its memory.
     pub placement: Placement,
 }
 
-/// A physical texture or buffer of the pool, shared by resources that are never live at once.
+/// A physical texture or buffer of the pool, shared by resources with disjoint lifetimes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slot {
-    /// Its shape: that of its first tenant.
+    /// Descriptor of the physical resource: that of the first resource in the slot.
     pub desc: Desc,
-    /// Every use by any tenant.
+    /// All usages of the resources in the slot.
     pub usage: Usage,
-    /// Tenants differ in the sRGB transfer function, or one is seen through its twin: views need both formats.
+    /// The slot needs both view formats: its resources differ in the sRGB transfer function, or one is viewed in its
+    /// sRGB twin.
     pub srgb_views: bool,
-    /// Bytes, without padding.
+    /// Size in bytes, without padding.
     pub bytes: u64,
 }
 
-/// How much memory the transient resources take, and how good that is.
+/// Memory of the transient resources, compared with its lower bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
-    /// Bytes that would be taken if nothing were shared (memoryless and inlined ones left out).
+    /// Bytes needed without sharing, not counting memoryless and inlined resources.
     pub unaliased_bytes: u64,
-    /// Bytes taken: the sum of the slots, or the size of the heap.
+    /// Bytes allocated: the sum of the slots, or the size of the heaps.
     pub bytes: u64,
-    /// No placement can take less: the peak of live bytes.
+    /// Lower bound for any placement: the maximum of the bytes that are live at once.
     pub lower_bound_bytes: u64,
-    /// The bytes are proved to be the least possible under the chosen aliasing mode.
+    /// `bytes` is proved to be minimal for the chosen aliasing mode.
     pub optimal: bool,
     /// The step at which the most bytes are live.
     pub peak: StepId,
-    /// Bytes that memoryless attachments and inlining keep out of memory.
+    /// Bytes saved by memoryless attachments and inlining.
     pub avoided_bytes: u64,
-    /// Bytes of exported textures and of the rings of histories, which outlive the frame and are never shared.
+    /// Bytes of exported textures and history images. They outlive the frame and are never shared.
     pub own_bytes: u64,
 }
 
-/// The result of compiling.
+/// The result of compiling a graph.
+///
+/// ```
+/// use framegraph::{Caps, ClearValue, Extent, Format, Graph, Intent, LoadOp, Options, Plan, Scratch, TextureDesc, compile};
+///
+/// let mut graph = Graph::new();
+/// let color = graph.add_fn("background", |pass| {
+///     let color = pass.texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
+///     pass.color(color, Intent::Clear(ClearValue::BLACK))
+/// })?;
+/// graph.export(color)?;
+///
+/// let mut plan = Plan::new();
+/// compile(&graph, &Caps::wgpu(), &Options::default(), &mut Scratch::new(), &mut plan)?;
+/// for step in plan.step_ids() {
+///     assert_eq!(plan.passes_of(step).len(), 1);
+///     assert_eq!(plan.attachments_of(step)[0].load, LoadOp::Clear);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
     pub(crate) graph: Graph,
     pub(crate) caps: Caps,
     pub(crate) options: Options,
-    /// 0 where nothing was compiled.
+    /// 0 for a plan that nothing was compiled into.
     pub(crate) compilation: u64,
     pub(crate) pass_steps: Vec<StepId>,
     pub(crate) steps: Vec<Step>,
@@ -233,27 +254,28 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// An empty plan, to compile into.
+    /// Creates an empty plan to compile into.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// What was declared.
+    /// Returns the graph that was compiled.
     pub fn graph(&self) -> &Graph {
         &self.graph
     }
 
-    /// The device the plan is for.
+    /// Returns the device that the plan is for.
     pub fn caps(&self) -> &Caps {
         &self.caps
     }
 
-    /// The options it was compiled with.
+    /// Returns the options of the compilation.
     pub fn options(&self) -> &Options {
         &self.options
     }
 
-    /// The number of the compilation that made it, from 1 in each process; 0 of an empty plan. Plans of one number are equal.
+    /// Number of the compilation that made the plan, counted from 1 in each process; 0 for an empty plan. Plans with
+    /// the same number are equal.
     pub fn compilation(&self) -> u64 {
         self.compilation
     }
@@ -268,7 +290,7 @@ impl Plan {
         &self.pass_steps
     }
 
-    /// Whether a pass was culled.
+    /// Returns `true` if a pass was culled.
     pub fn is_culled(&self, pass: PassId) -> bool {
         self.pass_steps[pass.index()].is_none()
     }
@@ -288,10 +310,10 @@ impl Plan {
         &self.step_passes
     }
 
-    /// The passes of one step, in order.
+    /// The passes of one step, in execution order.
     ///
     /// # Panics
-    /// When `step` is not of this plan.
+    /// Panics if `step` does not belong to this plan.
     pub fn passes_of(&self, step: StepId) -> &[StepPass] {
         self.steps[step.index()].passes.of(&self.step_passes)
     }
@@ -304,12 +326,12 @@ impl Plan {
     /// The attachments of one step: colors by slot, then depth, then resolve targets.
     ///
     /// # Panics
-    /// When `step` is not of this plan.
+    /// Panics if `step` does not belong to this plan.
     pub fn attachments_of(&self, step: StepId) -> &[Attachment] {
         self.steps[step.index()].attachments.of(&self.attachments)
     }
 
-    /// What was decided about each resource, parallel to [`Graph::resources`](crate::graph::Tables::resources).
+    /// Decisions about each resource, parallel to [`Graph::resources`](crate::graph::Tables::resources).
     pub fn resources(&self) -> &[Planned] {
         &self.resources
     }
@@ -319,27 +341,28 @@ impl Plan {
         &self.slots
     }
 
-    /// Memory taken, with its lower bound.
+    /// Allocated memory and its lower bound.
     pub fn memory(&self) -> Memory {
         self.memory
     }
 
-    /// Layout transitions and hand-overs of memory, in front of which step each; empty for devices that do without.
+    /// Layout transitions and aliasing barriers, each with the step it precedes. Empty for devices without explicit
+    /// barriers.
     pub fn barriers(&self) -> &[Barrier] {
         &self.barriers
     }
 
-    /// Every decision, in the order in which the phases took them.
+    /// All decisions, in the order in which the phases made them.
     pub fn decisions(&self) -> &[Decision] {
         &self.decisions
     }
 
-    /// The decisions about one subject.
+    /// Returns the decisions about one subject.
     pub fn reasons(&self, subject: Subject) -> impl Iterator<Item = Reason> {
         self.decisions.iter().filter(move |d| d.subject == subject).map(|d| d.reason)
     }
 
-    /// The format that a texture is made with; `None` for a buffer.
+    /// Returns the format of the physical texture; `None` for a buffer.
     pub fn format(&self, resource: ResourceId) -> Option<Format> {
         let declared = self.graph.resources()[resource.index()].desc.texture().map(|t| t.format);
         self.resources[resource.index()].format.or(declared)
@@ -347,7 +370,7 @@ impl Plan {
 }
 
 impl Attachment {
-    /// The plane's ops, if the format has that plane: depth and color share one place.
+    /// Returns the operations of a plane, or `None` if the format lacks it. Depth and color use the same fields.
     pub fn ops(&self, format: Format, aspect: Aspect) -> Option<(LoadOp, StoreOp)> {
         match aspect {
             Aspect::Stencil => format.has_stencil().then_some((self.stencil_load, self.stencil_store)),
@@ -356,12 +379,12 @@ impl Attachment {
         }
     }
 
-    /// Whether any plane is loaded from memory.
+    /// Returns `true` if any plane is loaded from memory.
     pub fn loads(&self) -> bool {
         self.load == LoadOp::Load || self.stencil_load == LoadOp::Load
     }
 
-    /// Whether any plane is written to memory.
+    /// Returns `true` if any plane is stored to memory.
     pub fn stores(&self) -> bool {
         self.store == StoreOp::Store || self.stencil_store == StoreOp::Store
     }

@@ -1,21 +1,21 @@
-//! Multisample resolves: which of a texel's samples, or what of them, the single-sample target gets.
+//! Modes of multisample resolves.
 
+use crate::enum_names::enum_names;
 use crate::format::{Format, Numeric};
-use crate::words::words;
 
-/// What a resolve makes of the samples of a texel (`VkResolveModeFlagBits`; Metal's multisample resolve filters).
+/// Operation that combines the samples of a texel (`VkResolveModeFlagBits`; Metal's multisample resolve filters).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 pub enum ResolveMode {
-    /// Their mean: of colors that are no integers.
+    /// The mean of the samples; for color formats that are not integer.
     #[default]
     Average,
-    /// The first one, whatever the others hold: the same sample from frame to frame.
+    /// Sample 0, ignoring the others.
     Sample0,
-    /// The smallest, of colors channel by channel; of reversed depth the farthest.
+    /// The minimum, per channel for colors. With reversed depth this is the farthest sample.
     Min,
-    /// The largest, of colors channel by channel; of reversed depth the nearest.
+    /// The maximum, per channel for colors. With reversed depth this is the nearest sample.
     Max,
 }
 
@@ -23,8 +23,7 @@ impl ResolveMode {
     /// Every mode.
     pub const ALL: [Self; 4] = [Self::Average, Self::Sample0, Self::Min, Self::Max];
 
-    /// Whether texels of that format can be resolved so: depth has no average that any surface has, and integers are names
-    /// more often than amounts.
+    /// Returns `true` if the mode is defined for this format. Depth and integer formats cannot be averaged.
     pub const fn fits(self, format: Format) -> bool {
         let float = matches!(format.numeric(), Numeric::Float);
         format.is_color_renderable() && (float || !matches!(self, Self::Average))
@@ -32,19 +31,19 @@ impl ResolveMode {
     }
 }
 
-words! { ResolveMode: Average "average", Sample0 "sample_0", Min "min", Max "max" }
+enum_names! { ResolveMode: Average "average", Sample0 "sample_0", Min "min", Max "max" }
 
-/// A set of resolve modes; in a file the list of them.
+/// A set of resolve modes. Serialized as a list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "files", serde(from = "Vec<ResolveMode>", into = "Vec<ResolveMode>"))]
 pub struct ResolveModes(u8);
 
 impl ResolveModes {
-    /// No mode.
+    /// The empty set.
     pub const NONE: Self = Self(0);
 
-    /// The set of these modes.
+    /// Returns the set of the given modes.
     pub const fn of(modes: &[ResolveMode]) -> Self {
         let (mut set, mut at) = (0, 0);
         while at < modes.len() {
@@ -54,7 +53,7 @@ impl ResolveModes {
         Self(set)
     }
 
-    /// Whether a mode is in the set.
+    /// Returns `true` if the set contains a mode.
     pub const fn has(self, mode: ResolveMode) -> bool {
         self.0 & 1 << mode as u8 != 0
     }

@@ -1,85 +1,93 @@
-//! What is declared of a resource: shape, kind, and what it holds on entry and must hold on exit.
+//! Descriptions of resources: shape, origin, and contents at the start and the end of the frame.
 
 mod buffer;
 mod extent;
 
 use crate::barrier::{Stages, State};
+use crate::enum_names::enum_names;
 use crate::format::Format;
 use crate::id::{ResourceId, Span, VersionId};
-use crate::words::words;
 pub use buffer::{BufferDesc, BufferSize};
 pub use extent::Extent;
 
-/// How the texels are arranged.
+/// Dimensionality of a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Dimension {
     /// Two-dimensional, possibly an array of layers.
     #[default]
     D2,
-    /// Three-dimensional: `layers` is the depth. A level is one subresource, whatever its depth: it is sampled, stored and
-    /// copied as a whole, and attached only where it is one slice.
+    /// Three-dimensional; `layers` is the depth. Each level is one subresource: it is sampled, stored and copied as a
+    /// whole. It can be attached only if it has a single slice.
     D3,
 }
 
-/// The shape of a texture.
+/// Descriptor of a texture.
+///
+/// ```
+/// use framegraph::{Extent, Format, TextureDesc};
+///
+/// let bloom = TextureDesc::new(Extent::fraction(2), Format::Rgba16Float).mips(TextureDesc::ALL_MIPS);
+/// assert_eq!(bloom.mip_extent([1920, 1080], 0), [960, 540]);
+/// assert_eq!(bloom.mip_count([1920, 1080]), 10);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct TextureDesc {
     /// Width and height of mip 0.
     pub extent: Extent,
-    /// What a texel holds.
+    /// Format of the texels.
     pub format: Format,
-    /// Levels, at least 1; [`TextureDesc::ALL_MIPS`] asks for the full chain down to 1×1.
+    /// Number of mip levels, at least 1; [`TextureDesc::ALL_MIPS`] requests the full chain down to 1×1.
     pub mips: u8,
     /// Samples per texel: 1, 2, 4, 8 or 16.
     pub samples: u8,
-    /// Array layers (6 per cube), or the depth of a three-dimensional texture; at least 1.
+    /// Number of array layers (6 per cube), or the depth of a three-dimensional texture; at least 1.
     pub layers: u16,
     /// Two or three dimensions.
     pub dimension: Dimension,
 }
 
 impl TextureDesc {
-    /// As many levels as the extent allows: ⌊log₂ max(width, height)⌋ + 1.
+    /// Requests the full mip chain: ⌊log₂ max(width, height)⌋ + 1 levels.
     pub const ALL_MIPS: u8 = 0;
 
-    /// A two-dimensional texture of one level, one layer, one sample.
+    /// Creates the descriptor of a two-dimensional texture with one level, one layer and one sample.
     pub const fn new(extent: Extent, format: Format) -> Self {
         Self { extent, format, mips: 1, samples: 1, layers: 1, dimension: Dimension::D2 }
     }
 
-    /// The same with another format.
+    /// Sets the format.
     pub const fn format(mut self, format: Format) -> Self {
         self.format = format;
         self
     }
 
-    /// The same with another size.
+    /// Sets the size of level 0.
     pub const fn extent(mut self, extent: Extent) -> Self {
         self.extent = extent;
         self
     }
 
-    /// The same with `samples` samples per texel.
+    /// Sets the number of samples per texel.
     pub const fn samples(mut self, samples: u8) -> Self {
         self.samples = samples;
         self
     }
 
-    /// The same with `mips` levels.
+    /// Sets the number of mip levels.
     pub const fn mips(mut self, mips: u8) -> Self {
         self.mips = mips;
         self
     }
 
-    /// The same with `layers` array layers.
+    /// Sets the number of array layers.
     pub const fn layers(mut self, layers: u16) -> Self {
         self.layers = layers;
         self
     }
 
-    /// Levels for a frame of `frame` texels, with [`Self::ALL_MIPS`] counted out.
+    /// Returns the number of mip levels for a frame of `frame` texels, with [`Self::ALL_MIPS`] evaluated.
     pub const fn mip_count(&self, frame: [u32; 2]) -> u32 {
         if self.mips != Self::ALL_MIPS {
             return self.mips as u32;
@@ -89,13 +97,13 @@ impl TextureDesc {
         if side == 0 { 1 } else { side.ilog2() + 1 }
     }
 
-    /// Width and height of level `mip`, in texels: halved per level, never below 1.
+    /// Returns width and height of level `mip` in texels: halved per level, at least 1.
     pub const fn mip_extent(&self, frame: [u32; 2], mip: u32) -> [u32; 2] {
         let [w, h] = self.extent.texels(frame);
         [halved(w, mip), halved(h, mip)]
     }
 
-    /// How many layers are tracked as subresources: the depth of a three-dimensional texture is not.
+    /// Number of layers that are tracked as subresources; 1 for a three-dimensional texture.
     pub const fn tracked_layers(&self) -> u32 {
         match self.dimension {
             Dimension::D2 => self.layers as u32,
@@ -103,7 +111,7 @@ impl TextureDesc {
         }
     }
 
-    /// Bytes of all levels, layers, planes and samples without any padding; saturates.
+    /// Size in bytes of all levels, layers, planes and samples, without padding. Saturates.
     pub const fn bytes(&self, frame: [u32; 2]) -> u64 {
         if self.mips == 1 && !self.format.is_compressed() {
             let [w, h] = self.extent.texels(frame);
@@ -126,7 +134,7 @@ impl TextureDesc {
         total
     }
 
-    /// Bytes of one layer of level `mip`, all planes and samples, without padding; saturates.
+    /// Size in bytes of one layer of level `mip`, with all planes and samples, without padding. Saturates.
     pub const fn mip_bytes(&self, frame: [u32; 2], mip: u32) -> u64 {
         let [w, h] = self.mip_extent(frame, mip);
         let (bw, bh) = self.format.block_texels();
@@ -135,25 +143,25 @@ impl TextureDesc {
     }
 }
 
-/// A side of level `mip`: never below 1.
+/// Returns the length of a side at level `mip`, at least 1 unless `side` is 0.
 #[inline]
 pub(crate) const fn halved(side: u32, mip: u32) -> u32 {
     let h = if mip < 32 { side >> mip } else { 0 };
     if h == 0 && side != 0 { 1 } else { h }
 }
 
-/// The shape of a resource.
+/// Descriptor of a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Desc {
-    /// A texture of that shape.
+    /// A texture.
     Texture(TextureDesc),
-    /// A buffer of that size.
+    /// A buffer.
     Buffer(BufferDesc),
 }
 
 impl Desc {
-    /// The texture's shape, or `None` for a buffer.
+    /// Returns the texture descriptor, or `None` for a buffer.
     pub const fn texture(&self) -> Option<&TextureDesc> {
         match self {
             Self::Texture(t) => Some(t),
@@ -161,7 +169,7 @@ impl Desc {
         }
     }
 
-    /// Bytes without padding for a frame of `frame` texels.
+    /// Size in bytes for a frame of `frame` texels, without padding. Saturates.
     pub const fn bytes(&self, frame: [u32; 2]) -> u64 {
         match self {
             Self::Texture(t) => t.bytes(frame),
@@ -169,7 +177,7 @@ impl Desc {
         }
     }
 
-    /// Levels × layers × planes: how many parts are tracked separately; of a buffer 1, as long as no access names bytes of it.
+    /// Number of subresources: levels × layers × planes. 1 for a buffer, as long as no access names a byte range.
     #[inline]
     pub const fn subresources(&self, frame: [u32; 2]) -> u32 {
         match self {
@@ -179,26 +187,26 @@ impl Desc {
     }
 }
 
-/// What an imported resource holds when the frame begins.
+/// Contents of an imported resource at the start of the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Entry {
-    /// Contents that passes may read.
+    /// Defined contents that passes may read.
     Defined,
-    /// Nothing: the first access must write (a swapchain image).
+    /// Undefined contents: the first access must write. Typical for a swapchain image.
     Undefined,
-    /// As its owner left it, for devices that are told about transitions: contents that passes may read, unless the state
-    /// is `Undefined`.
+    /// An explicit state, for devices with explicit barriers. Passes may read the contents unless the state is
+    /// `Undefined`.
     Left {
-        /// The state that all of it is in.
+        /// State of the whole resource.
         state: State,
-        /// The stages of the owner's work that the first use waits for.
+        /// Pipeline stages of the owner's work that the first use waits for.
         stages: Stages,
     },
 }
 
 impl Entry {
-    /// Whether it holds contents that passes may read.
+    /// Returns `true` if passes may read the contents.
     #[inline]
     pub const fn is_defined(self) -> bool {
         match self {
@@ -209,48 +217,48 @@ impl Entry {
     }
 }
 
-/// What must be true of an imported resource when the frame ends.
+/// Requirement on an imported resource at the end of the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Exit {
-    /// Its contents are needed afterwards: passes that write it are kept.
+    /// The contents are used after the frame, so the passes that write them are kept.
     Keep,
-    /// Its contents are not needed afterwards.
+    /// The contents are not used after the frame.
     Discard,
 }
 
-/// Where a resource comes from and how long it lives.
+/// Origin and lifetime of a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
-    /// Made for this frame by the graph; shares memory with others.
+    /// Created by the graph for this frame; may share memory with other resources.
     Transient,
-    /// Owned outside of the graph.
+    /// Owned by the caller.
     Imported {
-        /// What it holds on entry.
+        /// Contents at the start of the frame.
         entry: Entry,
-        /// What must survive.
+        /// Requirement at the end of the frame.
         exit: Exit,
     },
     /// The image of a history that this frame writes.
     HistoryCurrent {
-        /// How many earlier frames can be read: the ring has one image more.
+        /// Number of earlier frames that stay readable. The ring has one image more.
         frames: u8,
     },
-    /// The image of a history as it was `age` frames ago; read only.
+    /// The image of a history as it was `age` frames ago; read-only.
     HistoryPrevious {
         /// The image that this frame writes.
         current: ResourceId,
-        /// Frames back, at least 1.
+        /// Age in frames, at least 1.
         age: u8,
     },
 }
 
-words! {
+enum_names! {
     Kind: Transient "transient", Imported "imported", HistoryCurrent "history", HistoryPrevious "previous"
 }
 
 impl Kind {
-    /// Whether passes may read it before any pass of this frame wrote it.
+    /// Returns `true` if passes may read the resource before a pass of this frame has written it.
     #[inline]
     pub const fn defined_on_entry(self) -> bool {
         match self {
@@ -260,7 +268,7 @@ impl Kind {
         }
     }
 
-    /// Whether its contents are needed after the frame, so that writing it keeps a pass.
+    /// Returns `true` if the contents are used after the frame, so that passes writing them are kept.
     #[inline]
     pub const fn kept_on_exit(self) -> bool {
         matches!(self, Self::Imported { exit: Exit::Keep, .. } | Self::HistoryCurrent { .. })
@@ -270,13 +278,13 @@ impl Kind {
 /// One row of [`Graph::resources`](crate::graph::Tables::resources).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Resource {
-    /// Its full name in the graph's text.
+    /// Full name, as a span of the graph's text.
     pub name: Span,
-    /// Its newest version: the only one that may be used next.
+    /// The newest version; only its handle may be used for further accesses.
     pub current: VersionId,
-    /// Where it comes from.
+    /// Origin and lifetime.
     pub kind: Kind,
-    /// Its shape: a texture's extent, format, levels and so on, or a buffer's bytes.
+    /// Descriptor: a texture's extent, format and levels, or a buffer's size.
     pub desc: Desc,
 }
 

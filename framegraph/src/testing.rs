@@ -1,7 +1,10 @@
-//! What tests, proofs and fuzzing of the compiler are made of, and a program that renders does without: the independent
-//! oracle of plans ([`mod@check`]), random graphs ([`generate`]), plans broken on purpose to see whether
-//! [`check`](crate::check()) notices ([`mutation`]), packings whose lowest top is known ([`planted`]), and the tables in
-//! which instances of memory packing are published ([`csv`]). Behind the feature `testing`.
+//! Tools for testing the compiler, behind the feature `testing`:
+//!
+//! - [`mod@check`]: an independent checker of plans (the *oracle*).
+//! - [`generate`]: random graphs.
+//! - [`mutation`]: broken plans that [`check`](crate::check()) must report.
+//! - [`planted`]: packing problems with a known optimum.
+//! - [`csv`]: published instances of memory packing problems.
 
 pub mod check;
 pub use framegraph_pack::{csv, planted};

@@ -1,24 +1,24 @@
-//! What is probably not meant: said by every output of a plan, and no error.
+//! Warnings: plans that are valid but probably unintended.
 
+use crate::enum_names::enum_names;
 use crate::plan::Plan;
-use crate::words::words;
 
-/// Something about a plan that its user probably did not mean.
+/// A property of a plan that is probably unintended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// Passes were declared, and none of them runs: nothing says what the frame is for.
+    /// The graph has passes, but none of them runs, because nothing is exported.
     NothingRuns,
 }
 
-words! { Warning: NothingRuns "nothing_runs" }
+enum_names! { Warning: NothingRuns "nothing_runs" }
 
 impl Warning {
-    /// What is wrong, and what to do about it.
+    /// Returns the problem and a way to fix it.
     pub const fn sentence(self) -> &'static str {
         match self {
             Self::NothingRuns => {
-                "no pass runs, since nothing that is kept needs one; export what the frame is for, import its target with \
+                "no pass runs, because no result is used; export a resource, import the target with \
                  `Exit::Keep`, or declare a side effect"
             }
         }
@@ -26,7 +26,7 @@ impl Warning {
 }
 
 impl Plan {
-    /// What is probably not meant.
+    /// Returns the warnings about this plan.
     pub fn warnings(&self) -> impl Iterator<Item = Warning> {
         let idle = self.compilation != 0 && self.steps.is_empty() && !self.graph.passes().is_empty();
         idle.then_some(Warning::NothingRuns).into_iter()

@@ -1,7 +1,7 @@
-//! A warm graph, scratch and plan allocate nothing: 10,000 frames of declaring and compiling under a counting allocator,
-//! with one plan and with several in turns.
+//! A warm graph, scratch and plan do not allocate: 10,000 frames of declaring and compiling with a counting allocator,
+//! with one plan and with several in turn.
 //!
-//! A program of its own without the test harness, since the allocator counts for the whole process, and the harness
+//! This is a program without the test harness, because the allocator counts for the whole process, and the harness
 //! allocates when it reports a slow test.
 
 #[allow(dead_code, reason = "the bench prints the names of the workloads")]
@@ -16,14 +16,14 @@ use workload::{Handles, Workload};
 #[global_allocator]
 static COUNTING: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Frames that must allocate nothing on the device of the contract, and on each of the others.
+/// Number of frames without allocation on the main device, and on each of the others.
 const FRAMES: usize = 10_000;
 const FRAMES_ELSEWHERE: usize = 500;
 
-/// With the optimising order and a heap a frame takes a thousand times as long.
+/// Number of frames with the optimizing order and a heap, which take a thousand times as long.
 const FRAMES_THOROUGH: usize = 3;
 
-/// Plans that are compiled in turns, each of which keeps what it was made from.
+/// Number of plans that are compiled in turn, each holding its graph's arrays.
 const PLANS: usize = 3;
 
 struct Warm {
@@ -36,11 +36,11 @@ struct Warm {
 impl Warm {
     fn declare(&mut self, work: &Workload) {
         self.graph.reset();
-        work.declare(&mut self.graph, &mut self.handles).expect("the workload is sound");
+        work.declare(&mut self.graph, &mut self.handles).expect("the workload is valid");
     }
 }
 
-/// Compiles into one plan, and finds the same frame, declared once more, unchanged.
+/// Compiles into one plan, then declares an equal frame and recognizes it as unchanged.
 fn frame(work: &Workload, caps: &Caps, options: &Options, warm: &mut Warm, turn: usize) {
     warm.declare(work);
     let Warm { graph, scratch, plans, .. } = warm;
@@ -63,7 +63,7 @@ fn main() {
     }
 }
 
-/// Declares and compiles `frames` frames, once into one plan and once into several in turns, after some that warm up.
+/// Checks `frames` frames, first with one plan and then with several in turn, after warming up.
 fn check(work: &Workload, caps: Caps, options: Options, frames: usize) {
     let caps = Caps { max_texture_texels: 16384, ..caps };
     for plans in [1, PLANS] {
@@ -87,7 +87,7 @@ fn check(work: &Workload, caps: Caps, options: Options, frames: usize) {
         let moved = (change.allocations, change.reallocations, change.deallocations);
         assert_eq!(moved, (0, 0, 0), "{} for {}, {plans} plans", work.name, caps.name);
         program::line(format_args!(
-            "{} for {}, {plans} plans in turns: {frames} frames, no allocation ({first} while warming up)",
+            "{} for {}, {plans} plans in turn: {frames} frames, no allocation ({first} while warming up)",
             work.name, caps.name
         ));
     }

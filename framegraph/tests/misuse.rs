@@ -1,10 +1,10 @@
-//! Misuse that does not compile. Each file under `misuse/` is about one fault, and what the compiler says of it is pinned
-//! beside it; `misuse/sound.rs` has all of it right, so that none fails for another reason.
+//! Misuse that does not compile. Each file under `misuse/` contains one error, and the expected compiler output is
+//! stored next to it. `misuse/sound.rs` contains the valid versions, so that no file fails for another reason.
 //!
-//! The words are those of the oldest compiler that the workspace supports, the one that continuous integration uses; with
-//! another the test is skipped, which is reported. `MISUSE=overwrite cargo test -p framegraph --test misuse` renews them.
+//! The expected output is that of the minimum supported Rust version, which continuous integration uses. The test is
+//! skipped with other versions. `MISUSE=overwrite cargo test -p framegraph --test misuse` renews the files.
 //!
-//! The compiler is given the library that this test is linked with, so nothing is built a second time.
+//! The files are compiled against the library that this test is linked with, so nothing is built twice.
 
 #[path = "misuse/sound.rs"]
 mod sound;
@@ -12,7 +12,7 @@ mod sound;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The compiler of the pinned words: `rust-version` of the workspace.
+/// The compiler version of the expected output: `rust-version` of the workspace.
 const PINNED: &str = env!("CARGO_PKG_RUST_VERSION");
 
 #[test]
@@ -21,11 +21,11 @@ fn misuse_does_not_compile() {
     if !said.starts_with(&format!("rustc {PINNED}.")) {
         return test_report::skip(
             "misuse_does_not_compile",
-            &format!("the words are those of Rust {PINNED}, and this is {}", said.trim()),
+            &format!("the expected output is of Rust {PINNED}, this is {}", said.trim()),
         );
     }
-    let folder = std::fs::read_dir("tests/misuse").expect("tests run in the folder of their package");
-    let mut files: Vec<PathBuf> = folder.map(|entry| entry.expect("the folder can be read").path()).collect();
+    let folder = std::fs::read_dir("tests/misuse").expect("tests run in the package folder");
+    let mut files: Vec<PathBuf> = folder.map(|entry| entry.expect("a readable folder").path()).collect();
     files.retain(|path| path.extension().is_some_and(|e| e == "rs") && !path.ends_with("sound.rs"));
     files.sort();
     assert!(files.len() >= 12, "only {files:?}");
@@ -40,7 +40,7 @@ fn the_same_done_right_compiles_and_runs() {
     sound::main();
 }
 
-/// What is wrong with what the compiler says of `file`; None where it is what stands beside it.
+/// Compares the compiler output for `file` with the expected output. Returns `None` if they are equal.
 fn differs(file: &Path, library: &Path, overwrite: bool) -> Option<String> {
     let (found, beside) = (refusal(file, library), file.with_extension("stderr"));
     if overwrite && !found.is_empty() {
@@ -51,13 +51,13 @@ fn differs(file: &Path, library: &Path, overwrite: bool) -> Option<String> {
     if found.is_empty() {
         Some(format!("{name}: it compiles"))
     } else if found != pinned {
-        Some(format!("{name}: pinned\n{pinned}\n{name}: found\n{found}"))
+        Some(format!("{name}: expected\n{pinned}\n{name}: found\n{found}"))
     } else {
         None
     }
 }
 
-/// What the compiler says of `file`; empty if it has nothing against it.
+/// Returns the compiler output for `file`; empty if it compiles.
 fn refusal(file: &Path, library: &Path) -> String {
     let mut command = rustc();
     command.args(["--edition=2024", "--crate-type=bin", "--emit=metadata", "--color=never", "--cap-lints=allow"]);
@@ -65,18 +65,18 @@ fn refusal(file: &Path, library: &Path) -> String {
     command.arg("-L").arg(format!("dependency={}", library.with_file_name("").display()));
     command.arg("--extern").arg(format!("framegraph={}", library.display())).arg(file);
     let said = output(&mut command);
-    // The last lines count the errors and say where they are explained.
+    // The last lines only count the errors and refer to explanations.
     let end = said.find("error: aborting due to").unwrap_or(said.len());
     said[..end].trim_end().lines().map(|line| placed(line).to_owned() + "\n").collect()
 }
 
-/// A line without the place in a file of the library, which changes for other reasons.
+/// Removes the position in a file of the library, which changes often.
 fn placed(line: &str) -> &str {
     let within = line.contains(" framegraph/src/").then(|| line.find(".rs:")).flatten();
     within.map_or(line, |at| &line[..at + 3])
 }
 
-/// The library that this test is linked with: the newest beside it, since cargo has just made sure of it.
+/// Returns the path of the library that this test is linked with: the newest one in the same folder.
 fn library() -> PathBuf {
     let this = std::env::current_exe().expect("a running program has a path");
     let folder = std::fs::read_dir(this.parent().expect("it is in a folder")).expect("the folder can be read");
@@ -88,12 +88,12 @@ fn library() -> PathBuf {
     newest.expect("the library is beside the test").path()
 }
 
-/// The compiler that tests are built with.
+/// Returns a command for the compiler that builds tests.
 fn rustc() -> Command {
     Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()))
 }
 
-/// What a command prints, on both of its outputs.
+/// Returns the output of a command, both stdout and stderr.
 fn output(command: &mut Command) -> String {
     let done = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
     String::from_utf8_lossy(&[done.stdout, done.stderr].concat()).into_owned()

@@ -10,7 +10,7 @@ use crate::post::Post;
 use crate::prepass::Prepass;
 use crate::shadow::{Shadow, ShadowLayer, ShadowSettings, maps_desc};
 use crate::view::ViewId;
-use framegraph::file::{Call, Host, Plugin, PluginError, PluginSlot, Registry, Takes};
+use framegraph::file::{Call, Host, Plugin, PluginError, PluginSlot, Registry, SlotType};
 use framegraph::{Pass, Texture};
 
 /// How one kind declares its pass.
@@ -32,10 +32,10 @@ impl<H: Host + ?Sized> Plugin<H> for Standard<H> {
     }
 }
 
-const DEPTH: PluginSlot = PluginSlot::required("depth", Takes::Texture);
-const SHADOW: PluginSlot = PluginSlot::optional("shadow", Takes::Texture);
-const INPUT: PluginSlot = PluginSlot::required("input", Takes::Texture);
-const OUTPUT: PluginSlot = PluginSlot::required("output", Takes::Target);
+const DEPTH: PluginSlot = PluginSlot::required("depth", SlotType::Texture);
+const SHADOW: PluginSlot = PluginSlot::optional("shadow", SlotType::Texture);
+const INPUT: PluginSlot = PluginSlot::required("input", SlotType::Texture);
+const OUTPUT: PluginSlot = PluginSlot::required("output", SlotType::Target);
 
 /// The standard passes: `shadow`, `prepass`, `color`, `depth_resolve`, `post` and `fxaa`.
 ///

@@ -1,10 +1,10 @@
 //! Names of passes and resources in errors.
 
-use framegraph::{PassId, Plan, ResourceId, plain};
+use framegraph::{PassId, Plan, ResourceId, sanitize};
 use std::fmt;
 
 /// A pass or resource that an error refers to, by ID and full name. The name outlives the graph. `Display` shortens it
-/// to one line with [`framegraph::plain::name`].
+/// to one line with [`framegraph::sanitize::name`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Named<I> {
     /// ID in the graph that was executed.
@@ -27,7 +27,7 @@ impl Named<ResourceId> {
 
 impl<I> fmt::Display for Named<I> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&plain::name(&self.name))
+        f.write_str(&sanitize::name(&self.name))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Plugin kinds that graph files can name: the standard passes.
 
 use framegraph::Graph;
-use framegraph::file::{Registry, Takes};
+use framegraph::file::{Registry, SlotType};
 
 /// Returns the registry of the standard passes.
 pub fn registry() -> Registry<'static, Graph> {
@@ -13,11 +13,11 @@ pub fn listed(registry: &Registry<'_, Graph>) -> String {
     let mut lines = String::new();
     for kind in registry.kinds() {
         let slots = registry.slots(kind).unwrap_or_default().iter().map(|slot| {
-            let takes = match slot.takes {
-                Takes::Texture => "texture to read",
-                Takes::Buffer => "buffer to read",
-                Takes::Target => "texture to write",
-                Takes::TargetBuffer => "buffer to write",
+            let takes = match slot.ty {
+                SlotType::Texture => "texture to read",
+                SlotType::Buffer => "buffer to read",
+                SlotType::Target => "texture to write",
+                SlotType::TargetBuffer => "buffer to write",
             };
             format!("{}: {takes}{}", slot.name, if slot.optional { " (optional)" } else { "" })
         });

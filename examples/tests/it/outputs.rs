@@ -61,7 +61,7 @@ fn words_make_way_for_a_file_on_standard_output() {
     assert_eq!(entries(&folder).len(), 1, "no plan is written beside a pipe");
     let output = undrawn(&folder, &["--frames", "1", "--out", "a.png", "--plan", "/dev/stdout"]).output();
     let output = output.expect("the program starts");
-    assert!(output.stdout.starts_with(b"plan 1 for "), "{}", String::from_utf8_lossy(&output.stdout));
+    assert!(output.stdout.starts_with(b"plan 2 for "), "{}", String::from_utf8_lossy(&output.stdout));
     assert_eq!(entries(&folder).len(), 2);
 }
 

@@ -1,15 +1,15 @@
-//! Instructions per pass: this program runs itself under valgrind's callgrind, which counts them.
+//! Counts instructions per pass: the program runs itself under valgrind's callgrind.
 
 use crate::workload::Workload;
 use crate::{Frames, works};
 use std::process::Command;
 
-/// What is counted.
+/// The measured operation.
 #[derive(Clone, Copy, Debug)]
 pub enum What {
-    /// Resetting the graph and declaring it.
+    /// Resets and declares the graph.
     Declare,
-    /// Compiling it.
+    /// Compiles the graph.
     Compile,
 }
 
@@ -26,15 +26,15 @@ impl What {
     }
 }
 
-/// Runs the frames that are counted, after two that warm up.
+/// Runs the measured frames, after two warm-up frames.
 ///
 /// # Errors
-/// When an argument means nothing.
+/// Returns an error for an invalid argument.
 pub fn run(graph: &str, what: &str, frames: &str) -> Result<(), String> {
     let found = works().into_iter().find(|(work, _)| work.name == graph);
-    let (work, _) = found.ok_or_else(|| format!("there is no graph `{graph}`"))?;
-    let what = What::named(what).ok_or_else(|| format!("`{what}` is neither `declare` nor `compile`"))?;
-    let count: usize = frames.parse().map_err(|_| format!("`{frames}` is no number of frames"))?;
+    let (work, _) = found.ok_or_else(|| format!("unknown graph `{graph}`"))?;
+    let what = What::named(what).ok_or_else(|| format!("`{what}` is not `declare` or `compile`"))?;
+    let count: usize = frames.parse().map_err(|_| format!("`{frames}` is not a number of frames"))?;
     let mut frames = Frames::new(work);
     for _ in 0..2 {
         frames.declare();
@@ -49,7 +49,7 @@ pub fn run(graph: &str, what: &str, frames: &str) -> Result<(), String> {
     Ok(())
 }
 
-// Callgrind counts what happens inside of functions of these names.
+// Callgrind counts instructions inside of functions with these names.
 
 #[inline(never)]
 fn counted_declare(frames: &mut Frames) {
@@ -61,14 +61,14 @@ fn counted_compile(frames: &mut Frames) {
     frames.compile();
 }
 
-/// Instructions per pass of a warm frame.
+/// Returns the number of instructions per pass of a warm frame.
 ///
 /// # Errors
-/// Why they could not be counted: valgrind is not there, or it failed.
+/// Returns an error if valgrind is not installed or fails.
 pub fn instructions(work: &Workload, what: What) -> Result<f64, String> {
     let passes = work.passes.len();
     let frames = (20_000 / passes).clamp(1, 100);
-    let program = std::env::current_exe().map_err(|error| format!("this program cannot be found: {error}"))?;
+    let program = std::env::current_exe().map_err(|error| format!("the path of this program is unknown: {error}"))?;
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null", "--collect-atstart=no"])
         .arg(format!("--toggle-collect=*counted_{}*", what.word()))
@@ -83,6 +83,6 @@ pub fn instructions(work: &Workload, what: What) -> Result<f64, String> {
     let counted = text.lines().find_map(|line| line.split("Collected :").nth(1)?.trim().parse::<u64>().ok());
     match counted {
         Some(count) if output.status.success() && count > 0 => Ok(count as f64 / (frames * passes) as f64),
-        _ => Err(format!("valgrind ended with {} and said: {}", output.status, text.lines().last().unwrap_or(""))),
+        _ => Err(format!("valgrind failed with {}: {}", output.status, text.lines().last().unwrap_or(""))),
     }
 }

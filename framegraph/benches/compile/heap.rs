@@ -1,4 +1,4 @@
-//! What aliasing in a heap costs, and what it gains over a pool.
+//! Cost and gain of heap aliasing, compared with a pool.
 
 use crate::time::{Time, time};
 use crate::{Frames, workload};
@@ -16,7 +16,7 @@ intervals. The aim of placing is 1000 ns a pass.
 | aliasing | compile, ns | placing, ns | packing, ns | bytes | lower bound |
 | --- | --- | --- | --- | --- | --- |";
 
-/// Prints nanoseconds per pass of placing the resources of `dag_1000` by greedy packing.
+/// Prints the time per pass for placing the resources of `dag_1000` by greedy packing.
 pub fn print() {
     let caps = Caps { max_texture_texels: 16384, ..Caps::desktop() };
     let frames = |alias| {
@@ -44,7 +44,10 @@ pub fn print() {
     let (mut scratch, mut offsets) = (pack::Scratch::default(), Vec::new());
     let solver = time(n, || {
         let packed = pack::pack(black_box(&items), None, &limits, &mut scratch, &mut offsets);
-        assert!(packed.is_ok_and(|packed| packed.top == heaped.plan.memory().bytes), "another packing than the plan's");
+        assert!(
+            packed.is_ok_and(|packed| packed.top == heaped.plan.memory().bytes),
+            "the packing differs from the plan's"
+        );
     });
     program::line(HEAD);
     let rows = [("off", off, None, &apart), ("pool", pool, None, &pooled), ("heap", heap, Some(solver), &heaped)];

@@ -1,7 +1,7 @@
-//! What declaring and compiling cost, on the graphs that peers were measured on: time, instructions, memory.
+//! Measures declaring and compiling: time, instructions and memory, on the graphs used for other render graphs.
 //!
-//! `cargo xtask bench` runs it and `docs/performance.md` is what it prints. Everything that is compared runs in one process.
-//! With `--count GRAPH WHAT FRAMES` it does nothing but run frames, for a profiler that counts instructions.
+//! `cargo xtask bench` runs it, and `docs/performance.md` is its output. All compared cases run in one process. With
+//! `--count GRAPH WHAT FRAMES` it only runs frames, for a profiler that counts instructions.
 
 mod count;
 mod heap;
@@ -18,7 +18,7 @@ use workload::{Handles, Workload};
 #[global_allocator]
 static COUNTING: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// A graph that is declared anew in each frame, and the plan that is made from it.
+/// A graph that is declared again in each frame, and its plan.
 struct Frames {
     work: Workload,
     graph: Graph,
@@ -55,7 +55,7 @@ impl Frames {
     }
 }
 
-/// The graphs, each with the nanoseconds a pass that declaring and compiling it are to take at most.
+/// The graphs, each with its target for declaring and compiling in nanoseconds per pass.
 fn works() -> [(Workload, Option<u32>); 6] {
     [
         (workload::frame(), Some(80)),
@@ -76,7 +76,7 @@ fn main() -> ExitCode {
             memory::print();
         }
         ["--count", graph, what, frames] => return program::ended("compile", count::run(graph, what, frames)),
-        _ => return program::ended("compile", Err("there is nothing but --count GRAPH (declare|compile) FRAMES")),
+        _ => return program::ended("compile", Err("usage: --count GRAPH (declare|compile) FRAMES")),
     }
     program::exit(0)
 }

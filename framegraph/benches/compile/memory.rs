@@ -1,11 +1,11 @@
-//! How much memory declaring and compiling take, and whether it grows in line with the graph.
+//! Measures the memory for declaring and compiling graphs of several sizes.
 
 use crate::{COUNTING, Frames, workload};
 use stats_alloc::Region;
 
-/// Bytes that were asked for since `region` began, as if none had been given back: no less than the peak.
+/// Returns the bytes allocated since `region` began, ignoring deallocations. An upper bound of the peak.
 fn asked(region: &Region<'_, std::alloc::System>) -> usize {
-    // What arrays grow by is counted among them.
+    // Includes the growth of arrays.
     region.change().bytes_allocated
 }
 

@@ -1,4 +1,4 @@
-//! Nanoseconds and instructions per declared pass.
+//! Measures nanoseconds and instructions per declared pass.
 
 use crate::count::{self, What};
 use crate::{Frames, works};
@@ -7,7 +7,8 @@ use std::fmt;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Nanoseconds per pass: of the median sample, and of the fastest, which other work on the machine disturbs least.
+/// Nanoseconds per pass: of the median sample, and of the fastest, which is least affected by other work on the
+/// machine.
 #[derive(Clone, Copy, Debug)]
 pub struct Time {
     pub median: f64,
@@ -20,7 +21,7 @@ impl fmt::Display for Time {
     }
 }
 
-/// Times `run` over about a second.
+/// Measures `run` for about a second.
 pub fn time(passes: usize, mut run: impl FnMut()) -> Time {
     let start = Instant::now();
     run();
@@ -40,7 +41,7 @@ pub fn time(passes: usize, mut run: impl FnMut()) -> Time {
     Time { median: times[times.len() / 2], fastest: times[0] }
 }
 
-/// The times of declaring, compiling, both, and finding an equal graph unchanged.
+/// Measures declaring, compiling, both, and recognizing an equal graph.
 fn times(frames: &mut Frames) -> [Time; 4] {
     let n = frames.passes();
     let declared = time(n, || black_box(&mut *frames).declare());
@@ -49,8 +50,8 @@ fn times(frames: &mut Frames) -> [Time; 4] {
         black_box(&mut *frames).declare();
         frames.compile();
     });
-    // Two graphs of equal contents in turns: one that is handed over twice shares its arrays with the plan and is known at
-    // a glance.
+    // Alternates between two equal graphs: a graph that is passed twice shares its arrays with the plan, which is
+    // trivial to recognize.
     frames.declare();
     let mut equal = Frames::new(frames.work.clone());
     equal.declare();

@@ -1,41 +1,42 @@
-//! The deterministic graphs on which peers were measured: `chain_N`, `dag_N` and `frame`, from a splitmix64 stream.
+//! Deterministic graphs used for comparisons with other render graphs: `chain_N`, `dag_N` and `frame`, from a
+//! splitmix64 stream.
 
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Graph, Intent, Texture, TextureDesc};
 
 /// One resource of a workload.
 #[derive(Clone, Copy, Debug)]
 pub struct WorkResource {
-    /// Imported: owned outside of the graph.
+    /// Owned outside of the graph.
     pub imported: bool,
-    /// Some pass writes it.
+    /// A pass writes it.
     pub written: bool,
     /// Width and height in texels.
     pub extent: [u32; 2],
-    /// A format of the workload's bytes per texel.
+    /// A format with the workload's bytes per texel.
     pub format: Format,
 }
 
 /// One pass of a workload.
 #[derive(Clone, Debug)]
 pub struct WorkPass {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Never culled.
     pub side_effect: bool,
-    /// Indices of the resources it samples.
+    /// Indices of the sampled resources.
     pub reads: Vec<usize>,
-    /// Indices of the resources it writes: the first writer creates, a later one modifies.
+    /// Indices of the written resources: the first writer creates a resource, later ones modify it.
     pub writes: Vec<usize>,
 }
 
 /// A graph before it is declared.
 #[derive(Clone, Debug)]
 pub struct Workload {
-    /// What to call it.
+    /// Name.
     pub name: String,
-    /// Its resources.
+    /// Resources.
     pub resources: Vec<WorkResource>,
-    /// Its passes, in declaration order.
+    /// Passes, in declaration order.
     pub passes: Vec<WorkPass>,
 }
 
@@ -59,14 +60,14 @@ impl Rng {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Log-uniform from 64 KiB to 16 MiB: RGBA8, 256 texels wide.
+    /// Returns a texture with a log-uniform size from 64 KiB to 16 MiB: RGBA8, 256 texels wide.
     fn texture(&mut self) -> WorkResource {
         let k = 2f64.powf(self.unit() * 8.0).round_ties_even().clamp(1.0, 256.0) as u32;
         WorkResource { imported: false, written: true, extent: [256, (64 * k).min(16384)], format: Format::Rgba8Unorm }
     }
 }
 
-/// Pass i reads resource i − 1 and creates i; the last pass is the sink.
+/// Returns a chain: pass i reads resource i − 1 and creates i; the last pass has a side effect.
 pub fn chain(n: usize) -> Workload {
     let mut rng = Rng(1);
     let resources = (0..n).map(|_| rng.texture()).collect();
@@ -79,7 +80,7 @@ pub fn chain(n: usize) -> Workload {
     Workload { name: format!("chain_{n}"), resources, passes: passes.collect() }
 }
 
-/// Each pass reads 3 of the last 64 resources and creates 2; exactly n/5 passes are dead.
+/// Returns a random graph: each pass reads 3 of the last 64 resources and creates 2; exactly n/5 passes are unused.
 pub fn dag(n: usize, seed: u64) -> Workload {
     let mut rng = Rng(seed);
     let resources = (0..2 * n).map(|_| rng.texture()).collect();
@@ -122,7 +123,7 @@ pub fn dag(n: usize, seed: u64) -> Workload {
     Workload { name: format!("dag_{n}"), resources, passes }
 }
 
-/// 26 passes and 24 resources, a Filament-like frame at 1080p.
+/// Returns a Filament-like frame at 1080p with 26 passes and 24 resources.
 pub fn frame() -> Workload {
     let (w, h) = (1920, 1080);
     let mut names: Vec<String> = Vec::new();
@@ -197,8 +198,8 @@ pub fn frame() -> Workload {
 pub type Handles = Vec<Option<Texture>>;
 
 impl Workload {
-    /// Declares the workload into an empty graph. A pass that writes one resource is raster, one that writes several of
-    /// different sizes is compute.
+    /// Declares the workload into an empty graph. A pass that writes one resource is a raster pass; a pass that writes
+    /// several of different sizes is a compute pass.
     pub fn declare(&self, graph: &mut Graph, handles: &mut Handles) -> Result<(), DeclareError> {
         handles.clear();
         for (index, resource) in self.resources.iter().enumerate() {

@@ -1,7 +1,8 @@
-//! Any graph, on any device, with any options: compiling refuses it or gives a plan that the oracle has nothing against.
-//! Every form of a plan can be printed, of a refused one too, and offsets are kept when it is compiled after itself.
+//! Compiles random graphs on random devices with random options. The compiler must report errors or return a plan
+//! without findings of the oracle. All dumps must succeed, also of empty plans. Offsets must be kept when a plan is
+//! compiled after itself.
 //!
-//! Scratch and plan are kept between cases, to catch what one compile leaves behind for the next.
+//! Scratch memory and plan are reused between cases, to detect state that leaks from one compilation into the next.
 #![no_main]
 
 use framegraph::testing::generate::{self, Entropy, OPTIONS, Profile, options_of};
@@ -19,7 +20,7 @@ fuzz_target!(|bytes: &[u8]| {
     let preset = entropy.pick(&Caps::PRESETS);
     let strange = entropy.one_in(4).then(|| generate::caps(&mut entropy));
     let caps = strange.or_else(|| Caps::preset(preset)).unwrap_or_default();
-    // The optimising order plans each graph a thousand times.
+    // The optimizing order plans each graph up to a thousand times.
     let max_passes = if options.order == Order::Optimized { 12 } else { 40 };
     let profile = Profile { max_passes, sloppy: entropy.one_in(4), ..Profile::default() };
     let graph = generate::graph(&mut entropy, &profile);
@@ -36,7 +37,7 @@ fuzz_target!(|bytes: &[u8]| {
             let mut after = Plan::new();
             assert_eq!(compile_after(&graph, &caps, &options, plan, scratch, &mut after), Ok(()));
             sound(&after);
-            assert!(after.memory().bytes <= plan.memory().bytes, "kept offsets raise the heap");
+            assert!(after.memory().bytes <= plan.memory().bytes, "kept offsets enlarge the heap");
             assert_eq!(recompile(&graph, &caps, &options, scratch, plan), Ok(false));
         }
     });

@@ -1,8 +1,7 @@
-//! Any text as a graph file: it is refused with errors, or read; what is read is refused by the compiler, or planned right.
-//! Written down and read again, it is written down alike. Any text as a device: it is refused, or it is a device that can be
-//! planned for.
+//! Parses random text as a graph file and as a device. Parsing must report errors or succeed; a parsed graph must be
+//! rejected by the compiler or planned correctly. Writing, parsing and writing again must give equal text.
 //!
-//! Good seeds: `tests/cases` of the repository.
+//! `tests/cases` contains good seeds.
 #![no_main]
 
 use framegraph::file::{self, GraphFile};
@@ -42,7 +41,7 @@ fuzz_target!(|text: &str| {
     }
 });
 
-/// A graph of the generator, for a device that was read from a file: refused or planned right.
+/// Compiles a random graph for a device that was read from a file. It must be rejected or planned correctly.
 fn plan_something(caps: &Caps) {
     let graph = generate::graph(&mut Entropy::seeded(5), &Profile::default());
     let mut plan = Plan::new();

@@ -1,24 +1,24 @@
-//! Is there a packing of at most this height? A depth-first search over canonical packings.
+//! Depth-first search for a packing within a capacity, restricted to canonical packings.
 //!
-//! After Moffitt, "MiniMalloc: A Lightweight Memory Allocator for Hardware-Accelerated Machine Learning" (ASPLOS
-//! 2023, doi 10.1145/3623278.3624752), with one idea of our own. A packing is *canonical* when no item can be moved
-//! down; every packing can be made canonical without raising its top, so only these are searched. Items are placed
-//! from the bottom up, each on the lowest position that what is already placed leaves it (`floor`); the next item is
-//! always the one whose position is lowest, so nothing placed later goes under it.
+//! Follows Moffitt, "MiniMalloc: A Lightweight Memory Allocator for Hardware-Accelerated Machine Learning" (ASPLOS
+//! 2023, doi 10.1145/3623278.3624752), with one extension (refusals). A packing is *canonical* if no item can be moved
+//! down. Every packing can be made canonical without raising its top, so only canonical packings are searched. Items
+//! are placed from the bottom up, each at the lowest position above the placed items (`floor`). The next item is always
+//! one with the lowest position, so later items never go below it.
 //!
-//! - **Section inference.** A section whose lowest open position plus its unplaced bytes passes the capacity cannot
-//!   be filled: back up. To see that cheaply each section keeps a *witness*, an unplaced item low enough to show that
-//!   the section is still fine; only when the witness is placed or raised are the section's other items looked at.
-//! - **Refusals.** When placing item `i` at its floor has failed, what remains to be searched are packings where `i`
-//!   is *not* there. A canonical packing leaves `i` up only if another item stands in its way, so its true position
-//!   (`bound`) is at least the end of the lowest item that can still do so; if there is none, back up. This replaces
-//!   the order constraint, the dominance test and the monotone floor of the paper, and prunes up to 300 times more on
-//!   the hard instances, since a refused item soon makes its sections overflow. Items of equal lifetime, size and
-//!   alignment are refused together.
-//! - **Decomposition.** When no unplaced item crosses a boundary between sections any more, the two sides are solved
-//!   one after the other; if one has no solution the item that separated them moves on at once.
-//! - **Shortfall.** The least number of bytes by which a capacity test failed is kept: a search that ends without a
-//!   packing also refutes every capacity that is less than that much larger.
+//! - **Section inference.** If the lowest possible position in a section plus its unplaced bytes exceeds the capacity,
+//!   the search backtracks. To test that cheaply, each section keeps a *witness*: an unplaced item low enough to show
+//!   that the section still fits. Other items are examined only when the witness is placed or raised.
+//! - **Refusals.** After placing item `i` at its floor failed, only packings where `i` is *not* at its floor remain. A
+//!   canonical packing keeps `i` up only if another item is below it. Its true position (`bound`) is therefore at least
+//!   the end of the lowest item that can be there; if there is none, the search backtracks. Refusals replace the order
+//!   constraint, the dominance test and the monotone floor of the paper. They prune up to 300 times more on hard
+//!   instances, because a refused item soon overflows its sections. Items of equal lifetime, size and alignment are
+//!   refused together.
+//! - **Decomposition.** When no unplaced item crosses a boundary between sections, both sides are solved one after the
+//!   other. If one has no solution, the item that separated them is moved immediately.
+//! - **Shortfall.** The search records the smallest amount by which a capacity test failed. A search that ends without
+//!   a packing refutes all capacities that are larger by less than this amount.
 
 mod component;
 mod inference;
@@ -29,29 +29,29 @@ use super::problem::Problem;
 
 const NONE: u32 = u32::MAX;
 
-/// How a search ended.
+/// Result of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
-    /// `Canonical::offsets` holds a packing.
+    /// `Canonical::offsets` contains a packing.
     Found,
-    /// There is none, nor is there for any capacity below this one.
+    /// No packing exists for this capacity or any below the given one.
     Refuted(u64),
-    /// The limit was reached first.
+    /// The limit was reached.
     Undecided,
 }
 
-/// A set of items that no unplaced item connects with the rest, in the order they are tried.
+/// A set of items that no unplaced item connects with others, in the order in which they are tried.
 #[derive(Clone, Copy, Debug)]
 struct Component {
     first: u32,
     end: u32,
-    /// The component to solve when this one is done.
+    /// The component to solve after this one.
     next: u32,
-    /// The frame whose item split this component off: where to back up to when it has no solution.
+    /// The frame whose item split off this component, for backtracking if it has no solution.
     parent: u32,
 }
 
-/// An item placed, and how much of each trail belongs to what was before.
+/// A placed item, and the lengths of all trails before it was placed.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     component: u32,
@@ -65,25 +65,25 @@ struct Frame {
 /// The search and its reusable memory.
 #[derive(Debug, Default)]
 pub(super) struct Canonical {
-    /// Where each item is.
+    /// Offset of each item.
     pub offsets: Vec<u64>,
-    /// Placements tried in the last run.
+    /// Number of placements tried in the last run.
     pub nodes: u64,
-    /// How often each section was found overfull; the caller resets it.
+    /// Number of times each section exceeded the capacity; reset by the caller.
     pub failures: Vec<u32>,
-    /// What weighted orders multiply each section with; the caller sets it.
+    /// Weight of each section in weighted orders; set by the caller.
     pub weights: Vec<u32>,
     capacity: u64,
     shortfall: u64,
     looks: u64,
     placed: Vec<bool>,
-    /// The lowest position on top of what is placed.
+    /// Lowest position above the placed items.
     floor: Vec<u64>,
-    /// A lower bound on the final position; above `floor` for refused items.
+    /// Lower bound of the final position; above `floor` for refused items.
     bound: Vec<u64>,
     total: Vec<u64>,
     witness: Vec<u32>,
-    /// Unplaced items that are alive both in a section and the next.
+    /// Number of unplaced items that live both in a section and the next.
     crossing: Vec<u32>,
     components: Vec<Component>,
     arena: Vec<u32>,
@@ -102,9 +102,9 @@ enum Choice {
 }
 
 impl Canonical {
-    /// Looks for a packing with a top of at most `capacity`, trying at most `limit` placements.
+    /// Searches a packing with a top of at most `capacity`, trying at most `limit` placements.
     ///
-    /// `equal` gives equal items equal numbers. Each component is sorted anew by what is then unplaced.
+    /// `equal` assigns the same number to equal items. Each component is sorted by its unplaced items.
     pub fn run(
         &mut self,
         problem: &Problem,
@@ -154,7 +154,7 @@ impl Canonical {
                         return Outcome::Refuted(capacity + step);
                     }
                     while self.frames.len() as u32 > target {
-                        let frame = self.frames.pop().expect("target is a frame below the top");
+                        let frame = self.frames.pop().expect("the target frame is below the top");
                         self.undo(problem, frame);
                         (current, alive) = (frame.component, true);
                         if self.frames.len() as u32 == target {

@@ -1,7 +1,7 @@
-//! Where only what is alike shares memory: the shapes that take turns in slots, numbered as they are met, each with the slot
-//! of it that was freed last. A slot is a number of the caller's, who links those that are free.
+//! Shape classes for pools, in which only resources of equal shape share memory. Numbers shapes in the order of their
+//! first use, and stores the most recently freed slot of each. Slots are numbered and linked by the caller.
 
-/// No slot, or no class.
+/// No slot or class.
 pub const NIL: u32 = u32::MAX;
 
 /// One shape.
@@ -9,11 +9,11 @@ pub const NIL: u32 = u32::MAX;
 struct Class {
     size: [u32; 2],
     layout: u64,
-    /// Its slot that was freed last; [`NIL`] for none.
+    /// The most recently freed slot; [`NIL`] if there is none.
     free: u32,
 }
 
-/// Shapes, found by hashing.
+/// A hash table of shapes.
 ///
 /// ```
 /// use framegraph_pack::classes::{Classes, NIL};
@@ -26,30 +26,31 @@ struct Class {
 /// ```
 #[derive(Debug, Default)]
 pub struct Classes {
-    /// Open addressing: numbers of classes, by hash, at most a quarter full; [`NIL`] where there is none.
+    /// Open addressing table of class numbers, at most a quarter full; [`NIL`] for empty entries.
     table: Vec<u32>,
-    /// How far a hash is shifted down to give a place in the table.
+    /// Number of bits by which a hash is shifted to get a table index.
     shift: u32,
     classes: Vec<Class>,
 }
 
 impl Classes {
-    /// The least length of the table; a power of two, as all its lengths.
-    const LEAST: usize = 64;
+    /// Minimum length of the table. All lengths are powers of two.
+    const MIN_LEN: usize = 64;
 
-    /// Forgets all shapes. The table stays as large as they needed it.
+    /// Removes all shapes. The table keeps the length they required.
     pub fn clear(&mut self) {
-        let enough = (self.classes.len() * 4).next_power_of_two().max(Self::LEAST);
+        let enough = (self.classes.len() * 4).next_power_of_two().max(Self::MIN_LEN);
         self.table.truncate(enough);
         self.table.fill(NIL);
         if self.table.is_empty() {
-            self.table.resize(Self::LEAST, NIL);
+            self.table.resize(Self::MIN_LEN, NIL);
         }
         self.shift = self.table.len().leading_zeros() + 1;
         self.classes.clear();
     }
 
-    /// The number of a shape, from 0 without gaps: a size in the caller's units, and all else in which two can differ.
+    /// Returns the number of a shape, counted from 0. A shape consists of a size in the caller's units and all its
+    /// other properties.
     #[inline]
     pub fn of(&mut self, size: [u32; 2], layout: u64) -> u32 {
         let mut at = self.place(size, layout);
@@ -62,13 +63,13 @@ impl Classes {
         self.add(size, layout, at)
     }
 
-    /// The slot of a shape that was freed last, to be changed; none when nothing is shared.
+    /// Returns a mutable reference to the most recently freed slot of a shape; `None` for [`NIL`].
     #[inline]
     pub fn free(&mut self, class: u32) -> Option<&mut u32> {
         self.classes.get_mut(class as usize).map(|class| &mut class.free)
     }
 
-    /// Where to look for a shape first.
+    /// Returns the first table index to probe for a shape.
     #[inline]
     fn place(&self, size: [u32; 2], layout: u64) -> usize {
         let size = u64::from(size[0]) | u64::from(size[1]) << 32;
@@ -76,7 +77,7 @@ impl Classes {
         (mixed >> self.shift) as usize
     }
 
-    /// Adds a shape that is not there, whose place in the table is free if there is room.
+    /// Adds a shape, at the given table index if the table need not grow.
     #[inline]
     fn add(&mut self, size: [u32; 2], layout: u64, place: usize) -> u32 {
         let number = self.classes.len();
@@ -89,7 +90,7 @@ impl Classes {
         number as u32
     }
 
-    /// Makes the table twice as large as it must be.
+    /// Grows the table to twice the required length.
     #[cold]
     fn grow(&mut self) {
         self.table.clear();

@@ -1,11 +1,15 @@
-//! Instances as text: the `id,lower,upper,size` tables of the static memory planning literature.
+//! Packing instances as CSV: the `id,lower,upper,size` tables of the literature on static memory planning.
 //!
-//! One line a resource after a header that names the columns, in any order; packings have a fifth column, `offset`.
-//! This is the form of the MiniMalloc benchmarks: an item is live from `lower` on and up to, but not at, `upper`. Older
-//! files call the columns `buffer,start,end,size`. Those names are read too, with the meaning that MiniMalloc gives them:
-//! `start` (or `begin`) is `lower`, and `end` is the last step at which the item is live, one less than `upper`. What is
-//! written has `lower` and `upper`. Ids are kept as they stand, spaces and all, and may repeat; there is no quoting, so they hold
-//! no comma. Control characters in them are written as Rust would (`\u{1b}`).
+//! The first line names the columns, in any order; each further line is one resource. Packings have a fifth column,
+//! `offset`. This is the format of the MiniMalloc benchmarks: an item is live from `lower` up to, but not including,
+//! `upper`.
+//!
+//! Older files use the columns `buffer,start,end,size`, with the meaning of MiniMalloc. `start` (or `begin`) is
+//! `lower`. `end` is the last step at which the item is live, one less than `upper`. Output always uses `lower` and
+//! `upper`.
+//!
+//! Ids may repeat and are kept unchanged, including spaces. They cannot contain commas, because quoting is not
+//! supported. Control characters are escaped as in Rust (`\u{1b}`).
 //!
 //! ```
 //! use framegraph_pack::{Options, Scratch, pack};
@@ -25,75 +29,75 @@ use crate::Interval;
 /// An instance and the names of its items.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
-    /// The `id` column, as it stands.
+    /// The `id` column.
     pub ids: Vec<String>,
     /// Lifetimes and sizes; the alignment is 1.
     pub items: Vec<Interval>,
 }
 
-/// A text that is no instance. Lines count from 1.
+/// Error in a table. Lines count from 1.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CsvError {
-    /// There is no header.
+    /// The header is missing.
     #[error("line {line}: no header; begin with id,lower,upper,size")]
     NoHeader {
-        /// Where it should be.
+        /// Expected line of the header.
         line: usize,
     },
-    /// The header names a column that does not belong there.
+    /// The header contains an unknown column.
     #[error("line {line}: unknown column {name:?}; the columns are id,lower,upper,size")]
     UnknownColumn {
-        /// The header's line.
+        /// Line of the header.
         line: usize,
-        /// The column's name.
+        /// Name of the column.
         name: String,
     },
-    /// The header names a column twice.
-    #[error("line {line}: column {name} stands there twice; name each of id,lower,upper,size once")]
+    /// The header contains a column twice.
+    #[error("line {line}: duplicate column {name}; list each of id,lower,upper,size once")]
     DuplicateColumn {
-        /// The header's line.
+        /// Line of the header.
         line: usize,
-        /// The column's name.
+        /// Name of the column.
         name: &'static str,
     },
     /// The header lacks a column.
-    #[error("line {line}: column {name} is missing; name each of id,lower,upper,size once")]
+    #[error("line {line}: missing column {name}; list each of id,lower,upper,size once")]
     MissingColumn {
-        /// The header's line.
+        /// Line of the header.
         line: usize,
-        /// The column's name.
+        /// Name of the column.
         name: &'static str,
     },
     /// A row has too many or too few fields.
-    #[error("line {line}: {found} fields, but the header has 4; ids hold no comma and are not quoted")]
+    #[error("line {line}: {found} fields, but the header has 4; ids must not contain commas")]
     FieldCount {
-        /// The row's line.
+        /// Line of the row.
         line: usize,
-        /// How many fields it has.
+        /// Number of fields in the row.
         found: usize,
     },
-    /// A field is not a number, or does not fit.
-    #[error("line {line}: {name} is {text:?}; it must be a whole number from 0 to {max}")]
+    /// A field is not a number, or out of range.
+    #[error("line {line}: {name} is {text:?}; use a whole number from 0 to {max}")]
     Number {
-        /// The row's line.
+        /// Line of the row.
         line: usize,
-        /// The column's name.
+        /// Name of the column.
         name: &'static str,
-        /// The field.
+        /// The text of the field.
         text: String,
-        /// The largest value that fits.
+        /// Maximum value.
         max: u64,
     },
-    /// A lifetime ends at or before its start.
-    #[error("line {line}: item {id:?} is never alive: lower is {lower}, upper is {upper}; make upper the larger")]
+    /// A lifetime is empty.
+    #[error("line {line}: item {id:?} has an empty lifetime, {lower} to {upper}; use an upper above lower")]
     EmptyLifetime {
-        /// The row's line.
+        /// Line of the row.
         line: usize,
-        /// The item's name.
+        /// Name of the item.
         id: String,
-        /// Its start.
+        /// Start of the lifetime.
         lower: u32,
-        /// Its end.
+        /// End of the lifetime.
         upper: u32,
     },
 }
@@ -105,22 +109,22 @@ impl std::fmt::Debug for CsvError {
 }
 
 const NAMES: [&str; 4] = ["id", "lower", "upper", "size"];
-/// Names of the same columns in older files; an `end` is the last step itself.
+/// Names of the columns in older files; `end` is the last step of the lifetime.
 const OLD_NAMES: [(&str, usize); 5] =
     [("buffer", ID), ("buffer_id", ID), ("start", LOWER), ("begin", LOWER), (LAST, UPPER)];
-/// The name by which the upper column holds the last step itself.
+/// The name of the upper column that denotes the last step of the lifetime.
 const LAST: &str = "end";
-/// Characters of a field that an error shows at most.
-const MOST_SHOWN: usize = 60;
+/// Maximum number of characters of a field in an error.
+const MAX_SHOWN: usize = 60;
 const ID: usize = 0;
 const LOWER: usize = 1;
 const UPPER: usize = 2;
 const SIZE: usize = 3;
 
-/// Reads an instance. Empty lines are passed over; a byte order mark and carriage returns are too.
+/// Reads an instance. Ignores empty lines, a byte order mark and carriage returns.
 ///
 /// # Errors
-/// The first line that is wrong, see [`CsvError`].
+/// Returns an error for the first invalid line; see [`CsvError`].
 pub fn read(text: &str) -> Result<Table, CsvError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
@@ -144,7 +148,7 @@ pub fn read(text: &str) -> Result<Table, CsvError> {
             text.parse().ok().filter(|&value: &u64| value <= max).ok_or_else(|| CsvError::Number {
                 line,
                 name: NAMES[column],
-                text: text.chars().take(MOST_SHOWN).collect(),
+                text: text.chars().take(MAX_SHOWN).collect(),
                 max,
             })
         };
@@ -153,7 +157,7 @@ pub fn read(text: &str) -> Result<Table, CsvError> {
         let size = number(SIZE, u64::MAX)?;
         let id = fields[ID].to_owned();
         if lower >= upper {
-            let id = id.chars().take(MOST_SHOWN).collect();
+            let id = id.chars().take(MAX_SHOWN).collect();
             return Err(CsvError::EmptyLifetime { line, id, lower, upper });
         }
         table.ids.push(id);
@@ -162,19 +166,19 @@ pub fn read(text: &str) -> Result<Table, CsvError> {
     Ok(table)
 }
 
-/// Which column each field of a row belongs to, and whether the upper one holds the last step itself.
+/// Returns the column of each field of a row, and `true` if the upper column denotes the last step.
 fn read_header(line: usize, header: &str) -> Result<([usize; 4], bool), CsvError> {
     let (mut columns, mut last) = ([usize::MAX; 4], false);
     for (found, name) in header.split(',').map(str::trim).enumerate() {
         let known = NAMES.into_iter().zip(0..).chain(OLD_NAMES);
         let Some((known, column)) = known.into_iter().find(|(known, _)| name.eq_ignore_ascii_case(known)) else {
-            return Err(CsvError::UnknownColumn { line, name: name.chars().take(MOST_SHOWN).collect() });
+            return Err(CsvError::UnknownColumn { line, name: name.chars().take(MAX_SHOWN).collect() });
         };
         last |= known == LAST;
         if columns.contains(&column) {
             return Err(CsvError::DuplicateColumn { line, name: NAMES[column] });
         }
-        columns[found] = column; // there is no fifth: it would be a duplicate
+        columns[found] = column; // a fifth column would be a duplicate
     }
     match (0..NAMES.len()).find(|column| !columns.contains(column)) {
         Some(column) => Err(CsvError::MissingColumn { line, name: NAMES[column] }),
@@ -182,12 +186,12 @@ fn read_header(line: usize, header: &str) -> Result<([usize; 4], bool), CsvError
     }
 }
 
-/// Writes a packing: `id,lower,upper,size,offset`, the items in their order.
+/// Writes a packing as `id,lower,upper,size,offset`, in the order of the items.
 ///
 /// # Panics
-/// If there are not as many offsets as items.
+/// Panics if the number of offsets differs from the number of items.
 pub fn write(table: &Table, offsets: &[u64]) -> String {
-    assert_eq!(table.items.len(), offsets.len(), "one offset an item");
+    assert_eq!(table.items.len(), offsets.len(), "one offset per item");
     let mut text = String::from("id,lower,upper,size,offset\n");
     for ((id, item), offset) in table.ids.iter().zip(&table.items).zip(offsets) {
         let Interval { lower, upper, size, align: _ } = item;
@@ -211,7 +215,7 @@ mod tests {
     fn columns_may_stand_in_any_order_and_have_their_old_names() {
         let table = read("\u{feff}size, end ,start,buffer\r\n4,3,0, a b \r\n\r\n5,9,3,c\r\n").unwrap();
         assert_eq!(table.ids, [" a b ", "c"]);
-        // The end is the last step itself.
+        // `end` is the last step of the lifetime.
         assert_eq!(table.items[0], Interval { lower: 0, upper: 4, size: 4, align: 1 });
         assert_eq!(table.items[1], Interval { lower: 3, upper: 10, size: 5, align: 1 });
         assert_eq!(write(&table, &[7, 0]), "id,lower,upper,size,offset\n a b ,0,4,4,7\nc,3,10,5,0\n");
@@ -236,21 +240,21 @@ mod tests {
         says("\n\n", "line 1: no header");
         says("\nid,lower,upper,bytes\n", "line 2: unknown column \"bytes\"");
         says("id,lower,upper,size,offset\n", "line 1: unknown column \"offset\"");
-        says("id,lower,upper,size,lower\n", "line 1: column lower stands there twice");
-        says("id,lower,size\n", "line 1: column upper is missing");
+        says("id,lower,upper,size,lower\n", "line 1: duplicate column lower");
+        says("id,lower,size\n", "line 1: missing column upper");
         says("id,lower,upper,size\na,0,1\n", "line 2: 3 fields");
         says("id,lower,upper,size\na,0,1,2,3\n", "line 2: 5 fields");
         says("id,lower,upper,size\n\na,0,x,2\n", "line 3: upper is \"x\"");
         says("id,lower,upper,size\na,-1,2,2\n", "line 2: lower is \"-1\"");
         says("id,lower,upper,size\na,0,4294967296,2\n", "from 0 to 4294967295");
         says("id,lower,upper,size\na,0,2,18446744073709551616\n", "from 0 to 18446744073709551615");
-        says("id,lower,end,size\na,3,2,1\n", "line 2: item \"a\" is never alive: lower is 3, upper is 3");
+        says("id,lower,end,size\na,3,2,1\n", "line 2: item \"a\" has an empty lifetime, 3 to 3");
         says("id,lower,end,size\na,0,4294967295,2\n", "from 0 to 4294967294");
-        says("id,lower,upper,size\na,2,2,1\n", "line 2: item \"a\" is never alive: lower is 2, upper is 2");
+        says("id,lower,upper,size\na,2,2,1\n", "line 2: item \"a\" has an empty lifetime, 2 to 2");
     }
 
     #[test]
-    #[should_panic(expected = "one offset an item")]
+    #[should_panic(expected = "one offset per item")]
     fn offsets_must_match() {
         write(&Table::default(), &[1]);
     }

@@ -1,33 +1,33 @@
-//! Ejection search: under a capacity that is a little too low, items push each other out until all have a place.
+//! Ejection search: items displace each other below a capacity that is slightly too low, until all are placed.
 //!
-//! Some items wait for a place, at first those of the best packing that end above the capacity. One after the other is
-//! put where it overlaps the least weight, and what it overlaps waits in turn. Being pushed out makes an item heavier,
-//! so items that are hard to place come to stay, and others make room for them (after Nagata and Bräysy 2009, "A
-//! powerful route minimization heuristic for the vehicle routing problem with time windows"). Now and then all placed
-//! items fall down, or rise up, which joins the gaps between them.
+//! Initially, the items of the best packing that end above the capacity are unplaced. An unplaced item is placed where
+//! it overlaps the least weight, and the overlapped items become unplaced. Ejected items become heavier, so items that
+//! are hard to place tend to stay. (Follows Nagata and Bräysy 2009, "A powerful route minimization heuristic for the
+//! vehicle routing problem with time windows".) From time to time, all placed items are moved down or up, which joins
+//! gaps.
 //!
-//! It proves nothing and repeats nothing: where items are too many for the exact search it is what lowers the top.
+//! The search proves nothing. It lowers the top of instances with too many items for the exact search.
 
 use super::gap::UNPLACED;
 use super::meter::Meter;
 use super::problem::{Problem, align_up};
 use super::random::Random;
 
-/// The weight of the largest item at the start; others have less by the root of their area.
+/// Initial weight of the largest item; others have less, by the square root of their area.
 const WEIGHT: f64 = (1 << 20) as f64;
-/// Above this all weights are halved.
+/// All weights are halved when one exceeds this value.
 const HEAVIEST: u64 = 1 << 44;
-/// The capacity is lowered by this part of what lies between bound and top; by a smaller one where that was too much.
+/// The capacity is lowered by this fraction of the distance between bound and top, or by less after a failure.
 const PART: u64 = 16;
-/// Entries that a neighbor counts for: it is looked at and sorted twice.
+/// Cost of a neighbor in array entries: it is read and sorted twice.
 const LOOKS: u64 = 24;
 
 /// The search and its reusable memory.
 #[derive(Debug, Default)]
 pub(super) struct Eject {
-    /// Where each item is; [`UNPLACED`] while it waits.
+    /// Offset of each item; [`UNPLACED`] while it is unplaced.
     pub offsets: Vec<u64>,
-    /// All items are to end here or below.
+    /// Maximum end of all items.
     pub capacity: u64,
     /// Steps since the capacity was lowered.
     pub tried: u64,
@@ -37,7 +37,7 @@ pub(super) struct Eject {
     placements: u64,
     random: Random,
     upward: bool,
-    /// Start and weight of each placed neighbor, and end and weight, both ascending.
+    /// Start and weight, and end and weight, of each placed neighbor; both ascending.
     starts: Vec<(u64, u64)>,
     ends: Vec<(u64, u64)>,
     order: Vec<u32>,
@@ -45,7 +45,7 @@ pub(super) struct Eject {
 }
 
 impl Eject {
-    /// Forgets weights; the next [`Eject::lower`] sets them anew.
+    /// Resets the weights; the next [`Eject::lower`] initializes them.
     pub fn reset(&mut self) {
         self.weight.clear();
         self.waiting.clear();
@@ -54,7 +54,7 @@ impl Eject {
         self.placements = 0;
     }
 
-    /// Begins to lower a packing of that top towards the bound.
+    /// Starts to lower a packing with the given top towards the bound.
     pub fn lower(&mut self, problem: &Problem, packing: &[u64], (bound, top): (u64, u64)) {
         if self.weight.is_empty() {
             let area = |i: usize| (problem.size[i] as f64 * problem.span(i).len() as f64).sqrt();
@@ -76,7 +76,8 @@ impl Eject {
         }
     }
 
-    /// Goes on until all items have a place, so many steps are spent, or the meter is empty. Whether all have a place.
+    /// Runs until all items are placed, `steps` are spent, or the meter is empty. Returns `true` if all items are
+    /// placed.
     pub fn run(&mut self, problem: &Problem, steps: u64, meter: &mut Meter<'_>) -> bool {
         let (start, end) = (meter.spent, meter.spent.saturating_add(steps));
         let often = problem.len() as u64 / 4 + 1;
@@ -102,7 +103,7 @@ impl Eject {
         true
     }
 
-    /// One of those that wait: any, or the heaviest.
+    /// Selects an unplaced item: a random one or the heaviest.
     fn next(&mut self) -> Option<usize> {
         if self.waiting.is_empty() {
             return None;
@@ -114,7 +115,7 @@ impl Eject {
         Some(self.waiting.swap_remove(k) as usize)
     }
 
-    /// The offset where item `i` overlaps the least weight: on top of a neighbor or right under one.
+    /// Returns the offset where item `i` overlaps the least weight: on top of a neighbor, or directly below one.
     fn lightest(&mut self, problem: &Problem, i: usize) -> u64 {
         let Self { starts, ends, offsets, weight, .. } = self;
         starts.clear();
@@ -137,7 +138,7 @@ impl Eject {
         best.offset
     }
 
-    /// Lets all that item `i` overlaps at `offset` wait, each a little heavier.
+    /// Ejects everything that item `i` overlaps at `offset`, and increases its weight.
     fn push_out(&mut self, problem: &Problem, i: usize, offset: u64) {
         let mut heaviest = 0;
         for j in problem.neighbors(i) {
@@ -154,7 +155,7 @@ impl Eject {
         }
     }
 
-    /// Moves every placed item down as far as it goes, or up to the capacity.
+    /// Moves every placed item down as far as possible, or up to the capacity.
     fn settle(&mut self, problem: &Problem) {
         let Self { offsets, order, level, .. } = self;
         order.clear();
@@ -181,16 +182,16 @@ impl Eject {
     }
 }
 
-/// The best of the offsets looked at.
+/// The best offset so far.
 struct Candidate {
     weight: u64,
     offset: u64,
-    /// How many offsets of that weight were seen; each is as likely as the others.
+    /// Number of offsets with that weight so far; each is equally likely to be selected.
     equals: u64,
 }
 
 impl Candidate {
-    /// Looks at ascending offsets.
+    /// Examines ascending offsets.
     fn scan(
         &mut self,
         offsets: impl Iterator<Item = u64>,

@@ -1,9 +1,9 @@
-//! Where random decisions come from: a seed, or the bytes that a fuzzer chose.
+//! Source of random decisions: a seed, or the bytes of a fuzzer.
 
-/// A source of decisions. Equal sources decide equally on every machine.
+/// A source of random decisions. Equal sources give equal decisions on every machine.
 ///
-/// Bytes run out; from then on every decision is the first of its options, which ends loops and keeps graphs small, so
-/// that a fuzzer can shorten its input.
+/// When the bytes are used up, every decision is the first option. Loops then end and graphs stay small, so that a
+/// fuzzer can shorten its input.
 #[derive(Clone, Debug)]
 pub struct Entropy<'a> {
     source: Source<'a>,
@@ -13,22 +13,22 @@ pub struct Entropy<'a> {
 enum Source<'a> {
     /// The state of splitmix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
     Seed(u64),
-    /// What is left of the bytes.
+    /// The remaining bytes.
     Bytes(&'a [u8]),
 }
 
 impl<'a> Entropy<'a> {
-    /// Decisions without end, from a seed.
+    /// Creates an endless source from a seed.
     pub const fn seeded(seed: u64) -> Self {
         Self { source: Source::Seed(seed) }
     }
 
-    /// Decisions from bytes, one or two bytes each.
+    /// Creates a source from bytes; each decision uses one or two of them.
     pub const fn from_bytes(bytes: &'a [u8]) -> Self {
         Self { source: Source::Bytes(bytes) }
     }
 
-    /// A number below `bound`, 0 when `bound` is 0. `bound` is at most 2¹⁶.
+    /// Returns a number below `bound`, or 0 if `bound` is 0. `bound` is at most 2¹⁶.
     pub fn below(&mut self, bound: u32) -> u32 {
         if bound <= 1 {
             return 0;
@@ -59,15 +59,15 @@ impl<'a> Entropy<'a> {
         }
     }
 
-    /// True once in `n` times; false when bytes have run out.
+    /// Returns `true` with a probability of 1 in `n`; `false` when the bytes are used up.
     pub fn one_in(&mut self, n: u32) -> bool {
         n <= 1 || self.below(n) == n - 1
     }
 
-    /// One of `options`.
+    /// Returns one of `options`.
     ///
     /// # Panics
-    /// When there is none.
+    /// Panics if `options` is empty.
     pub fn pick<T: Copy>(&mut self, options: &[T]) -> T {
         options[self.below(options.len() as u32) as usize]
     }

@@ -1,42 +1,42 @@
-//! Instances that cannot be packed.
+//! Errors of invalid instances.
 
 use std::fmt;
 
-/// An instance that cannot be packed; items are named by their index.
+/// Error of an instance; items are identified by their index.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PackError {
-    /// An item is never alive.
+    /// A lifetime is empty.
     EmptyLifetime {
-        /// Which.
+        /// Index of the item.
         item: usize,
-        /// First time of its lifetime.
+        /// Start of the lifetime.
         lower: u32,
-        /// First time after it; not more than `lower`.
+        /// End of the lifetime; not above `lower`.
         upper: u32,
     },
-    /// An item's alignment is no power of two.
+    /// An alignment is not a power of two.
     Alignment {
-        /// Which.
+        /// Index of the item.
         item: usize,
-        /// Its alignment in bytes.
+        /// Alignment in bytes.
         align: u64,
     },
-    /// Items that follow each other without a break in time need offsets beyond 2^63.
+    /// Items with contiguous lifetimes may need offsets beyond 2^63.
     TooLarge {
-        /// The item with which the sum gets there.
+        /// The item at which the sum exceeds the limit.
         item: usize,
     },
-    /// There is not one previous offset for each item.
+    /// The number of previous offsets differs from the number of items.
     PreviousLength {
-        /// How many items there are.
+        /// Number of items.
         items: usize,
-        /// How many offsets.
+        /// Number of previous offsets.
         previous: usize,
     },
-    /// There are more items than 2^32 - 2.
+    /// The instance has more than 2^32 - 2 items.
     TooMany {
-        /// How many.
+        /// Number of items.
         items: usize,
     },
 }
@@ -45,29 +45,23 @@ impl fmt::Display for PackError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::EmptyLifetime { item, lower, upper } => {
-                write!(
-                    f,
-                    "item {item} is never alive: its lifetime is [{lower}, {upper}); make upper larger than lower"
-                )
+                write!(f, "item {item} has an empty lifetime, [{lower}, {upper}); use an upper above lower")
             }
             Self::Alignment { item, align } => {
-                write!(f, "item {item} has alignment {align}; use a power of two, 1 for none")
+                write!(f, "item {item} has an alignment of {align}; use a power of two, 1 for none")
             }
             Self::TooLarge { item } => {
-                write!(f, "up to item {item} sizes and alignments sum to more than 2^63 bytes; no heap is that large")
+                write!(f, "sizes and alignments up to item {item} exceed 2^63 bytes; use smaller sizes")
             }
             Self::PreviousLength { items, previous } => {
-                write!(
-                    f,
-                    "{previous} previous offsets were given for {items} items; give one for each, None where there is none"
-                )
+                write!(f, "{previous} previous offsets for {items} items; pass one for each, or None")
             }
-            Self::TooMany { items } => write!(f, "{items} items are too many; the limit is 2^32 - 2"),
+            Self::TooMany { items } => write!(f, "{items} items; the limit is 2^32 - 2"),
         }
     }
 }
 
-/// The sentence, since that is what an `unwrap` shows.
+/// Shows the message, because `unwrap` prints this.
 impl fmt::Debug for PackError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)

@@ -1,15 +1,15 @@
-//! The lowest top: decision searches at rising limits, from the lower bound up and from the best packing down.
+//! Minimizes the top: decision searches at capacities between the lower bound and the best packing.
 //!
-//! A search that succeeds does so quickly or hardly ever, depending on the order it tries items in. So every capacity
-//! is asked under a portfolio of orders with a small limit first, and the limit doubles from round to round. Some
-//! orders look at where earlier searches failed.
+//! A search usually succeeds quickly or not at all, depending on the order in which it tries items. Each capacity is
+//! therefore searched under several orders with a small limit, which doubles from round to round. Some orders prefer
+//! sections where earlier searches failed.
 
 use super::canonical::{Canonical, Outcome};
 use super::meter::{Bracket, Meter};
 use super::order::Order;
 use super::problem::Problem;
 
-/// The orders each decision is searched under; the weighted ones by failures.
+/// The orders of each decision search; the weighted ones use failure counts.
 const ORDERS: [Order; 7] = [
     Order::PeakWidth,
     Order::PeakArea,
@@ -19,9 +19,9 @@ const ORDERS: [Order; 7] = [
     Order::PeakDeath,
     Order::WeightedArea,
 ];
-/// Placements that the first round may try in each search, beyond two for each item.
+/// Placements per search in the first round, in addition to two per item.
 const FIRST_LIMIT: u64 = 512;
-/// The weight of a section: without failures, and with the most.
+/// Weight of a section without failures, and of the one with the most.
 const WEIGHTS: (u32, u32) = (256, 2560);
 
 /// Reusable memory.
@@ -32,13 +32,14 @@ pub(super) struct Exact {
     equal: Vec<u32>,
     keys: Vec<(u64, u64, u64, u32)>,
     unit: u64,
-    /// Which question comes next: limits double from round to round, and each round has up to four capacities.
+    /// Position in the sequence of searches: limits double from round to round, and each round has up to four
+    /// capacities.
     round: u32,
     part: u32,
 }
 
 impl Exact {
-    /// Begins anew. Not for dense instances.
+    /// Starts a new instance, which must not be dense.
     pub fn start(&mut self, problem: &Problem) {
         (self.unit, self.round, self.part) = (problem.unit(), 0, 0);
         self.find_equal(problem);
@@ -48,11 +49,12 @@ impl Exact {
         }
     }
 
-    /// Asks the next question: lowers the top or raises the bound of an open bracket, or neither.
+    /// Runs the next search. Lowers the top or raises the bound of an open bracket, or neither.
     ///
-    /// `best` holds a packing with that top and receives better ones.
+    /// `best` contains a packing with that top and is replaced by better ones.
     pub fn ask(&mut self, problem: &Problem, bracket: &mut Bracket, best: &mut [u64], meter: &mut Meter<'_>) {
-        // The bound itself; then, with less effort, the middle of the bracket, three quarters, seven eighths.
+        // Search at the bound itself; then, with less effort, at the middle, three quarters and seven eighths of the
+        // bracket.
         let width = bracket.top - bracket.bound;
         let capacity = bracket.bound + (width - (width >> self.part)) / self.unit * self.unit;
         let pointless = self.part > 0 && (capacity == bracket.bound || capacity >= bracket.top);
@@ -76,7 +78,7 @@ impl Exact {
         }
     }
 
-    /// Asks for one capacity under all orders, each with that many placements at most.
+    /// Searches one capacity under all orders, each with at most `limit` placements.
     fn decide(&mut self, problem: &Problem, capacity: u64, limit: u64, meter: &mut Meter<'_>) -> Outcome {
         self.search.failures.fill(0);
         for order in ORDERS {
@@ -97,7 +99,7 @@ impl Exact {
         }
     }
 
-    /// Finds, for each item, the first one of equal lifetime, size and alignment.
+    /// Determines for each item the first one of equal lifetime, size and alignment.
     fn find_equal(&mut self, problem: &Problem) {
         let span = |i: usize| u64::from(problem.lo[i]) << 32 | u64::from(problem.hi[i]);
         self.keys.clear();
@@ -113,7 +115,7 @@ impl Exact {
     }
 }
 
-/// The highest end.
+/// Returns the highest end.
 pub(super) fn top(problem: &Problem, offsets: &[u64]) -> u64 {
     offsets.iter().zip(&problem.size).map(|(offset, size)| offset + size).max().unwrap_or(0)
 }

@@ -1,12 +1,12 @@
-//! Best fit: puts one item into the tightest gap left by what is already placed.
+//! Best fit: places one item into the tightest gap between placed items.
 //!
-//! Packing all items this way in the order of falling size is the classic "greedy by size" of memory planners
-//! (Pisarchyk and Lee 2020, "Efficient Memory Management for Deep Neural Net Inference"). Unlike the skyline it can
-//! work around items that are already there, so it also completes partial packings.
+//! Applied to all items by decreasing size, this is the classic "greedy by size" of memory planners (Pisarchyk and Lee
+//! 2020, "Efficient Memory Management for Deep Neural Net Inference"). Unlike the skyline, it can also complete partial
+//! packings.
 
 use super::problem::{Problem, align_up};
 
-/// Offset of an item that is not placed.
+/// Offset of an unplaced item.
 pub(super) const UNPLACED: u64 = u64::MAX;
 
 /// Reusable memory.
@@ -14,15 +14,15 @@ pub(super) const UNPLACED: u64 = u64::MAX;
 pub(super) struct Gaps {
     /// Offset and end of each placed neighbor, ascending.
     taken: Vec<(u64, u64)>,
-    /// Neighbors looked at since the caller last reset it: the measure of work.
+    /// Number of neighbors examined since the caller last reset it: the measure of work.
     pub looks: u64,
 }
 
 impl Gaps {
-    /// The offset of the tightest gap below `capacity` that holds item `i`, the lowest among equals.
+    /// Returns the offset of the tightest gap below `capacity` that fits item `i`; the lowest of several.
     ///
-    /// `offsets` holds the placed items; others are [`UNPLACED`]. With [`UNPLACED`] as the capacity there is always a
-    /// place: on top of all neighbors.
+    /// `offsets` contains the placed items; others are [`UNPLACED`]. With [`UNPLACED`] as capacity a place always
+    /// exists: above all neighbors.
     pub fn best(&mut self, problem: &Problem, i: usize, offsets: &[u64], capacity: u64) -> Option<u64> {
         let (size, align) = (problem.size[i], problem.align[i]);
         self.taken.clear();
@@ -45,7 +45,7 @@ impl Gaps {
         best.or((start + size <= capacity).then_some(start))
     }
 
-    /// Packs all items in the order given. Returns the top.
+    /// Packs all items in the given order. Returns the top.
     pub fn pack(&mut self, problem: &Problem, order: &[u32], offsets: &mut [u64]) -> u64 {
         offsets.fill(UNPLACED);
         let mut top = 0;

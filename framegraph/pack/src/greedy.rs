@@ -1,4 +1,4 @@
-//! The portfolio: a few greedy packings in different orders, the lowest kept, stopping at the lower bound.
+//! Greedy portfolio: packs in several orders, keeps the lowest packing, and stops at the lower bound.
 
 use super::gap::Gaps;
 use super::order::{Criteria, Key, Order};
@@ -6,9 +6,9 @@ use super::problem::Problem;
 use super::skyline::Skyline;
 use super::sweep::Sweep;
 
-/// Orders for the skyline, the best on render graphs first.
+/// Orders for the skyline, starting with the best one for render graphs.
 const ORDERS: [Order; 4] = [Order::PeakArea, Order::Area, Order::PeakWidth, Order::PeakDeath];
-/// Further orders are tried while fewer items than this, or this many times the items, have been looked at.
+/// More orders are tried while fewer items than this, or than a multiple of the item count, have been examined.
 const LOOKS: u64 = 4096;
 const LOOKS_PER_ITEM: u64 = 16;
 
@@ -19,16 +19,16 @@ pub(super) struct Greedy {
     pub gaps: Gaps,
     sweep: Sweep,
     keys: Vec<Key>,
-    /// What [`Greedy::sort`] left.
+    /// Result of [`Greedy::sort`].
     pub order: Vec<u32>,
     trial: Vec<u64>,
 }
 
 impl Greedy {
-    /// Packs all items; `offsets` receives the best packing. Returns its top.
+    /// Packs all items and returns the top of the best packing, which is written to `offsets`.
     ///
-    /// Time: `n log n` to sort, then about 10 looks at an item for each order tried. One order is always tried; more
-    /// while the bound is not reached and the work stays linear.
+    /// Time: `n log n` for sorting, then about 10 operations per item for each order. Tries at least one order, and
+    /// more while the bound is not reached and the total work is linear.
     pub fn pack(&mut self, problem: &Problem, bound: u64, offsets: &mut Vec<u64>) -> u64 {
         let n = problem.len();
         offsets.clear();
@@ -54,7 +54,7 @@ impl Greedy {
         keep(top, best, &mut self.trial, offsets)
     }
 
-    /// Sorts all items; the result stays in [`Greedy::order`].
+    /// Sorts all items; the result is stored in [`Greedy::order`].
     pub fn sort(&mut self, problem: &Problem, order: Order) {
         let criteria = Criteria { total: &problem.total, weights: &[] };
         self.keys.clear();

@@ -1,24 +1,25 @@
-//! Joined items: those that fit together exactly are packed as one.
+//! Joined items: items that fit together exactly are packed as one.
 //!
-//! Items with equal lifetimes are stacked; of items with equal sizes, one may take over from the other where it dies;
-//! and five may form a wheel, four around a middle one. Nothing of this raises the live bytes of any section, so the
-//! peak stays what it was, while there are fewer items to place. (Buchsbaum, Karloff, Kenyon, Reingold and Thorup 2003,
-//! "OPT versus LOAD in dynamic storage allocation", box items in this way, with waste.) The best packing may hold apart
-//! what is joined. That is unlikely where so good a fit is unlikely to come by chance, so items are joined in that
-//! order: by how many partners chance alone would give an item. What was joined last is the first to be
-//! [taken apart](Joined::cut) again.
+//! Items with equal lifetimes are stacked. Two items with equal sizes can follow each other directly in time. Five
+//! items can form a wheel: four around a middle one. Joining never raises the live bytes of a section, so the peak is
+//! unchanged and fewer items must be placed. A similar method with waste is described by Buchsbaum, Karloff, Kenyon,
+//! Reingold and Thorup 2003, "OPT versus LOAD in dynamic storage allocation".
+//!
+//! The best packing may not contain the joined items. This is less likely for fits that are improbable by chance. Items
+//! are therefore joined in the order of the expected number of partners by chance. The last joins are the first to be
+//! [undone](Joined::cut).
 
 use super::problem::{Interval, Problem};
 use super::random::Random;
 
-/// What chance gives at first, in partners an item; doubled from round to round.
+/// Initial limit of the expected number of partners per item by chance; doubled from round to round.
 const FIRST_CHANCE: f64 = 0.005;
-/// Above this, whatever fits is joined.
+/// Above this limit, all exact fits are joined.
 const LAST_CHANCE: f64 = 4.0;
-/// Wheels are looked for where no more items die at once: the time is cubic in these.
+/// Maximum number of items ending at the same time for the search of wheels, which is cubic in it.
 const WHEEL_DEATHS: u32 = 32;
 
-/// An item, or several joined.
+/// An item, or several joined ones.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     /// Lifetime in sections.
@@ -26,45 +27,46 @@ struct Node {
     hi: u32,
     size: u64,
     align: u64,
-    /// The end of its parts in `parts`; they begin where those of the node before end.
+    /// End of its parts in `parts`; they begin at the end of those of the previous node.
     parts: u32,
 }
 
 /// The joined items and reusable memory.
 #[derive(Debug, Default)]
 pub(super) struct Joined {
-    /// What there is to pack after [`Joined::join`] or [`Joined::cut`]; times are sections.
+    /// Items to be packed after [`Joined::join`] or [`Joined::cut`]; times are sections.
     pub items: Vec<Interval>,
-    /// Where those items are.
+    /// Offsets of those items.
     pub offsets: Vec<u64>,
-    /// The problem's items, then what was joined, in that order.
+    /// The problem's items, then the joined ones in order of creation.
     nodes: Vec<Node>,
-    /// Nodes that were joined, and how far each lies above the lowest.
+    /// Joined nodes, and the offset of each from the lowest.
     parts: Vec<(u32, u64)>,
-    /// The nodes that are no part of another: `items` in the same order.
+    /// The nodes that are not part of another, in the order of `items`.
     whole: Vec<u32>,
     taken: Vec<bool>,
-    /// Nodes sorted by what partners have in common.
+    /// Nodes sorted by the properties that partners share.
     keys: Vec<(u32, u64, u32)>,
     deaths_at: Vec<(u32, u32)>,
     sizes: Vec<u64>,
-    /// Births and deaths in each section, and how many items live for so many.
+    /// Number of births and deaths in each section, and of items by lifetime.
     births: Vec<u32>,
     deaths: Vec<u32>,
     spans: Vec<u32>,
     node_offsets: Vec<u64>,
-    /// Of 16 fits, so many are passed over in each round, so that the order differs from join to join.
+    /// Number of fits out of 16 that are skipped in each round, so that the order varies between joins.
     pass_over: u64,
     random: Random,
 }
 
 impl Joined {
-    /// Begins anew: the joins that follow are always the same.
+    /// Resets the random numbers, so that the following joins are reproducible.
     pub fn reset(&mut self) {
         self.random = Random::default();
     }
 
-    /// Joins the items of a problem where chance gives each at most so many partners. Returns the entries looked at.
+    /// Joins items of a problem with at most `limit` expected partners by chance. Returns the number of examined
+    /// entries.
     pub fn join(&mut self, problem: &Problem, limit: f64) -> u64 {
         self.nodes.clear();
         self.parts.clear();
@@ -95,12 +97,12 @@ impl Joined {
         looks
     }
 
-    /// How many nodes there are, the problem's items included.
+    /// Number of nodes, including the problem's items.
     pub fn nodes(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Takes apart what was joined last until this many nodes are left; `offsets` are those of [`Joined::place`].
+    /// Undoes the last joins until this number of nodes is left. `offsets` are those of [`Joined::place`].
     pub fn cut(&mut self, nodes: usize) {
         self.taken.clear();
         self.taken.resize(nodes, false);
@@ -113,7 +115,7 @@ impl Joined {
         self.offsets.extend(self.whole.iter().map(|&k| self.node_offsets[k as usize]));
     }
 
-    /// Notes where `items` are placed, and so their parts. The first of the result are the problem's items.
+    /// Stores the offsets of `items`, and so of their parts. The problem's items come first in the result.
     pub fn place(&mut self, offsets: &[u64]) -> &[u64] {
         self.node_offsets.resize(self.nodes.len(), 0);
         for (&node, &offset) in self.whole.iter().zip(offsets) {
@@ -154,7 +156,7 @@ impl Joined {
         self.taken.resize(self.nodes.len(), false);
     }
 
-    /// Sorts all whole nodes by birth, then by what is asked for.
+    /// Sorts all whole nodes by birth, then by a second key.
     fn sort(&mut self, second: fn(&Node) -> u64) {
         let nodes = &self.nodes;
         let key = |&k: &u32| (nodes[k as usize].lo, second(&nodes[k as usize]), k);
@@ -183,7 +185,7 @@ impl Joined {
         self.whole.retain(|&k| !self.taken[k as usize]);
     }
 
-    /// Joins an item with one of equal size that is born where it dies.
+    /// Joins an item with one of equal size whose lifetime starts when its own ends.
     fn chain(&mut self, chance: f64) {
         self.sort(|node| node.size);
         for at in 0..self.keys.len() {
@@ -203,8 +205,8 @@ impl Joined {
         self.whole.retain(|&k| !self.taken[k as usize]);
     }
 
-    /// Joins five: `low` with `left` on it; where `left` dies, `middle` and `high` take its place; where `low` and
-    /// `middle` die together, `right` takes theirs, and dies with `high`.
+    /// Joins five items: `left` lies on `low`. When `left` ends, `middle` and `high` replace it. When `low` and
+    /// `middle` end, `right` replaces them, and ends together with `high`.
     fn wheel(&mut self) {
         self.sort(|node| node.size);
         self.deaths_at.clear();
@@ -243,20 +245,21 @@ impl Joined {
         self.whole.retain(|&k| !self.taken[k as usize]);
     }
 
-    /// A whole node that is born there, of that size, as asked for. The keys are sorted by size.
+    /// Finds a whole node with this birth, size and condition. The keys are sorted by size.
     fn born(&self, lo: u32, size: u64, fits: impl Fn(&Node) -> bool) -> Option<u32> {
         let from = self.keys.partition_point(|key| (key.0, key.1) < (lo, size));
         let same = self.keys[from..].iter().take_while(|key| (key.0, key.1) == (lo, size)).map(|key| key.2);
         same.into_iter().find(|&k| !self.taken[k as usize] && fits(&self.nodes[k as usize]))
     }
 
-    /// Whether chance gives an item few partners: of its mates in time, the part that has what it needs.
+    /// Returns `true` if few partners are expected by chance: the fraction of items with a matching time that also
+    /// match in size.
     fn unlikely(&mut self, mates: u32, same: u32, chance: f64) -> bool {
         f64::from(mates) * f64::from(same) <= chance * self.sizes.len() as f64
             && self.random.below(16) >= self.pass_over
     }
 
-    /// Takes the parts of a new node off the list and appends the node.
+    /// Marks the parts of a new node as taken and appends the node.
     fn put(&mut self, node: Node, parts: &[(u32, u64)]) {
         self.parts.extend_from_slice(parts);
         parts.iter().for_each(|part| self.taken[part.0 as usize] = true);
@@ -266,7 +269,7 @@ impl Joined {
     }
 }
 
-/// Whether two nodes may be one: where the first is aligned, so is what lies on it.
+/// Returns `true` if two nodes can be joined: if the first is aligned, so is the one on top of it.
 fn even(a: &Node, b: &Node) -> bool {
     a.align == b.align && a.size & (a.align - 1) == 0
 }

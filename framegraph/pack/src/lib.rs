@@ -1,14 +1,20 @@
-//! Offsets in one heap for resources with fixed lifetimes: static memory planning.
+//! Static memory planning: chooses offsets in a heap for resources with fixed lifetimes.
 //!
-//! Given when each item is alive and how large it is, [`pack`] chooses offsets so that items alive together do not
-//! overlap and the top, the heap's size, is low. The problem is NP-hard (Garey and Johnson 1979, SR2, "dynamic
-//! storage allocation"), yet on render graphs an optimal packing with its proof is nearly always to be had: no
-//! packing is lower than the peak of live bytes, so one that reaches it is optimal.
+//! Given the lifetime and size of each item, [`pack`] chooses offsets such that items that are live at the same time do
+//! not overlap. It minimizes the top, which is the size of the heap. The problem is NP-hard (Garey and Johnson 1979,
+//! SR2, "dynamic storage allocation"). For render graphs, an optimal packing is nearly always found and proved: no
+//! packing is lower than the maximum of live bytes, so a packing that reaches it is optimal.
 //!
-//! Where resources share memory only with their like, [`classes`] numbers what is alike.
+//! # When to use it
 //!
-//! Two efforts build on each other ([`Effort`]): a portfolio of greedy packings, and three searches that take turns.
-//! Both are deterministic and measured in steps, never in time, so that equal input gives equal offsets on every machine.
+//! - Placed resources of a render graph, or tensors of a neural network: lifetimes are known before memory is
+//!   allocated.
+//! - Offline tools that need a proof of optimality, or a lower bound.
+//!
+//! It is not an online allocator: all lifetimes must be known. For memory that is shared only between resources of
+//! equal shape, use [`classes`].
+//!
+//! # Example
 //!
 //! ```
 //! use framegraph_pack::{Interval, Options, Scratch, pack};
@@ -24,6 +30,18 @@
 //! assert_eq!(offsets[0], offsets[1]);
 //! # Ok::<(), framegraph_pack::PackError>(())
 //! ```
+//!
+//! # How it works
+//!
+//! [`Effort`] selects between a portfolio of greedy packings, and the same followed by three searches in turn. Both are
+//! deterministic and limited in steps, not in time, so equal input gives equal offsets on every machine.
+//!
+//! # Cargo features
+//!
+//! | feature | default | effect |
+//! | --- | --- | --- |
+//! | `serde` | no | `Serialize` and `Deserialize` for [`Effort`] |
+//! | `testing` | no | random instances, instances with a known optimum, and CSV tables |
 
 mod canonical;
 pub mod classes;
@@ -64,26 +82,25 @@ pub use problem::Interval;
 use problem::Problem;
 use stable::Stable;
 
-/// How hard to try.
+/// Effort spent on packing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Effort {
-    /// The best of several greedy packings, in about linear time.
+    /// The best of several greedy packings, in nearly linear time.
     Greedy,
-    /// Greedy, then an exact search, which proves what it finds. Where it does not within the default budget, two searches
-    /// that lower the top without a proof take turns with it. Files may also say `Search`, an effort between the two
-    /// that never found a lower top.
+    /// Greedy packing followed by an exact search with a proof. If the proof needs more than the default budget, two
+    /// searches without proof run in turn with it. Files may also contain `Search`, a former effort between the two.
     #[default]
     #[cfg_attr(feature = "serde", serde(alias = "Search"))]
     Exact,
 }
 
-/// What [`pack`] may spend.
+/// Effort and budget of [`pack`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// How hard to try.
+    /// Effort.
     pub effort: Effort,
-    /// What the searches may spend. A step is 64 array entries looked at, about 0.15 to 0.3 µs.
+    /// Budget of the searches. A step examines 64 array entries and takes about 0.15 to 0.3 µs.
     pub budget_steps: u64,
 }
 
@@ -93,10 +110,10 @@ impl Default for Options {
     }
 }
 
-/// Which solver the offsets are from.
+/// The solver that found the offsets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// The earlier packing, or as much of it as fits under the same top.
+    /// The previous offsets, as far as they fit under the same top.
     Kept,
     /// A greedy packing.
     Greedy,
@@ -104,28 +121,28 @@ pub enum Method {
     Exact,
 }
 
-/// What was found.
+/// Result of packing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Packing {
-    /// The highest end of any item: the heap's size, bytes.
+    /// The highest end of any item, which is the size of the heap, in bytes.
     pub top: u64,
-    /// No packing has a lower top, bytes.
+    /// Lower bound of the top of any packing, in bytes.
     pub lower_bound: u64,
-    /// The largest sum of sizes that are alive at one time, bytes; at most `lower_bound`.
+    /// Maximum of the live bytes over time; at most `lower_bound`.
     pub peak: u64,
-    /// A time of that peak: the items that form it are those alive then.
+    /// A time at which the maximum is reached.
     pub peak_at: u32,
-    /// Whether the top is proved to be the lowest: it equals `lower_bound`.
+    /// The top is proved to be minimal: it equals `lower_bound`.
     pub optimal: bool,
-    /// Steps spent of the budget.
+    /// Number of steps spent.
     pub steps: u64,
-    /// How many items are at their previous offset.
+    /// Number of items at their previous offset.
     pub kept: usize,
-    /// Which solver the offsets are from.
+    /// The solver that found the offsets.
     pub method: Method,
 }
 
-/// Reusable memory: once warm, packing allocates nothing.
+/// Reusable memory: once warm, packing does not allocate.
 #[derive(Debug, Default)]
 pub struct Scratch {
     problem: Problem,
@@ -135,22 +152,23 @@ pub struct Scratch {
     best: Vec<u64>,
 }
 
-/// Chooses an offset for every item; `offsets` receives them in the order of the items.
+/// Chooses an offset for every item and writes them to `offsets`, in the order of the items.
 ///
-/// Items alive together do not overlap, every offset is a multiple of its item's alignment, and the top is as low as
-/// the effort and the budget allow.
+/// Items that are live at the same time do not overlap, every offset is a multiple of its item's alignment, and the top
+/// is minimized within the limits of `options`.
 ///
-/// `previous`, one entry an item, are offsets to keep: the top is never higher than without them, and under that top
-/// as many as possible stay, those of large items first. Offsets that are not aligned or in each other's way are
-/// taken for none.
+/// `previous` contains offsets to keep, one entry per item. They never raise the top; within that top, as many as
+/// possible are kept, starting with large items. Offsets that are misaligned or overlap each other are ignored.
 ///
-/// An instance with more than 2^26 pairs of items alive together, and more than 256 an item, is only swept once in
-/// the order of birth; `previous` is not looked at then.
+/// Instances are called dense if more than 2^26 pairs of items, and more than 256 per item, are live at the same time.
+/// They are packed by a single sweep in the order of birth, ignoring `previous`.
 ///
-/// Time: greedy packing takes about 0.4 µs an item on render graphs, and a few ns a pair of items alive together where
-/// these are many. Memory: linear in the items and the sections they live in, at most about 1 KiB an item or 256 MiB.
+/// Time: greedy packing takes about 0.4 µs per item on render graphs, plus a few ns per pair of items that are live at
+/// the same time. Memory: linear in the number of items and their sections, at most about 1 KiB per item or 256 MiB.
 ///
-/// # Errors See [`PackError`]; `offsets` is then untouched.
+/// # Errors
+///
+/// See [`PackError`]; `offsets` is unchanged in case of an error.
 pub fn pack(
     items: &[Interval],
     previous: Option<&[Option<u64>]>,
@@ -161,10 +179,10 @@ pub fn pack(
     pack_watched(items, previous, options, scratch, offsets, &mut |_| ControlFlow::Continue(()))
 }
 
-/// As [`pack`], and tells `watch` how far it is every few milliseconds of [`Effort::Exact`]: 2^14 steps.
+/// Packs like [`pack`] and reports progress to `watch` every 2^14 steps (a few milliseconds) of [`Effort::Exact`].
 ///
-/// Where `watch` breaks, the best packing so far is returned as if the budget had ended. So a caller that has a clock,
-/// or a signal, can end the search by it; what is found in so many steps is the same on every machine.
+/// If `watch` returns `Break`, the best packing so far is returned, as if the budget had ended. A caller can so end the
+/// search by time or by a signal. The result after a given number of steps is the same on every machine.
 ///
 /// ```
 /// use framegraph_pack::{Interval, Options, Scratch, pack_watched};
@@ -183,7 +201,7 @@ pub fn pack(
 /// ```
 ///
 /// # Errors
-/// See [`PackError`]; `offsets` is then untouched.
+/// See [`PackError`]; `offsets` is unchanged in case of an error.
 pub fn pack_watched(
     items: &[Interval],
     previous: Option<&[Option<u64>]>,
@@ -219,7 +237,7 @@ pub fn pack_watched(
     })
 }
 
-/// The efforts in their order, until bound and top meet. The packing is left in `scratch.best`.
+/// Runs the solvers of the effort until bound and top meet. The packing is stored in `scratch.best`.
 fn solve(
     scratch: &mut Scratch,
     previous: Option<&[Option<u64>]>,

@@ -1,22 +1,22 @@
-//! How low can the top be? The live bytes of the fullest section, and what alignment must waste there.
+//! Lower bound of the top: the maximum of live bytes, plus unavoidable padding.
 
 use super::problem::{Problem, align_up};
 
-/// A bound that holds for every packing, and where it comes from.
+/// A lower bound for every packing, and its origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct LowerBound {
-    /// No packing has a lower top, bytes.
+    /// Lower bound of the top, in bytes.
     pub bytes: u64,
-    /// The largest sum of sizes alive at one time, bytes.
+    /// Maximum of live bytes, in bytes.
     pub peak: u64,
-    /// A time of that peak.
+    /// A time at which the maximum is reached.
     pub at: u32,
 }
 
-/// The peak of live bytes, raised by unavoidable padding in that section.
+/// Returns the maximum of live bytes plus the unavoidable padding in that section.
 ///
-/// All items of a section start at multiples of their smallest alignment, so each but the topmost takes its size
-/// rounded up to that. The topmost is at best the one that wastes most.
+/// All items of a section start at multiples of their smallest alignment, so the size of each is rounded up to it,
+/// except that of the topmost. At best, the topmost is the one with the most padding.
 pub(super) fn lower_bound(problem: &Problem) -> LowerBound {
     let mut bound = LowerBound::default();
     let mut section = None;

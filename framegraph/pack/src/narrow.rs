@@ -1,9 +1,9 @@
-//! Three searches that take turns, so that none spends much more than its share.
+//! Three searches that run in turn, so that none takes much more than its share of the budget.
 //!
-//! The exact search begins, and has the default budget to itself: on frames it is all that is needed. What it leaves
-//! open, the [ejection search](super::eject) lowers, and so do cycles over [joined items](super::join): these are packed
-//! first, then taken apart step by step, with an ejection search at each step (the multilevel scheme of graph
-//! partitioning, Karypis and Kumar 1998).
+//! The exact search runs first and has the default budget for itself, which suffices for most frames. The remaining
+//! budget is shared with two other searches. One is the [ejection search](super::eject). The other runs cycles over
+//! [joined items](super::join). They are packed first and then taken apart step by step, with an ejection search at
+//! each step. (This is the multilevel scheme of graph partitioning, Karypis and Kumar 1998.)
 
 use super::eject::Eject;
 use super::exact::{self, Exact};
@@ -13,23 +13,22 @@ use super::lower_bound::lower_bound;
 use super::meter::{Bracket, Meter};
 use super::problem::Problem;
 
-/// Steps of the exact search before the others begin.
+/// Steps of the exact search before the others start.
 const ALONE: u64 = 1 << 18;
-/// Of what is spent after that, the exact search has one part in so many: of few items, and of many.
+/// Denominator of the exact search's share of the steps while other searches run: for few items, and for many.
 const SHARES: (u64, u64) = (3, 16);
-/// Steps of a turn of the ejection search.
+/// Steps per turn of the ejection search.
 const TURN: u64 = 1 << 16;
-/// Steps for each item before the ejection search tries a higher capacity.
+/// Steps per item before the ejection search tries a higher capacity.
 const PATIENCE: u64 = 512;
-/// How likely by chance what is joined may be, cycle by cycle.
+/// Limits of the expected number of partners by chance, for successive cycles.
 const LIMITS: [f64; 4] = [f64::INFINITY, 0.16, 0.02, 1.0];
-/// Steps for each item and level of the first cycle.
+/// Steps per item and level of the first cycle.
 const LEVEL: u64 = 64;
-/// A cycle over so many items that does not help counts twice, so that it waits longer for its next turn; over twice as
-/// many, three times.
+/// Number of items per extra penalty unit of a cycle that does not help, which delays its next turn.
 const MANY: usize = 1250;
 
-/// More items than this are too many for the exact search to be of much use.
+/// Maximum number of items for which the exact search gets the larger share.
 const FEW: usize = 400;
 
 /// Reusable memory.
@@ -55,7 +54,7 @@ struct Level {
 impl Narrow {
     /// Lowers the meter's top and raises its bound until they meet or the meter is empty.
     ///
-    /// `best` holds a packing with that top and receives better ones. Not for dense instances.
+    /// `best` contains a packing with that top and is replaced by better ones. The instance must not be dense.
     pub fn minimize(&mut self, problem: &Problem, best: &mut [u64], meter: &mut Meter<'_>) {
         self.exact.start(problem);
         self.eject.reset();
@@ -94,7 +93,7 @@ impl Narrow {
         }
     }
 
-    /// Packs joined items, then takes them apart; so many steps for each search at each level.
+    /// Packs joined items, then takes them apart step by step. `steps` is the minimum budget of each search.
     fn cycle(&mut self, problem: &Problem, best: &mut [u64], (limit, steps): (f64, u64), meter: &mut Meter<'_>) {
         meter.spend(self.joined.join(problem, limit));
         let steps = steps + LEVEL * problem.len() as u64;
@@ -117,7 +116,7 @@ impl Narrow {
             if lowest == bound || 2 * items >= all {
                 return;
             }
-            // Twice as many items.
+            // Doubles the number of items.
             nodes = all + (nodes - all) * (all - 2 * items) / (all - items);
             self.joined.cut(nodes);
             first = false;
@@ -126,7 +125,7 @@ impl Narrow {
 }
 
 impl Level {
-    /// Packs the level's problem: from that packing on, or from none with all searches.
+    /// Packs the level's problem, starting from a packing, or from scratch with all searches.
     fn solve(&mut self, from: Option<&Vec<u64>>, bound: u64, steps: u64, meter: &mut Meter<'_>) {
         let Self { problem, greedy, exact, eject, best, offsets } = self;
         let mut bracket = Bracket { bound, top: 0 };

@@ -1,49 +1,49 @@
-//! Orders in which solvers consider items: the criterion decides, then a second one, then the order of birth.
+//! Orders in which solvers consider items: by a criterion, then by a second one, then by birth.
 
 use super::problem::Problem;
 
-/// Which items come first. Each name lists the criteria, all largest first.
+/// The order of items. Each name lists the criteria, all descending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
     /// Live bytes of the item's fullest section, then area.
     PeakArea,
-    /// Live bytes of the item's fullest section, then lifetime.
+    /// Live bytes of the item's fullest section, then length of the lifetime.
     PeakWidth,
-    /// Live bytes of the item's fullest section, then death.
+    /// Live bytes of the item's fullest section, then end of the lifetime.
     PeakDeath,
-    /// Live bytes of the item's fullest section, then the number of sections.
+    /// Live bytes of the item's fullest section, then number of sections.
     PeakSpan,
-    /// Lifetime, then live bytes.
+    /// Length of the lifetime, then live bytes of the fullest section.
     WidthPeak,
     /// Area, then size.
     Area,
-    /// Size, then lifetime.
+    /// Size, then length of the lifetime.
     Size,
-    /// Live bytes times weight of the section of the item where that is most, then lifetime.
+    /// Maximum of live bytes times weight over the item's sections, then length of the lifetime.
     WeightedPeak,
-    /// The largest weight of the item's sections, then area.
+    /// Maximum weight of the item's sections, then area.
     WeightedArea,
 }
 
-/// What the orders look at besides the items themselves.
+/// Inputs of the orders, apart from the items.
 #[derive(Clone, Copy)]
 pub(super) struct Criteria<'a> {
-    /// Live bytes of each section, over the items that matter.
+    /// Live bytes of each section, over the relevant items.
     pub total: &'a [u64],
-    /// A weight for each section; only the weighted orders look at them.
+    /// Weight of each section; used only by weighted orders.
     pub weights: &'a [u32],
 }
 
-/// A sort key: ascending in this is the order asked for.
+/// Sort key; ascending keys give the order.
 pub(super) type Key = (u64, u64, u32);
 
 impl Order {
-    /// The sort key of item `i`.
+    /// Returns the sort key of item `i`.
     pub fn key(self, problem: &Problem, criteria: Criteria<'_>, i: usize) -> Key {
         let peak = || criteria.total[problem.span(i)].iter().copied().max().unwrap_or(0);
         let width = u64::from(problem.width[i]);
         let span = u64::from(problem.hi[i] - problem.lo[i]);
-        // Lifetime first, with the size breaking ties, in one number.
+        // Combines a major criterion with the size in one number.
         let long = |major: u64| major << 32 | problem.size[i].min(u64::from(u32::MAX));
         let (first, second) = match self {
             Self::PeakArea => (peak(), problem.area(i)),

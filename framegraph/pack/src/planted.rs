@@ -1,7 +1,8 @@
-//! Instances of memory packing with a known lowest top: a rectangle of time and bytes, cut into pieces.
+//! Instances with a known optimum: a rectangle of time and bytes that is cut into pieces.
 //!
-//! The pieces fill the rectangle, so its height is both reachable and a lower bound. Where some pieces are left out
-//! ([`Planted::left_out_percent`]) it is still reachable; the published "challenging" instances look like that.
+//! The pieces fill the rectangle, so its height is a lower bound and can be reached. If pieces are left out
+//! ([`Planted::left_out_percent`]), the height can still be reached; the published "challenging" instances look like
+//! that.
 //!
 //! ```
 //! use framegraph_pack::planted::{Cuts, Planted};
@@ -14,26 +15,26 @@
 use crate::Interval;
 use crate::entropy::Entropy;
 
-/// Which way pieces are cut.
+/// Direction and pattern of the cuts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cuts {
-    /// Across the longer side of most pieces, as a share of the rectangle's.
+    /// Mostly through the longer side of a piece. Sides are measured relative to those of the rectangle.
     Even,
-    /// Mostly between addresses: pieces are alive for long and take little.
+    /// Mostly between addresses: long lifetimes and small sizes.
     Long,
-    /// Mostly between times: pieces are alive shortly and take much.
+    /// Mostly between times: short lifetimes and large sizes.
     Brief,
-    /// A third of the pieces into five around a middle one, which no straight cut separates.
+    /// A third of the pieces are cut into five around a middle one, which no straight cut can separate.
     Pinwheels,
-    /// Into rows, each of them at times of its own into five: a fifth of the pieces is alive at a time.
+    /// Into rows, each cut into five at different times: a fifth of the pieces is live at any time.
     Rows,
 }
 
 impl Cuts {
-    /// All ways.
+    /// All variants.
     pub const ALL: [Self; 5] = [Self::Even, Self::Long, Self::Brief, Self::Pinwheels, Self::Rows];
 
-    /// What tables call it.
+    /// Name of the variant in tables.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Even => "even",
@@ -45,24 +46,24 @@ impl Cuts {
     }
 }
 
-/// What is cut, and how.
+/// Parameters of an instance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Planted {
-    /// How many pieces, unless the rectangle is too small for so many.
+    /// Number of pieces, unless the rectangle is too small.
     pub items: usize,
     /// Width of the rectangle: lifetimes are within `0..times`. From 1 to 65536.
     pub times: u32,
     /// Height of the rectangle in units. From 1 to 65536.
     pub units: u32,
-    /// Bytes of a unit, a power of two; every item is aligned to it.
+    /// Bytes per unit, a power of two; every item is aligned to it.
     pub unit_bytes: u64,
-    /// Which way.
+    /// Direction and pattern of the cuts.
     pub cuts: Cuts,
-    /// Of a hundred pieces, so many are left out; the height is then no longer a lower bound.
+    /// Percentage of pieces that are left out. Above 0, the height is not a lower bound.
     pub left_out_percent: u32,
 }
 
-/// A piece: times, then units.
+/// A piece: times and units.
 #[derive(Clone, Copy)]
 struct Piece {
     time: [u32; 2],
@@ -80,17 +81,17 @@ impl Piece {
 }
 
 impl Planted {
-    /// 1000 pieces of a square of 1024 times and 1024 units of one byte.
+    /// Returns the parameters of 1000 pieces of a square of 1024 times and 1024 units of one byte.
     pub const fn square(cuts: Cuts) -> Self {
         Self { items: 1000, times: 1024, units: 1024, unit_bytes: 1, cuts, left_out_percent: 0 }
     }
 
-    /// The lowest top there is when nothing is left out, bytes.
+    /// The minimum top if no piece is left out, in bytes.
     pub const fn height_bytes(&self) -> u64 {
         self.units as u64 * self.unit_bytes
     }
 
-    /// The items of one seed, in random order.
+    /// Returns the items of one seed, in random order.
     pub fn items(&self, seed: u64) -> Vec<Interval> {
         let entropy = &mut Entropy::seeded(seed);
         let mut pieces = vec![Piece { time: [0, self.times], unit: [0, self.units] }];
@@ -113,7 +114,7 @@ impl Planted {
         pieces.iter().map(item).collect()
     }
 
-    /// Cuts the largest of a few pieces, unless it is too small for the cut that was drawn.
+    /// Cuts the largest of a few random pieces, unless it is too small.
     fn cut(&self, entropy: &mut Entropy<'_>, pieces: &mut Vec<Piece>) {
         let area = |k: usize| u64::from(pieces[k].times()) * u64::from(pieces[k].units());
         let drawn = [(); 4].map(|()| entropy.below(pieces.len() as u32) as usize);
@@ -128,7 +129,7 @@ impl Planted {
             pieces.extend(pinwheel(entropy, piece));
             return;
         }
-        // Sides as shares of the rectangle's; the share of cuts between times is that of the longer side.
+        // Sides relative to the rectangle. The probability of a cut between times is that of the longer side.
         let width = u64::from(piece.times()) * u64::from(self.units);
         let height = u64::from(piece.units()) * u64::from(self.times);
         let (width, height) = match self.cuts {
@@ -156,7 +157,7 @@ impl Planted {
     }
 }
 
-/// Five pieces: four that each begin where the last ends, around a middle one.
+/// Cuts a piece into five: four in a cycle around a middle one.
 fn pinwheel(entropy: &mut Entropy<'_>, piece: Piece) -> [Piece; 5] {
     let mut between = |[low, high]: [u32; 2]| {
         let first = low + 1 + entropy.below(high - low - 2);
@@ -193,7 +194,7 @@ mod tests {
                     Some(*live as u64)
                 });
                 let live: Vec<_> = sums.collect();
-                let (end, full) = live.split_last().expect("there are items");
+                let (end, full) = live.split_last().expect("the instance has items");
                 assert!(*end == 0 && full.iter().all(|&live| live == plan.height_bytes()), "{plan:?}: {live:?}");
             }
         }

@@ -1,64 +1,64 @@
-//! One instance, prepared once for every solver: items renumbered by birth, time compressed to sections.
+//! A prepared instance, shared by all solvers: items ordered by birth, and time compressed to sections.
 //!
-//! A *section* is a maximal stretch of time whose live set is contained in no other: two items are alive together
-//! exactly when they share a section, and only sections can be full. (In graph words: the maximal cliques of an
-//! interval graph, in time order.)
+//! A *section* is a maximal period of time whose live set is not contained in another one. Two items are live at the
+//! same time if and only if they share a section. Only sections can be full. Sections are the maximal cliques of an
+//! interval graph, in time order.
 
 use crate::error::PackError;
 
-/// One resource's demand.
+/// The memory demand of one resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Interval {
-    /// First time at which the resource is alive. Any unit; a compiler uses steps.
+    /// Start of the lifetime, in any unit. The compiler uses steps.
     pub lower: u32,
-    /// First time at which it is dead again; more than `lower`.
+    /// End of the lifetime, exclusive; above `lower`.
     pub upper: u32,
-    /// Bytes. An item of no bytes is placed at 0 and overlaps nothing.
+    /// Size in bytes. Items of size 0 are placed at 0 and overlap nothing.
     pub size: u64,
-    /// The offset will be a multiple of this: a power of two.
+    /// Alignment of the offset in bytes; a power of two.
     pub align: u64,
 }
 
-/// A prepared instance. Item indices in this module's siblings are *local*: positions in these arrays.
+/// A prepared instance. Item indices in solvers are *local*: positions in these arrays.
 #[derive(Debug, Default)]
 pub(super) struct Problem {
-    /// Caller's index of each local item; items of size 0 are left out.
+    /// Caller's index of each local item; items of size 0 are omitted.
     pub item: Vec<u32>,
-    /// Bytes, > 0.
+    /// Size in bytes, above 0.
     pub size: Vec<u64>,
-    /// Bytes, a power of two.
+    /// Alignment in bytes, a power of two.
     pub align: Vec<u64>,
-    /// Lifetime length in the caller's time units, > 0.
+    /// Length of the lifetime in the caller's units, above 0.
     pub width: Vec<u32>,
-    /// First section of each item. Ascending: items are numbered in the order of their birth.
+    /// First section of each item. Ascending, because items are numbered by birth.
     pub lo: Vec<u32>,
-    /// One past the last section of each item.
+    /// End of each item's sections, exclusive.
     pub hi: Vec<u32>,
     /// Live bytes of each section.
     pub total: Vec<u64>,
-    /// A time at which all items of the section are alive.
+    /// A time at which all items of the section are live.
     pub time: Vec<u32>,
-    /// First item born in section `s` or later; one more entry than there are sections.
+    /// First item born in each section or later; has one more entry than there are sections.
     pub born: Vec<u32>,
-    /// Start of each section's members in `member`; one more entry than there are sections. Empty if `dense`.
+    /// Start of each section's members in `member`; has one more entry than there are sections. Empty if `dense`.
     member_at: Vec<u32>,
     member: Vec<u32>,
-    /// There are too many pairs of items alive together to look at each: only the sweep can pack such an instance.
+    /// Too many pairs of items are live at the same time to examine each. Only the sweep can pack such an instance.
     pub dense: bool,
     sorted: Vec<u64>,
     clock: Vec<u32>,
     events: Vec<u8>,
 }
 
-/// Above this many (item, section) pairs, 128 MiB of them, and above `DENSE_PER_ITEM` of them an item, or above twice as
-/// many pairs of items alive together, an instance is dense.
+/// Limit of (item, section) pairs, which need 128 MiB, and limit of pairs per item. An instance that exceeds both is
+/// dense, or one with twice as many pairs of items that are live at the same time.
 const DENSE_PAIRS: u64 = 1 << 25;
 const DENSE_PER_ITEM: u64 = 128;
 const BIRTH: u8 = 1;
 const DEATH: u8 = 2;
 
 impl Problem {
-    /// Number of items of non-zero size.
+    /// Number of items with a size above 0.
     pub fn len(&self) -> usize {
         self.item.len()
     }
@@ -73,27 +73,27 @@ impl Problem {
         self.lo[i] as usize..self.hi[i] as usize
     }
 
-    /// The items alive in section `s`, ascending. Not for dense instances.
+    /// The items that live in section `s`, ascending. Not available for dense instances.
     pub fn members(&self, s: usize) -> &[u32] {
         &self.member[self.member_at[s] as usize..self.member_at[s + 1] as usize]
     }
 
-    /// Every item that is alive together with `i`, and `i` itself: those alive at its birth, then those born later.
+    /// Every item that shares a section with `i`, including `i`: those live at its birth, then those born later.
     pub fn neighbors(&self, i: usize) -> impl Iterator<Item = usize> + '_ {
         let (lo, hi) = (self.lo[i] as usize, self.hi[i] as usize);
         let later = self.born[lo + 1] as usize..self.born[hi] as usize;
         self.members(lo).iter().map(|&j| j as usize).chain(later)
     }
 
-    /// Lifetime times size, saturating.
+    /// Length of the lifetime times size. Saturates.
     pub fn area(&self, i: usize) -> u64 {
         self.size[i].saturating_mul(u64::from(self.width[i]))
     }
 
-    /// Fills `self` from the caller's items, reusing its memory. Time: sorts, so `n log n`.
+    /// Fills `self` from the caller's items and reuses its memory. Time: `n log n` for sorting.
     ///
     /// # Errors
-    /// See [`PackError`]; the first bad item in the caller's order is named.
+    /// Returns an error for the first invalid item in the caller's order; see [`PackError`].
     pub fn prepare(&mut self, items: &[Interval]) -> Result<(), PackError> {
         check(items)?;
         self.sort_by_birth(items);
@@ -124,13 +124,13 @@ impl Problem {
         }
     }
 
-    /// Turns lifetimes into section ranges. A section ends at a death that follows a birth.
+    /// Converts lifetimes into ranges of sections. A section ends at a death that follows a birth.
     fn compress_time(&mut self, items: &[Interval]) {
         let Self { item, lo, hi, time, sorted, clock, events, .. } = self;
         let live = || item.iter().map(|&index| &items[index as usize]);
         let first = live().next().map_or(0, |item| item.lower);
         let last = live().map(|item| item.upper).max().unwrap_or(0);
-        // Times are slots directly where they are few, else by rank among all endpoints.
+        // Times are used as indices directly if there are few, otherwise by rank among all endpoints.
         let direct = u64::from(last - first) <= 8 * item.len() as u64;
         sorted.clear();
         if !direct {
@@ -171,7 +171,7 @@ impl Problem {
         }
     }
 
-    /// Refuses instances whose offsets could pass 2^63, item group by item group (groups share no time).
+    /// Rejects instances whose offsets could exceed 2^63, separately for groups of items that share no time.
     fn check_demand(&self) -> Result<(), PackError> {
         let (mut demand, mut end) = (0u128, 0);
         for i in 0..self.len() {
@@ -240,8 +240,8 @@ impl Problem {
         member_at.pop();
     }
 
-    /// Every offset of a packing without slack is a multiple of this: such offsets are sums of sizes, rounded up to
-    /// alignments.
+    /// Returns the greatest unit of all offsets of a packing without slack. These offsets are sums of sizes, rounded up
+    /// to alignments.
     pub fn unit(&self) -> u64 {
         let sizes = self.size.iter().fold(0, |unit, &size| gcd(unit, size));
         let binding = self.align.iter().filter(|&&align| sizes & (align - 1) != 0);
@@ -249,7 +249,7 @@ impl Problem {
     }
 }
 
-/// How many pairs of items share a section: each item meets those born in its later sections, and its birth mates.
+/// Returns the number of pairs of items that share a section.
 fn pairs_alive_together(lo: &[u32], hi: &[u32], born: &[u32]) -> u64 {
     let met = |i: usize| u64::from(born[hi[i] as usize]) - i as u64;
     (0..lo.len()).map(met).sum()
@@ -277,7 +277,7 @@ fn gcd(mut a: u64, mut b: u64) -> u64 {
     a
 }
 
-/// The next multiple of `align`, a power of two. Never overflows: [`Problem::prepare`] bounds both.
+/// Returns the next multiple of `align`, a power of two. Cannot overflow, because [`Problem::prepare`] bounds both.
 pub(super) fn align_up(offset: u64, align: u64) -> u64 {
     (offset + (align - 1)) & !(align - 1)
 }

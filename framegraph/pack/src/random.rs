@@ -1,11 +1,11 @@
-//! Random numbers from a fixed seed: searches that use them give equal output for equal input.
+//! Random numbers from a fixed seed, so that searches are deterministic.
 
-/// splitmix64 (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators").
+/// The generator splitmix64 (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators").
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Random(pub u64);
 
 impl Random {
-    /// A number below `count`, which is not 0.
+    /// Returns a number below `count`, which must not be 0.
     pub fn below(&mut self, count: u64) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;

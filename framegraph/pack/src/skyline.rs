@@ -1,13 +1,14 @@
-//! Lowest position first: a greedy packing that grows all sections evenly, like a skyline.
+//! Lowest position first: a greedy packing that raises all sections evenly, like a skyline.
 //!
-//! The rule: of all items not yet placed, take the one that can sit lowest on top of what is placed; among equals the
-//! first of the given order. No item is ever put under another. This is the first descent of the exact search (module
-//! `canonical`) without its look-ahead, and where no section is crowded it reaches the lower bound more often than
-//! placing by size: positions low in the heap go to the items that have least freedom, while gap filling by size lets
-//! the large items choose first and strands the long ones.
+//! Rule: of all unplaced items, place the one with the lowest position above the placed items; of several, the first in
+//! the given order. Items are never placed below others. This is the first descent of the exact search (module
+//! `canonical`) without look-ahead. On instances without crowded sections, it reaches the lower bound more often than
+//! placing by size. Low positions go to the items with the least freedom, while gap filling by size places large items
+//! first and leaves no room for long ones.
 //!
-//! An item that cannot sit at the current level waits on the item that blocks it highest, and is looked at again only
-//! when that level is reached. Items alive together with `k` others cost `k` comparisons and about 10 looks each.
+//! An item that does not fit at the current level waits for the item with the highest end below it, and is examined
+//! again when that level is reached. An item that is live together with `k` others costs `k` comparisons and is
+//! examined about 10 times.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -15,26 +16,27 @@ use std::collections::BinaryHeap;
 use super::problem::{Problem, align_up};
 
 const NONE: u32 = u32::MAX;
-/// Up to so many items of one level are picked one by one; more are sorted first.
+/// Maximum number of items of one level that are selected one by one; more are sorted first.
 const FEW: usize = 64;
 
 /// Reusable memory.
 #[derive(Debug, Default)]
 pub(super) struct Skyline {
-    /// What each item would have to sit on, and whose end that is; raised by every neighbor placed.
+    /// Lowest position of each item, and the item that determines it; raised by every placed neighbor.
     roof: Vec<(u64, u32)>,
-    /// First item that waits on each item, and the next that waits on the same.
+    /// First item that waits for each item, and the next one that waits for the same.
     head: Vec<u32>,
     next: Vec<u32>,
     rank: Vec<u32>,
     levels: BinaryHeap<Reverse<(u64, u32)>>,
     batch: Vec<(u32, u32)>,
-    /// Looks taken at an item since the caller last reset it: the measure of work.
+    /// Number of examined items since the caller last reset it: the measure of work.
     pub looks: u64,
 }
 
 impl Skyline {
-    /// Packs all items; `order` lists each item once, most preferred first. Returns the top. Not for dense instances.
+    /// Packs all items; `order` lists each item once, most preferred first. Returns the top. The instance must not be
+    /// dense.
     pub fn pack(&mut self, problem: &Problem, order: &[u32], offsets: &mut [u64]) -> u64 {
         let n = problem.len();
         self.roof.clear();
@@ -73,7 +75,7 @@ impl Skyline {
         top
     }
 
-    /// Collects those that waited on `owner` and are free at `level`; the others wait on.
+    /// Collects the items that waited for `owner` and are free at `level`; others continue to wait.
     fn wake(&mut self, owner: u32, level: u64) {
         let mut i = core::mem::replace(&mut self.head[owner as usize], NONE);
         while i != NONE {
@@ -89,9 +91,10 @@ impl Skyline {
         }
     }
 
-    /// Places what fits of the batch, all of which is free at `level`; the rest waits. Returns the highest end.
+    /// Places the items of the batch that fit, all of which are free at `level`; others wait. Returns the highest end.
     ///
-    /// What an item placed here blocks was free until then, so it waits on that item: no other look is needed.
+    /// An item that is blocked by an item placed here was free before, so it waits for that item. No further
+    /// examination is needed.
     fn place_few(&mut self, problem: &Problem, level: u64, offsets: &mut [u64]) -> u64 {
         let mut top = 0;
         while let Some(k) = (0..self.batch.len()).min_by_key(|&k| self.batch[k].0) {
@@ -114,7 +117,7 @@ impl Skyline {
         top
     }
 
-    /// Places item `i` if nothing under it is higher than `level`, else lets it wait. Returns its end, or 0.
+    /// Places item `i` if nothing below it is higher than `level`; otherwise lets it wait. Returns its end, or 0.
     fn look(&mut self, problem: &Problem, i: u32, level: u64, offsets: &mut [u64]) -> u64 {
         let (height, blocker) = self.roof[i as usize];
         if height > level {
@@ -133,7 +136,7 @@ impl Skyline {
         self.next[i as usize] = core::mem::replace(head, i);
     }
 
-    /// Puts item `i` on `height`, or as little above as its alignment asks for. Returns its end.
+    /// Places item `i` at `height`, rounded up to its alignment. Returns its end.
     fn put(&mut self, problem: &Problem, i: u32, height: u64, offsets: &mut [u64]) -> u64 {
         let item = i as usize;
         offsets[item] = align_up(height, problem.align[item]);

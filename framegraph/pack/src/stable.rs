@@ -1,52 +1,51 @@
-//! Placements that stay put: earlier offsets are kept as far as they cost nothing.
+//! Stable packing: keeps previous offsets as far as they do not raise the top.
 //!
-//! The rule, in this order: the top is as low as without earlier offsets; then earlier offsets are kept, those of
-//! large items first. An earlier offset counts if it is aligned and free of those already kept. Items without one go
-//! into the gaps. Where that does not fit under the top, the earlier offsets in the way of what did not fit are given
-//! up, for a few rounds; if it still does not fit, the new packing is taken and its items go back where they find
-//! their place free.
+//! The top has priority; then previous offsets are kept, starting with large items. A previous offset is valid if it is
+//! aligned and does not overlap the ones already kept. Other items are placed into gaps. If they do not fit under the
+//! top, the previous offsets in their way are dropped, for a few rounds. If they still do not fit, the new packing is
+//! used, and its items are moved back to their previous offsets where those are free.
 
 use super::gap::{Gaps, UNPLACED};
 use super::problem::Problem;
 
-/// How often earlier offsets may be given up.
+/// Maximum number of rounds.
 const ROUNDS: u32 = 8;
 
 /// Reusable memory.
 #[derive(Debug, Default)]
 pub(super) struct Stable {
-    /// The earlier offset of each item; [`UNPLACED`] without one.
+    /// The previous offset of each item; [`UNPLACED`] if there is none.
     earlier: Vec<u64>,
-    /// Those not given up.
+    /// Previous offsets that were not dropped.
     wanted: Vec<u64>,
     /// The packing that keeps them.
     pub offsets: Vec<u64>,
 }
 
 impl Stable {
-    /// Notes the earlier offsets, given by the caller's item index.
+    /// Stores the previous offsets, indexed by the caller's items.
     pub fn remember(&mut self, problem: &Problem, previous: &[Option<u64>]) {
         self.earlier.clear();
         self.earlier.extend((0..problem.len()).map(|i| {
-            // An end beyond 2^63 is as good as none: so no sum of offset and sizes overflows.
+            // Offsets with an end beyond 2^63 are ignored, so that sums of offset and size cannot overflow.
             let limit = i64::MAX as u64 - problem.size[i];
             let valid = |offset: &u64| offset.is_multiple_of(problem.align[i]) && *offset <= limit;
             previous[problem.item[i] as usize].filter(valid).unwrap_or(UNPLACED)
         }));
     }
 
-    /// Packs under `capacity`, keeping earlier offsets; with [`UNPLACED`] for the capacity that always succeeds.
+    /// Packs within `capacity` and keeps previous offsets. Always succeeds if the capacity is [`UNPLACED`].
     ///
-    /// `order` is that in which offsets are kept and gaps are filled. Returns the top; the packing is in
-    /// `self.offsets`.
+    /// `order` determines the order in which offsets are kept and gaps are filled. Returns the top; the packing is
+    /// stored in `self.offsets`.
     pub fn pack(&mut self, problem: &Problem, order: &[u32], capacity: u64, gaps: &mut Gaps) -> Option<u64> {
         self.wanted.clear();
         self.wanted.extend_from_slice(&self.earlier);
         (0..ROUNDS).find_map(|round| self.round(problem, order, (capacity, round < ROUNDS / 2), gaps))
     }
 
-    /// One attempt. Where an item does not fit, the earlier offsets around it are given up for the next attempt; at
-    /// first only those of items that are no larger.
+    /// Makes one attempt. If an item does not fit, the previous offsets around it are dropped for the next attempt;
+    /// initially only those of items that are not larger.
     fn round(
         &mut self,
         problem: &Problem,
@@ -91,7 +90,7 @@ impl Stable {
         fits.then_some(top)
     }
 
-    /// Moves items of a finished packing back to their earlier offsets where those are free and end by `top`.
+    /// Moves items of a finished packing back to their previous offsets if those are free and end at or below `top`.
     pub fn settle(&self, problem: &Problem, order: &[u32], top: u64, offsets: &mut [u64]) {
         let mut moved = true;
         let mut rounds = 0;
@@ -110,7 +109,7 @@ impl Stable {
         }
     }
 
-    /// How many items are where they were.
+    /// Returns the number of items at their previous offset.
     pub fn kept(previous: &[Option<u64>], offsets: &[u64]) -> usize {
         previous.iter().zip(offsets).filter(|(previous, offset)| **previous == Some(**offset)).count()
     }

@@ -1,8 +1,8 @@
-//! First fit in the order of birth: an allocator run over time, for instances too dense to look at pairs of items.
+//! First fit in the order of birth, for instances too dense to examine pairs of items.
 //!
-//! Items are born and die as time passes; each takes the lowest gap that holds it among those alive (Robson 1974
-//! bounds what any such allocator wastes). It knows nothing of the future, so it is seldom the best, but its memory is
-//! linear however many items are alive together.
+//! Simulates an allocator over time: each item gets the lowest gap that fits among the live items (Robson 1974 bounds
+//! the waste of such allocators). It does not know the future, so its packings are seldom the best, but it needs only
+//! linear memory.
 
 use super::problem::{Problem, align_up};
 
@@ -16,7 +16,7 @@ pub(super) struct Sweep {
 }
 
 impl Sweep {
-    /// Packs all items. Returns the top. Time: for each item, the items alive at its birth.
+    /// Packs all items. Returns the top. Time: for each item, linear in the number of items live at its birth.
     pub fn pack(&mut self, problem: &Problem, offsets: &mut [u64]) -> u64 {
         let Self { births, deaths, live } = self;
         births.clear();

@@ -1,4 +1,4 @@
-//! Packings against an independent verifier, a brute force oracle, and the published instances.
+//! Compares packings with an independent verifier, with brute force, and with published instances.
 
 mod oracle;
 mod planted;
@@ -26,7 +26,7 @@ fn tiny_instances_match_brute_force() {
         }
         above_peak += u32::from(best > items.iter().map(|a| a.size).max().unwrap_or(0));
     }
-    // The test would prove little if greedy always found the optimum, or if the largest item were always the answer.
+    // Negative control: greedy must miss some optima, and the largest item must not always determine the optimum.
     assert!(missed > 5 && above_peak > 500, "{missed} {above_peak}");
 }
 
@@ -43,7 +43,7 @@ fn random_graphs_reach_the_bound() {
             *count += u32::from(packing.optimal);
         }
     }
-    // What was asked for is 97 %. Measured: 100 % for the exact search, 98 % for the greedy portfolio.
+    // Required are 97 %; the exact search reaches 100 %, the greedy portfolio 98 %.
     assert!(optimal[1] >= count * 99 / 100 && optimal[0] >= count * 90 / 100, "{optimal:?}");
 }
 
@@ -70,7 +70,7 @@ fn edge_cases() {
     assert!(packing.optimal && packing.top == 0);
     let (packing, _) = packed(&[item(u32::MAX - 1, u32::MAX, 7, 8)], None, exact(9), &mut scratch);
     assert!(packing.optimal && (packing.top, packing.peak_at) == (7, u32::MAX - 1));
-    // Far apart in time: slots must not be laid out for every tick.
+    // Far apart in time: memory must not be proportional to the time range.
     let (packing, _) = packed(&[item(0, 1, 5, 4), item(u32::MAX - 1, u32::MAX, 7, 8)], None, exact(9), &mut scratch);
     assert!(packing.optimal && packing.top == 7);
     let huge = i64::MAX as u64;
@@ -106,7 +106,7 @@ fn bad_instances_are_refused_with_the_item() {
 #[test]
 fn dense_instances_are_swept() {
     let mut random = Random(6);
-    // Half of all pairs and more are alive together, and the limit is 2^26 of them.
+    // More than half of all pairs are live at the same time; the limit is 2^26 pairs.
     let times = 40;
     let items: Vec<Interval> = (0..18000)
         .map(|_| {
@@ -116,7 +116,7 @@ fn dense_instances_are_swept() {
         .collect();
     let mut offsets = Vec::new();
     let packing = pack(&items, None, &exact(1 << 12), &mut Scratch::default(), &mut offsets).expect("a valid instance");
-    // All pairs would take too long here: at a few times, the live items must be disjoint.
+    // Checking all pairs would take too long: at a few times, the live items must be disjoint.
     for t in (0..times as u32).step_by(5) {
         let mut live: Vec<_> = (0..items.len()).filter(|&i| items[i].lower <= t && t < items[i].upper).collect();
         live.sort_by_key(|&i| offsets[i]);
@@ -125,6 +125,6 @@ fn dense_instances_are_swept() {
     }
     assert!(items.iter().zip(&offsets).all(|(item, at)| at % item.align == 0));
     assert_eq!(items.iter().zip(&offsets).map(|(item, at)| at + item.size).max(), Some(packing.top));
-    // First fit over time: measured 1.07 times the peak.
+    // First fit over time reaches 1.07 times the peak.
     assert!(packing.top as f64 <= 1.2 * packing.peak as f64 && packing.steps == 0, "{packing:?}");
 }

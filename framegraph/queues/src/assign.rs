@@ -1,15 +1,17 @@
-//! Which step runs on which queue.
+//! Assigns steps to queues.
 
 use crate::layout::{QueueId, QueueLayout};
 use crate::simulate::simulate;
 use framegraph::{PassFlags, PassKind, Plan, StepId, StepPass};
 
-/// Rounds of moves; each shortens the frame, and few are ever needed.
+/// Maximum number of rounds of moves. Few are needed, because each must shorten the frame.
 const ROUNDS: usize = 8;
 
-/// Gives each step a queue, so that the frame is short: from all steps on the first, and from all that may leave on the last
-/// that runs them, steps and chains of them go to another queue wherever the frame gets shorter by it. The shorter frame is
-/// taken; of equal ones that with fewer steps elsewhere.
+/// Assigns a queue to each step so that the frame is short.
+///
+/// Starts from two assignments: all steps on the first queue, and all movable steps on the last queue that can run
+/// them. Then steps and chains of steps move to other queues as long as the frame gets shorter. Returns the shorter
+/// result; of equal ones, the one with fewer steps on other queues.
 pub fn assign(
     plan: &Plan,
     layout: &QueueLayout,
@@ -43,7 +45,7 @@ pub fn assign(
                     let old: Vec<QueueId> = group.iter().map(|step| lanes[*step]).collect();
                     group.iter().for_each(|step| lanes[*step] = queue);
                     let found_us = total_us(&lanes);
-                    // What wins nothing stays on the first queue.
+                    // Without a gain, steps stay on the first queue.
                     if found_us < best_us || found_us == best_us && queue == QueueId::MAIN {
                         best_us = found_us;
                     } else {
@@ -61,7 +63,7 @@ pub fn assign(
     if apart_us < alone_us { apart } else { alone }
 }
 
-/// Movable steps that hang together by their dependencies: apart, each would take a semaphore to and fro.
+/// Returns groups of movable steps connected by dependencies. Separating them would need semaphores in both directions.
 fn chains(dependencies: &[Vec<u32>], movable: &dyn Fn(usize) -> bool) -> Vec<Vec<usize>> {
     let mut of: Vec<Option<usize>> = vec![None; dependencies.len()];
     let mut chains: Vec<Vec<usize>> = Vec::new();

@@ -1,4 +1,5 @@
-//! A judge of schedules, which shares nothing with what makes them: what is ordered is found by walking, pair by pair.
+//! An independent checker of schedules: it shares no code with the scheduler and checks the order of steps pair by
+//! pair.
 
 use crate::layout::QueueId;
 use crate::memory::SharedMemory;
@@ -6,42 +7,42 @@ use crate::schedule::Schedule;
 use framegraph::{Access, PassFlags, Placement, Plan, ResourceId, StepId, StepPass};
 use std::fmt;
 
-/// What is wrong with a schedule.
+/// An error in a schedule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Violation {
-    /// It is not of this plan: another number of steps, or a queue that the layout has not.
+    /// The schedule belongs to another plan: the number of steps differs, or a queue does not exist.
     OtherPlan,
-    /// A queue does not run steps of this kind, or a pass of it asks for the first.
+    /// The queue cannot run the step, or a pass of the step requires the first queue.
     WrongQueue {
         /// The step.
         step: StepId,
     },
-    /// Two steps touch the same contents, one of them writes or puts them into another layout, and nothing orders them.
+    /// Two steps use the same contents, one of them writes or changes the layout, and they are not ordered.
     Unordered {
-        /// The earlier step of the plan.
+        /// The step that is earlier in the plan.
         first: StepId,
-        /// The later one.
+        /// The later step.
         second: StepId,
-        /// What they touch.
+        /// The resource.
         resource: ResourceId,
     },
-    /// A step gets memory that another resource had, and nothing has it wait for a step that touched that one.
+    /// A step reuses the memory of another resource without waiting for a step that uses it.
     Memory {
-        /// The step that touched what was there.
+        /// The step that uses the previous resource.
         first: StepId,
-        /// The step that gets the memory.
+        /// The step that reuses the memory.
         second: StepId,
-        /// What it puts there.
+        /// The new resource.
         resource: ResourceId,
     },
     /// A step needs contents that another queue owns.
     NotOwned {
         /// The step.
         step: StepId,
-        /// What it needs.
+        /// The resource.
         resource: ResourceId,
     },
-    /// Nobody waits for a queue at the end of the frame.
+    /// The end of the frame does not wait for a queue.
     NotJoined {
         /// The queue.
         queue: QueueId,
@@ -51,12 +52,12 @@ pub enum Violation {
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::OtherPlan => write!(f, "the schedule is of another plan"),
-            Self::WrongQueue { step } => write!(f, "step {} is on a queue where it may not run", step.index()),
+            Self::OtherPlan => write!(f, "the schedule belongs to another plan"),
+            Self::WrongQueue { step } => write!(f, "step {} is on a queue that cannot run it", step.index()),
             Self::Unordered { first, second, resource } => {
                 write!(
                     f,
-                    "steps {} and {} touch resource {} in no order",
+                    "steps {} and {} use resource {} without an order",
                     first.index(),
                     second.index(),
                     resource.index()
@@ -64,7 +65,7 @@ impl fmt::Display for Violation {
             }
             Self::Memory { first, second, resource } => write!(
                 f,
-                "step {} gets the memory of resource {} while step {} may still use it",
+                "step {} reuses memory for resource {} while step {} may still use it",
                 second.index(),
                 resource.index(),
                 first.index()
@@ -72,12 +73,12 @@ impl fmt::Display for Violation {
             Self::NotOwned { step, resource } => {
                 write!(f, "step {} needs resource {}, which another queue owns", step.index(), resource.index())
             }
-            Self::NotJoined { queue } => write!(f, "the frame ends before queue {} is done", queue.index()),
+            Self::NotJoined { queue } => write!(f, "the frame ends without waiting for queue {}", queue.index()),
         }
     }
 }
 
-/// Everything that is wrong with a schedule of `plan`; nothing of a sound one.
+/// Returns all errors in a schedule of `plan`; empty for a correct one.
 #[must_use]
 pub fn check(plan: &Plan, schedule: &Schedule) -> Vec<Violation> {
     let Schedule { layout, lanes, .. } = schedule;
@@ -118,8 +119,7 @@ pub fn check(plan: &Plan, schedule: &Schedule) -> Vec<Violation> {
     found
 }
 
-/// Everything that is wrong with memory shared on several queues: resources that lie in one another while nothing orders all steps
-/// that touch the one before all that touch the other.
+/// Returns all errors in memory shared by a schedule: pairs of overlapping resources whose steps are not ordered.
 #[must_use]
 pub fn check_memory(plan: &Plan, schedule: &Schedule, memory: &SharedMemory) -> Vec<Violation> {
     let reached = reached(schedule);
@@ -150,7 +150,7 @@ pub fn check_memory(plan: &Plan, schedule: &Schedule, memory: &SharedMemory) -> 
     found
 }
 
-/// By step, whether each other begins only when it is over: along queues and semaphores, step by step.
+/// For each step, the steps that begin only after it has ended, following queues and semaphores.
 fn reached(schedule: &Schedule) -> Vec<Vec<bool>> {
     let count = schedule.lanes.len();
     let mut next: Vec<Vec<usize>> = vec![Vec::new(); count];
@@ -180,7 +180,7 @@ fn touched_by_both(plan: &Plan, first: StepId, second: StepId) -> impl Iterator<
     let conflict = move |a: &&Access| {
         accesses(plan, second).any(|b| {
             let same = a.resource == b.resource && plan.graph().overlap(a.resource, &a.range, &b.range);
-            // A transition of its layout is a write of it.
+            // A layout transition counts as a write.
             let moves =
                 |step| plan.barriers().iter().any(|x| (x.before, x.resource) == (step, a.resource) && x.from != x.to);
             same && (a.mode.writes() || b.mode.writes() || moves(first) || moves(second))
@@ -210,7 +210,7 @@ fn memory_of_both(plan: &Plan, first: StepId, second: StepId) -> impl Iterator<I
     accesses(plan, second).filter(taken).map(|access| access.resource)
 }
 
-/// Follows each resource that one queue owns at a time from step to step.
+/// Tracks the owner of each exclusively owned resource from step to step.
 fn not_owned(plan: &Plan, schedule: &Schedule) -> Vec<Violation> {
     let mut found = Vec::new();
     for resource in plan.graph().resource_ids().filter(|r| !schedule.concurrent.contains(r)) {

@@ -1,14 +1,14 @@
-//! Which steps of a plan must be over before which: for contents, and for memory that resources share.
+//! Dependencies between the steps of a plan: through contents, and through shared memory.
 
 use framegraph::{Access, Placement, Plan, ResourceId};
 use std::collections::HashSet;
 
-/// Of each step, the earlier steps that it depends on, the latest first; more than need be said, since some follow from others.
+/// Returns the earlier steps that each step depends on, latest first. May include implied dependencies.
 pub fn dependencies(plan: &Plan) -> Vec<Vec<u32>> {
     let mut found = vec![Vec::new(); plan.steps().len()];
-    let touched = accesses_by_resource(plan);
+    let accessed = accesses_by_resource(plan);
     let moved = moved(plan);
-    for (resource, accesses) in touched.iter().enumerate() {
+    for (resource, accesses) in accessed.iter().enumerate() {
         let resource = ResourceId::at(resource);
         let changes = |step: u32, access: &Access| access.mode.writes() || moved.contains(&(step, resource));
         for (later, (step, access)) in accesses.iter().enumerate() {
@@ -16,7 +16,7 @@ pub fn dependencies(plan: &Plan) -> Vec<Vec<u32>> {
                 let ordered = changes(*step, access) || changes(*earlier, other);
                 if earlier != step && ordered && plan.graph().overlap(resource, &access.range, &other.range) {
                     found[*step as usize].push(*earlier);
-                    // Whoever was before a change of all of it is waited for by that change.
+                    // Earlier users are covered by this change of the whole range.
                     if changes(*earlier, other) && other.range == access.range {
                         break;
                     }
@@ -24,7 +24,7 @@ pub fn dependencies(plan: &Plan) -> Vec<Vec<u32>> {
             }
         }
     }
-    share_memory(plan, &touched, &mut found);
+    share_memory(plan, &accessed, &mut found);
     for earlier in &mut found {
         earlier.sort_unstable_by(|a, b| b.cmp(a));
         earlier.dedup();
@@ -32,28 +32,28 @@ pub fn dependencies(plan: &Plan) -> Vec<Vec<u32>> {
     found
 }
 
-/// The textures whose layout changes in front of a step: whoever reads them before and after must be ordered too, since a
+/// Returns the textures whose layout changes before a step. Reads before and after must be ordered, because a
 /// transition is a write (Vulkan 1.3, 7.7.4).
 fn moved(plan: &Plan) -> HashSet<(u32, ResourceId)> {
     let rows = plan.barriers().iter().filter(|row| row.from != row.to);
     rows.map(|row| (row.before.index() as u32, row.resource)).collect()
 }
 
-/// Of each resource, the steps that access it, in order, with how.
+/// Returns for each resource the steps that access it, in order, with their accesses.
 pub fn accesses_by_resource(plan: &Plan) -> Vec<Vec<(u32, Access)>> {
-    let mut touched = vec![Vec::new(); plan.resources().len()];
+    let mut accessed = vec![Vec::new(); plan.resources().len()];
     for step in plan.step_ids() {
         for member in plan.passes_of(step) {
             for access in plan.graph().accesses_of(member.pass) {
-                touched[access.resource.index()].push((step.index() as u32, *access));
+                accessed[access.resource.index()].push((step.index() as u32, *access));
             }
         }
     }
-    touched
+    accessed
 }
 
-/// Who gets memory waits for all who touched what lay there.
-fn share_memory(plan: &Plan, touched: &[Vec<(u32, Access)>], found: &mut [Vec<u32>]) {
+/// Adds dependencies of resources on all previous users of their memory.
+fn share_memory(plan: &Plan, accessed: &[Vec<(u32, Access)>], found: &mut [Vec<u32>]) {
     let mut placed: Vec<(usize, u64, u64)> = Vec::new();
     for (resource, row) in plan.resources().iter().enumerate() {
         let [begin, end] = match row.placement {
@@ -72,8 +72,8 @@ fn share_memory(plan: &Plan, touched: &[Vec<(u32, Access)>], found: &mut [Vec<u3
             if apart {
                 continue;
             }
-            for (step, _) in &touched[*later] {
-                let before = touched[*earlier].iter().map(|(before, _)| *before);
+            for (step, _) in &accessed[*later] {
+                let before = accessed[*earlier].iter().map(|(before, _)| *before);
                 found[*step as usize].extend(before.filter(|before| before < step));
             }
         }

@@ -3,36 +3,36 @@
 use framegraph::{Caps, PassKind};
 use std::fmt;
 
-/// A queue by its place in the layout.
+/// A queue, by its index in the layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct QueueId(pub u8);
 
 impl QueueId {
-    /// The queue that does everything.
+    /// The first queue, which runs everything.
     pub const MAIN: Self = Self(0);
 
-    /// Its place.
+    /// Index of the queue.
     #[must_use]
     pub const fn index(self) -> usize {
         self.0 as usize
     }
 }
 
-/// A queue, and what it can run.
+/// A queue and its capabilities.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Queue {
-    /// What dumps call it.
+    /// Name in dumps.
     pub name: String,
-    /// It runs render passes.
+    /// Runs render passes.
     pub raster: bool,
-    /// It runs compute passes.
+    /// Runs compute passes.
     pub compute: bool,
-    /// It runs copies.
+    /// Runs copies.
     pub copy: bool,
 }
 
 impl Queue {
-    /// Whether it runs steps of this kind.
+    /// Returns `true` if the queue runs steps of this kind.
     #[must_use]
     pub const fn runs(&self, kind: PassKind) -> bool {
         match kind {
@@ -43,20 +43,28 @@ impl Queue {
     }
 }
 
-/// The queues of a device, the first of which runs everything.
+/// The queues of a device. The first one runs everything.
+///
+/// ```
+/// use framegraph_queues::{QueueId, QueueLayout};
+///
+/// let layout = QueueLayout::async_compute();
+/// assert_eq!(layout.queues.len(), 2);
+/// assert!(layout.queues[QueueId::MAIN.index()].raster);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct QueueLayout {
     /// The queues, at most 255.
     pub queues: Vec<Queue>,
-    /// Microseconds from the end of a step on one queue to the begin of one on another that waits for it, beyond what one
-    /// queue takes from step to step.
+    /// Delay in microseconds from the end of a step to the start of a dependent step on another queue, compared with
+    /// the same queue.
     pub semaphore_us: f64,
 }
 
 impl QueueLayout {
-    /// What layouts by name take for a semaphore: some ten microseconds are what drivers on desktops are reported to need.
+    /// Semaphore delay of named layouts in microseconds; about what desktop drivers are reported to need.
     pub const SEMAPHORE_US: f64 = 10.0;
-    /// The layouts by name, as options of programs have them.
+    /// Names of layouts, as used by command line options.
     pub const NAMES: [&'static str; 3] = ["one", "async-compute", "async-compute-and-copy"];
 
     fn of(names: &[&str]) -> Self {
@@ -69,25 +77,25 @@ impl QueueLayout {
         Self { queues: names.iter().map(queue).collect(), semaphore_us: Self::SEMAPHORE_US }
     }
 
-    /// One queue, as wgpu has.
+    /// Returns a layout with one queue, as in wgpu.
     #[must_use]
     pub fn one() -> Self {
         Self::of(&["graphics"])
     }
 
-    /// A queue for compute and copies beside the first.
+    /// Returns a layout with an additional queue for compute and copies.
     #[must_use]
     pub fn async_compute() -> Self {
         Self::of(&["graphics", "compute"])
     }
 
-    /// A queue for compute and one for copies beside the first.
+    /// Returns a layout with additional queues for compute and for copies.
     #[must_use]
     pub fn async_compute_and_copy() -> Self {
         Self::of(&["graphics", "compute", "copy"])
     }
 
-    /// What the device says that it has.
+    /// Returns the layout of a device.
     #[must_use]
     pub fn of_device(caps: &Caps) -> Self {
         match (caps.compute_queue, caps.copy_queue) {
@@ -98,7 +106,7 @@ impl QueueLayout {
         }
     }
 
-    /// The layout of that name ([`QueueLayout::NAMES`]).
+    /// Returns the layout with this name ([`QueueLayout::NAMES`]).
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         match name {
@@ -117,7 +125,8 @@ impl QueueLayout {
 
 impl fmt::Display for QueueLayout {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let names: Vec<_> = self.queues.iter().map(|queue| framegraph::plain::plain(&queue.name)).collect();
-        write!(f, "{}, {} µs a semaphore", names.join(", "), self.semaphore_us)
+        let names: Vec<_> =
+            self.queues.iter().map(|queue| framegraph::sanitize::escape_controls(&queue.name)).collect();
+        write!(f, "{}, {} µs per semaphore", names.join(", "), self.semaphore_us)
     }
 }

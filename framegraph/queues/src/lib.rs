@@ -1,16 +1,21 @@
-//! Plans on devices with several queues: which step runs on which, what waits for what, and how long a frame takes then.
+//! Schedules plans on devices with several queues: assignment of steps, synchronization, and duration of the frame.
 //!
-//! wgpu has one queue, and so has a [`framegraph::Plan`]: its steps follow each other. Vulkan, Direct3D 12 and Metal run compute and
-//! copies beside raster work. [`schedule()`] gives each step of a plan a queue, where that shortens the frame by what steps are
-//! measured or said to cost; the order within a queue stays that of the plan. What a back end has to say is in the [`Schedule`]:
-//! semaphores ([`Wait`]), transfers of ownership between queue families ([`Transfer`]), and the resources that several queues read
-//! at once. Memory that resources share counts as a dependency: who gets it waits for all who had it.
-//! So a plan whose memory is shared for one queue leaves little to run side by side: [`replan()`] it without, and
-//! [`share_memory()`] by the schedule. [`check()`] and [`check_memory()`] judge both without the analysis that
-//! made them.
+//! wgpu has one queue, and a [`framegraph::Plan`] is a single sequence of steps. Vulkan, Direct3D 12 and Metal can run
+//! compute and copies in parallel with raster work. [`schedule()`] assigns a queue to each step if that shortens the
+//! frame, based on measured or estimated costs. Steps on one queue stay in the order of the plan.
 //!
-//! [`stream()`] is all of it, and the plan, as commands in order; with memory that is shared by the schedule
-//! [`PlanStream::stream_in`].
+//! A [`Schedule`] contains everything a back end must do: semaphores ([`Wait`]), ownership transfers between queue
+//! families ([`Transfer`]), and resources used concurrently by several queues.
+//!
+//! # Shared memory
+//!
+//! Resources that share memory depend on each other, so a plan with aliasing for one queue leaves little parallelism.
+//! Compile it without aliasing ([`replan()`]), then share memory according to the schedule ([`share_memory()`]).
+//!
+//! [`check()`] and [`check_memory()`] verify the results independently of the scheduler. [`stream()`] returns the plan
+//! and its schedule as a sequence of commands; [`PlanStream::stream_in`] does so with shared memory.
+//!
+//! # Example
 //!
 //! ```
 //! use framegraph::{Caps, Extent, Format, Graph, Intent, Options, Plan, Scratch, TextureDesc, compile};
@@ -38,11 +43,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod aliasing;
 mod assign;
 mod check;
 mod clocks;
 mod estimate;
-mod hand_over;
 mod hazards;
 mod layout;
 mod memory;

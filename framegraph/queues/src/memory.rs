@@ -1,41 +1,43 @@
-//! Memory that resources share on several queues: one gets what another had only if every step that touched that one is over
-//! before any that touches it begins.
+//! Memory sharing on several queues. A resource may reuse memory if every step that uses the previous resource ends
+//! before any step that uses the new one begins.
 
 use crate::hazards::accesses_by_resource;
 use crate::schedule::Schedule;
 use framegraph::{Placement, Plan, ResourceId};
 
-/// Offsets of transient resources in two heaps, one of textures and one of buffers.
+/// Offsets of transient resources in two heaps, one for textures and one for buffers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SharedMemory {
-    /// By resource: where it lies in the heap of its kind; none for what takes no transient memory.
+    /// Offset of each resource in the heap of its kind; `None` for resources without transient memory.
     pub offsets: Vec<Option<u64>>,
-    /// Bytes of the heap of textures, and of that of buffers.
+    /// Sizes of the texture heap and of the buffer heap, in bytes.
     pub heap_bytes: [u64; 2],
-    /// What they would take if nothing were shared.
+    /// Size without sharing, in bytes.
     pub unaliased_bytes: u64,
 }
 
-/// Places the transient resources of a plan that was compiled without aliasing ([`framegraph::Alias::Off`]), so that its schedule stays
-/// free of waits for memory. Offsets are multiples of `alignment`. The largest is placed first, each as low as it can lie.
+/// Places the transient resources of a plan that was compiled without aliasing ([`framegraph::Alias::Off`]).
+///
+/// Resources share memory only if the schedule already orders their steps, so no further waits are needed. Offsets are
+/// multiples of `alignment`. The largest resource is placed first, each at the lowest possible offset.
 ///
 /// # Panics
-/// When `schedule` is not of this plan, or `alignment` is 0.
+/// Panics if `schedule` belongs to another plan, or if `alignment` is 0.
 #[must_use]
 pub fn share_memory(plan: &Plan, schedule: &Schedule, alignment: u64) -> SharedMemory {
-    let touched = accesses_by_resource(plan);
+    let accessed = accesses_by_resource(plan);
     let is_texture = |resource: usize| plan.graph().resources()[resource].desc.texture().is_some();
     let is_transient =
         |resource: &usize| matches!(plan.resources()[*resource].placement, Placement::Slot(_) | Placement::Heap { .. });
     let bytes = |resource: usize| plan.resources()[resource].bytes.next_multiple_of(alignment);
-    let mut all: Vec<usize> = (0..touched.len()).filter(is_transient).collect();
+    let mut all: Vec<usize> = (0..accessed.len()).filter(is_transient).collect();
     all.sort_by_key(|resource| (std::cmp::Reverse(bytes(*resource)), *resource));
     let over = |a: usize, b: usize| {
-        touched[a]
+        accessed[a]
             .iter()
-            .all(|(first, _)| touched[b].iter().all(|(second, _)| schedule.order.is_before(*first, *second)))
+            .all(|(first, _)| accessed[b].iter().all(|(second, _)| schedule.order.is_before(*first, *second)))
     };
-    let mut shared = SharedMemory { offsets: vec![None; touched.len()], ..SharedMemory::default() };
+    let mut shared = SharedMemory { offsets: vec![None; accessed.len()], ..SharedMemory::default() };
     for resource in &all {
         let mut taken: Vec<(u64, u64)> = all
             .iter()
@@ -61,13 +63,13 @@ pub fn share_memory(plan: &Plan, schedule: &Schedule, alignment: u64) -> SharedM
 }
 
 impl SharedMemory {
-    /// Bytes of both heaps.
+    /// Size of both heaps, in bytes.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.heap_bytes.iter().sum()
     }
 
-    /// Where a resource lies.
+    /// Returns the offset of a resource.
     #[must_use]
     pub fn offset(&self, resource: ResourceId) -> Option<u64> {
         self.offsets.get(resource.index()).copied().flatten()

@@ -1,12 +1,14 @@
-//! The plan that queues ask for.
+//! Compiles a plan again, for scheduling on several queues.
 
 use framegraph::{Alias, Caps, CompileErrors, Options, Plan, Scratch, compile};
 
-/// The frame of `plan` for a device with several queues: nothing shares memory, which [`share_memory`](crate::share_memory) does by the
-/// schedule, and transitions are said, since two queues that read one texture must agree on its layout.
+/// Compiles the frame of `plan` for a device with several queues.
+///
+/// Disables aliasing, because [`share_memory`](crate::share_memory) shares memory according to the schedule. Enables
+/// explicit barriers, because queues that read the same texture must agree on its layout.
 ///
 /// # Errors
-/// None but those of compiling `plan` itself.
+/// Returns the errors of compiling `plan` itself.
 pub fn replan(plan: &Plan) -> Result<Plan, CompileErrors> {
     let caps = Caps { explicit_barriers: true, ..plan.caps().clone() };
     let options = Options { alias: Alias::Off, ..*plan.options() };

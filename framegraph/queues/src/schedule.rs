@@ -1,4 +1,4 @@
-//! A plan on several queues.
+//! Schedules: plans on several queues.
 
 use crate::assign::assign;
 use crate::clocks::{Edge, Order, waits};
@@ -8,75 +8,75 @@ use crate::simulate::simulate;
 use crate::transfers::{Transfer, transfers};
 use framegraph::{Plan, ResourceId, StepId};
 
-/// A semaphore: a step waits until one on another queue is over.
+/// A semaphore: a step waits until a step on another queue has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wait {
-    /// Signalled behind this step, on its queue.
+    /// The semaphore is signaled after this step, on its queue.
     pub after: StepId,
-    /// Waited for in front of this step, on its queue.
+    /// The semaphore is waited for before this step, on its queue.
     pub before: StepId,
 }
 
-/// Which step of a plan runs on which queue, and what is said between them.
+/// The assignment of a plan's steps to queues, and their synchronization.
 ///
-/// Frames follow each other on the first queue: the others begin when the frame before is over, and at its end the first waits
-/// for the last step of each ([`Schedule::joins`]).
+/// Frames follow each other on the first queue. Other queues begin when the previous frame has ended. At the end of the
+/// frame, the first queue waits for the last step of each other queue ([`Schedule::joins`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
     /// The queues.
     pub layout: QueueLayout,
     /// The queue of each step, in the order of the plan's steps.
     pub lanes: Vec<QueueId>,
-    /// The semaphores, in the order of the steps that wait; none of them follows from the others.
+    /// The semaphores, in the order of the waiting steps. They do not imply each other.
     pub waits: Vec<Wait>,
-    /// The last step of each queue but the first, which the first waits for at the frame's end.
+    /// The last step of each queue except the first, for which the first waits at the end of the frame.
     pub joins: Vec<StepId>,
-    /// What changes its owner.
+    /// Ownership transfers.
     pub transfers: Vec<Transfer>,
-    /// What several queues touch between two writes, so that no one of them can own it: it is made for all of them
-    /// (`VK_SHARING_MODE_CONCURRENT`).
+    /// Resources that several queues use without an intermediate write, so that none can own them. They must be created
+    /// for all queues (`VK_SHARING_MODE_CONCURRENT`).
     pub concurrent: Vec<ResourceId>,
-    /// When each step begins and ends, in microseconds from the begin of the frame, as the model has it.
+    /// Modeled start and end of each step, in microseconds from the start of the frame.
     pub times_us: Vec<[f64; 2]>,
-    /// The frame on these queues, in microseconds.
+    /// Modeled duration of the frame on these queues, in microseconds.
     pub total_us: f64,
-    /// The frame on one queue, in microseconds.
+    /// Duration of the frame on one queue, in microseconds.
     pub alone_us: f64,
     pub(crate) order: Order,
 }
 
 impl Schedule {
-    /// Whether `first` is over before `second` begins, by queues and semaphores.
+    /// Returns `true` if queues and semaphores guarantee that `first` ends before `second` begins.
     ///
     /// # Panics
-    /// When a step is not of the plan.
+    /// Panics if a step does not belong to the plan.
     #[must_use]
     pub fn is_before(&self, first: StepId, second: StepId) -> bool {
         self.order.is_before(first.index() as u32, second.index() as u32)
     }
 }
 
-/// Why there is no schedule.
+/// Error of scheduling.
 #[derive(Clone, PartialEq, thiserror::Error)]
 pub enum QueueError {
-    /// Costs are not those of the plan's steps.
-    #[error("{given} costs were given for a plan of {steps} steps; give one for each, in their order")]
+    /// The number of costs differs from the number of steps.
+    #[error("{given} costs for a plan of {steps} steps; pass one for each step, in order")]
     Costs {
-        /// How many there are.
+        /// Number of costs.
         given: usize,
-        /// How many are needed.
+        /// Number of steps.
         steps: usize,
     },
-    /// A cost is no time.
-    #[error("step {step} costs {cost_us} µs; a finite number from 0 on is needed")]
+    /// A cost is not a valid time.
+    #[error("step {step} costs {cost_us} µs; use a finite number of at least 0")]
     Cost {
         /// The step.
         step: usize,
-        /// Its cost.
+        /// The cost in microseconds.
         cost_us: f64,
     },
-    /// The layout has no queue that runs everything.
-    #[error("the first of the queues must run raster, compute and copy steps, and there may be 255 at the most")]
+    /// The layout lacks a queue that runs everything, or has too many queues.
+    #[error("invalid layout; the first queue must run raster, compute and copy steps, with at most 255 queues")]
     Layout,
 }
 
@@ -86,20 +86,23 @@ impl std::fmt::Debug for QueueError {
     }
 }
 
-/// The schedule of `plan` on the queues of `layout`, by what each step costs in microseconds. The order of steps on one queue is
-/// the plan's; a step leaves the first queue only where the frame gets shorter by it.
+/// Schedules `plan` on the queues of `layout`. `costs_us` is the cost of each step in microseconds.
+///
+/// Steps on one queue stay in the order of the plan. A step leaves the first queue only if that shortens the frame.
 ///
 /// # Errors
-/// [`QueueError`].
+/// See [`QueueError`].
 pub fn schedule(plan: &Plan, layout: &QueueLayout, costs_us: &[f64]) -> Result<Schedule, QueueError> {
     schedule_with(plan, layout, costs_us, &|_| true)
 }
 
-/// As [`schedule()`]; `may_leave` says which steps may run elsewhere than on the first queue, of those whose passes do not ask to stay
-/// there ([`framegraph::PassBuilder::main_queue`]).
+/// Schedules like [`schedule()`], with a restriction on the steps that may leave the first queue.
+///
+/// `may_leave` is called for steps whose passes do not require the first queue
+/// ([`framegraph::PassBuilder::main_queue`]).
 ///
 /// # Errors
-/// As [`schedule()`].
+/// See [`QueueError`].
 pub fn schedule_with(
     plan: &Plan,
     layout: &QueueLayout,

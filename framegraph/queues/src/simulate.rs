@@ -1,27 +1,27 @@
-//! How long a frame takes on several queues: a model in which queues do not slow each other down.
+//! Models the duration of a frame on several queues. Queues do not slow each other down in this model.
 
 use crate::layout::{QueueId, QueueLayout};
 
-/// When steps begin and end, in microseconds from the begin of the frame.
+/// Start and end of each step, in microseconds from the start of the frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Times {
     pub begins_us: Vec<f64>,
     pub ends_us: Vec<f64>,
-    /// When all queues are done, and the first of them knows.
+    /// Time at which all queues have ended and the first one is notified.
     pub total_us: f64,
 }
 
-/// Runs each queue's steps in their order: one begins when the step before it on its queue has ended, and what it depends on
-/// has ended and, on another queue, told so by a semaphore.
+/// Runs each queue's steps in order. A step begins when the previous step on its queue and all its dependencies have
+/// ended, plus the semaphore delay for dependencies on other queues.
 pub fn simulate(layout: &QueueLayout, lanes: &[QueueId], dependencies: &[Vec<u32>], costs_us: &[f64]) -> Times {
     let mut times = Times { begins_us: Vec::new(), ends_us: Vec::with_capacity(lanes.len()), total_us: 0.0 };
     let mut free_us = vec![0.0_f64; layout.queues.len()];
     for (step, lane) in lanes.iter().enumerate() {
-        let told = |earlier: &u32| {
+        let ready_us = |earlier: &u32| {
             let earlier = *earlier as usize;
             times.ends_us[earlier] + if lanes[earlier] == *lane { 0.0 } else { layout.semaphore_us }
         };
-        let begin_us = dependencies[step].iter().map(told).fold(free_us[lane.index()], f64::max);
+        let begin_us = dependencies[step].iter().map(ready_us).fold(free_us[lane.index()], f64::max);
         times.begins_us.push(begin_us);
         times.ends_us.push(begin_us + costs_us[step]);
         free_us[lane.index()] = begin_us + costs_us[step];

@@ -1,130 +1,131 @@
-//! A plan as a stream of commands, in the terms of Vulkan: what a back end that knows nothing of graphs does, in order.
+//! A plan as a sequence of commands in terms of Vulkan, for a back end without knowledge of graphs.
 
-use crate::hand_over::hand_overs;
+use crate::aliasing::aliasing_barriers;
 use crate::layout::QueueId;
 use crate::memory::SharedMemory;
 use crate::schedule::{Schedule, Wait};
 use framegraph::{Join, PassId, Placement, Plan, ResourceId, SlotId, StepId};
 
-/// Where the memory of a resource comes from.
+/// The origin of a resource's memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Memory {
-    /// In the heap of its kind ([`Command::Heap`]), at this offset in bytes.
+    /// A range of the heap of its kind ([`Command::Heap`]).
     Heap {
-        /// Bytes from the begin of the heap.
+        /// Offset in the heap, in bytes.
         offset: u64,
     },
-    /// It is this texture or buffer of the pool ([`framegraph::Plan::slots`]), which other resources are at other times.
+    /// A texture or buffer of the pool ([`framegraph::Plan::slots`]), used by several resources one after another.
     Slot(SlotId),
-    /// Memory of its own that outlives the frame.
+    /// A separate allocation that outlives the frame.
     Own,
-    /// In the tile alone: lazily allocated, or none.
+    /// Tile memory only: lazily allocated, or none.
     Tile,
-    /// It is there before the frame: imported.
+    /// Memory of the caller: the resource is imported.
     External,
 }
 
-/// One thing to do.
+/// One command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
-    /// Allocate a heap.
+    /// Allocates a heap.
     Heap {
-        /// It is that of buffers; of a plan with one heap for all, both are that of textures. Memory that is shared by a schedule
-        /// has one of each.
+        /// The heap is for buffers. A plan with one heap for everything uses `false`; memory shared by a schedule has
+        /// one heap of each kind.
         of_buffers: bool,
-        /// Its size.
+        /// Size in bytes.
         bytes: u64,
     },
-    /// Make a texture or buffer, with the usage and the shape that the plan says ([`framegraph::Plan::resources`]).
+    /// Creates a texture or buffer with the usage and the descriptor of the plan ([`framegraph::Plan::resources`]).
     Create {
-        /// Which.
+        /// The resource.
         resource: ResourceId,
-        /// From what.
+        /// Its memory.
         memory: Memory,
-        /// Several queues read it at once, so none owns it (Vulkan's `VK_SHARING_MODE_CONCURRENT`, if they are of different families);
-        /// else it is handed over by transfers.
+        /// Several queues use it concurrently, so none owns it (Vulkan's `VK_SHARING_MODE_CONCURRENT` for queues of
+        /// different families). Otherwise ownership is transferred.
         concurrent: bool,
     },
-    /// The queue waits until a semaphore is signalled.
+    /// Waits for a semaphore.
     Wait {
-        /// The queue that waits.
+        /// The waiting queue.
         queue: QueueId,
-        /// Counted from 0.
+        /// Index of the semaphore.
         semaphore: u32,
     },
-    /// The queue gets a resource that another released: the second half of a transfer of ownership.
+    /// Acquires a resource that another queue released: the second half of an ownership transfer.
     Acquire {
-        /// The queue that gets it.
+        /// The acquiring queue.
         queue: QueueId,
         /// Index into [`Schedule::transfers`].
         transfer: u32,
     },
-    /// All that the queue did so far to a resource is over, and written, before it goes on: another gets memory that this one had.
-    /// The other's own barriers come next, and its contents are undefined.
-    HandOver {
-        /// Where it is recorded.
+    /// Waits for all previous work of the queue on a resource, and flushes its writes, because another resource reuses
+    /// its memory. Barriers of the other resource follow; its contents are undefined.
+    AliasingBarrier {
+        /// The queue.
         queue: QueueId,
-        /// Who had the memory.
+        /// The previous resource.
         from: ResourceId,
-        /// Who gets it.
+        /// The new resource.
         to: ResourceId,
     },
-    /// A barrier: layout transition, hand-over of memory, or wait.
+    /// Records a barrier: a layout transition, an aliasing barrier, or an execution dependency.
     Barrier {
-        /// Where it is recorded.
+        /// The queue.
         queue: QueueId,
         /// Index into [`framegraph::Plan::barriers`].
         barrier: u32,
-        /// What it waits for is waited for in front of all stages already, by a semaphore or a
-        /// [`HandOver`](Command::HandOver): in the place of stages before it names those that wait, so that it comes behind.
-        /// So does each first use of a part in memory that a schedule shares.
+        /// A semaphore or a [`AliasingBarrier`](Command::AliasingBarrier) already waits for the barrier's source. The barrier must
+        /// use the waiting stages as source stages, so that it is ordered after that wait. Also set for each first use
+        /// of a part in memory shared by a schedule.
         behind_semaphore: bool,
     },
-    /// Begin a render pass with the step's attachments, or compute or copy work.
+    /// Begins a render pass with the step's attachments, or compute or copy work.
     Begin {
-        /// Where it runs.
+        /// The queue.
         queue: QueueId,
         /// The step.
         step: StepId,
     },
-    /// Record a pass.
+    /// Records a pass.
     Pass {
-        /// Where it runs.
+        /// The queue.
         queue: QueueId,
         /// The pass.
         pass: PassId,
-        /// How it came into its step; what is [inlined](Join::Inlined) is part of the shader before it and not here.
+        /// The pass's join. [Inlined](Join::Inlined) passes are part of the previous shader and have no command.
         join: Join,
     },
-    /// End what was begun.
+    /// Ends what [`Begin`](Command::Begin) began.
     End {
-        /// Where it runs.
+        /// The queue.
         queue: QueueId,
         /// The step.
         step: StepId,
     },
-    /// The first half of a transfer of ownership.
+    /// Releases a resource: the first half of an ownership transfer.
     Release {
-        /// The queue that gives it.
+        /// The releasing queue.
         queue: QueueId,
         /// Index into [`Schedule::transfers`].
         transfer: u32,
     },
-    /// Signal a semaphore behind everything that the queue was given.
+    /// Signals a semaphore after all previous work of the queue.
     Signal {
-        /// The queue that signals.
+        /// The signaling queue.
         queue: QueueId,
-        /// Counted from 0.
+        /// Index of the semaphore.
         semaphore: u32,
     },
 }
 
-/// The commands of a frame: on one queue, or as `schedule` has it. Those of one queue are to be recorded in their order; semaphores
-/// are all that orders those of different queues. Barriers are there if the plan was made for a device that asks for them
-/// ([`framegraph::Caps::explicit_barriers`]).
+/// Returns the commands of a frame, on one queue or on those of `schedule`.
+///
+/// Commands of one queue must be recorded in this order; only semaphores order those of different queues. Barriers are
+/// included if the plan was compiled with explicit barriers ([`framegraph::Caps::explicit_barriers`]).
 ///
 /// # Panics
-/// When `schedule` is of another plan.
+/// Panics if `schedule` belongs to another plan.
 #[must_use]
 pub fn stream(plan: &Plan, schedule: Option<&Schedule>) -> Vec<Command> {
     commands(plan, schedule, None)
@@ -132,9 +133,10 @@ pub fn stream(plan: &Plan, schedule: Option<&Schedule>) -> Vec<Command> {
 
 fn commands(plan: &Plan, schedule: Option<&Schedule>, shared: Option<&SharedMemory>) -> Vec<Command> {
     let mut commands = memory(plan, schedule.map_or(&[], |schedule| &schedule.concurrent), shared);
-    let handed = schedule.zip(shared).map_or_else(Vec::new, |(schedule, shared)| hand_overs(plan, schedule, shared));
+    let handed =
+        schedule.zip(shared).map_or_else(Vec::new, |(schedule, shared)| aliasing_barriers(plan, schedule, shared));
     let queue_of = |step: StepId| schedule.map_or(QueueId::MAIN, |schedule| schedule.lanes[step.index()]);
-    // One semaphore a wait, and one for the end of each other queue.
+    // One semaphore per wait, and one for the end of each other queue.
     let waits: &[Wait] = schedule.map_or(&[], |schedule| &schedule.waits);
     let joins: &[StepId] = schedule.map_or(&[], |schedule| &schedule.joins);
     let transfers = schedule.map_or(&[][..], |schedule| &schedule.transfers);
@@ -152,7 +154,7 @@ fn commands(plan: &Plan, schedule: Option<&Schedule>, shared: Option<&SharedMemo
         let acquired = numbered().filter(|(_, t)| t.to.1 == Some(step));
         commands.extend(acquired.map(|(transfer, _)| Command::Acquire { queue, transfer }));
         let handed = handed.iter().filter(|row| row.before == step);
-        commands.extend(handed.map(|row| Command::HandOver { queue, from: row.from, to: row.to }));
+        commands.extend(handed.map(|row| Command::AliasingBarrier { queue, from: row.from, to: row.to }));
         while let Some((barrier, row)) = barriers.next_if(|(_, row)| row.before == step) {
             let behind_semaphore = match row.after.is_none() {
                 true => shared.is_some_and(|shared| shared.offset(row.resource).is_some()),
@@ -177,7 +179,7 @@ fn commands(plan: &Plan, schedule: Option<&Schedule>, shared: Option<&SharedMemo
     commands
 }
 
-/// A plan as a stream, by a call on the plan.
+/// Returns a plan as commands, as methods of [`Plan`].
 ///
 /// ```
 /// use framegraph::{Caps, Extent, Format, Graph, Intent, Options, Plan, Scratch, TextureDesc, compile};
@@ -193,20 +195,21 @@ fn commands(plan: &Plan, schedule: Option<&Schedule>, shared: Option<&SharedMemo
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait PlanStream {
-    /// [`stream()`] of one queue.
+    /// Returns the commands of [`stream()`] for one queue.
     fn stream(&self) -> Vec<Command>;
 
-    /// [`stream()`] of the queues of a schedule of this plan.
+    /// Returns the commands of [`stream()`] for the queues of a schedule.
     ///
     /// # Panics
-    /// When `schedule` is of another plan.
+    /// Panics if `schedule` belongs to another plan.
     fn stream_on(&self, schedule: &Schedule) -> Vec<Command>;
 
-    /// The same with memory that is shared by the schedule: each resource lies where [`share_memory`](crate::share_memory) put it, and
-    /// is handed over ([`Command::HandOver`]) where a queue gets memory that it has touched before.
+    /// Returns the commands for the queues of a schedule, with memory shared by [`share_memory`](crate::share_memory).
+    ///
+    /// Contains a [`Command::AliasingBarrier`] wherever a queue reuses memory that it has used before.
     ///
     /// # Panics
-    /// When `schedule` or `shared` is of another plan.
+    /// Panics if `schedule` or `shared` belongs to another plan.
     fn stream_in(&self, schedule: &Schedule, shared: &SharedMemory) -> Vec<Command>;
 }
 
@@ -224,7 +227,7 @@ impl PlanStream for Plan {
     }
 }
 
-/// Heaps, and everything that lies in them or elsewhere.
+/// Returns the commands that create heaps and resources.
 fn memory(plan: &Plan, concurrent: &[ResourceId], shared: Option<&SharedMemory>) -> Vec<Command> {
     let is_buffer = |resource: ResourceId| plan.graph().resources()[resource.index()].desc.texture().is_none();
     let of_plan = |of_buffers: bool| {

@@ -1,16 +1,17 @@
-//! Schedules to read: as text, and as a picture of lanes.
+//! Schedules as text and as SVG.
 
 use crate::schedule::Schedule;
-use framegraph::plain::plain;
+use framegraph::sanitize::escape_controls;
 use framegraph::{Plan, StepId};
 use std::borrow::Cow;
 use std::fmt::Write;
 
 fn name(plan: &Plan, step: StepId) -> Cow<'_, str> {
-    plain(plan.passes_of(step).first().map_or("", |member| plan.graph().pass_name(member.pass)))
+    escape_controls(plan.passes_of(step).first().map_or("", |member| plan.graph().pass_name(member.pass)))
 }
 
-/// The schedule as text: totals, the steps of each queue with their times and what they wait for, transfers, shared resources.
+/// Returns the schedule as text: totals, the steps of each queue with their times and waits, transfers and concurrent
+/// resources.
 #[must_use]
 pub fn text(plan: &Plan, schedule: &Schedule) -> String {
     let Schedule { layout, lanes, waits, joins, transfers, concurrent, times_us, total_us, alone_us, .. } = schedule;
@@ -21,7 +22,7 @@ pub fn text(plan: &Plan, schedule: &Schedule) -> String {
         transfers.len()
     );
     for (queue, id) in layout.queues.iter().zip(layout.ids()) {
-        let _ = writeln!(out, "\n{}:", plain(&queue.name));
+        let _ = writeln!(out, "\n{}:", escape_controls(&queue.name));
         for step in plan.step_ids().filter(|step| lanes[step.index()] == id) {
             let [begin, end] = times_us[step.index()];
             let _ = write!(out, "  {begin:9.1} … {end:9.1}  step {} {}", step.index(), name(plan, step));
@@ -36,23 +37,24 @@ pub fn text(plan: &Plan, schedule: &Schedule) -> String {
     }
     for transfer in transfers {
         let place = |(queue, step): (crate::QueueId, Option<StepId>), edge: &str| {
-            let queue = plain(&layout.queues[queue.index()].name);
+            let queue = escape_controls(&layout.queues[queue.index()].name);
             match step {
                 Some(step) => format!("{queue} ({edge} step {})", step.index()),
                 None => format!("{queue} ({edge} the frame)"),
             }
         };
-        let resource = plain(plan.graph().resource_name(transfer.resource));
-        let _ = writeln!(out, "  {resource}: {} to {}", place(transfer.from, "behind"), place(transfer.to, "before"));
+        let resource = escape_controls(plan.graph().resource_name(transfer.resource));
+        let _ = writeln!(out, "  {resource}: {} to {}", place(transfer.from, "after"), place(transfer.to, "before"));
     }
     if !concurrent.is_empty() {
-        let names: Vec<_> = concurrent.iter().map(|resource| plain(plan.graph().resource_name(*resource))).collect();
-        let _ = writeln!(out, "\nshared by queues: {}", names.join(", "));
+        let names: Vec<_> =
+            concurrent.iter().map(|resource| escape_controls(plan.graph().resource_name(*resource))).collect();
+        let _ = writeln!(out, "\nconcurrent: {}", names.join(", "));
     }
     out
 }
 
-/// The schedule as an SVG: a lane a queue, a box a step as long as it takes, a line a semaphore.
+/// Returns the schedule as SVG: a lane per queue, a box per step with its duration, and a line per semaphore.
 #[must_use]
 pub fn svg(plan: &Plan, schedule: &Schedule) -> String {
     const LANE: f64 = 44.0;
@@ -70,7 +72,7 @@ pub fn svg(plan: &Plan, schedule: &Schedule) -> String {
     );
     for (lane, queue) in layout.queues.iter().enumerate() {
         let y = top(lane) + 20.0;
-        let _ = writeln!(out, "<text x=\"8\" y=\"{y:.0}\">{}</text>", escaped(&plain(&queue.name)));
+        let _ = writeln!(out, "<text x=\"8\" y=\"{y:.0}\">{}</text>", escaped(&escape_controls(&queue.name)));
     }
     for step in plan.step_ids() {
         let ([begin, end], lane) = (times_us[step.index()], lanes[step.index()].index());
@@ -83,7 +85,7 @@ pub fn svg(plan: &Plan, schedule: &Schedule) -> String {
              <title>{shown}: {begin:.1} … {end:.1} µs</title></rect>",
             top(lane)
         );
-        // As many letters as fit.
+        // Only the characters that fit.
         let fits = (width / 6.5) as usize;
         if fits >= 2 {
             let short: String = name(plan, step).chars().take(fits).collect();

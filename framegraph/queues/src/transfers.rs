@@ -1,22 +1,24 @@
-//! Ownership: what moves from one family of queues to another with its contents, and what several read at once.
+//! Ownership of resources: transfers between queue families, and resources used concurrently.
 
 use crate::hazards::accesses_by_resource;
 use crate::layout::QueueId;
 use framegraph::{Placement, Plan, ResourceId, StepId};
 
-/// A resource goes from one queue to another and keeps its contents: released behind a step of the one, acquired in front of a
-/// step of the other (Vulkan 1.3, 7.7.4). Between the two lies a [`Wait`](crate::Wait), or what it implies.
+/// A transfer of ownership with contents: released after a step of one queue, acquired before a step of another (Vulkan
+/// 1.3, 7.7.4). A [`Wait`](crate::Wait) orders both, directly or indirectly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Transfer {
-    /// What is handed over, with all its parts.
+    /// The whole resource.
     pub resource: ResourceId,
-    /// The queue that gives it, behind this step; none at the frame's begin, when the first queue has everything.
+    /// The releasing queue and the step before the release; `None` at the start of the frame, when the first queue owns
+    /// everything.
     pub from: (QueueId, Option<StepId>),
-    /// The queue that gets it, in front of this step; none at the frame's end, when the first queue gets back what lives on.
+    /// The acquiring queue and the step after the acquire; `None` at the end of the frame, when the first queue gets
+    /// persistent resources back.
     pub to: (QueueId, Option<StepId>),
 }
 
-/// The transfers, and the resources that queues share without: several read them, or parts of them, at the same time.
+/// Returns the transfers, and the resources that several queues use concurrently.
 pub fn transfers(plan: &Plan, lanes: &[QueueId]) -> (Vec<Transfer>, Vec<ResourceId>) {
     let (mut transfers, mut concurrent) = (Vec::new(), Vec::new());
     for (resource, accesses) in accesses_by_resource(plan).iter().enumerate() {
@@ -32,7 +34,7 @@ pub fn transfers(plan: &Plan, lanes: &[QueueId]) -> (Vec<Transfer>, Vec<Resource
             continue;
         }
         let mut owner = (QueueId::MAIN, None);
-        // Contents of before are there where something outlives frames.
+        // Resources that outlive frames have initial contents.
         let mut holds = outlives;
         for (step, access) in accesses {
             let lane = lanes[*step as usize];
@@ -55,8 +57,8 @@ fn is_whole(access: &framegraph::Access) -> bool {
     access.range == framegraph::Range::ALL
 }
 
-/// Whether steps on different queues touch it with no write of all of it between them that would order them: two reads of the
-/// same contents, or accesses of different parts.
+/// Returns `true` if steps on different queues use the resource without an ordering write of all of it: two reads of
+/// the same contents, or accesses of different parts.
 fn is_read_by_several(accesses: &[(u32, framegraph::Access)], lanes: &[QueueId]) -> bool {
     let mut readers: Vec<QueueId> = Vec::new();
     for (step, access) in accesses {

@@ -1,5 +1,5 @@
-//! Schedules of random graphs and of chosen ones: sound, no slower than one queue, near the best there is, and judged by an oracle
-//! that notices each thing left out.
+//! Schedules of random and of selected graphs are correct, not slower than one queue, and close to the optimum. The
+//! checker notices everything that is left out.
 
 use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{
@@ -12,7 +12,7 @@ use framegraph_queues::{
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
 
-/// Costs without a pattern, most of them small.
+/// Returns random costs, most of them small.
 fn costs(plan: &Plan, seed: u64) -> Vec<f64> {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     plan.step_ids()
@@ -24,7 +24,7 @@ fn costs(plan: &Plan, seed: u64) -> Vec<f64> {
         .collect()
 }
 
-/// Plans of random graphs under all options, for three kinds of devices in turn: memory is shared in slots and in heaps.
+/// Returns plans of random graphs with all options, for three kinds of devices, with slots and heaps.
 fn plans(count: u64) -> impl Iterator<Item = (u64, Plan)> {
     let mut scratch = Scratch::new();
     (0..count).filter_map(move |seed| {
@@ -51,25 +51,25 @@ fn schedules_are_sound_and_never_slower() -> TestResult {
             assert_eq!(check(&plan, &found), [], "seed {seed}: {}", text(&plan, &found));
             assert!(
                 found.total_us <= found.alone_us,
-                "seed {seed}: {} µs and {} alone",
+                "seed {seed}: {} µs, {} on one queue",
                 found.total_us,
                 found.alone_us
             );
             let elsewhere = found.lanes.iter().filter(|lane| **lane != QueueId::MAIN).count();
-            assert_eq!(elsewhere > 0, found.total_us < found.alone_us, "seed {seed}: steps leave for what they win");
-            assert_eq!(found, schedule(&plan, &layout, &costs)?, "the same twice");
+            assert_eq!(elsewhere > 0, found.total_us < found.alone_us, "seed {seed}: steps leave only for a gain");
+            assert_eq!(found, schedule(&plan, &layout, &costs)?, "schedules are deterministic");
             moved += elsewhere;
             shorter += usize::from(found.total_us < found.alone_us);
             transfers += found.transfers.len();
             shared += found.concurrent.len();
         }
     }
-    println!("{shorter} frames got shorter, {moved} steps moved, {transfers} transfers, {shared} shared resources");
+    println!("{shorter} frames got shorter, {moved} steps moved, {transfers} transfers, {shared} concurrent resources");
     assert!(shorter > 100 && moved > 200 && transfers > 100 && shared > 20);
     Ok(())
 }
 
-/// Every way in which steps may lie on two queues, tried: the chosen one is mostly the best, and near it else.
+/// Tries every assignment to two queues: the chosen one is usually optimal, otherwise close to it.
 #[test]
 fn the_choice_is_near_the_best_of_all() -> TestResult {
     let layout = QueueLayout::async_compute();
@@ -89,21 +89,21 @@ fn the_choice_is_near_the_best_of_all() -> TestResult {
                 forced_us(&plan, &layout, &costs, &leaves)
             })
             .fold(f64::INFINITY, f64::min);
-        assert!(chosen >= least - 1e-9, "seed {seed}: {chosen} is less than the least, {least}");
+        assert!(chosen >= least - 1e-9, "seed {seed}: {chosen} is below the minimum, {least}");
         tried += 1;
         best += usize::from(chosen <= least + 1e-9);
         worst = worst.max(chosen / least);
     }
-    println!("{best} of {tried} are the best, the worst takes {worst:.3} of it");
+    println!("{best} of {tried} are optimal, the worst ratio is {worst:.3}");
     assert!(tried > 100 && best * 10 >= tried * 9 && worst < 1.15, "{best} of {tried}, {worst}");
     Ok(())
 }
 
-/// The time of a frame in which exactly these steps are on the second queue, by walking through it in a way of its own: each step
-/// begins as soon as everything that conflicts with it, pair by pair, is over.
+/// Returns the duration of a frame with the given steps on the second queue, with an independent model: each step
+/// begins when all conflicting steps have ended.
 fn forced_us(plan: &Plan, layout: &QueueLayout, costs: &[f64], leaves: &dyn Fn(StepId) -> bool) -> f64 {
     let lanes: Vec<QueueId> = plan.step_ids().map(|step| QueueId(u8::from(leaves(step)))).collect();
-    // Without any semaphore, what the judge finds unordered is what has to be waited for.
+    // Without semaphores, the pairs that the checker reports are those that must be ordered.
     let mut bare = schedule(plan, &QueueLayout::one(), costs).unwrap_or_else(|error| panic!("{error}"));
     (bare.layout, bare.lanes) = (layout.clone(), lanes.clone());
     let mut waits = Vec::new();
@@ -114,9 +114,9 @@ fn forced_us(plan: &Plan, layout: &QueueLayout, costs: &[f64], leaves: &dyn Fn(S
     }
     let (mut free, mut ends) = ([0.0_f64; 2], Vec::new());
     for (step, lane) in lanes.iter().enumerate() {
-        let told =
+        let ready_us =
             waits.iter().filter(|(_, second)| *second == step).map(|(first, _)| ends[*first] + layout.semaphore_us);
-        let begin = told.fold(free[lane.index()], f64::max);
+        let begin = ready_us.fold(free[lane.index()], f64::max);
         free[lane.index()] = begin + costs[step];
         ends.push(begin + costs[step]);
     }
@@ -124,8 +124,8 @@ fn forced_us(plan: &Plan, layout: &QueueLayout, costs: &[f64], leaves: &dyn Fn(S
     free[0].max(joined)
 }
 
-/// Memory is shared as far as the schedule allows: no two lie in one another that may be in use at once, and a schedule that lost
-/// its semaphores is found to.
+/// Memory is shared according to the schedule: resources in use at the same time do not overlap, and removing the
+/// semaphores is noticed.
 #[test]
 fn memory_is_shared_by_what_is_over() -> TestResult {
     let (mut bytes, mut unaliased, mut noticed) = (0, 0, 0);
@@ -148,12 +148,12 @@ fn memory_is_shared_by_what_is_over() -> TestResult {
         broken.waits.clear();
         noticed += usize::from(!check_memory(&plan, &broken, &memory).is_empty());
     }
-    println!("{bytes} bytes of {unaliased}; {noticed} schedules without semaphores were noticed");
+    println!("{bytes} bytes of {unaliased}; {noticed} schedules without semaphores were reported");
     assert!(bytes * 10 < unaliased * 9 && noticed > 3, "{bytes} of {unaliased}, {noticed}");
     Ok(())
 }
 
-/// Whatever is left out of a schedule is missed.
+/// Every element that is left out of a schedule is noticed.
 #[test]
 fn the_judge_notices_what_is_left_out() -> TestResult {
     let (mut waits, mut transfers, mut joins) = (0, 0, 0);
@@ -162,7 +162,7 @@ fn the_judge_notices_what_is_left_out() -> TestResult {
         for left_out in 0..found.waits.len() {
             let mut broken = found.clone();
             broken.waits.remove(left_out);
-            assert_ne!(check(&plan, &broken), [], "seed {seed}: wait {left_out} is not needed");
+            assert_ne!(check(&plan, &broken), [], "seed {seed}: wait {left_out} is unnecessary");
             waits += 1;
         }
         for left_out in 0..found.transfers.len() {
@@ -193,7 +193,7 @@ fn the_judge_notices_what_is_left_out() -> TestResult {
     Ok(())
 }
 
-/// Occlusion that can run beside a shadow map.
+/// Returns a frame with ambient occlusion that can run in parallel with a shadow map.
 fn frame(alias: Alias) -> Result<Plan, Box<dyn std::error::Error>> {
     let mut graph = Graph::new();
     let color = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
@@ -226,7 +226,8 @@ fn frame(alias: Alias) -> Result<Plan, Box<dyn std::error::Error>> {
     Ok(plan)
 }
 
-/// In a plan for one queue the map has the memory of the occlusion before it was blurred, and waits for it: nothing can run beside.
+/// In a plan for one queue, the map reuses the memory of the unblurred occlusion and waits for it, so nothing runs in
+/// parallel.
 #[test]
 fn shared_memory_is_waited_for() -> TestResult {
     let costs = [100.0, 200.0, 150.0, 500.0, 300.0];
@@ -235,14 +236,14 @@ fn shared_memory_is_waited_for() -> TestResult {
     Ok(())
 }
 
-/// Two steps that follow each other leave together, and what both queues read is shared by them.
+/// Two consecutive steps move together, and resources read by both queues are concurrent.
 #[test]
 fn occlusion_runs_beside_shadows() -> TestResult {
     let plan = frame(Alias::Off)?;
     let costs = [100.0, 200.0, 150.0, 500.0, 300.0];
     let found = schedule(&plan, &QueueLayout::async_compute(), &costs)?;
     assert_eq!(found.lanes, [0, 1, 1, 0, 0].map(QueueId));
-    assert_eq!((found.alone_us, found.total_us), (1250.0, 900.0), "350 µs run beside the map");
+    assert_eq!((found.alone_us, found.total_us), (1250.0, 900.0), "350 µs run in parallel with the map");
     let pairs: Vec<_> = found.waits.iter().map(|wait| (wait.after.index(), wait.before.index())).collect();
     assert_eq!(pairs, [(0, 1), (2, 4)]);
     assert!(found.is_before(StepId::at(0), StepId::at(4)) && !found.is_before(StepId::at(1), StepId::at(3)));
@@ -250,12 +251,12 @@ fn occlusion_runs_beside_shadows() -> TestResult {
     assert_eq!(found.concurrent.iter().map(|r| name(*r)).collect::<Vec<_>>(), ["depth"]);
     let moved: Vec<_> = found.transfers.iter().map(|t| (name(t.resource), t.from.0.0, t.to.0.0)).collect();
     assert_eq!(moved, [("blurred", 1, 0)]);
-    let told = text(&plan, &found);
-    assert!(told.contains("frame: 900.0 µs, 1250.0 µs on one queue; 2 semaphores, 1 joins, 1 transfers"), "{told}");
-    assert!(told.contains("blurred: compute (behind step 2) to graphics (before step 4)"), "{told}");
+    let shown = text(&plan, &found);
+    assert!(shown.contains("frame: 900.0 µs, 1250.0 µs on one queue; 2 semaphores, 1 joins, 1 transfers"), "{shown}");
+    assert!(shown.contains("blurred: compute (after step 2) to graphics (before step 4)"), "{shown}");
     let drawn = svg(&plan, &found);
     assert!(drawn.matches("<rect").count() == 6 && drawn.matches("<line").count() == 2, "{drawn}");
-    // What must stay stays, and a map that takes little longer than a semaphore is nothing to run beside.
+    // Pinned steps stay, and a map that takes little longer than a semaphore leaves nothing to gain.
     let stays = schedule_with(&plan, &QueueLayout::async_compute(), &costs, &|step| step.index() != 1)?;
     assert_eq!(stays.lanes[1], QueueId::MAIN);
     let short = schedule(&plan, &QueueLayout::async_compute(), &[100.0, 200.0, 150.0, 15.0, 300.0])?;
@@ -330,7 +331,7 @@ fn a_pass_that_asks_for_the_first_queue_stays_there() -> TestResult {
     let stayed = schedule(&staying, &layout, &costs_us)?;
     assert_eq!((left.total_us, stayed.total_us), (1300.0, 1600.0));
     assert!(stayed.lanes.iter().all(|lane| *lane == QueueId::MAIN));
-    // The judge holds the wish against a schedule that does not know of it.
+    // The checker reports a schedule that ignores the pinned pass.
     assert!(check(&free, &left).is_empty() && check(&staying, &stayed).is_empty());
     assert!(check(&staying, &left).iter().any(|found| matches!(found, Violation::WrongQueue { .. })));
     Ok(())

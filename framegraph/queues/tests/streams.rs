@@ -1,6 +1,5 @@
-//! Streams of random plans, run by a machine that knows nothing but the stream and the tables: every part is in the state that
-//! each pass needs, memory is handed over before it is used, semaphores are signalled before they are waited for, and each queue
-//! owns what it touches.
+//! Runs command streams of random plans on a simulated device that knows only the stream and the tables. Checks states
+//! of parts, aliasing barriers, semaphores, and ownership.
 
 use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{
@@ -13,23 +12,23 @@ use std::collections::{BTreeMap, BTreeSet};
 
 type TestResult = Result<(), Box<dyn std::error::Error>>;
 
-/// What the machine knows.
+/// The state of the simulated device.
 struct Machine<'a> {
     plan: &'a Plan,
     schedule: Option<&'a Schedule>,
     created: BTreeMap<ResourceId, Memory>,
     concurrent: BTreeSet<ResourceId>,
-    /// Who has what holds something; none while it is on its way.
+    /// Owner of each resource with contents; `None` during a transfer.
     owners: BTreeMap<ResourceId, Option<QueueId>>,
     /// The state of each part of each resource.
     states: BTreeMap<(ResourceId, u32), State>,
-    /// Which queue waited for all that it did to one resource, for another to get its memory.
+    /// Aliasing barriers: queue, previous resource, new resource.
     handed: BTreeSet<(QueueId, ResourceId, ResourceId)>,
-    /// What was touched, by which queues.
-    touched: BTreeMap<ResourceId, BTreeSet<QueueId>>,
-    /// Memory is shared by the schedule, and not by the plan's own barriers.
+    /// The queues that used each resource.
+    accessed: BTreeMap<ResourceId, BTreeSet<QueueId>>,
+    /// Memory is shared by the schedule, not by the plan.
     shared: bool,
-    /// What lies in memory that another got.
+    /// Resources whose memory another resource reuses.
     gone: BTreeSet<ResourceId>,
     signalled: BTreeSet<u32>,
     open: BTreeMap<QueueId, u32>,
@@ -39,7 +38,7 @@ struct Machine<'a> {
 impl Machine<'_> {
     fn run(&mut self, command: &Command) -> Result<(), String> {
         match *command {
-            Command::Heap { bytes: 0, .. } => Err("a heap of nothing".into()),
+            Command::Heap { bytes: 0, .. } => Err("empty heap".into()),
             Command::Heap { .. } => Ok(()),
             Command::Create { resource, memory, concurrent } => {
                 if concurrent {
@@ -50,22 +49,24 @@ impl Machine<'_> {
                 }
                 match self.created.insert(resource, memory) {
                     None => Ok(()),
-                    Some(_) => Err(format!("resource {} is made twice", resource.index())),
+                    Some(_) => Err(format!("resource {} is created twice", resource.index())),
                 }
             }
             Command::Signal { semaphore, .. } => match self.signalled.insert(semaphore) {
                 true => Ok(()),
-                false => Err(format!("semaphore {semaphore} is signalled twice")),
+                false => Err(format!("semaphore {semaphore} is signaled twice")),
             },
             Command::Wait { semaphore, .. } => match self.signalled.contains(&semaphore) {
                 true => Ok(()),
-                false => Err(format!("semaphore {semaphore} is not signalled before it is waited for")),
+                false => Err(format!("semaphore {semaphore} is waited for before it is signaled")),
             },
             Command::Release { queue, transfer } => {
                 let transfer = self.transfer(transfer, |transfer| transfer.from.0 == queue)?;
                 match self.owners.insert(transfer, None) {
-                    None | Some(None) => Err(format!("resource {} is released by who has it not", transfer.index())),
-                    Some(Some(owner)) if owner != queue => Err(format!("queue {owner:?} has what {queue:?} releases")),
+                    None | Some(None) => Err(format!("resource {} is released without being owned", transfer.index())),
+                    Some(Some(owner)) if owner != queue => {
+                        Err(format!("queue {queue:?} releases a resource of {owner:?}"))
+                    }
                     Some(Some(_)) => Ok(()),
                 }
             }
@@ -73,25 +74,25 @@ impl Machine<'_> {
                 let transfer = self.transfer(transfer, |transfer| transfer.to.0 == queue)?;
                 match self.owners.insert(transfer, Some(queue)) {
                     Some(None) => Ok(()),
-                    _ => Err(format!("resource {} is acquired and was not released", transfer.index())),
+                    _ => Err(format!("resource {} is acquired, but was not released", transfer.index())),
                 }
             }
             Command::Barrier { barrier, behind_semaphore, .. } => {
                 let row = &self.plan.barriers()[barrier as usize];
                 let in_heap = matches!(self.created.get(&row.resource), Some(Memory::Heap { .. }));
                 if self.shared && in_heap && row.after.is_none() && !behind_semaphore {
-                    return Err(format!("barrier {barrier} may come before what had the memory is over"));
+                    return Err(format!("barrier {barrier} may precede the end of the previous resource"));
                 }
                 for part in row.first_part..row.first_part + row.parts {
                     let state = self.states.entry((row.resource, part)).or_insert(row.from);
                     if row.from != State::Undefined && *state != row.from {
-                        return Err(format!("barrier {barrier} is from {}, and the part is {}", row.from, *state));
+                        return Err(format!("barrier {barrier} is from {}, but the part is {}", row.from, *state));
                     }
                     *state = row.to;
                 }
                 Ok(())
             }
-            Command::HandOver { queue, from, to } => match self.open.contains_key(&queue) {
+            Command::AliasingBarrier { queue, from, to } => match self.open.contains_key(&queue) {
                 true => Err(format!("queue {queue:?} waits within a step")),
                 false => {
                     self.handed.insert((queue, from, to));
@@ -107,12 +108,12 @@ impl Machine<'_> {
             }
             Command::End { queue, step } => match self.open.remove(&queue) {
                 Some(open) if open == step.index() as u32 => Ok(()),
-                other => Err(format!("step {} ends, {other:?} is open", step.index())),
+                other => Err(format!("step {} ends, but {other:?} is open", step.index())),
             },
             Command::Pass { queue, pass, join } => {
-                let step = *self.open.get(&queue).ok_or("a pass outside of a step")?;
+                let step = *self.open.get(&queue).ok_or("pass outside of a step")?;
                 if self.plan.pass_steps()[pass.index()].index() as u32 != step && join != Join::Resolve {
-                    return Err(format!("pass {} is not of step {step}", pass.index()));
+                    return Err(format!("pass {} does not belong to step {step}", pass.index()));
                 }
                 if self.schedule.is_some_and(|schedule| schedule.lanes[step as usize] != queue) {
                     return Err(format!("step {step} is on another queue"));
@@ -132,22 +133,22 @@ impl Machine<'_> {
         }
     }
 
-    /// A queue touches a resource, whose memory others may have had in a schedule that shares it: what this queue did to them is
-    /// waited for, and nobody touches them any more. That other queues are over is told by semaphores, which have a judge.
+    /// Checks a use of a resource in shared memory. The queue must have waited for its own uses of previous resources,
+    /// and they must not be used again. Uses on other queues are ordered by semaphores, which have their own checker.
     fn lie(&mut self, resource: ResourceId, queue: QueueId) -> Result<(), String> {
         let is_texture = |id: ResourceId| self.plan.graph().resources()[id.index()].desc.texture().is_some();
         let span = |id: ResourceId| match self.created.get(&id) {
             Some(Memory::Heap { offset }) => Some((*offset, offset + self.plan.resources()[id.index()].bytes)),
             _ => None,
         };
-        let known = self.touched.contains_key(&resource);
+        let known = self.accessed.contains_key(&resource);
         if let Some((begin, end)) = span(resource).filter(|_| self.shared && !known) {
-            for (other, queues) in &self.touched {
+            for (other, queues) in &self.accessed {
                 let Some((other_begin, other_end)) = span(*other) else { continue };
                 let overlap = is_texture(*other) == is_texture(resource) && other_begin < end && begin < other_end;
                 if overlap && queues.contains(&queue) && !self.handed.contains(&(queue, *other, resource)) {
                     return Err(format!(
-                        "resource {} lies where {} was, and nobody waited",
+                        "resource {} reuses memory of {} without a wait",
                         resource.index(),
                         other.index()
                     ));
@@ -158,43 +159,43 @@ impl Machine<'_> {
             }
         }
         if self.gone.contains(&resource) {
-            return Err(format!("resource {} has lost its memory", resource.index()));
+            return Err(format!("the memory of resource {} was reused", resource.index()));
         }
-        self.touched.entry(resource).or_default().insert(queue);
+        self.accessed.entry(resource).or_default().insert(queue);
         Ok(())
     }
 
-    /// The resource of a transfer of the queue.
+    /// Returns the resource of a transfer of this queue.
     fn transfer(&self, index: u32, is_of: impl Fn(&Transfer) -> bool) -> Result<ResourceId, String> {
         let transfers = self.schedule.map_or(&[][..], |schedule| &schedule.transfers);
         let found = transfers.get(index as usize).filter(|transfer| is_of(transfer));
-        found.map(|transfer| transfer.resource).ok_or_else(|| format!("transfer {index} is not of this queue"))
+        found.map(|transfer| transfer.resource).ok_or_else(|| format!("transfer {index} belongs to another queue"))
     }
 
-    /// A queue reads what it has, and has what it writes; what is concurrent any may read.
+    /// Checks ownership: a queue must own what it reads and gets what it writes, except for concurrent resources.
     fn own(&mut self, access: &Access, queue: QueueId) -> Result<(), String> {
         if self.concurrent.contains(&access.resource) {
             return Ok(());
         }
         let owner = self.owners.get(&access.resource).copied();
         if access.mode.needs_contents() && owner.is_some_and(|owner| owner != Some(queue)) {
-            return Err(format!("queue {queue:?} reads resource {}, which {owner:?} has", access.resource.index()));
+            return Err(format!("queue {queue:?} reads resource {}, which {owner:?} owns", access.resource.index()));
         }
         self.owners.insert(access.resource, Some(queue));
         Ok(())
     }
 
-    /// A pass touches a resource: it is there, and its first part is in the state of the access.
+    /// Checks a use of a resource by a pass: it exists, and its first part has the state of the access.
     fn touch(&self, access: &Access, kind: PassKind, join: Join) -> Result<(), String> {
         let placement = self.plan.resources()[access.resource.index()].placement;
         if matches!(placement, Placement::Inlined | Placement::Unused) || join != Join::First {
             return Ok(());
         }
         if !self.created.contains_key(&access.resource) {
-            return Err(format!("resource {} is not made", access.resource.index()));
+            return Err(format!("resource {} does not exist", access.resource.index()));
         }
         let is_texture = self.plan.graph().resources()[access.resource.index()].desc.texture().is_some();
-        // What is resolved by a step of its own is another pass's target, and lives in the tile: both have no state here.
+        // Full-screen resolves and memoryless attachments have no state here.
         if !is_texture || access.kind == AccessKind::Resolve || placement == Placement::Memoryless {
             return Ok(());
         }
@@ -243,7 +244,7 @@ fn run(plan: &Plan, schedule: Option<&Schedule>, commands: &[Command]) -> Result
         owners: BTreeMap::new(),
         states: BTreeMap::new(),
         handed: BTreeSet::new(),
-        touched: BTreeMap::new(),
+        accessed: BTreeMap::new(),
         shared: schedule.is_some() && commands.iter().any(in_heap),
         gone: BTreeSet::new(),
         signalled: BTreeSet::new(),
@@ -280,11 +281,11 @@ fn a_machine_runs_streams_on_one_queue() -> TestResult {
         barriers += plan.barriers().len();
         heaps += count(|c| matches!(c, Command::Heap { .. }));
         ran += 1;
-        // Without its barriers it does not run.
+        // Negative control: fails without barriers.
         let bare: Vec<_> = commands.iter().copied().filter(|c| !matches!(c, Command::Barrier { .. })).collect();
         noticed += usize::from(run(&plan, None, &bare).is_err());
     }
-    println!("{ran} streams, {barriers} barriers, {heaps} heaps; {noticed} do not run without barriers");
+    println!("{ran} streams, {barriers} barriers, {heaps} heaps; {noticed} fail without barriers");
     assert!(ran > 200 && barriers > 1000 && heaps > 50 && noticed > 150, "{ran} {barriers} {heaps} {noticed}");
     Ok(())
 }
@@ -306,13 +307,13 @@ fn a_machine_runs_streams_on_several_queues() -> TestResult {
         assert_eq!(
             waits,
             count(|c| matches!(c, Command::Signal { .. })),
-            "seed {seed}: each is signalled once and waited for once"
+            "seed {seed}: each is signaled once and waited for once"
         );
         let halves = [count(|c| matches!(c, Command::Release { .. })), count(|c| matches!(c, Command::Acquire { .. }))];
         assert_eq!(halves, [found.transfers.len(); 2], "seed {seed}");
         late += count(|c| matches!(c, Command::Barrier { behind_semaphore: true, .. }));
         semaphores += waits;
-        // Neither without the transfers nor without concurrent resources does it run.
+        // Negative controls: fails without transfers, and without concurrent resources.
         let is_half = |c: &&Command| matches!(c, Command::Release { .. } | Command::Acquire { .. });
         let bare: Vec<_> = commands.iter().filter(|c| !is_half(c)).copied().collect();
         kept += usize::from(!found.transfers.is_empty() && run(&plan, Some(&found), &bare).is_err());
@@ -325,13 +326,13 @@ fn a_machine_runs_streams_on_several_queues() -> TestResult {
         alone += usize::from(run(&plan, Some(&found), &owned.collect::<Vec<_>>()).is_err());
         moved += found.lanes.iter().filter(|lane| **lane != QueueId::MAIN).count();
     }
-    println!("{semaphores} semaphores, {moved} steps on the second queue, {late} barriers behind semaphores");
+    println!("{semaphores} semaphores, {moved} steps on the second queue, {late} barriers after semaphores");
     assert!(semaphores > 50 && moved > 50 && late > 10, "{semaphores} {moved} {late}");
-    assert!(kept > 20 && alone > 5, "{kept} streams need their transfers, {alone} what is concurrent");
+    assert!(kept > 20 && alone > 5, "{kept} streams need their transfers, {alone} their concurrent resources");
     Ok(())
 }
 
-/// Memory that a schedule shares is handed over within each queue, and is handed over by no one where it is not shared.
+/// Memory shared by a schedule has aliasing barriers within each queue; other memory has none.
 #[test]
 fn a_machine_runs_streams_that_share_memory() -> TestResult {
     let (mut ran, mut noticed, mut handed, mut elsewhere) = (0, 0, 0, 0);
@@ -345,15 +346,17 @@ fn a_machine_runs_streams_that_share_memory() -> TestResult {
         run(&plan, Some(&found), &commands).map_err(|e| format!("seed {seed}: {e}"))?;
         let heaps: u64 = commands.iter().map(|c| if let Command::Heap { bytes, .. } = c { *bytes } else { 0 }).sum();
         assert_eq!(heaps, memory.bytes(), "seed {seed}");
-        let is_hand_over = |c: &&Command| matches!(c, Command::HandOver { .. });
+        let is_hand_over = |c: &&Command| matches!(c, Command::AliasingBarrier { .. });
         let rest: Vec<_> = commands.iter().filter(|c| !is_hand_over(c)).copied().collect();
         let count = commands.len() - rest.len();
-        elsewhere +=
-            commands.iter().filter(|c| matches!(c, Command::HandOver { queue, .. } if *queue != QueueId::MAIN)).count();
+        elsewhere += commands
+            .iter()
+            .filter(|c| matches!(c, Command::AliasingBarrier { queue, .. } if *queue != QueueId::MAIN))
+            .count();
         assert!(!plan.stream_on(&found).iter().any(|c| is_hand_over(&c)), "seed {seed}");
         ran += usize::from(count > 0);
         handed += count;
-        // Each is missed.
+        // Every missing aliasing barrier is noticed.
         for left_out in 0..count {
             let mut index = 0;
             let kept = commands.iter().copied().filter(|c| {
@@ -364,7 +367,9 @@ fn a_machine_runs_streams_that_share_memory() -> TestResult {
             noticed += usize::from(run(&plan, Some(&found), &kept.collect::<Vec<_>>()).is_err());
         }
     }
-    println!("{ran} streams with {handed} hand-overs, {elsewhere} of them on the second queue; {noticed} are missed");
+    println!(
+        "{ran} streams with {handed} aliasing barriers, {elsewhere} of them on the second queue; {noticed} are required"
+    );
     assert!(ran > 50 && handed > 200 && elsewhere > 2 && noticed == handed, "{ran} {handed} {elsewhere} {noticed}");
     Ok(())
 }

@@ -1,49 +1,49 @@
-//! Sets of kinds of access, and what resources and passes allow.
+//! Sets of access kinds, and the kinds that formats and resources allow.
 
 use super::AccessKind;
 use crate::format::Format;
 use crate::resource::{Desc, Kind, TextureDesc};
 
-/// A set of kinds of access, a bit each, with two bits about the resource that they are of.
+/// A set of access kinds, one bit each, and two bits about the resource.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Kinds(u32);
 
 impl Kinds {
-    /// Nothing at all.
+    /// The empty set.
     pub(crate) const NONE: Self = Self(0);
-    /// Beside kinds: the resource holds something, so that it can be read.
+    /// Resource bit: the contents are defined and can be read.
     pub(crate) const DEFINED: Self = Self(1 << 14);
-    /// Beside kinds: the resource has one part, whatever the frame's size.
+    /// Resource bit: the resource has one subresource at any frame size.
     pub(crate) const ONE_PART: Self = Self(1 << 15);
     /// Every kind.
     pub(crate) const ALL: Self = Self((1 << 14) - 1);
 
-    /// The kinds that attach.
+    /// Attachments and resolve targets.
     const ATTACHMENTS: Self = {
         use AccessKind::*;
         Self::of(&[Color, Depth, DepthReadOnly, Resolve])
     };
-    /// The kinds that make a depth attachment.
+    /// Depth-stencil attachments.
     pub(crate) const DEPTHS: Self = Self::of(&[AccessKind::Depth, AccessKind::DepthReadOnly]);
-    /// The kinds that only a raster pass can make.
+    /// Kinds that require a raster pass.
     pub(crate) const RASTER: Self =
         Self::ATTACHMENTS.union(Self::of(&[AccessKind::SamePixel, AccessKind::Vertex, AccessKind::Index]));
-    /// The kinds that only a copy pass can make.
+    /// Kinds that require a copy pass.
     pub(crate) const COPIES: Self = Self::of(&[AccessKind::CopySource, AccessKind::CopyTarget]);
-    /// The kinds that read.
+    /// Kinds that read.
     pub(crate) const READS: Self = {
         use AccessKind::*;
         Self::of(&[DepthReadOnly, SamePixel, Sampled, StorageRead, Uniform, Vertex, Index, Indirect, CopySource])
     };
-    /// The kinds that a buffer allows.
+    /// Kinds that buffers support.
     pub(crate) const OF_BUFFERS: Self = {
         use AccessKind::*;
         Self::of(&[StorageRead, StorageWrite, Uniform, Vertex, Index, Indirect, CopySource, CopyTarget])
     };
-    /// The kinds that touch the tile. They must name one level.
+    /// Kinds that access the tile. Their range must be a single level.
     pub(crate) const TILE: Self = Self::ATTACHMENTS.union(Self::one(AccessKind::SamePixel));
 
-    /// The set of one kind.
+    /// Returns the set of one kind.
     #[inline]
     pub(crate) const fn one(kind: AccessKind) -> Self {
         Self(1 << kind as u8)
@@ -58,46 +58,48 @@ impl Kinds {
         set
     }
 
-    /// What is in either.
+    /// Returns the union of both sets.
     #[inline]
     #[must_use]
     pub(crate) const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// What is in both.
+    /// Returns the intersection of both sets.
     #[inline]
     #[must_use]
     pub(crate) const fn both(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
 
-    /// What is in `self` and not in `other`.
+    /// Returns the elements of `self` that are not in `other`.
     #[inline]
     #[must_use]
     pub(crate) const fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// Whether everything of `other` is in `self`.
+    /// Returns `true` if `self` contains all of `other`.
     #[inline]
     pub(crate) const fn has(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
 
-    /// Whether anything of `other` is in `self`.
+    /// Returns `true` if `self` and `other` intersect.
     #[inline]
     pub(crate) const fn meets(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// The kinds that a texture of one level and that format allows, and whether it has one plane.
+    /// Returns the kinds that a single-level texture of this format supports, and `ONE_PART` if the format has one
+    /// plane.
     pub(crate) const fn of_format(format: Format) -> Self {
         OF_FORMATS[format as usize]
     }
 
-    /// The accesses to the whole of a resource, as it is on entry, that nothing in its shape or kind rules out. A kind that is
-    /// left out may still be sound.
+    /// Returns the kinds that the descriptor and origin of a resource allow for its initial version.
+    ///
+    /// The set is conservative: a missing kind may still be valid, and needs the full check.
     #[inline]
     pub(crate) const fn on_entry(desc: &Desc, kind: Kind) -> Self {
         let shape = match desc {
@@ -119,7 +121,7 @@ impl Kinds {
         } else if t.layers == 0 {
             Self::NONE
         } else if t.mips == 1 && t.tracked_layers() == 1 {
-            // The slices of a volume are not followed.
+            // Slices of three-dimensional textures are not tracked.
             kinds.without(Self::TILE)
         } else if t.mips == 1 {
             kinds.without(Self::ONE_PART)
@@ -157,7 +159,7 @@ const fn allowed_by(format: Format) -> Kinds {
     if format.planes() == 1 { kinds.union(Kinds::ONE_PART) } else { kinds }
 }
 
-/// Whether a storage texture of this format exists (WebGPU's list, and what common adapters add to it).
+/// Returns `true` if storage textures of this format exist, in WebGPU or with common adapter features.
 const fn storable(format: Format) -> bool {
     !format.is_depth_stencil()
         && !format.is_compressed()

@@ -1,11 +1,12 @@
-//! Which part of a resource an access touches: levels, layers and planes of a texture, bytes of a buffer.
+//! The accessed part of a resource: levels, layers and planes of a texture, or bytes of a buffer.
 
 use crate::format::{Aspect, Format};
 use crate::id::{BytesId, ResourceId};
 use crate::resource::TextureDesc;
 
-/// Levels, layers and planes of a texture, or bytes of a buffer. `u8::MAX` or `u16::MAX` as a count means "all that there
-/// are".
+/// Levels, layers and planes of a texture, or bytes of a buffer.
+///
+/// A count of `u8::MAX` levels or `u16::MAX` layers means all remaining ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Range {
     /// First mip level, from 0.
@@ -16,40 +17,40 @@ pub struct Range {
     pub layer: u16,
     /// Number of array layers.
     pub layers: u16,
-    /// The planes: all, depth or stencil.
+    /// Planes: all, depth or stencil.
     pub aspect: Aspect,
-    /// The format that the texture is seen through: the sRGB twin of its own; none for its own.
+    /// Format of the view if it is the sRGB twin of the texture's format; otherwise `None`.
     pub view: Option<Format>,
-    /// The bytes of a buffer; none for all of them, and for textures.
+    /// Bytes of a buffer; none for a whole buffer or a texture.
     pub bytes: BytesId,
 }
 
-/// One row of [`Graph::byte_ranges`](crate::graph::Tables::byte_ranges): bytes of a buffer that an access names.
+/// A byte range that an access refers to: a row of [`Graph::byte_ranges`](crate::graph::Tables::byte_ranges).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ByteRange {
     /// The buffer.
     pub resource: ResourceId,
-    /// Bytes in front of the first.
+    /// Offset of the first byte, in bytes.
     pub offset: u64,
     /// Number of bytes, not 0.
     pub bytes: u64,
 }
 
 impl ByteRange {
-    /// Bytes in front of the first one behind the range.
+    /// Offset of the end of the range, in bytes.
     #[inline]
     pub const fn end(&self) -> u64 {
         self.offset + self.bytes
     }
 
-    /// Whether the two name a common byte.
+    /// Returns `true` if both ranges share a byte of one buffer.
     pub fn overlaps(&self, other: &Self) -> bool {
         self.resource == other.resource && self.offset < other.end() && other.offset < self.end()
     }
 }
 
 impl Range {
-    /// Everything: all levels, layers, planes and bytes, seen as declared.
+    /// The whole resource in its declared format.
     pub const ALL: Self = Self {
         mip: 0,
         mips: u8::MAX,
@@ -60,9 +61,10 @@ impl Range {
         bytes: BytesId::NONE,
     };
 
-    /// The same range with one spelling of its layers, planes and format, so that equal spots of one texture are equal: a
-    /// count of layers that reaches the end becomes "all that there are", the only plane of a format every plane, and
-    /// a view in the texture's own format no view.
+    /// Returns the range in canonical form, so that equal ranges of one texture compare equal.
+    ///
+    /// Replaces a count of all remaining layers, the only plane of a format, and a view in the texture's own format by
+    /// their defaults.
     #[inline]
     #[must_use]
     pub(crate) fn canonical(mut self, texture: &TextureDesc) -> Self {
@@ -76,7 +78,7 @@ impl Range {
         self
     }
 
-    /// Whether this is everything as declared, by its spelling.
+    /// Returns `true` if the range equals [`Range::ALL`].
     #[inline]
     pub const fn is_all(&self) -> bool {
         self.mip == 0
@@ -88,22 +90,22 @@ impl Range {
             && self.bytes.is_none()
     }
 
-    /// The levels as `first..end` for a texture of `count` levels.
+    /// Returns the levels as `first..end`, for a texture of `count` levels.
     #[inline]
     pub const fn mip_range(&self, count: u32) -> std::ops::Range<u32> {
         let first = self.mip as u32;
         first..if self.mips == u8::MAX { count } else { first + self.mips as u32 }
     }
 
-    /// The layers as `first..end` for a texture of `count` layers.
+    /// Returns the layers as `first..end`, for a texture of `count` layers.
     #[inline]
     pub const fn layer_range(&self, count: u32) -> std::ops::Range<u32> {
         let first = self.layer as u32;
         first..if self.layers == u16::MAX { count } else { first + self.layers as u32 }
     }
 
-    /// Whether two ranges of one texture of `format` share a subresource. Of buffers,
-    /// [`Graph::overlap`](crate::graph::Tables::overlap) knows.
+    /// Returns `true` if two ranges of one texture of this format share a subresource. For buffers use
+    /// [`Graph::overlap`](crate::graph::Tables::overlap).
     pub fn overlaps(&self, other: &Self, format: Format) -> bool {
         let mips = |r: &Self| r.mip_range(u32::from(u8::MAX));
         let layers = |r: &Self| r.layer_range(u32::from(u16::MAX));

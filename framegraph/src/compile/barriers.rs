@@ -1,10 +1,14 @@
-//! Phase 9: what a back end with explicit synchronisation must say between steps.
+//! Phase 9: barriers, for back ends with explicit synchronization.
 //!
-//! A forward sweep that keeps, for each part, how it was used last and where. Two uses need a barrier when one of them
-//! writes or when they want different layouts; two reads of one layout need none, but both are waited for by the next
-//! write. What is attached is used with both planes, since a view of an attachment has both, and the plane that no pass
-//! names is read only. What is imported comes in the state that its owner says, and what the owner says is waited for. The first use of a tenant is a **hand-over**: its memory belonged to others, whose last uses must be over, and
-//! its contents are undefined.
+//! A forward sweep tracks the last use of each subresource. Two uses need a barrier if one of them writes, or if they
+//! need different layouts. Reads in the same layout need no barrier, but the next write waits for all of them.
+//!
+//! Attachment views contain both planes of a depth-stencil texture. A plane that no pass accesses is treated as
+//! read-only.
+//!
+//! Imported resources start in the state declared by their owner, and wait for the owner's stages. The first use of
+//! memory that another resource used before is an **aliasing barrier**: it waits for that resource, and its contents
+//! are undefined.
 
 use super::loads::attached_range;
 use super::ownership::{Owned, take_over};
@@ -19,14 +23,14 @@ use crate::id::{ResourceId, StepId};
 use crate::plan::{Attachment, Placement, Planned, Step};
 use crate::resource::{Entry, Kind};
 
-/// How a part was used last.
+/// The last use of a subresource.
 #[derive(Clone, Copy, Debug)]
 struct Last {
     state: State,
     stages: Stages,
     writes: bool,
     step: StepId,
-    /// Which barrier made its contents visible; none before the first.
+    /// The barrier that made the contents visible; none before the first.
     barrier: u32,
 }
 
@@ -35,13 +39,13 @@ const NO_BARRIER: u32 = u32::MAX;
 const NEVER: Last =
     Last { state: State::Undefined, stages: Stages::NONE, writes: false, step: StepId::NONE, barrier: NO_BARRIER };
 
-/// Memory of the phase, kept between compiles.
+/// Memory of the phase, reused between compilations.
 #[derive(Debug, Default)]
 pub(crate) struct BarrierScratch {
     last: Vec<Last>,
-    /// The uses of one step, gathered before they are compared: part, state, stages, writes.
+    /// The uses of one step, collected before they are compared.
     now: Vec<Use>,
-    /// Resources in the order in which their memory is taken over: (first step, resource).
+    /// Resources that reuse memory, in the order of their first step: (first step, resource).
     tenants: Vec<(StepId, ResourceId)>,
     owned: Vec<Owned>,
     befores: Vec<Before>,
@@ -56,7 +60,7 @@ struct Use {
     writes: bool,
 }
 
-/// The layout and the stages that one access wants.
+/// Returns the layout and the stages of an access.
 fn wanted(access: &Access, kind: PassKind, in_tile: bool) -> (State, Stages) {
     let shader = match kind {
         PassKind::Raster => Stages::SHADER,
@@ -64,7 +68,7 @@ fn wanted(access: &Access, kind: PassKind, in_tile: bool) -> (State, Stages) {
         PassKind::Copy => Stages::COPY,
     };
     match access.kind {
-        // The store of colors resolves depth too (`VkSubpassDescriptionDepthStencilResolve`).
+        // Depth is resolved in the color output stage (`VkSubpassDescriptionDepthStencilResolve`).
         AccessKind::Resolve if access.slot == Access::DEPTH => (State::DepthAttachment, Stages::COLOR),
         AccessKind::Color | AccessKind::Resolve => (State::ColorAttachment, Stages::COLOR),
         AccessKind::Depth => (State::DepthAttachment, Stages::DEPTH),
@@ -80,7 +84,7 @@ fn wanted(access: &Access, kind: PassKind, in_tile: bool) -> (State, Stages) {
     }
 }
 
-/// Fills `barriers`, ordered by the step in front of which they stand, then by part.
+/// Fills `barriers`, ordered by the step they precede, then by subresource.
 pub(crate) fn barriers(
     view: StepView<'_>,
     steps: &[Step],
@@ -112,7 +116,7 @@ pub(crate) fn barriers(
             let first = now[at];
             let before = last[first.part as usize];
             let mut end = at + 1;
-            // Consecutive parts that change alike are one barrier.
+            // Consecutive subresources with the same change share a barrier.
             while end < now.len()
                 && same_change(&now[at], &now[end], at, end)
                 && same_past(before, last[now[end].part as usize])
@@ -131,7 +135,7 @@ pub(crate) fn barriers(
                     from_stages: before.stages,
                     to_stages: first.stages,
                     after: before.step,
-                    hand_over: ResourceId::NONE,
+                    aliases: ResourceId::NONE,
                 });
             }
             for used in &now[at..end] {
@@ -139,7 +143,7 @@ pub(crate) fn barriers(
                 let joins = !needs && past.state == used.state;
                 let stages = if joins { past.stages.union(used.stages) } else { used.stages };
                 let barrier = if needs { barriers.len() as u32 - 1 } else { past.barrier };
-                // A later reader needs no barrier of its own, and the one that there is must let it through.
+                // A later reader needs no barrier of its own, but the existing one must include its stages.
                 if let Some(row) = barriers.get_mut(barrier as usize) {
                     row.to_stages = row.to_stages.union(used.stages);
                 }
@@ -148,21 +152,23 @@ pub(crate) fn barriers(
             at = end;
         }
     }
-    hand_overs(graph, caps, parts, resources, scratch, barriers);
+    aliasing_barriers(graph, caps, parts, resources, scratch, barriers);
     barriers.retain(|b| !is_silent(graph, resources, b));
     barriers.sort_unstable_by_key(|b| (b.before, b.resource, b.first_part));
 }
 
-/// A barrier from nothing to a first use of memory that no step used before. A texture's layout must still be set, so only
-/// those of buffers are silent.
+/// Returns `true` for a transition from undefined contents to a first use of memory that no step used before. Textures
+/// still need it to set their layout; for buffers it is omitted.
 fn is_silent(graph: &Tables, resources: &[Planned], barrier: &Barrier) -> bool {
     let resource = barrier.resource.index();
     let buffer = graph.resources[resource].desc.texture().is_none();
     barrier.after.is_none() && buffer && resources[resource].placement != Placement::External
 }
 
-/// The uses that one step makes of each part, joined: attachments win over reads of the same part, and of reads those as
-/// storage, whose layout serves the others too (`VK_IMAGE_LAYOUT_GENERAL`).
+/// Collects the uses of one step, one for each subresource.
+///
+/// Attachments take precedence over reads of the same subresource. Among reads, storage takes precedence, because its
+/// layout supports all of them (`VK_IMAGE_LAYOUT_GENERAL`).
 fn gather(parts: &Parts, members: Members<'_>, attachments: &[Attachment], now: &mut Vec<Use>) {
     now.clear();
     let format = |a: &Attachment| members.graph.resources[a.resource.index()].desc.texture().map(|t| t.format);
@@ -176,14 +182,14 @@ fn gather(parts: &Parts, members: Members<'_>, attachments: &[Attachment], now: 
         let kind = members.graph.passes[member.pass.index()].kind;
         for access in members.accesses(at) {
             let (state, stages) = wanted(access, kind, members.in_tile(at, access));
-            let (resource, range) = members.touched(access);
+            let (resource, range) = members.resource_range(access);
             let writes = access.mode.writes();
             parts.runs(resource, range, |run| {
                 now.extend(run.map(|part| Use { part: part as u32, resource, state, stages, writes }));
             });
             if access.kind == AccessKind::Resolve && access.slot == Access::DEPTH {
                 let own = members.graph.accesses_of(member.pass);
-                let samples = own.iter().find(|a| a.is_resolved_by(access)).expect("what is resolved is attached");
+                let samples = own.iter().find(|a| a.is_resolved_by(access)).expect("a resolved texture is attached");
                 let (resource, state) = (samples.resource, State::DepthReadOnly);
                 parts.runs(resource, samples.range, |run| {
                     now.extend(run.map(|part| Use { part: part as u32, resource, state, stages, writes: false }));
@@ -211,7 +217,7 @@ fn same_past(a: Last, b: Last) -> bool {
     (a.state, a.stages, a.writes, a.step) == (b.state, b.stages, b.writes, b.step)
 }
 
-/// What a tenant waits for when it takes memory over.
+/// The uses that a resource waits for before it reuses memory.
 #[derive(Clone, Copy, Debug)]
 struct Before {
     previous: ResourceId,
@@ -219,8 +225,9 @@ struct Before {
     stages: Stages,
 }
 
-/// Marks the first barriers of tenants with what had their memory before: all of it is waited for, the latest is named.
-fn hand_overs(
+/// Turns the first barriers of resources that reuse memory into aliasing barriers. They wait for all previous resources
+/// in that memory, and name the latest one.
+fn aliasing_barriers(
     graph: &Tables,
     caps: &Caps,
     parts: &Parts,
@@ -261,7 +268,7 @@ fn hand_overs(
     for barrier in barriers.iter_mut().filter(|b| b.after.is_none()) {
         let before = befores[barrier.resource.index()];
         if !before.previous.is_none() {
-            (barrier.hand_over, barrier.after) = (before.previous, before.after);
+            (barrier.aliases, barrier.after) = (before.previous, before.after);
             barrier.from_stages = before.stages;
         }
     }

@@ -1,33 +1,34 @@
-//! Phase 2: which passes the frame needs.
+//! Phase 2: culling of passes that the frame does not need.
 //!
-//! One backward sweep over the declared passes, the liveness analysis of a compiler: at each moment every part knows what
-//! its contents are needed for. A pass is kept when it writes a part that is needed, or declares a side effect; then what
-//! it reads is needed before it, and what it clears or overwrites is not, nor what it blends with in vain. Culling so
-//! cascades, and a chain of any depth costs one visit for each access. Within a pass that is kept, a multisample resolve
-//! that is not needed is dropped.
+//! A backward liveness analysis over the declared passes. It tracks the next use of the contents of every subresource.
+//! A pass is kept if it writes contents that are used later, or if it declares a side effect.
+//!
+//! Before a kept pass, the contents it reads are in use. Contents that it clears or overwrites are not, nor are
+//! contents that it only blends into without a later use. Chains of unused passes of any length are culled in one
+//! sweep. Unused multisample resolves of kept passes are dropped.
 
+use super::liveness::{NextUse, uses_at_exit};
 use super::measure::Measures;
-use super::need::{Need, needs_at_exit};
 use super::parts::Parts;
 use crate::access::{Access, AccessKind};
 use crate::decision::{Decision, Reason, Subject};
 use crate::graph::{PassFlags, Tables};
 use crate::id::{AccessId, PassId, ResourceId};
 
-/// What the phase fills, beside the log.
+/// Outputs of the phase, apart from the log.
 pub(crate) struct Culled<'a> {
-    /// The passes that are kept, in declaration order.
+    /// The kept passes, in declaration order.
     pub(crate) order: &'a mut Vec<PassId>,
-    /// For each access of a kept pass, what is needed of the resource after the pass in declaration order. The first of
-    /// several accesses of one pass to one resource knows. Filled where every resource has one part.
-    pub(crate) after: &'a mut Vec<Need>,
-    /// What is needed of each part: scratch.
-    pub(crate) needs: &'a mut Vec<Need>,
-    /// The multisample resolves of kept passes that are dropped, in declaration order.
+    /// For each access of a kept pass, the next use of the resource after the pass. If a pass has several accesses to a
+    /// resource, the first one holds the value. Filled only if every resource has one subresource.
+    pub(crate) after: &'a mut Vec<NextUse>,
+    /// Next use of each subresource; scratch memory.
+    pub(crate) needs: &'a mut Vec<NextUse>,
+    /// Dropped multisample resolves of kept passes, in declaration order.
     pub(crate) dropped: &'a mut Vec<(PassId, AccessId)>,
 }
 
-/// Finds the passes that are kept, and logs why each was kept or dropped.
+/// Determines which passes are kept, and logs the reason for each pass.
 #[inline(never)]
 pub(crate) fn cull(
     graph: &Tables,
@@ -41,21 +42,21 @@ pub(crate) fn cull(
     dropped.clear();
     order.resize(graph.passes.len(), PassId::NONE);
     let mut first_kept = order.len();
-    after.resize(graph.accesses.len(), Need::Unread);
-    // One row an access: one check of its number serves for both.
+    after.resize(graph.accesses.len(), NextUse::Unread);
+    // Equal lengths, so that one bounds check serves both arrays.
     let after = &mut after[..graph.accesses.len()];
-    needs_at_exit(graph, parts, measures, needs);
+    uses_at_exit(graph, parts, measures, needs);
     let trims = enabled && graph.resolves;
     let first = decisions.len();
     let unknown = Decision { subject: Subject::Pass(PassId::NONE), reason: Reason::CulledNoOutput };
     decisions.resize(first + graph.passes.len(), unknown);
     for (index, (declared, decision)) in graph.passes.iter().zip(&mut decisions[first..]).enumerate().rev() {
-        // Passes were counted when the graph was validated.
+        // Validation has checked the number of passes.
         let (pass, span) = (PassId::unchecked(index), declared.accesses.range());
         let accesses = &graph.accesses[span.clone()];
         let (resource, need) = needed(parts, needs, accesses);
-        // Nearly all passes are kept because a pass reads what they write.
-        if let Need::Reader(reader) = need
+        // Fast path: almost all passes are kept because a pass reads their output.
+        if let NextUse::Reader(reader) = need
             && !declared.flags.has(PassFlags::SIDE_EFFECT)
         {
             *decision = Decision { subject: Subject::Pass(pass), reason: Reason::KeptReadBy(resource, reader) };
@@ -86,19 +87,21 @@ pub(crate) fn cull(
     }
 }
 
-/// As [`keep_inputs`], where passes resolve: those resolves of which nothing is needed are dropped. They write nothing, and
-/// what the pass blends with is not read for them. The pass's accesses begin at `first`.
+/// Updates the next uses before a kept pass that resolves, and drops its unused resolves.
+///
+/// A dropped resolve writes nothing, and does not make blended contents used. `first` is the index of the pass's first
+/// access.
 #[inline(never)]
 fn keep_averages(
     parts: &Parts,
-    needs: &mut [Need],
+    needs: &mut [NextUse],
     pass: PassId,
     accesses: &[Access],
     first: usize,
-    after: &mut [Need],
+    after: &mut [NextUse],
     dropped: &mut Vec<(PassId, AccessId)>,
 ) {
-    let needed = |needs: &[Need], a: &Access| parts.any(needs, a.resource, a.range, Need::is_needed);
+    let needed = |needs: &[NextUse], a: &Access| parts.any(needs, a.resource, a.range, NextUse::is_needed);
     let resolves = accesses.iter().filter(|a| a.kind == AccessKind::Resolve && needed(needs, a));
     let averaged: u16 = resolves.fold(0, |slots, a| slots | 1 << a.slot);
     for (at, access) in accesses.iter().enumerate() {
@@ -106,20 +109,20 @@ fn keep_averages(
         let in_vain = !needed(needs, access);
         if in_vain && kind == AccessKind::Resolve {
             parts.update(needs, resource, range, |need| *need = need.or_culled_writer(pass));
-            after[first + at] = Need::Unread;
+            after[first + at] = NextUse::Unread;
             dropped.push((pass, AccessId::at(first + at)));
         } else {
             after[first + at] = keep_input(parts, needs, pass, accesses, access);
             if in_vain && kind == AccessKind::Color && averaged & 1 << slot == 0 {
-                parts.fill(needs, resource, range, Need::Overwritten(pass));
+                parts.fill(needs, resource, range, NextUse::Overwritten(pass));
             }
         }
     }
 }
 
-/// Why a pass is kept of which this output has that need.
+/// Returns the reason to keep a pass with this next use of an output, if any.
 #[inline(never)]
-fn kept(flags: PassFlags, output: ResourceId, need: Need, enabled: bool) -> Option<Reason> {
+fn kept(flags: PassFlags, output: ResourceId, need: NextUse, enabled: bool) -> Option<Reason> {
     if flags.has(PassFlags::SIDE_EFFECT) {
         Some(Reason::KeptSideEffect)
     } else if need.is_needed() {
@@ -129,67 +132,68 @@ fn kept(flags: PassFlags, output: ResourceId, need: Need, enabled: bool) -> Opti
     }
 }
 
-/// The first output of the pass that is needed, and what for; none and [`Need::Unread`] when there is none.
+/// Returns the first output of the pass that is used, and its next use; none and [`NextUse::Unread`] if there is none.
 #[inline]
-fn needed(parts: &Parts, needs: &[Need], accesses: &[Access]) -> (ResourceId, Need) {
+fn needed(parts: &Parts, needs: &[NextUse], accesses: &[Access]) -> (ResourceId, NextUse) {
     for access in accesses {
         if !access.mode.writes() {
             continue;
         }
-        let need = parts.find(needs, access.resource, access.range, Need::is_needed);
+        let need = parts.find(needs, access.resource, access.range, NextUse::is_needed);
         if let Some(need) = need {
             return (access.resource, need);
         }
     }
-    (ResourceId::NONE, Need::Unread)
+    (ResourceId::NONE, NextUse::Unread)
 }
 
-/// What is needed before a pass that is kept, from what is needed after it, which is noted. No two accesses of one pass
-/// exclude each other, so they need no order.
+/// Updates the next uses from after a kept pass to before it, and stores the former in `after`. Accesses of one pass do
+/// not conflict, so their order does not matter.
 #[inline]
-fn keep_inputs(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], after: &mut [Need]) {
+fn keep_inputs(parts: &Parts, needs: &mut [NextUse], pass: PassId, accesses: &[Access], after: &mut [NextUse]) {
     for (access, after) in accesses.iter().zip(after) {
         *after = keep_input(parts, needs, pass, accesses, access);
     }
 }
 
-/// What is needed before one access of a pass that is kept; returns what is needed after it.
+/// Updates the next use before one access of a kept pass. Returns the next use after it.
 #[inline(always)]
-fn keep_input(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access], access: &Access) -> Need {
-    parts.replace(needs, access.resource, access.range, Need::is_needed, |need| {
-        need_before(pass, accesses, access, || need.is_needed())
+fn keep_input(parts: &Parts, needs: &mut [NextUse], pass: PassId, accesses: &[Access], access: &Access) -> NextUse {
+    parts.replace(needs, access.resource, access.range, NextUse::is_needed, |need| {
+        use_before(pass, accesses, access, || need.is_needed())
     })
 }
 
-/// What is needed of a resource before a kept pass that makes this access, one of its `accesses`; `after` tells whether
-/// what the access leaves is needed.
+/// Returns the next use of a resource before an access of a kept pass. `after` returns `true` if the contents that the
+/// access leaves are used.
 #[inline]
-pub(super) fn need_before(pass: PassId, accesses: &[Access], access: &Access, after: impl FnOnce() -> bool) -> Need {
-    if reads(accesses, access, after) { Need::Reader(pass) } else { Need::Overwritten(pass) }
+pub(super) fn use_before(pass: PassId, accesses: &[Access], access: &Access, after: impl FnOnce() -> bool) -> NextUse {
+    if reads(accesses, access, after) { NextUse::Reader(pass) } else { NextUse::Overwritten(pass) }
 }
 
-/// Whether anything comes of what was there before this access of a pass. Blending in vain changes nothing: unlike a depth
-/// test or a storage buffer, the old contents of a color attachment reach only its new contents, and the resolve target.
+/// Returns `true` if the previous contents influence any result of an access.
+///
+/// Previous contents of a color attachment influence only its new contents and its resolve target. Blending without a
+/// use of these is therefore no read. This does not hold for depth tests and storage buffers.
 #[inline]
 pub(super) fn reads(accesses: &[Access], access: &Access, after: impl FnOnce() -> bool) -> bool {
     access.mode.needs_contents()
         && (access.kind != AccessKind::Color || after() || is_resolved_by(accesses, access.slot))
 }
 
-/// Whether the pass averages its color attachment of this slot.
+/// Returns `true` if the pass resolves its color attachment in this slot.
 #[inline(never)]
 fn is_resolved_by(accesses: &[Access], slot: u8) -> bool {
     accesses.iter().any(|a| a.kind == AccessKind::Resolve && a.slot == slot)
 }
 
-/// Drops a pass, and says why: what became of its first output. It would have read its inputs; nothing that it writes is
-/// needed behind it, and what it reads may be, by others.
+/// Culls a pass and returns the reason, which is the next use of its first output.
 #[inline(never)]
-fn drop_pass(parts: &Parts, needs: &mut [Need], pass: PassId, accesses: &[Access]) -> Reason {
+fn drop_pass(parts: &Parts, needs: &mut [NextUse], pass: PassId, accesses: &[Access]) -> Reason {
     let output = accesses.iter().find(|a| a.mode.writes());
     let reason = output.map_or(Reason::CulledNoOutput, |a| {
         let found = parts.find(needs, a.resource, a.range, |_| true);
-        found.unwrap_or(Need::Unread).culled(a.resource)
+        found.unwrap_or(NextUse::Unread).culled(a.resource)
     });
     for access in accesses {
         let read = access.mode.needs_contents();

@@ -1,9 +1,9 @@
-//! What can be wrong with a graph as a whole, said with the names involved, the place in code and what to do about it.
+//! Errors of a graph as a whole, with the names involved, the source location and a hint.
 
 use crate::access::{AccessKind, ClearValue};
-use crate::capped::Errors;
 use crate::error::{DeclareError, Named, named};
-use crate::faults::{errors, faults, show};
+use crate::error_list::Errors;
+use crate::error_macros::{error_enum, impl_error, show};
 use crate::format::Format;
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
@@ -13,18 +13,18 @@ use std::panic::Location;
 /// One error of a graph.
 #[derive(Clone, PartialEq, Eq)]
 pub struct CompileError {
-    /// What is wrong.
+    /// The error.
     pub reason: CompileReason,
-    /// The pass concerned, where there is one.
+    /// The pass concerned, if any.
     pub pass: Option<Named<PassId>>,
-    /// The resource concerned, where there is one.
+    /// The resource concerned, if any.
     pub resource: Option<Named<ResourceId>>,
-    /// Where the pass was declared.
+    /// Source location of the pass.
     pub location: Option<&'static Location<'static>>,
 }
 
 impl CompileError {
-    /// An error about a pass and a resource, or none of these.
+    /// Creates an error about a pass and a resource; each may be none.
     #[cold]
     pub(super) fn new(graph: &Tables, reason: CompileReason, pass: PassId, resource: ResourceId) -> Self {
         let location = pass.some().map(|p| graph.passes[p.index()].location);
@@ -32,56 +32,56 @@ impl CompileError {
     }
 }
 
-faults! {
-    /// Why a graph does not compile.
+error_enum! {
+    /// Reason why a graph does not compile.
     CompileReason {
-        /// A call on the graph itself was refused.
+        /// A method of the graph reported an error.
         Declare(error: DeclareError) => (error.to_string(), String::new());
-        /// Contents are read, modified or exported that no pass wrote before.
+        /// Contents are read, modified or exported, but no earlier pass wrote them.
         ReadUnwritten {
-            /// How they are used; none for an export.
+            /// Kind of the use; `None` for an export.
             access: Option<AccessKind>,
-            /// A later pass that writes them, if there is one.
+            /// A later pass that writes the contents, if any.
             later_writer: Option<String>
-        } "used as `{used}`, but {nobody}", "{hint}",
+        } "used as `{used}`, but {missing}", "{hint}",
             used = access.map_or("export", AccessKind::word),
-            (nobody, hint) = match later_writer {
+            (missing, hint) = match later_writer {
                 None => (
-                    "nobody writes all of it before".into(),
-                    "clear or overwrite it in an earlier pass, or import it with contents",
+                    "no earlier pass writes all of it".into(),
+                    "clear or overwrite it in an earlier pass, or import it with defined contents",
                 ),
-                Some(pass) => (format!("`{pass}`, which writes it, is declared later"), "declare the writer first"),
+                Some(pass) => (format!("its writer `{pass}` is declared later"), "declare the writer first"),
             };
-        /// Only graphs from files can say so.
+        /// Occurs only in graphs from files.
         TwoWriters { other: String } "`{other}` writes the same version",
-            "let the second pass modify the version that the first one wrote";
-        /// Only graphs from files can say so.
-        Cycle { /** In order. */ passes: Vec<String> } "passes wait for each other: {ring}",
-            "let one of them read a history or another texture, or take an `after` away that is not needed",
+            "let the second pass modify the version written by the first";
+        /// Occurs only in graphs from files.
+        Cycle { /** In order. */ passes: Vec<String> } "passes depend on each other: {ring}",
+            "let one of them read a history or another texture, or remove an unnecessary `after`",
             ring = ring(passes);
-        /// Attachments of one pass differ in samples, or a resolve does not go from many to one.
+        /// Attachments of a pass differ in sample count, or a resolve is not from multisampled to single-sampled.
         Samples { /** 0 for several. */ expected: u8, found: u8 } "{found} {expected_so}", "{hint}",
             (expected_so, hint) = match expected {
                 0 => (
-                    "sample is resolved, where several are needed".into(),
-                    "give the attachment that is resolved 2, 4, 8 or 16 samples, or leave the resolve out",
+                    "sample in the source of a resolve, several are required".into(),
+                    "give the resolved attachment 2, 4, 8 or 16 samples, or remove the resolve",
                 ),
                 _ => (
-                    format!("samples where {expected} are needed"),
-                    "give all attachments of a pass the same samples, and what is resolved into one",
+                    format!("samples, {expected} required"),
+                    "give all attachments of a pass the same sample count, and resolve targets one sample",
                 ),
             };
-        /// Attachments of one pass differ in width, height or layers.
+        /// Attachments of a pass differ in width, height or layer count.
         Extent { expected: [u32; 3], found: [u32; 3] }
-            "{x}x{y} with {m} layers, where the other attachments have {w}x{h} with {l}",
-            "give all attachments of a pass the same size and layers",
+            "{x}x{y} with {m} layers, but the other attachments have {w}x{h} with {l} layers",
+            "give all attachments of a pass the same size and layer count",
             [w, h, l] = expected, [x, y, m] = found;
-        /// A resolve between formats that do not agree.
-        Format { expected: Format, found: Format } "format {found:?} where {expected:?} is needed",
-            "give the target of a resolve the format of its samples, of depth with stencil that of the depth plane";
-        /// A clear value of another kind than what is cleared, or one that its format does not hold.
+        /// Source and target of a resolve have incompatible formats.
+        Format { expected: Format, found: Format } "format {found:?}, {expected:?} required",
+            "give the resolve target the format of its source; for depth with stencil, the format of the depth plane";
+        /// The format cannot represent the clear value.
         ClearValue { value: ClearValue, /** None for a buffer. */ format: Option<Format> }
-            "cleared to {shown}, which {what} does not hold", "{hint}",
+            "cleared to {shown}, which {what} cannot represent", "{hint}",
             shown = match value {
                 ClearValue::DepthStencil(depth, stencil) => format!("depth {depth} and stencil {stencil}"),
                 ClearValue::Color(color) => format!("color {color:?}"),
@@ -89,69 +89,69 @@ faults! {
             },
             what = format.map_or("a buffer".into(), |format| format!("{format:?}")),
             hint = match format {
-                None => "clear a buffer to zero",
+                None => "clear buffers to zero",
                 Some(format) if format.is_depth_stencil() => {
                     "clear it to a depth from 0 to 1 and a stencil from 0 to 255, or to zero"
                 }
-                Some(_) => "clear it to a color whose channels its format holds, without NaN, or to zero",
+                Some(_) => "clear it to a color in the range of its format, without NaN, or to zero",
             };
-        /// A shape that no texture or buffer can have, or that the device cannot make.
-        Shape(fault: ShapeFault) => fault.words();
+        /// The descriptor is invalid, or exceeds the limits of the device.
+        Shape(fault: ShapeReason) => fault.words();
         Attachments { colors: u32, /** A sample. */ bytes: u32, max_colors: u8, max_bytes: u32 }
-            "{colors} color attachments of {bytes} bytes a sample, the device allows {max_colors} of {max_bytes}",
+            "{colors} color attachments with {bytes} bytes per sample, the device allows {max_colors} with {max_bytes}",
             "split the pass, or pack outputs into fewer or smaller attachments";
-        OutOfRange { mip: u8 } "level {mip} is asked of a texture that has fewer at this frame size",
-            "ask for levels and layers that there are";
+        OutOfRange { mip: u8 } "level {mip} does not exist at this frame size",
+            "use levels and layers that exist";
         NoSuchBytes { offset: u64, bytes: u64, size: u64 }
-            "{bytes} bytes from {offset} on are asked of a buffer that has {size} at this frame size",
-            "ask for bytes that there are: work them out from the frame's size when it is declared";
+            "{bytes} bytes at offset {offset} exceed the buffer, which has {size} at this frame size",
+            "compute the range from the frame size when declaring the graph";
         SampledDepth { access: AccessKind }
-            "used as `{access}` and as depth attachment at once, which the device cannot do",
-            "copy it before, or read it in a pass of its own";
-        TooManyPasses "the graph has more passes than can be numbered", "split the graph";
+            "used as `{access}` and as depth attachment at the same time, which the device does not support",
+            "copy it first, or read it in another pass";
+        TooManyPasses "the graph has too many passes", "split the graph";
     }
 }
 
-faults! {
-    /// What is wrong with the shape of a resource. Extents are width and height in texels at the frame's size; `max` is what
-    /// the device allows.
+error_enum! {
+    /// Reason why a descriptor is invalid. Extents are width and height in texels at the current frame size; `max` is
+    /// the limit of the device.
     #[derive(Copy)]
-    ShapeFault {
-        EmptyBuffer "a buffer of 0 bytes", "{NOTHING}";
+    ShapeReason {
+        EmptyBuffer "the buffer has 0 bytes", "{NOTHING}";
         LargeBuffer { bytes: u64, max: u64 } "{bytes} bytes, the device allows {max}", "{LIMIT}";
         /// A texture without texels, layers or samples.
         Empty { extent: [u32; 2], layers: u16, samples: u8 }
             "{w}x{h} texels, {layers} layers, {samples} samples", "{NOTHING}", [w, h] = extent;
         Large { extent: [u32; 2], max: u32 } "{w}x{h} texels, the device allows {max}x{max}", "{LIMIT}", [w, h] = extent;
         Levels { mips: u8, extent: [u32; 2], /** Down to one texel. */ full: u32 }
-            "{mips} levels, {w}x{h} texels have {full}", "ask for fewer levels, or for all of them", [w, h] = extent;
+            "{mips} levels, but {w}x{h} texels have at most {full}", "use fewer levels, or `ALL_MIPS`", [w, h] = extent;
         Layers { layers: u16, max: u32 } "{layers} layers, the device allows {max}", "{LIMIT}";
-        /// No power of two, or more samples than the device allows.
+        /// Not a power of two, or more samples than the device supports.
         Samples { samples: u8, max: u8 } "{samples} samples{allowed}", "{hint}",
             (allowed, hint) = match samples.is_power_of_two() {
                 true => (format!(", the device allows 1 to {max}"), LIMIT),
-                false => (String::new(), "give it 1, 2, 4, 8 or 16 samples"),
+                false => (String::new(), "use 1, 2, 4, 8 or 16 samples"),
             };
-        /// A multisampled texture of several levels or three dimensions.
+        /// A multisampled texture with several levels or three dimensions.
         Multisampled { samples: u8, mips: u32 } "{samples} samples with {mips} levels",
             "a multisampled texture has one level and two dimensions";
-        Volume { /** Of depth or stencil. */ format: Format } "three dimensions of {format:?}",
-            "give a depth-stencil texture two dimensions, with layers";
-        Crowd { /** Up to this resource. */ parts: u64, max: u64 }
-            "with it, all resources have {parts} levels, layers and planes; {max} can be followed",
-            "give the textures fewer levels or layers";
+        Volume { /** Of depth or stencil. */ format: Format } "{format:?} with three dimensions",
+            "use a two-dimensional depth-stencil texture with layers";
+        TooManySubresources { /** Up to this resource. */ parts: u64, max: u64 }
+            "the resources have {parts} subresources (level, layer and plane), the maximum is {max}",
+            "use fewer levels or layers";
     }
 }
 
-const NOTHING: &str = "give it at least one texel, layer and sample, or one byte";
-const LIMIT: &str = "make it smaller, or choose another device";
+const NOTHING: &str = "use at least one texel, layer and sample, or one byte";
+const LIMIT: &str = "make it smaller, or use another device";
 
-/// Passes of a cycle that an error names at most.
-const MOST_OF_A_CYCLE: usize = 12;
+/// Maximum number of passes of a cycle that an error lists.
+const MAX_LISTED_PASSES: usize = 12;
 
-/// The passes of a cycle, the first ones by name.
+/// Lists the first passes of a cycle.
 fn ring(passes: &[String]) -> String {
-    let shown: Vec<_> = passes.iter().take(MOST_OF_A_CYCLE).map(|pass| format!("`{pass}`")).collect();
+    let shown: Vec<_> = passes.iter().take(MAX_LISTED_PASSES).map(|pass| format!("`{pass}`")).collect();
     let more = passes.len() - shown.len();
     let more = if more == 0 { String::new() } else { format!(" and {more} more") };
     format!("{}{more}", shown.join(" -> "))
@@ -164,7 +164,7 @@ impl fmt::Display for CompileError {
     }
 }
 
-errors!(CompileError);
+impl_error!(CompileError);
 
-/// The errors of a graph, in the order of the passes: the first hundred, and how many more there are.
+/// The errors of a graph, ordered by pass: the first hundred, and the number of further errors.
 pub type CompileErrors = Errors<CompileError>;

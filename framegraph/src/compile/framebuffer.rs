@@ -1,4 +1,4 @@
-//! What the attachments of a pass have in common, and those of a step: size, layers, samples.
+//! Properties shared by the attachments of a pass or step: size, layers and samples.
 
 use super::measure::Measured;
 use crate::access::{Access, AccessKind};
@@ -8,18 +8,17 @@ use crate::id::AccessId;
 use crate::plan::StepPass;
 use crate::resource::halved;
 
-/// Size, layers and samples that all attachments of a step share; two words, so that they stay in registers and are
-/// compared at once: as four fields they cost 1 % of a frame's compile.
+/// Size, layers and samples of all attachments of a step. Packed into two words, so that comparisons are cheap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Framebuffer {
-    /// Width, and height in the upper half.
+    /// Width in the lower half, height in the upper half.
     extent: u64,
-    /// Samples, and layers in the upper half.
+    /// Samples in the lower half, layers in the upper half.
     counts: u64,
 }
 
 impl Framebuffer {
-    /// That of a pass without attachments.
+    /// The framebuffer of a pass without attachments.
     pub(crate) const NONE: Self = Self::new([0; 2], 0, 1);
 
     #[inline]
@@ -34,19 +33,19 @@ impl Framebuffer {
         [self.extent as u32, (self.extent >> 32) as u32]
     }
 
-    /// Layers; 0 without attachments.
+    /// Number of layers; 0 without attachments.
     #[inline]
     pub(crate) const fn layers(self) -> u32 {
         (self.counts >> 32) as u32
     }
 
-    /// Samples; 1 without attachments.
+    /// Number of samples; 1 without attachments.
     #[inline]
     pub(crate) const fn samples(self) -> u8 {
         self.counts as u8
     }
 
-    /// Why a pass with these attachments cannot share a step that has others.
+    /// Returns the reason why passes with these framebuffers cannot share a step.
     #[inline]
     pub(crate) const fn difference(self, other: Self) -> Refusal {
         if self.extent != other.extent {
@@ -59,7 +58,7 @@ impl Framebuffer {
     }
 }
 
-/// What one attachment asks of those beside it.
+/// Returns the framebuffer that one attachment requires.
 #[inline]
 pub(crate) fn framebuffer_of(graph: &Tables, measures: &[Measured], access: &Access) -> Framebuffer {
     let Some(texture) = graph.resources[access.resource.index()].desc.texture() else {
@@ -71,7 +70,8 @@ pub(crate) fn framebuffer_of(graph: &Tables, measures: &[Measured], access: &Acc
     Framebuffer::new(extent, layers.end - layers.start, texture.samples)
 }
 
-/// What a pass's attachments have in common: that of its first color or depth attachment, else of its first resolve target.
+/// Returns the framebuffer of a pass: that of its first color or depth attachment, otherwise of its first resolve
+/// target.
 #[inline(always)]
 pub(crate) fn framebuffer_of_pass(graph: &Tables, measures: &[Measured], pass: &Declared) -> Framebuffer {
     match pass.sole_color.some() {
@@ -98,8 +98,8 @@ fn framebuffer_of_several(graph: &Tables, measures: &[Measured], accesses: &[Acc
     resolve.map_or(Framebuffer::NONE, |a| framebuffer_of(graph, measures, a))
 }
 
-/// The attachment of a step of these passes, where it is one pass with one, the color attachment of a texture of one part,
-/// and it reads nothing at the same pixel.
+/// Returns the attachment of a step that consists of one pass with a single color attachment with one subresource, and
+/// without same-pixel reads.
 #[inline]
 pub(crate) fn sole_color(graph: &Tables, members: &[StepPass]) -> Option<AccessId> {
     match members {

@@ -1,11 +1,12 @@
-//! Phase 8 on back ends with placed resources: byte ranges of a heap, shared whatever the shape.
+//! Phase 8 for back ends with placed resources: byte ranges of a heap, shared by resources of any shape.
 //!
-//! Each transient resource is an interval of steps with a size; [`crate::pack`] chooses offsets. Sizes are rounded up to the
-//! device's alignment, which is how much of the heap a resource really takes. The ring of a history is one item that is
-//! alive all the time: its images lie behind each other, and which of them is written rotates from frame to frame. Where
-//! textures and buffers cannot share memory there are two heaps, packed apart.
+//! Each transient resource is an interval of steps with a size; [`crate::pack`] chooses the offsets. Sizes are rounded
+//! up to the alignment of the device.
+//!
+//! The ring of a history is one item that lives during the whole frame. Its images are adjacent; the image that is
+//! written changes from frame to frame. Textures and buffers use separate heaps if the device requires it.
 
-use super::memory::Tally;
+use super::memory::MemoryStats;
 use super::ownership::{Owned, take_over};
 use crate::caps::Caps;
 use crate::decision::{Decision, Reason, Subject};
@@ -16,25 +17,25 @@ use crate::pack::{self, Interval, pack};
 use crate::plan::{Memory, Placement, Plan, Planned};
 use crate::resource::Kind;
 
-/// Memory of the phase, kept between compiles.
+/// Memory of the phase, reused between compilations.
 #[derive(Debug, Default)]
 pub(crate) struct HeapScratch {
     items: Vec<Interval>,
     owners: Vec<ResourceId>,
     offsets: Vec<u64>,
     previous_of_items: Vec<Option<u64>>,
-    /// Offsets of an earlier plan, by resource; empty when there is none to keep to.
+    /// Offsets in an earlier plan, by resource; empty if there is no earlier plan.
     pub(crate) previous: Vec<Option<u64>>,
     packing: pack::Scratch,
-    /// Offsets by heap, kept back until both heaps are packed.
+    /// Offsets by heap, applied once both heaps are packed.
     placed: [Vec<(ResourceId, u64)>; 2],
-    /// Resources by start, and who had which bytes last, for the log.
+    /// Resources in the order of their first step, and the last user of each byte range, for the log.
     order: Vec<ResourceId>,
     owned: Vec<Owned>,
 }
 
-/// Places every resource that is still unplaced, and every history that is written, and returns what the heaps take; `None`,
-/// with nothing placed, when the sizes exceed what any heap can hold.
+/// Places every unplaced resource and every written history, and returns the memory statistics. Returns `None` and
+/// places nothing if sizes exceed 64 bits.
 pub(crate) fn heap(
     graph: &Tables,
     caps: &Caps,
@@ -72,15 +73,15 @@ pub(crate) fn heap(
         resources[owner.index()].placement = Placement::Heap { offset: *offset };
     }
     place_rings(graph, caps, resources);
-    let mut tally = Tally::new();
-    graph.resources.iter().zip(&*resources).for_each(|(declared, row)| tally.apart(declared.kind, row));
-    (sum.avoided_bytes, sum.own_bytes) = tally.apart_bytes();
+    let mut stats = MemoryStats::new();
+    graph.resources.iter().zip(&*resources).for_each(|(declared, row)| stats.apart(declared.kind, row));
+    (sum.avoided_bytes, sum.own_bytes) = stats.apart_bytes();
     let HeapScratch { order, owned, .. } = scratch;
     log(graph, caps, resources, order, owned, decisions);
     Some(sum)
 }
 
-/// The items of one heap.
+/// Collects the items of one heap.
 fn gather(
     graph: &Tables,
     caps: &Caps,
@@ -124,7 +125,7 @@ const fn alignment(caps: &Caps, buffer: bool) -> u64 {
     if bytes == 0 { 1 } else { bytes }
 }
 
-/// Earlier images lie behind the current one, `age` images further.
+/// Places the earlier images of histories behind the current one: an image of age `n` is `n` images further.
 fn place_rings(graph: &Tables, caps: &Caps, resources: &mut [Planned]) {
     for index in 0..resources.len() {
         let Kind::HistoryPrevious { current, age } = graph.resources[index].kind else { continue };
@@ -135,7 +136,7 @@ fn place_rings(graph: &Tables, caps: &Caps, resources: &mut [Planned]) {
     }
 }
 
-/// Says of each placed resource whose memory it takes over: the latest of those that end before it and overlap it.
+/// Logs for each placed resource whose memory it reuses: the latest resource that ends before it and overlaps it.
 fn log(
     graph: &Tables,
     caps: &Caps,
@@ -164,7 +165,7 @@ fn log(
     }
 }
 
-/// Offsets of an earlier plan for the resources of `graph`, by name; the first of several of one name.
+/// Returns the offsets in an earlier plan for the resources of `graph`, matched by name.
 pub(crate) fn remember(graph: &Tables, earlier: &Plan, previous: &mut Vec<Option<u64>>) {
     let mut names: Vec<(&str, u64)> = Vec::new();
     for resource in earlier.graph().resource_ids() {

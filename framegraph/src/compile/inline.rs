@@ -1,13 +1,13 @@
-//! Phase 4, the third way into a step: point-wise passes as epilogues of their producer's shaders.
+//! Phase 4, inlining: point-wise passes as epilogues of their producer's shaders.
 //!
-//! Grading colors in the shader that shades them keeps the intermediate out of memory on devices without framebuffer
-//! fetch. It is sound when every fragment that lands in the intermediate is final when it is shaded: nothing blends,
-//! no other pass reads the intermediate, and both targets are written from scratch. With multisampling each sample passes
-//! through the epilogue before the resolve.
+//! Applying color grading in the lighting shader, for example, avoids the intermediate texture on devices without
+//! framebuffer fetch. Inlining is valid if every fragment written to the intermediate is final when it is shaded.
+//! Nothing may blend, no other pass may read the intermediate, and both targets must be cleared or overwritten. With
+//! multisampling, the epilogue runs for each sample before the resolve.
 
+use super::attachment_set::AttachmentSet;
 use super::join::Candidate;
-use super::step_attachments::StepAttachments;
-use super::steps::{InlinedInto, Spot, touched as touched_in_plan};
+use super::steps::{InlinedInto, ResourceRange, range_in_plan};
 use crate::access::{Access, AccessKind, Mode};
 use crate::decision::Refusal;
 use crate::graph::{PassFlags, Tables};
@@ -16,23 +16,23 @@ use crate::plan::StepPass;
 use crate::resolve::ResolveMode;
 use crate::resource::Kind;
 
-/// How often surviving passes touch each resource, and whether it is exported.
+/// Number of accesses to each resource by kept passes, and its export flag.
 #[derive(Debug, Default)]
 pub(crate) struct Uses {
-    touches: Vec<u32>,
+    access_counts: Vec<u32>,
     exported: Vec<bool>,
 }
 
 impl Uses {
     /// Counts the accesses of the passes in `order`.
     pub(crate) fn count(&mut self, graph: &Tables, order: &[PassId]) {
-        self.touches.clear();
-        self.touches.resize(graph.resources.len(), 0);
+        self.access_counts.clear();
+        self.access_counts.resize(graph.resources.len(), 0);
         self.exported.clear();
         self.exported.resize(graph.resources.len(), false);
         for pass in order {
             for access in graph.accesses_of(*pass) {
-                self.touches[access.resource.index()] += 1;
+                self.access_counts[access.resource.index()] += 1;
             }
         }
         for export in &graph.exports {
@@ -41,33 +41,33 @@ impl Uses {
     }
 }
 
-/// A pass that can be inlined, with what its epilogue replaces.
+/// A pass that can be inlined, and the attachment that its epilogue replaces.
 pub(crate) struct Inlining {
     /// The last pass that writes the intermediate.
     pub(crate) producer: PassId,
     slot: u8,
     pub(crate) intermediate: ResourceId,
     target: AccessId,
-    /// The multisampled attachment that is resolved into the intermediate, where there is one.
+    /// The multisampled attachment that is resolved into the intermediate, if any.
     pub(crate) samples: Option<ResourceId>,
 }
 
-/// How the open step touched the parts of an access so far.
+/// Previous use of a range by the current step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Touched {
+pub(crate) enum PriorAccess {
     No,
     Read,
     Written,
 }
 
-/// Whether the pass can become an epilogue of the passes that write its same-pixel input in the open step.
+/// Checks if a pass can become an epilogue of the passes that write its same-pixel input in the current step.
 pub(crate) fn inlinable(
     candidate: &Candidate<'_>,
-    attached: &StepAttachments,
+    attached: &AttachmentSet,
     members: &[StepPass],
     uses: &Uses,
     inlined_into: &InlinedInto,
-    touched: impl Fn(&Access) -> Touched,
+    prior_access: impl Fn(&Access) -> PriorAccess,
 ) -> Result<Inlining, Refusal> {
     let Candidate { graph, options, accesses, .. } = *candidate;
     let flags = |pass: PassId| graph.passes[pass.index()].flags;
@@ -97,7 +97,7 @@ pub(crate) fn inlinable(
     let (Some(from), Some(to)) = (texture(intermediate), texture(output.resource)) else {
         return Err(Refusal::NotPointwise);
     };
-    let is_input = |(_, (r, _)): &(u8, Spot)| *r == intermediate;
+    let is_input = |(_, (r, _)): &(u8, ResourceRange)| *r == intermediate;
     let color = attached.colors().find(is_input).map(|(slot, _)| slot);
     let resolve = attached.resolves().find(is_input).map(|(slot, _)| slot);
     let Some(slot) = color.or(resolve) else {
@@ -129,18 +129,18 @@ pub(crate) fn inlinable(
         return Err(Refusal::TargetShape);
     }
     let mut others = accesses.iter().filter(|a| !a.mode.writes() && a.resource != intermediate);
-    if touched(output) != Touched::No || others.any(|a| touched(a) == Touched::Written) {
+    if prior_access(output) != PriorAccess::No || others.any(|a| prior_access(a) == PriorAccess::Written) {
         return Err(Refusal::SampledElsewhere);
     }
     let producer = check_producers(graph, members, inlined_into, &[Some(intermediate), samples])?;
-    // The reader and what the step's passes draw are all there may be.
+    // The only uses may be the inlined read and the draws of the step.
     let inside = count_inside(graph, members, intermediate);
-    if uses.touches[intermediate.index()] != inside + 1 {
+    if uses.access_counts[intermediate.index()] != inside + 1 {
         return Err(Refusal::NeededAsTexture);
     }
     if let Some(samples) = samples {
         let persistent = graph.resources[samples.index()].kind != Kind::Transient || uses.exported[samples.index()];
-        if persistent || uses.touches[samples.index()] != count_inside(graph, members, samples) {
+        if persistent || uses.access_counts[samples.index()] != count_inside(graph, members, samples) {
             return Err(Refusal::NeededAsTexture);
         }
     }
@@ -158,8 +158,8 @@ fn count_inside(graph: &Tables, members: &[StepPass], resource: ResourceId) -> u
     accesses.filter(|a| a.resource == resource && draws(a)).count() as u32
 }
 
-/// Every pass of the step that draws into the intermediate must take the epilogue, not blend, and the first must start
-/// from scratch. Returns the last of them.
+/// Checks the passes that draw into the intermediate: each must accept an epilogue and must not blend, and the first
+/// must not use previous contents. Returns the last of them.
 fn check_producers(
     graph: &Tables,
     members: &[StepPass],
@@ -168,7 +168,7 @@ fn check_producers(
 ) -> Result<PassId, Refusal> {
     let mut producer = None;
     for member in members.iter().filter(|m| m.join != crate::plan::Join::Inlined) {
-        let is_drawn = |a: &Access| drawn.contains(&Some(touched_in_plan(graph, inlined_into, a).0));
+        let is_drawn = |a: &Access| drawn.contains(&Some(range_in_plan(graph, inlined_into, a).0));
         let mut colors = graph.accesses_of(member.pass).iter().filter(|a| a.kind == AccessKind::Color && is_drawn(a));
         let Some(color) = colors.next() else { continue };
         let flags = graph.passes[member.pass.index()].flags;
@@ -186,10 +186,10 @@ fn check_producers(
     producer.ok_or(Refusal::NoEpilogue)
 }
 
-/// Puts the target in the place of the intermediate.
+/// Replaces the intermediate by the target.
 pub(crate) fn apply(
     graph: &Tables,
-    attached: &mut StepAttachments,
+    attached: &mut AttachmentSet,
     found: &Inlining,
     inlined_into: &mut InlinedInto,
     format_of: &mut [ResourceId],

@@ -1,6 +1,6 @@
-//! Phase 4, one pass against the open step: what stands against sharing it, and what the step becomes if nothing does.
+//! Phase 4, one pass against the current step: checks if the pass can join, and updates the step.
 
-use super::step_attachments::StepAttachments;
+use super::attachment_set::AttachmentSet;
 use super::steps::{InlinedInto, is_inlined};
 use crate::access::{Access, AccessKind, Mode};
 use crate::caps::Caps;
@@ -11,9 +11,9 @@ use crate::id::PassId;
 use crate::options::Options;
 use crate::plan::{Join, StepPass};
 
-/// How a resource was touched in the open step; stamped with the step's number so that nothing needs clearing.
+/// Kinds of access of the current step to a resource. Stamped with the step's number, so that it needs no clearing.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Touch {
+pub(super) struct AccessFlags {
     step: u32,
     flags: u8,
 }
@@ -23,7 +23,7 @@ const ATTACHED_READ: u8 = 2;
 const READ: u8 = 4;
 pub(super) const STORAGE_WRITE: u8 = 8;
 
-/// One pass that wants to join the open step.
+/// A pass that may join the current step.
 pub(crate) struct Candidate<'a> {
     pub(crate) graph: &'a Tables,
     pub(crate) caps: &'a Caps,
@@ -32,31 +32,31 @@ pub(crate) struct Candidate<'a> {
     pub(crate) accesses: &'a [Access],
 }
 
-/// What the passes of the open step touch.
+/// The accesses of the current step.
 #[derive(Clone, Copy)]
-pub(super) struct Touched<'a> {
-    /// By resource.
-    pub(super) touches: &'a [Touch],
-    /// The stamp of the step's touches.
+pub(super) struct StepAccesses<'a> {
+    /// Indexed by resource.
+    pub(super) access_flags: &'a [AccessFlags],
+    /// The stamp of the step's accesses.
     pub(super) number: u32,
     pub(super) members: &'a [StepPass],
     pub(super) inlined_into: &'a InlinedInto,
-    /// Same-pixel reads count as sampled: none stays in the tile, and nothing is inlined.
+    /// Treats same-pixel reads as sampled: none stays in the tile, and nothing is inlined.
     pub(super) sampled: bool,
 }
 
-/// How a pass joins a step.
+/// The way in which a pass joins a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Joined {
     pub(super) join: Join,
-    /// It would not, if its same-pixel reads were sampled.
+    /// The pass could not join if its same-pixel reads were sampled.
     pub(super) by_tile: bool,
 }
 
-impl Touched<'_> {
-    /// How the step touched what an access names so far, each part apart.
-    pub(super) fn by(self, candidate: &Candidate<'_>, attached: &StepAttachments, access: &Access) -> u8 {
-        let touch = self.touches[access.resource.index()];
+impl StepAccesses<'_> {
+    /// Returns how the step has accessed the range of an access so far, tracking subresources separately.
+    pub(super) fn by(self, candidate: &Candidate<'_>, attached: &AttachmentSet, access: &Access) -> u8 {
+        let touch = self.access_flags[access.resource.index()];
         if touch.step != self.number || touch.flags == 0 {
             0
         } else if access.range.is_all() {
@@ -67,18 +67,18 @@ impl Touched<'_> {
             let met = accesses.filter(|(_, a)| meets(candidate, a, access));
             met.fold(0, |flags, (member, a)| {
                 let join = if self.sampled { Join::First } else { member.join };
-                flags | touch_of(a, join, attached, self.inlined_into)
+                flags | flags_of(a, join, attached, self.inlined_into)
             })
         }
     }
 }
 
-/// How the pass can join the step, whose attachments are widened by those of the pass; or the first objection, and the
-/// step stays as it is.
+/// Checks how the pass can join the step, and adds its attachments to those of the step. On refusal, the step is
+/// unchanged.
 pub(super) fn join_kind(
     candidate: &Candidate<'_>,
-    step: Touched<'_>,
-    attached: &mut StepAttachments,
+    step: StepAccesses<'_>,
+    attached: &mut AttachmentSet,
 ) -> Result<Joined, Refusal> {
     let caps = candidate.caps;
     let (mut inside, mut by_tile) = (false, false);
@@ -104,7 +104,7 @@ pub(super) fn join_kind(
 }
 
 #[inline]
-fn is_attached(attached: &StepAttachments, access: &Access) -> bool {
+fn is_attached(attached: &AttachmentSet, access: &Access) -> bool {
     let spot = (access.resource, access.range);
     match access.kind {
         AccessKind::Color => attached.color_slot(spot).is_some(),
@@ -113,7 +113,7 @@ fn is_attached(attached: &StepAttachments, access: &Access) -> bool {
     }
 }
 
-/// What stands against a pass next to a step that has one pass yet, which makes these accesses, of what it reads and writes.
+/// Checks the accesses of a pass against those of a step that consists of one pass.
 pub(super) fn objects_to_pass(candidate: &Candidate<'_>, first: &[Access]) -> Option<Refusal> {
     candidate.accesses.iter().find_map(|access| {
         let met = first.iter().filter(|a| meets(candidate, a, access));
@@ -121,7 +121,7 @@ pub(super) fn objects_to_pass(candidate: &Candidate<'_>, first: &[Access]) -> Op
     })
 }
 
-/// Whether two accesses touch one part; planes that the device cannot use apart count as one.
+/// Returns `true` if two accesses overlap. Planes that the device cannot use separately count as one.
 fn meets(candidate: &Candidate<'_>, a: &Access, b: &Access) -> bool {
     if a.resource != b.resource {
         return false;
@@ -140,7 +140,7 @@ fn meets(candidate: &Candidate<'_>, a: &Access, b: &Access) -> bool {
     }
 }
 
-/// What stands against an access of a part that the step's other passes touched so, outside of the attachments.
+/// Returns the hazard between an access and earlier accesses of other passes of the step, if any.
 #[inline]
 fn hazard(caps: &Caps, kind: AccessKind, flags: u8) -> Option<Refusal> {
     let elsewhere = |so: bool| so.then_some(Refusal::SampledElsewhere);
@@ -153,8 +153,8 @@ fn hazard(caps: &Caps, kind: AccessKind, flags: u8) -> Option<Refusal> {
     }
 }
 
-/// Widens the step by the attachments of the pass; returns whether they share one.
-fn attach_all(candidate: &Candidate<'_>, attached: &mut StepAttachments) -> Result<bool, Refusal> {
+/// Adds the attachments of the pass to the step. Returns `true` if they share one.
+fn attach_all(candidate: &Candidate<'_>, attached: &mut AttachmentSet) -> Result<bool, Refusal> {
     let mut shares = false;
     for access in candidate.accesses.iter().filter(|a| a.kind.is_attachment()) {
         let known = is_attached(attached, access);
@@ -185,7 +185,7 @@ fn attach_all(candidate: &Candidate<'_>, attached: &mut StepAttachments) -> Resu
     Ok(shares)
 }
 
-/// How an access touches its resource.
+/// Returns the flag of an access kind.
 #[inline]
 const fn flag(kind: AccessKind) -> u8 {
     match kind {
@@ -196,9 +196,9 @@ const fn flag(kind: AccessKind) -> u8 {
     }
 }
 
-/// How an access of a pass that came in so touches its resource.
+/// Returns the flag of an access, taking into account how its pass joined the step.
 #[inline]
-fn touch_of(access: &Access, join: Join, attached: &StepAttachments, inlined_into: &InlinedInto) -> u8 {
+fn flags_of(access: &Access, join: Join, attached: &AttachmentSet, inlined_into: &InlinedInto) -> u8 {
     match access.kind {
         AccessKind::SamePixel if join != Join::First && is_inlined(inlined_into, access.resource) => 0,
         AccessKind::SamePixel if join == Join::SamePixel && attached.shows((access.resource, access.range)) => {
@@ -208,20 +208,20 @@ fn touch_of(access: &Access, join: Join, attached: &StepAttachments, inlined_int
     }
 }
 
-/// Notes what the pass touches in the step numbered `number`.
-pub(super) fn touch(
-    touches: &mut [Touch],
+/// Records the accesses of a pass in the step with this number.
+pub(super) fn record_accesses(
+    access_flags: &mut [AccessFlags],
     number: u32,
     accesses: &[Access],
     join: Join,
-    attached: &StepAttachments,
+    attached: &AttachmentSet,
     inlined_into: &InlinedInto,
 ) {
     for access in accesses {
-        let flags = touch_of(access, join, attached, inlined_into);
-        let touch = &mut touches[access.resource.index()];
+        let flags = flags_of(access, join, attached, inlined_into);
+        let touch = &mut access_flags[access.resource.index()];
         if touch.step != number {
-            *touch = Touch { step: number, flags: 0 };
+            *touch = AccessFlags { step: number, flags: 0 };
         }
         touch.flags |= flags;
     }

@@ -1,4 +1,4 @@
-//! What a resource is made with beside its size, in one word: two are compared at once.
+//! The texture properties other than its size, packed into one word for fast comparison.
 
 use crate::format::Format;
 use crate::resource::{Dimension, TextureDesc};
@@ -14,10 +14,10 @@ const LAYERS: u32 = 24;
 const VOLUME: u64 = 1 << 40;
 
 impl Layout {
-    /// That of every buffer.
+    /// The layout of every buffer.
     pub(crate) const BUFFER: Self = Self(1 << 63 | 1 << MIPS | 1 << SAMPLES);
 
-    /// That of a texture of so many levels: `desc` may ask for all that there are.
+    /// Returns the layout of a texture with `mips` levels, because `desc` may request the full chain.
     #[inline]
     pub(crate) fn of_texture(desc: &TextureDesc, mips: u8) -> Self {
         let volume = if desc.dimension == Dimension::D3 { VOLUME } else { 0 };
@@ -25,50 +25,50 @@ impl Layout {
         Self(desc.format as u64 | counts | volume)
     }
 
-    /// That of a texture of one level, one layer, one sample.
+    /// Returns the layout of a texture with one level, one layer and one sample.
     #[inline]
     pub(crate) const fn flat(format: Format) -> Self {
         Self(format as u64 | 1 << MIPS | 1 << SAMPLES | 1 << LAYERS)
     }
 
-    /// Levels; 1 for a buffer.
+    /// Number of levels; 1 for a buffer.
     #[inline]
     pub(crate) const fn mips(self) -> u8 {
         (self.0 >> MIPS) as u8
     }
 
-    /// Samples per texel; 1 for a buffer.
+    /// Number of samples per texel; 1 for a buffer.
     #[inline]
     pub(crate) const fn samples(self) -> u8 {
         (self.0 >> SAMPLES) as u8
     }
 
-    /// The number of the format, which has no meaning for a buffer.
+    /// Index of the format; meaningless for a buffer.
     #[inline]
     pub(crate) const fn format(self) -> u8 {
         self.0 as u8
     }
 
-    /// The same with another format.
+    /// Returns the layout with another format.
     #[inline]
     pub(crate) const fn with_format(self, format: Format) -> Self {
         Self(self.0 & !FORMAT | format as u64)
     }
 
-    /// The same without the sRGB transfer function.
+    /// Returns the layout with a format without the sRGB transfer function.
     #[inline]
     pub(crate) const fn linear(self) -> Self {
         Self(self.0 & !FORMAT | LINEAR[self.format() as usize] as u64)
     }
 
-    /// The word.
+    /// The packed word.
     #[inline]
     pub(crate) const fn bits(self) -> u64 {
         self.0
     }
 }
 
-/// The number of each format's linear twin; as long as a byte can count, so that no index is out of range.
+/// Index of each format's linear twin. Has 256 entries, so that a byte never exceeds the range.
 const LINEAR: [u8; 256] = {
     let mut table = [0; 256];
     let mut at = 0;

@@ -1,7 +1,7 @@
-//! Phases 5 and 7: from which step to which each resource is in use, and with which uses.
+//! Phases 5 and 7: lifetime and usage of each resource.
 //!
-//! Lifetimes are counted in steps, not passes: what two merged passes touch is live through their common step. An inlined
-//! pass touches neither its same-pixel input nor its target; its producer draws into the target in its stead.
+//! Lifetimes are counted in steps: a resource accessed by a merged pass lives during the whole step. An inlined pass
+//! accesses neither its same-pixel input nor its target; its producer draws into the target instead.
 
 use super::measure::Measures;
 use super::steps::StepView;
@@ -11,8 +11,8 @@ use crate::id::{ResourceId, StepId};
 use crate::plan::{Placement, Planned, Step, StepPass};
 use crate::resource::Kind;
 
-/// Fills one row a resource: first and last step, uses, format and bytes. Exported transients are placed in memory of their
-/// own, all other placements are decided later.
+/// Fills one row per resource: first and last step, usage, format and size. Places exported transient resources in
+/// memory of their own; other placements follow later.
 #[inline(never)]
 pub(crate) fn lifetimes(
     view: StepView<'_>,
@@ -57,7 +57,7 @@ pub(crate) fn lifetimes(
     }
 }
 
-/// Notes an access that inlining may have replaced, that may find its texel in the tile, or that sees another format.
+/// Records an access with a special case: inlining, same-pixel reads or a view in another format.
 #[inline(never)]
 fn touch_unusual(
     view: StepView<'_>,
@@ -73,16 +73,16 @@ fn touch_unusual(
     let in_tile = || members.passes.iter().position(|m| *m == member).is_some_and(|at| members.in_tile(at, access));
     let sampled = access.kind == AccessKind::SamePixel && !in_tile();
     let usage = if sampled { Usage::SAMPLED } else { access.kind.usage() };
-    let row = &mut rows[members.touched(access).0.index()];
+    let row = &mut rows[members.resource_range(access).0.index()];
     row.touch(step_id, usage);
     row.srgb_views |= access.range.view.is_some();
 }
 
 impl Planned {
-    /// Notes that an access of this step, the last so far, uses the resource.
+    /// Records an access of the latest step so far.
     #[inline(always)]
     fn touch(&mut self, step: StepId, usage: Usage) {
-        self.first = self.first.min(step); // none is the largest
+        self.first = self.first.min(step); // `NONE` is the largest id
         self.last = step;
         self.usage = self.usage.union(usage);
     }

@@ -1,7 +1,7 @@
-//! Phase 6, forward half: the attachments of each step, and how their contents come into the tile.
+//! Phase 6, forward half: attachments of each step and their load operations.
 //!
-//! The first pass of a step that touches a plane decides: it clears, or it writes every texel (don't care), or it needs
-//! what is there (load). Nothing here is chosen by the user.
+//! The first pass of a step that accesses a plane determines its load operation: clear, don't care if it writes every
+//! texel, or load if it uses the contents.
 
 use super::parts::Parts;
 use super::steps::{Members, StepView};
@@ -12,7 +12,8 @@ use crate::graph::PassKind;
 use crate::id::{PassId, Span, StepId};
 use crate::plan::{Attachment, LoadOp, Role, Step, StoreOp};
 
-/// Fills `attachments` and each step's span of them, with load ops; `writers` is scratch (who wrote each part last).
+/// Fills `attachments` with their load operations, and each step's span of them. `writers` is scratch memory: the last
+/// writer of each subresource.
 #[inline(never)]
 pub(crate) fn loads(
     view: StepView<'_>,
@@ -37,14 +38,14 @@ pub(crate) fn loads(
         step.attachments = Span::new(start, attachments.len());
         for member in members.passes {
             for access in view.graph.accesses_of(member.pass).iter().filter(|a| a.mode.writes()) {
-                let (resource, range) = members.touched(access);
+                let (resource, range) = members.resource_range(access);
                 parts.fill(writers, resource, range, member.pass);
             }
         }
     }
 }
 
-/// Says of each attachment of a step how its contents come into the tile; `before` tells who wrote what is loaded.
+/// Logs the load operations of a step; `before` returns the last writer of an attachment.
 fn log(
     step: StepId,
     attachments: &[Attachment],
@@ -57,7 +58,7 @@ fn log(
     }));
 }
 
-/// How the contents of an attachment come into the tile; `before` tells who wrote what is loaded.
+/// Returns the reason of an attachment's load operation; `before` returns its last writer.
 pub(super) fn why_loaded(attachment: &Attachment, before: impl FnOnce() -> Option<PassId>) -> Reason {
     if attachment.loads() {
         loaded_after(before())
@@ -68,7 +69,7 @@ pub(super) fn why_loaded(attachment: &Attachment, before: impl FnOnce() -> Optio
     }
 }
 
-/// Why contents are loaded that this pass wrote, if any did.
+/// Returns the reason to load contents written by this pass, or the initial contents.
 pub(super) fn loaded_after(writer: Option<PassId>) -> Reason {
     writer.map_or(Reason::LoadEntry, Reason::LoadWritten)
 }
@@ -84,7 +85,7 @@ pub(super) const fn load_op(mode: Mode) -> LoadOp {
     OPS[mode as usize]
 }
 
-/// Adds the attachments of a step, with load ops.
+/// Adds the attachments of a step with their load operations.
 #[inline(never)]
 pub(super) fn gather(members: Members<'_>, attachments: &mut Vec<Attachment>) {
     let start = attachments.len();
@@ -109,9 +110,9 @@ const fn rank(role: Role) -> u8 {
     }
 }
 
-/// Adds the attachment of one access to the step, or refines the one that is there.
+/// Adds the attachment of one access to the step, or updates an existing one.
 fn attach(members: Members<'_>, at: usize, access: &Access, attachments: &mut Vec<Attachment>, start: usize) {
-    let (resource, range) = members.touched(access);
+    let (resource, range) = members.resource_range(access);
     let Some(texture) = members.graph.resources[resource.index()].desc.texture() else {
         return;
     };
@@ -146,7 +147,8 @@ fn attach(members: Members<'_>, at: usize, access: &Access, attachments: &mut Ve
     refine(&mut attachments[index], access, texture.format, found.is_none());
 }
 
-/// What the attachment is for; a color slot that another pass of the step has taken moves to the next free one.
+/// Returns the role of an attachment. Uses the next free color slot if another pass of the step occupies the declared
+/// one.
 fn role(members: Members<'_>, at: usize, access: &Access, taken: &[Attachment]) -> Role {
     match access.kind {
         AccessKind::DepthReadOnly => Role::DepthReadOnly,
@@ -156,7 +158,7 @@ fn role(members: Members<'_>, at: usize, access: &Access, taken: &[Attachment]) 
             let pass = members.graph.accesses_of(members.passes[at].pass);
             let averaged = pass.iter().find(|a| a.is_resolved_by(access));
             let slot = averaged.and_then(|c| {
-                let (resource, range) = members.touched(c);
+                let (resource, range) = members.resource_range(c);
                 taken.iter().find_map(|t| match t.role {
                     Role::Color(slot) if t.resource == resource && t.mip == range.mip && t.layer == range.layer => {
                         Some(slot)
@@ -177,7 +179,7 @@ fn role(members: Members<'_>, at: usize, access: &Access, taken: &[Attachment]) 
     }
 }
 
-/// Sets the ops of the planes that this access is the first of the step to touch.
+/// Sets the load operations of the planes that this access is the first of the step to use.
 #[inline]
 fn refine(attachment: &mut Attachment, access: &Access, format: Format, first: bool) {
     if access.kind == AccessKind::Depth {
@@ -185,9 +187,9 @@ fn refine(attachment: &mut Attachment, access: &Access, format: Format, first: b
     }
     let load = load_op(access.mode);
     let (has_depth, has_stencil) = (format.has_depth(), format.has_stencil());
-    let touches = |aspect: Aspect| access.range.aspect == Aspect::All || access.range.aspect == aspect;
-    // A plane is decided by the first access that touches it; `Store` marks it as touched until the backward half.
-    let depth = if has_depth || has_stencil { has_depth && touches(Aspect::Depth) } else { true };
+    let covers = |aspect: Aspect| access.range.aspect == Aspect::All || access.range.aspect == aspect;
+    // The first access of a plane decides; `Store` marks the plane as accessed until the backward half.
+    let depth = if has_depth || has_stencil { has_depth && covers(Aspect::Depth) } else { true };
     let cleared = |clear| {
         if load == LoadOp::Clear { access.clear } else { clear }
     };
@@ -199,7 +201,7 @@ fn refine(attachment: &mut Attachment, access: &Access, format: Format, first: b
         (attachment.stencil_load, attachment.stencil_store) = (attachment.load, attachment.store);
         return;
     }
-    if touches(Aspect::Stencil) && (first || attachment.stencil_store == StoreOp::None) {
+    if covers(Aspect::Stencil) && (first || attachment.stencil_store == StoreOp::None) {
         (attachment.stencil_load, attachment.stencil_store) = (load, StoreOp::Store);
         attachment.clear = cleared(attachment.clear);
     }
@@ -208,17 +210,17 @@ fn refine(attachment: &mut Attachment, access: &Access, format: Format, first: b
     }
 }
 
-/// Whether an attachment is resolved into another one of those of its step.
+/// Returns `true` if an attachment is resolved into another one of its step.
 pub(crate) fn is_resolved(of_step: &[Attachment], attachment: &Attachment) -> bool {
     of_step.iter().any(|a| a.role.resolves(attachment.role))
 }
 
-/// The range of parts that an attachment covers, all planes.
+/// Returns the range that an attachment covers.
 pub(crate) fn attached_range(attachment: &Attachment, aspect: Aspect) -> Range {
     Range { mip: attachment.mip, mips: 1, layer: attachment.layer, layers: attachment.layers, aspect, ..Range::ALL }
 }
 
-/// The planes that are loaded, of an attachment of which some are.
+/// Returns the loaded planes of an attachment with at least one loaded plane.
 fn loaded(attachment: &Attachment) -> Aspect {
     match (attachment.load, attachment.stencil_load) {
         (LoadOp::Load, LoadOp::Load) => Aspect::All,

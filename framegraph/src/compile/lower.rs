@@ -1,10 +1,8 @@
-//! Phase 4, last part: resolves that the device does not make while it stores a step.
+//! Phase 4, last part: full-screen passes for resolves that the device cannot perform while storing.
 //!
-//! Behind the step of a pass that declares such resolves comes a step of its own: a full-screen pass that fetches the samples
-//! from memory and writes the targets. It is put there when steps are made, so that what may share a step does not depend
-//! on it, and as a pass among others: what it loads, stores and keeps alive is then found by the phases that find it of
-//! every pass, which know nothing of resolves by full-screen passes. In the plan it goes by the name of its declarer, as
-//! [`Join::Resolve`].
+//! A full-screen pass reads the samples from memory and writes the resolve targets. It forms a step of its own after
+//! the step of the pass that declares the resolves. It is added after merging, so that it does not prevent merges.
+//! Later phases treat it like any other pass. The plan refers to it by its declarer, with [`Join::Resolve`].
 
 use crate::access::{Access, AccessKind, Mode, Range};
 use crate::caps::Caps;
@@ -14,18 +12,18 @@ use crate::graph::{Declared, PassFlags, PassKind, Tables};
 use crate::id::{AccessId, PassId, Span, StepId};
 use crate::plan::{Join, Step, StepPass};
 
-/// Memory of the phase, kept between compiles.
+/// Memory of the phase, reused between compilations.
 #[derive(Debug, Default)]
 pub(crate) struct Lowering {
-    /// The graph with full-screen passes behind those that are declared, and without the resolves that these make.
+    /// The graph with added full-screen passes, and without the resolves they perform.
     graph: Tables,
-    /// Who declared what each of them resolves.
+    /// The declarer of each added pass.
     declarers: Vec<PassId>,
 }
 
 impl Lowering {
-    /// Adds steps for the resolves that the device has not; none where nothing is to be added, else the graph that they
-    /// are steps of.
+    /// Adds steps for the resolves that the device does not support. Returns the graph that includes them, or `None` if
+    /// there are none.
     pub(crate) fn lower(
         &mut self,
         graph: &Tables,
@@ -83,13 +81,13 @@ impl Lowering {
         Some(&self.graph)
     }
 
-    /// Takes the resolves that are `lacking` from a pass, and adds the pass that makes them.
+    /// Removes the unsupported resolves from a pass and adds a full-screen pass that performs them.
     fn full_screen_pass(&mut self, declared: &Tables, pass: PassId, lacking: impl Fn(&Access) -> bool) {
         let Tables { passes, accesses, .. } = &mut self.graph;
         let (row, own) = (declared.passes[pass.index()], declared.accesses_of(pass));
         let start = accesses.len();
         for resolve in own.iter().filter(|a| lacking(a)) {
-            let samples = own.iter().find(|a| a.is_resolved_by(resolve)).expect("what is resolved is attached");
+            let samples = own.iter().find(|a| a.is_resolved_by(resolve)).expect("a resolved texture is attached");
             let format = declared.resources[samples.resource.index()].desc.texture().map(|t| t.format);
             let planes = format.is_some_and(|f| f.has_depth() && f.has_stencil());
             let aspect = if planes { Aspect::Depth } else { samples.range.aspect };
@@ -112,7 +110,7 @@ impl Lowering {
         self.declarers.push(pass);
     }
 
-    /// Puts the names of the declarers in the place of the passes that were added, in a plan of so many declared passes.
+    /// Replaces the added passes in the plan by their declarers. `declared` is the number of declared passes.
     pub(crate) fn rename(&self, declared: usize, step_passes: &mut [StepPass], decisions: &mut [Decision]) {
         let declarer = |pass: PassId| pass.index().checked_sub(declared).map(|added| self.declarers[added]);
         for member in step_passes {

@@ -1,8 +1,8 @@
-//! Phase 1, first part: what each resource is in a frame of this size, and shapes that the frame or the device rules out.
+//! Phase 1, first part: size of each resource at the current frame size, and validation of descriptors.
 //!
-//! Relative extents, full chains of levels and bytes are worked out once, here; every later phase looks them up.
+//! Computes relative extents, full mip chains and byte sizes once for all phases.
 
-use super::error::{CompileError, CompileErrors, CompileReason, ShapeFault};
+use super::error::{CompileError, CompileErrors, CompileReason, ShapeReason};
 use super::layout::Layout;
 use crate::access::Access;
 use crate::caps::Caps;
@@ -11,15 +11,15 @@ use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
 use crate::resource::{BufferDesc, BufferSize, Desc, Dimension, Extent, Kind, Resource, TextureDesc};
 
-/// A resource in a frame of known size.
+/// A resource at a known frame size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Measured {
-    /// Width and height of level 0 in texels; of a buffer, the lower and the upper half of its bytes. What differs in it cannot
-    /// share memory.
+    /// Width and height of level 0 in texels. For a buffer, lower and upper half of its size in bytes. Resources that
+    /// differ in it cannot share a slot.
     pub(crate) extent: [u32; 2],
-    /// Bytes without padding, in the declared format.
+    /// Size in bytes in the declared format, without padding.
     pub(crate) bytes: u64,
-    /// Levels, layers, samples, format.
+    /// Levels, layers, samples and format.
     pub(crate) layout: Layout,
 }
 
@@ -35,14 +35,14 @@ impl Measured {
 pub(crate) struct Measures {
     /// Parallel to [`Graph::resources`](crate::graph::Tables::resources).
     pub(crate) rows: Vec<Measured>,
-    /// The resources that are not transient, in the order of their ids.
+    /// Resources that are not transient, ordered by id.
     pub(crate) outside: Vec<ResourceId>,
-    /// Some resource may have several levels, layers or planes: none has if this is false.
+    /// Set if a resource may have several subresources.
     pub(crate) several: bool,
 }
 
-/// Fills `measures` and appends to `errors` what nothing, or not this device, can make. What passes has few enough parts
-/// to be numbered.
+/// Fills `measures` and appends an error for each invalid or unsupported descriptor. Without errors, the number of
+/// subresources is within the limit.
 #[inline(never)]
 pub(crate) fn measure(
     graph: &Tables,
@@ -54,15 +54,15 @@ pub(crate) fn measure(
     let Measures { rows, outside, several } = &mut *measures;
     *several = !graph.byte_ranges.is_empty();
     outside.clear();
-    let most_texels = if caps.max_texture_layers == 0 || caps.max_samples == 0 { 0 } else { caps.max_texture_texels };
-    // Every row is written, so those of the last time are not cleared.
+    let max_texels = if caps.max_texture_layers == 0 || caps.max_samples == 0 { 0 } else { caps.max_texture_texels };
+    // Every row is overwritten, so old rows are not cleared.
     rows.resize(graph.resources.len(), Measured::default());
     for (index, (row, measured)) in graph.resources.iter().zip(rows).enumerate() {
         if row.kind != Kind::Transient {
             outside.push(ResourceId::at(index));
         }
         let plain = match &row.desc {
-            Desc::Texture(t) => plain_texture(t, frame, most_texels),
+            Desc::Texture(t) => plain_texture(t, frame, max_texels),
             Desc::Buffer(BufferDesc { size: BufferSize::Bytes(bytes) })
                 if *bytes != 0 && *bytes <= caps.max_buffer_bytes =>
             {
@@ -70,7 +70,7 @@ pub(crate) fn measure(
             }
             Desc::Buffer(_) => None,
         };
-        // Written in either case by itself, so that the row goes from registers into the array.
+        // Written in both branches, so that the row goes from registers into the array.
         if let Some(plain) = plain {
             *measured = plain;
         } else {
@@ -84,24 +84,24 @@ pub(crate) fn measure(
     }
 }
 
-/// The most levels, layers and planes of all resources together: what follows contents keeps a value for each.
-const MOST_PARTS: u64 = 1 << 24;
+/// Maximum number of subresources of all resources together. Phases keep one value for each.
+const MAX_SUBRESOURCES: u64 = 1 << 24;
 
-/// Reports the first resource with which there are too many parts to follow.
+/// Reports the resource that exceeds the maximum number of subresources.
 fn limit_parts(graph: &Tables, frame: [u32; 2], errors: &mut CompileErrors) {
-    // Each range of bytes cuts its buffer in two places at most.
+    // Each byte range splits its buffer in at most two places.
     let mut parts = 2 * graph.byte_ranges.len() as u64;
     let beyond = graph.resources.iter().position(|row| {
         parts += u64::from(row.desc.subresources(frame));
-        parts > MOST_PARTS
+        parts > MAX_SUBRESOURCES
     });
     if let Some(index) = beyond {
-        let reason = CompileReason::Shape(ShapeFault::Crowd { parts, max: MOST_PARTS });
+        let reason = CompileReason::Shape(ShapeReason::TooManySubresources { parts, max: MAX_SUBRESOURCES });
         errors.push(|| CompileError::new(graph, reason, PassId::NONE, ResourceId::at(index)));
     }
 }
 
-/// Reports bytes behind the end of a buffer whose size follows the frame.
+/// Reports byte ranges that exceed a buffer with a relative size.
 fn inside(graph: &Tables, rows: &[Measured], errors: &mut CompileErrors) {
     for (index, range) in graph.byte_ranges.iter().enumerate() {
         let size = rows[range.resource.index()].bytes;
@@ -116,10 +116,10 @@ fn inside(graph: &Tables, rows: &[Measured], errors: &mut CompileErrors) {
     }
 }
 
-/// The measure of a texture of one level, layer, plane and sample, of at most `most_texels` a side: most are that, and
-/// nothing is wrong with one.
+/// Fast path: measures a texture with one level, layer, plane and sample and a side of at most `max_texels`. Returns
+/// `None` for others.
 #[inline]
-fn plain_texture(t: &TextureDesc, frame: [u32; 2], most_texels: u32) -> Option<Measured> {
+fn plain_texture(t: &TextureDesc, frame: [u32; 2], max_texels: u32) -> Option<Measured> {
     let &TextureDesc { extent, format, mips: 1, samples: 1, layers: 1, dimension: Dimension::D2 } = t else {
         return None;
     };
@@ -127,7 +127,7 @@ fn plain_texture(t: &TextureDesc, frame: [u32; 2], most_texels: u32) -> Option<M
         Extent::Absolute { width, height } => [width, height],
         Extent::Relative { .. } => follow(extent, frame),
     };
-    let within = |side: u32| side != 0 && side <= most_texels;
+    let within = |side: u32| side != 0 && side <= max_texels;
     let texel_bytes = TEXEL_BYTES[format as usize];
     if texel_bytes == 0 || !within(width) || !within(height) {
         return None;
@@ -141,7 +141,7 @@ fn follow(extent: Extent, frame: [u32; 2]) -> [u32; 2] {
     extent.texels(frame)
 }
 
-/// Bytes of a texel of the formats with one plane that is not compressed; 0 of the others.
+/// Bytes per texel of uncompressed formats with one plane; 0 for others.
 const TEXEL_BYTES: [u8; Format::ALL.len()] = {
     let mut table = [0; Format::ALL.len()];
     let mut at = 0;
@@ -155,7 +155,7 @@ const TEXEL_BYTES: [u8; Format::ALL.len()] = {
     table
 };
 
-/// Measures any resource, and says what is wrong with it.
+/// Measures any resource and reports errors of its descriptor.
 #[inline(never)]
 fn measure_and_judge(
     graph: &Tables,
@@ -178,39 +178,39 @@ fn measure_and_judge(
     }
 }
 
-fn fault(row: &Resource, caps: &Caps, frame: [u32; 2]) -> Option<ShapeFault> {
+fn fault(row: &Resource, caps: &Caps, frame: [u32; 2]) -> Option<ShapeReason> {
     let max = caps.max_buffer_bytes;
     match row.desc {
         Desc::Texture(ref t) => texture_fault(t, caps, frame, row.kind),
         Desc::Buffer(buffer) => match buffer.bytes(frame) {
-            0 => Some(ShapeFault::EmptyBuffer),
-            bytes => (bytes > max).then_some(ShapeFault::LargeBuffer { bytes, max }),
+            0 => Some(ShapeReason::EmptyBuffer),
+            bytes => (bytes > max).then_some(ShapeReason::LargeBuffer { bytes, max }),
         },
     }
 }
 
-fn texture_fault(t: &TextureDesc, caps: &Caps, frame: [u32; 2], kind: Kind) -> Option<ShapeFault> {
+fn texture_fault(t: &TextureDesc, caps: &Caps, frame: [u32; 2], kind: Kind) -> Option<ShapeReason> {
     let TextureDesc { layers, samples, .. } = *t;
     let extent = t.extent.texels(frame);
     let (side, mips) = (extent[0].max(extent[1]), t.mip_count(frame));
     if extent.contains(&0) || layers == 0 || samples == 0 {
-        return Some(ShapeFault::Empty { extent, layers, samples });
+        return Some(ShapeReason::Empty { extent, layers, samples });
     }
-    // What is imported exists, so the device can make it.
+    // Imported textures exist, so device limits do not apply.
     let made = !matches!(kind, Kind::Imported { .. });
     let full = side.ilog2() + 1;
     if made && side > caps.max_texture_texels {
-        Some(ShapeFault::Large { extent, max: caps.max_texture_texels })
+        Some(ShapeReason::Large { extent, max: caps.max_texture_texels })
     } else if mips > full {
-        Some(ShapeFault::Levels { mips: t.mips, extent, full })
+        Some(ShapeReason::Levels { mips: t.mips, extent, full })
     } else if made && u32::from(layers) > caps.max_texture_layers {
-        Some(ShapeFault::Layers { layers, max: caps.max_texture_layers })
+        Some(ShapeReason::Layers { layers, max: caps.max_texture_layers })
     } else if !samples.is_power_of_two() || (made && samples > caps.max_samples) {
-        Some(ShapeFault::Samples { samples, max: caps.max_samples })
+        Some(ShapeReason::Samples { samples, max: caps.max_samples })
     } else if samples > 1 && (mips > 1 || t.dimension != Dimension::D2) {
-        Some(ShapeFault::Multisampled { samples, mips })
+        Some(ShapeReason::Multisampled { samples, mips })
     } else if t.dimension == Dimension::D3 && t.format.is_depth_stencil() {
-        Some(ShapeFault::Volume { format: t.format })
+        Some(ShapeReason::Volume { format: t.format })
     } else {
         None
     }

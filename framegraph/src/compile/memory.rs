@@ -1,26 +1,26 @@
-//! Phase 8, the certificate: bytes taken, and the peak of live bytes below which no sharing can go.
+//! Phase 8, memory statistics: allocated bytes, and their lower bound, the maximum of live bytes.
 
 use crate::id::StepId;
 use crate::plan::{Memory, Placement, Planned};
 use crate::resource::Kind;
 
-/// The sums of a plan's memory, while its resources are placed step by step.
+/// Memory statistics, updated while resources are placed step by step.
 #[derive(Debug)]
-pub(crate) struct Tally {
+pub(crate) struct MemoryStats {
     memory: Memory,
-    /// Bytes of all resources that share memory; each may have 2⁶⁴ − 1.
+    /// Sum of the sizes of all resources that share memory.
     wanted: u128,
-    /// Bytes that are live now; of no use when more are wanted than this can count.
+    /// Bytes that are live now. Wraps around if `wanted` exceeds 64 bits, and is unused then.
     live: u64,
 }
 
-impl Tally {
-    /// Nothing is placed yet.
+impl MemoryStats {
+    /// Creates empty statistics.
     pub(crate) fn new() -> Self {
         Self { memory: Memory { optimal: true, ..Memory::default() }, wanted: 0, live: 0 }
     }
 
-    /// Counts a resource that takes no part in sharing: what is kept out of memory, and what outlives the frame.
+    /// Counts a resource that does not share memory: memoryless, inlined, exported, or a history.
     #[inline(never)]
     pub(crate) fn apart(&mut self, kind: Kind, row: &Planned) {
         match row.placement {
@@ -45,13 +45,13 @@ impl Tally {
         self.wanted += u128::from(bytes);
     }
 
-    /// A resource that shares memory begins to live.
+    /// Marks a resource as live.
     #[inline]
     pub(crate) fn begin(&mut self, bytes: u64) {
         self.live = self.live.wrapping_add(bytes);
     }
 
-    /// All that begin to live at `step` do.
+    /// Ends the list of resources that become live at `step`.
     #[inline]
     pub(crate) fn begun(&mut self, step: StepId) {
         if self.live > self.memory.lower_bound_bytes {
@@ -59,24 +59,24 @@ impl Tally {
         }
     }
 
-    /// A resource that shares memory is dead from now on.
+    /// Marks a resource as no longer live.
     #[inline]
     pub(crate) fn end(&mut self, bytes: u64) {
         self.live = self.live.wrapping_sub(bytes);
     }
 
-    /// Takes memory.
+    /// Counts allocated memory.
     #[inline]
     pub(crate) fn take(&mut self, bytes: u64) {
         self.memory.bytes = self.memory.bytes.saturating_add(bytes);
     }
 
-    /// Bytes that are kept out of memory, and bytes that outlive the frame.
+    /// Returns the bytes saved by memoryless attachments and inlining, and the bytes that outlive the frame.
     pub(crate) fn apart_bytes(&self) -> (u64, u64) {
         (self.memory.avoided_bytes, self.memory.own_bytes)
     }
 
-    /// The sums, of a plan of so many steps whose `resources` are placed in slots.
+    /// Returns the statistics of a plan whose `resources` are placed in slots.
     pub(crate) fn finish(mut self, steps: usize, resources: &[Planned]) -> Memory {
         self.memory.unaliased_bytes = saturated(self.wanted);
         if self.wanted > u128::from(u64::MAX) {
@@ -86,7 +86,7 @@ impl Tally {
     }
 }
 
-/// The most bytes that are live in slots at once, and when, however many they are.
+/// Computes the maximum of live bytes in slots, and its step, without overflow.
 #[cold]
 fn peak(steps: usize, resources: &[Planned]) -> (u64, StepId) {
     let mut changes = vec![(0u128, 0u128); steps + 1];
@@ -114,8 +114,8 @@ mod tests {
     use crate::access::Usage;
     use crate::id::SlotId;
 
-    /// Resources of so many bytes from step to step, tallied as the pool does.
-    fn tallied(lives: &[(usize, usize, u64)]) -> Memory {
+    /// Computes the statistics of resources given as (first step, last step, bytes).
+    fn collected(lives: &[(usize, usize, u64)]) -> Memory {
         let row = |&(first, last, bytes): &(usize, usize, u64)| Planned {
             first: StepId::at(first),
             last: StepId::at(last),
@@ -125,19 +125,19 @@ mod tests {
             bytes,
             placement: Placement::Slot(SlotId::at(0)),
         };
-        let (mut tally, steps) = (Tally::new(), 4);
-        lives.iter().for_each(|life| tally.want(life.2));
+        let (mut stats, steps) = (MemoryStats::new(), 4);
+        lives.iter().for_each(|life| stats.want(life.2));
         for step in 0..steps {
-            lives.iter().filter(|life| life.0 == step).for_each(|life| tally.begin(life.2));
-            tally.begun(StepId::at(step));
-            lives.iter().filter(|life| life.1 == step).for_each(|life| tally.end(life.2));
+            lives.iter().filter(|life| life.0 == step).for_each(|life| stats.begin(life.2));
+            stats.begun(StepId::at(step));
+            lives.iter().filter(|life| life.1 == step).for_each(|life| stats.end(life.2));
         }
-        tally.finish(steps, &lives.iter().map(row).collect::<Vec<_>>())
+        stats.finish(steps, &lives.iter().map(row).collect::<Vec<_>>())
     }
 
     #[test]
     fn the_peak_is_the_first_step_with_the_most_live_bytes() {
-        let memory = tallied(&[(0, 1, 5), (1, 2, 3), (2, 3, 4), (3, 3, 4)]);
+        let memory = collected(&[(0, 1, 5), (1, 2, 3), (2, 3, 4), (3, 3, 4)]);
         assert_eq!((memory.lower_bound_bytes, memory.peak), (8, StepId::at(1)));
         assert_eq!(memory.unaliased_bytes, 16);
     }
@@ -145,8 +145,8 @@ mod tests {
     #[test]
     fn more_bytes_than_64_bits_count_are_told_apart() {
         let most = u64::MAX;
-        let memory = tallied(&[(0, 0, 7), (1, 1, most - 1), (2, 3, most), (3, 3, 9)]);
-        // Live: 7, 2⁶⁴ − 2, 2⁶⁴ − 1, and more than can be said.
+        let memory = collected(&[(0, 0, 7), (1, 1, most - 1), (2, 3, most), (3, 3, 9)]);
+        // Live bytes: 7, 2⁶⁴ − 2, 2⁶⁴ − 1, then more than 64 bits can represent.
         assert_eq!((memory.lower_bound_bytes, memory.peak), (most, StepId::at(3)));
         assert_eq!(memory.unaliased_bytes, most);
     }

@@ -1,4 +1,4 @@
-//! Phase 6, last part: attachments that never leave the tile take no memory.
+//! Phase 6, last part: attachments that never leave the tile need no memory.
 
 use crate::access::Usage;
 use crate::caps::Caps;
@@ -8,7 +8,7 @@ use crate::options::Options;
 use crate::plan::{Attachment, Placement, Planned, StoreOp};
 use crate::resource::{Dimension, Kind};
 
-/// Marks what is memoryless, and says of every attachment that lives in one step why it is not.
+/// Marks memoryless resources. Logs for every attachment that is used in one step only why it is or is not memoryless.
 #[inline(never)]
 pub(crate) fn memoryless(
     graph: &Tables,
@@ -18,16 +18,16 @@ pub(crate) fn memoryless(
     resources: &mut [Planned],
     decisions: &mut Vec<Decision>,
 ) {
-    // Rows of one resource: one check of its number serves for both.
+    // Equal lengths, so that one bounds check serves both arrays.
     let resources = &mut resources[..graph.resources.len()];
     for attachment in attachments {
         let row = &mut resources[attachment.resource.index()];
-        // The step that attaches it is one that touches it, so this is that step.
+        // The step that attaches the resource is its only step.
         let one_step = row.first == row.last;
         if !one_step || graph.resources[attachment.resource.index()].kind != Kind::Transient {
             continue;
         }
-        // Several attachments of the step can show layers of one texture; a row says so once.
+        // Several attachments can be layers of one texture; log the texture once.
         let known = row.placement == Placement::Memoryless;
         let need = match row.placement {
             Placement::Own => Some(MemoryNeed::LoadedOrStored),
@@ -37,7 +37,7 @@ pub(crate) fn memoryless(
         let reason = need.map_or(Reason::Memoryless(row.first), Reason::NeedsMemory);
         if need.is_none() {
             row.placement = Placement::Memoryless;
-            // Also of a plane that no pass touches, there is nothing to keep.
+            // This includes planes that no pass uses.
             (attachment.store, attachment.stencil_store) = (StoreOp::Discard, StoreOp::Discard);
         }
         if !known {
@@ -46,7 +46,7 @@ pub(crate) fn memoryless(
     }
 }
 
-/// What keeps an attachment of one step in memory, if anything.
+/// Returns the reason why an attachment of a single step needs memory, if any.
 fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment, usage: Usage) -> Option<MemoryNeed> {
     let texture = graph.resources[attachment.resource.index()].desc.texture()?;
     if !caps.memoryless || !options.memoryless {
@@ -57,10 +57,10 @@ fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment,
     {
         Some(MemoryNeed::SeveralParts)
     } else if !usage.without(Usage::ATTACHMENT).without(Usage::INPUT_ATTACHMENT).is_empty() {
-        // Another layer of it is written as storage, say.
+        // For example, another layer of it is written as storage.
         Some(MemoryNeed::OtherUse)
     } else {
-        // What lives in one step finds nothing in memory and leaves nothing there for a later one.
+        // The resource has no contents before or after its step.
         None
     }
 }

@@ -1,9 +1,9 @@
-//! Phase 3: in which order the surviving passes run.
+//! Phase 3: order of the kept passes.
 //!
-//! Declaration order is how the user wrote the frame. The optimising order is found by trying: declaration order, three
-//! list schedules (see `schedule`) and then moves of passes (see `reorder`) are planned to the end, and the cheapest is
-//! kept. What counts is the number of steps, then the bytes of memory, then the bytes between tile and memory; declaration
-//! order is tried first and wins ties, so the result is never worse.
+//! The default is declaration order. The optimizing order is found by search: declaration order, three list schedules
+//! (see `schedule`) and moves of passes (see `reorder`) are planned completely, and the cheapest plan is kept. The cost
+//! is the number of steps, then memory, then traffic between tile and memory. Declaration order is tried first and wins
+//! ties, so the result is never worse.
 
 use super::phases::{Scratch, plan_order};
 use super::reorder::OrderScratch;
@@ -15,19 +15,19 @@ use crate::id::PassId;
 use crate::options::{Effort, Options};
 use crate::plan::Plan;
 
-/// What the moves may look at in all, in positions of orders: bounds the time, whatever the graph.
+/// Budget of all moves, in examined positions of orders. Bounds the time for any graph.
 const LOOKS: usize = 1 << 20;
 
-/// What planning one pass counts as, in positions looked at.
+/// Cost of planning one pass, in examined positions.
 const LOOKS_PER_PASS: usize = 32;
 
-/// Steps, bytes of memory, bytes between tile and memory: what is to be small, in this order.
+/// Steps, bytes of memory, bytes between tile and memory; compared in this order.
 type Cost = (usize, u64, u64);
 
-/// What no order costs.
+/// Higher than any real cost.
 const WORST: Cost = (usize::MAX, u64::MAX, u64::MAX);
 
-/// Plans the surviving passes of `scratch.order` in the best order that is found.
+/// Plans the passes of `scratch.order` in the best order found.
 pub(crate) fn optimized(graph: &Tables, caps: &Caps, options: &Options, scratch: &mut Scratch, plan: &mut Plan) {
     let mut orders = std::mem::take(&mut scratch.orders);
     let OrderScratch { declared, best, trial, moves, log } = &mut orders;
@@ -41,7 +41,7 @@ pub(crate) fn optimized(graph: &Tables, caps: &Caps, options: &Options, scratch:
         let done = plan_order(graph, caps, options, trial, scratch, plan);
         done.then(|| (plan.steps.len(), plan.memory.bytes, plan.traffic(options.frame).total_bytes()))
     };
-    // Packing a heap as well as can be is for the end.
+    // Expensive heap packing is reserved for the final plan.
     let quick = Options { effort: Effort::Greedy, ..*options };
     best.clear();
     best.extend(0..declared.len() as u32);
@@ -78,7 +78,7 @@ pub(crate) fn optimized(graph: &Tables, caps: &Caps, options: &Options, scratch:
     scratch.orders = orders;
 }
 
-/// Says of each pass that runs behind another one than in declaration order why it does.
+/// Logs the reason for each pass that follows a different pass than in declaration order.
 fn explain(plan: &Plan, order: &[PassId], log: &mut Vec<Decision>) {
     log.clear();
     let declared = |pass: PassId| (0..pass.index()).rev().map(PassId::at).find(|p| !plan.is_culled(*p));

@@ -1,8 +1,8 @@
-//! Subresources as numbers: each level × layer × plane of each resource is one *part*.
+//! Numbering of subresources (*parts*): each level × layer × plane of each resource has a number.
 //!
-//! Phases that follow contents keep one value for each part in a flat array. Most resources have one part; a mip pyramid
-//! or an array of cascades has several, and a range of it is a few runs of consecutive numbers. A buffer of which accesses
-//! name bytes is cut wherever such a range begins or ends; its parts are what lies between two cuts.
+//! Phases that track contents keep one value per part in a flat array. Most resources have one part. A range of a
+//! texture with several parts consists of a few runs of consecutive numbers. A buffer with declared byte ranges is
+//! split wherever such a range begins or ends.
 
 use super::measure::Measures;
 use crate::access::{ByteRange, Range};
@@ -10,22 +10,23 @@ use crate::format::Aspect;
 use crate::graph::Tables;
 use crate::id::{ResourceId, Span};
 
-/// Numbers the parts. The only part of a resource has the resource's own number; those of resources with several follow
-/// after all these, each resource's own as `base + (plane · layers + layer) · mips + mip`. The parts of a buffer count as
-/// layers.
+/// The numbering of parts.
+///
+/// The only part of a resource has the number of the resource. Parts of other resources follow after these, as `base +
+/// (plane · layers + layer) · mips + mip`. Parts of a buffer count as layers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Parts {
-    /// By resource: [`ONE`], or the row of those with several parts. Empty where every resource has one part.
+    /// By resource: [`ONE`], or an index into `several`. Empty if every resource has one part.
     kinds: Vec<u32>,
     several: Vec<Row>,
     total: usize,
-    /// Where buffers are cut, as buffer and byte, sorted.
+    /// Positions where buffers are split, as (buffer, byte), sorted.
     cuts: Vec<(ResourceId, u64)>,
-    /// By row of [`Tables::byte_ranges`]: the parts that it covers, counted from the buffer's first.
+    /// For each row of [`Tables::byte_ranges`], the parts it covers, counted from the buffer's first part.
     sections: Vec<Span>,
 }
 
-/// Marks a resource of one part.
+/// Marks a resource with one part.
 const ONE: u32 = u32::MAX;
 
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +38,7 @@ struct Row {
 }
 
 impl Parts {
-    /// Numbers the parts of the resources of `graph`, which have these measures.
+    /// Numbers the parts of the resources of `graph`.
     pub(crate) fn number(&mut self, graph: &Tables, measures: &Measures) {
         let Self { kinds, several, total, cuts, sections } = self;
         several.clear();
@@ -70,17 +71,17 @@ impl Parts {
         }
     }
 
-    /// How many numbers there are: no part's number reaches it.
+    /// Number of parts; all part numbers are lower.
     pub(crate) fn total(&self) -> usize {
         self.total
     }
 
-    /// Whether some resource has several parts.
+    /// Returns `true` if a resource has several parts.
     pub(crate) fn has_several(&self) -> bool {
         !self.several.is_empty()
     }
 
-    /// [`ONE`], or the row of a resource with several parts.
+    /// Returns [`ONE`], or the index of a resource with several parts.
     #[inline(always)]
     fn kind(&self, resource: ResourceId) -> u32 {
         self.kinds.get(resource.index()).copied().unwrap_or(ONE)
@@ -98,8 +99,7 @@ impl Parts {
         }
     }
 
-    /// Calls `visit` with each run of consecutive numbers that `range` of `resource` covers; ranges are clipped to what
-    /// there is.
+    /// Calls `visit` for each run of consecutive part numbers in `range`. Ranges are clipped to the resource.
     #[inline]
     pub(crate) fn runs(&self, resource: ResourceId, range: Range, mut visit: impl FnMut(std::ops::Range<usize>)) {
         let kind = self.kind(resource);
@@ -118,7 +118,7 @@ impl Parts {
             return;
         }
         for plane in 0..planes {
-            // Two planes exist only as depth (0) and stencil (1); with one plane, every aspect that exists selects it.
+            // Two planes are always depth (0) and stencil (1). With one plane, every valid aspect selects it.
             let selected = match range.aspect {
                 Aspect::All => true,
                 Aspect::Depth => plane == 0,
@@ -133,7 +133,7 @@ impl Parts {
         }
     }
 
-    /// Whether `holds` is true of some part of the range.
+    /// Returns `true` if `holds` is true for a part of the range.
     #[inline(always)]
     pub(crate) fn any<T: Copy>(
         &self,
@@ -145,7 +145,7 @@ impl Parts {
         self.find(values, resource, range, holds).is_some()
     }
 
-    /// The first value in the range of which `holds` is true.
+    /// Returns the first value in the range for which `holds` is true.
     #[inline(always)]
     pub(crate) fn find<T: Copy>(
         &self,
@@ -178,8 +178,8 @@ impl Parts {
         found
     }
 
-    /// Sets every part of the range to `next` of one of the values there, which is returned: the first of which `holds` is
-    /// true, or else the first.
+    /// Replaces every value in the range by `next(v)` and returns `v`: the first value for which `holds` is true,
+    /// otherwise the first value.
     #[inline(always)]
     pub(crate) fn replace<T: Copy>(
         &self,
@@ -195,13 +195,13 @@ impl Parts {
         }
         let found = self.find_among(values, resource, range, holds);
         let found = found.or_else(|| self.find_among(values, resource, range, |_| true));
-        // A level that does not exist at this frame size has no parts: the row of the resource's own number is free.
+        // A level that does not exist at this frame size has no parts. The resource's own number is unused then.
         let found = found.unwrap_or(values[resource.index()]);
         self.fill_among(values, resource, range, next(found));
         found
     }
 
-    /// Changes every part of the range.
+    /// Applies `change` to every value in the range.
     #[inline(always)]
     pub(crate) fn update<T>(&self, values: &mut [T], resource: ResourceId, range: Range, change: impl Fn(&mut T)) {
         if self.kind(resource) == ONE {
@@ -211,7 +211,7 @@ impl Parts {
         }
     }
 
-    /// Sets every part of the range.
+    /// Sets every value in the range.
     #[inline(always)]
     pub(crate) fn fill<T: Copy>(&self, values: &mut [T], resource: ResourceId, range: Range, value: T) {
         if self.kind(resource) == ONE {
@@ -227,8 +227,8 @@ impl Parts {
     }
 }
 
-/// Cuts buffers at both ends of each range, and says which parts each range covers. What lies behind a buffer's end was
-/// refused when it was measured.
+/// Splits buffers at both ends of each range, and computes the parts each range covers. Ranges beyond the end of a
+/// buffer were rejected by the measuring phase.
 #[inline(never)]
 fn cut(ranges: &[ByteRange], measures: &Measures, cuts: &mut Vec<(ResourceId, u64)>, sections: &mut Vec<Span>) {
     cuts.clear();
@@ -278,13 +278,13 @@ mod tests {
             for layer in 0..7 {
                 for mip in 0..11 {
                     let one = Range { mip, mips: 1, layer, layers: 1, aspect, ..Range::ALL };
-                    assert!(!parts.any(&seen, r, one, |s| s), "{one:?} was already there");
+                    assert!(!parts.any(&seen, r, one, |s| s), "{one:?} was visited twice");
                     parts.fill(&mut seen, r, one, true);
                 }
             }
         }
         assert!(!parts.any(&seen, r, Range::ALL, |s| !s), "a part was missed");
-        assert!(!seen[0], "a neighbour's part was touched");
+        assert!(!seen[0], "a part of another resource changed");
         parts.fill(&mut seen, r, Range { layer: 3, layers: 1, ..Range::ALL }, false);
         assert!(!parts.any(&seen, r, Range { mip: 2, mips: 3, layer: 3, layers: 1, ..Range::ALL }, |s| s));
         assert!(!parts.any(&seen, r, Range { layer: 4, layers: 3, ..Range::ALL }, |s| !s));

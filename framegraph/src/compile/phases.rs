@@ -1,13 +1,13 @@
-//! The phases after the order: from passes in the order in which they run to a plan.
+//! The phases after pass ordering: from ordered passes to a plan.
 
+use super::liveness::NextUse;
 use super::lower::Lowering;
 use super::measure::Measures;
 use super::merge::{self, Merged};
-use super::need::Need;
 use super::parts::Parts;
 use super::reorder::OrderScratch;
 use super::steps::StepView;
-use super::{barriers, heap, lifetimes, loads, memoryless, place, pool, schedule, single_part, stores};
+use super::{barriers, heap, lifetimes, loads, memoryless, ops_fast_path, place, pool, schedule, stores};
 use crate::caps::Caps;
 use crate::decision::Decision;
 use crate::graph::Tables;
@@ -15,15 +15,15 @@ use crate::id::{AccessId, PassId, ResourceId};
 use crate::options::{Alias, Options, Order};
 use crate::plan::Plan;
 
-/// Working memory of [`compile`](crate::compile()), kept between compiles so that none of them allocates once it is warm. Carries no
-/// information from one compile to the next.
+/// Working memory of [`compile`](crate::compile()). Reusing it avoids allocations; it carries no information from one
+/// compilation to the next.
 #[derive(Debug, Default)]
 pub struct Scratch {
     pub(super) measures: Measures,
     pub(super) parts: Parts,
     pub(super) defined: Vec<bool>,
-    pub(super) needs: Vec<Need>,
-    pub(super) after: Vec<Need>,
+    pub(super) needs: Vec<NextUse>,
+    pub(super) after: Vec<NextUse>,
     pub(super) dropped: Vec<(PassId, AccessId)>,
     pub(super) trimmed: Tables,
     pub(super) order: Vec<PassId>,
@@ -41,15 +41,16 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Empty working memory.
+    /// Creates empty working memory.
     pub fn new() -> Self {
         Self::default()
     }
 }
 
-/// Plans the passes of `scratch.order` to the end: every phase after the order. A `trial` leaves barriers out, and ends with
-/// false as soon as it has more steps than that. Phases are functions to the machine too (`inline(never)`): in a single one
-/// their values would not fit the registers.
+/// Runs every phase after pass ordering on the passes of `scratch.order`.
+///
+/// With `trial`, skips barriers and returns `false` as soon as the plan has more steps than `trial`. Phases are not
+/// inlined into this function, because their values would not fit into the registers.
 pub(super) fn plan_order(
     graph: &Tables,
     caps: &Caps,
@@ -86,10 +87,10 @@ pub(super) fn plan_order(
     let (declared, in_store, graph) = (graph.passes.len(), lowered.is_none(), lowered.unwrap_or(graph));
     let view = StepView { graph, step_passes, inlined_into };
     lifetimes::lifetimes(view, steps, measures, frame, format_of, resources);
-    // What culling found on its way back holds for the steps too, unless something moved.
+    // The liveness found by culling is also valid for steps, unless passes were moved or inlined.
     let as_declared = options.order == Order::Declared && inlined_into.is_empty();
     if as_declared && in_store && !parts.has_several() {
-        single_part::ops(view, steps, after, stores, attachments, decisions);
+        ops_fast_path::ops(view, steps, after, stores, attachments, decisions);
     } else {
         loads::loads(view, parts, steps, writers, attachments, decisions);
         stores::stores(view, parts, measures, steps, needs, attachments, decisions);

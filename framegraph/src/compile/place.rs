@@ -1,4 +1,4 @@
-//! Phase 8, before sharing: resources that take no part in it.
+//! Phase 8, before sharing: placement of resources that do not share memory.
 
 use super::steps::{InlinedInto, is_inlined};
 use crate::decision::{Decision, Reason, Subject};
@@ -7,8 +7,8 @@ use crate::id::ResourceId;
 use crate::plan::{Placement, Planned};
 use crate::resource::Kind;
 
-/// Places what comes from `outside` (imported, of a history) or is inlined; logs unused ones. Exported and memoryless ones are
-/// placed already.
+/// Places imported, history and inlined resources, and logs unused ones. Exported and memoryless resources are placed
+/// already.
 #[inline(never)]
 pub(crate) fn place(
     graph: &Tables,
@@ -22,9 +22,9 @@ pub(crate) fn place(
         resources[resource.index()].placement = if imported { Placement::External } else { Placement::Own };
     }
     for (index, row) in resources.iter_mut().enumerate() {
-        // There are no more resources than versions, and those were counted.
+        // Cannot overflow: there are at most as many resources as versions.
         let resource = ResourceId::unchecked(index);
-        // Nearly all resources share memory.
+        // Fast path: almost all resources share memory.
         if matches!(row.placement, Placement::Unused) && !row.first.is_none() {
             continue;
         }
@@ -32,7 +32,7 @@ pub(crate) fn place(
             Placement::External => Reason::External,
             Placement::Own => Reason::Persistent,
             _ if !row.first.is_none() => continue,
-            // No access touches what was inlined.
+            // No access of the plan refers to an inlined texture.
             _ if is_inlined(inlined_into, resource) => {
                 row.placement = Placement::Inlined;
                 Reason::Inlined

@@ -1,13 +1,15 @@
-//! Phase 8 on back ends without placed resources: resources of one shape take turns in physical textures.
+//! Phase 8 for back ends without placed resources: resources of one shape share physical textures and buffers.
 //!
-//! A shape is what a texture is created with, the sRGB transfer function aside (two formats that differ only in it share
-//! memory through view formats); uses are united. Within one shape, lifetimes are intervals, and giving each resource the
-//! slot that was freed last, in the order of first use, needs as many slots as are ever live at once: no assignment needs
-//! fewer. So the pool is optimal for its kind, and proved so.
+//! A shape consists of the creation parameters without the sRGB transfer function, because view formats allow both
+//! variants. The usage of a slot is the union of the usages of its resources.
+//!
+//! Within a shape, lifetimes are intervals. Each resource, in order of its first step, gets the most recently freed
+//! slot. The number of slots then equals the maximum number of live resources, so the pool is provably optimal for its
+//! kind.
 
 use super::layout::Layout;
 use super::measure::Measured;
-use super::memory::Tally;
+use super::memory::MemoryStats;
 use crate::access::Usage;
 use crate::decision::{Decision, Reason, Subject};
 use crate::format::Format;
@@ -17,65 +19,65 @@ use crate::plan::{Memory, Placement, Planned, Slot};
 use crate::resource::{Desc, Extent, TextureDesc};
 use framegraph_pack::classes::{Classes, NIL};
 
-/// Memory of the phase, kept between compiles.
+/// Memory of the phase, reused between compilations.
 #[derive(Debug, Default)]
 pub(crate) struct PoolScratch {
     classes: Classes,
     /// Parallel to the resources.
-    tenants: Vec<Tenant>,
-    /// By step.
+    tenants: Vec<SharedResource>,
+    /// Indexed by step.
     lists: Vec<Lists>,
     /// Parallel to the slots.
-    tenancies: Vec<Tenancy>,
+    slot_states: Vec<SlotState>,
 }
 
-/// A resource that takes part in sharing.
+/// A resource that shares memory.
 #[derive(Clone, Copy, Debug)]
-struct Tenant {
+struct SharedResource {
     /// The next resource that starts in the same step; once the resource has started, its slot.
     start: u32,
     /// The next resource that ends in the same step.
     end: u32,
-    /// The number of its shape; [`NIL`] when nothing is shared.
+    /// Index of its shape; [`NIL`] if nothing is shared.
     class: u32,
-    /// The number of its format.
+    /// Index of its format.
     format: u8,
 }
 
-/// The first resources that start and end in a step; lists go on in [`Tenant`], in the order of ids.
+/// Heads of the lists of resources that start and end in a step. Linked through [`SharedResource`], ordered by id.
 #[derive(Clone, Copy, Debug)]
 struct Lists {
     start: u32,
     end: u32,
 }
 
-/// How a slot is used.
+/// The state of a slot.
 #[derive(Clone, Copy, Debug)]
-struct Tenancy {
-    /// The resource that had it last.
+struct SlotState {
+    /// Its last user.
     last: ResourceId,
     /// The next free slot of its shape, while it is free.
     next_free: u32,
-    /// Every use by any tenant.
+    /// All usages of its resources.
     usage: Usage,
-    /// The format of its first tenant, and the bits in which another's differs.
+    /// Format of its first resource, and the bits in which others differ.
     format: u8,
     mixed_formats: u8,
 }
 
-impl Tenancy {
-    /// That of a slot's first tenant.
-    const fn first(last: ResourceId, row: &Planned, tenant: &Tenant) -> Self {
+impl SlotState {
+    /// Returns the state of a slot with its first resource.
+    const fn first(last: ResourceId, row: &Planned, tenant: &SharedResource) -> Self {
         Self { last, next_free: NIL, usage: row.usage, format: tenant.format, mixed_formats: row.srgb_views as u8 }
     }
 }
 
-/// Whether a resource takes part in sharing: touched, not placed yet (memoryless, own, external), and wanted.
+/// Returns `true` if a resource shares memory: used by a step and not placed yet.
 fn takes_part(row: &Planned) -> bool {
     row.placement == Placement::Unused && !row.first.is_none()
 }
 
-/// Gives every resource that is still unplaced a slot, `share` off each its own, and sums up the memory.
+/// Assigns a slot to every unplaced resource, each its own unless `share` is set. Returns the memory statistics.
 #[inline(never)]
 pub(crate) fn pool(
     graph: &Tables,
@@ -88,12 +90,12 @@ pub(crate) fn pool(
     decisions: &mut Vec<Decision>,
 ) -> Memory {
     slots.clear();
-    let mut tally = Tally::new();
-    scratch.tenancies.clear();
-    enlist(graph, measures, steps, share, resources, scratch, &mut tally);
-    let PoolScratch { classes, tenants, lists, tenancies } = scratch;
+    let mut stats = MemoryStats::new();
+    scratch.slot_states.clear();
+    enlist(graph, measures, steps, share, resources, scratch, &mut stats);
+    let PoolScratch { classes, tenants, lists, slot_states } = scratch;
     let alone = if share { Reason::SlotFirst } else { Reason::AliasingOff };
-    // Rows of one resource: one check of its number serves for all.
+    // Equal lengths, so that one bounds check serves all arrays.
     let count = resources.len();
     let (tenants, declared, measures) = (&mut tenants[..count], &graph.resources[..count], &measures[..count]);
     for (step, heads) in lists.iter().enumerate() {
@@ -101,17 +103,17 @@ pub(crate) fn pool(
         while at != NIL {
             let resource = ResourceId::unchecked(at as usize);
             let (row, tenant) = (&mut resources[resource.index()], &mut tenants[resource.index()]);
-            tally.begin(row.bytes);
-            let (slot, reason) = match take_free(classes, tenant.class, tenancies) {
-                Some((slot, tenancy)) => {
-                    tenancy.usage = tenancy.usage.union(row.usage);
-                    tenancy.mixed_formats |= (tenancy.format ^ tenant.format) | u8::from(row.srgb_views);
-                    (slot, Reason::SlotAfter(std::mem::replace(&mut tenancy.last, resource)))
+            stats.begin(row.bytes);
+            let (slot, reason) = match take_free(classes, tenant.class, slot_states) {
+                Some((slot, state)) => {
+                    state.usage = state.usage.union(row.usage);
+                    state.mixed_formats |= (state.format ^ tenant.format) | u8::from(row.srgb_views);
+                    (slot, Reason::SlotAfter(std::mem::replace(&mut state.last, resource)))
                 }
                 None => {
-                    tally.take(row.bytes);
+                    stats.take(row.bytes);
                     open_slot(&declared[resource.index()].desc, row, &measures[resource.index()], slots);
-                    tenancies.push(Tenancy::first(resource, row, tenant));
+                    slot_states.push(SlotState::first(resource, row, tenant));
                     (slots.len() as u32 - 1, alone)
                 }
             };
@@ -119,22 +121,22 @@ pub(crate) fn pool(
             at = std::mem::replace(&mut tenant.start, slot);
             decisions.push(Decision { subject: Subject::Resource(resource), reason });
         }
-        tally.begun(StepId::unchecked(step));
+        stats.begun(StepId::unchecked(step));
         let mut at = heads.end;
         while at != NIL {
-            let Tenant { start: slot, end, class, .. } = tenants[at as usize];
-            tally.end(resources[at as usize].bytes);
-            give_back(classes, class, slot, tenancies);
+            let SharedResource { start: slot, end, class, .. } = tenants[at as usize];
+            stats.end(resources[at as usize].bytes);
+            give_back(classes, class, slot, slot_states);
             at = end;
         }
     }
-    for (slot, tenancy) in slots.iter_mut().zip(tenancies) {
-        (slot.usage, slot.srgb_views) = (tenancy.usage, tenancy.mixed_formats != 0);
+    for (slot, state) in slots.iter_mut().zip(slot_states) {
+        (slot.usage, slot.srgb_views) = (state.usage, state.mixed_formats != 0);
     }
-    tally.finish(steps, resources)
+    stats.finish(steps, resources)
 }
 
-/// Lists what takes part by first and by last step, with its shape, and counts the rest.
+/// Lists the sharing resources by first and last step, with their shapes, and counts the others.
 #[inline(never)]
 fn enlist(
     graph: &Tables,
@@ -143,41 +145,41 @@ fn enlist(
     share: bool,
     resources: &[Planned],
     scratch: &mut PoolScratch,
-    tally: &mut Tally,
+    stats: &mut MemoryStats,
 ) {
     let PoolScratch { classes, tenants, lists, .. } = scratch;
     classes.clear();
     lists.clear();
     lists.resize(steps, Lists { start: NIL, end: NIL });
-    tenants.resize(resources.len(), Tenant { start: NIL, end: NIL, class: NIL, format: 0 });
+    tenants.resize(resources.len(), SharedResource { start: NIL, end: NIL, class: NIL, format: 0 });
     let rows = resources.iter().zip(measures).zip(&graph.resources).zip(tenants);
     for (index, (((row, measured), declared), tenant)) in rows.enumerate().rev() {
         if !takes_part(row) {
-            tally.apart(declared.kind, row);
+            stats.apart(declared.kind, row);
             continue;
         }
         let layout = match row.format {
             Some(format) => reformatted(measured.layout, format),
             None => measured.layout,
         };
-        *tenant = Tenant {
+        *tenant = SharedResource {
             start: std::mem::replace(&mut lists[row.first.index()].start, index as u32),
             end: std::mem::replace(&mut lists[row.last.index()].end, index as u32),
             class: if share { classes.of(measured.extent, layout.linear().bits()) } else { NIL },
             format: layout.format(),
         };
-        tally.want(row.bytes);
+        stats.want(row.bytes);
     }
 }
 
-/// What a resource is made with whose format an inlined epilogue replaced: few are.
+/// Returns the layout of a resource whose format was replaced by an inlined epilogue. Rarely called.
 #[cold]
 #[inline(never)]
 fn reformatted(layout: Layout, format: Format) -> Layout {
     layout.with_format(format)
 }
 
-/// Adds the slot that a resource is the first tenant of: size and levels counted out.
+/// Adds a slot for its first resource, with absolute size and level count.
 #[inline]
 fn open_slot(declared: &Desc, row: &Planned, measured: &Measured, slots: &mut Vec<Slot>) {
     let (usage, bytes) = (row.usage, row.bytes);
@@ -196,20 +198,24 @@ fn open_slot(declared: &Desc, row: &Planned, measured: &Measured, slots: &mut Ve
     }
 }
 
-/// The slot of a shape that was freed last, which is free no more.
+/// Removes and returns the most recently freed slot of a shape.
 #[inline]
-fn take_free<'t>(classes: &mut Classes, class: u32, tenancies: &'t mut [Tenancy]) -> Option<(u32, &'t mut Tenancy)> {
+fn take_free<'t>(
+    classes: &mut Classes,
+    class: u32,
+    slot_states: &'t mut [SlotState],
+) -> Option<(u32, &'t mut SlotState)> {
     let free = classes.free(class)?;
     let slot = *free;
-    let tenancy = tenancies.get_mut(slot as usize)?;
-    *free = tenancy.next_free;
-    Some((slot, tenancy))
+    let state = slot_states.get_mut(slot as usize)?;
+    *free = state.next_free;
+    Some((slot, state))
 }
 
-/// Notes that a slot is free.
+/// Adds a slot to the free list of its shape.
 #[inline]
-fn give_back(classes: &mut Classes, class: u32, slot: u32, tenancies: &mut [Tenancy]) {
+fn give_back(classes: &mut Classes, class: u32, slot: u32, slot_states: &mut [SlotState]) {
     if let Some(free) = classes.free(class) {
-        tenancies[slot as usize].next_free = std::mem::replace(free, slot);
+        slot_states[slot as usize].next_free = std::mem::replace(free, slot);
     }
 }

@@ -1,44 +1,44 @@
-//! Phase 3, moves of passes: from one order to its neighbours, all of which respect the dependencies.
+//! Phase 3, moves of passes: neighbors of an order that respect the dependencies.
 //!
-//! A pass that moves takes along what stands in between and cannot be passed: forward the passes that it waits for,
-//! backward those that wait for it. Two kinds of moves are tried in turns, round after round until none helps any more:
+//! A moved pass takes along passes in between that it cannot be reordered with: its dependencies when it moves forward,
+//! its dependents when it moves backward. Two kinds of moves are tried in rounds, until none improves the plan:
 //!
-//! - *gather*: two passes that could share a step are put side by side; what the second one waits for moves in front of
-//!   the first, all else behind the second;
-//! - *shift*: a pass is put elsewhere, near places first.
+//! - *gather*: places two passes that could share a step next to each other. Dependencies of the second move before the
+//!   first, all others after the second.
+//! - *shift*: moves a pass to another position, trying near positions first.
 
 use super::schedule::{ScheduleScratch, could_join};
 use crate::decision::Decision;
 use crate::graph::Tables;
 use crate::id::PassId;
 
-/// How far a pass moves at most.
+/// Maximum distance of a move.
 const REACH: usize = 64;
 
-/// What is done with a window of an order.
+/// A change of a window of an order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Move {
-    /// Its last pass goes right behind the first.
+    /// Moves the last pass of the window behind the first.
     Gather,
-    /// Its last pass goes to its start.
+    /// Moves the last pass of the window to its start.
     Forward,
-    /// Its first pass goes to its end.
+    /// Moves the first pass of the window to its end.
     Backward,
 }
 
-/// A walk over the moves of an order.
+/// An enumeration of the moves of an order.
 #[derive(Debug, Default)]
 pub(crate) struct Moves {
-    /// The move to be tried next, by its number.
+    /// Index of the next move.
     next: usize,
-    /// Moves since one has helped.
+    /// Number of moves since the last improvement.
     fruitless: usize,
-    /// The passes that go along bear the mark of the move.
+    /// Passes that move along are marked with the number of the move.
     marks: Vec<u32>,
     mark: u32,
 }
 
-/// Memory of the phase, kept between compiles. Orders are indices of the declared one.
+/// Memory of the phase, reused between compilations. Orders are indices into the declared order.
 #[derive(Debug, Default)]
 pub(crate) struct OrderScratch {
     pub(super) declared: Vec<PassId>,
@@ -49,7 +49,7 @@ pub(crate) struct OrderScratch {
 }
 
 impl Moves {
-    /// Starts at the first move of orders of `passes` passes.
+    /// Restarts the enumeration for orders of `passes` passes.
     pub(crate) fn start(&mut self, passes: usize) {
         let Self { next, fruitless, marks, mark } = self;
         (*next, *fruitless, *mark) = (0, 0, 0);
@@ -57,13 +57,13 @@ impl Moves {
         marks.resize(passes, 0);
     }
 
-    /// The last move has helped: the order is another one now.
+    /// Reports that the last move improved the order.
     pub(crate) fn helped(&mut self) {
         self.fruitless = 0;
     }
 
-    /// Fills `out` with the next order that differs from `order`; false when all moves were tried in vain or `looks`, the
-    /// positions that may be looked at, are used up.
+    /// Writes the next order that differs from `order` to `out`. Returns `false` if no move is left, or if the budget
+    /// `looks` of examined positions is used up.
     pub(crate) fn next(
         &mut self,
         graph: &Tables,
@@ -110,7 +110,7 @@ impl Moves {
         self.marks[pass as usize] == self.mark
     }
 
-    /// Marks `pass` and what it waits for within `between`.
+    /// Marks `pass` and its dependencies in `between`.
     fn take_awaited(&mut self, dependencies: &ScheduleScratch, between: &[u32], pass: u32) {
         self.marks[pass as usize] = self.mark;
         for &earlier in between.iter().rev() {
@@ -120,7 +120,7 @@ impl Moves {
         }
     }
 
-    /// The last pass of the window right behind its first; false when it waits for something that waits for the first.
+    /// Moves the last pass behind the first. Returns `false` if a dependency of the last depends on the first.
     fn gather(&mut self, dependencies: &ScheduleScratch, window: &[u32], out: &mut Vec<u32>) -> bool {
         let [first, between @ .., last] = window else {
             return false;
@@ -136,7 +136,7 @@ impl Moves {
         true
     }
 
-    /// The last pass of the window, with what it waits for, at its start.
+    /// Moves the last pass of the window and its dependencies to the start.
     fn forward(&mut self, dependencies: &ScheduleScratch, window: &[u32], out: &mut Vec<u32>) -> bool {
         let [between @ .., last] = window else {
             return false;
@@ -148,7 +148,7 @@ impl Moves {
         true
     }
 
-    /// The first pass of the window, with what waits for it, at its end.
+    /// Moves the first pass of the window and its dependents to the end.
     fn backward(&mut self, dependencies: &ScheduleScratch, window: &[u32], out: &mut Vec<u32>) -> bool {
         let [first, between @ ..] = window else {
             return false;
@@ -168,8 +168,8 @@ impl Moves {
     }
 }
 
-/// The move of that number; none where there is none, or where it is the same as an earlier one. Each kind in turn, short
-/// distances first.
+/// Returns the move with this number; `None` if it does not exist or duplicates another one. Numbers are ordered by
+/// kind, then by distance.
 fn numbered(number: usize, passes: usize, reach: usize) -> Option<(Move, usize, usize)> {
     let (row, low) = (number / passes, number % passes);
     let (kind, distance) = (row / reach, row % reach + 1);
@@ -218,7 +218,7 @@ mod tests {
             }
             assert_eq!(moves.fruitless, order.len() * order.len().saturating_sub(1).min(REACH) * 3, "seed {seed}");
         }
-        assert!(orders > 1000 && gathered > 20, "{orders} orders, {gathered} by gathering");
+        assert!(orders > 1000 && gathered > 20, "{orders} orders, {gathered} gathered");
     }
 
     #[test]
@@ -228,13 +228,13 @@ mod tests {
         let order: Vec<u32> = (0..declared.len() as u32).rev().collect();
         let (mut moves, mut looks) = (Moves::default(), 0);
         moves.start(order.len());
-        // With looks left the dependencies would be asked for, and there are none to ask.
+        // With budget left, the dependencies would be read, which are empty here.
         let waits = ScheduleScratch::default();
         assert!(!moves.next(&graph, &declared, &waits, &order, &mut looks, &mut Vec::new()));
-        assert_eq!(numbered(0, 5, 4), None, "a neighbour is gathered already");
+        assert_eq!(numbered(0, 5, 4), None, "adjacent passes are already gathered");
         assert_eq!(numbered(5, 5, 4), Some((Move::Gather, 0, 2)));
         assert_eq!(numbered(5 * 4, 5, 4), Some((Move::Forward, 0, 1)));
-        assert_eq!(numbered(5 * 4 + 4, 5, 4), None, "there is nothing behind the last");
+        assert_eq!(numbered(5 * 4 + 4, 5, 4), None, "no pass follows the last");
         assert_eq!(numbered(5 * 8 + 5, 5, 4), Some((Move::Backward, 0, 2)));
     }
 }

@@ -1,38 +1,37 @@
-//! Phase 3, the optimising order, first guesses: mergeable passes together, then fewer live bytes.
+//! Phase 3, initial orders: list schedules that group mergeable passes and reduce live bytes.
 //!
-//! List scheduling over the dependencies of the surviving passes. At each moment some passes are ready; the next is the
-//! first one that could share the open step, and when there is none, the one after which the fewest bytes are live
-//! (what it frees less what it brings to life), ties in declaration order. Whether passes really merge depends on the
-//! whole step, so these are guesses, which `order` plans to the end and improves.
+//! Among the ready passes, the scheduler picks the first one that could share the current step. If there is none, it
+//! picks the one after which the fewest bytes are live; ties are resolved in declaration order. These are estimates,
+//! because merging depends on the whole step. `order` plans and improves them.
 
 use super::parts::Parts;
 use crate::access::AccessKind;
 use crate::graph::{PassFlags, PassKind, Tables};
 use crate::id::{PassId, ResourceId};
 
-/// What to look for first.
+/// Priority of a schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Aim {
-    /// A pass that could share the open step, then few bytes.
+    /// Passes that could share the current step, then few live bytes.
     MergeThenBytes,
-    /// A pass that could share the open step, then declaration order.
+    /// Passes that could share the current step, then declaration order.
     Merge,
-    /// Few bytes.
+    /// Few live bytes.
     Bytes,
 }
 
 impl Aim {
-    /// Every guess, in the order in which they are tried.
+    /// All priorities, in the order in which they are tried.
     pub(crate) const ALL: [Self; 3] = [Self::MergeThenBytes, Self::Merge, Self::Bytes];
 }
 
-/// Ready passes that are looked at for one choice: keeps scheduling near linear in wide graphs.
+/// Maximum number of ready passes examined per choice. Keeps scheduling near-linear for wide graphs.
 const WINDOW: usize = 64;
 
-/// Memory of the phase, kept between compiles.
+/// Memory of the phase, reused between compilations.
 #[derive(Debug, Default)]
 pub(crate) struct ScheduleScratch {
-    /// Dependencies as pairs (before, after), then as lists by their first.
+    /// Dependencies as pairs (before, after), sorted by their first element.
     edges: Vec<(u32, u32)>,
     starts: Vec<u32>,
     waiting: Vec<u32>,
@@ -49,14 +48,14 @@ pub(crate) struct ScheduleScratch {
 const NIL: u32 = u32::MAX;
 
 impl ScheduleScratch {
-    /// The passes that wait for pass `index` of the declared order, as pairs with it.
+    /// The dependents of pass `index` of the declared order, as pairs (index, dependent).
     pub(crate) fn waiting_for(&self, index: u32) -> &[(u32, u32)] {
         let at = index as usize;
         &self.edges[self.starts[at] as usize..self.starts[at + 1] as usize]
     }
 }
 
-/// Fills `order` with the surviving passes, as indices of `declared`. The dependencies stand in `scratch`.
+/// Fills `order` with the kept passes, as indices of `declared`. `scratch` contains the dependencies.
 pub(crate) fn schedule(
     graph: &Tables,
     frame: [u32; 2],
@@ -108,8 +107,8 @@ pub(crate) fn schedule(
     debug_assert_eq!(order.len(), declared.len(), "declaration order has no cycles");
 }
 
-/// Fills the dependencies: a pass waits for the writers of what it touches, and a writer also for the readers of what it
-/// replaces. Passes with side effects stay in order among themselves.
+/// Computes the dependencies. A pass depends on the writers of the resources it accesses; a writer also depends on the
+/// readers of the contents it replaces. Passes with side effects stay in order.
 pub(crate) fn dependencies(graph: &Tables, parts: &Parts, declared: &[PassId], scratch: &mut ScheduleScratch) {
     let ScheduleScratch { edges, starts, last_writer, readers, reader_head, .. } = scratch;
     edges.clear();
@@ -162,7 +161,7 @@ pub(crate) fn dependencies(graph: &Tables, parts: &Parts, declared: &[PassId], s
     }
 }
 
-/// Fills how often each resource is still to be touched, and what it takes while it lives: nothing if it is not shared.
+/// Computes the number of accesses of each resource, and its size; 0 if it does not share memory.
 fn weigh(graph: &Tables, frame: [u32; 2], declared: &[PassId], scratch: &mut ScheduleScratch) {
     let ScheduleScratch { uses_left, bytes, live, .. } = scratch;
     uses_left.clear();
@@ -184,7 +183,7 @@ fn weigh(graph: &Tables, frame: [u32; 2], declared: &[PassId], scratch: &mut Sch
     live.resize(graph.resources.len(), false);
 }
 
-/// Live bytes after the pass less live bytes before it, its peak first: what it brings to life counts before what it frees.
+/// Change of live bytes caused by a pass.
 fn delta(accesses: &[crate::access::Access], uses_left: &[u32], bytes: &[u64], live: &[bool]) -> i128 {
     let mut sum = 0i128;
     for (index, access) in accesses.iter().enumerate() {
@@ -211,8 +210,8 @@ fn cheapest(window: &[u32], delta: impl Fn(u32) -> i128) -> usize {
     best.0
 }
 
-/// Whether a pass might share the step that the passes in `step` form: it draws into something of theirs, or reads it at
-/// the same pixel, and samples nothing that they write.
+/// Returns `true` if a pass might join the step formed by the passes in `step`. It must draw into one of their
+/// attachments or read it at the same pixel, and must not sample any of them.
 pub(crate) fn could_join(graph: &Tables, declared: &[PassId], step: &[u32], pass: u32) -> bool {
     let id = declared[pass as usize];
     if graph.passes[id.index()].kind != PassKind::Raster || step.is_empty() {

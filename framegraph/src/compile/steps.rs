@@ -1,4 +1,4 @@
-//! What every phase after merging looks at: the passes of each step, and what inlining put in the place of what.
+//! Views of steps and their passes, for all phases after merging.
 
 use crate::access::{Access, AccessKind, Range};
 use crate::format::Aspect;
@@ -7,10 +7,10 @@ use crate::id::{AccessId, ResourceId};
 use crate::plan::{Join, Step, StepPass};
 
 /// One level and some layers of one resource.
-pub(crate) type Spot = (ResourceId, Range);
+pub(crate) type ResourceRange = (ResourceId, Range);
 
-/// For each resource, the color access that draws in its stead since its reader was inlined; none for most, and empty
-/// when nothing was inlined.
+/// For each resource, the color access that replaces it because its reader was inlined; otherwise none. Empty if
+/// nothing was inlined.
 pub(crate) type InlinedInto = [AccessId];
 
 /// The passes of all steps.
@@ -26,13 +26,13 @@ pub(crate) struct StepView<'a> {
 #[derive(Clone, Copy)]
 pub(crate) struct Members<'a> {
     pub(crate) graph: &'a Tables,
-    /// In the order in which they run.
+    /// In execution order.
     pub(crate) passes: &'a [StepPass],
     pub(crate) inlined_into: &'a InlinedInto,
 }
 
 impl<'a> StepView<'a> {
-    /// The passes of `step`.
+    /// Returns the passes of `step`.
     #[inline]
     pub(crate) fn of(self, step: &Step) -> Members<'a> {
         let Self { graph, step_passes, inlined_into } = self;
@@ -41,28 +41,28 @@ impl<'a> StepView<'a> {
 }
 
 impl<'a> Members<'a> {
-    /// The accesses that the pass at `at` makes itself. An inlined pass reads no texel at the same pixel and draws
-    /// nothing: its producer draws into its target.
+    /// The accesses that the pass at `at` makes itself. An inlined pass makes no same-pixel read and draws nothing; its
+    /// producer draws into its target.
     #[inline(always)]
     pub(crate) fn accesses(self, at: usize) -> impl Iterator<Item = &'a Access> {
         let member = self.passes[at];
         self.graph.accesses_of(member.pass).iter().filter(move |a| !self.replaces(member, a))
     }
 
-    /// Whether a pass of the step does not make that access of its own.
+    /// Returns `true` if inlining replaces this access of a pass.
     #[inline]
     pub(crate) const fn replaces(self, member: StepPass, access: &Access) -> bool {
         matches!(member.join, Join::Inlined) && matches!(access.kind, AccessKind::SamePixel | AccessKind::Color)
     }
 
-    /// What an access touches in the plan.
+    /// Returns the resource and range that an access refers to in the plan.
     #[inline]
-    pub(crate) fn touched(self, access: &Access) -> Spot {
-        touched(self.graph, self.inlined_into, access)
+    pub(crate) fn resource_range(self, access: &Access) -> ResourceRange {
+        range_in_plan(self.graph, self.inlined_into, access)
     }
 
-    /// Whether an access of the pass at `at` is a same-pixel read that finds its texel in the tile: earlier passes of
-    /// the step attached its planes, and the pass came in for that.
+    /// Returns `true` if an access of the pass at `at` is a same-pixel read from the tile. Earlier passes of the step
+    /// must have attached its planes, and the pass must have joined because of it.
     #[inline]
     pub(crate) fn in_tile(self, at: usize, access: &Access) -> bool {
         access.kind == AccessKind::SamePixel
@@ -72,13 +72,13 @@ impl<'a> Members<'a> {
 
     #[inline(never)]
     fn attached_before(self, at: usize, access: &Access) -> bool {
-        let spot = self.touched(access);
+        let spot = self.resource_range(access);
         let shows = |plane: Aspect| {
             let attaches = |a: &Access| {
                 a.kind.is_attachment()
                     && a.kind != AccessKind::Resolve
                     && (a.range.aspect == Aspect::All || a.range.aspect == plane)
-                    && same_spot(self.touched(a), spot)
+                    && same_range(self.resource_range(a), spot)
             };
             self.passes[..at].iter().any(|m| self.graph.accesses_of(m.pass).iter().any(attaches))
         };
@@ -89,9 +89,9 @@ impl<'a> Members<'a> {
     }
 }
 
-/// What an access touches in the plan: what it names, or what replaced that.
+/// Returns the resource and range that an access refers to in the plan, after inlining.
 #[inline]
-pub(crate) fn touched(graph: &Tables, inlined_into: &InlinedInto, access: &Access) -> Spot {
+pub(crate) fn range_in_plan(graph: &Tables, inlined_into: &InlinedInto, access: &Access) -> ResourceRange {
     let mut spot = (access.resource, access.range);
     if inlined_into.is_empty() {
         return spot;
@@ -103,23 +103,23 @@ pub(crate) fn touched(graph: &Tables, inlined_into: &InlinedInto, access: &Acces
     spot
 }
 
-/// Whether the resource vanished because its reader was inlined.
+/// Returns `true` if the resource does not exist because its reader was inlined.
 #[inline]
 pub(crate) fn is_inlined(inlined_into: &InlinedInto, resource: ResourceId) -> bool {
     !inlined_into.is_empty() && !inlined_into[resource.index()].is_none()
 }
 
-/// Two spots of one resource at one level and layer, seen through one format; planes may differ, since they are attached
+/// Returns `true` for the same resource, level, layers and view format. Planes may differ, because they are attached
 /// together.
 #[inline]
-pub(crate) fn same_spot(a: Spot, b: Spot) -> bool {
+pub(crate) fn same_range(a: ResourceRange, b: ResourceRange) -> bool {
     let layers = |r: Range| (r.layer, r.layers);
     a.0 == b.0 && a.1.mip == b.1.mip && layers(a.1) == layers(b.1) && a.1.view == b.1.view
 }
 
-/// Whether two spots of one resource at one level share a layer.
+/// Returns `true` if both ranges share a layer of one level of one resource.
 #[inline]
-pub(crate) fn overlapping(a: Spot, b: Spot) -> bool {
+pub(crate) fn overlapping(a: ResourceRange, b: ResourceRange) -> bool {
     let end = |r: Range| u32::from(r.layer) + u32::from(r.layers);
     let apart = |a: Range, b: Range| u32::from(b.layer) >= end(a);
     a.0 == b.0 && a.1.mip == b.1.mip && !apart(a.1, b.1) && !apart(b.1, a.1)

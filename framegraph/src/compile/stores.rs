@@ -1,14 +1,15 @@
-//! Phase 6, backward half: what becomes of each attachment at the end of its step.
+//! Phase 6, backward half: the store operation of each attachment.
 //!
-//! A plane whose contents are needed after the step is stored, all others are discarded. A plane that was only read is
-//! neither; once its contents are not needed any more, the last step that reads it discards them, if it can. A color
-//! attachment is cleared instead of loaded where its old contents have no effect. One sweep from the last step to the
-//! first; `single_part` does without where it can.
+//! A written plane is stored if its contents are used after the step, otherwise discarded. A plane that was only read
+//! is left unchanged. Once its contents are no longer needed, the last step that reads it discards them if possible. A
+//! color attachment is cleared instead of loaded if its previous contents have no effect.
+//!
+//! One sweep from the last step to the first; `ops_fast_path` replaces it where possible.
 
-use super::cull::need_before;
+use super::cull::use_before;
+use super::liveness::{NextUse, uses_at_exit};
 use super::loads::{attached_range, is_resolved};
 use super::measure::Measures;
-use super::need::{Need, needs_at_exit};
 use super::parts::Parts;
 use super::steps::{Members, StepView};
 use crate::access::{Access, AccessKind, Range};
@@ -17,25 +18,26 @@ use crate::format::{Aspect, Format};
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Attachment, LoadOp, Role, Step, StoreOp};
 
-/// Starts a color attachment whose old contents have no effect from zero: blending still reads a defined value.
+/// Clears a color attachment to zero because its previous contents have no effect. Blending still reads defined values.
 pub(super) fn start_from_zero(attachment: &mut Attachment) -> Reason {
     (attachment.load, attachment.stencil_load) = (LoadOp::Clear, LoadOp::Clear);
     attachment.clear = Attachment::ZERO;
     Reason::ClearUnneeded
 }
 
-/// Fills the store ops of `attachments`; `needs` is scratch. The log ends with the rows on their loads.
+/// Fills the store operations of `attachments`; `needs` is scratch memory. The log must end with the decisions on their
+/// loads.
 #[inline(never)]
 pub(crate) fn stores(
     view: StepView<'_>,
     parts: &Parts,
     measures: &Measures,
     steps: &[Step],
-    needs: &mut Vec<Need>,
+    needs: &mut Vec<NextUse>,
     attachments: &mut [Attachment],
     decisions: &mut Vec<Decision>,
 ) {
-    needs_at_exit(view.graph, parts, measures, needs);
+    uses_at_exit(view.graph, parts, measures, needs);
     let first = decisions.len();
     let loads = first - attachments.len();
     let unknown = Decision { subject: Subject::Store(StepId::NONE, ResourceId::NONE), reason: Reason::DiscardUnread };
@@ -51,26 +53,26 @@ pub(crate) fn stores(
             let resolved = is_resolved(of_step, &attachment);
             let need = |aspect| {
                 let range = attached_range(&attachment, aspect);
-                let find = |holds: fn(Need) -> bool| parts.find(needs, resource, range, holds);
-                find(Need::is_needed).or_else(|| find(|_| true)).unwrap_or(Need::Unread)
+                let find = |holds: fn(NextUse) -> bool| parts.find(needs, resource, range, holds);
+                find(NextUse::is_needed).or_else(|| find(|_| true)).unwrap_or(NextUse::Unread)
             };
             let reason = decide(members, &mut of_step[at], resolved, need);
             decisions[decided + at] = Decision { subject: Subject::Store(step_id, resource), reason };
         }
         for at in (0..members.passes.len()).rev() {
             let pass = members.passes[at].pass;
-            // No two accesses of one pass exclude each other, so they need no order.
+            // Accesses of one pass do not conflict, so their order does not matter.
             for access in members.accesses(at) {
-                let (resource, range) = members.touched(access);
-                parts.replace(needs, resource, range, Need::is_needed, |after| {
-                    need_before(pass, view.graph.accesses_of(pass), access, || after.is_needed())
+                let (resource, range) = members.resource_range(access);
+                parts.replace(needs, resource, range, NextUse::is_needed, |after| {
+                    use_before(pass, view.graph.accesses_of(pass), access, || after.is_needed())
                 });
             }
         }
         for (at, attachment) in of_step.iter_mut().enumerate() {
             let loaded = attachment.load == LoadOp::Load && matches!(attachment.role, Role::Color(_));
             let range = attached_range(attachment, Aspect::All);
-            if loaded && !parts.any(needs, attachment.resource, range, Need::is_needed) {
+            if loaded && !parts.any(needs, attachment.resource, range, NextUse::is_needed) {
                 let load = loads + step.attachments.start as usize + at;
                 decisions[load].reason = start_from_zero(attachment);
             }
@@ -78,9 +80,9 @@ pub(crate) fn stores(
     }
 }
 
-/// What becomes of a plane that the step writes and, when `resolved`, averages into another attachment.
+/// Returns the store operation of a plane that the step writes and, if `resolved`, resolves into another attachment.
 #[inline(never)]
-pub(super) fn written(need: Need, resolved: bool) -> (StoreOp, Reason) {
+pub(super) fn written(need: NextUse, resolved: bool) -> (StoreOp, Reason) {
     match need.stored() {
         Some(because) => (StoreOp::Store, because),
         None if resolved => (StoreOp::Discard, Reason::DiscardResolved),
@@ -89,30 +91,30 @@ pub(super) fn written(need: Need, resolved: bool) -> (StoreOp, Reason) {
     }
 }
 
-/// Decides both planes of one attachment of a step of these passes from what is `needed` of each plane after the step, and
-/// says why, the stored plane first.
+/// Sets the store operations of both planes of an attachment. `needed` returns the next use of a plane after the step.
+/// Returns the reason, preferring that of a stored plane.
 #[inline(never)]
 pub(super) fn decide(
     members: Members<'_>,
     attachment: &mut Attachment,
     resolved: bool,
-    needed: impl Fn(Aspect) -> Need,
+    needed: impl Fn(Aspect) -> NextUse,
 ) -> Reason {
     let Some(format) = members.graph.resources[attachment.resource.index()].desc.texture().map(|t| t.format) else {
         return Reason::DiscardUnread;
     };
     let bound = attachment.role == Role::DepthReadOnly && is_read_beside(members, attachment, format);
     let mut reason = None;
-    let mut plane = |aspect: Aspect, touched: StoreOp| -> StoreOp {
+    let mut plane = |aspect: Aspect, declared: StoreOp| -> StoreOp {
         let need = needed(aspect);
         let (op, because) = match bound || need.is_needed() && !is_written(members, attachment, aspect) {
             true => (StoreOp::None, Reason::StoreUnchanged),
             false => written(need, resolved),
         };
-        // A plane that no access of the step touches is left as it is.
-        let op = if touched == StoreOp::None { StoreOp::None } else { op };
+        // A plane that no access of the step uses is left unchanged.
+        let op = if declared == StoreOp::None { StoreOp::None } else { op };
         let stronger = reason.is_none() || op == StoreOp::Store;
-        reason = if stronger && touched != StoreOp::None { Some(because) } else { reason };
+        reason = if stronger && declared != StoreOp::None { Some(because) } else { reason };
         op
     };
     if format.has_depth() && format.has_stencil() {
@@ -126,8 +128,8 @@ pub(super) fn decide(
     reason.unwrap_or(Reason::StoreUnchanged)
 }
 
-/// Whether one of these passes reads a plane of a depth attachment otherwise too: then it must be read only, and nothing
-/// that is read only can be dropped.
+/// Returns `true` if a pass of the step also reads a depth attachment in another way. The attachment must then be
+/// read-only, and its contents cannot be discarded.
 fn is_read_beside(members: Members<'_>, attachment: &Attachment, format: Format) -> bool {
     let attached: Range = attached_range(attachment, Aspect::All);
     let reads = |a: &Access| {
@@ -136,7 +138,7 @@ fn is_read_beside(members: Members<'_>, attachment: &Attachment, format: Format)
     members.passes.iter().any(|m| members.graph.accesses_of(m.pass).iter().any(reads))
 }
 
-/// Whether one of these passes changes that plane of the attachment.
+/// Returns `true` if a pass of the step writes this plane of the attachment.
 fn is_written(members: Members<'_>, attachment: &Attachment, aspect: Aspect) -> bool {
     if attachment.role != Role::Depth {
         return attachment.role != Role::DepthReadOnly;

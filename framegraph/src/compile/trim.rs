@@ -1,13 +1,12 @@
-//! Phase 2, last part: the graph without the multisample resolves that are dropped. The phases after it know nothing of
-//! them, so they take no memory, stand against no merge, and cost a frame without them nothing.
+//! Phase 2, last part: removes dropped multisample resolves from the graph. Later phases do not see them, so they need
+//! no memory and prevent no merges.
 
-use super::need::Need;
+use super::liveness::NextUse;
 use crate::graph::Tables;
 use crate::id::{AccessId, PassId};
 
-/// Makes `trimmed` the graph without the accesses `dropped`, which are in order. What is noted `after` each access follows
-/// it.
-pub(crate) fn trim(graph: &Tables, dropped: &[(PassId, AccessId)], after: &mut [Need], trimmed: &mut Tables) {
+/// Writes the graph without the accesses in `dropped`, which is sorted, to `trimmed`. Updates `after` accordingly.
+pub(crate) fn trim(graph: &Tables, dropped: &[(PassId, AccessId)], after: &mut [NextUse], trimmed: &mut Tables) {
     trimmed.copy_work(graph);
     for (pass, access) in dropped.iter().rev() {
         let span = &mut trimmed.passes[pass.index()].accesses;

@@ -1,7 +1,7 @@
-//! Phase 1: everything that is wrong with the graph, all of it at once.
+//! Phase 1: validation of the whole graph. Reports all errors at once.
 //!
-//! What a single call can see was refused when it was made; this phase sees the whole: contents that no pass wrote and
-//! attachments that do not fit each other. Shapes were judged when they were measured.
+//! Errors of single calls were reported by the calls, and errors of descriptors by the measuring phase. This phase
+//! checks reads of undefined contents and combinations of attachments.
 
 mod attachments;
 mod clears;
@@ -16,7 +16,7 @@ use crate::format::Format;
 use crate::graph::{PassFlags, PassKind, Tables};
 use crate::id::{PassId, ResourceId};
 
-/// Appends every error of `graph` to `errors`; `defined` is scratch (one flag a part).
+/// Appends every error of `graph` to `errors`; `defined` is scratch memory with one flag per part.
 #[inline(never)]
 pub(crate) fn validate(
     graph: &Tables,
@@ -33,9 +33,9 @@ pub(crate) fn validate(
     if graph.contents_uncertain {
         contents(graph, parts, measures, defined, errors);
     }
-    let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MOST_TILE_BYTES;
+    let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MAX_TILE_BYTES;
     for (index, pass) in graph.passes.iter().enumerate() {
-        // Of a pass with one color attachment, of a texture of one part, only the clear value can be wrong where it has room.
+        // Fast path: a pass with one color attachment with one part can only have a wrong clear value.
         let plain = roomy && !pass.sole_color.is_none();
         if !plain && pass.kind == PassKind::Raster {
             let framebuffer = framebuffer_of_pass(graph, &measures.rows, pass);
@@ -47,8 +47,8 @@ pub(crate) fn validate(
     }
 }
 
-/// What no format exceeds in a tile, in bytes per sample.
-const MOST_TILE_BYTES: u32 = {
+/// Maximum size in the tile over all formats, in bytes per sample.
+const MAX_TILE_BYTES: u32 = {
     let (mut most, mut at) = (0, 0);
     while at < Format::ALL.len() {
         let bytes = Format::ALL[at].tile_bytes();
@@ -58,7 +58,7 @@ const MOST_TILE_BYTES: u32 = {
     most
 };
 
-/// A forward sweep: what is used must have been written.
+/// Forward sweep: reports uses of contents that no earlier pass wrote.
 fn contents(graph: &Tables, parts: &Parts, measures: &Measures, defined: &mut Vec<bool>, errors: &mut CompileErrors) {
     defined.clear();
     defined.resize(parts.total(), false);
@@ -69,7 +69,7 @@ fn contents(graph: &Tables, parts: &Parts, measures: &Measures, defined: &mut Ve
     }
     for (index, pass) in graph.passes.iter().enumerate() {
         let accesses = pass.accesses.of(&graph.accesses);
-        // No two accesses of one pass exclude each other, so reads and writes need no order.
+        // Accesses of one pass do not conflict, so their order does not matter.
         for access in accesses {
             if access.mode.needs_contents() && parts.any(defined, access.resource, access.range, |d| !d) {
                 errors.push(|| unwritten(graph, Some(access.kind), PassId::at(index), access.resource, access.range));
@@ -89,7 +89,7 @@ fn contents(graph: &Tables, parts: &Parts, measures: &Measures, defined: &mut Ve
     }
 }
 
-/// Levels that exist in the declaration can be missing at this frame size, when the declaration asks for all of them.
+/// Reports levels that do not exist at this frame size, for textures with a full mip chain.
 fn out_of_range(graph: &Tables, parts: &Parts, pass: PassId, access: &Access, errors: &mut CompileErrors) {
     let mut covered = 0;
     parts.runs(access.resource, access.range, |run| covered += run.len());
@@ -108,7 +108,7 @@ fn unwritten(
     range: Range,
 ) -> CompileError {
     let after = if pass.is_none() { graph.passes.len() } else { pass.index() + 1 };
-    // One that needs contents itself would be refused too.
+    // Suggest only writers that do not need contents themselves.
     let fills = |a: &Access| a.mode.writes() && !a.mode.needs_contents();
     let writes = |a: &Access| a.resource == resource && fills(a) && graph.overlap(resource, &a.range, &range);
     let later = graph.passes[after..].iter().position(|p| p.accesses.of(&graph.accesses).iter().any(writes));

@@ -1,13 +1,12 @@
-//! The list of reasons: each stands here once, with its word in JSON, its sentence and its hint. The enumeration, what it
-//! names, and the list that mutation walks follow from the row.
+//! The list of reasons. Each row defines a variant of [`Reason`], its name in JSON, its sentence and its hint.
 //!
-//! A macro, since no function can make the variants of an enumeration.
+//! A macro is needed because a function cannot define the variants of an enumeration.
 
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId, StepId};
-use crate::plain::plain;
+use crate::sanitize::escape_controls;
 
-/// What a reason names; none of what it does not.
+/// Ids and causes that a reason contains.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Names {
     pub(crate) pass: Option<PassId>,
@@ -21,17 +20,18 @@ pub(crate) struct Names {
 /// One row of the list.
 struct Row {
     word: &'static str,
-    /// With `{pass}`, `{resource}` and `{why}` in the place of what is named.
+    /// Sentence with the placeholders `{pass}`, `{resource}` and `{why}`.
     sentence: &'static str,
     hint: &'static str,
     names: Names,
 }
 
-/// Makes [`Reason`] of rows `Variant(name: type, …) "word", "sentence", "hint";`. The hint is empty where the reader can
-/// want nothing else, and where the refusal or need that is named has its own.
+/// Defines [`Reason`] from rows of the form `Variant(name: type, …) "word", "sentence", "hint";`.
+///
+/// The hint is empty if there is no alternative, or if the contained refusal or memory need has a hint.
 macro_rules! reasons {
     ($($variant:ident $(($($name:ident: $type:ty),+))? $word:literal, $sentence:literal, $hint:literal;)+) => {
-        /// Everything that a compile can decide, each with its cause. What a variant holds is what its sentence names.
+        /// A decision together with its cause. The fields of a variant appear in its sentence.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[non_exhaustive]
         pub enum Reason {
@@ -49,7 +49,7 @@ macro_rules! reasons {
                 }
             }
 
-            /// Every reason that `names` has what it takes for.
+            /// Returns every reason whose fields are present in `names`.
             #[cfg(feature = "testing")]
             pub(crate) fn all(names: Names) -> Vec<Self> {
                 let makers: [fn(&Names) -> Option<Self>; _] = [$(|_given| Some(Self::$variant $(($(_given.$name?),+))?)),+];
@@ -59,7 +59,7 @@ macro_rules! reasons {
     };
 }
 
-/// Makes an enumeration of causes, which reasons hold, of rows `Variant "word", "sentence", "hint";`.
+/// Defines an enumeration of causes from rows of the form `Variant "word", "sentence", "hint";`.
 macro_rules! causes {
     ($(#[$doc:meta])* $name:ident $($(#[$more:meta])* $variant:ident $word:literal, $sentence:literal, $hint:literal;)+) => {
         $(#[$doc])*
@@ -79,17 +79,17 @@ macro_rules! causes {
                 }
             }
 
-            /// Its word in JSON.
+            /// Name of the cause in JSON.
             pub const fn word(self) -> &'static str {
                 self.row()[0]
             }
 
-            /// Why, as the end of a sentence.
+            /// The cause as the end of a sentence.
             pub const fn sentence(self) -> &'static str {
                 self.row()[1]
             }
 
-            /// What to change to have it otherwise.
+            /// Returns how to avoid the cause.
             pub const fn hint(self) -> &'static str {
                 self.row()[2]
             }
@@ -98,151 +98,151 @@ macro_rules! causes {
 }
 
 reasons! {
-    KeptSideEffect "kept_side_effect", "kept, it declares a side effect", "";
-    KeptExport(resource: ResourceId) "kept_export", "kept, it writes `{resource}`, which is exported", "";
-    KeptImport(resource: ResourceId) "kept_import", "kept, it writes `{resource}`, which is imported and must survive", "";
-    KeptHistory(resource: ResourceId) "kept_history", "kept, it writes `{resource}`, which later frames read", "";
-    KeptReadBy(resource: ResourceId, pass: PassId) "kept_read_by", "kept, `{pass}` reads `{resource}`", "";
-    KeptCullingOff "kept_culling_off", "kept, culling is switched off", "switch culling on";
-    CulledUnread(resource: ResourceId) "culled_unread", "culled, no pass reads `{resource}`",
-        "read it, export it, or declare a side effect, if it matters";
+    KeptSideEffect "kept_side_effect", "kept because it declares a side effect", "";
+    KeptExport(resource: ResourceId) "kept_export", "kept because it writes `{resource}`, which is exported", "";
+    KeptImport(resource: ResourceId) "kept_import", "kept because it writes `{resource}`, which is imported with `Exit::Keep`", "";
+    KeptHistory(resource: ResourceId) "kept_history", "kept because it writes history `{resource}`", "";
+    KeptReadBy(resource: ResourceId, pass: PassId) "kept_read_by", "kept because `{pass}` reads `{resource}`", "";
+    KeptCullingOff "kept_culling_off", "kept because culling is disabled", "enable culling";
+    CulledUnread(resource: ResourceId) "culled_unread", "culled because no pass reads `{resource}`",
+        "read it, export it, or declare a side effect if it matters";
     CulledReaderCulled(resource: ResourceId, pass: PassId) "culled_reader_culled",
-        "culled, only `{pass}` reads `{resource}`, and it is culled",
-        "read it, export it, or declare a side effect, if it matters";
+        "culled because only `{pass}` reads `{resource}`, and that pass is culled",
+        "read it, export it, or declare a side effect if it matters";
     CulledOverwritten(resource: ResourceId, pass: PassId) "culled_overwritten",
-        "culled, `{pass}` writes over `{resource}` before any pass reads it",
-        "let the later pass modify it, if the contents matter";
-    CulledNoOutput "culled_no_output", "culled, it writes nothing and declares no side effect",
-        "declare a side effect, if it does anything";
-    ResolveDropped(resource: ResourceId) "resolve_dropped", "does not resolve into `{resource}`, no pass reads it",
-        "read it, export it, or leave the resolve out";
+        "culled because `{pass}` overwrites `{resource}` before any pass reads it",
+        "use `Modify` in the later pass if the contents matter";
+    CulledNoOutput "culled_no_output", "culled because it writes nothing and declares no side effect",
+        "declare a side effect if it has one";
+    ResolveDropped(resource: ResourceId) "resolve_dropped", "does not resolve into `{resource}` because no pass reads it",
+        "read it, export it, or remove the resolve";
     ResolvePass(resource: ResourceId) "resolve_pass",
-        "resolves into `{resource}` by a full-screen pass, the device does not do it while it stores",
-        "use another mode, if the device has one, or have one sample";
-    OrderMerge(pass: PassId) "order_merge", "moved behind `{pass}`, to share its step", "";
+        "resolves into `{resource}` with a full-screen pass because the device cannot resolve it while storing",
+        "use a resolve mode that the device supports, or a single sample";
+    OrderMerge(pass: PassId) "order_merge", "moved after `{pass}` to share its step", "";
     OrderBytes(pass: PassId) "order_bytes",
-        "runs behind `{pass}`, the frame takes fewer steps or bytes in this order", "";
-    MergedAttachments(pass: PassId) "merged_attachments", "merged with `{pass}`, same attachments", "";
-    MergedSamePixel(pass: PassId) "merged_same_pixel", "merged with `{pass}`, its reads stay in the tile", "";
+        "runs after `{pass}` because the frame needs fewer steps or bytes in this order", "";
+    MergedAttachments(pass: PassId) "merged_attachments", "merged with `{pass}`: same attachments", "";
+    MergedSamePixel(pass: PassId) "merged_same_pixel", "merged with `{pass}`: its reads stay in the tile", "";
     MergedInline(pass: PassId) "merged_inline", "inlined into the shader of `{pass}`", "";
     Split(pass: PassId, refusal: Refusal) "split", "not merged with `{pass}`: {why}", "";
     NotInlined(pass: PassId, refusal: Refusal) "not_inlined", "not inlined into `{pass}`: {why}", "";
     LoadClear "load_clear", "cleared", "";
-    ClearUnneeded "clear_unneeded", "cleared, neither what it held nor what is added is needed",
-        "read it, export it, or leave it out of the pass";
-    LoadOverwritten "load_overwritten", "don't care, every texel is written", "";
-    LoadWritten(pass: PassId) "load_written", "loaded, `{pass}` wrote contents that are needed",
-        "clear or overwrite it, or let the pass share the step of its writer";
-    LoadEntry "load_entry", "loaded, the contents on entry are needed",
-        "clear or overwrite it, or import it without contents";
-    StoreReadBy(pass: PassId) "store_read_by", "stored, `{pass}` reads it",
-        "read it at the same pixel if the reader needs its own texel alone, or let the reader share the step, to keep it \
-         in the tile";
-    StoreResolved(pass: PassId) "store_resolved", "stored, the full-screen pass that resolves for `{pass}` reads it",
-        "resolve it by a mode that the device has in its store, to keep the samples in the tile";
-    StoreExport "store_export", "stored, it is exported", "";
-    StoreImport "store_import", "stored, it is imported and must survive", "";
-    StoreHistory "store_history", "stored, later frames read it", "";
-    DiscardUnread "discard_unread", "discarded, no pass reads it any more", "";
-    DiscardOverwritten "discard_overwritten", "discarded, it is written over before any pass reads it", "";
-    DiscardResolved "discard_resolved", "discarded, it was resolved and no pass reads the samples", "";
-    StoreUnchanged "store_unchanged", "left in memory, it was only read", "";
-    Memoryless(step: StepId) "memoryless", "takes no memory, it lives in one step", "";
-    NeedsMemory(need: MemoryNeed) "needs_memory", "takes memory, {why}", "";
-    Inlined "inlined", "never exists, its reader was inlined", "";
-    SlotFirst "slot_first", "first tenant of its slot", "";
-    SlotAfter(resource: ResourceId) "slot_after", "takes over the slot of `{resource}`", "";
+    ClearUnneeded "clear_unneeded", "cleared because neither the previous nor the new contents are needed",
+        "read it, export it, or remove it from the pass";
+    LoadOverwritten "load_overwritten", "don't care: every texel is written", "";
+    LoadWritten(pass: PassId) "load_written", "loaded because contents written by `{pass}` are needed",
+        "clear or overwrite it, or let the pass share the step of the writer";
+    LoadEntry "load_entry", "loaded because its contents at the start of the frame are needed",
+        "clear or overwrite it, or import it with undefined contents";
+    StoreReadBy(pass: PassId) "store_read_by", "stored because `{pass}` reads it",
+        "to keep it in the tile, read it at the same pixel if the reader needs only its own texel, or let the reader \
+         share the step";
+    StoreResolved(pass: PassId) "store_resolved", "stored because the full-screen resolve of `{pass}` reads it",
+        "to keep the samples in the tile, use a mode that the device can resolve while storing";
+    StoreExport "store_export", "stored because it is exported", "";
+    StoreImport "store_import", "stored because it is imported with `Exit::Keep`", "";
+    StoreHistory "store_history", "stored because later frames read it", "";
+    DiscardUnread "discard_unread", "discarded because no later pass reads it", "";
+    DiscardOverwritten "discard_overwritten", "discarded because it is overwritten before any pass reads it", "";
+    DiscardResolved "discard_resolved", "discarded because it was resolved and no pass reads the samples", "";
+    StoreUnchanged "store_unchanged", "left unchanged: it was only read", "";
+    Memoryless(step: StepId) "memoryless", "needs no memory because it is used in one step only", "";
+    NeedsMemory(need: MemoryNeed) "needs_memory", "needs memory because {why}", "";
+    Inlined "inlined", "does not exist because its reader was inlined", "";
+    SlotFirst "slot_first", "first resource in its slot", "";
+    SlotAfter(resource: ResourceId) "slot_after", "reuses the slot of `{resource}`", "";
     Placed "placed", "placed in the heap", "";
-    PlacedAfter(resource: ResourceId) "placed_after", "placed over the memory of `{resource}`", "";
+    PlacedAfter(resource: ResourceId) "placed_after", "placed in the heap over `{resource}`", "";
     External "external", "owned outside of the graph", "";
-    Persistent "persistent", "not shared, its contents outlive the frame", "";
-    AliasingOff "aliasing_off", "not shared, sharing is switched off", "switch sharing on";
-    Forwarded(resource: ResourceId) "forwarded", "is `{resource}`, to which it was forwarded", "";
-    Unused "unused", "no kept pass touches it", "remove it, or the condition that culls its passes";
+    Persistent "persistent", "not shared because its contents outlive the frame", "";
+    AliasingOff "aliasing_off", "not shared because aliasing is disabled", "enable aliasing";
+    Forwarded(resource: ResourceId) "forwarded", "forwarded to `{resource}`", "";
+    Unused "unused", "no kept pass accesses it", "remove it, or the condition that culls its passes";
 }
 
 causes! {
-    /// Why two passes do not share a step.
+    /// Reason why two passes do not share a step.
     Refusal
-    Disabled "disabled", "merging is switched off, or the device has none",
-        "switch merging on, on a device that merges";
-    NotRaster "not_raster", "one of them is no raster pass", "";
+    Disabled "disabled", "merging is disabled or not supported by the device",
+        "enable merging on a device that supports it";
+    NotRaster "not_raster", "one of them is not a raster pass", "";
     ComputeBetween "compute_between", "a compute or copy pass runs between them",
-        "declare the compute or copy pass before or after both, where what it touches allows that";
-    Extent "extent", "their attachments differ in size", "give both the same shape";
-    Samples "samples", "their attachments differ in samples", "give both the same shape";
-    Layers "layers", "their attachments differ in layers", "give both the same shape";
-    /// They share none, or the later pass draws another one in the slot of one of them.
+        "declare the compute or copy pass before or after both if its accesses allow that";
+    Extent "extent", "their attachments differ in size", "give both the same size";
+    Samples "samples", "their attachments differ in sample count", "give both the same sample count";
+    Layers "layers", "their attachments differ in layer count", "give both the same layer count";
+    /// They share no attachment, or the later pass uses another one in the same slot.
     ColorsDiffer "colors_differ", "their color attachments differ",
-        "attach the same textures, or read at the same pixel where the device keeps that in the tile";
-    /// A shader's outputs have their slots compiled in.
-    SlotsDiffer "slots_differ", "the later one draws an attachment of the step in another slot, which the device cannot map",
-        "attach it in the same slot, with `color_at`";
-    DepthDiffers "depth_differs", "their depth attachments differ", "attach the same depth";
-    TooManyAttachments "too_many_attachments", "together they have too many color attachments",
+        "attach the same textures, or use same-pixel reads if the device keeps them in the tile";
+    /// Shader outputs have fixed slots.
+    SlotsDiffer "slots_differ", "the later one uses an attachment of the step in another slot, which the device cannot remap",
+        "attach it in the same slot with `color_at`";
+    DepthDiffers "depth_differs", "their depth attachments differ", "attach the same depth texture";
+    TooManyAttachments "too_many_attachments", "together they exceed the color attachment limit",
         "pack outputs into fewer or smaller attachments";
-    TileMemory "tile_memory", "together they need more tile memory than there is",
+    TileMemory "tile_memory", "together they exceed the tile memory",
         "pack outputs into fewer or smaller attachments";
-    SampledElsewhere "sampled_elsewhere", "the later one samples what the step writes",
-        "declare the read `same_pixel` if it reads only its own texel";
-    SamePixelUnsupported "same_pixel_unsupported", "the device cannot keep a same-pixel read in the tile",
-        "declare the pass point-wise if it is, so that it can be inlined";
-    ClearBetween "clear_between", "the later one clears or overwrites what the step wrote",
-        "use another texture for the later pass";
+    SampledElsewhere "sampled_elsewhere", "the later one samples a texture that the step writes",
+        "declare a `same_pixel` read if it reads only its own texel";
+    SamePixelUnsupported "same_pixel_unsupported", "the device cannot keep same-pixel reads in the tile",
+        "declare the pass as point-wise if it is, so that it can be inlined";
+    ClearBetween "clear_between", "the later one clears or overwrites a texture that the step wrote",
+        "use another texture in the later pass";
     ResolveBetween "resolve_between", "the step resolves an attachment that the later one changes",
         "resolve in the last pass that writes the attachment";
-    NeverMerge "never_merge", "one of them asks to stay alone", "remove `never_merge`";
-    StorageHazard "storage_hazard", "one of them writes storage that the other touches",
-        "use another buffer, or an attachment";
-    NeededAsTexture "needed_as_texture", "the intermediate is needed as a texture",
-        "let the point-wise pass be the only reader";
-    /// Its output is final only at the end of the pass.
-    Blends "blends", "the producer blends", "blend after the point-wise pass, or accept the full-screen pass";
-    NotPointwise "not_pointwise", "the consumer does more than read one texture at the same pixel and write one color",
-        "give it one same-pixel read and one color attachment, and put the rest into another pass";
-    DrawnElsewhere "drawn_elsewhere", "its input is not drawn in the step before it",
-        "declare it right behind the passes that draw its input";
-    NoEpilogue "no_epilogue", "the producer's shader takes no epilogue",
-        "declare `takes_epilogue` and assemble the shader from its parts";
-    TargetShape "target_shape", "the two targets differ in more than the format",
-        "give both one level, layer and sample and the same size, and see neither through another format";
-    BuildsOnContents "builds_on_contents", "one of them adds to what was there before",
+    NeverMerge "never_merge", "one of them is declared `never_merge`", "remove `never_merge`";
+    StorageHazard "storage_hazard", "one of them writes a storage resource that the other accesses",
+        "use another resource, or an attachment";
+    NeededAsTexture "needed_as_texture", "the intermediate texture has other uses",
+        "make the point-wise pass its only reader";
+    /// The output of blending is final only at the end of the pass.
+    Blends "blends", "the producer blends", "blend after the point-wise pass, or keep the full-screen pass";
+    NotPointwise "not_pointwise", "the consumer does not read exactly one texture at the same pixel and write exactly one color",
+        "reduce it to one same-pixel read and one color attachment, and move the rest to another pass";
+    DrawnElsewhere "drawn_elsewhere", "its input is not drawn in the preceding step",
+        "declare it directly after the passes that draw its input";
+    NoEpilogue "no_epilogue", "the producer's shader does not accept an epilogue",
+        "declare `takes_epilogue` and assemble the shader with the epilogue";
+    TargetShape "target_shape", "the two targets differ in more than their format",
+        "give both the same size and one level, layer and sample, and use views in their own formats";
+    BuildsOnContents "builds_on_contents", "one of them modifies previous contents",
         "clear or overwrite both targets";
-    /// In memory the same-pixel read costs no more than what a step with the later pass saves.
-    RoomForLater "room_for_later", "a later pass shares its step, and would not fit into that of the earlier ones",
-        "run the later pass first, or give it attachments that fit";
-    /// Graded samples have the average of the graded picture nearly; no other sample of it.
-    ResolveMode "resolve_mode", "its input is resolved otherwise than by the average, or not in the store",
-        "resolve by the average, or accept the full-screen pass";
-    /// An epilogue records nothing, so the side effect would be lost.
-    SideEffect "side_effect", "the consumer has a side effect", "move the side effect to a pass of its own";
+    /// Reading from memory costs no more than the step saved by merging with the later pass.
+    RoomForLater "room_for_later", "a later pass shares its step and would not fit into the earlier one",
+        "run the later pass first, or use attachments that fit";
+    /// A point-wise effect on the samples approximates the effect on their average, but not on other resolves.
+    ResolveMode "resolve_mode", "its input is not averaged while storing",
+        "resolve with the average, or keep the full-screen pass";
+    /// An epilogue records no commands, so the side effect would be lost.
+    SideEffect "side_effect", "the consumer has a side effect", "move the side effect to another pass";
 }
 
 causes! {
-    /// Why an attachment of one step takes memory all the same.
+    /// Reason why an attachment of a single step needs memory.
     MemoryNeed
-    /// Or memoryless attachments are switched off.
-    Unsupported "unsupported", "the device has no memoryless attachments",
-        "ask a device that has them, or switch them on";
-    /// It is written to memory at the end of its step.
+    /// Also used if memoryless attachments are disabled.
+    Unsupported "unsupported", "the device does not support memoryless attachments",
+        "use a device that supports them, or enable them";
+    /// The target is written to memory at the end of its step.
     ResolveTarget "resolve_target", "it is a resolve target",
-        "let its only reader be point-wise, so that it can be inlined";
-    /// In the same step: another layer of it is written as storage, say.
-    OtherUse "other_use", "it is used as something other than an attachment", "use it as an attachment only";
-    /// Several layers are no obstacle where the device has memoryless layers.
-    SeveralParts "several_parts", "it has several levels or layers", "split it into textures of one level and layer";
+        "make its only reader point-wise, so that it can be inlined";
+    /// For example, another layer of it is written as storage in the same step.
+    OtherUse "other_use", "it is not only used as an attachment", "use it only as an attachment";
+    /// Several layers are allowed if the device supports memoryless layers.
+    SeveralParts "several_parts", "it has several levels or layers", "split it into textures with one level and layer";
     LoadedOrStored "loaded_or_stored", "its contents are loaded or stored",
-        "clear or overwrite it, and let no pass read it after the step";
+        "clear or overwrite it, and do not read it after the step";
 }
 
 impl Reason {
-    /// Its word in JSON.
+    /// Name of the reason in JSON.
     pub const fn word(self) -> &'static str {
         self.row().word
     }
 
-    /// What to change to have it otherwise, whatever the graph; empty where there is nothing to want.
-    /// [`Plan::hint`](crate::Plan::hint) knows the plan.
+    /// Returns how to avoid this decision, independent of the graph; empty if there is no alternative.
+    /// [`Plan::hint`](crate::Plan::hint) also takes the plan into account.
     pub const fn hint(self) -> &'static str {
         let Row { hint, names, .. } = self.row();
         match names {
@@ -252,12 +252,12 @@ impl Reason {
         }
     }
 
-    /// The passes, resources, steps and causes that it holds.
+    /// The passes, resources, steps and causes of the reason.
     pub(crate) const fn names(self) -> Names {
         self.row().names
     }
 
-    /// What was decided and why, with names.
+    /// Returns decision and reason as a sentence with names.
     pub fn sentence(self, graph: &Graph) -> String {
         let Row { sentence, names: Names { pass, resource, refusal, need, .. }, .. } = self.row();
         let mut out = String::new();
@@ -265,8 +265,8 @@ impl Reason {
             let (text, name) = piece.split_once('{').unwrap_or((piece, ""));
             out += text;
             out += match name {
-                "pass}" => plain(pass.map_or("", |p| graph.pass_name(p))),
-                "resource}" => plain(resource.map_or("", |r| graph.resource_name(r))),
+                "pass}" => escape_controls(pass.map_or("", |p| graph.pass_name(p))),
+                "resource}" => escape_controls(resource.map_or("", |r| graph.resource_name(r))),
                 "why}" => refusal.map(Refusal::sentence).or(need.map(MemoryNeed::sentence)).unwrap_or_default().into(),
                 _ => "".into(),
             }
@@ -296,7 +296,7 @@ mod tests {
                 word.extend((c.is_uppercase() && !word.is_empty()).then_some('_'));
                 word + &c.to_lowercase().to_string()
             });
-            assert_eq!(reason.word(), word, "a tool that read the name in snake case reads it still");
+            assert_eq!(reason.word(), word, "the word is the variant's name in snake case");
         }
         assert!(Reason::all(Names::default()).iter().all(|r| r.names().pass.is_none()));
     }

@@ -1,11 +1,11 @@
-//! Forwarding: what some passes have written becomes another texture, after the fact.
+//! Forwarding: replaces a texture by another one after passes have written it.
 //!
-//! Filament's `forwardResource`. A pass draws into a texture of its own, and whoever composes the frame decides later that
-//! this is the swapchain's image, or level 0 of a chain. Accesses are rewritten where they stand, so nothing that compiles
-//! or executes a graph knows of it.
+//! Corresponds to Filament's `forwardResource`. A pass draws into its own texture; later the application replaces that
+//! texture by the swapchain image, or by a level of a mip chain. The declared accesses are rewritten in place, so the
+//! compiler and the back end need no support for it.
 
 use crate::access::{Access, Kinds, Range};
-use crate::error::{DeclareError, DeclareReason, ForwardFault, StaleUser};
+use crate::error::{DeclareError, DeclareReason, ForwardReason, StaleUser};
 use crate::graph::{Graph, Tables};
 use crate::handle::{Part, Texture};
 use crate::id::{ResourceId, VersionId};
@@ -13,8 +13,8 @@ use crate::resource::{Dimension, Kind, TextureDesc, halved};
 use std::panic::Location;
 
 impl Graph {
-    /// Lets `into` be the texture that the passes wrote which wrote `texture`: they write and read `into` in its place, in
-    /// its size and format. Returns the handle of what they left there; `texture` itself is gone.
+    /// Replaces `texture` by `into` in all passes declared so far. The passes then use the size and format of `into`.
+    /// Returns the newest version of `into`; `texture` no longer exists.
     ///
     /// ```
     /// use framegraph::{ClearValue, DeclareError, Entry, Exit, Extent, Format, Graph, Intent, TextureDesc};
@@ -33,15 +33,22 @@ impl Graph {
     /// ```
     ///
     /// # Errors
-    /// Stale and foreign handles; a `texture` that is not transient, not written, exported, or of several levels or layers
-    /// (unless `into` has as many, and all of them are meant); an `into` that is no single level and layer, that has several
-    /// slices in the place of one, whose format cannot be used as `texture` was, that was declared after the first pass that
-    /// wrote `texture`, or that passes have touched meanwhile. Passes that read `into` after all that touched `texture`, while
-    /// nobody has written it, read what is forwarded.
+    /// Returns an error if
+    ///
+    /// - a handle is stale or belongs to another graph,
+    /// - `texture` is not transient, not written or exported,
+    /// - `texture` has several levels or layers, unless `into` is a whole texture of the same shape,
+    /// - `into` covers several levels, layers or slices while `texture` has one,
+    /// - the format of `into` does not support an access of `texture`,
+    /// - `into` was declared after the first pass that wrote `texture`, or
+    /// - another pass accessed `into` after the first access of `texture`.
+    ///
+    /// One exception to the last rule: passes may read `into` after the last access of `texture` if no pass has written
+    /// `into`. They then read the forwarded contents.
     #[track_caller]
     pub fn forward(&mut self, texture: Texture, into: impl Into<Part>) -> Result<Texture, DeclareError> {
         let (into, location) = (into.into(), Location::caller());
-        let (tables, _) = self.open();
+        let (tables, _) = self.tables_mut();
         let refused = |tables: &Tables, reason, resource| DeclareError {
             reason,
             pass: None,
@@ -70,62 +77,62 @@ impl Graph {
     }
 }
 
-/// Where the accesses of a forwarded texture go.
+/// Result of the checks: how to rewrite the accesses of a forwarded texture.
 struct Move {
-    /// The range that replaces theirs; none where they keep their own.
+    /// The range that replaces that of each access; `None` to keep the ranges.
     range: Option<Range>,
-    /// Passes read the target behind those that touched the texture, and none before.
+    /// Passes read the target after the last access of the texture, and none before the first.
     read_behind: bool,
 }
 
 impl Tables {
-    /// Where accesses go, if nothing stands against it.
-    fn forwarded(&self, from: ResourceId, to: ResourceId, range: Range) -> Result<Move, ForwardFault> {
+    /// Checks a forward and returns how to rewrite the accesses.
+    fn forwarded(&self, from: ResourceId, to: ResourceId, range: Range) -> Result<Move, ForwardReason> {
         let row = &self.resources[from.index()];
         let (Some(own), Some(target)) = (row.desc.texture(), self.resources[to.index()].desc.texture()) else {
-            return Err(ForwardFault::NotTransient);
+            return Err(ForwardReason::NotTransient);
         };
         let written = self.versions[row.current.index()].writer.some().is_some();
         if from == to || row.kind != Kind::Transient || self.exports.iter().any(|e| e.resource == from) {
-            return Err(ForwardFault::NotTransient);
+            return Err(ForwardReason::NotTransient);
         }
         if !written {
-            return Err(ForwardFault::Unwritten);
+            return Err(ForwardReason::Unwritten);
         }
         let range = place(own, target, range)?;
         let of = |resource| move |(_, a): &(usize, &Access)| a.resource == resource;
-        let touches = |resource| self.accesses.iter().enumerate().filter(of(resource)).map(|(index, _)| index);
-        let (first, last) = (touches(from).next().unwrap_or_default(), touches(from).next_back().unwrap_or_default());
+        let uses = |resource| self.accesses.iter().enumerate().filter(of(resource)).map(|(index, _)| index);
+        let (first, last) = (uses(from).next().unwrap_or_default(), uses(from).next_back().unwrap_or_default());
         let declared = self.resources[to.index()].current;
-        let newer = touches(from).any(|index| self.accesses[index].version < declared);
+        let newer = uses(from).any(|index| self.accesses[index].version < declared);
         if newer {
-            return Err(ForwardFault::TargetLater);
+            return Err(ForwardReason::TargetLater);
         }
         let of_pass = |index: usize| self.passes.partition_point(|p| (p.accesses.start as usize) <= index) - 1;
-        let before = touches(to).all(|index| of_pass(index) < of_pass(first));
+        let before = uses(to).all(|index| of_pass(index) < of_pass(first));
         let unwritten = self.versions[declared.index()].writer.is_none();
         let open = unwritten && !self.resources[to.index()].kind.defined_on_entry();
-        let behind = open && touches(to).all(|index| of_pass(index) > of_pass(last));
+        let behind = open && uses(to).all(|index| of_pass(index) > of_pass(last));
         if !before && !behind {
-            return Err(ForwardFault::Touched);
+            return Err(ForwardReason::Interleaved);
         }
-        for index in touches(from) {
+        for index in uses(from) {
             let access = &self.accesses[index];
             let seen = access.range.view.unwrap_or(target.format);
             let fits = seen.without_srgb() == target.format.without_srgb();
             let capable = Kinds::of_format(target.format).has(Kinds::one(access.kind));
             if !fits || !capable {
-                return Err(ForwardFault::Format { format: target.format, access: access.kind });
+                return Err(ForwardReason::Format { format: target.format, access: access.kind });
             }
         }
         Ok(Move { range, read_behind: !before })
     }
 
-    /// Rewrites what the passes that touched `from` do, onto `to`.
+    /// Rewrites the accesses of `from` to access `to`.
     fn move_accesses(&mut self, from: ResourceId, to: ResourceId, Move { range, read_behind }: Move) {
         let (newest, target) = (self.resources[from.index()].current, self.resources[to.index()].current);
         let desc = self.resources[to.index()].desc;
-        // The contents on entry of the forwarded texture are those of the target.
+        // The initial contents of the forwarded texture become those of the target.
         let entry = |v: VersionId, versions: &[crate::graph::Version]| versions[v.index()].writer.is_none();
         for access in &mut self.accesses {
             if access.resource == to && read_behind {
@@ -154,11 +161,11 @@ impl Tables {
                 }
             }
         }
-        self.versions[target.index()].open = Kinds::NONE;
-        self.versions[newest.index()].open =
+        self.versions[target.index()].allowed = Kinds::NONE;
+        self.versions[newest.index()].allowed =
             Kinds::on_entry(&desc, self.resources[to.index()].kind).union(Kinds::DEFINED);
         self.resources[to.index()].current = newest;
-        // Every handle of what is gone is stale.
+        // Every handle of the forwarded texture is stale now.
         self.resources[from.index()].current = VersionId::NONE;
         self.forwards.push((from, to));
         self.contents_uncertain = true;
@@ -170,14 +177,14 @@ impl Tables {
         }
     }
 
-    /// The texture that a resource was forwarded to, if it was.
+    /// Returns the texture that a resource was forwarded to, if any.
     pub fn forward_of(&self, resource: ResourceId) -> Option<ResourceId> {
         self.forwards.iter().find(|(from, _)| *from == resource).map(|(_, to)| *to)
     }
 }
 
-/// The range that replaces that of accesses to a texture of shape `own`; none where they keep theirs.
-fn place(own: &TextureDesc, target: &TextureDesc, range: Range) -> Result<Option<Range>, ForwardFault> {
+/// Returns the range for accesses to a texture of shape `own`; `None` to keep their ranges.
+fn place(own: &TextureDesc, target: &TextureDesc, range: Range) -> Result<Option<Range>, ForwardReason> {
     let shape = |t: &TextureDesc| (t.mips, t.layers, t.dimension);
     if range.canonical(target).is_all() && shape(own) == shape(target) {
         return Ok(None);
@@ -186,7 +193,7 @@ fn place(own: &TextureDesc, target: &TextureDesc, range: Range) -> Result<Option
     let one = mips.len() == 1 && layers.len() == 1 && range.view.is_none();
     let inside = mips.end <= u32::from(target.mips) && layers.end <= target.tracked_layers();
     if target.dimension == Dimension::D3 && halved(target.layers.into(), range.mip.into()) != u32::from(own.layers) {
-        return Err(ForwardFault::Slices);
+        return Err(ForwardReason::Slices);
     }
     let flat = own.mips == 1 && own.layers == 1 && own.dimension == target.dimension;
     let all_levels = target.mips == TextureDesc::ALL_MIPS && range.mips == 1;
@@ -194,5 +201,5 @@ fn place(own: &TextureDesc, target: &TextureDesc, range: Range) -> Result<Option
         let (mip, layer) = (range.mip, range.layer);
         return Ok(Some(Range { mip, mips: 1, layer, layers: 1, ..Range::ALL }));
     }
-    Err(ForwardFault::Parts)
+    Err(ForwardReason::Parts)
 }

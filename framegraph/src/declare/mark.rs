@@ -1,11 +1,11 @@
-//! Taking versions back: of a refused pass, or of passes that are cut off.
+//! Rollback of declarations, for rejected passes and truncated graphs.
 
 use crate::access::{Kinds, Mode};
 use crate::graph::Tables;
 use crate::id::Span;
 
 impl Tables {
-    /// Takes back a pass of that name that was not closed, whose accesses and versions began there.
+    /// Removes the pass named `name`, which was not finished. Its accesses and versions begin at the given indices.
     #[cold]
     #[inline(never)]
     pub(crate) fn take_pass_back(&mut self, name: Span, accesses: usize, versions: usize) {
@@ -18,7 +18,7 @@ impl Tables {
         self.names.truncate(name.start as usize);
     }
 
-    /// Removes the accesses from `first` on, with the bytes that they name.
+    /// Removes the accesses from `first` on, and their byte ranges.
     pub(crate) fn drop_accesses(&mut self, first: usize) {
         if let Some(bytes) = self.accesses[first..].iter().find_map(|a| a.range.bytes.some()) {
             self.byte_ranges.truncate(bytes.index());
@@ -26,8 +26,8 @@ impl Tables {
         self.accesses.truncate(first);
     }
 
-    /// Removes the versions from `first` on, with the resources that came with one of them; versions that they replaced are
-    /// the newest again.
+    /// Removes the versions from `first` on, and resources created with one of them. The replaced versions become
+    /// current again.
     pub(crate) fn take_versions_back(&mut self, first: usize) {
         while self.versions.len() > first {
             let Some(version) = self.versions.pop() else { return };
@@ -38,7 +38,7 @@ impl Tables {
             let resource = &mut self.resources[version.resource.index()];
             resource.current = version.previous;
             let defined = row.writer.some().is_some() || resource.kind.defined_on_entry();
-            row.open = if defined { version.open } else { version.open.without(Kinds::DEFINED) };
+            row.allowed = if defined { version.allowed } else { version.allowed.without(Kinds::DEFINED) };
         }
     }
 }

@@ -1,13 +1,15 @@
-//! The plan as a Graphviz graph: steps as boxes of passes, resources as ellipses, reads and writes as arrows.
+//! Plans as Graphviz graphs: steps as clusters of passes, resources as ellipses, reads and writes as edges.
 
-use super::words::{place, shape, written};
+use super::describe::{place, shape, written};
 use crate::id::{PassId, ResourceId};
-use crate::plain::plain;
 use crate::plan::{Join, Placement, Plan};
+use crate::sanitize::escape_controls;
 use std::fmt::Write;
 
-/// The plan in the DOT language. Culled passes are dashed; an arrow into a pass is a read, out of it a write; writes of
-/// attachments carry their load and store ops.
+/// Returns the plan in the DOT language.
+///
+/// Culled passes are dashed. An edge into a pass is a read, an edge out of it a write. Edges to attachments show load
+/// and store operations.
 pub fn dot(plan: &Plan) -> String {
     written(|out| write(plan, out))
 }
@@ -87,5 +89,5 @@ fn write_arrows(plan: &Plan, pass: PassId, out: &mut String) -> std::fmt::Result
 }
 
 fn escaped(name: &str) -> String {
-    plain(name).replace('\\', "\\\\").replace('"', "\\\"")
+    escape_controls(name).replace('\\', "\\\\").replace('"', "\\\"")
 }

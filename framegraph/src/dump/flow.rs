@@ -1,26 +1,26 @@
-//! What flows from pass to pass: the arrows worth drawing.
+//! Data flow between passes.
 
 use crate::access::Access;
 use crate::format::Aspect;
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId};
 
-/// One pass needs what another wrote.
+/// A data dependency between two passes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Flow {
     /// The writer, declared before the reader.
     pub from: PassId,
     /// The reader.
     pub to: PassId,
-    /// The resources whose contents flow, in the order of their ids.
+    /// The resources whose contents the reader uses, ordered by id.
     pub resources: Vec<ResourceId>,
 }
 
-/// Which pass needs what another wrote, sorted by writer, then reader. Followed by level, layer and plane. Acyclic, since a
-/// graph is declared in order.
+/// Returns the data dependencies between passes, sorted by writer, then reader. Subresources are tracked separately.
+/// The result is acyclic, because passes are declared in order.
 pub fn data_flow(graph: &Graph) -> Vec<Flow> {
     let mut flows: Vec<Flow> = Vec::new();
-    // By resource: the writes of which something is left, as pass and access.
+    // By resource: writes that are at least partly visible, as pass and access.
     let mut visible: Vec<Vec<(PassId, &Access)>> = vec![Vec::new(); graph.resources().len()];
     for to in graph.pass_ids() {
         let first = flows.len();
@@ -48,8 +48,8 @@ pub fn data_flow(graph: &Graph) -> Vec<Flow> {
     flows
 }
 
-/// Whether nothing of the earlier write is left after the later one. A modifying write passes on what it found, so that
-/// its reader depends on the earlier writer through it.
+/// Returns `true` if nothing of the earlier write is visible after the later one. A reader after a modifying write
+/// depends on the earlier writer through it.
 fn covers(graph: &Graph, later: &Access, earlier: &Access) -> bool {
     let (l, e) = (&later.range, &earlier.range);
     if let Some(l) = graph.bytes_of(later) {
@@ -62,13 +62,13 @@ fn covers(graph: &Graph, later: &Access, earlier: &Access) -> bool {
         && (l.aspect == Aspect::All || l.aspect == e.aspect)
 }
 
-/// The flows of a graph of so many passes that no longer way implies (transitive reduction; Aho, Garey and Ullman 1972).
-/// Time and memory grow with the square of the number of passes.
+/// Returns the flows that are not implied by others (transitive reduction; Aho, Garey and Ullman 1972). `passes` is the
+/// number of passes. Time and memory are quadratic in it.
 pub fn reduced(flows: &[Flow], passes: usize) -> Vec<Flow> {
     let words = passes.div_ceil(64);
     let mut reached = vec![0u64; passes * words];
     let mut kept = Vec::new();
-    // All that a writer's readers reach is known before the writer is looked at; its nearest reader can imply the others.
+    // Writers are processed in reverse, so that everything reachable from their readers is known.
     for of_writer in flows.chunk_by(|a, b| a.from == b.from).rev() {
         for flow in of_writer {
             let (from, to) = (flow.from.index() * words, flow.to.index());

@@ -1,4 +1,4 @@
-//! The graph as `petgraph` graphs, for the algorithms of that crate: reachability, dominators, layouts.
+//! Graphs as `petgraph` graphs, for algorithms such as reachability, dominators and layouts.
 
 use super::flow::Flow;
 use crate::graph::Graph;
@@ -14,8 +14,10 @@ pub enum Node {
     Resource(ResourceId),
 }
 
-/// Passes and resources as nodes, accesses as edges: from a resource to the pass that needs its contents, from a pass to
-/// the resource that it writes. A modifying access makes both edges. The first nodes are the passes, in order.
+/// Returns a graph with passes and resources as nodes and accesses as edges.
+///
+/// Reads are edges from a resource to a pass, writes from a pass to a resource; a modifying access has both. The first
+/// nodes are the passes, in order.
 pub fn bipartite(graph: &Graph) -> DiGraph<Node, AccessId> {
     let nodes = graph.passes().len() + graph.resources().len();
     let mut out = DiGraph::with_capacity(nodes, graph.accesses().len());
@@ -36,8 +38,8 @@ pub fn bipartite(graph: &Graph) -> DiGraph<Node, AccessId> {
     out
 }
 
-/// Passes as nodes, in order, and an edge for each flow: those of [`data_flow`](super::data_flow), or of
-/// [`reduced`](super::reduced).
+/// Returns a graph with passes as nodes, in order, and an edge for each flow. `flows` comes from
+/// [`data_flow`](super::data_flow) or [`reduced`](super::reduced).
 pub fn flows(graph: &Graph, flows: &[Flow]) -> DiGraph<PassId, Vec<ResourceId>> {
     let mut out = DiGraph::with_capacity(graph.passes().len(), flows.len());
     graph.pass_ids().for_each(|p| _ = out.add_node(p));

@@ -1,8 +1,7 @@
-//! The plan as JSON, for tools outside of this crate. `docs/plan-json.md` documents the fields, `docs/plan.schema.json`
-//! is their schema (JSON Schema, draft 2020-12); a test holds them against what is written.
+//! Plans as JSON, for external tools. `docs/plan-json.md` documents the fields, and `docs/plan.schema.json` is their
+//! JSON schema (draft 2020-12). A test checks the output against both.
 //!
-//! Names stand in the place of ids: the plan's own arrays are free to change, the fields are not, short of a new
-//! [`JSON_VERSION`].
+//! The JSON form uses names instead of ids and is stable: fields change their meaning only with a new [`JSON_VERSION`].
 
 mod names;
 mod resources;
@@ -13,23 +12,23 @@ pub(crate) use value::{Json, field, object};
 
 use names::Names;
 
+use super::describe;
 use super::flow::{Flow, data_flow};
 use super::reasons::Reasons;
-use super::words;
 use crate::barrier::{Barrier, Stages};
 use crate::decision::{self, Decision, MemoryNeed, Refusal, Subject};
 use crate::id::{PassId, ResourceId, StepId};
 use crate::plan::Plan;
 use crate::warning::Warning;
 
-/// The version of the format; it counts up whenever a field changes its meaning or goes.
+/// Version of the format. Increases when a field changes its meaning or is removed.
 pub const JSON_VERSION: u32 = 1;
 
-/// The plan as JSON text, indented, ending in a line feed; `name` is what the frame is called.
+/// Returns the plan as indented JSON text, ending in a line feed; `name` is the name of the frame.
 pub fn json(plan: &Plan, name: &str) -> String {
     let graph = plan.graph();
     let (reasons, names) = (Reasons::new(plan), Names::new(graph));
-    // The totals are numbers, but for one truth value.
+    // All totals are numbers, except `optimal`, which is a boolean.
     let total = |(name, value): (&'static str, u64)| match name {
         "optimal" => field(name, value != 0),
         _ => field(name, value),
@@ -58,7 +57,7 @@ pub fn json(plan: &Plan, name: &str) -> String {
     document.text()
 }
 
-/// Counts and bytes of a whole plan, by the names that they have in the JSON form; a truth value as 0 or 1.
+/// Returns counts and bytes of the whole plan with their JSON names; a boolean as 0 or 1.
 pub fn totals(plan: &Plan) -> [(&'static str, u64); 21] {
     let (counts, memory) = (plan.counts(), plan.memory());
     let traffic = plan.traffic(plan.frame());
@@ -87,10 +86,10 @@ pub fn totals(plan: &Plan) -> [(&'static str, u64); 21] {
     ]
 }
 
-/// The step at which the most bytes are live, with what is live then; none where no memory is shared.
+/// Returns the step with the most live bytes and the live resources; `None` if no memory is shared.
 fn peak(plan: &Plan, names: &Names) -> Option<Json> {
     let step = plan.memory().peak.some()?;
-    let live = |r: &ResourceId| words::held(plan, *r).is_some_and(|(first, last)| first <= step && step <= last);
+    let live = |r: &ResourceId| describe::held(plan, *r).is_some_and(|(first, last)| first <= step && step <= last);
     let live = plan.graph().resource_ids().filter(live);
     Some(object([
         field("step", step.index()),
@@ -99,7 +98,7 @@ fn peak(plan: &Plan, names: &Names) -> Option<Json> {
     ]))
 }
 
-/// What one pass needs of another.
+/// Returns a data dependency.
 fn flow(names: &Names, flow: &Flow) -> Json {
     object([
         field("from", names.pass(flow.from)),
@@ -116,7 +115,7 @@ fn note((about, sentence): (&str, &str)) -> Json {
     object([field("about", about), field("sentence", sentence)])
 }
 
-/// A transition or a hand-over of memory in front of a step.
+/// Returns a layout transition or an aliasing barrier.
 fn barrier(names: &Names, barrier: &Barrier) -> Json {
     let name = |r| names.resource(r);
     let stages = |s: Stages| Json::list(s.names());
@@ -130,7 +129,7 @@ fn barrier(names: &Names, barrier: &Barrier) -> Json {
         field("from_stages", stages(barrier.from_stages)),
         field("to_stages", stages(barrier.to_stages)),
         field("after_step", barrier.after.some().map(StepId::index)),
-        field("hand_over", barrier.hand_over.some().map(name)),
+        field("hand_over", barrier.aliases.some().map(name)),
     ])
 }
 

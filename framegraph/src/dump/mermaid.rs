@@ -1,16 +1,18 @@
-//! The plan as a Mermaid flow chart: what shows in a browser, a forge or a notebook without another program.
+//! Plans as Mermaid flow charts, which browsers, forges and notebooks can render.
 
+use super::describe::{bytes, is_shared, joined, written};
 use super::flow::{Flow, data_flow, reduced};
-use super::words::{bytes, is_shared, joined, written};
-use crate::plain::plain;
 use crate::plan::{Join, Placement, Plan};
+use crate::sanitize::escape_controls;
 use std::fmt::Write;
 
-/// Above so many passes, arrows that others imply are drawn all the same: finding them takes the square of the passes.
-const MOST_REDUCED: usize = 2000;
+/// Maximum number of passes for the transitive reduction of arrows, which is quadratic.
+const MAX_REDUCED: usize = 2000;
 
-/// The plan as a Mermaid flow chart: steps as boxes of passes, arrows where contents flow, with the names of the
-/// resources; arrows that a longer way implies are left out. Culled passes stand aside, dashed.
+/// Returns the plan as a Mermaid flow chart.
+///
+/// Steps are boxes of passes. Arrows show data dependencies, labeled with resources; implied arrows are omitted. Culled
+/// passes are dashed.
 pub fn mermaid(plan: &Plan) -> String {
     written(|out| write(plan, out))
 }
@@ -42,7 +44,7 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
         writeln!(out, "  p{}[\"{name}<br/>culled\"]:::culled", pass.index())?;
     }
     let (flows, passes) = (data_flow(graph), graph.passes().len());
-    let flows = if passes <= MOST_REDUCED { reduced(&flows, passes) } else { flows };
+    let flows = if passes <= MAX_REDUCED { reduced(&flows, passes) } else { flows };
     for Flow { from, to, resources } in flows {
         let label = |r: &crate::id::ResourceId| {
             let row = &plan.resources()[r.index()];
@@ -62,10 +64,10 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
     writeln!(out, "  classDef culled fill:#eee,stroke:#999,stroke-dasharray:4,color:#666")
 }
 
-/// A name inside of quotes: signs that Mermaid reads are written as entity codes.
+/// Escapes a name inside of quotes: special characters become entity codes.
 fn escaped(name: &str) -> String {
     let mut out = String::with_capacity(name.len());
-    for c in plain(name).chars() {
+    for c in escape_controls(name).chars() {
         match c {
             '"' | '#' | '%' | '<' | '>' | '&' | '`' | '|' | ';' => {
                 let _ = write!(out, "#{};", u32::from(c));
@@ -73,6 +75,6 @@ fn escaped(name: &str) -> String {
             c => out.push(c),
         }
     }
-    // Mermaid reads no empty text.
+    // Mermaid does not accept empty labels.
     if out.trim().is_empty() { "(no name)".into() } else { out }
 }

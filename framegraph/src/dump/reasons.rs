@@ -1,9 +1,9 @@
-//! The decision log by subject: what forms that ask about every subject look it up in.
+//! The decision log indexed by subject.
 
 use crate::decision::{Decision, Reason, Subject};
 use crate::plan::Plan;
 
-/// The log of a plan, sorted by subject; the decisions of one subject keep their order.
+/// The log of a plan, sorted by subject. Decisions about one subject keep their order.
 #[derive(Debug)]
 pub(crate) struct Reasons {
     rows: Vec<(Key, Reason)>,
@@ -28,7 +28,7 @@ impl Reasons {
         Self { rows }
     }
 
-    /// The reasons of one subject, in the order of the log.
+    /// The reasons for one subject, in the order of the log.
     pub(crate) fn of(&self, subject: Subject) -> impl Iterator<Item = Reason> + '_ {
         let key = key(subject);
         let first = self.rows.partition_point(|(k, _)| *k < key);
@@ -36,7 +36,7 @@ impl Reasons {
         rows.take_while(move |(k, _)| *k == key).map(|(_, r)| *r)
     }
 
-    /// The sentence of the first reason of a subject; empty when there is none.
+    /// Returns the sentence of the first reason for a subject; empty if there is none.
     pub(crate) fn sentence(&self, plan: &Plan, subject: Subject) -> String {
         let reason = self.of(subject).next();
         reason.map(|r| r.sentence(plan.graph())).unwrap_or_default()

@@ -1,17 +1,17 @@
-//! The plan as a picture: a matrix of resources and steps with their loads and stores, a map of the memory they share,
-//! and what was culled. One file without links, scripts or fonts of its own, dark on light.
+//! Plans as SVG images: a matrix of resources and steps with loads and stores, a map of the shared memory, and the
+//! culled passes. The file is self-contained, without scripts or fonts.
 
 mod canvas;
 mod culled;
 mod matrix;
 mod memory;
 
+use super::describe::bytes;
 use super::reasons::Reasons;
-use super::words::bytes;
 use crate::plan::Plan;
 use canvas::{Canvas, Ink, MARGIN};
 
-/// The plan as an SVG document.
+/// Returns the plan as an SVG document.
 pub fn svg(plan: &Plan) -> String {
     let mut canvas = Canvas::new();
     let reasons = Reasons::new(plan);
@@ -23,7 +23,7 @@ pub fn svg(plan: &Plan) -> String {
     canvas.finish(MARGIN)
 }
 
-/// Name of the device, counts and bytes. Returns where it ends.
+/// Draws the name of the device, counts and bytes. Returns the lower end.
 fn title(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
     let [w, h] = plan.frame();
     let (counts, memory) = (plan.counts(), plan.memory());

@@ -1,17 +1,17 @@
-//! The plan as text: the golden format of tests and the file that `render --plan` writes.
+//! Plans as text, for golden tests and for `render --plan`.
 
-use super::words::{bytes, joined, part, place, role_words, shape, uses, written};
+use super::describe::{bytes, joined, part, place, role_words, shape, uses, written};
 use crate::barrier::{Barrier, Stages};
 use crate::format::Aspect;
 use crate::id::{ResourceId, StepId};
-use crate::plain::plain;
 use crate::plan::{Attachment, Join, Placement, Plan};
+use crate::sanitize::escape_controls;
 use std::fmt::Write;
 
-/// The version of the format, in the first line.
-pub const TEXT_VERSION: u32 = 1;
+/// Version of the format, printed in the first line.
+pub const TEXT_VERSION: u32 = 2;
 
-/// The whole plan: totals, steps with their attachments, resources, barriers, and every decision.
+/// Returns the plan as text: totals, steps with their attachments, resources, barriers and all decisions.
 pub fn text(plan: &Plan) -> String {
     written(|out| write(plan, out))
 }
@@ -21,10 +21,10 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
     let counts = plan.counts();
     let traffic = plan.traffic(plan.frame());
     let memory = plan.memory();
-    writeln!(out, "plan {TEXT_VERSION} for {} at {w}x{h}", plain(&plan.caps().name))?;
+    writeln!(out, "plan {TEXT_VERSION} for {} at {w}x{h}", escape_controls(&plan.caps().name))?;
     writeln!(
         out,
-        "counts: {} unresolves, {} resolves, {} clears, {} discards, {} multisample resolves, {} memoryless, {} inlined, \
+        "counts: {} loads, {} stores, {} clears, {} discards, {} multisample resolves, {} memoryless, {} inlined, \
          {} steps, {} passes, {} culled",
         counts.unresolves,
         counts.resolves,
@@ -63,7 +63,7 @@ fn write(plan: &Plan, out: &mut String) -> std::fmt::Result {
     }
     writeln!(out, "\ndecisions:")?;
     for (about, note) in plan.graph().notes() {
-        writeln!(out, "  effect `{}`: {}", plain(about), plain(note))?;
+        writeln!(out, "  effect `{}`: {}", escape_controls(about), escape_controls(note))?;
     }
     for decision in plan.decisions() {
         writeln!(out, "  {}", plan.explained(decision))?;
@@ -88,9 +88,9 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
             "" => String::new(),
             how => format!(" ({how})"),
         };
-        writeln!(out, "    pass {}{how}", plain(graph.pass_name(member.pass)))?;
+        writeln!(out, "    pass {}{how}", escape_controls(graph.pass_name(member.pass)))?;
         for (samples, _) in plan.full_screen_resolves(step) {
-            writeln!(out, "      read sampled {}", plain(graph.resource_name(samples.resource)))?;
+            writeln!(out, "      read sampled {}", escape_controls(graph.resource_name(samples.resource)))?;
         }
         let drawn = member.join != Join::Resolve;
         for access in graph.accesses_of(member.pass).iter().filter(|a| drawn && !a.kind.is_attachment()) {
@@ -99,7 +99,7 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
                 "      {} {} {}{}",
                 access.mode.word(),
                 access.kind.word(),
-                plain(graph.resource_name(access.resource)),
+                escape_controls(graph.resource_name(access.resource)),
                 part(&access.range, graph.bytes_of(access)),
             )?;
         }
@@ -110,12 +110,12 @@ fn write_step(plan: &Plan, step: StepId, out: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-/// A barrier: where it stands, parts, states, stages, and whose memory is taken over.
+/// Writes a barrier: step, subresources, states, stages, and the previous resource in the same memory.
 fn write_barrier(plan: &Plan, barrier: &Barrier, out: &mut String) -> std::fmt::Result {
-    let Barrier { before, resource, first_part, parts, from, to, from_stages, to_stages, after, hand_over } = *barrier;
+    let Barrier { before, resource, first_part, parts, from, to, from_stages, to_stages, after, aliases } = *barrier;
     let graph = plan.graph();
     let stages = |s: Stages| s.names().collect::<Vec<_>>().join("+");
-    write!(out, "  before step {}: {}", before.index(), plain(graph.resource_name(resource)))?;
+    write!(out, "  before step {}: {}", before.index(), escape_controls(graph.resource_name(resource)))?;
     if parts != graph.resources()[resource.index()].desc.subresources(plan.frame()) {
         write!(out, " parts {first_part}..{}", first_part + parts)?;
     }
@@ -123,16 +123,16 @@ fn write_barrier(plan: &Plan, barrier: &Barrier, out: &mut String) -> std::fmt::
     if let Some(after) = after.some() {
         write!(out, " after step {}", after.index())?;
     }
-    if let Some(tenant) = hand_over.some() {
-        write!(out, ", takes over from {}", plain(graph.resource_name(tenant)))?;
+    if let Some(tenant) = aliases.some() {
+        write!(out, ", aliases {}", escape_controls(graph.resource_name(tenant)))?;
     }
     writeln!(out)
 }
 
-/// One attachment: role, name, part, ops.
+/// Returns one attachment: role, name, range and operations.
 fn attachment_line(plan: &Plan, attachment: &Attachment) -> String {
     let graph = plan.graph();
-    let name = plain(graph.resource_name(attachment.resource));
+    let name = escape_controls(graph.resource_name(attachment.resource));
     let mut line = format!("{}: {name}", role_words(attachment.role));
     if let Some(texture) = graph.resources()[attachment.resource.index()].desc.texture() {
         if texture.mip_count(plan.frame()) > 1 {
@@ -156,7 +156,7 @@ fn write_resource(plan: &Plan, resource: ResourceId, out: &mut String) -> std::f
     let graph = plan.graph();
     let declared = &graph.resources()[resource.index()];
     let row = &plan.resources()[resource.index()];
-    write!(out, "  {}: {}", plain(graph.resource_name(resource)), shape(plan, &declared.desc, row.format))?;
+    write!(out, "  {}: {}", escape_controls(graph.resource_name(resource)), shape(plan, &declared.desc, row.format))?;
     if row.first.is_none() {
         return writeln!(out, ", {}", if row.placement == Placement::Inlined { "inlined" } else { "unused" });
     }

@@ -1,4 +1,4 @@
-//! The accesses of a pass in a file: as serde reads them, and as one form whatever their kind.
+//! Accesses of a pass in a file: their serde representations, and a common form.
 
 use super::spanned::{Spanned, text_or};
 use crate::access::{AccessKind, ClearValue, Intent, Range};
@@ -7,20 +7,20 @@ use crate::resolve::ResolveMode;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, Deserializer};
 
-/// A number that a loop can give: the first level or layer of an access, how often another loop repeats.
+/// A number that may depend on a loop index, such as a mip level, a layer or the count of a nested loop.
 #[derive(Clone, Debug, Default)]
 pub(super) enum Level<T> {
-    /// Not named.
+    /// Not given.
     #[default]
     None,
-    /// That one.
+    /// A literal number.
     Number(T),
-    /// In a loop: what a text with its index comes to.
+    /// A text with names in braces that evaluates to a number.
     Text(Spanned<String>),
 }
 
 impl<T: Copy> Level<T> {
-    /// The number; a text was put into numbers when its loop was written out.
+    /// Returns the number. Texts have been replaced by numbers when loops were expanded.
     pub(super) fn number(&self) -> Option<T> {
         match self {
             Self::Number(number) => Some(*number),
@@ -38,20 +38,20 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Level<T> {
     }
 }
 
-/// An access, whatever its kind.
+/// An access of any kind.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(from = "Spelled")]
 pub(super) struct AccessForm {
     pub(super) kind: AccessKind,
-    /// What is touched.
+    /// The accessed resource.
     pub(super) of: Spanned<String>,
-    /// What a write does with older contents; none for a read.
+    /// Intent of a write; `None` for a read.
     pub(super) intent: Option<IntentForm>,
-    /// The slot of a color attachment where one is named; that of the attachment which is resolved.
+    /// Slot of a color attachment, if given, or of the attachment that is resolved.
     pub(super) slot: Option<u8>,
-    /// Of a resolve: depth where it is named so, else the color of the slot.
+    /// Source of a resolve: `Depth` if given, otherwise the color attachment in the slot.
     pub(super) samples: Option<ResolvedPlane>,
-    /// Of a resolve: what it makes of the samples.
+    /// Mode of a resolve.
     pub(super) mode: ResolveMode,
     pub(super) mip: Level<u8>,
     mips: Option<u8>,
@@ -59,13 +59,14 @@ pub(super) struct AccessForm {
     layers: Option<u16>,
     aspect: Option<Aspect>,
     view: Option<Format>,
-    /// Offset and size in bytes; none for all of a buffer, and for a texture.
+    /// Offset and size in bytes; `None` for a whole buffer or a texture.
     pub(super) bytes: Option<(u64, u64)>,
     pub(super) when: Option<Spanned<String>>,
 }
 
 impl AccessForm {
-    /// The range that the optional fields spell: one level from the first, so many levels, or all; layers alike.
+    /// Returns the range given by the optional fields. A first level without a count means one level; without both, all
+    /// levels. Layers follow the same rule.
     pub(super) fn range(&self) -> Range {
         let (mip, layer) = (self.mip.number(), self.layer.number());
         Range {
@@ -80,7 +81,7 @@ impl AccessForm {
     }
 }
 
-/// Makes the forms in which accesses stand in files: the resource, fields of their own, and those that all have.
+/// Defines the serde representations of accesses, with their specific and common fields.
 macro_rules! forms {
     ($($form:ident($name:literal, $of:ident { $($(#[$serde:meta])* $own:ident: $type:ty),+ });)+) => { $(
         #[derive(Deserialize)]
@@ -122,7 +123,7 @@ forms! {
     });
 }
 
-/// Makes the enumeration of accesses as files name them, by kind.
+/// Defines the enumeration of accesses by kind, as in files.
 macro_rules! spelled {
     ($($kind:ident: $form:ident),+) => {
         #[derive(Deserialize)]
@@ -147,7 +148,7 @@ spelled! {
     Index: ReadForm, Indirect: ReadForm, CopySource: ReadForm, CopyTarget: WriteForm
 }
 
-/// What other than a color is resolved.
+/// Source of a resolve other than a color attachment.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub(super) enum ResolvedPlane {
     Depth,

@@ -1,18 +1,18 @@
-//! Devices as files: a preset, and what is different about this one.
+//! Devices as RON files: a preset and overridden fields.
 
 use super::error::{FileError, FileErrors, FileReason};
 use super::spanned::{Source, Spanned};
 use super::syntax;
-use super::value::ValueFault;
+use super::value::ValueReason;
 use super::version::{check_version, without_mark};
 use crate::caps::Caps;
 use crate::resolve::ResolveModes;
 use serde::Deserialize;
 
-/// The version of the format of device files.
+/// Version of the format of device files.
 pub const CAPS_VERSION: u32 = 1;
 
-/// Makes the form of a device of the fields of [`Caps`] that a file can give, each once.
+/// Defines the serde representation of a device from the fields of [`Caps`] that a file can set.
 macro_rules! caps_form {
     ($($field:ident: $type:ty),+ $(,)?) => {
         #[derive(Debug, Default, Deserialize)]
@@ -23,7 +23,7 @@ macro_rules! caps_form {
             $($field: Option<Spanned<$type>>,)+
         }
 
-        /// Replaces what the form gives.
+        /// Overrides the fields that the form sets.
         fn overlay(caps: &mut Caps, form: CapsForm) {
             $(if let Some(given) = form.$field {
                 caps.$field = given.value;
@@ -42,11 +42,11 @@ caps_form! {
     compute_queue: bool, copy_queue: bool,
 }
 
-/// Reads a device from `text`; `path` is what errors call it. Fields that are left out are those of the preset named by
-/// `like`, `wgpu` when there is none.
+/// Reads a device from `text`; `path` is used in errors. Missing fields have the values of the preset named by `like`,
+/// by default `wgpu`.
 ///
 /// # Errors
-/// Text that is no RON, or not of this form or version; values that no device has.
+/// Returns an error if `text` is not valid RON, has an unsupported form or version, or contains invalid values.
 pub fn caps(path: &str, text: &str) -> Result<Caps, FileErrors> {
     let text = without_mark(text);
     let source = Source { path, text, included: &[] };
@@ -65,22 +65,22 @@ pub fn caps(path: &str, text: &str) -> Result<Caps, FileErrors> {
     Ok(caps)
 }
 
-/// Values that no device has.
+/// Returns an error for each invalid value.
 fn faults(source: Source<'_>, form: &CapsForm) -> Vec<FileError> {
     let mut errors = Vec::new();
     let alignments = [&form.texture_alignment_bytes, &form.buffer_alignment_bytes];
     for at in alignments.into_iter().flatten().filter(|a| !a.value.is_power_of_two() || a.value > 1 << 32) {
-        errors.push(source.value(at, ValueFault::Alignment(at.value)));
+        errors.push(source.value(at, ValueReason::Alignment(at.value)));
     }
     for at in form.max_samples.iter().filter(|s| !s.value.is_power_of_two()) {
-        errors.push(source.value(at, ValueFault::MaxSamples(at.value)));
+        errors.push(source.value(at, ValueReason::MaxSamples(at.value)));
     }
     for at in form.max_color_attachments.iter().filter(|c| !(1..=8).contains(&c.value)) {
-        errors.push(source.value(at, ValueFault::MaxColors(at.value)));
+        errors.push(source.value(at, ValueReason::MaxColors(at.value)));
     }
     let sides = [&form.max_texture_texels, &form.max_texture_layers];
     for at in sides.into_iter().flatten().filter(|s| s.value == 0 || s.value > 1 << 20) {
-        errors.push(source.value(at, ValueFault::MaxSide(at.value)));
+        errors.push(source.value(at, ValueReason::MaxSide(at.value)));
     }
     errors
 }

@@ -1,5 +1,4 @@
-//! From a file to a graph: resources first, then passes in the order that `versions` found, each through the same calls
-//! that code makes, and refused by the same checks.
+//! Declares a file's resources and passes in the order found by `versions`. Uses the same methods and checks as code.
 
 use super::error::{FileError, FileErrors, FileReason};
 use super::features::Features;
@@ -8,20 +7,20 @@ use super::plugin::{Handle, Host, Registry};
 use super::selected::{Declared, Mention, Selected, Wanted};
 use super::shape;
 use super::spanned::Source;
-use super::value::ValueFault;
+use super::value::ValueReason;
 use crate::access::Range;
 use crate::error::DeclareError;
 use crate::graph::{Graph, PassKind};
 use crate::resource::TextureDesc;
 
-/// Levels × layers × planes of all textures together: what the compiler follows one by one. Sixteen million take it a few
-/// hundred megabytes.
-const MOST_SUBRESOURCES: u64 = 1 << 24;
+/// Maximum number of subresources of all textures. The compiler tracks each of them; the maximum needs a few hundred
+/// megabytes.
+const MAX_SUBRESOURCES: u64 = 1 << 24;
 
-/// Resources by row of the selection: the handle of the newest version.
+/// Handle of the newest version of each resource of the selection.
 pub(super) type Handles = Vec<Option<Handle>>;
 
-/// What the functions here share.
+/// Context of declaring.
 #[derive(Clone, Copy)]
 pub(super) struct Declaring<'a, 'f> {
     pub(super) source: Source<'f>,
@@ -29,8 +28,8 @@ pub(super) struct Declaring<'a, 'f> {
     pub(super) selected: &'a Selected<'f>,
 }
 
-/// Declares everything that is switched on and not in error into `host`; what is refused goes to `errors`. What would need
-/// the result of a pass in error is left out.
+/// Declares every enabled and valid entry into `host` and collects errors. Skips entries that depend on an invalid
+/// pass.
 pub(super) fn all<'f, H: Host + ?Sized>(
     source: Source<'f>,
     features: &Features,
@@ -97,12 +96,12 @@ impl<'f> Declaring<'_, 'f> {
                 let texture = match handles[history] {
                     Some(Handle::Texture(texture)) => texture,
                     _ if self.selected.lost[history] => return Ok(()),
-                    Some(_) => return Err(self.source.value(at, ValueFault::NotAHistory { id: at.value.clone() })),
+                    Some(_) => return Err(self.source.value(at, ValueReason::NotAHistory { id: at.value.clone() })),
                     None => {
                         let listed = |d: &Declared<'_>| matches!(d, Declared::Resource(row, _) if *row == history);
                         let below = self.selected.declared.iter().any(listed);
-                        let other = ValueFault::NotAHistory { id: at.value.clone() };
-                        return Err(self.source.value(at, if below { ValueFault::PreviousAbove } else { other }));
+                        let other = ValueReason::NotAHistory { id: at.value.clone() };
+                        return Err(self.source.value(at, if below { ValueReason::PreviousAbove } else { other }));
                     }
                 };
                 let found = graph.previous(texture, age).map(drop);
@@ -113,8 +112,8 @@ impl<'f> Declaring<'_, 'f> {
                 let levels = if desc.mips == TextureDesc::ALL_MIPS { 16 } else { u64::from(desc.mips) };
                 let planes = u64::from(desc.format.planes());
                 *subresources += levels * u64::from(desc.tracked_layers()) * planes;
-                if *subresources > MOST_SUBRESOURCES {
-                    let fault = ValueFault::Subresources { max: MOST_SUBRESOURCES };
+                if *subresources > MAX_SUBRESOURCES {
+                    let fault = ValueReason::Subresources { max: MAX_SUBRESOURCES };
                     return Err(self.source.value(&form.name, fault));
                 }
                 let name = &form.name.value;
@@ -122,7 +121,7 @@ impl<'f> Declaring<'_, 'f> {
                     Origin::Transient => graph.texture(name, desc),
                     Origin::Import { entry, exit } => graph.import_texture(name, desc, entry, exit),
                     Origin::History { frames: 0 } => {
-                        return Err(self.source.value(&form.name, ValueFault::EmptyHistory));
+                        return Err(self.source.value(&form.name, ValueReason::EmptyHistory));
                     }
                     Origin::History { frames } => graph.history(name, desc, frames),
                 };
@@ -142,7 +141,7 @@ impl<'f> Declaring<'_, 'f> {
         }
     }
 
-    /// The image of a history that a mention means; none when it means the resource itself.
+    /// Returns the history image that a mention refers to; `None` if it refers to the resource itself.
     pub(super) fn previous(
         &self,
         mention: &Mention<'f>,
@@ -154,7 +153,7 @@ impl<'f> Declaring<'_, 'f> {
         };
         let id = self.selected.resources[mention.resource];
         let Some(Handle::Texture(history)) = handles[mention.resource] else {
-            return Err(self.source.value(mention.at, ValueFault::NotAHistory { id: id.into() }));
+            return Err(self.source.value(mention.at, ValueReason::NotAHistory { id: id.into() }));
         };
         let refused = |e: DeclareError| self.source.error(mention.at, FileReason::Declare(e.reason)).of_resource(id);
         graph.previous(history, age).map(|previous| Some(Handle::ReadOnly(previous.into()))).map_err(refused)
@@ -168,7 +167,7 @@ impl<'f> Declaring<'_, 'f> {
         graph: &mut Graph,
     ) -> Result<(), FileError> {
         let (Some(Handle::Texture(texture)), Some(Handle::Texture(into))) = (handles[of], handles[to]) else {
-            return Err(self.source.value(&form.of, ValueFault::ForwardsTextures));
+            return Err(self.source.value(&form.of, ValueReason::ForwardsTextures));
         };
         let mut range = Range::ALL;
         if let Some(mip) = form.mip.number() {
@@ -197,7 +196,7 @@ impl<'f> Declaring<'_, 'f> {
             (ExportForm::Keep(_), Some(Handle::Buffer(b))) => graph.export_buffer(b),
             (ExportForm::Readback(_), Some(Handle::Buffer(b))) => graph.readback_buffer(b),
             (ExportForm::Forward(_), _) | (_, Some(Handle::ReadOnly(_)) | None) => {
-                return Err(self.source.value(mention.at, ValueFault::MadeLater));
+                return Err(self.source.value(mention.at, ValueReason::MadeLater));
             }
         };
         exported.map_err(|e| self.source.error(mention.at, FileReason::Declare(e.reason)))

@@ -1,16 +1,16 @@
-//! Passes that plugins declare: slots bound by name, results taken back.
+//! Passes declared by plugins: binds slots by name and takes back results.
 
 use super::declare::{Declaring, Handles};
 use super::error::{FileError, FileErrors, FileReason};
 use super::form::PluginForm;
 use super::plugin::{Binding, Call, Handle, Host, PluginError, Registry};
 use super::selected::{PassRow, Wanted};
-use super::slot::Takes;
+use super::slot::SlotType;
 use super::spanned::Spanned;
-use super::value::ValueFault;
+use super::value::ValueReason;
 
 impl<'f> Declaring<'_, 'f> {
-    /// Declares one entry through its plugin.
+    /// Declares one entry with its plugin.
     pub(super) fn plugin<H: Host + ?Sized>(
         &self,
         row: &PassRow<'f>,
@@ -20,7 +20,7 @@ impl<'f> Declaring<'_, 'f> {
         host: &mut H,
     ) -> Result<(), FileError> {
         let kind = form.kind.value.as_str();
-        // Kinds that are not known were reported before anything was declared.
+        // Unknown kinds were reported before.
         let Some(plugin) = registry.get(kind) else {
             return Ok(());
         };
@@ -33,14 +33,14 @@ impl<'f> Declaring<'_, 'f> {
             let previous = self.previous(mention, handles, host.graph())?;
             let handle = previous.or(handles[mention.resource]);
             let name = self.selected.resources[mention.resource];
-            let fault = match (slot.takes, handle) {
-                (Takes::Texture, Some(Handle::Texture(_) | Handle::ReadOnly(_)))
-                | (Takes::Buffer, Some(Handle::Buffer(_)))
-                | (Takes::Target, Some(Handle::Texture(_)) | None)
-                | (Takes::TargetBuffer, Some(Handle::Buffer(_)) | None) => None,
-                (_, None) if mention.version == Wanted::Entry => Some(ValueFault::MadeEmpty),
-                (_, None) => Some(ValueFault::MadeLater),
-                (takes, Some(_)) => Some(ValueFault::SlotType { slot: slot.name.into(), takes }),
+            let fault = match (slot.ty, handle) {
+                (SlotType::Texture, Some(Handle::Texture(_) | Handle::ReadOnly(_)))
+                | (SlotType::Buffer, Some(Handle::Buffer(_)))
+                | (SlotType::Target, Some(Handle::Texture(_)) | None)
+                | (SlotType::TargetBuffer, Some(Handle::Buffer(_)) | None) => None,
+                (_, None) if mention.version == Wanted::Entry => Some(ValueReason::MadeEmpty),
+                (_, None) => Some(ValueReason::MadeLater),
+                (ty, Some(_)) => Some(ValueReason::SlotType { slot: slot.name.into(), ty }),
             };
             if let Some(fault) = fault {
                 return Err(self.source.value(mention.at, fault).of_pass(&row.id.value).of_resource(name));
@@ -56,8 +56,8 @@ impl<'f> Declaring<'_, 'f> {
             if binding.given.is_none() {
                 let reason = FileReason::Plugin {
                     plugin: kind.into(),
-                    message: format!("it did not write its slot `{}`", binding.slot.name),
-                    hint: "leave the slot unbound, or mend the plugin (`Call::give`)".into(),
+                    message: format!("slot `{}` was not written", binding.slot.name),
+                    hint: "leave the slot unbound, or fix the plugin (`Call::give`)".into(),
                 };
                 return Err(self.source.error(mention.at, reason));
             }
@@ -79,7 +79,7 @@ impl<'f> Declaring<'_, 'f> {
         error.of_pass(&row.id.value)
     }
 
-    /// Kinds that nothing has, slots that the kind has not, and slots that are missing.
+    /// Reports unknown plugin kinds, unknown slots and missing slots.
     pub(super) fn check<H: ?Sized>(
         &self,
         row: &PassRow<'f>,
@@ -103,7 +103,7 @@ impl<'f> Declaring<'_, 'f> {
             refuse(bound, FileReason::unknown("slot", &bound.value, slots.iter().map(|s| s.name)));
             misspelt = true;
         }
-        // One that is missing is probably the one that is misspelt.
+        // A missing slot is probably the misspelled one.
         if misspelt {
             return;
         }

@@ -1,5 +1,4 @@
-//! Two forms that serde has no type for: maps that keep their order and refuse a key twice, and numbers that may depend
-//! on features.
+//! Serde types for maps that keep their order and reject duplicate keys, and for numbers that may depend on features.
 
 use super::spanned::Spanned;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
@@ -29,7 +28,7 @@ impl<'de, V: Deserialize<'de>> Visitor<'de> for InOrder<V> {
     type Value = Entries<V>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a map from names, `{\"name\": …}`")
+        f.write_str("a map with names as keys, `{\"name\": …}`")
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
@@ -37,8 +36,8 @@ impl<'de, V: Deserialize<'de>> Visitor<'de> for InOrder<V> {
         let mut keys = HashSet::new();
         while let Some((key, value)) = map.next_entry::<Spanned<String>, V>()? {
             if !keys.insert(key.value.clone()) {
-                let message = format!("the key `{}` stands twice", key.value);
-                return Err(key.refuse(&message, "remove one of the two"));
+                let message = format!("duplicate key `{}`", key.value);
+                return Err(key.refuse(&message, "remove one of them"));
             }
             entries.push((key, value));
         }
@@ -49,11 +48,11 @@ impl<'de, V: Deserialize<'de>> Visitor<'de> for InOrder<V> {
 /// A number, `"all"`, or a choice by features.
 #[derive(Clone, Debug)]
 pub(super) enum Count {
-    /// That number.
+    /// A literal number.
     Fixed(u64),
-    /// As many as there are: the full chain of levels.
+    /// All: the full mip chain.
     All,
-    /// The number beside the first condition that holds; the condition `else` always does.
+    /// The number of the first condition that holds; the condition `else` always holds.
     Choice(Vec<(Spanned<String>, u64)>),
 }
 
@@ -103,7 +102,7 @@ mod tests {
         assert!(matches!(count("4"), Ok(Count::Fixed(4))));
         assert!(matches!(count("\"all\""), Ok(Count::All)));
         let Ok(Count::Choice(choices)) = count("{\"b\": 4, \"a\": 2, \"else\": 1}") else {
-            panic!("a choice is a count");
+            panic!("expected a choice");
         };
         let flat: Vec<_> = choices.iter().map(|(k, v)| (k.value.as_str(), *v)).collect();
         assert_eq!(flat, [("b", 4), ("a", 2), ("else", 1)]);

@@ -1,74 +1,74 @@
-//! What can be wrong with a file, said with the place, the names and what to do about it.
+//! Errors of files, with position, names and a hint.
 
 use super::suggest::nearest;
 use super::syntax::listed;
-use super::value::ValueFault;
-use crate::capped::Errors;
+use super::value::ValueReason;
 use crate::compile::CompileReason;
 use crate::error::DeclareReason;
-use crate::faults::{errors, faults, show};
+use crate::error_list::Errors;
+use crate::error_macros::{error_enum, impl_error, show};
 use std::fmt;
 
-/// One error of a file. Displayed as one line: `path:line:column: reason; hint`.
+/// One error of a file. Displays as one line: `path:line:column: reason; hint`.
 #[derive(Clone, PartialEq, Eq)]
 pub struct FileError {
-    /// The file, as the caller named it.
+    /// Path of the file, as given by the caller.
     pub path: String,
-    /// Line, from 1.
+    /// Line, starting at 1.
     pub line: usize,
-    /// Column in characters, from 1.
+    /// Column in characters, starting at 1.
     pub column: usize,
-    /// The pass concerned, as the file or the graph names it.
+    /// The pass concerned, as named in the file or the graph.
     pub pass: Option<String>,
-    /// The resource concerned, as the file or the graph names it.
+    /// The resource concerned, as named in the file or the graph.
     pub resource: Option<String>,
-    /// What is wrong.
+    /// The error.
     pub reason: Box<FileReason>,
 }
 
-faults! {
-    /// Why a file was refused. `what` is the kind of thing that was meant: pass, resource, feature, plugin, slot.
+error_enum! {
+    /// Reason why a file is invalid. `what` is the expected kind of item: pass, resource, feature, plugin or slot.
     FileReason {
-        /// The text is no RON, or not of this form.
+        /// The text is not valid RON, or has an unsupported form.
         Syntax { message: String, hint: String } => (message.clone(), hint.clone());
-        Version { found: u32, known: u32 } "the file is of version {found}, this program reads version {known}",
+        Version { found: u32, known: u32 } "the file has version {found}, this program reads version {known}",
             "write `version: {known}` once the file follows docs/graph-format.md";
         Unknown {
             what: &'static str,
             name: String,
-            /// The name that was probably meant.
+            /// The most similar name.
             near: Option<String>,
-            /// The first of the names that exist.
+            /// The first of the existing names.
             known: Vec<String>
-        } "there is no {what} `{name}`", "{hint}",
+        } "unknown {what} `{name}`", "{hint}",
             hint = match near {
                 Some(near) => format!("did you mean `{near}`?"),
-                None if known.is_empty() => "there are none here".into(),
-                None => format!("there are {}", listed(known, 8)),
+                None if known.is_empty() => "none exist here".into(),
+                None => format!("use one of {}", listed(known, 8)),
             };
-        Duplicate { what: &'static str, name: String } "more than one {what} is called `{name}`",
-            "rename one, or give it an `id` of its own";
+        Duplicate { what: &'static str, name: String } "more than one {what} is named `{name}`",
+            "rename one of them, or give it an `id`";
         SwitchedOff { what: &'static str, name: String, /** Its condition. */ when: String }
-            "{what} `{name}` is switched off here, it exists when `{when}`", "put the same `when` here";
-        /// A value outside of its range, or that does not go together with another.
-        Value(fault: ValueFault) => fault.words();
-        /// `resource@pass` of a pass that does not write the resource.
+            "{what} `{name}` is disabled, it requires `{when}`", "add the same `when` here";
+        /// The value is out of range or conflicts with another one.
+        Value(fault: ValueReason) => fault.words();
+        /// `resource@pass`, but the pass does not write the resource.
         NotWrittenBy { pass: String, writers: Vec<String> } "pass `{pass}` does not write it", "{hint}",
             hint = match writers.as_slice() {
                 [] => "no pass writes it".into(),
                 writers => format!("it is written by {}", listed(writers, 8)),
             };
-        TwoVersions { /** As the file names it. */ other: String } "the pass already names it as `{other}`",
-            "a pass sees one version of a resource; copy the other one aside";
+        TwoVersions { /** As the file names it. */ other: String } "the pass already refers to it as `{other}`",
+            "a pass can use only one version of a resource; copy the other one first";
         /// Only the last version can be exported.
-        NotLast { writer: String } "this is not its last version, pass `{writer}` writes it later",
-            "export it by its plain name, or copy it aside";
-        /// The plugin cannot do without.
+        NotLast { writer: String } "this is not the last version: pass `{writer}` writes it later",
+            "export it by its plain name, or copy it first";
+        /// A required slot is not bound.
         Unbound { plugin: String, slot: String } "slot `{slot}` of plugin `{plugin}` is not bound",
             "add `\"{slot}\": \"name\"` to its slots";
-        /// What a plugin says of its own parameters or inputs.
+        /// Error reported by a plugin about its parameters or inputs.
         Plugin { plugin: String, message: String, hint: String } "plugin `{plugin}`: {message}", "{hint}";
-        /// The declaration was refused.
+        /// A declaration is invalid.
         Declare(reason: DeclareReason) => reason.words();
         /// The graph does not compile.
         Compile(reason: CompileReason)
@@ -80,15 +80,15 @@ faults! {
 }
 
 impl FileReason {
-    /// A name that none of `names` is.
+    /// Returns the reason for an unknown name, with a suggestion from `names`.
     pub(super) fn unknown<'n>(what: &'static str, name: &str, names: impl Iterator<Item = &'n str> + Clone) -> Self {
         let near = nearest(name, names.clone()).map(str::to_owned);
         Self::Unknown { what, name: name.into(), near, known: names.take(9).map(str::to_owned).collect() }
     }
 }
 
-impl From<ValueFault> for FileReason {
-    fn from(fault: ValueFault) -> Self {
+impl From<ValueReason> for FileReason {
+    fn from(fault: ValueReason) -> Self {
         Self::Value(fault)
     }
 }
@@ -100,12 +100,12 @@ impl From<DeclareReason> for FileReason {
 }
 
 impl FileError {
-    /// The error with the pass that it is about.
+    /// Adds the pass concerned.
     pub(super) fn of_pass(self, pass: &str) -> Self {
         Self { pass: Some(pass.into()), ..self }
     }
 
-    /// The error with the resource that it is about.
+    /// Adds the resource concerned.
     pub(super) fn of_resource(self, resource: &str) -> Self {
         Self { resource: Some(resource.into()), ..self }
     }
@@ -119,13 +119,13 @@ impl fmt::Display for FileError {
     }
 }
 
-errors!(FileError);
+impl_error!(FileError);
 
-/// The errors of a file, in the order in which they stand in it: a hundred, and how many more there are.
+/// The errors of a file, in the order of the file: the first hundred, and the number of further errors.
 pub type FileErrors = Errors<FileError>;
 
 impl FileErrors {
-    /// The errors in the order in which they stand in the file.
+    /// Sorts the errors by position.
     pub(super) fn sorted(mut self) -> Self {
         self.listed.sort_by(|a, b| (&a.path, a.line, a.column).cmp(&(&b.path, b.line, b.column)));
         self

@@ -1,8 +1,7 @@
-//! Loops and templates: one entry of a file that stands for several.
+//! Expansion of loops and templates.
 //!
-//! `Each` repeats its entries with a number in the place of `{i}`; `Use` puts a template's entries there with words in
-//! the place of its parameters. Both are written out right after a file is read, so that everything behind sees plain
-//! entries, each of which keeps its place in the text.
+//! `Each` repeats its entries and replaces `{i}` by a number. `Use` inserts the entries of a template and replaces its
+//! parameters. Both are expanded right after parsing, so that later code sees only plain entries with their positions.
 
 use super::access_form::Level;
 use super::error::FileErrors;
@@ -12,22 +11,22 @@ use super::form::{
 };
 use super::params::Word;
 use super::spanned::{Source, Spanned};
-use super::value::ValueFault;
+use super::value::ValueReason;
 
-/// The most entries that loops and templates may make together.
-const MOST_ENTRIES: usize = 1 << 17;
+/// Maximum number of entries created by loops and templates.
+const MAX_ENTRIES: usize = 1 << 17;
 
-/// What stands for the names in braces, innermost last.
+/// Meanings of the names in braces, innermost last.
 type Names<'n> = Vec<(&'n str, Meaning<'n>)>;
 
-/// What a name in braces means.
+/// Meaning of a name in braces.
 #[derive(Clone, Copy)]
 enum Meaning<'n> {
     Number(i64),
     Word(&'n Word),
 }
 
-/// The entries of a file, written out.
+/// The expanded entries of a file.
 #[derive(Debug)]
 pub(super) struct Expanded {
     pub(super) resources: Vec<ResourceForm>,
@@ -35,7 +34,7 @@ pub(super) struct Expanded {
     pub(super) exports: Vec<ExportForm>,
 }
 
-/// Writes out all loops and uses of templates; what is wrong with them goes to `errors`.
+/// Expands all loops and templates, and collects errors.
 pub(super) fn expand(source: Source<'_>, form: &mut GraphForm, errors: &mut FileErrors) -> Expanded {
     let (resources, passes) = (std::mem::take(&mut form.resources), std::mem::take(&mut form.passes));
     let exports = std::mem::take(&mut form.exports);
@@ -55,10 +54,10 @@ pub(super) fn expand(source: Source<'_>, form: &mut GraphForm, errors: &mut File
 struct Writer<'w, 's> {
     source: Source<'s>,
     templates: &'w [(Spanned<String>, TemplateForm)],
-    /// The entries of a template are being written, at whatever depth of loops.
+    /// Set while the entries of a template are expanded.
     within: bool,
     out: Expanded,
-    /// Entries that loops and templates have made.
+    /// Number of entries created by loops and templates.
     made: usize,
     errors: &'w mut FileErrors,
 }
@@ -92,9 +91,9 @@ impl Writer<'_, '_> {
     fn pass(&mut self, entry: PassEntry, names: &Names<'_>) {
         let form = match entry {
             PassEntry::Each(each) => return self.each(&each, names, Self::pass),
-            // A template that uses another, or itself, would have no end.
+            // Nested templates are not supported, which also rules out recursion.
             PassEntry::Use(used) if self.within => {
-                return self.errors.push(|| self.source.value(&used.template, ValueFault::TemplateInTemplate));
+                return self.errors.push(|| self.source.value(&used.template, ValueReason::TemplateInTemplate));
             }
             PassEntry::Use(used) => return self.used(&used, names),
             PassEntry::Raster(form) => PassForm::Raster(self.work(form, names)),
@@ -111,7 +110,7 @@ impl Writer<'_, '_> {
         own.for_each(|text| self.fill(text, names));
         for access in accesses {
             std::iter::once(&mut access.of).chain(&mut access.when).for_each(|text| self.fill(text, names));
-            // The greatest of each means all.
+            // The maximum of each type stands for all.
             self.number(&mut access.mip, u8::MAX - 1, names);
             self.number(&mut access.layer, u16::MAX - 1, names);
         }
@@ -138,13 +137,13 @@ impl Writer<'_, '_> {
         self.out.exports.push(form);
     }
 
-    /// Puts the number that a text comes to in its place.
+    /// Replaces a text by the number it evaluates to.
     fn number<T: TryFrom<u32> + Into<u32> + Copy>(&mut self, level: &mut Level<T>, max: T, names: &Names<'_>) {
         let Level::Text(text) = level else { return };
         self.fill(text, names);
         let number = text.value.parse().ok().filter(|number: &u32| *number <= max.into());
         if number.is_none() {
-            let fault = ValueFault::Number { text: text.value.clone(), max: max.into() };
+            let fault = ValueReason::Number { text: text.value.clone(), max: max.into() };
             self.errors.push(|| self.source.value(text, fault));
         }
         *level = Level::Number(number.and_then(|number| number.try_into().ok()).unwrap_or(max));
@@ -161,7 +160,7 @@ impl Writer<'_, '_> {
         form
     }
 
-    /// A loop: its entries once for each number.
+    /// Expands a loop: writes its entries once for each number.
     fn each<E: Clone>(&mut self, each: &EachForm<E>, names: &Names<'_>, write: fn(&mut Self, E, &Names<'_>)) {
         let found = self.errors.count();
         let (mut from, mut count) = (each.from.clone(), each.count.clone());
@@ -169,7 +168,7 @@ impl Writer<'_, '_> {
         let [from, count] = [from, count].map(|number| i64::from(number.number().unwrap_or_default()));
         let mut names = names.clone();
         names.push((&each.index.value, Meaning::Number(from)));
-        // What is wrong in one turn is wrong in all, and nothing takes no turns.
+        // An error in one iteration occurs in all. An empty loop needs no iterations.
         for turn in 0..count {
             if self.errors.count() != found || each.entries.is_empty() {
                 return;
@@ -186,7 +185,7 @@ impl Writer<'_, '_> {
         }
     }
 
-    /// A template's entries, with the words of this use.
+    /// Expands a template with the arguments of this use.
     fn used(&mut self, used: &UseForm, names: &Names<'_>) {
         let mut with = used.with.0.clone();
         for (_, word) in &mut with {
@@ -207,7 +206,7 @@ impl Writer<'_, '_> {
             match with.iter().find(|(given, _)| given.value == *param) {
                 Some((_, word)) => inner.push((param, Meaning::Word(word))),
                 None => {
-                    let fault = ValueFault::Parameter(param.clone());
+                    let fault = ValueReason::Parameter(param.clone());
                     return self.errors.push(|| self.source.value(&used.template, fault));
                 }
             }
@@ -226,7 +225,7 @@ impl Writer<'_, '_> {
         self.within = false;
     }
 
-    /// A word that is a name in braces and nothing else is what the name stands for.
+    /// Replaces a word that consists of a single name in braces by its meaning.
     fn word(&mut self, word: &mut Word, names: &Names<'_>) {
         let Word::Text(text) = word else { return };
         let alone = text.value.strip_prefix('{').and_then(|rest| rest.strip_suffix('}'));
@@ -236,17 +235,16 @@ impl Writer<'_, '_> {
         }
     }
 
-    /// Whether another entry may be made; says once that none may.
+    /// Counts another entry. Returns `false` if the maximum is exceeded, and reports that once.
     fn room(&mut self, at: &Spanned<String>) -> bool {
         self.made += 1;
-        if self.made == MOST_ENTRIES + 1 {
-            self.errors.push(|| self.source.value(at, ValueFault::Entries { max: MOST_ENTRIES as u64 }));
+        if self.made == MAX_ENTRIES + 1 {
+            self.errors.push(|| self.source.value(at, ValueReason::Entries { max: MAX_ENTRIES as u64 }));
         }
-        self.made <= MOST_ENTRIES
+        self.made <= MAX_ENTRIES
     }
 
-    /// Puts meanings in the places of names in braces: `{i}`, `{i+1}`, `{i-1}`. Outside of loops and templates braces
-    /// mean nothing.
+    /// Replaces names in braces: `{i}`, `{i+1}`, `{i-1}`. Outside of loops and templates, braces have no meaning.
     fn fill(&mut self, text: &mut Spanned<String>, names: &Names<'_>) {
         if names.is_empty() || !text.value.contains('{') {
             return;
@@ -271,7 +269,7 @@ impl Writer<'_, '_> {
     }
 }
 
-/// What stands in braces: a name, or a number with another added or taken away; a template's parameter can be a number.
+/// Evaluates the text in braces: a name, or a number plus or minus another. Template parameters can be numbers.
 fn meaning(inside: &str, names: &Names<'_>) -> Option<Word> {
     let inside = inside.trim();
     let split = inside.find(['+', '-']).unwrap_or(inside.len());

@@ -1,44 +1,44 @@
-//! Features, and the conditions that passes, resources and accesses put on them.
+//! Features, and conditions on them.
 //!
-//! A condition is an or of ands: `"a"`, `"!a"`, `"a && !b"`, `"a && b || c"`; `&&` binds more tightly, brackets there are
-//! none.
+//! A condition combines features with `!`, `&&` and `||`: `"a"`, `"!a"`, `"a && !b"`, `"a && b || c"`. `&&` binds more
+//! tightly than `||`; parentheses are not supported.
 
 use super::error::{FileError, FileReason};
 use super::spanned::{Source, Spanned};
-use super::value::ValueFault;
+use super::value::ValueReason;
 
-/// The features of a file with what they are set to.
+/// The features of a file and their settings.
 #[derive(Clone, Debug)]
 pub(super) struct Features {
-    /// Names with their settings, in the order of the file.
+    /// Names and settings, in the order of the file.
     rows: Vec<(String, bool)>,
 }
 
 impl Features {
-    /// The features of a file, some of them switched.
+    /// Creates the features from names and settings.
     pub(super) fn new(rows: Vec<(String, bool)>) -> Self {
         Self { rows }
     }
 
-    /// Switches one; false when there is none of that name.
+    /// Sets a feature. Returns `false` if it does not exist.
     pub(super) fn switch(&mut self, name: &str, on: bool) -> bool {
         let found = self.rows.iter_mut().find(|(n, _)| n == name);
         found.map(|row| row.1 = on).is_some()
     }
 
-    /// The reason when a name is not known.
+    /// Returns the error for an unknown feature.
     pub(super) fn unknown(&self, name: &str) -> FileReason {
         FileReason::unknown("feature", name, self.rows.iter().map(|(n, _)| n.as_str()))
     }
 
-    /// Whether a condition holds; none always does.
+    /// Returns `true` if a condition holds, or if there is none.
     pub(super) fn holds(&self, source: Source<'_>, when: Option<&Spanned<String>>) -> Result<bool, FileError> {
         let Some(when) = when else { return Ok(true) };
         self.evaluate(&when.value, source.is_brief()).map_err(|reason| source.error(when, reason))
     }
 
-    /// The value of an or of ands. Every name is looked at, so that a misspelt one never hides behind another. A `brief`
-    /// reason suggests none.
+    /// Evaluates a condition. Evaluates every name, so that misspelled names are always reported. A `brief` error
+    /// contains no suggestions.
     fn evaluate(&self, condition: &str, brief: bool) -> Result<bool, FileReason> {
         let mut any = false;
         for term in condition.split("||") {
@@ -57,7 +57,7 @@ impl Features {
             None => (factor, true),
         };
         if !is_name(name) {
-            return Err(FileReason::Value(ValueFault::Condition(factor.into())));
+            return Err(FileReason::Value(ValueReason::Condition(factor.into())));
         }
         match self.rows.iter().find(|(n, _)| n == name) {
             Some((_, on)) => Ok(*on == wanted),
@@ -67,7 +67,7 @@ impl Features {
     }
 }
 
-/// Whether a feature may be called so: letters, digits, `_`, `-` and `.`, and not `else`.
+/// Returns `true` for valid feature names: letters, digits, `_`, `-` and `.`, but not `else`.
 pub(super) fn is_name(name: &str) -> bool {
     let fits = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '.');
     !name.is_empty() && name != "else" && name.chars().all(fits)
@@ -96,7 +96,7 @@ mod tests {
         for bad in ["", "on &&", "on & off", "(on)", "!!on", "on on"] {
             assert!(matches!(f.evaluate(bad, false), Err(FileReason::Value(_))), "{bad}");
         }
-        // A name that does not exist is found wherever it stands.
+        // Unknown names are reported at any position.
         for unknown in ["on || offf", "off && offf"] {
             let Err(FileReason::Unknown { near, .. }) = f.evaluate(unknown, false) else {
                 panic!("{unknown} is known");

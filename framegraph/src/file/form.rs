@@ -1,4 +1,4 @@
-//! The shape of a file, as serde reads it. Field by field the reference is `docs/graph-format.md`.
+//! Serde representation of a graph file. `docs/graph-format.md` documents the fields.
 
 use super::access_form::{AccessForm, Level};
 use super::entries::{Count, Entries};
@@ -9,7 +9,7 @@ use crate::graph::PassFlags;
 use crate::resource::{Dimension, Entry, Exit, Extent};
 use serde::Deserialize;
 
-/// A whole graph file.
+/// A graph file.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename = "GraphFile")]
 pub(super) struct GraphForm {
@@ -19,7 +19,7 @@ pub(super) struct GraphForm {
     pub(super) frame: Option<Spanned<(u32, u32)>>,
     #[serde(default)]
     pub(super) features: Entries<bool>,
-    /// Read before everything else, by [`super::Included`].
+    /// Evaluated earlier, by [`super::Included`].
     #[serde(default)]
     pub(super) include: Vec<Spanned<String>>,
     #[serde(default)]
@@ -34,8 +34,7 @@ pub(super) struct GraphForm {
 }
 
 impl GraphForm {
-    /// Puts the entries of a file behind those of the files that it includes. The name, size and expectations are those of
-    /// the last.
+    /// Appends the entries of a file to those of its included files. Name, size and expectations are replaced.
     pub(super) fn append(&mut self, later: Self) {
         let Self { version, name, frame, features, include, templates, resources, passes, exports, expect } = later;
         (self.version, self.name, self.frame, self.include, self.expect) = (version, name, frame, include, expect);
@@ -47,7 +46,7 @@ impl GraphForm {
     }
 }
 
-/// The field that is read to find other files.
+/// The field that lists included files.
 #[derive(Debug, Deserialize)]
 #[serde(rename = "File")]
 pub(super) struct IncludeForm {
@@ -55,14 +54,14 @@ pub(super) struct IncludeForm {
     pub(super) include: Vec<Spanned<String>>,
 }
 
-/// The one field that is read whatever the version.
+/// The field that is read before the version is known.
 #[derive(Debug, Deserialize)]
 #[serde(rename = "File")]
 pub(super) struct VersionForm {
     pub(super) version: Spanned<u32>,
 }
 
-/// An entry of the list of resources, as it stands.
+/// An entry of the list of resources.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(rename = "Resource")]
 pub(super) enum ResourceEntry {
@@ -72,7 +71,7 @@ pub(super) enum ResourceEntry {
     Each(EachForm<Self>),
 }
 
-/// A resource, loops written out.
+/// A resource after expansion of loops.
 #[derive(Debug)]
 pub(super) enum ResourceForm {
     Texture(TextureForm),
@@ -80,7 +79,7 @@ pub(super) enum ResourceForm {
     Previous(PreviousForm),
 }
 
-/// A loop: entries that are there once for each number.
+/// A loop: entries that are repeated for each number.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Each")]
 pub(super) struct EachForm<E> {
@@ -93,7 +92,7 @@ pub(super) struct EachForm<E> {
     pub(super) entries: Vec<E>,
 }
 
-/// Entries with names in braces that each use says otherwise.
+/// Entries with parameters in braces.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Template")]
 pub(super) struct TemplateForm {
@@ -105,7 +104,7 @@ pub(super) struct TemplateForm {
     pub(super) passes: Vec<PassEntry>,
 }
 
-/// A template in the place of its entries.
+/// A use of a template.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Use")]
 pub(super) struct UseForm {
@@ -151,13 +150,13 @@ pub(super) struct PreviousForm {
     pub(super) when: Option<Spanned<String>>,
 }
 
-/// What every entry says of itself.
+/// Properties common to all entries.
 pub(super) struct Head<'f> {
     pub(super) name: &'f Spanned<String>,
-    /// What references call it: its `id`, or else its name.
+    /// The name used in references: `id` if given, otherwise `name`.
     pub(super) id: &'f Spanned<String>,
     pub(super) when: Option<&'f Spanned<String>>,
-    /// The passes that a pass must run after.
+    /// Passes that must run before this one.
     pub(super) after: &'f [Spanned<String>],
 }
 
@@ -192,7 +191,7 @@ fn one<N: From<u8>>() -> N {
     1.into()
 }
 
-/// Where a resource comes from.
+/// Origin of a resource.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Kind")]
 pub(super) enum Origin {
@@ -207,7 +206,7 @@ pub(super) enum Origin {
     },
 }
 
-/// An entry of the list of passes, as it stands.
+/// An entry of the list of passes.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(rename = "Pass")]
 pub(super) enum PassEntry {
@@ -219,7 +218,7 @@ pub(super) enum PassEntry {
     Use(UseForm),
 }
 
-/// A pass, loops and templates written out.
+/// A pass after expansion of loops and templates.
 #[derive(Debug)]
 pub(super) enum PassForm {
     Raster(WorkForm),
@@ -278,7 +277,7 @@ pub(super) enum Flag {
 }
 
 impl Flag {
-    /// Every flag with what it stands for.
+    /// Every flag and its counterpart in [`PassFlags`].
     pub(super) const ALL: [(Self, PassFlags); 6] = [
         (Self::SideEffect, PassFlags::SIDE_EFFECT),
         (Self::Pointwise, PassFlags::POINTWISE),
@@ -289,7 +288,7 @@ impl Flag {
     ];
 }
 
-/// An entry of the list of exports, as it stands.
+/// An entry of the list of exports.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(rename = "Export")]
 pub(super) enum ExportEntry {
@@ -299,7 +298,7 @@ pub(super) enum ExportEntry {
     Each(EachForm<Self>),
 }
 
-/// An export, loops written out.
+/// An export after expansion of loops.
 #[derive(Debug)]
 pub(super) enum ExportForm {
     Keep(RefForm),

@@ -1,28 +1,29 @@
-//! Files that a file includes.
+//! Included files.
 
 use super::error::{FileError, FileErrors};
 use super::form::IncludeForm;
 use super::spanned::{Source, Spanned};
 use super::syntax;
-use super::value::ValueFault;
+use super::value::ValueReason;
 use super::version::without_mark;
 
-/// The most files that one may include, itself left out, and what they include in turn.
-const MOST_FILES: usize = 64;
+/// Maximum number of files that a file includes, directly or indirectly.
+const MAX_FILES: usize = 64;
 
-/// The files that a graph file includes, with their texts: each once, those that are included before those that include
-/// them.
+/// The files that a graph file includes, with their texts. Each file occurs once, after the files that it includes.
 #[derive(Debug, Default)]
 pub struct Included {
     pub(super) files: Vec<(String, String)>,
 }
 
 impl Included {
-    /// Asks `read` for the text of every file that the file called `path` includes, and that those include. Paths are
-    /// relative to the file that names them, and lead to its folder or below.
+    /// Loads every file that the file at `path` includes, directly or indirectly, with the callback `read`.
+    ///
+    /// Paths are relative to the including file and must stay in its folder or below.
     ///
     /// # Errors
-    /// Text that is no RON, paths that lead elsewhere, more than 64 files, and what `read` says, at the place of the path.
+    /// Returns an error with its position if a text is not valid RON, a path leads out of the folder, more than 64
+    /// files are included, or `read` fails.
     pub fn load(
         path: &str,
         text: &str,
@@ -34,7 +35,7 @@ impl Included {
         Ok(out)
     }
 
-    /// Paths of the files, as `read` was asked for them.
+    /// Paths of the files, as passed to `read`.
     pub fn paths(&self) -> impl Iterator<Item = &str> {
         self.files.iter().map(|(path, _)| path.as_str())
     }
@@ -46,22 +47,22 @@ impl Included {
         seen: &mut Vec<String>,
         read: &mut dyn FnMut(&str) -> Result<String, String>,
     ) -> Result<(), FileError> {
-        // Most files include none, and are not read for that.
+        // Fast path for files without includes.
         if !text.contains("include") {
             return Ok(());
         }
         let source = Source { path, text: without_mark(text), included: &[] };
         let form: IncludeForm = syntax::options().from_str(source.text).map_err(|error| source.refused(&error))?;
         for name in &form.include {
-            let full = beside(path, name).ok_or_else(|| source.value(name, ValueFault::Path(name.value.clone())))?;
+            let full = beside(path, name).ok_or_else(|| source.value(name, ValueReason::Path(name.value.clone())))?;
             if seen.contains(&full) {
                 continue;
             }
             seen.push(full.clone());
-            if seen.len() > MOST_FILES + 1 {
-                return Err(source.value(name, ValueFault::Entries { max: MOST_FILES as u64 }));
+            if seen.len() > MAX_FILES + 1 {
+                return Err(source.value(name, ValueReason::Entries { max: MAX_FILES as u64 }));
             }
-            let text = read(&full).map_err(|message| source.value(name, ValueFault::Unreadable(message)))?;
+            let text = read(&full).map_err(|message| source.value(name, ValueReason::Unreadable(message)))?;
             self.add(&full, &text, seen, read)?;
             self.files.push((full, text));
         }
@@ -69,7 +70,7 @@ impl Included {
     }
 }
 
-/// The path of a file that lies beside or below the file at `path`.
+/// Returns the path of a file in the folder of `path` or below.
 fn beside(path: &str, name: &Spanned<String>) -> Option<String> {
     let name = name.value.as_str();
     let below =

@@ -1,19 +1,19 @@
-//! From the names in a file to rows of what is switched on.
+//! Resolves names in a file to the enabled resources and passes.
 
 use super::error::{FileError, FileErrors, FileReason};
 use super::features::Features;
 use super::form::PassForm;
 use super::selected::{Declared, ENTRY, Mention, PassRow, SlotsOf, Wanted};
 use super::spanned::{Source, Spanned};
-use super::value::ValueFault;
+use super::value::ValueReason;
 use std::collections::HashMap;
 
-/// Names on the way to rows.
+/// Names and the rows they refer to.
 #[derive(Default)]
 pub(super) struct Names<'f> {
     pub(super) resources: HashMap<&'f str, usize>,
     pub(super) passes: HashMap<&'f str, usize>,
-    /// Ids that exist with other features, with their conditions.
+    /// Disabled ids with their conditions.
     pub(super) resources_off: HashMap<&'f str, &'f str>,
     pub(super) passes_off: HashMap<&'f str, &'f str>,
 }
@@ -28,7 +28,7 @@ impl Names<'_> {
     }
 }
 
-/// Looks names up for errors that say where they stand.
+/// Looks up names and reports errors with their positions.
 pub(super) struct Lookup<'s, 'n, 'f> {
     pub(super) source: Source<'s>,
     pub(super) names: &'n Names<'f>,
@@ -36,7 +36,7 @@ pub(super) struct Lookup<'s, 'n, 'f> {
 }
 
 impl<'f> Lookup<'_, '_, 'f> {
-    /// The row and version that a reference names. A `brief` error is only counted.
+    /// Returns the row and version of a reference. A `brief` error contains no suggestions.
     pub(super) fn reference(&self, at: &'f Spanned<String>, brief: bool) -> Result<(usize, Wanted), FileError> {
         let refused = |reason| self.source.unless(brief).error(at, reason);
         let (id, suffix) = match at.value.split_once('@') {
@@ -56,7 +56,7 @@ impl<'f> Lookup<'_, '_, 'f> {
         Ok((resource, version))
     }
 
-    /// Whether a condition holds; one that is no condition holds not, and is an error.
+    /// Returns `true` if a condition holds. Reports an invalid condition and treats it as false.
     pub(super) fn on(&self, when: Option<&Spanned<String>>, errors: &mut FileErrors) -> bool {
         let source = self.source.unless(errors.is_full());
         self.features.holds(source, when).unwrap_or_else(|error| {
@@ -65,7 +65,7 @@ impl<'f> Lookup<'_, '_, 'f> {
         })
     }
 
-    /// Finds the histories of the previous images that the file lists.
+    /// Looks up the histories of the declared previous images.
     pub(super) fn previous(&self, declared: &mut Vec<Declared<'f>>, errors: &mut FileErrors) {
         declared.retain_mut(|row| {
             let Declared::Previous(history, _, of) = row else {
@@ -79,20 +79,20 @@ impl<'f> Lookup<'_, '_, 'f> {
         });
     }
 
-    /// Finds the passes that a pass must run after.
+    /// Looks up the passes that a pass must run after.
     pub(super) fn after(&self, row: &mut PassRow<'f>, errors: &mut FileErrors) {
         for at in row.form.head().after {
             match self.names.pass(&at.value, errors.is_full()) {
                 Ok(pass) => row.after.push(pass),
-                // A pass that does not run has nothing to wait for.
+                // A disabled pass imposes no order.
                 Err(FileReason::SwitchedOff { .. }) => {}
                 Err(reason) => errors.push(|| self.source.error(at, reason)),
             }
         }
     }
 
-    /// Finds the resources that the accesses or slots of a pass name. What cannot be found may be a resource that the pass
-    /// writes: that is said by `blind`.
+    /// Looks up the resources in the accesses or slots of a pass. Sets `blind` if an unknown resource may be one that
+    /// the pass writes.
     pub(super) fn mentions(
         &self,
         row: &mut PassRow<'f>,
@@ -104,7 +104,7 @@ impl<'f> Lookup<'_, '_, 'f> {
             .reference(at, errors.is_full())
         {
             Ok((_, Wanted::Previous(_))) if writes => {
-                errors.push(|| self.source.value(at, ValueFault::WritesEarlierFrame));
+                errors.push(|| self.source.value(at, ValueReason::WritesEarlierFrame));
             }
             Ok((resource, version)) => row.mentions.push(Mention { index, resource, version, writes, at }),
             Err(error) => {
@@ -124,7 +124,7 @@ impl<'f> Lookup<'_, '_, 'f> {
                 let slots = slots_of(&p.kind.value).unwrap_or_default();
                 for (index, (slot, bound)) in p.slots.0.iter().enumerate() {
                     if let Some(known) = slots.iter().find(|s| s.name == slot.value) {
-                        mention(index, bound, known.takes.is_target(), errors);
+                        mention(index, bound, known.ty.is_target(), errors);
                     }
                 }
             }

@@ -1,4 +1,4 @@
-//! Words that uses give to templates, and parameters of plugins, in which they can stand.
+//! Template arguments, and plugin parameters that can contain them.
 
 use super::error::FileError;
 use super::spanned::{Raw, Source, Spanned, text_or};
@@ -6,17 +6,17 @@ use ron::value::RawValue;
 use serde::de::{Deserialize, DeserializeOwned, Deserializer};
 use std::ops::Range;
 
-/// What a name in braces stands for.
+/// The meaning of a template parameter.
 #[derive(Clone, Debug)]
 pub(super) enum Word {
-    /// A text, which stands in quotes in the file.
+    /// A quoted text.
     Text(Spanned<String>),
-    /// Any other value of RON, as it stands there: `6`, `High`, `(0.5, 2)`.
+    /// Any other RON value as text: `6`, `High`, `(0.5, 2)`.
     Value(String),
 }
 
 impl Word {
-    /// As part of a text.
+    /// The word as part of a text.
     pub(super) fn text(&self) -> &str {
         match self {
             Self::Text(text) => &text.value,
@@ -24,7 +24,7 @@ impl Word {
         }
     }
 
-    /// As a value of RON.
+    /// The word as a RON value.
     fn ron(&self) -> String {
         match self {
             Self::Text(text) => format!("{:?}", text.value),
@@ -42,18 +42,18 @@ impl<'de> Deserialize<'de> for Word {
     }
 }
 
-/// The parameters of one entry, which only its plugin can parse.
+/// Plugin parameters of an entry. Only the plugin can parse them.
 #[derive(Clone, Debug)]
 pub(super) struct Params {
     raw: Raw,
-    /// The text with words in the places of names in braces, once there are any.
+    /// The text with template parameters replaced, if it contains any.
     filled: Option<Filled>,
 }
 
 #[derive(Clone, Debug, Default)]
 struct Filled {
     text: String,
-    /// Where each word stands in `text`, and where in the file's the braces stand that it is for, in bytes.
+    /// Byte range of each inserted word in `text`, and of the braces it replaces in the file.
     words: Vec<(Range<usize>, Range<usize>)>,
 }
 
@@ -64,8 +64,8 @@ impl<'de> Deserialize<'de> for Params {
 }
 
 impl Params {
-    /// Puts words in the places of the names in braces that `meaning` knows: in a text part of it, and for a text that is a
-    /// name in braces and nothing else the value itself, `"{levels}"` for 6. All other braces are the plugin's own.
+    /// Replaces the names in braces that `meaning` knows. A text that consists of a single name becomes the value
+    /// itself: `"{levels}"` becomes 6. Other braces belong to the plugin.
     pub(super) fn fill(&mut self, source: Source<'_>, meaning: impl Fn(&str) -> Option<Word>) {
         let text = source.text_of(&self.raw);
         let (mut filled, mut copied) = (Filled::default(), 0);
@@ -85,10 +85,11 @@ impl Params {
         self.filled = (!filled.words.is_empty()).then_some(filled);
     }
 
-    /// Parses them.
+    /// Parses the parameters.
     ///
     /// # Errors
-    /// With the place in the file; what is wrong in a word stands at its braces.
+    /// Returns an error with its position in the file. For an error in an inserted word, that is the position of the
+    /// braces.
     pub(super) fn parse<T: DeserializeOwned>(&self, source: Source<'_>) -> Result<T, FileError> {
         match &self.filled {
             None => source.parse(&self.raw),

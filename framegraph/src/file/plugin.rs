@@ -1,19 +1,19 @@
-//! Passes and effects that files name by kind: the door between names in data and typed handles in code.
+//! Plugins: passes and effects that files refer to by kind.
 
 use super::error::FileError;
 use super::params::Params;
 use super::slot::PluginSlot;
 use super::spanned::Source;
 use crate::error::DeclareError;
-use crate::faults::faults;
+use crate::error_macros::error_enum;
 use crate::graph::Graph;
 use crate::handle::{Buffer, ReadOnly, Target, Texture};
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 
-/// What a file's passes are declared into: a graph, or what a back end puts around one.
+/// Destination of the passes of a file: a graph, or a back end's frame that contains one.
 pub trait Host {
-    /// The graph inside.
+    /// Returns the contained graph.
     fn graph(&mut self) -> &mut Graph;
 }
 
@@ -23,42 +23,45 @@ impl Host for Graph {
     }
 }
 
-/// A pass, or an effect of several passes, that a file can name.
+/// A pass, or an effect of several passes, that a file can use.
 ///
-/// `H` is what it declares into: [`Graph`] for planning alone, or a back end's frame, which takes recorders along.
+/// `H` is the type that it declares into: [`Graph`] for planning only, or a back end's frame that also stores
+/// recorders.
 pub trait Plugin<H: ?Sized> {
-    /// Its slots. The file may bind no others.
+    /// Slots that a file can bind.
     fn slots(&self) -> &[PluginSlot];
 
-    /// Declares the passes of one entry of a file. Names them `call.name()`, or `call.name()/…` when there are several.
+    /// Declares the passes of one entry of a file.
+    ///
+    /// Passes must be named `call.name()`, or `call.name()/…` if there are several.
     ///
     /// # Errors
-    /// A refused declaration, parameters that do not fit, or a reason of its own ([`PluginError::Custom`]).
+    /// Returns an error for an invalid declaration, invalid parameters, or a custom reason ([`PluginError::Custom`]).
     fn declare(&self, host: &mut H, call: &mut Call<'_>) -> Result<(), PluginError>;
 }
 
-/// The plugins that files may name, by kind.
+/// The plugins available to files, by kind.
 pub struct Registry<'p, H: ?Sized> {
     kinds: BTreeMap<String, Box<dyn Plugin<H> + 'p>>,
 }
 
 impl<'p, H: ?Sized> Registry<'p, H> {
-    /// No plugins.
+    /// Creates an empty registry.
     pub fn new() -> Self {
         Self { kinds: BTreeMap::new() }
     }
 
-    /// Lets files name `plugin` as `kind`; returns whether that replaced another one.
+    /// Registers `plugin` as `kind`. Returns `true` if it replaced another plugin.
     pub fn insert(&mut self, kind: &str, plugin: impl Plugin<H> + 'p) -> bool {
         self.kinds.insert(kind.into(), Box::new(plugin)).is_some()
     }
 
-    /// The kinds, in alphabetical order.
+    /// The registered kinds, in alphabetical order.
     pub fn kinds(&self) -> impl Iterator<Item = &str> {
         self.kinds.keys().map(String::as_str)
     }
 
-    /// The slots of a kind, in the order in which its plugin lists them; none for a kind that nothing has.
+    /// The slots of a kind, in the order of its plugin; `None` for an unknown kind.
     pub fn slots(&self, kind: &str) -> Option<&[PluginSlot]> {
         self.get(kind).map(Plugin::slots)
     }
@@ -80,14 +83,14 @@ impl<H: ?Sized> std::fmt::Debug for Registry<'_, H> {
     }
 }
 
-faults! {
-    /// Why a plugin declared nothing.
+error_enum! {
+    /// Reason why a plugin declared nothing.
     PluginError {
-        /// The graph refused a declaration.
+        /// The graph rejected a declaration.
         Declare(error: DeclareError) => (error.to_string(), String::new());
-        /// The parameters do not fit; the error says where they stand.
+        /// The parameters are invalid; the error contains the position.
         Params(error: FileError) => (error.to_string(), String::new());
-        /// A reason of the plugin's own, and what to do:
+        /// Custom error of the plugin, with a hint:
         Custom { message: String, hint: String } "{message}", "{hint}";
     }
 }
@@ -104,7 +107,7 @@ impl From<FileError> for PluginError {
     }
 }
 
-/// A handle that a slot is bound to, or that a plugin gave back.
+/// A handle that a slot is bound to, or that a plugin returned.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Handle {
     Texture(Texture),
@@ -112,19 +115,19 @@ pub(super) enum Handle {
     ReadOnly(ReadOnly),
 }
 
-/// One slot that the file binds.
+/// A slot that the file binds.
 #[derive(Debug)]
 pub(super) struct Binding<'f> {
     pub(super) slot: PluginSlot,
-    /// The name that the file gives.
+    /// The name in the file.
     pub(super) name: &'f str,
-    /// What is there; none for a target that the plugin makes.
+    /// The bound resource; `None` for a target that the plugin creates.
     pub(super) handle: Option<Handle>,
-    /// What the plugin wrote.
+    /// The result that the plugin returned.
     pub(super) given: Option<Handle>,
 }
 
-/// One entry of a file, as its plugin sees it.
+/// One entry of a file, as passed to its plugin.
 #[derive(Debug)]
 pub struct Call<'f> {
     pub(super) source: Source<'f>,
@@ -134,20 +137,20 @@ pub struct Call<'f> {
 }
 
 impl Call<'_> {
-    /// The name of the entry: what its passes are to be called.
+    /// Name of the entry, to be used for its passes.
     pub fn name(&self) -> &str {
         self.name
     }
 
-    /// Whether the file gives parameters.
+    /// Returns `true` if the file sets parameters.
     pub fn has_params(&self) -> bool {
         self.params.is_some()
     }
 
-    /// The parameters; those that the file leaves out take `T`'s defaults.
+    /// Parses the parameters. Parameters that the file does not set have `T`'s defaults.
     ///
     /// # Errors
-    /// Fields that `T` does not have, lacks, or cannot hold, with their place in the file.
+    /// Returns an error with its position in the file if a field is unknown, missing or invalid.
     pub fn params<T: DeserializeOwned>(&self) -> Result<T, FileError> {
         match self.params {
             Some(params) => params.parse(self.source),
@@ -155,7 +158,7 @@ impl Call<'_> {
         }
     }
 
-    /// The texture to read that the slot is bound to; none when it is left unbound.
+    /// Returns the texture bound to a slot, for reading; `None` if the slot is unbound.
     pub fn texture(&self, slot: &str) -> Option<ReadOnly> {
         match self.binding(slot)?.handle? {
             Handle::Texture(texture) => Some(texture.read_only()),
@@ -164,7 +167,8 @@ impl Call<'_> {
         }
     }
 
-    /// As [`Call::texture`], as a handle of the resource's own version: none also for an earlier image of a history.
+    /// Returns the texture bound to a slot, as a writable handle. `None` if the slot is unbound or bound to an earlier
+    /// history image.
     pub fn current(&self, slot: &str) -> Option<Texture> {
         match self.binding(slot)?.handle? {
             Handle::Texture(texture) => Some(texture),
@@ -172,7 +176,7 @@ impl Call<'_> {
         }
     }
 
-    /// The buffer that the slot is bound to, to read or to write; none when it is left unbound, or the plugin makes it.
+    /// Returns the buffer bound to a slot; `None` if the slot is unbound, or if the plugin creates the buffer.
     pub fn buffer(&self, slot: &str) -> Option<Buffer> {
         match self.binding(slot)?.handle? {
             Handle::Buffer(buffer) => Some(buffer),
@@ -180,23 +184,23 @@ impl Call<'_> {
         }
     }
 
-    /// Where the result of a target slot goes, and what to call it if the plugin makes it.
+    /// Returns the destination of a target slot, and the name of a texture that the plugin creates for it.
     pub fn target(&self, slot: &str) -> (Target, Option<&str>) {
         let into = self.current(slot).map_or(Target::New, |texture| Target::Into(texture.into()));
         (into, self.bound(slot))
     }
 
-    /// The name that the file binds to a slot; none when it is left unbound.
+    /// Returns the name that the file binds to a slot; `None` if the slot is unbound.
     pub fn bound(&self, slot: &str) -> Option<&str> {
         self.binding(slot).map(|b| b.name)
     }
 
-    /// Hands over the texture that a target slot now stands for. Every bound target must be given.
+    /// Returns the result of a target slot to the file. Required for every bound target.
     pub fn give(&mut self, slot: &str, texture: Texture) {
         self.put(slot, Handle::Texture(texture));
     }
 
-    /// Hands over the buffer that a target slot now stands for. Every bound target must be given.
+    /// Returns the result of a target slot, a buffer, to the file. Required for every bound target.
     pub fn give_buffer(&mut self, slot: &str, buffer: Buffer) {
         self.put(slot, Handle::Buffer(buffer));
     }

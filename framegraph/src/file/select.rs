@@ -1,8 +1,8 @@
-//! What a file declares once its features are set: conditions evaluated, names looked up.
+//! Selects the enabled entries of a file and resolves their names.
 //!
-//! A reference is a name and which version is meant: `"hdr"` is the newest one at that place of the file, `"hdr@scene"`
-//! the one that pass `scene` wrote, wherever that pass stands, `"hdr@entry"` the contents before any pass wrote them, and
-//! `"taa@-1"` the history `taa` one frame ago.
+//! A reference consists of a name and a version. `"hdr"` is the newest version at that position of the file;
+//! `"hdr@scene"` is the version written by pass `scene`, at any position. `"hdr@entry"` is the initial version, and
+//! `"taa@-1"` is the image of history `taa` one frame ago.
 
 use super::error::{FileError, FileErrors, FileReason};
 use super::expand::Expanded;
@@ -11,9 +11,9 @@ use super::form::{ExportForm, PassForm, ResourceForm};
 use super::names::{Lookup, Names};
 use super::selected::{Declared, Mention, PassRow, Selected, SlotsOf};
 use super::spanned::{Source, Spanned};
-use super::value::ValueFault;
+use super::value::ValueReason;
 
-/// Looks everything up; what cannot be found goes to `errors`.
+/// Resolves all names and collects errors.
 pub(super) fn select<'f>(
     source: Source<'_>,
     entries: &'f Expanded,
@@ -82,7 +82,7 @@ fn duplicate(source: Source<'_>, what: &'static str, id: &Spanned<String>) -> Fi
     source.error(id, FileReason::Duplicate { what, name: id.value.clone() })
 }
 
-/// The resources that are switched on.
+/// Adds the enabled resources.
 fn resources<'f>(
     source: Source<'_>,
     forms: &'f [ResourceForm],
@@ -107,7 +107,7 @@ fn resources<'f>(
             continue;
         }
         if head.id.value.is_empty() || head.id.value.contains('@') {
-            errors.push(|| source.value(head.id, ValueFault::Id(head.id.value.clone())));
+            errors.push(|| source.value(head.id, ValueReason::Id(head.id.value.clone())));
         }
         if names.resources.insert(&head.id.value, out.resources.len()).is_some() {
             errors.push(|| duplicate(source, "resource", head.id));
@@ -117,8 +117,10 @@ fn resources<'f>(
     }
 }
 
-/// A target slot bound to a name that nothing has makes a resource of that name. So does any slot that nobody knows, since
-/// it may be a misspelt one: that is one error, not one more for each pass that names what it makes.
+/// Adds the resources that plugins create: names bound to a target slot that no resource has.
+///
+/// An unknown slot counts as a target, because it may be misspelled. This avoids further errors in passes that use its
+/// result.
 fn name_what_plugins_make<'f>(out: &mut Selected<'f>, names: &mut Names<'f>, slots_of: &SlotsOf<'_>) {
     for row in &out.passes {
         let PassForm::Plugin(plugin) = row.form else {
@@ -127,7 +129,7 @@ fn name_what_plugins_make<'f>(out: &mut Selected<'f>, names: &mut Names<'f>, slo
         let slots = slots_of(&plugin.kind.value);
         for (slot, bound) in &plugin.slots.0 {
             let known = slots.and_then(|slots| slots.iter().find(|s| s.name == slot.value));
-            let target = known.is_none_or(|slot| slot.takes.is_target());
+            let target = known.is_none_or(|slot| slot.ty.is_target());
             let id = bound.value.as_str();
             let free = !names.resources.contains_key(id) && !names.resources_off.contains_key(id);
             if target && free && !id.contains('@') && !id.is_empty() {

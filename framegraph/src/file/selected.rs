@@ -1,39 +1,39 @@
-//! The rows of what a file has switched on.
+//! The enabled entries of a file.
 
 use super::form::{ExportForm, ForwardForm, PassForm, ResourceForm};
 use super::slot::PluginSlot;
 use super::spanned::Spanned;
 
-/// Everything that is switched on.
+/// Everything that is enabled.
 #[derive(Debug, Default)]
 pub(super) struct Selected<'f> {
-    /// The ids of resources that passes can name: declared ones in the order of the file, then those that plugins make.
+    /// Ids of resources: declared ones in the order of the file, then those created by plugins.
     pub(super) resources: Vec<&'f str>,
     /// Passes in the order of the file.
     pub(super) passes: Vec<PassRow<'f>>,
     /// Exports in the order of the file.
     pub(super) exports: Vec<(&'f ExportForm, Mention<'f>)>,
-    /// Forwards in the order of the file, with what goes and where it goes.
+    /// Forwards in the order of the file, with source and target.
     pub(super) forwards: Vec<(&'f ForwardForm, usize, usize)>,
-    /// By resource: passes that are in error would have written it.
+    /// By resource: an invalid pass would have written it.
     pub(super) lost: Vec<bool>,
-    /// A pass in error writes something that could not be found, so nobody knows what is lost.
+    /// An invalid pass writes an unknown resource, so the set of lost resources is incomplete.
     pub(super) blind: bool,
-    /// The declared resources, and previous images among them, in the order of the file.
+    /// Declared resources and previous images, in the order of the file.
     pub(super) declared: Vec<Declared<'f>>,
 }
 
-/// What is declared before the passes.
+/// A declaration before the passes.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Declared<'f> {
     /// A row of [`Selected::resources`].
     Resource(usize, &'f ResourceForm),
-    /// The image of a history (a row of [`Selected::resources`]), that many frames ago.
+    /// The image of a history, a row of [`Selected::resources`], from that many frames ago.
     Previous(usize, u8, &'f Spanned<String>),
 }
 
 impl Selected<'_> {
-    /// The pass is in error: what it writes is lost.
+    /// Marks a pass as invalid, and its results as lost.
     pub(super) fn fail(&mut self, pass: usize) {
         let Self { passes, lost, .. } = self;
         passes[pass].failed = true;
@@ -45,15 +45,15 @@ impl Selected<'_> {
 pub(super) struct PassRow<'f> {
     pub(super) id: &'f Spanned<String>,
     pub(super) form: &'f PassForm,
-    /// Rows of passes that must run before, as far as they are switched on.
+    /// Rows of enabled passes that must run before.
     pub(super) after: Vec<usize>,
-    /// What it names, in the order of its accesses or slots that are switched on.
+    /// Resources it refers to, in the order of its enabled accesses or slots.
     pub(super) mentions: Vec<Mention<'f>>,
-    /// Something is wrong with it, or with what it needs: it is not declared.
+    /// The pass or one of its inputs is invalid, so it is not declared.
     pub(super) failed: bool,
 }
 
-/// One mention of a resource.
+/// A reference to a resource.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mention<'f> {
     /// Index of the access or slot within the pass's form; 0 for an export.
@@ -62,25 +62,25 @@ pub(super) struct Mention<'f> {
     pub(super) resource: usize,
     pub(super) version: Wanted,
     pub(super) writes: bool,
-    /// Where it stands.
+    /// Position in the file.
     pub(super) at: &'f Spanned<String>,
 }
 
-/// Which version is meant.
+/// The version that a reference requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wanted {
-    /// The newest one at that place of the file.
+    /// The newest version at that position of the file.
     Newest,
-    /// The one that this pass wrote.
+    /// The version written by this pass.
     By(usize),
-    /// The contents on entry, before any pass wrote them.
+    /// The initial version.
     Entry,
-    /// The image of that many frames ago.
+    /// The image from that many frames ago.
     Previous(u8),
 }
 
-/// The word that means the contents on entry; no pass can be called so.
+/// The reserved word for the initial version; not allowed as the name of a pass.
 pub(super) const ENTRY: &str = "entry";
 
-/// The slots of a kind of plugin.
+/// Returns the slots of a kind of plugin.
 pub(super) type SlotsOf<'r> = dyn Fn(&str) -> Option<&'r [PluginSlot]> + 'r;

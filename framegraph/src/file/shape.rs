@@ -1,14 +1,14 @@
-//! Shapes as files spell them: numbers checked and made to fit.
+//! Descriptors in files: validates and converts numbers.
 
 use super::entries::Count;
 use super::error::FileError;
 use super::features::Features;
 use super::form::{BufferForm, Origin, Size, TextureForm};
 use super::spanned::{Source, Spanned};
-use super::value::ValueFault;
+use super::value::ValueReason;
 use crate::resource::{BufferSize, Extent, TextureDesc};
 
-/// The shape of a texture.
+/// Returns the descriptor of a texture.
 pub(super) fn texture(source: Source<'_>, features: &Features, form: &TextureForm) -> Result<TextureDesc, FileError> {
     let number = |at: &Option<Spanned<Count>>, what, max, all| match at {
         None => Ok(1),
@@ -27,10 +27,10 @@ pub(super) fn texture(source: Source<'_>, features: &Features, form: &TextureFor
     })
 }
 
-/// The size of a buffer.
+/// Returns the size of a buffer.
 pub(super) fn buffer(source: Source<'_>, features: &Features, form: &BufferForm) -> Result<BufferSize, FileError> {
     if let Origin::History { .. } = form.kind {
-        return Err(source.value(&form.name, ValueFault::BufferHistory));
+        return Err(source.value(&form.name, ValueReason::BufferHistory));
     }
     let most = if form.per_texel_of.is_some() { u64::from(u32::MAX) } else { u64::MAX };
     let bytes = count(source, features, &form.bytes, "bytes", most, false)?;
@@ -40,7 +40,7 @@ pub(super) fn buffer(source: Source<'_>, features: &Features, form: &BufferForm)
     Ok(BufferSize::PerTexel { bytes: bytes as u32, extent: extent(source, texels)? })
 }
 
-/// A number from 1 to `max`; 0 stands for all where that is allowed.
+/// Returns a number from 1 to `max`, or 0 for "all" where allowed.
 fn count(
     source: Source<'_>,
     features: &Features,
@@ -51,19 +51,20 @@ fn count(
 ) -> Result<u64, FileError> {
     let fault = match &number.value {
         Count::All if all => return Ok(0),
-        Count::All => ValueFault::All { what },
+        Count::All => ValueReason::All { what },
         Count::Fixed(value) if (1..=max).contains(value) => return Ok(*value),
-        Count::Fixed(value) => ValueFault::Count { what, value: *value, max, all },
+        Count::Fixed(value) => ValueReason::Count { what, value: *value, max, all },
         Count::Choice(choices) => match choice(source, features, choices)? {
             Some(value) if (1..=max).contains(&value) => return Ok(value),
-            Some(value) => ValueFault::Count { what, value, max, all },
-            None => ValueFault::NoChoice { what },
+            Some(value) => ValueReason::Count { what, value, max, all },
+            None => ValueReason::NoChoice { what },
         },
     };
     Err(source.value(number, fault))
 }
 
-/// The value beside the first condition that holds. All of them are looked at, so that none hides a misspelt name.
+/// Returns the value of the first condition that holds. Evaluates all conditions, so that misspelled names are always
+/// reported.
 fn choice(
     source: Source<'_>,
     features: &Features,
@@ -87,5 +88,5 @@ fn extent(source: Source<'_>, size: &Spanned<Size>) -> Result<Extent, FileError>
         Size::Scale { align: 0, .. } => "an alignment of 0 texels",
         size => return Ok(size.into()),
     };
-    Err(source.value(size, ValueFault::Zero(zero)))
+    Err(source.value(size, ValueReason::Zero(zero)))
 }

@@ -1,44 +1,44 @@
-//! The slots of plugins: names by which a file binds resources.
+//! Slots of plugins, to which files bind resources.
 
-/// What a slot of a plugin is bound to.
+/// Type of a plugin slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Takes {
-    /// A texture that is read; an earlier image of a history too.
+pub enum SlotType {
+    /// A texture that is read, including earlier history images.
     Texture,
     /// A buffer that is read.
     Buffer,
-    /// A texture that is written: one that the file declares, or one that the plugin makes under that name.
+    /// A texture that is written: declared by the file, or created by the plugin under that name.
     Target,
-    /// A buffer that is written, likewise.
+    /// A buffer that is written: declared by the file, or created by the plugin under that name.
     TargetBuffer,
 }
 
-impl Takes {
-    /// Whether the plugin writes what the slot is bound to.
+impl SlotType {
+    /// Returns `true` if the plugin writes the resource.
     pub(super) const fn is_target(self) -> bool {
         matches!(self, Self::Target | Self::TargetBuffer)
     }
 }
 
-/// A name by which a file binds a resource to a plugin.
+/// A named input or output of a plugin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PluginSlot {
-    /// The name in files.
+    /// Name in files.
     pub name: &'static str,
-    /// What it is bound to.
-    pub takes: Takes,
-    /// May be left unbound.
+    /// Type of the slot.
+    pub ty: SlotType,
+    /// The slot may be left unbound.
     pub optional: bool,
 }
 
 impl PluginSlot {
-    /// A slot that must be bound.
-    pub const fn required(name: &'static str, takes: Takes) -> Self {
-        Self { name, takes, optional: false }
+    /// Creates a slot that must be bound.
+    pub const fn required(name: &'static str, ty: SlotType) -> Self {
+        Self { name, ty, optional: false }
     }
 
-    /// A slot that may be left unbound.
-    pub const fn optional(name: &'static str, takes: Takes) -> Self {
-        Self { name, takes, optional: true }
+    /// Creates a slot that may be left unbound.
+    pub const fn optional(name: &'static str, ty: SlotType) -> Self {
+        Self { name, ty, optional: true }
     }
 }

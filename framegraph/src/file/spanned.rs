@@ -1,24 +1,24 @@
-//! Values that remember where they stand in the text, so that errors found after parsing still point at them.
+//! Values with their position in the text, for errors found after parsing.
 //!
-//! RON hands a value's own text out as a slice of the whole ([`RawValue`]); the address of that slice, less the address of
-//! the text, is the place.
+//! RON returns the text of a value as a slice of the whole text ([`RawValue`]). The difference of the addresses is the
+//! position.
 
 use super::error::{FileError, FileReason};
 use super::syntax;
-use super::value::ValueFault;
+use super::value::ValueReason;
 use ron::value::RawValue;
 use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error};
 
-/// A value with the address of its first byte.
+/// A value and the address of its first byte.
 #[derive(Clone, Debug)]
 pub(super) struct Spanned<T> {
-    /// What stands there.
+    /// The parsed value.
     pub(super) value: T,
-    /// Address of the first byte, inside of the text that was parsed.
+    /// Address of the first byte, inside of the parsed text.
     address: usize,
 }
 
-/// Wraps the address of a value that failed to parse, in the message that serde lets through.
+/// Delimits the address of an invalid value in an error message that passes through serde.
 const MARK: char = '\u{1}';
 
 impl<'de, T: DeserializeOwned> Deserialize<'de> for Spanned<T> {
@@ -33,7 +33,7 @@ fn spanned<T: DeserializeOwned, E: Error>(raw: &RawValue) -> Result<Spanned<T>, 
     let address = text.as_ptr().addr();
     match syntax::options().from_str(text) {
         Ok(value) => Ok(Spanned { value, address }),
-        // A value inside of this one has said already where it stands.
+        // A nested value has already added its position.
         Err(ron::error::SpannedError { code: ron::Error::Message(inner), .. }) if inner.starts_with(MARK) => {
             Err(E::custom(inner))
         }
@@ -45,14 +45,14 @@ fn spanned<T: DeserializeOwned, E: Error>(raw: &RawValue) -> Result<Spanned<T>, 
     }
 }
 
-/// A value that is kept as text, to be parsed by whoever knows its form.
+/// A value kept as text, to be parsed later.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Raw {
     address: usize,
     bytes: usize,
 }
 
-/// Reads a value that may be a text in quotes, which is kept with its place, or else a `T`.
+/// Reads a quoted text with its position, or else a `T`.
 pub(super) fn text_or<'de, T: DeserializeOwned, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Result<Spanned<String>, T>, D::Error> {
@@ -69,44 +69,44 @@ impl<'de> Deserialize<'de> for Raw {
     }
 }
 
-/// A message that carries its place through serde.
+/// Returns a message that carries a position through serde.
 fn marked(address: usize, message: &str, hint: &str) -> String {
     format!("{MARK}{address}{MARK}{message}{MARK}{hint}")
 }
 
 impl<T> Spanned<T> {
-    /// An error about this value, for a form that refuses it while it is read.
+    /// Creates an error about this value, during deserialization.
     pub(super) fn refuse<E: Error>(&self, message: &str, hint: &str) -> E {
         E::custom(marked(self.address, message, hint))
     }
 }
 
-/// The text of a file and what to call it.
+/// The text and path of a file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source<'t> {
     pub(super) path: &'t str,
     pub(super) text: &'t str,
-    /// The files that it includes, as path and text.
+    /// Included files, as path and text.
     pub(super) included: &'t [(String, String)],
 }
 
 impl<'t> Source<'t> {
-    /// The source for an error that is only counted: it looks no place up.
+    /// Returns a source for errors that are only counted: it skips the search for positions.
     pub(super) fn unless(self, counted_only: bool) -> Self {
         if counted_only { Self { text: "", included: &[], ..self } } else { self }
     }
 
-    /// Whether errors are only counted.
+    /// Returns `true` if errors are only counted.
     pub(super) fn is_brief(self) -> bool {
         self.text.is_empty()
     }
 
-    /// Line and column of a value, both from 1; columns count characters.
+    /// Returns line and column of a value, both from 1; columns count characters.
     pub(super) fn place<T>(&self, at: &Spanned<T>) -> (usize, usize) {
         self.place_at(at.address)
     }
 
-    /// The file that holds the address.
+    /// Returns path and text of the file that contains an address.
     fn holding(&self, address: usize) -> (&'t str, &'t str) {
         let holds = |text: &str| (text.as_ptr().addr()..text.as_ptr().addr() + text.len()).contains(&address);
         let found = self.included.iter().find(|(_, text)| holds(text));
@@ -122,23 +122,23 @@ impl<'t> Source<'t> {
         (line, column)
     }
 
-    /// An error at a value.
+    /// Creates an error at a value.
     pub(super) fn error<T>(&self, at: &Spanned<T>, reason: FileReason) -> FileError {
         let (path, _) = self.holding(at.address);
         FileError { path: path.into(), ..self.error_at(self.place(at), reason) }
     }
 
-    /// An error at a line and column.
+    /// Creates an error at a line and column.
     pub(super) fn error_at(&self, (line, column): (usize, usize), reason: FileReason) -> FileError {
         FileError { path: self.path.into(), line, column, pass: None, resource: None, reason: Box::new(reason) }
     }
 
-    /// An error about a value that cannot be.
-    pub(super) fn value<T>(&self, at: &Spanned<T>, fault: ValueFault) -> FileError {
+    /// Creates an error about an invalid value.
+    pub(super) fn value<T>(&self, at: &Spanned<T>, fault: ValueReason) -> FileError {
         self.error(at, FileReason::Value(fault))
     }
 
-    /// What RON refused: at the marked value, or where the parser stood.
+    /// Converts an error of RON, at the marked value or else at the parser's position.
     pub(super) fn refused(&self, error: &ron::error::SpannedError) -> FileError {
         if let ron::Error::Message(message) = &error.code
             && let [_, address, message, hint] = message.splitn(4, MARK).collect::<Vec<_>>().as_slice()
@@ -152,19 +152,19 @@ impl<'t> Source<'t> {
         self.error_at(place, FileReason::Syntax { message, hint })
     }
 
-    /// The text of a value that was kept.
+    /// Returns the text of an unparsed value.
     pub(super) fn text_of(&self, raw: &Raw) -> &'t str {
         let (_, text) = self.holding(raw.address);
         let offset = raw.address.saturating_sub(text.as_ptr().addr());
         text.get(offset..offset + raw.bytes).unwrap_or_default()
     }
 
-    /// Parses a value that was kept as text.
+    /// Parses a value kept as text.
     pub(super) fn parse<T: Deserialize<'t>>(&self, raw: &Raw) -> Result<T, FileError> {
         self.parse_for(raw, self.text_of(raw), |byte| byte)
     }
 
-    /// Parses `text` in the place of a value that was kept; `in_value` leads from a byte of it to one of the value.
+    /// Parses `text` in place of the value `raw`. For errors, `in_value` maps byte offsets in `text` to offsets in `raw`.
     pub(super) fn parse_for<'a, T: Deserialize<'a>>(
         &self,
         raw: &Raw,
@@ -180,7 +180,7 @@ impl<'t> Source<'t> {
     }
 }
 
-/// Bytes before a line and column of `text`.
+/// Returns the number of bytes before a line and column of `text`.
 fn offset_of(text: &str, at: ron::error::Position) -> usize {
     let start: usize = text.split_inclusive('\n').take(at.line.saturating_sub(1)).map(str::len).sum();
     let rest = &text[start..];
@@ -188,7 +188,7 @@ fn offset_of(text: &str, at: ron::error::Position) -> usize {
     start + rest.char_indices().nth(column).map_or(rest.len(), |(byte, _)| byte)
 }
 
-/// Bytes of spaces and comments at the start.
+/// Returns the number of bytes of white space and comments at the start.
 fn trivia(text: &str) -> usize {
     let mut rest = text;
     loop {
@@ -203,7 +203,7 @@ fn trivia(text: &str) -> usize {
     }
 }
 
-/// What follows a block comment; they nest.
+/// Returns the text after a block comment; comments nest.
 fn after_block(text: &str) -> &str {
     let mut depth = 0;
     let mut at = 0;
@@ -232,7 +232,7 @@ mod tests {
         struct Form {
             a: Spanned<String>,
         }
-        let form: Form = syntax::options().from_str(text).expect("the text is sound");
+        let form: Form = syntax::options().from_str(text).expect("the text is valid");
         Source { path: "", text, included: &[] }.place(&form.a)
     }
 

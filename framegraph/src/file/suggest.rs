@@ -1,33 +1,33 @@
-//! The name that was probably meant.
+//! Suggestions for misspelled names.
 
-/// Longer names are not compared.
-const MOST_BYTES: usize = 200;
+/// Maximum length of names that are compared, in bytes.
+const MAX_BYTES: usize = 200;
 
-/// The most slips that a name is forgiven, however long it is.
-const MOST_SLIPS: usize = 12;
+/// Maximum edit distance of a suggestion.
+const MAX_DISTANCE: usize = 12;
 
-/// Candidates are compared until so many pairs of letters were looked at: some ten milliseconds. Names of usual length
-/// reach it beyond ten thousand candidates.
-const MOST_PAIRS: usize = 1 << 22;
+/// Maximum number of compared character pairs, about ten milliseconds. Names of usual length reach it at ten thousand
+/// candidates.
+const MAX_PAIRS: usize = 1 << 22;
 
-/// The candidate nearest to `name`, if it is near: at most a third of its letters away and twelve, one at least, and never
-/// all.
+/// Returns the closest candidate to `name`. Its distance must be at most a third of the length, at most twelve, and
+/// less than the length.
 pub(super) fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     search(name, candidates).0
 }
 
-/// The nearest candidate, and how many pairs of letters were looked at.
+/// Returns the closest candidate and the number of compared character pairs.
 fn search<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> (Option<&'c str>, usize) {
     let (mut best, mut pairs) = (None, 0);
-    if name.len() > MOST_BYTES {
+    if name.len() > MAX_BYTES {
         return (best, pairs);
     }
     let letters: Vec<char> = name.to_lowercase().chars().collect();
-    let allowed = (letters.len() / 3).clamp(1, MOST_SLIPS).min(letters.len().saturating_sub(1));
-    // Only one that is nearer than the best so far is of use.
+    let allowed = (letters.len() / 3).clamp(1, MAX_DISTANCE).min(letters.len().saturating_sub(1));
+    // Only a closer candidate can replace the best so far.
     let mut limit = Some(allowed);
-    for candidate in candidates.into_iter().filter(|candidate| candidate.len() <= MOST_BYTES) {
-        let Some(most) = limit.filter(|_| pairs < MOST_PAIRS) else { break };
+    for candidate in candidates.into_iter().filter(|candidate| candidate.len() <= MAX_BYTES) {
+        let Some(most) = limit.filter(|_| pairs < MAX_PAIRS) else { break };
         let other: Vec<char> = candidate.to_lowercase().chars().collect();
         if let Some(found) = distance(&letters, &other, most, &mut pairs) {
             (best, limit) = (Some(candidate), found.checked_sub(1));
@@ -36,9 +36,10 @@ fn search<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> (Opt
     (best, pairs)
 }
 
-/// Insertions, deletions, changes and swaps of neighbours from `a` to `b` (optimal string alignment), none when they are
-/// more than `limit`. Looks at the pairs of letters that are at most `limit` places apart (Ukkonen 1985), as far as some
-/// row stays within it, and counts them.
+/// Returns the optimal string alignment distance: insertions, deletions, substitutions and transpositions. `None` if it
+/// exceeds `limit`.
+///
+/// Compares only pairs within `limit` positions of the diagonal (Ukkonen 1985), and counts them.
 fn distance(a: &[char], b: &[char], limit: usize, pairs: &mut usize) -> Option<usize> {
     if a.len().abs_diff(b.len()) > limit {
         return None;
@@ -50,7 +51,7 @@ fn distance(a: &[char], b: &[char], limit: usize, pairs: &mut usize) -> Option<u
     for i in 1..=a.len() {
         let band = i.saturating_sub(limit).max(1)..=(i + limit).min(b.len());
         *pairs += 1 + band.clone().count();
-        // What lies beside the band is beyond the limit.
+        // Cells outside of the band exceed the limit.
         row.fill(beyond);
         row[0] = i;
         for j in band {
@@ -86,7 +87,7 @@ mod tests {
         assert_eq!(nearest("ssao", names), None);
         assert_eq!(nearest("", names), None);
         assert_eq!(nearest("a", ["b"]), None);
-        // The nearest wins, of equals the first.
+        // The closest candidate wins; of equals, the first.
         assert_eq!(nearest("shadow", ["shadwos", "shadows", "shadown"]), Some("shadows"));
     }
 
@@ -100,11 +101,11 @@ mod tests {
 
     #[test]
     fn a_band_finds_what_the_whole_table_finds() {
-        // Words of six and of three letters over an alphabet of two.
+        // All words of six and of three letters over a two-letter alphabet.
         let words: Vec<String> =
             (0..64).map(|n| format!("{n:06b}")).chain((0..8).map(|n| format!("{n:03b}"))).collect();
         for (a, b) in words.iter().flat_map(|a| words.iter().map(move |b| (a, b))) {
-            let whole = slips(a, b, 9).expect("no two are so far apart");
+            let whole = slips(a, b, 9).expect("all distances are below 9");
             for limit in 0..6 {
                 assert_eq!(slips(a, b, limit), (whole <= limit).then_some(whole), "{a} {b} {limit}");
             }
@@ -113,14 +114,14 @@ mod tests {
 
     #[test]
     fn the_work_is_bounded() {
-        // Strangers end after a few rows of the band.
+        // Very different words end after a few rows of the band.
         let (mut pairs, [a, b]) = (0, ["a", "b"].map(|letter| letter.repeat(190).chars().collect::<Vec<_>>()));
-        assert_eq!(distance(&a, &b, MOST_SLIPS, &mut pairs), None);
-        assert!(pairs <= (MOST_SLIPS + 1) * (2 * MOST_SLIPS + 2), "{pairs}");
-        // Names that differ at their ends alone need all rows: many of them are not all looked at.
+        assert_eq!(distance(&a, &b, MAX_DISTANCE, &mut pairs), None);
+        assert!(pairs <= (MAX_DISTANCE + 1) * (2 * MAX_DISTANCE + 2), "{pairs}");
+        // Words that differ only at the end need all rows; the limit on pairs stops the search.
         let names: Vec<String> = (0..40_000).map(|n| format!("{}{n:018}", "a".repeat(172))).collect();
         let (_, pairs) = search(&format!("{}{}", "a".repeat(172), "x".repeat(18)), names.iter().map(String::as_str));
-        // The last one that was begun is compared to its end.
-        assert!(pairs < MOST_PAIRS + 200 * (2 * MOST_SLIPS + 2), "{pairs}");
+        // The last comparison is completed.
+        assert!(pairs < MAX_PAIRS + 200 * (2 * MAX_DISTANCE + 2), "{pairs}");
     }
 }

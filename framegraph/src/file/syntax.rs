@@ -1,10 +1,10 @@
-//! What RON itself refuses, said in one line with a hint.
+//! RON syntax options, and readable messages for RON errors.
 
 use super::suggest::nearest;
 use ron::Options;
 use ron::extensions::Extensions;
 
-/// How every file is read: optional fields need no `Some`, and a variant with one struct needs no second bracket.
+/// Options for every file: no `Some` around optional fields, no second parentheses around newtype variants.
 pub(super) fn options() -> Options {
     Options::default()
         .with_default_extension(
@@ -13,10 +13,10 @@ pub(super) fn options() -> Options {
         .with_recursion_limit(DEPTH)
 }
 
-/// Brackets inside of brackets. The format itself needs 8; parameters of plugins get the rest.
+/// Maximum nesting depth. The format itself needs 8; plugin parameters can use the rest.
 const DEPTH: usize = 64;
 
-/// Message and hint for a refusal of RON.
+/// Returns message and hint for an error of RON.
 pub(super) fn explained(error: &ron::Error) -> (String, String) {
     use ron::Error as E;
     let hint = match error {
@@ -27,7 +27,7 @@ pub(super) fn explained(error: &ron::Error) -> (String, String) {
             }
         }
         E::MissingStructField { field, .. } => format!("add `{field}: …`"),
-        E::DuplicateStructField { .. } => "remove one of the two".into(),
+        E::DuplicateStructField { .. } => "remove one of them".into(),
         E::Eof
         | E::ExpectedArrayEnd
         | E::ExpectedMapEnd
@@ -35,29 +35,29 @@ pub(super) fn explained(error: &ron::Error) -> (String, String) {
         | E::ExpectedStructLikeEnd
         | E::ExpectedStringEnd
         | E::ExpectedComma
-        | E::UnclosedBlockComment => "close the bracket or quote, or add the comma".into(),
-        E::ExceededRecursionLimit => format!("put at most {DEPTH} brackets inside of each other"),
+        | E::UnclosedBlockComment => "add the missing bracket, quote or comma".into(),
+        E::ExceededRecursionLimit => format!("nest at most {DEPTH} brackets"),
         E::IntegerOutOfBounds | E::InvalidValueForType { .. } => {
-            "the range of each field is in docs/graph-format.md".into()
+            "docs/graph-format.md lists the range of each field".into()
         }
-        E::TrailingCharacters => "a file holds one value".into(),
-        _ => "the fields and their forms are in docs/graph-format.md".into(),
+        E::TrailingCharacters => "remove the text after the first value".into(),
+        _ => "docs/graph-format.md documents the fields".into(),
     };
     let message = match error {
         E::NoSuchStructField { found, outer, .. } => match outer {
             Some(outer) => format!("`{outer}` has no field `{found}`"),
-            None => format!("there is no field `{found}`"),
+            None => format!("unknown field `{found}`"),
         },
         E::NoSuchEnumVariant { found, outer, .. } => match outer {
-            Some(outer) => format!("`{found}` is no {outer}"),
-            None => format!("`{found}` is not known"),
+            Some(outer) => format!("`{found}` is not a variant of {outer}"),
+            None => format!("unknown variant `{found}`"),
         },
         E::MissingStructField { field, outer } => match outer {
-            Some(outer) => format!("`{outer}` needs the field `{field}`"),
-            None => format!("the field `{field}` is missing"),
+            Some(outer) => format!("`{outer}` requires the field `{field}`"),
+            None => format!("missing field `{field}`"),
         },
-        E::DuplicateStructField { field, .. } => format!("the field `{field}` stands twice"),
-        E::ExceededRecursionLimit => "the brackets are nested too deeply".into(),
+        E::DuplicateStructField { field, .. } => format!("duplicate field `{field}`"),
+        E::ExceededRecursionLimit => "brackets are nested too deeply".into(),
         other => lowercase(&other.to_string()),
     };
     (message, hint)
@@ -68,7 +68,7 @@ fn lowercase(text: &str) -> String {
     chars.next().map(|c| c.to_lowercase().chain(chars).collect()).unwrap_or_default()
 }
 
-/// `a`, `b` and `c`, `most` at most.
+/// Lists up to `most` names: `a`, `b` and `c`.
 pub(super) fn listed(names: &[impl AsRef<str>], most: usize) -> String {
     let mut names: Vec<_> = names.iter().take(most + 1).map(|n| format!("`{}`", n.as_ref())).collect();
     if names.len() > most {
@@ -103,7 +103,7 @@ mod tests {
             samples: u8,
         }
         let refused = |text: &str| {
-            let error = options().from_str::<Form>(text).expect_err("the text is unsound");
+            let error = options().from_str::<Form>(text).expect_err("the text is invalid");
             explained(&error.code)
         };
         assert_eq!(refused("(sample: 1)").1, "did you mean `samples`?");

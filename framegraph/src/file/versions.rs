@@ -1,34 +1,33 @@
-//! Which pass reads and writes which version, and the order that follows: the part that lets a file list its passes in
-//! any order.
+//! Versions of resources, and the order of passes that follows from them. This allows a file to list its passes in any
+//! order.
 //!
 //! Each pass that writes a resource replaces one version of it. A version has one writer and is replaced at most once;
-//! every pass that reads it runs between the two. These are the edges of a graph whose cycles are errors, and whose
-//! topological order, the one nearest to the order of the file, is the order of declaration.
+//! every pass that reads it runs in between. These constraints are the edges of a graph. Cycles are errors. Passes are
+//! declared in the topological order closest to the order of the file.
 
 use super::error::{FileError, FileErrors, FileReason};
 use super::selected::{Mention, Selected, Wanted};
 use super::spanned::Source;
-use super::value::ValueFault;
+use super::value::ValueReason;
 use crate::compile::CompileReason;
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap, VecDeque};
 
-/// A version: the contents on entry, or what that pass wrote.
+/// A version: written by this pass, or the initial version.
 type Version = Option<usize>;
 
-/// The version of each resource that each pass starts from, and who replaces it.
+/// The version that each pass starts from, and the pass that replaces each version.
 #[derive(Debug, Default)]
 struct Versions {
-    /// By pass, then resource: the version that is there when the pass runs.
+    /// For each pass: resource, version at its start, and `true` if it writes the resource.
     base: Vec<Vec<(usize, Version, bool)>>,
-    /// Who replaces a version.
+    /// The pass that replaces a version.
     next: HashMap<(usize, Version), usize>,
 }
 
-/// The order in which the passes are declared, as rows of `selected`; what stands against it goes to `errors`, and the
-/// passes concerned are marked.
+/// Returns the order in which the passes are declared, as rows of `selected`. Collects errors and marks invalid passes.
 pub(super) fn order(source: Source<'_>, selected: &mut Selected<'_>, errors: &mut FileErrors) -> Vec<usize> {
     let mut failed = Vec::new();
     let versions = versions(source, selected, &mut failed, errors);
@@ -66,7 +65,7 @@ fn versions(source: Source<'_>, selected: &Selected<'_>, failed: &mut Vec<usize>
                     None => bases.push((mention.resource, version, mention.writes)),
                     Some((_, base, writes)) => {
                         *writes |= mention.writes;
-                        // A plain name means whatever the pass names explicitly elsewhere.
+                        // A plain name has the version that the pass requests explicitly elsewhere.
                         let other = named.get(&mention.resource);
                         let explicit = mention.version != Wanted::Newest;
                         if let (Some(other), true, true) = (other, explicit, *base != version) {
@@ -106,7 +105,7 @@ fn versions(source: Source<'_>, selected: &Selected<'_>, failed: &mut Vec<usize>
     out
 }
 
-/// The version that a mention means; none for a previous image, which no pass writes, and for what is in error.
+/// Returns the version that a mention refers to; `None` for a previous image, or after an error.
 fn wanted(
     source: Source<'_>,
     selected: &Selected<'_>,
@@ -141,7 +140,7 @@ fn at(
     source.error(mention.at, reason).of_pass(pass).of_resource(resource)
 }
 
-/// An export can only be of the last version.
+/// Checks that exports refer to the last version.
 fn exports(source: Source<'_>, selected: &Selected<'_>, versions: &Versions, errors: &mut FileErrors) {
     for (_, mention) in &selected.exports {
         let id = |pass: usize| selected.passes[pass].id.value.clone();
@@ -154,7 +153,7 @@ fn exports(source: Source<'_>, selected: &Selected<'_>, versions: &Versions, err
                 let none = FileReason::NotWrittenBy { pass: id(pass), writers: Vec::new() };
                 if written { Ok(Some(pass)) } else { Err(none) }
             }
-            Wanted::Previous(_) => Err(FileReason::Value(ValueFault::ExportsEarlierFrame)),
+            Wanted::Previous(_) => Err(FileReason::Value(ValueReason::ExportsEarlierFrame)),
         };
         let next = |version| versions.next.get(&(mention.resource, version));
         let reason = match version.map(next) {
@@ -166,7 +165,7 @@ fn exports(source: Source<'_>, selected: &Selected<'_>, versions: &Versions, err
     }
 }
 
-/// Who must run before whom, by pass: the passes that wait for it.
+/// Returns for each pass the passes that must run after it.
 fn edges(selected: &Selected<'_>, versions: &Versions) -> Vec<Vec<usize>> {
     let mut edges = vec![Vec::new(); selected.passes.len()];
     for (pass, bases) in versions.base.iter().enumerate() {
@@ -185,7 +184,7 @@ fn edges(selected: &Selected<'_>, versions: &Versions) -> Vec<Vec<usize>> {
     edges
 }
 
-/// The topological order that prefers the order of the file; passes that wait for each other are left out.
+/// Returns the topological order closest to the order of the file, without passes on cycles.
 fn sorted(passes: usize, edges: &[Vec<usize>]) -> Vec<usize> {
     let mut waits = vec![0usize; passes];
     for next in edges.iter().flatten() {
@@ -205,8 +204,8 @@ fn sorted(passes: usize, edges: &[Vec<usize>]) -> Vec<usize> {
     order
 }
 
-/// One error for each set of passes that wait for each other, with a shortest way round. Kosaraju's search keeps its own
-/// stack, so that a long cycle does not take the thread's.
+/// Reports each strongly connected component, with a shortest cycle. Kosaraju's algorithm uses its own stack, so long
+/// cycles cannot overflow that of the thread.
 fn cycles(source: Source<'_>, selected: &Selected<'_>, edges: &[Vec<usize>], errors: &mut FileErrors) {
     let mut graph = DiGraph::<(), (), usize>::default();
     for _ in edges {
@@ -231,7 +230,7 @@ fn cycles(source: Source<'_>, selected: &Selected<'_>, edges: &[Vec<usize>], err
     }
 }
 
-/// The passes of a shortest cycle through `first` within `members`.
+/// Returns the passes of a shortest cycle through `first` within `members`.
 fn way_round(first: usize, edges: &[Vec<usize>], members: &[usize]) -> Vec<usize> {
     let mut came_from = HashMap::new();
     let mut queue = VecDeque::from([first]);
@@ -261,7 +260,7 @@ mod tests {
     #[test]
     fn the_order_of_the_file_is_kept_where_it_can_be() {
         assert_eq!(sorted(4, &[vec![1], vec![], vec![], vec![]]), [0, 1, 2, 3]);
-        // 0 waits for 2; 1 and 3 stay where they are.
+        // 0 depends on 2; 1 and 3 keep their positions.
         assert_eq!(sorted(4, &[vec![], vec![], vec![0], vec![]]), [1, 2, 0, 3]);
         assert_eq!(sorted(3, &[vec![1], vec![0], vec![]]), [2]);
     }

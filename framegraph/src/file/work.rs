@@ -1,4 +1,4 @@
-//! Passes that are spelled out: each access through the call that code would make.
+//! Passes with listed accesses: each access uses the same method as code.
 
 use super::access_form::{AccessForm, ResolvedPlane};
 use super::declare::{Declaring, Handles};
@@ -6,14 +6,14 @@ use super::error::{FileError, FileReason};
 use super::form::{Flag, WorkForm};
 use super::plugin::Handle;
 use super::selected::{PassRow, Wanted};
-use super::value::ValueFault;
+use super::value::ValueReason;
 use crate::access::{Access, AccessKind, Intent, Range};
 use crate::error::{DeclareError, DeclareReason};
 use crate::graph::{Graph, PassKind};
 use crate::handle::{BufferPart, ReadOnly, Texture};
 use crate::pass_builder::{MAX_COLORS, PassBuilder};
 
-/// Why an access was refused: by the graph, or before it was asked.
+/// Reason why an access is invalid: reported by the graph, or found before.
 enum Refused {
     Graph(DeclareError),
     File(FileReason),
@@ -31,17 +31,17 @@ impl From<DeclareReason> for Refused {
     }
 }
 
-impl From<ValueFault> for Refused {
-    fn from(fault: ValueFault) -> Self {
+impl From<ValueReason> for Refused {
+    fn from(fault: ValueReason) -> Self {
         Self::File(FileReason::Value(fault))
     }
 }
 
-/// The color attachments of a pass so far by slot, and its depth attachment as [`Access::DEPTH`].
+/// The attachments of a pass so far by slot; depth as [`Access::DEPTH`].
 type Attached = Vec<(u8, Texture)>;
 
 impl<'f> Declaring<'_, 'f> {
-    /// Declares a pass. When an access is refused, the whole pass is, and the error stands at the access.
+    /// Declares a pass. An invalid access rejects the whole pass; the error has the position of the access.
     pub(super) fn work(
         &self,
         row: &PassRow<'f>,
@@ -101,7 +101,7 @@ fn set(pass: &mut PassBuilder<'_>, flag: Flag) {
     }
 }
 
-/// Declares one access; returns the new version of what it writes.
+/// Declares one access. Returns the new version of a written resource.
 fn declare(
     pass: &mut PassBuilder<'_>,
     access: &AccessForm,
@@ -111,9 +111,9 @@ fn declare(
 ) -> Result<Option<Handle>, Refused> {
     let AccessForm { kind, bytes, slot, samples, mode, .. } = *access;
     let (range, intent) = (access.range(), access.intent.map(Intent::from));
-    let missing = || if entry { ValueFault::MadeEmpty } else { ValueFault::MadeLater };
+    let missing = || if entry { ValueReason::MadeEmpty } else { ValueReason::MadeLater };
     let (texture, intent) = match (handle.ok_or_else(missing)?, intent) {
-        (Handle::Buffer(_), _) if range != Range::ALL => return Err(ValueFault::BufferRange.into()),
+        (Handle::Buffer(_), _) if range != Range::ALL => return Err(ValueReason::BufferRange.into()),
         (Handle::Buffer(buffer), intent) => {
             let part = BufferPart { buffer, bytes };
             return Ok(match intent {
@@ -121,7 +121,7 @@ fn declare(
                 None => pass.read_buffer(part, kind).map(|_| None)?,
             });
         }
-        _ if bytes.is_some() => return Err(ValueFault::TextureBytes.into()),
+        _ if bytes.is_some() => return Err(ValueReason::TextureBytes.into()),
         (Handle::Texture(texture), None) => {
             read(pass, kind, texture.range(range).read_only())?;
             attached.extend((kind == AccessKind::DepthReadOnly).then_some((Access::DEPTH, texture)));

@@ -1,4 +1,4 @@
-//! From a graph to a file that declares it again: dump a real frame, replay it, change it, diff it.
+//! Writes a graph as a file that declares it again, for example to save, edit and compare a frame.
 
 use super::form::Flag;
 use super::selected::ENTRY;
@@ -11,8 +11,10 @@ use crate::resolve::ResolveMode;
 use crate::resource::{BufferSize, Desc, Dimension, Entry, Extent, Kind, TextureDesc};
 use std::collections::HashSet;
 
-/// The file form of `graph`, with a name and a frame size in texels. Loading it declares an equal graph: the same passes,
-/// resources, accesses and exports in the same order. Notes, and errors that calls on the graph put off, are no part of it.
+/// Returns `graph` in file form, with a name and a frame size in texels.
+///
+/// Loading the text declares an equal graph: the same passes, resources, accesses and exports in the same order. Notes
+/// and deferred errors are not included.
 pub fn to_ron(graph: &Graph, name: &str, frame: [u32; 2]) -> String {
     let ids = ids(graph);
     let mut out = format!("(\n    version: {GRAPH_VERSION},\n");
@@ -43,7 +45,7 @@ pub fn to_ron(graph: &Graph, name: &str, frame: [u32; 2]) -> String {
     out
 }
 
-/// What references call resources and passes: their names where those are unique.
+/// Ids of resources and passes in references: their names if those are unique.
 struct Ids {
     resources: Vec<String>,
     passes: Vec<String>,
@@ -51,7 +53,7 @@ struct Ids {
 
 fn ids(graph: &Graph) -> Ids {
     let names = graph.resource_ids().map(|r| match graph.resources()[r.index()].kind {
-        // Named by its history and age; its own name is never referred to.
+        // Referred to by its history and age.
         Kind::HistoryPrevious { .. } => "",
         _ => graph.resource_name(r),
     });
@@ -65,7 +67,7 @@ fn ids(graph: &Graph) -> Ids {
     Ids { resources, passes }
 }
 
-/// The names, with a number behind those that are taken already, empty, or contain the sign that marks versions.
+/// Makes names unique: appends a number to names that are duplicate, empty or contain `@`.
 fn unique<'n>(names: impl Iterator<Item = &'n str>) -> Vec<String> {
     let names: Vec<_> = names.collect();
     let mut taken: HashSet<String> = HashSet::new();
@@ -255,13 +257,13 @@ fn range_fields(range: &Range, fields: &mut Vec<String>) {
     fields.extend(view.map(|view| format!("view: {view:?}")));
 }
 
-/// A number that reads back to the same bits; a NaN keeps its being one and loses its payload.
+/// Formats a number that reads back to the same bits, except for the payload of a NaN.
 fn float<F: serde::Serialize>(value: F) -> String {
-    // A number cannot fail to be written to a string.
+    // Cannot fail: numbers can always be written to a string.
     ron::to_string(&value).unwrap_or_default()
 }
 
 fn quoted(text: &str) -> String {
-    // A string cannot fail to be written to a string.
+    // Cannot fail: strings can always be written to a string.
     ron::to_string(text).unwrap_or_default()
 }

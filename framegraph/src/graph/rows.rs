@@ -1,11 +1,11 @@
-//! The rows of a graph's arrays: passes, versions, exports.
+//! Row types of a graph's arrays: passes, versions, notes and exports.
 
 use crate::access::Kinds;
+use crate::enum_names::enum_names;
 use crate::id::{AccessId, PassId, ResourceId, Span, VersionId};
-use crate::words::words;
 use std::panic::Location;
 
-/// What kind of work a pass is.
+/// The kind of work that a pass does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum PassKind {
@@ -17,32 +17,32 @@ pub enum PassKind {
     Copy,
 }
 
-words! { PassKind: Raster "raster", Compute "compute", Copy "copy" }
+enum_names! { PassKind: Raster "raster", Compute "compute", Copy "copy" }
 
-/// What a pass says of itself beside its accesses; a set of bits.
+/// Properties of a pass beyond its accesses, as a set of bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct PassFlags(u8);
 
 impl PassFlags {
-    /// Does something that no resource shows (a query, a debug print): never culled.
+    /// The pass has an effect outside of its declared resources, such as a query or a debug print. Never culled.
     pub const SIDE_EFFECT: Self = Self(1);
-    /// Each output texel depends only on its `same_pixel` inputs at that texel and on constants, and every texel is
-    /// covered once: the pass can become an epilogue of its producer's shader.
+    /// Each output texel depends only on the `same_pixel` inputs at that texel and on constants, and every texel is
+    /// covered once. The compiler may append the pass to its producer's shader as an epilogue.
     pub const POINTWISE: Self = Self(2);
-    /// Blends into its color attachments, so that what it writes is final only when the pass ends.
+    /// The pass blends into its color attachments, so its output is final only when the pass ends.
     pub const BLENDS: Self = Self(4);
-    /// Must stay a step of its own.
+    /// The pass must not be merged with other passes.
     pub const NEVER_MERGE: Self = Self(8);
-    /// Its shader can take a point-wise epilogue.
+    /// The pass's shader accepts a point-wise epilogue.
     pub const TAKES_EPILOGUE: Self = Self(16);
-    /// Must run on the first queue of a device with several.
+    /// The pass must run on the first queue of a device with several queues.
     pub const MAIN_QUEUE: Self = Self(128);
-    /// Averages multisampled attachments: what its accesses tell, at hand.
+    /// The pass resolves multisampled attachments. Derived from its accesses.
     pub(crate) const RESOLVES: Self = Self(32);
-    /// Clears something: what its accesses tell, at hand.
+    /// The pass clears a resource. Derived from its accesses.
     pub(crate) const CLEARS: Self = Self(64);
 
-    /// Whether every flag of `other` is set.
+    /// Returns `true` if every flag of `other` is set.
     #[inline]
     pub const fn has(self, other: Self) -> bool {
         self.0 & other.0 == other.0
@@ -53,7 +53,7 @@ impl PassFlags {
         self.0 |= other.0;
     }
 
-    /// Takes the flags of `other` away.
+    /// Clears the flags of `other`.
     pub(crate) const fn unset(&mut self, other: Self) {
         self.0 &= !other.0;
     }
@@ -62,50 +62,50 @@ impl PassFlags {
 /// One row of [`Graph::passes`](crate::graph::Tables::passes).
 #[derive(Clone, Copy, Debug)]
 pub struct Declared {
-    /// Its full name in the graph's text.
+    /// Full name of the pass, as a span of the graph's text.
     pub name: Span,
-    /// Its rows of [`Graph::accesses`](crate::graph::Tables::accesses).
+    /// The pass's rows in [`Graph::accesses`](crate::graph::Tables::accesses).
     pub accesses: Span,
     /// Raster, compute or copy.
     pub kind: PassKind,
-    /// What it says of itself.
+    /// Properties beyond its accesses.
     pub flags: PassFlags,
-    /// Its attachment where it has a single one, the color attachment of a texture of one part, and reads nothing at the
-    /// same pixel: what its accesses tell, at hand.
+    /// The only attachment of the pass, if it is a color attachment with one subresource and the pass reads nothing at
+    /// the same pixel. Derived from its accesses.
     pub(crate) sole_color: AccessId,
-    /// Where it was added.
+    /// Source location of the call that added the pass.
     pub location: &'static Location<'static>,
 }
 
 impl PartialEq for Declared {
-    /// Equal in all but the source location, which no plan depends on, and what follows from the accesses.
+    /// Compares everything except the source location and fields derived from the accesses.
     fn eq(&self, other: &Self) -> bool {
         let Self { name, accesses, kind, flags, sole_color: _, location: _ } = *self;
         (name, accesses, kind, flags) == (other.name, other.accesses, other.kind, other.flags)
     }
 }
 
-/// One version of one resource.
+/// One version of a resource: its contents between two writes.
 #[derive(Clone, Copy, Debug)]
 pub struct Version {
-    /// The resource that it is a version of.
+    /// The resource.
     pub resource: ResourceId,
-    /// The pass that wrote it; none for the contents on entry.
+    /// The pass that wrote this version; none for the contents at the start of the frame.
     pub writer: PassId,
-    /// The access that wrote it.
+    /// The access that wrote this version.
     pub access: AccessId,
-    /// The version that it replaced; none for the contents on entry.
+    /// The version that this one replaced; none for the contents at the start of the frame.
     pub previous: VersionId,
-    /// The last pass that read it.
+    /// The last pass that read this version.
     pub(crate) reader: PassId,
-    /// The accesses to the whole resource that nothing in its shape or kind rules out; none once it is replaced.
-    pub(crate) open: Kinds,
+    /// Access kinds to the whole resource that its format and kind allow; empty once a newer version exists.
+    pub(crate) allowed: Kinds,
 }
 
 impl PartialEq for Version {
-    /// Equal in what was declared; the rest only serves declaring.
+    /// Compares what was declared, not the fields that only serve declaring.
     fn eq(&self, other: &Self) -> bool {
-        let Self { resource, writer, access, previous, reader: _, open: _ } = *self;
+        let Self { resource, writer, access, previous, reader: _, allowed: _ } = *self;
         (resource, writer, access, previous) == (other.resource, other.writer, other.access, other.previous)
     }
 }
@@ -115,28 +115,28 @@ impl Eq for Version {}
 /// One row of [`Graph::notes`](crate::graph::Tables::notes).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Note {
-    /// What it is about, in the graph's text.
+    /// The subject of the note, as a span of the graph's text.
     pub(crate) about: Span,
-    /// What it says.
+    /// The text of the note, as a span of the graph's text.
     pub(crate) text: Span,
 }
 
-/// What an export is for.
+/// The purpose of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportKind {
     /// The contents must exist when the frame ends.
     Keep,
-    /// As `Keep`, and they are copied out to the CPU.
+    /// The contents must exist when the frame ends, and the CPU reads them.
     Readback,
 }
 
 /// One row of [`Graph::exports`](crate::graph::Tables::exports): a root of culling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Export {
-    /// What must survive.
+    /// The resource that must survive the frame.
     pub resource: ResourceId,
-    /// The version that was meant.
+    /// The exported version.
     pub version: VersionId,
-    /// What for.
+    /// The purpose of the export.
     pub kind: ExportKind,
 }

@@ -1,4 +1,4 @@
-//! The flat arrays that declaring fills and everything else reads.
+//! The flat arrays of a graph, filled by declaring and read by everything else.
 
 use super::rows::{Declared, Export, Note, Version};
 use crate::access::{Access, ByteRange, ClearValue, Range};
@@ -7,7 +7,7 @@ use crate::handle::Tag;
 use crate::id::{PassId, ResourceId, VersionId};
 use crate::resource::{Desc, Resource};
 
-/// Everything that was declared for a frame, as flat arrays. A [`Graph`](super::Graph) reads as one.
+/// Everything declared for a frame, as flat arrays. A [`Graph`](super::Graph) dereferences to it.
 #[derive(Clone, Debug, Default)]
 pub struct Tables {
     pub(crate) tag: Tag,
@@ -20,19 +20,19 @@ pub struct Tables {
     pub(crate) byte_ranges: Vec<ByteRange>,
     pub(crate) exports: Vec<Export>,
     pub(crate) notes: Vec<Note>,
-    /// Textures that are gone, with the textures that they were forwarded to.
+    /// Pairs of a forwarded texture, which no longer exists, and the texture it was forwarded to.
     pub(crate) forwards: Vec<(ResourceId, ResourceId)>,
-    /// Errors of calls that return no `Result`; reported by compiling.
+    /// Errors of methods that do not return a `Result`. The compiler reports them.
     pub(crate) errors: Vec<DeclareError>,
-    /// Some access names a part of a resource, or needs contents that no pass of this frame wrote: whether all that is
-    /// read was written takes a sweep.
+    /// An access names part of a resource, or reads contents that no pass of this frame wrote. The validation phase
+    /// then has to check reads of undefined contents.
     pub(crate) contents_uncertain: bool,
-    /// Some pass resolves.
+    /// At least one pass resolves multisampled attachments.
     pub(crate) resolves: bool,
 }
 
 impl Tables {
-    /// Empties every array and keeps its memory.
+    /// Clears every array and keeps its memory.
     pub(super) fn clear(&mut self) {
         let Self {
             tag: _,
@@ -65,7 +65,8 @@ impl Tables {
         *resolves = false;
     }
 
-    /// Becomes a copy of what the phases after culling read (no names, notes, clear values and errors), in its own memory.
+    /// Copies the tables that later phases read: all except names, notes, clear values and errors. Reuses the memory of
+    /// `self`.
     pub(crate) fn copy_work(&mut self, source: &Self) {
         self.passes.clone_from(&source.passes);
         self.accesses.clone_from(&source.accesses);
@@ -90,7 +91,7 @@ impl Tables {
     /// The accesses of one pass.
     ///
     /// # Panics
-    /// When `pass` is not of this graph.
+    /// Panics if `pass` does not belong to this graph.
     pub fn accesses_of(&self, pass: PassId) -> &[Access] {
         self.passes[pass.index()].accesses.of(&self.accesses)
     }
@@ -100,27 +101,27 @@ impl Tables {
         &self.resources
     }
 
-    /// All versions of all resources, in the order in which they came to be.
+    /// All versions of all resources, in the order of their creation.
     pub fn versions(&self) -> &[Version] {
         &self.versions
     }
 
-    /// The clear values that accesses name.
+    /// The clear values that accesses refer to.
     pub fn clears(&self) -> &[ClearValue] {
         &self.clears
     }
 
-    /// The bytes of buffers that accesses name.
+    /// The buffer ranges that accesses refer to.
     pub fn byte_ranges(&self) -> &[ByteRange] {
         &self.byte_ranges
     }
 
-    /// The bytes that an access names; none for all of a buffer, and for a texture.
+    /// Returns the buffer range of an access; `None` for a whole buffer or a texture.
     pub fn bytes_of(&self, access: &Access) -> Option<ByteRange> {
         self.byte_ranges.get(access.range.bytes.index()).copied()
     }
 
-    /// Whether two ranges of a resource share something: a level of a layer of a plane, or a byte.
+    /// Returns `true` if two ranges of a resource share a subresource or a byte.
     pub fn overlap(&self, resource: ResourceId, a: &Range, b: &Range) -> bool {
         match &self.resources[resource.index()].desc {
             Desc::Texture(texture) => a.overlaps(b, texture.format),
@@ -131,38 +132,38 @@ impl Tables {
         }
     }
 
-    /// What the frame is for.
+    /// The exported resources.
     pub fn exports(&self) -> &[Export] {
         &self.exports
     }
 
-    /// What whoever declared the graph says of it ([`Graph::note`](super::Graph::note)): what about, and what.
+    /// The notes of [`Graph::note`](super::Graph::note), as pairs of subject and text.
     pub fn notes(&self) -> impl ExactSizeIterator<Item = (&str, &str)> {
         self.notes.iter().map(|note| (&self.names[note.about.range()], &self.names[note.text.range()]))
     }
 
-    /// The full name of a pass, `effect/pass`.
+    /// Returns the full name of a pass, including its scopes: `effect/pass`.
     ///
     /// # Panics
-    /// When `pass` is not of this graph.
+    /// Panics if `pass` does not belong to this graph.
     pub fn pass_name(&self, pass: PassId) -> &str {
         &self.names[self.passes[pass.index()].name.range()]
     }
 
-    /// The full name of a resource.
+    /// Returns the full name of a resource, including its scopes.
     ///
     /// # Panics
-    /// When `resource` is not of this graph.
+    /// Panics if `resource` does not belong to this graph.
     pub fn resource_name(&self, resource: ResourceId) -> &str {
         &self.names[self.resources[resource.index()].name.range()]
     }
 
-    /// A pass as errors name it; none for no pass.
+    /// Returns the id and name of a pass for an error; `None` if `pass` is none.
     pub(crate) fn named_pass(&self, pass: PassId) -> Option<Named<PassId>> {
         pass.some().map(|id| Named { id, name: self.pass_name(id).to_owned() })
     }
 
-    /// A resource as errors name it; none for no resource.
+    /// Returns the id and name of a resource for an error; `None` if `resource` is none.
     pub(crate) fn named_resource(&self, resource: ResourceId) -> Option<Named<ResourceId>> {
         resource.some().map(|id| Named { id, name: self.resource_name(id).to_owned() })
     }
@@ -177,22 +178,22 @@ impl Tables {
         (0..self.resources.len()).map(ResourceId::at)
     }
 
-    /// The first pass of that full name.
+    /// Returns the first pass with this full name.
     pub fn find_pass(&self, name: &str) -> Option<PassId> {
         self.pass_ids().find(|p| self.pass_name(*p) == name)
     }
 
-    /// The first resource of that full name.
+    /// Returns the first resource with this full name.
     pub fn find_resource(&self, name: &str) -> Option<ResourceId> {
         self.resource_ids().find(|r| self.resource_name(*r) == name)
     }
 
-    /// The resource behind a version, when the handle is of this graph.
+    /// Returns the resource of a version; `None` if the handle belongs to another graph.
     pub(crate) fn lookup(&self, tag: Tag, version: VersionId) -> Option<ResourceId> {
         (tag == self.tag).then(|| self.versions.get(version.index()).map(|v| v.resource)).flatten()
     }
 
-    /// As [`Graph::same_as`](super::Graph::same_as).
+    /// Implements [`Graph::same_as`](super::Graph::same_as).
     pub(super) fn same_as(&self, other: &Self) -> bool {
         self.passes == other.passes
             && self.accesses == other.accesses

@@ -1,6 +1,6 @@
-//! The accesses of a pass to textures, one call each.
+//! Texture accesses of a pass.
 
-use super::request::{Manner, Request};
+use super::request::{AccessDesc, Request};
 use super::{MAX_COLORS, PassBuilder};
 use crate::access::{Access, AccessKind, Intent, Mode};
 use crate::error::{DeclareError, DeclareReason};
@@ -12,61 +12,69 @@ use crate::resolve::ResolveMode;
 use std::panic::Location;
 
 impl PassBuilder<'_> {
-    /// Reads through a sampler or by texel fetch.
+    /// Declares a sampled texture, read through a sampler or by texel fetch.
     ///
     /// # Errors
-    /// As every access: a stale or foreign handle, a range outside of the texture, a conflict inside the pass, a format
-    /// without the capability.
+    /// Returns an error if
+    ///
+    /// - the handle is stale or belongs to another graph,
+    /// - the range lies outside of the texture,
+    /// - the access conflicts with another one of the pass, or
+    /// - the format does not support the access.
     #[inline]
     #[track_caller]
     pub fn sampled(&mut self, texture: impl Into<ReadOnly>) -> Result<View, DeclareError> {
         self.read(texture.into(), AccessKind::Sampled, Location::caller())
     }
 
-    /// Reads the texel under the fragment: stays in the tile where the device can, otherwise sampled.
+    /// Declares a read of the texel under the fragment (input attachment). The value stays in the tile if the device
+    /// supports it ([`Caps::same_pixel`](crate::Caps::same_pixel)); otherwise the texture is sampled.
     ///
     /// # Errors
-    /// As [`PassBuilder::sampled`].
+    /// Returns the errors of [`PassBuilder::sampled`].
     #[inline]
     #[track_caller]
     pub fn same_pixel(&mut self, texture: impl Into<ReadOnly>) -> Result<View, DeclareError> {
         self.read(texture.into(), AccessKind::SamePixel, Location::caller())
     }
 
-    /// Reads as a storage texture.
+    /// Declares a storage texture that is only read.
     ///
     /// # Errors
-    /// As [`PassBuilder::sampled`].
+    /// Returns the errors of [`PassBuilder::sampled`].
     #[inline]
     #[track_caller]
     pub fn storage_read(&mut self, texture: impl Into<ReadOnly>) -> Result<View, DeclareError> {
         self.read(texture.into(), AccessKind::StorageRead, Location::caller())
     }
 
-    /// Copies from.
+    /// Declares the source of a texture copy.
     ///
     /// # Errors
-    /// As [`PassBuilder::sampled`].
+    /// Returns the errors of [`PassBuilder::sampled`].
     #[inline]
     #[track_caller]
     pub fn copy_source(&mut self, texture: impl Into<ReadOnly>) -> Result<View, DeclareError> {
         self.read(texture.into(), AccessKind::CopySource, Location::caller())
     }
 
-    /// Tests against depth without writing it; the pass may sample it at the same time.
+    /// Declares a read-only depth attachment. The pass may sample the texture at the same time.
     ///
     /// # Errors
-    /// As [`PassBuilder::sampled`], and when the pass has a depth attachment already.
+    /// Returns the errors of [`PassBuilder::sampled`], and an error if the pass already has a depth attachment.
     #[inline]
     #[track_caller]
     pub fn depth_read_only(&mut self, texture: impl Into<ReadOnly>) -> Result<View, DeclareError> {
         self.read(texture.into(), AccessKind::DepthReadOnly, Location::caller())
     }
 
-    /// A color attachment, in the slot behind those that are taken, or else in the first free one; returns the new version.
+    /// Declares a color attachment and returns its new version.
+    ///
+    /// Uses the slot after the highest one in use, or the first free slot if that one does not exist.
     ///
     /// # Errors
-    /// As [`PassBuilder::sampled`], and when the slots are used up or the range is not one level.
+    /// Returns the errors of [`PassBuilder::sampled`], and an error if all slots are in use or the range covers several
+    /// levels.
     #[inline]
     #[track_caller]
     pub fn color(&mut self, into: impl Into<Part>, intent: Intent) -> Result<Texture, DeclareError> {
@@ -80,10 +88,10 @@ impl PassBuilder<'_> {
         self.write(into.into(), AccessKind::Color, intent, slot, Location::caller())
     }
 
-    /// A color attachment in a slot of the caller's choice, 0…7. Slots left out stay empty.
+    /// Declares a color attachment in the given slot, 0 to 7, and returns its new version. Unused slots stay empty.
     ///
     /// # Errors
-    /// As [`PassBuilder::color`], and when the slot is taken.
+    /// Returns the errors of [`PassBuilder::color`], and an error if the slot is in use.
     #[inline]
     #[track_caller]
     pub fn color_at(&mut self, slot: u8, into: impl Into<Part>, intent: Intent) -> Result<Texture, DeclareError> {
@@ -102,36 +110,42 @@ impl PassBuilder<'_> {
         self.own().iter().any(|a| a.kind == AccessKind::Color && a.slot == slot)
     }
 
-    /// The depth or depth-stencil attachment, tested and written; returns the new version.
+    /// Declares a depth or depth-stencil attachment that is tested and written, and returns its new version.
     ///
     /// # Errors
-    /// As [`PassBuilder::color`], and when the pass has a depth attachment already.
+    /// Returns the errors of [`PassBuilder::color`], and an error if the pass already has a depth attachment.
     #[inline]
     #[track_caller]
     pub fn depth(&mut self, into: impl Into<Part>, intent: Intent) -> Result<Texture, DeclareError> {
         self.write(into.into(), AccessKind::Depth, intent, 0, Location::caller())
     }
 
-    /// Averages a multisampled color attachment of this pass (the handle that [`PassBuilder::color`] returned) into a
-    /// single-sample texture at the end of the step; returns the new version of that texture.
+    /// Averages a multisampled color attachment of this pass into a single-sample texture at the end of the step.
+    ///
+    /// `multisampled` is the handle that [`PassBuilder::color`] returned. Returns the new version of the single-sample
+    /// texture.
     ///
     /// # Errors
-    /// As [`PassBuilder::resolve_as`].
+    /// Returns the errors of [`PassBuilder::resolve_as`].
     #[inline]
     #[track_caller]
     pub fn resolve(&mut self, multisampled: Texture, into: impl Into<Part>) -> Result<Texture, DeclareError> {
         self.resolve_as(ResolveMode::Average, multisampled, into)
     }
 
-    /// Resolves a multisampled color or depth attachment of this pass, by the handle that attaching it returned (that of
-    /// the texture, where depth is only tested), into a single-sample texture at the end of the step; returns the new
-    /// version of that texture. Depth goes into a texture of its depth plane's format, and stencil stays behind.
+    /// Resolves a multisampled color or depth attachment of this pass into a single-sample texture at the end of the
+    /// step.
     ///
-    /// Where the device's store does not do that ([`Caps`](crate::Caps)), the plan has a full-screen pass that does.
+    /// `multisampled` is the handle that declaring the attachment returned, or the texture itself for read-only depth.
+    /// Returns the new version of the single-sample texture. Depth needs a target with the format of its depth plane;
+    /// stencil is not resolved.
+    ///
+    /// If the device cannot resolve while storing ([`Caps`](crate::Caps)), the plan contains a full-screen pass
+    /// instead.
     ///
     /// # Errors
-    /// As [`PassBuilder::color`], and when `multisampled` is no color or depth attachment of this pass, or its format has
-    /// no such resolve: depth and integers have no average.
+    /// Returns the errors of [`PassBuilder::color`]. Returns an error if `multisampled` is not a color or depth
+    /// attachment of this pass, or if its format does not support `mode`. Depth and integer formats cannot be averaged.
     #[inline]
     #[track_caller]
     pub fn resolve_as(
@@ -160,7 +174,7 @@ impl PassBuilder<'_> {
         Ok(written)
     }
 
-    /// Notes the mode of the resolve that was declared last.
+    /// Sets the mode of the last declared resolve.
     #[inline]
     pub(super) fn resolved_by(&mut self, mode: ResolveMode) {
         if let Some(access) = self.tables.accesses.last_mut() {
@@ -168,20 +182,21 @@ impl PassBuilder<'_> {
         }
     }
 
-    /// Writes (with `Modify`: reads and writes) as a storage texture; returns the new version.
+    /// Declares a storage texture that is written, or read and written with [`Intent::Modify`]. Returns the new
+    /// version.
     ///
     /// # Errors
-    /// As [`PassBuilder::sampled`].
+    /// Returns the errors of [`PassBuilder::sampled`].
     #[inline]
     #[track_caller]
     pub fn storage_write(&mut self, into: impl Into<Part>, intent: Intent) -> Result<Texture, DeclareError> {
         self.write(into.into(), AccessKind::StorageWrite, intent, 0, Location::caller())
     }
 
-    /// Copies into; returns the new version.
+    /// Declares the destination of a texture copy and returns its new version.
     ///
     /// # Errors
-    /// As [`PassBuilder::sampled`].
+    /// Returns the errors of [`PassBuilder::sampled`].
     #[inline]
     #[track_caller]
     pub fn copy_target(&mut self, into: impl Into<Part>, intent: Intent) -> Result<Texture, DeclareError> {
@@ -196,18 +211,18 @@ impl PassBuilder<'_> {
         location: &'static Location<'static>,
     ) -> Result<View, DeclareError> {
         let ReadOnly { tag, version, range } = part;
-        // Known where the handle is that of a whole texture, so that only one of the two calls is left.
+        // Known at compile time for handles of whole textures, so that only one of the two calls remains.
         if range.is_all()
-            && let Some(access) = self.quick_read(tag, version, kind)
+            && let Some(access) = self.try_read_fast(tag, version, kind)
         {
             return Ok(View { tag, access });
         }
-        let request = Request { tag, version, range, bytes: None, manner: Manner::read(kind), clear: 0 };
+        let request = Request { tag, version, range, bytes: None, desc: AccessDesc::read(kind), clear: 0 };
         let (access, _) = self.add_checked(&request, location)?;
         Ok(View { tag, access })
     }
 
-    /// Writes a texture: `kind` is one of writes.
+    /// Declares a texture write; `kind` must be a write.
     #[inline(always)]
     fn write(
         &mut self,
@@ -219,17 +234,17 @@ impl PassBuilder<'_> {
     ) -> Result<Texture, DeclareError> {
         let Part { texture: Texture { tag, version }, range } = part;
         let (mode, clear) = self.mode(intent);
-        let manner = Manner { kind, mode, slot };
+        let desc = AccessDesc { kind, mode, slot };
         if range.is_all()
-            && let Some(version) = self.quick_write(tag, version, manner, clear)
+            && let Some(version) = self.try_write_fast(tag, version, desc, clear)
         {
             return Ok(Texture { tag, version });
         }
-        let version = self.write_checked(&Request { tag, version, range, bytes: None, manner, clear }, location)?;
+        let version = self.write_checked(&Request { tag, version, range, bytes: None, desc, clear }, location)?;
         Ok(Texture { tag, version })
     }
 
-    /// Checks a write in full and adds it; a refused one leaves no clear value behind.
+    /// Checks a write in full and adds it. A rejected write leaves no clear value behind.
     #[cold]
     #[inline(never)]
     pub(super) fn write_checked(
@@ -238,7 +253,7 @@ impl PassBuilder<'_> {
         location: &'static Location<'static>,
     ) -> Result<VersionId, DeclareError> {
         let added = self.add_checked(r, location);
-        if added.is_err() && r.manner.mode == Mode::Clear {
+        if added.is_err() && r.desc.mode == Mode::Clear {
             self.tables.clears.truncate(r.clear as usize);
         }
         added.map(|(_, version)| version)

@@ -1,11 +1,11 @@
-//! Adding an access: at once where one comparison of bits shows that it is sound, else after every check.
+//! Adds accesses: directly if a bit mask proves them valid, otherwise after the full check.
 //!
-//! The comparison is compiled into the caller's code, where kind, mode and range are mostly constants: that halves it.
-//! The checks are not.
+//! The bit mask test is inlined into the caller, where kind, mode and range are mostly constants. Inlining halves its
+//! cost. The full check is not inlined.
 
 use super::PassBuilder;
 use super::admit::{conflicts, incapable, mixed, wrong_kind};
-use super::request::{Manner, Request};
+use super::request::{AccessDesc, Request};
 use crate::access::{Access, AccessKind, ByteRange, Kinds, Range};
 use crate::error::{DeclareError, DeclareReason, StaleUser};
 use crate::graph::Version;
@@ -16,43 +16,43 @@ use crate::resource::{BufferSize, Desc};
 use std::panic::Location;
 
 impl PassBuilder<'_> {
-    /// Adds a read of the whole of a resource; `kind` is one of reads. None when it needs every check.
+    /// Adds a read of a whole resource. Returns `None` if the access needs the full check.
     #[inline(always)]
-    pub(super) fn quick_read(&mut self, tag: Tag, version: VersionId, kind: AccessKind) -> Option<AccessId> {
+    pub(super) fn try_read_fast(&mut self, tag: Tag, version: VersionId, kind: AccessKind) -> Option<AccessId> {
         let row = self.tables.versions.get_mut(version.index())?;
-        let allowed = row.open.without(self.full_check).has(Kinds::one(kind).union(Kinds::DEFINED));
-        // What the pass wrote itself would be a conflict.
-        if tag != self.tables.tag || !allowed || row.writer == self.pass {
+        let is_allowed = row.allowed.without(self.full_check).has(Kinds::one(kind).union(Kinds::DEFINED));
+        // A version that the pass itself wrote would be a conflict.
+        if tag != self.tables.tag || !is_allowed || row.writer == self.pass {
             return None;
         }
         row.reader = self.pass;
         let resource = row.resource;
-        Some(self.push_access(resource, version, Range::ALL, Manner::read(kind), 0))
+        Some(self.push_access(resource, version, Range::ALL, AccessDesc::read(kind), 0))
     }
 
-    /// Adds a write of the whole of a resource; the kind is one of writes. None when it needs every check.
+    /// Adds a write of a whole resource. Returns `None` if the access needs the full check.
     #[inline(always)]
-    pub(super) fn quick_write(
+    pub(super) fn try_write_fast(
         &mut self,
         tag: Tag,
         version: VersionId,
-        manner: Manner,
+        desc: AccessDesc,
         clear: u32,
     ) -> Option<VersionId> {
         let row = self.tables.versions.get_mut(version.index())?;
-        let contents = if manner.mode.needs_contents() { Kinds::DEFINED } else { Kinds::NONE };
-        let allowed = row.open.without(self.full_check).has(Kinds::one(manner.kind).union(contents));
-        // What the pass reads or wrote itself would be a conflict.
-        if tag != self.tables.tag || !allowed || row.writer == self.pass || row.reader == self.pass {
+        let contents = if desc.mode.needs_contents() { Kinds::DEFINED } else { Kinds::NONE };
+        let is_allowed = row.allowed.without(self.full_check).has(Kinds::one(desc.kind).union(contents));
+        // A version that the pass itself reads or wrote would be a conflict.
+        if tag != self.tables.tag || !is_allowed || row.writer == self.pass || row.reader == self.pass {
             return None;
         }
-        let (resource, open) = (row.resource, row.open);
-        row.open = Kinds::NONE;
-        let (_, version) = self.push_write(resource, version, open, Range::ALL, manner, clear);
+        let (resource, allowed) = (row.resource, row.allowed);
+        row.allowed = Kinds::NONE;
+        let (_, version) = self.push_write(resource, version, allowed, Range::ALL, desc, clear);
         Some(version)
     }
 
-    /// Checks an access in full and adds it; a write also gets its new version.
+    /// Checks an access in full and adds it. Returns its id and, for a write, the new version.
     #[cold]
     #[inline(never)]
     pub(super) fn add_checked(
@@ -66,13 +66,13 @@ impl PassBuilder<'_> {
         if let Some(reason) = self.objection(resource, r) {
             return Err(self.refuse(reason, resource, location));
         }
-        let Manner { kind, mode, .. } = r.manner;
+        let AccessDesc { kind, mode, .. } = r.desc;
         let row = &mut self.tables.versions[r.version.index()];
-        let unwritten = !row.open.has(Kinds::DEFINED);
+        let unwritten = !row.allowed.has(Kinds::DEFINED);
         self.tables.contents_uncertain |= !r.range.is_all() || (unwritten && mode.needs_contents());
-        let open = row.open;
+        let allowed = row.allowed;
         if mode.writes() {
-            row.open = Kinds::NONE;
+            row.allowed = Kinds::NONE;
         } else {
             row.reader = self.pass;
         }
@@ -80,7 +80,7 @@ impl PassBuilder<'_> {
             (Desc::Texture(texture), _) if !r.range.is_all() => r.range.canonical(texture),
             (Desc::Buffer(buffer), Some((offset, bytes))) if buffer.size != BufferSize::Bytes(bytes) => {
                 self.tables.contents_uncertain = true;
-                // There are no more of these than accesses.
+                // Cannot overflow: at most one byte range per access.
                 let named = BytesId::unchecked(self.tables.byte_ranges.len());
                 self.tables.byte_ranges.push(ByteRange { resource, offset, bytes });
                 Range { bytes: named, ..Range::ALL }
@@ -91,34 +91,34 @@ impl PassBuilder<'_> {
             self.full_check = Kinds::ALL.without(Kinds::COPIES);
         }
         Ok(if mode.writes() {
-            self.push_write(resource, r.version, open, range, r.manner, r.clear)
+            self.push_write(resource, r.version, allowed, range, r.desc, r.clear)
         } else {
-            (self.push_access(resource, r.version, range, r.manner, r.clear), r.version)
+            (self.push_access(resource, r.version, range, r.desc, r.clear), r.version)
         })
     }
 
-    /// Adds a write that was checked, of the version `previous`, which was open for `open`.
+    /// Adds a validated write that replaces `previous`, a version that allowed the kinds in `allowed`.
     #[inline(always)]
     fn push_write(
         &mut self,
         resource: ResourceId,
         previous: VersionId,
-        open: Kinds,
+        allowed: Kinds,
         range: Range,
-        manner: Manner,
+        desc: AccessDesc,
         clear: u32,
     ) -> (AccessId, VersionId) {
         let version = VersionId::unchecked(self.tables.versions.len());
         let alone = !self.used.meets(Kinds::TILE);
-        let access = self.push_access(resource, version, range, manner, clear);
-        if manner.kind == AccessKind::Color {
-            let slot = u32::from(manner.slot);
+        let access = self.push_access(resource, version, range, desc, clear);
+        if desc.kind == AccessKind::Color {
+            let slot = u32::from(desc.slot);
             self.colors = self.colors.max(slot + 1);
-            self.sole = if alone && open.has(Kinds::ONE_PART) { access } else { AccessId::NONE };
+            self.sole = if alone && allowed.has(Kinds::ONE_PART) { access } else { AccessId::NONE };
         }
-        let (writer, reader, open) = (self.pass, PassId::NONE, open.union(Kinds::DEFINED));
+        let (writer, reader, allowed) = (self.pass, PassId::NONE, allowed.union(Kinds::DEFINED));
         self.tables.resources[resource.index()].current = version;
-        self.tables.versions.push(Version { resource, writer, access, previous, reader, open });
+        self.tables.versions.push(Version { resource, writer, access, previous, reader, allowed });
         (access, version)
     }
 
@@ -128,10 +128,10 @@ impl PassBuilder<'_> {
         resource: ResourceId,
         version: VersionId,
         range: Range,
-        manner: Manner,
+        desc: AccessDesc,
         clear: u32,
     ) -> AccessId {
-        let Manner { kind, mode, slot } = manner;
+        let AccessDesc { kind, mode, slot } = desc;
         self.used = self.used.union(Kinds::one(kind));
         if kind.is_depth() {
             self.full_check = self.full_check.union(Kinds::DEPTHS);
@@ -153,11 +153,11 @@ impl PassBuilder<'_> {
         access
     }
 
-    /// Why an access cannot be made, if so.
+    /// Returns the reason why an access is invalid, if any.
     fn objection(&self, resource: ResourceId, r: &Request) -> Option<DeclareReason> {
         let row = &self.tables.resources[resource.index()];
         let own = self.own();
-        let access = r.manner.kind;
+        let access = r.desc.kind;
         if let Some(earlier) = own.iter().find(|a| a.resource == resource && conflicts(self.tables, a, r)) {
             return Some(DeclareReason::Conflict {
                 earlier: earlier.kind,
@@ -198,7 +198,7 @@ mod tests {
     use crate::resource::Desc;
     use crate::testing::generate::{self, Entropy, Profile};
 
-    /// Makes the resources of `graph` that came to be before that many versions did.
+    /// Copies the resources of `graph` that were created before its first `versions` versions.
     fn make_resources(graph: &Graph, tables: &mut Tables, versions: usize) {
         while tables.versions.len() < versions {
             let resource = &graph.resources[tables.resources.len()];
@@ -209,32 +209,32 @@ mod tests {
         }
     }
 
-    /// Declares the passes of `graph` anew, each access with every check.
+    /// Declares the passes of `graph` again, with the full check for each access.
     fn declared_with_every_check(graph: &Graph) -> Graph {
         let mut again = Graph::new();
         for row in &graph.passes {
-            let mut pass = PassBuilder::new(again.open().0, "", "pass", row.location);
+            let mut pass = PassBuilder::new(again.tables_mut().0, "", "pass", row.location);
             pass.flags = row.flags;
             for access in row.accesses.of(&graph.accesses) {
                 let &Access { version, range, kind, mode, slot, clear, .. } = access;
                 let written = graph.versions[version.index()].previous;
                 let used = if mode.writes() { written } else { version };
                 make_resources(graph, pass.tables, if mode.writes() { version.index() } else { version.index() + 1 });
-                let manner = Manner { kind, mode, slot };
+                let desc = AccessDesc { kind, mode, slot };
                 let bytes = graph.bytes_of(access).map(|b| (b.offset, b.bytes));
-                let request = Request { tag: pass.tables.tag, version: used, range, bytes, manner, clear };
+                let request = Request { tag: pass.tables.tag, version: used, range, bytes, desc, clear };
                 let added = pass.add_checked(&request, row.location);
                 pass.resolved_by(access.resolve);
                 assert_eq!(
                     added.map(|(_, version)| version),
                     Ok(version),
-                    "{kind:?} was let through by the quick check"
+                    "{kind:?} passes the fast check, but not the full one"
                 );
             }
             pass.kind(row.kind).expect("a kind that was declared or inferred");
             pass.finish();
         }
-        make_resources(graph, again.open().0, graph.versions.len());
+        make_resources(graph, again.tables_mut().0, graph.versions.len());
         again
     }
 
@@ -251,16 +251,16 @@ mod tests {
             assert_eq!(kinds(&quick), kinds(&full), "seed {seed}");
             let unwritten = |e: &Export| quick.versions[e.version.index()].writer.is_none();
             let uncertain = full.contents_uncertain || quick.exports.iter().any(unwritten);
-            // A pass that was refused may have raised the flag too.
+            // A rejected pass may have set the flag too.
             assert!(quick.contents_uncertain || !uncertain, "seed {seed}");
-            // What the quick check relies on: the newest version of each resource is open, and no other.
+            // Invariant of the fast check: only the newest version of each resource allows accesses.
             for (index, (version, again)) in quick.versions.iter().zip(&full.versions).enumerate() {
                 let resource = &quick.resources[version.resource.index()];
                 let written = if version.writer.is_none() { Kinds::NONE } else { Kinds::DEFINED };
-                let open = Kinds::on_entry(&resource.desc, resource.kind).union(written);
+                let allowed = Kinds::on_entry(&resource.desc, resource.kind).union(written);
                 let newest = resource.current == VersionId::at(index);
-                assert_eq!(version.open, if newest { open } else { Kinds::NONE }, "seed {seed}, version {index}");
-                assert_eq!(version.open, again.open, "seed {seed}, version {index}");
+                assert_eq!(version.allowed, if newest { allowed } else { Kinds::NONE }, "seed {seed}, version {index}");
+                assert_eq!(version.allowed, again.allowed, "seed {seed}, version {index}");
             }
             written += quick.versions.iter().filter(|v| v.writer.some().is_some()).count();
         }

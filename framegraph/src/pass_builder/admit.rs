@@ -1,15 +1,17 @@
-//! What a single access can be refused for.
+//! Validity checks of a single access.
 
-use super::request::{Manner, Request};
+use super::request::{AccessDesc, Request};
 use crate::access::{Access, AccessKind, Kinds, Range};
 use crate::error::DeclareReason;
 use crate::graph::{PassKind, Tables};
 use crate::resource::{BufferDesc, BufferSize, Desc, Dimension, Kind, Resource, TextureDesc, halved};
 
-/// Two accesses of one pass to one resource exclude each other when they overlap and one of them writes. All of a buffer
-/// is in one use during a pass (WebGPU's usage scopes), so beside a write other bytes too can only be written, alike.
+/// Returns `true` if two accesses of one pass to one resource conflict: they overlap, and one of them writes.
+///
+/// A buffer has one usage during a pass (WebGPU's usage scopes). Next to a write, other bytes of the buffer may only be
+/// accessed in the same way.
 pub(super) fn conflicts(tables: &Tables, earlier: &Access, later: &Request) -> bool {
-    if !earlier.mode.writes() && !later.manner.mode.writes() {
+    if !earlier.mode.writes() && !later.desc.mode.writes() {
         return false;
     }
     match &tables.resources[earlier.resource.index()].desc {
@@ -19,7 +21,7 @@ pub(super) fn conflicts(tables: &Tables, earlier: &Access, later: &Request) -> b
             let apart = bytes.is_some_and(|(earlier, (offset, bytes))| {
                 offset >= earlier.end() || earlier.offset >= offset.saturating_add(bytes)
             });
-            !apart || earlier.kind != later.manner.kind
+            !apart || earlier.kind != later.desc.kind
         }
     }
 }
@@ -34,7 +36,7 @@ pub(super) fn wrong_kind(kind: PassKind, access: AccessKind) -> Option<DeclareRe
     (!fits).then_some(DeclareReason::WrongPassKind { kind, access })
 }
 
-/// Copies are a pass of their own, whether its kind is named or not: neither can follow the other's accesses.
+/// Checks that copies do not share a pass with other accesses, even if the pass has no explicit kind.
 pub(super) fn mixed(tables: &Tables, own: &[Access], used: Kinds, access: AccessKind) -> Option<DeclareReason> {
     let copy = Kinds::COPIES.has(Kinds::one(access));
     let others = if copy { Kinds::ALL.without(Kinds::COPIES) } else { Kinds::COPIES };
@@ -49,7 +51,7 @@ pub(super) fn mixed(tables: &Tables, own: &[Access], used: Kinds, access: Access
     })
 }
 
-/// The kind of a pass that makes accesses of the kinds in `used`.
+/// Returns the kind of a pass with accesses of the kinds in `used`.
 pub(super) const fn inferred_kind(used: Kinds) -> PassKind {
     if used.meets(Kinds::RASTER) {
         PassKind::Raster
@@ -60,7 +62,7 @@ pub(super) const fn inferred_kind(used: Kinds) -> PassKind {
     }
 }
 
-/// The kinds that a pass of that kind cannot make, or not without every check.
+/// Returns the access kinds that passes of this kind may not use, or not without the full check.
 pub(super) const fn barred(kind: PassKind) -> Kinds {
     match kind {
         PassKind::Raster => Kinds::COPIES,
@@ -69,9 +71,9 @@ pub(super) const fn barred(kind: PassKind) -> Kinds {
     }
 }
 
-/// What the resource's shape or kind rules out.
+/// Returns the reason why the resource does not support the access, if any.
 pub(super) fn incapable(row: &Resource, r: &Request) -> Option<DeclareReason> {
-    let Manner { kind: access, mode, .. } = r.manner;
+    let AccessDesc { kind: access, mode, .. } = r.desc;
     if let (Kind::HistoryPrevious { .. }, true) = (row.kind, mode.writes()) {
         return Some(DeclareReason::WritesEarlierFrame { access });
     }
@@ -87,7 +89,7 @@ pub(super) fn incapable(row: &Resource, r: &Request) -> Option<DeclareReason> {
     }
 }
 
-/// Bytes that the buffer has not, as far as its size is known without the frame's.
+/// Checks that a byte range lies inside the buffer, as far as its size is known without the frame size.
 fn outside(buffer: &BufferDesc, r: &Request) -> Option<DeclareReason> {
     let (offset, bytes) = r.bytes?;
     let size = match buffer.size {
@@ -99,7 +101,7 @@ fn outside(buffer: &BufferDesc, r: &Request) -> Option<DeclareReason> {
 }
 
 fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
-    let access = r.manner.kind;
+    let access = r.desc.kind;
     let Range { mip, mips, layer, layers, aspect, view, bytes: _ } = r.range;
     let outside = |first: u32, count: u32, all: bool, has: u32| {
         if all { first >= has } else { count == 0 || first + count > has }

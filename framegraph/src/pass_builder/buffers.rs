@@ -1,13 +1,13 @@
-//! The accesses of a pass to buffers, one call each.
+//! Buffer accesses of a pass.
 
 use super::PassBuilder;
-use super::request::{Manner, Request};
+use super::request::{AccessDesc, Request};
 use crate::access::{AccessKind, Intent, Kinds, Range};
 use crate::error::DeclareError;
 use crate::handle::{Buffer, BufferPart, BufferView};
 use std::panic::Location;
 
-/// Each call takes a whole buffer or some of its bytes:
+/// Methods for buffers take a whole buffer or a range of its bytes:
 ///
 /// ```
 /// use framegraph::{ClearValue, DeclareError, Graph, Intent};
@@ -26,70 +26,70 @@ use std::panic::Location;
 /// # Ok::<(), DeclareError>(())
 /// ```
 impl PassBuilder<'_> {
-    /// Reads as a uniform buffer.
+    /// Declares a uniform buffer.
     ///
     /// # Errors
-    /// As [`PassBuilder::read_buffer`].
+    /// Returns the errors of [`PassBuilder::read_buffer`].
     #[inline]
     #[track_caller]
     pub fn uniform(&mut self, buffer: impl Into<BufferPart>) -> Result<BufferView, DeclareError> {
         self.read_bytes(buffer.into(), AccessKind::Uniform, Location::caller())
     }
 
-    /// Reads as vertices.
+    /// Declares a vertex buffer.
     ///
     /// # Errors
-    /// As [`PassBuilder::read_buffer`].
+    /// Returns the errors of [`PassBuilder::read_buffer`].
     #[inline]
     #[track_caller]
     pub fn vertex(&mut self, buffer: impl Into<BufferPart>) -> Result<BufferView, DeclareError> {
         self.read_bytes(buffer.into(), AccessKind::Vertex, Location::caller())
     }
 
-    /// Reads as indices.
+    /// Declares an index buffer.
     ///
     /// # Errors
-    /// As [`PassBuilder::read_buffer`].
+    /// Returns the errors of [`PassBuilder::read_buffer`].
     #[inline]
     #[track_caller]
     pub fn index(&mut self, buffer: impl Into<BufferPart>) -> Result<BufferView, DeclareError> {
         self.read_bytes(buffer.into(), AccessKind::Index, Location::caller())
     }
 
-    /// Reads as the arguments of indirect draws or dispatches.
+    /// Declares a buffer with the arguments of indirect draws or dispatches.
     ///
     /// # Errors
-    /// As [`PassBuilder::read_buffer`].
+    /// Returns the errors of [`PassBuilder::read_buffer`].
     #[inline]
     #[track_caller]
     pub fn indirect(&mut self, buffer: impl Into<BufferPart>) -> Result<BufferView, DeclareError> {
         self.read_bytes(buffer.into(), AccessKind::Indirect, Location::caller())
     }
 
-    /// Reads as a storage buffer.
+    /// Declares a storage buffer that is only read.
     ///
     /// # Errors
-    /// As [`PassBuilder::read_buffer`].
+    /// Returns the errors of [`PassBuilder::read_buffer`].
     #[inline]
     #[track_caller]
     pub fn storage_read_buffer(&mut self, buffer: impl Into<BufferPart>) -> Result<BufferView, DeclareError> {
         self.read_bytes(buffer.into(), AccessKind::StorageRead, Location::caller())
     }
 
-    /// Copies from.
+    /// Declares the source of a buffer copy.
     ///
     /// # Errors
-    /// As [`PassBuilder::read_buffer`].
+    /// Returns the errors of [`PassBuilder::read_buffer`].
     #[inline]
     #[track_caller]
     pub fn copy_source_buffer(&mut self, buffer: impl Into<BufferPart>) -> Result<BufferView, DeclareError> {
         self.read_bytes(buffer.into(), AccessKind::CopySource, Location::caller())
     }
 
-    /// Writes (with `Modify`: reads and writes) as a storage buffer; returns the new version.
+    /// Declares a storage buffer that is written, or read and written with [`Intent::Modify`]. Returns the new version.
     ///
     /// # Errors
-    /// As [`PassBuilder::write_buffer`].
+    /// Returns the errors of [`PassBuilder::write_buffer`].
     #[inline]
     #[track_caller]
     pub fn storage_write_buffer(
@@ -100,32 +100,32 @@ impl PassBuilder<'_> {
         self.write_bytes(into.into(), AccessKind::StorageWrite, intent, Location::caller())
     }
 
-    /// Copies into; returns the new version.
+    /// Declares the destination of a buffer copy and returns its new version.
     ///
     /// # Errors
-    /// As [`PassBuilder::write_buffer`].
+    /// Returns the errors of [`PassBuilder::write_buffer`].
     #[inline]
     #[track_caller]
     pub fn copy_target_buffer(&mut self, into: impl Into<BufferPart>, intent: Intent) -> Result<Buffer, DeclareError> {
         self.write_bytes(into.into(), AccessKind::CopyTarget, intent, Location::caller())
     }
 
-    /// Reads a buffer as `kind`: uniform, vertex, index, indirect, storage or copy source.
+    /// Declares a buffer read of the given kind: uniform, vertex, index, indirect, storage or copy source.
     ///
     /// # Errors
-    /// As [`PassBuilder::sampled`]; also when `kind` is not a read of a buffer, or the buffer has not these bytes. A pass
-    /// that writes some bytes of a buffer can use its other bytes in that same way only: on WebGPU all of a buffer is in
-    /// one use at a time.
+    /// Returns the errors of [`PassBuilder::sampled`], and an error if `kind` is not a buffer read or the range exceeds
+    /// the buffer. A pass that writes part of a buffer may access its other bytes only in the same way: WebGPU allows
+    /// one usage per buffer and pass.
     #[inline]
     #[track_caller]
     pub fn read_buffer(&mut self, buffer: impl Into<BufferPart>, kind: AccessKind) -> Result<BufferView, DeclareError> {
         self.read_bytes(buffer.into(), kind, Location::caller())
     }
 
-    /// Writes a buffer as `kind`: storage or copy target; returns the new version.
+    /// Declares a buffer write of the given kind, storage or copy target, and returns the new version.
     ///
     /// # Errors
-    /// As [`PassBuilder::read_buffer`]; also when `kind` is not a write of a buffer.
+    /// Returns the errors of [`PassBuilder::read_buffer`], and an error if `kind` is not a buffer write.
     #[inline]
     #[track_caller]
     pub fn write_buffer(
@@ -147,11 +147,11 @@ impl PassBuilder<'_> {
         let BufferPart { buffer: Buffer { tag, version }, bytes } = part;
         if bytes.is_none()
             && Kinds::READS.has(Kinds::one(kind))
-            && let Some(access) = self.quick_read(tag, version, kind)
+            && let Some(access) = self.try_read_fast(tag, version, kind)
         {
             return Ok(BufferView { tag, access });
         }
-        let request = Request { tag, version, range: Range::ALL, bytes, manner: Manner::read(kind), clear: 0 };
+        let request = Request { tag, version, range: Range::ALL, bytes, desc: AccessDesc::read(kind), clear: 0 };
         let (access, _) = self.add_checked(&request, location)?;
         Ok(BufferView { tag, access })
     }
@@ -166,14 +166,14 @@ impl PassBuilder<'_> {
     ) -> Result<Buffer, DeclareError> {
         let BufferPart { buffer: Buffer { tag, version }, bytes } = part;
         let (mode, clear) = self.mode(intent);
-        let manner = Manner { kind, mode, slot: 0 };
+        let desc = AccessDesc { kind, mode, slot: 0 };
         if bytes.is_none()
             && !Kinds::READS.has(Kinds::one(kind))
-            && let Some(version) = self.quick_write(tag, version, manner, clear)
+            && let Some(version) = self.try_write_fast(tag, version, desc, clear)
         {
             return Ok(Buffer { tag, version });
         }
-        let request = Request { tag, version, range: Range::ALL, bytes, manner, clear };
+        let request = Request { tag, version, range: Range::ALL, bytes, desc, clear };
         let version = self.write_checked(&request, location)?;
         Ok(Buffer { tag, version })
     }

@@ -1,17 +1,17 @@
-//! What a plan says of multisample resolves: in a step's store, or by a full-screen pass.
+//! Queries about multisample resolves: those performed while storing, and full-screen passes.
 
 use super::{Attachment, Join, Plan, Role, StepPass};
 use crate::access::{Access, AccessKind};
 use crate::id::StepId;
 
 impl Role {
-    /// Whether it receives samples that the step resolves.
+    /// Returns `true` for a target of a multisample resolve.
     #[inline]
     pub const fn is_resolve(self) -> bool {
         matches!(self, Self::ResolveTarget(..) | Self::ResolveDepth(_))
     }
 
-    /// Whether it receives samples of an attachment of that role in the same step.
+    /// Returns `true` if the attachment is a resolve target of an attachment with role `samples` in the same step.
     #[inline]
     pub const fn resolves(self, samples: Self) -> bool {
         match (self, samples) {
@@ -23,16 +23,17 @@ impl Role {
 }
 
 impl Plan {
-    /// The passes that run, in the order in which they do: those of [`Plan::step_passes`], full-screen resolves left out.
+    /// Returns the passes that run, in execution order: [`Plan::step_passes`] without full-screen resolves.
     pub fn running(&self) -> impl Iterator<Item = StepPass> {
         self.step_passes().iter().copied().filter(|m| m.join != Join::Resolve)
     }
 
-    /// What the passes of a step resolve, where it is a full-screen pass that makes resolves ([`Join::Resolve`]): the access
-    /// that attached the samples, which are sampled now, with the resolve. Nothing for other steps.
+    /// Returns the resolves that a full-screen resolve step ([`Join::Resolve`]) performs; empty for other steps.
+    ///
+    /// Each pair holds the access that attached the samples, which the step samples, and the resolve.
     ///
     /// # Panics
-    /// When `step` is not of this plan.
+    /// Panics if `step` does not belong to this plan.
     pub fn full_screen_resolves(&self, step: StepId) -> impl Iterator<Item = (&Access, &Access)> {
         let members = self.passes_of(step).iter().filter(|m| m.join == Join::Resolve);
         members.flat_map(move |member| {

@@ -1,35 +1,35 @@
-//! The shape of a buffer: how many bytes, fixed or following the frame.
+//! Descriptor of a buffer, with a fixed size or one relative to the frame.
 
 use super::extent::Extent;
 
-/// The shape of a buffer.
+/// Descriptor of a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct BufferDesc {
-    /// How many bytes.
+    /// Size of the buffer.
     pub size: BufferSize,
 }
 
-/// The size of a buffer.
+/// Size of a buffer.
 ///
 /// ```
 /// use framegraph::{BufferSize, Extent, Graph};
 ///
 /// let mut graph = Graph::new();
 /// let counters = graph.buffer("counters", 256);
-/// // A list of lights for each tile of 16 by 16 texels, whatever the frame's size.
+/// // A light list of 512 bytes for each tile of 16×16 texels, at any frame size.
 /// let lists = graph.buffer("light lists", BufferSize::per_texel(512, Extent::fraction(16)));
 /// # let _ = (counters, lists);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum BufferSize {
-    /// So many bytes, not 0.
+    /// Fixed size in bytes, not 0.
     Bytes(u64),
-    /// So many bytes, not 0, for each texel of an extent: with [`Extent::FRAME`] for each texel of the frame, with
-    /// `Extent::fraction(16)` for each tile of 16 by 16 texels.
+    /// Bytes per texel of an extent. [`Extent::FRAME`] counts the texels of the frame; `Extent::fraction(16)` counts
+    /// tiles of 16×16 texels.
     PerTexel {
-        /// Bytes a texel.
+        /// Bytes per texel, not 0.
         bytes: u32,
         /// The extent whose texels are counted.
         extent: Extent,
@@ -37,7 +37,7 @@ pub enum BufferSize {
 }
 
 impl BufferSize {
-    /// `bytes` bytes for each texel of `extent`.
+    /// Returns a size of `bytes` bytes per texel of `extent`.
     pub const fn per_texel(bytes: u32, extent: Extent) -> Self {
         Self::PerTexel { bytes, extent }
     }
@@ -50,7 +50,7 @@ impl From<u64> for BufferSize {
 }
 
 impl BufferDesc {
-    /// The size in bytes for a frame of `frame` texels; saturates.
+    /// Size in bytes for a frame of `frame` texels. Saturates.
     #[inline]
     pub const fn bytes(&self, frame: [u32; 2]) -> u64 {
         match self.size {
@@ -72,7 +72,7 @@ mod tests {
         let size = |size| BufferDesc { size }.bytes([1920, 1080]);
         assert_eq!(size(BufferSize::Bytes(7)), 7);
         assert_eq!(size(BufferSize::per_texel(4, Extent::FRAME)), 1920 * 1080 * 4);
-        // 1080 texels are 67 tiles and a half of 16: the last row of tiles is counted too.
+        // 1080 texels are 67.5 tiles of 16: the partial last row counts as a full one.
         assert_eq!(size(BufferSize::per_texel(8, Extent::fraction(16))), 120 * 68 * 8);
         let huge = Extent::absolute(u32::MAX, u32::MAX);
         assert_eq!(size(BufferSize::per_texel(u32::MAX, huge)), u64::MAX);

@@ -1,42 +1,43 @@
-//! Width and height, fixed or following the frame.
+//! Width and height, fixed or relative to the frame.
 
-/// Width and height of a texture, in texels, either fixed or following the frame.
+/// Width and height of a texture in texels, fixed or relative to the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Extent {
     /// Fixed width and height.
     Absolute {
-        /// Texels across.
+        /// Width in texels.
         width: u32,
-        /// Texels down.
+        /// Height in texels.
         height: u32,
     },
-    /// `ceil(frame · num / den)`, then rounded up to a multiple of `align`; at least one texel.
+    /// `ceil(frame · num / den)`, rounded up to a multiple of `align`; at least one texel.
     Relative {
         /// Numerator of the scale.
         num: u16,
         /// Denominator of the scale, not 0.
         den: u16,
-        /// Both sides are rounded up to a multiple of this; 1 for none.
+        /// Width and height are rounded up to a multiple of this; 1 disables rounding.
         align: u16,
     },
 }
 
 impl Extent {
-    /// The frame's own size.
+    /// The size of the frame.
     pub const FRAME: Self = Self::Relative { num: 1, den: 1, align: 1 };
 
-    /// A fixed size in texels.
+    /// Returns a fixed size in texels.
     pub const fn absolute(width: u32, height: u32) -> Self {
         Self::Absolute { width, height }
     }
 
-    /// The frame's size over `den`, rounded up.
+    /// Returns the frame size divided by `den`, rounded up.
     pub const fn fraction(den: u16) -> Self {
         Self::Relative { num: 1, den, align: 1 }
     }
 
-    /// Width and height in texels for a frame of `frame` texels. Never 0 for a relative extent of a frame that has texels.
+    /// Width and height in texels for a frame of `frame` texels. Relative extents are at least 1 unless the frame is
+    /// empty.
     #[inline]
     pub const fn texels(self, frame: [u32; 2]) -> [u32; 2] {
         match self {

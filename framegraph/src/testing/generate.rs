@@ -1,13 +1,15 @@
-//! Random graphs, for tests, fuzzing and benches: one generator for all three.
+//! Random graphs for tests, fuzzing and benchmarks.
 //!
-//! [`graph`] turns [`Entropy`], a seed or the bytes of a fuzzer, into a graph of raster, compute and copy passes over a few
-//! shapes and formats, so that merging, aliasing and inlining happen often: passes tend to go on with what the pass before
-//! them drew. Mip levels, array layers, planes, three dimensions, multisampling with resolves, imports of every entry and exit, histories,
-//! buffers, exports, readbacks, side effects and all pass flags occur.
+//! [`graph`] turns [`Entropy`], a seed or the bytes of a fuzzer, into a graph of raster, compute and copy passes. It
+//! uses few shapes and formats, and passes tend to continue with the attachments of the previous pass. Merging,
+//! aliasing and inlining are therefore frequent.
 //!
-//! Graphs are valid by construction at a frame of [`FRAME`] texels on every preset of [`Caps`], unless the profile asks
-//! for [sloppy](Profile::sloppy) ones: those break rules now and then, and must be refused with errors, or else compile to
-//! a plan that is right.
+//! Graphs contain mip levels, array layers, planes, three-dimensional textures, multisampling with resolves, imports,
+//! histories, buffers, exports, readbacks, side effects and all pass flags.
+//!
+//! Graphs are valid for a frame of [`FRAME`] texels on every preset of [`Caps`], unless the profile requests
+//! [sloppy](Profile::sloppy) ones. Sloppy graphs violate rules now and then; the compiler must report errors or produce
+//! a correct plan.
 //!
 //! ```
 //! use framegraph::testing::generate::{self, Entropy, Profile};
@@ -38,7 +40,7 @@ use crate::resolve::{ResolveMode, ResolveModes};
 use accesses::Draft;
 use world::World;
 
-/// A random graph.
+/// Returns a random graph.
 pub fn graph(entropy: &mut Entropy<'_>, profile: &Profile) -> Graph {
     let mut world = World::new(entropy, *profile);
     world.import_and_declare();
@@ -79,8 +81,7 @@ fn pass(world: &mut World<'_, '_>, index: u32) {
     draft.declare(world, &format!("{prefix}{index}"));
 }
 
-/// A device like one of the presets, with some of its abilities and limits changed. A valid graph can be refused by such
-/// a device for want of room.
+/// Returns a random variation of a preset. It may not support every valid graph, because its limits can be lower.
 pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
     let mut caps = match entropy.below(3) {
         0 => Caps::wgpu(),
@@ -127,21 +128,22 @@ pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
     caps
 }
 
-/// The graph with every same-pixel read made through a sampler.
+/// Returns the graph with every same-pixel read replaced by a sampled one.
 #[must_use]
 pub fn sampling(graph: &Graph) -> Graph {
     let mut graph = graph.clone();
-    for access in graph.open().0.accesses.iter_mut().filter(|a| a.kind == AccessKind::SamePixel) {
+    for access in graph.tables_mut().0.accesses.iter_mut().filter(|a| a.kind == AccessKind::SamePixel) {
         access.kind = AccessKind::Sampled;
     }
     graph
 }
 
-/// How many combinations of options [`options_of`] knows.
+/// Number of combinations of options of [`options_of`].
 pub const OPTIONS: u32 = 2 * 2 * 2 * 2 * 2 * 3 * 2;
 
-/// One combination of options, by its number below [`OPTIONS`]: culling, merging, inlining, memoryless attachments, order,
-/// aliasing, effort. Number 0 is the default, but for the frame and the budget; larger numbers wrap around.
+/// Returns a combination of options, by its number below [`OPTIONS`]: culling, merging, inlining, memoryless
+/// attachments, order, aliasing, effort. Number 0 is the default except for the frame size and the budget. Larger
+/// numbers wrap around.
 pub fn options_of(number: u32) -> Options {
     let bit = |n: u32| number >> n & 1 == 0;
     Options {

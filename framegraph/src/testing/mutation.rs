@@ -1,5 +1,6 @@
-//! Is the oracle awake? Good plans, broken in one place at a time: each mutant must be reported, as a violation or as
-//! waste. What it may overlook is listed in [`excuse`], each with the proof that the field does not matter there.
+//! Mutation tests of the oracle: correct plans with a single change must be reported as a violation or as waste.
+//!
+//! Exceptions are listed in [`excuse`], each with the reason why the changed field does not matter.
 //!
 //! ```
 //! use framegraph::testing::mutation::MutationReport;
@@ -31,25 +32,25 @@ use crate::testing::check::{Rule, examine};
 use mutator::Mutator;
 use std::collections::BTreeMap;
 
-/// What became of the mutants of good plans.
+/// Result of mutating correct plans.
 #[derive(Debug, Default)]
 pub struct MutationReport {
-    /// Plans that were mutated.
+    /// Number of mutated plans.
     pub plans: usize,
-    /// Mutants of all of them.
+    /// Number of mutants.
     pub mutants: usize,
-    /// How many were reported.
+    /// Number of reported mutants.
     pub caught: usize,
-    /// Mutants, and how many of them were reported, by field.
+    /// Number of mutants and of reported mutants, by field.
     pub fields: BTreeMap<&'static str, (usize, usize)>,
-    /// How many of a field were as good as the plan, by field and the proof of it.
+    /// Number of equivalent mutants, by field and reason.
     pub excused: BTreeMap<(&'static str, &'static str), usize>,
-    /// The others, a line each: faults of the oracle.
+    /// Descriptions of the other mutants, which the oracle wrongly accepts.
     pub alive: Vec<String>,
 }
 
 impl MutationReport {
-    /// Adds the mutants of a plan that the oracle has nothing against.
+    /// Adds the mutants of a correct plan.
     pub fn take(&mut self, good: &Plan) {
         self.plans += 1;
         mutants(good, &mut |mutant| {
@@ -71,7 +72,7 @@ impl MutationReport {
     }
 }
 
-/// Visits every mutant of a plan.
+/// Calls `visit` with every mutant of a plan.
 pub fn mutants(plan: &Plan, visit: &mut dyn FnMut(Mutant)) {
     let mut mutator = Mutator { plan, visit };
     mutator.with("compilation", 0, |p| p.compilation = 0);
@@ -84,50 +85,50 @@ pub fn mutants(plan: &Plan, visit: &mut dyn FnMut(Mutant)) {
     log::barriers(&mut mutator);
 }
 
-/// Why a mutant that the oracle does not report is as good as the plan; none when it is not.
+/// Returns the reason why an unreported mutant is equivalent to the plan; `None` if it is not.
 pub fn excuse(good: &Plan, mutant: &Mutant) -> Option<&'static str> {
     let Mutant { field, row, plan } = mutant;
     match *field {
         "attachment.clear" => {
             let a = plan.attachments[*row];
             if a.load != LoadOp::Clear && a.stencil_load != LoadOp::Clear {
-                return Some("a clear value is read by clear ops only, and neither op clears");
+                return Some("the clear value is unused, because neither op clears");
             }
             let value = |p: &Plan| p.graph.clears.get(p.attachments[*row].clear as usize).copied();
             let same = value(good).is_some() && value(good) == value(plan);
-            same.then_some("the other index holds the same value, bit for bit")
+            same.then_some("the other index has the same value, bit for bit")
         }
         "memory.peak" => {
-            // Which of several fullest steps is named is free in a heap.
+            // In a heap, any of several steps with the most live bytes may be named.
             let heap = good.options.alias == Alias::Heap && good.caps.placed;
-            heap.then_some("as many bytes are live in the other step")
+            heap.then_some("the other step has as many live bytes")
         }
         "memory.lower_bound" => {
-            // A bound that no packing reached: only a search could tell whether it holds.
+            // The bound is below the size of the packing; only a search could verify it.
             let open = !good.memory.optimal && good.options.alias == Alias::Heap;
-            open.then_some("between the peak and the top any bound might hold")
+            open.then_some("any bound between the peak and the size may be valid")
         }
         "resource.offset" => moved_freely(good, plan, *row),
         "step order" | "pass order" => {
-            // The run shows that what was exchanged does not touch each other; the log tells of the old order.
+            // The run shows that the exchanged passes are independent; only the log describes the old order.
             let free = good.options.order == Order::Optimized;
-            let told = !examine(plan).is_clean();
-            (free && told).then_some("any order in which every read is right would do")
+            let reported = !examine(plan).is_clean();
+            (free && reported).then_some("any order with correct reads is valid")
         }
-        "barrier.hand_over" => {
-            let named = |p: &Plan| p.resources[p.barriers[*row].hand_over.index()].last;
+        "barrier.aliases" => {
+            let named = |p: &Plan| p.resources[p.barriers[*row].aliases.index()].last;
             let tie = named(good) == named(plan);
-            tie.then_some("both tenants had the memory until the same step")
+            tie.then_some("both resources used the memory until the same step")
         }
         "decision.reason" => {
             let (from, to) = (good.decisions[*row].reason, plan.decisions[*row].reason);
-            may_replace(from, to).then_some("both reasons are true, and one is enough")
+            may_replace(from, to).then_some("both reasons are true")
         }
         _ => None,
     }
 }
 
-/// An offset in a heap that serves as well: aligned, below the same top, over no live neighbour, after the same tenant.
+/// Accepts a heap offset that is aligned, within the heap, overlaps no live resource, and follows the same resource.
 fn moved_freely(good: &Plan, mutant: &Plan, row: usize) -> Option<&'static str> {
     let range = |p: &Plan, r: usize| match p.resources[r].placement {
         Placement::Heap { offset } => Some((offset, offset + p.resources[r].bytes.max(1))),
@@ -149,27 +150,27 @@ fn moved_freely(good: &Plan, mutant: &Plan, row: usize) -> Option<&'static str> 
             return None;
         }
     }
-    Some("any aligned place below the top that no live resource has is as good")
+    Some("any aligned, free offset within the heap is valid")
 }
 
-/// Whether two reasons answer the same question, so that both can be true at once.
+/// Returns `true` if both reasons can be true at the same time.
 fn may_replace(from: Reason, to: Reason) -> bool {
     question(from) == question(to) && question(from) != 0
 }
 
-/// Questions that can have several true answers; 0 for those that have one.
+/// Returns a number for groups of reasons that can be true at the same time; 0 for other reasons.
 fn question(reason: Reason) -> u8 {
     use Reason as R;
     match reason {
         // A pass can be needed for several outputs, by several readers.
         R::KeptSideEffect | R::KeptExport(_) | R::KeptImport(_) | R::KeptHistory(_) | R::KeptReadBy(..) => 1,
-        // Several outputs and parts can be in vain, each in its way.
+        // Several outputs and parts can be unused for different reasons.
         R::CulledUnread(_) | R::CulledReaderCulled(..) | R::CulledOverwritten(..) => 2,
-        // Several objections can stand.
+        // Several objections can exist.
         R::Split(..) => 3,
         R::NotInlined(..) => 4,
         R::NeedsMemory(_) => 5,
-        // Several parts can be loaded, stored, dropped.
+        // Several parts can be loaded, stored or dropped.
         R::LoadWritten(_) | R::LoadEntry => 6,
         R::StoreReadBy(_) | R::StoreResolved(_) | R::StoreExport | R::StoreImport | R::StoreHistory => 7,
         R::DiscardUnread | R::DiscardOverwritten | R::StoreUnchanged => 8,
@@ -177,8 +178,8 @@ fn question(reason: Reason) -> u8 {
     }
 }
 
-/// Whether the oracle reports a mutant. The decision log is full of echoes of the plan, so where the log itself is not what
-/// was changed, something else than its truth must be reported.
+/// Returns `true` if the oracle reports a mutant. The log describes the rest of the plan, so an incorrect row only
+/// counts if the log itself was changed.
 pub fn is_caught(mutant: &Mutant) -> bool {
     let report = examine(&mutant.plan);
     let log = mutant.field.starts_with("decision");
@@ -186,7 +187,7 @@ pub fn is_caught(mutant: &Mutant) -> bool {
     violations.any(|v| log || v.rule != Rule::Decision) || !report.wastes.is_empty()
 }
 
-/// What was changed, in words.
+/// Describes the change.
 fn difference(good: &Plan, mutant: &Mutant) -> String {
     let rows = |p: &Plan| {
         let Plan { pass_steps, steps, step_passes, attachments, resources, slots, barriers, memory, decisions, .. } =

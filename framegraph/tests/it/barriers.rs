@@ -1,4 +1,4 @@
-//! Barriers and hand-overs of small frames, worked out by hand.
+//! Barriers of small frames, derived by hand.
 
 use crate::support::*;
 use framegraph::*;
@@ -26,8 +26,8 @@ fn a_chain_transitions_each_texture_twice() {
     assert_eq!((a[1].from, a[1].to), (State::ColorAttachment, State::Sampled));
     assert_eq!((a[1].from_stages, a[1].to_stages), (Stages::COLOR, Stages::SHADER));
     assert_eq!(a.len(), 2);
-    // `two_out` is exported and has memory of its own; `a` is dead when it is written, but not handed over.
-    assert!(of(&p, "two_out").iter().all(|b| b.hand_over.is_none()));
+    // `two_out` is exported and not aliased; `a` is unused when it is written, but not aliased either.
+    assert!(of(&p, "two_out").iter().all(|b| b.aliases.is_none()));
 }
 
 #[test]
@@ -45,9 +45,9 @@ fn memory_is_handed_over_after_its_last_use() {
     })
     .unwrap();
     let p = plan(&g, &explicit());
-    // t0 f1 share two slots in turns: f2 takes over from t0, which f1 sampled in step 1.
+    // `t0` and `f1` share two slots: `f2` reuses the memory of `t0`, which `f1` sampled in step 1.
     let f2 = of(&p, "f2_out")[0];
-    assert_eq!(f2.hand_over, g.find_resource("t0").unwrap());
+    assert_eq!(f2.aliases, g.find_resource("t0").unwrap());
     assert_eq!((f2.after.index(), f2.before.index(), f2.from), (1, 2, State::Undefined));
     assert_eq!(f2.from_stages, Stages::SHADER);
 }
@@ -71,7 +71,7 @@ fn two_reads_of_one_kind_need_one_barrier_and_the_next_write_waits_for_both() {
     assert_eq!(found, [(1, 0), (3, 2)]);
 }
 
-/// Sampled and read as storage in one step: the layout is that in which a storage image may be, which can be sampled too.
+/// A texture that is sampled and read as storage in one step has the storage layout, which supports both.
 #[test]
 fn what_is_sampled_and_storage_at_once_is_in_the_layout_of_storage() {
     let mut g = Graph::new();
@@ -110,7 +110,7 @@ fn levels_change_apart() {
 
 #[test]
 fn what_is_attached_is_in_the_layout_with_both_planes() {
-    // Both planes are written; then depth is sampled, and stencil alone is tested.
+    // Both planes are written; then depth is sampled, and only stencil is tested.
     let mut g = Graph::new();
     let ds = g.texture("ds", color(Format::Depth32FloatStencil8));
     let ds = g.add_fn("both", |p| p.depth(ds, FAR)).unwrap();
@@ -136,11 +136,11 @@ fn what_is_attached_is_in_the_layout_with_both_planes() {
     assert_eq!(check(&p), Ok(()));
     let found: Vec<_> = of(&p, "ds").iter().map(|b| (b.before.index(), b.first_part, b.parts, b.from, b.to)).collect();
     use State::{DepthAttachment as D, DepthReadOnly as R, Sampled as S, Undefined as U};
-    // In step 3 the depth plane goes along, although no pass of the step names it.
+    // In step 3 the depth plane takes part, although no pass of the step accesses it.
     assert_eq!(found, [(0, 0, 2, U, D), (1, 0, 1, D, S), (3, 0, 1, S, R), (3, 1, 1, D, R)]);
     let waits: Vec<_> = of(&p, "ds").iter().map(|b| (b.from_stages, b.to_stages)).collect();
     let (d, s) = (Stages::DEPTH, Stages::SHADER);
-    assert_eq!(waits, [(Stages::NONE, d), (d, s), (s, d), (d, d)], "what loads a plane waits too");
+    assert_eq!(waits, [(Stages::NONE, d), (d, s), (s, d), (d, d)], "loads of a plane wait too");
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn an_import_comes_in_the_state_that_its_owner_says() {
         (Entry::Defined, State::Entry, Stages::NONE),
         (Entry::Undefined, State::Undefined, Stages::NONE),
         (left(State::Sampled, Stages::SHADER), State::Sampled, Stages::SHADER),
-        // Contents are of no use, and who read them is waited for all the same.
+        // The contents are undefined, but their last readers must be waited for.
         (left(State::Undefined, Stages::COPY), State::Undefined, Stages::COPY),
     ];
     for (entry, from, stages) in rows {
@@ -167,7 +167,7 @@ fn an_import_comes_in_the_state_that_its_owner_says() {
     let mut g = Graph::new();
     let t = g.import_texture("t", hdr(), left(State::Undefined, Stages::NONE), Exit::Keep);
     g.add_fn("draw", |p| p.color(t, Intent::Modify)).unwrap();
-    assert!(matches!(errors(&g)[0].reason, CompileReason::ReadUnwritten { .. }), "nothing is there");
+    assert!(matches!(errors(&g)[0].reason, CompileReason::ReadUnwritten { .. }), "the contents are undefined");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Tiny graphs, every possibility tried: the compiler against definitions that are too slow to be wrong.
+//! Compares the compiler with exhaustive searches on tiny graphs.
 
 mod orders;
 
@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 const PLAIN: Profile =
     Profile { max_passes: 6, sloppy: false, plain: true, plain_accesses: true, volumes: false, forwards: false };
 
-/// Graphs of at most 7 passes and 7 resources.
+/// Returns graphs of at most 7 passes and 7 resources.
 fn tiny(count: usize) -> impl Iterator<Item = (u64, Graph)> {
     let all = (0..).map(|seed| (seed, generate::graph(&mut Entropy::seeded(seed), &PLAIN)));
     let small = |(_, g): &(u64, Graph)| g.passes().len() <= 7 && g.resources().len() <= 7;
@@ -23,11 +23,11 @@ fn declared() -> Options {
 fn compiled(graph: &Graph, caps: &Caps, options: &Options) -> Plan {
     let mut plan = Plan::new();
     let outcome = compile(graph, caps, options, &mut Scratch::new(), &mut plan);
-    outcome.unwrap_or_else(|errors| panic!("a valid graph was refused: {errors}"));
+    outcome.unwrap_or_else(|errors| panic!("a valid graph was rejected: {errors}"));
     plan
 }
 
-/// What memory has to hold, from when to when: resource, first and last step, bytes.
+/// A resource in memory: first and last step, bytes.
 type Item = (ResourceId, StepId, StepId, u64);
 
 fn items(plan: &Plan) -> Vec<Item> {
@@ -40,8 +40,9 @@ fn meet(a: &Item, b: &Item) -> bool {
     a.1 <= b.2 && b.1 <= a.2
 }
 
-/// The least bytes over all partitions of the items into slots: each slot holds one shape, and one tenant at a time.
-fn least_pool(plan: &Plan, items: &[Item], slots: &mut Vec<Vec<Item>>) -> u64 {
+/// Returns the minimum size over all partitions of the items into slots. Items of a slot have equal shape and disjoint
+/// lifetimes.
+fn min_pool(plan: &Plan, items: &[Item], slots: &mut Vec<Vec<Item>>) -> u64 {
     let Some((item, rest)) = items.split_first() else {
         return slots.iter().map(|s| s[0].3).sum();
     };
@@ -55,22 +56,22 @@ fn least_pool(plan: &Plan, items: &[Item], slots: &mut Vec<Vec<Item>>) -> u64 {
         })
     };
     slots.push(vec![*item]);
-    let mut least = least_pool(plan, rest, slots);
+    let mut least = min_pool(plan, rest, slots);
     slots.pop();
     for slot in 0..slots.len() {
         let fits = |other: &Item| !meet(item, other) && shape(item.0) == shape(other.0);
         if slots[slot].iter().all(fits) {
             slots[slot].push(*item);
-            least = least.min(least_pool(plan, rest, slots));
+            least = least.min(min_pool(plan, rest, slots));
             slots[slot].pop();
         }
     }
     least
 }
 
-/// The least top over all placements. Sorted by their offsets in a best placement, the items can be put one after the
-/// other as low as they go, and none ends higher: so trying every order, each item as low as it goes, finds the least.
-fn least_heap(items: &[Item], align: u64, placed: &mut Vec<(Item, u64)>, best: &mut u64) {
+/// Finds the minimum top over all placements. Sorted by their offsets in an optimal placement, items can be placed as
+/// low as possible one after another without raising the top. So trying every order is sufficient.
+fn min_heap(items: &[Item], align: u64, placed: &mut Vec<(Item, u64)>, best: &mut u64) {
     let top = placed.iter().map(|(i, at)| at + size(i, align)).max();
     let top = top.unwrap_or(0);
     if top >= *best && !items.is_empty() {
@@ -91,7 +92,7 @@ fn least_heap(items: &[Item], align: u64, placed: &mut Vec<(Item, u64)>, best: &
             at = below + size(other, align);
         }
         placed.push((item, at));
-        least_heap(&rest, align, placed, best);
+        min_heap(&rest, align, placed, best);
         placed.pop();
     }
 }
@@ -106,7 +107,7 @@ fn the_pool_takes_the_least_there_is() {
     let options = Options { cull: false, ..declared() };
     for (seed, graph) in tiny(1500) {
         let plan = compiled(&graph, &Caps::desktop(), &options);
-        let least = least_pool(&plan, &items(&plan), &mut Vec::new());
+        let least = min_pool(&plan, &items(&plan), &mut Vec::new());
         assert_eq!(plan.memory().bytes, least, "seed {seed}");
         assert!(plan.memory().optimal, "seed {seed}");
         shared += usize::from(least < plan.memory().unaliased_bytes);
@@ -123,7 +124,7 @@ fn the_heap_takes_the_least_there_is() {
             let options = Options { alias: Alias::Heap, effort, cull: seed % 2 == 0, ..declared() };
             let plan = compiled(&graph, &caps, &options);
             let mut least = u64::MAX;
-            least_heap(&items(&plan), align, &mut Vec::new(), &mut least);
+            min_heap(&items(&plan), align, &mut Vec::new(), &mut least);
             let memory = plan.memory();
             assert!(memory.lower_bound_bytes <= least, "seed {seed}: {memory:?}, {least}");
             if effort == Effort::Exact || memory.optimal {
@@ -135,10 +136,10 @@ fn the_heap_takes_the_least_there_is() {
         }
     }
     assert!(shared >= 20, "only {shared} graphs share memory");
-    assert!(above <= 2, "greedy packing misses the least {above} times of 250");
+    assert!(above <= 2, "greedy packing misses the optimum {above} times of 250");
 }
 
-/// The parts of a plain texture: its planes.
+/// Returns the parts of a texture with one level and layer: its planes.
 fn planes(graph: &Graph, access: &Access) -> impl Iterator<Item = (usize, u32)> + use<> {
     let resource = access.resource.index();
     let format = graph.resources()[resource].desc.texture().map(|t| t.format);
@@ -147,8 +148,8 @@ fn planes(graph: &Graph, access: &Access) -> impl Iterator<Item = (usize, u32)> 
     (0..format.planes()).filter(move |p| aspect.selects_plane(format, *p)).map(move |p| (resource, p))
 }
 
-/// The passes that a frame needs, by definition: contents are the set of passes that had a part in them, and needed is
-/// who has a part in what survives, or in a side effect.
+/// Returns the passes that a frame needs, by definition. Contents are the set of passes that contributed to them. A
+/// pass is needed if it contributed to exported contents or to a side effect.
 fn needed(graph: &Graph) -> BTreeSet<PassId> {
     let mut contents = std::collections::BTreeMap::<(usize, u32), BTreeSet<PassId>>::new();
     let mut needed = BTreeSet::new();
@@ -157,7 +158,7 @@ fn needed(graph: &Graph) -> BTreeSet<PassId> {
         let before = |access: &Access| -> BTreeSet<PassId> {
             planes(graph, access).flat_map(|part| contents.get(&part).into_iter().flatten().copied()).collect()
         };
-        // What a color attachment held is seen in what it holds then, and in its average, and nowhere else.
+        // Previous contents of a color attachment influence only its new contents and its resolve.
         let averaged = |slot| accesses.iter().any(|a| a.kind == AccessKind::Resolve && a.slot == slot);
         let adds = |a: &Access| a.kind == AccessKind::Color && a.mode == Mode::Modify && !averaged(a.slot);
         let mut of_pass = BTreeSet::from([pass]);

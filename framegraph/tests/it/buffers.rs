@@ -1,4 +1,4 @@
-//! Buffers: a method for each access, bytes that are followed apart, sizes that follow the frame.
+//! Buffers: a method for each access, separately tracked byte ranges, and sizes relative to the frame.
 
 use crate::support::*;
 use framegraph::*;
@@ -54,15 +54,15 @@ fn arguments(counter: Option<(u64, u64)>) -> Graph {
 
 #[test]
 fn writing_some_bytes_leaves_the_others() {
-    // The counter lies apart: nobody needs it, and the arguments are still there.
+    // The counter is a separate range: it is not used, and the arguments are still valid.
     let g = arguments(None);
     let plan = checked(&g, &Caps::wgpu());
     let kept: Vec<_> = g.pass_ids().map(|p| !plan.is_culled(p)).collect();
     assert_eq!(kept, [true, false, true]);
-    // Bytes that overlap: the arguments are those of both passes.
+    // With overlapping ranges, both passes contribute to the arguments.
     let g = arguments(Some((16, 4)));
     assert_eq!(checked(&g, &Caps::wgpu()).counts().culled, 0);
-    // Bytes that cover the arguments replace them.
+    // A range that covers the arguments replaces them.
     let g = arguments(Some((0, 256)));
     let plan = checked(&g, &Caps::desktop());
     let kept: Vec<_> = g.pass_ids().map(|p| !plan.is_culled(p)).collect();
@@ -96,8 +96,8 @@ fn bytes_are_checked_where_they_are_named() {
         let refused = asked(b.bytes(offset, bytes)).unwrap_err();
         assert_eq!(refused.reason, DeclareReason::NoSuchBytes { offset, bytes, size: Some(64) });
     }
-    assert!(g.byte_ranges().is_empty(), "a refused access left its bytes behind");
-    // All of them are no range.
+    assert!(g.byte_ranges().is_empty(), "a rejected access left its byte range behind");
+    // The whole buffer is not stored as a range.
     g.add_fn("p", |p| p.storage_write_buffer(b.bytes(0, 64), ZERO)).unwrap();
     assert!(g.byte_ranges().is_empty() && g.accesses()[0].range == Range::ALL);
 }
@@ -122,7 +122,7 @@ fn a_pass_has_all_of_a_buffer_in_one_use() {
     let mut g = Graph::new();
     let b = g.buffer("b", 1024);
     let b = g.add_fn("fill", |p| p.storage_write_buffer(b, ZERO)).unwrap();
-    // Two writes apart are fine, a read beside a write is what WebGPU refuses.
+    // Two separate writes are valid; WebGPU rejects a read in addition to a write.
     let two = g.add_fn("two", |p| {
         let b = p.storage_write_buffer(b.bytes(0, 256), ZERO)?;
         p.storage_write_buffer(b.bytes(512, 256), Intent::Modify)
@@ -134,10 +134,10 @@ fn a_pass_has_all_of_a_buffer_in_one_use() {
     });
     let error = mixed.unwrap_err();
     assert!(matches!(error.reason, DeclareReason::Conflict { buffer: true, .. }), "{error}");
-    assert!(error.to_string().contains("split the pass in two"), "{error}");
+    assert!(error.to_string().contains("split the pass"), "{error}");
 }
 
-/// Raster passes that touch one buffer in two ways are no common step, whatever bytes they name.
+/// Raster passes that use one buffer in two ways do not share a step, whatever their byte ranges.
 #[test]
 fn a_step_has_all_of_a_buffer_in_one_use() {
     for caps in [Caps::wgpu(), Caps::tiler(), Caps::desktop()] {
@@ -171,16 +171,16 @@ fn sizes_follow_the_frame() {
         p.storage_read_buffer(tiles.bytes(32, 32))
     })
     .unwrap();
-    // 64 x 32 texels are 4 x 2 tiles of 8 bytes.
+    // 64 × 32 texels are 4 × 2 tiles of 8 bytes.
     let plan = checked(&g, &Caps::wgpu());
     assert_eq!(plan.resources()[0].bytes, 64);
-    // A smaller frame has fewer bytes than a pass names.
+    // In a smaller frame, the declared range exceeds the buffer.
     let small = Options::for_frame(16, 16);
     let refused = compile(&g, &Caps::wgpu(), &small, &mut Scratch::new(), &mut Plan::new()).unwrap_err();
     let first = &refused.listed[0];
     assert_eq!(first.reason, CompileReason::NoSuchBytes { offset: 0, bytes: 64, size: 8 });
     assert_eq!(first.pass.as_ref().map(|p| p.name.as_str()), Some("fill"));
-    // Declared from the size of the frame, a range is right in each: the last row of tiles.
+    // A range computed from the frame size is valid at any size: here the last row of tiles.
     for frame in [[64, 32], [16, 16], [100, 50]] {
         g.reset();
         let extent = Extent::fraction(16);
@@ -207,9 +207,9 @@ fn a_plan_of_which_nothing_runs_says_so() {
     assert_eq!(idle.warnings().collect::<Vec<_>>(), [Warning::NothingRuns]);
     let outputs = [dump::text(&idle), dump::json(&idle, ""), dump::dot(&idle), dump::mermaid(&idle), dump::svg(&idle)];
     for output in outputs {
-        assert!(output.contains("export what the frame is for"), "{output}");
+        assert!(output.contains("export a resource"), "{output}");
     }
     g.export(a).unwrap();
     assert_eq!(plan(&g, &Caps::wgpu()).warnings().count(), 0);
-    assert_eq!(plan(&Graph::new(), &Caps::wgpu()).warnings().count(), 0, "there is nothing to run");
+    assert_eq!(plan(&Graph::new(), &Caps::wgpu()).warnings().count(), 0, "an empty graph gives no warning");
 }

@@ -1,5 +1,5 @@
-//! The oracle and the compiler agree: the smallest graphs of each kind of fault that the oracle ever found in the compiler,
-//! and what it says about plans that are fine.
+//! Oracle and compiler agree on the smallest graph of each kind of error that the oracle found in the compiler, and on
+//! correct plans.
 
 mod attachments;
 mod epilogues;
@@ -10,7 +10,7 @@ use crate::support::*;
 use framegraph::testing::generate;
 use framegraph::*;
 
-/// A plan that the oracle has nothing to say against.
+/// Returns a plan without findings of the oracle.
 #[track_caller]
 fn clean(graph: &Graph, caps: &Caps) -> Plan {
     let plan = plan(graph, caps);
@@ -100,8 +100,8 @@ fn a_buffer_that_takes_memory_over_waits_for_it() {
     let id = |name| g.find_resource(name).unwrap();
     assert_eq!(placement(&plan, "first"), placement(&plan, "second"));
     let mut of_second = plan.barriers().iter().filter(|b| b.resource == id("second"));
-    let first_use = of_second.next().expect("the memory is waited for");
-    assert_eq!(first_use.hand_over, id("first"));
+    let first_use = of_second.next().expect("the first use has a barrier");
+    assert_eq!(first_use.aliases, id("first"));
     assert_eq!(first_use.from_stages, Stages::COMPUTE);
 }
 

@@ -1,4 +1,4 @@
-//! Loads and stores of frames that are worked out by hand.
+//! Loads and stores of frames, derived by hand.
 
 use crate::support::*;
 use framegraph::*;
@@ -39,10 +39,9 @@ fn prepass_frame(samples: u8, prepass_merges: bool) -> Graph {
 
 #[test]
 fn unmerged_prepass_stores_and_loads_depth() {
-    // prepass: depth clear -> store.          1 clear, 1 resolve
-    // color:   depth load (read-only) -> discarded by its last reader; hdr clear -> store.
-    //                                         1 unresolve, 1 clear, 1 resolve, 1 discard
-    // post:    screen dont_care -> store.     1 resolve
+    // - prepass: depth clear -> store, so 1 clear and 1 store.
+    // - color: depth load (read-only) -> discard; hdr clear -> store, so 1 load, 1 clear, 1 store and 1 discard.
+    // - post: screen dont_care -> store, so 1 store.
     let plan = plan(&prepass_frame(1, false), &Caps::wgpu());
     let c = plan.counts();
     assert_eq!((c.unresolves, c.resolves, c.clears, c.discards, c.multisample_resolves), (1, 3, 2, 1, 0));
@@ -62,7 +61,8 @@ fn merged_prepass_keeps_depth_in_the_tile() {
 
 #[test]
 fn multisampling_resolves_in_the_tile() {
-    // prepass + color: depth clear -> discard, hdr_ms clear -> discard, hdr: the resolve. post: screen -> store.
+    // prepass + color: depth clear -> discard, hdr_ms clear -> discard, hdr is its resolve target. post: screen ->
+    // store.
     let plan = plan(&prepass_frame(4, true), &Caps::wgpu());
     let c = plan.counts();
     assert_eq!((c.unresolves, c.resolves, c.clears, c.discards, c.multisample_resolves), (0, 2, 2, 2, 1));
@@ -104,7 +104,7 @@ fn a_mip_pyramid_is_followed_level_by_level() {
     })
     .unwrap();
     let plan = plan(&g, &Caps::wgpu());
-    // Level 3 is read by nobody: its pass is culled, and levels 0, 1, 2 are stored.
+    // No pass reads level 3: its pass is culled, and levels 0, 1, 2 are stored.
     let c = plan.counts();
     assert_eq!((c.unresolves, c.resolves, c.culled), (0, 4, 1));
     let extents: Vec<_> = plan.steps().iter().map(|s| s.extent).collect();
@@ -113,7 +113,7 @@ fn a_mip_pyramid_is_followed_level_by_level() {
 
 #[test]
 fn depth_and_stencil_are_decided_apart() {
-    // Depth is sampled later and stored; stencil is used by the mask pass only and discarded.
+    // Depth is sampled later and stored; only the mask pass uses stencil, which is discarded.
     let mut g = Graph::new();
     let ds = g.texture("ds", color(Format::Depth32FloatStencil8));
     let ds = g.add_fn("mask", |p| p.depth(ds, FAR)).unwrap();
@@ -178,7 +178,7 @@ fn an_equal_graph_is_recognised() {
     assert!(again(&prepass_frame(4, false), &Options { frame: [8, 8], ..options() }));
 }
 
-/// The samples are read one by one and their average by nobody: it is not made, and counts as nothing.
+/// The samples are read individually and their average by no pass: it is not computed and not counted.
 #[test]
 fn an_average_that_nobody_reads_is_not_made() {
     let mut g = Graph::new();
@@ -203,7 +203,8 @@ fn an_average_that_nobody_reads_is_not_made() {
 
 #[test]
 fn layers_go_without_memory_where_the_device_says_so() {
-    // Depth of two layers, drawn and dropped; `a` is two attachments, of one layer each. One of them is read where `kept`.
+    // Depth has two layers, is drawn and discarded; `a` has two attachments of one layer each. If `kept`, one of them
+    // is read.
     let frame = |kept: bool| {
         let mut g = Graph::new();
         let out = g.texture("out", hdr().layers(2));
@@ -247,7 +248,7 @@ fn layers_go_without_memory_where_the_device_says_so() {
     }
 }
 
-/// A layer that is written as storage beside one that is drawn into needs memory for both, though no pass reads either.
+/// A texture with one layer written as storage and another one drawn needs memory for both, even if no pass reads them.
 #[test]
 fn what_is_storage_too_is_not_memoryless() {
     let mut g = Graph::new();

@@ -1,4 +1,4 @@
-//! Which passes survive, and why.
+//! Culling: the passes that are kept, and the reasons.
 
 use crate::support::*;
 use framegraph::*;
@@ -41,7 +41,7 @@ fn what_is_written_over_is_dropped() {
 
 #[test]
 fn side_effects_keep_what_they_read_alive_until_they_run() {
-    // A known fault of a peer: a resource read only by a side-effect pass was freed before that pass ran.
+    // An error of another render graph: a resource read only by a pass with a side effect was freed before that pass.
     let mut g = Graph::new();
     let a = g.texture("a", hdr());
     let a = g.add_fn("draw", |p| p.color(a, BLACK)).unwrap();
@@ -61,7 +61,7 @@ fn side_effects_keep_what_they_read_alive_until_they_run() {
 
 #[test]
 fn a_dead_writer_does_not_hide_a_live_one() {
-    // `dead` overwrites level 1 only, and nobody reads level 1; level 0 of `base` is still needed.
+    // `dead` overwrites only level 1, which no pass reads; level 0 of `base` is still used.
     let mut g = Graph::new();
     let t = g.texture("t", hdr().mips(2));
     let t = g.add_fn("base", |p| p.color(t.mip(0), Intent::Overwrite)).unwrap();
@@ -81,7 +81,7 @@ fn a_dead_writer_does_not_hide_a_live_one() {
 
 #[test]
 fn a_write_into_a_discarded_import_that_nobody_reads_is_culled() {
-    // The pass that would read it is switched off; `both` has a second output, and stays.
+    // The pass that would read it is disabled; `both` has a second output and is kept.
     let mut g = Graph::new();
     let [a, b] = ["a", "b"].map(|n| g.import_texture(n, hdr(), Entry::Undefined, Exit::Discard));
     g.add_fn("alone", |p| p.color(a, BLACK)).unwrap();
@@ -122,6 +122,6 @@ fn a_history_keeps_its_writer_and_reads_the_frame_before() {
     assert!(matches!(verdict(&plan, "taa"), Reason::KeptHistory(_)));
     assert_eq!(placement(&plan, "taa"), Placement::Own);
     let texels = u64::from(FRAME[0] * FRAME[1]);
-    assert_eq!(plan.memory().own_bytes, 2 * 8 * texels, "a ring of two images");
+    assert_eq!(plan.memory().own_bytes, 2 * 8 * texels, "two history images");
     assert!(g.previous(history, 2).is_err());
 }

@@ -1,11 +1,11 @@
-//! The log: each reason comes up, and says in words what was decided.
+//! The decision log: each reason occurs, with a correct sentence.
 
 use crate::support::*;
 use framegraph::testing::generate::{self, Entropy, Profile, options_of};
 use framegraph::*;
 use std::collections::BTreeSet;
 
-/// The sentences that a plan has about a pass or resource, in the order of the log.
+/// Returns the sentences of a plan about a pass or resource, in the order of the log.
 fn sentences(plan: &Plan, about: &str) -> Vec<String> {
     let g = plan.graph();
     let named = |d: &&Decision| match d.subject {
@@ -15,7 +15,7 @@ fn sentences(plan: &Plan, about: &str) -> Vec<String> {
     plan.decisions().iter().filter(named).map(|d| plan.explained(d)).collect()
 }
 
-/// `first` and `again` draw into `a`, a pass that draws into `b` stands between them.
+/// `first` and `again` draw into `a`, and a pass between them draws into `b`.
 fn interleaved(a: Entry) -> Graph {
     let mut g = Graph::new();
     let (a, b) = (g.import_texture("a", hdr(), a, Exit::Keep), g.texture("b", hdr()));
@@ -34,8 +34,8 @@ fn what_is_loaded_says_whose_contents_it_holds() {
     assert_eq!(
         loads,
         [
-            "load of `a` in step 0: loaded, the contents on entry are needed",
-            "load of `a` in step 2: loaded, `first` wrote contents that are needed"
+            "load of `a` in step 0: loaded because its contents at the start of the frame are needed",
+            "load of `a` in step 2: loaded because contents written by `first` are needed"
         ]
     );
 }
@@ -46,9 +46,10 @@ fn a_pass_that_moves_says_behind_which_and_what_for() {
     let plan = plan_with(&interleaved(Entry::Defined), &Caps::wgpu(), &optimized);
     assert_eq!(check(&plan), Ok(()));
     assert_eq!(steps(&plan), [vec!["first", "again"], vec!["between"]]);
-    let moved = |name| sentences(&plan, name).into_iter().find(|s| s.contains("behind"));
-    assert_eq!(moved("again").as_deref(), Some("pass `again`: moved behind `first`, to share its step"));
-    let bytes = "pass `between`: runs behind `again`, the frame takes fewer steps or bytes in this order";
+    let moved =
+        |name| sentences(&plan, name).into_iter().find(|s| s.contains(": moved after") || s.contains(": runs after"));
+    assert_eq!(moved("again").as_deref(), Some("pass `again`: moved after `first` to share its step"));
+    let bytes = "pass `between`: runs after `again` because the frame needs fewer steps or bytes in this order";
     assert_eq!(moved("between").as_deref(), Some(bytes));
     assert_eq!(moved("first"), None);
 }
@@ -65,8 +66,8 @@ fn what_is_not_shared_says_that_sharing_is_off() {
         assert_eq!(check(&plan), Ok(()));
         sentences(&plan, "a").into_iter().find(|s| s.starts_with("resource"))
     };
-    assert_eq!(place(Alias::Off).as_deref(), Some("resource `a`: not shared, sharing is switched off"));
-    assert_eq!(place(Alias::Pool).as_deref(), Some("resource `a`: first tenant of its slot"));
+    assert_eq!(place(Alias::Off).as_deref(), Some("resource `a`: not shared because aliasing is disabled"));
+    assert_eq!(place(Alias::Pool).as_deref(), Some("resource `a`: first resource in its slot"));
 }
 
 #[test]
@@ -88,19 +89,19 @@ fn an_average_that_is_not_made_says_so() {
     .unwrap();
     let plan = plan(&g, &Caps::wgpu());
     assert!(check::examine(&plan).is_clean());
-    let said = "pass `draw`: does not resolve into `average`, no pass reads it".to_owned();
+    let said = "pass `draw`: does not resolve into `average` because no pass reads it".to_owned();
     assert!(sentences(&plan, "draw").contains(&said), "{}", dump::text(&plan));
-    // It takes no memory, and stands between the passes no more.
+    // It needs no memory and no longer prevents the merge.
     assert_eq!(placement(&plan, "average"), Placement::Unused);
     assert_eq!(steps(&plan), [vec!["draw", "more"], vec!["look"]]);
     assert_eq!((plan.attachments().len(), plan.counts().multisample_resolves), (2, 0));
-    // Without culling it is made as it was declared.
+    // Without culling it is performed as declared.
     let plan = plan_with(&g, &Caps::wgpu(), &Options { cull: false, ..options() });
     assert_eq!(check(&plan), Ok(()));
     assert_eq!((plan.counts().steps, split_reason(&plan, "more")), (3, Some(Refusal::ResolveBetween)));
 }
 
-/// `draw` makes a texture or two, `look` reads them at the same pixel: what it is told it could do is something it can.
+/// `draw` writes a texture or two, `look` reads them at the same pixel. The hint must be something that is possible.
 #[test]
 fn hints_are_true_of_device_options_and_passes() {
     #[derive(Clone, Copy, Default)]
@@ -151,27 +152,27 @@ fn hints_are_true_of_device_options_and_passes() {
     let hint = |case: Case, caps: &Caps, options: &Options| {
         let plan = plan_with(&graph(case), caps, options);
         let split = |d: &&Decision| matches!(d.reason, Reason::Split(_, Refusal::SamePixelUnsupported));
-        plan.hint(plan.decisions().iter().find(split).expect("the read cannot stay in the tile"))
+        plan.hint(plan.decisions().iter().find(split).expect("the read is not in the tile"))
     };
     let one = Case { inputs: 1, outputs: 1, ..Case::default() };
     let (declare, choose) =
-        ("declare the pass point-wise if it is, so that it can be inlined", "choose a device that can");
-    let mend = "choose a device that can, or mend what keeps the pass from being inlined";
+        ("declare the pass as point-wise if it is, so that it can be inlined", "use a device that supports it");
+    let mend = "use a device that supports it, or fix what prevents inlining of the pass";
     let off = Options { inline: false, ..options() };
     let cases = [
         (one, Caps::wgpu(), options(), declare),
-        // Where nothing is inlined.
+        // Without inlining.
         (one, Caps::desktop(), options(), choose),
         (one, Caps::wgpu(), off, choose),
         (Case { pointwise: true, ..one }, Caps::desktop(), options(), choose),
         (Case { pointwise: true, ..one }, Caps::wgpu(), off, choose),
-        // What would not be inlined if it were point-wise.
+        // Passes that would not be inlined if they were point-wise.
         (Case { inputs: 2, ..one }, Caps::wgpu(), options(), choose),
         (Case { outputs: 2, ..one }, Caps::wgpu(), options(), choose),
         (Case { samples: true, ..one }, Caps::wgpu(), options(), choose),
         (Case { side_effect: true, ..one }, Caps::wgpu(), options(), choose),
         (Case { modifies: true, ..one }, Caps::wgpu(), options(), choose),
-        // Point-wise, and the producer takes no epilogue.
+        // Point-wise, but the producer does not accept an epilogue.
         (Case { pointwise: true, ..one }, Caps::wgpu(), options(), mend),
     ];
     for (index, (case, caps, options, expected)) in cases.iter().enumerate() {
@@ -179,7 +180,7 @@ fn hints_are_true_of_device_options_and_passes() {
     }
 }
 
-/// What is stored for a reader: how it could stay in the tile, where it can.
+/// Hints about stores for a reader: how the contents could stay in the tile.
 #[test]
 fn hints_of_stores_are_true_of_device_options_and_reader() {
     let hint = |kind: AccessKind, caps: &Caps, options: &Options| {
@@ -213,11 +214,11 @@ fn hints_of_stores_are_true_of_device_options_and_reader() {
         let stored = |d: &&Decision| matches!(d.reason, Reason::StoreReadBy(_));
         plan.hint(plan.decisions().iter().find(stored).expect("it is stored"))
     };
-    let device = "choose a device that keeps same-pixel reads in the tile, and leave merging on";
-    let general = "read it at the same pixel if the reader needs its own texel alone, or let the reader share the step, to keep \
-                   it in the tile";
-    let raster = "read it in a raster pass that shares the step, to keep it in the tile";
-    let share = "let the reader share the step, to keep it in the tile";
+    let device = "use a device that keeps same-pixel reads in the tile, and enable merging";
+    let general = "to keep it in the tile, read it at the same pixel if the reader needs only its own texel, or let the \
+                   reader share the step";
+    let raster = "to keep it in the tile, read it in a raster pass of the same step";
+    let share = "to keep it in the tile, let the reader share the step";
     let apart = Options { merge: false, ..options() };
     let cases = [
         (AccessKind::Sampled, Caps::desktop(), options(), device),
@@ -232,8 +233,7 @@ fn hints_of_stores_are_true_of_device_options_and_reader() {
     }
 }
 
-/// Every reason that there is, by its word: nothing of the list is left over, and random plans, whose logs the oracle judges,
-/// come to each.
+/// Every reason occurs, by its name, in the logs of random plans, which the oracle checks.
 #[test]
 fn every_reason_comes_up() {
     let mut found = BTreeSet::new();
@@ -242,12 +242,12 @@ fn every_reason_comes_up() {
         let mut caps = generate::caps(&mut entropy);
         let graph = generate::graph(&mut entropy, &Profile::default());
         if seed % 4 == 0 {
-            // Steps of as many attachments as one pass has are full.
+            // A step is full if it has as many attachments as one pass.
             let colors = |pass| graph.accesses_of(pass).iter().filter(|a| a.kind == AccessKind::Color).count() as u8;
             caps.max_color_attachments = graph.pass_ids().map(colors).max().unwrap_or(0).max(1);
         }
         let mut plan = Plan::new();
-        // A device can be too small for the graph.
+        // The graph may exceed the limits of the device.
         let _ = compile(&graph, &caps, &options_of(seed as u32), &mut Scratch::new(), &mut plan);
         found.extend(plan.decisions().iter().map(|d| d.reason.word()));
         found.extend(plan.decisions().iter().filter_map(|d| match d.reason {
@@ -258,11 +258,11 @@ fn every_reason_comes_up() {
     }
     let causes = Refusal::ALL.iter().map(|r| r.word()).chain(MemoryNeed::ALL.iter().map(|n| n.word()));
     let missing: Vec<_> = REASONS.into_iter().chain(causes).filter(|word| !found.contains(word)).collect();
-    // So rare that a test in `counts` builds it.
+    // So rare that a test in `counts` constructs it.
     assert_eq!(missing, [MemoryNeed::OtherUse.word()]);
 }
 
-/// The words of all reasons.
+/// The names of all reasons.
 const REASONS: [&str; 44] = [
     "kept_side_effect",
     "kept_export",

@@ -1,4 +1,4 @@
-//! Misuse of handles and builders: refused on the spot, with names, and without a trace in the graph.
+//! Invalid uses of handles and builders: rejected immediately, with names, and without a trace in the graph.
 
 use crate::support::*;
 use framegraph::*;
@@ -23,7 +23,7 @@ fn a_stale_handle_names_both_passes() {
     let error = g.add_fn("third", |p| p.sampled(old)).unwrap_err();
     assert_eq!((name(&error.pass), name(&error.resource)), ("third", "a"));
     assert_eq!(error.reason, DeclareReason::Stale { writer: "second".into(), user: StaleUser::OtherPass });
-    assert_eq!(g.passes().len(), 2, "the refused pass left a trace");
+    assert_eq!(g.passes().len(), 2, "the rejected pass left a trace");
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn a_level_of_one_slice_is_attached_and_the_others_are_written_whole() {
     let z = g.texture("z", TextureDesc { dimension: Dimension::D3, ..depth() });
     let z = g.add_fn("draw", |p| p.depth(z, FAR)).unwrap();
     g.export(z).unwrap();
-    let reason = CompileReason::Shape(ShapeFault::Volume { format: Format::Depth32Float });
+    let reason = CompileReason::Shape(ShapeReason::Volume { format: Format::Depth32Float });
     assert_eq!(errors(&g)[0].reason, reason);
 }
 
@@ -204,14 +204,14 @@ fn copies_are_passes_of_their_own_whether_the_kind_is_named_or_not() {
             "{error}"
         );
         assert_eq!((name(&error.pass), name(&error.resource)), ("mixed", "a"));
-        assert!(error.to_string().ends_with("put the copies into a pass of their own"), "{error}");
+        assert!(error.to_string().ends_with("move the copies to a separate pass"), "{error}");
     }
     let error = g.add_fn("mixed", |p| {
         p.read_buffer(buffer, uniform)?;
         p.write_buffer(buffer, target, Intent::Overwrite)
     });
-    assert!(matches!(reason(error), DeclareReason::Conflict { .. }), "the nearer fault is told");
+    assert!(matches!(reason(error), DeclareReason::Conflict { .. }), "the more specific error is reported");
     assert_eq!(g.passes().len(), 0);
-    g.add_fn("copy", |p| p.copy_source(a).and(p.copy_target(b, Intent::Overwrite))).expect("nothing but copies");
+    g.add_fn("copy", |p| p.copy_source(a).and(p.copy_target(b, Intent::Overwrite))).expect("copies can share a pass");
     assert_eq!(g.passes()[0].kind, PassKind::Copy);
 }

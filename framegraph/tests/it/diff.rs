@@ -1,4 +1,4 @@
-//! What changes between plans.
+//! Differences between plans.
 
 use crate::dump::{frame, random_plans};
 use crate::support::*;
@@ -13,7 +13,7 @@ fn a_plan_does_not_differ_from_itself() {
     }
 }
 
-/// The frame of the dumps with tone mapping at the same pixel, and without the idle pass, but with another one.
+/// The frame of the dump tests with tone mapping at the same pixel, and another unused pass.
 fn changed() -> Graph {
     let mut g = Graph::new();
     let out = screen(&mut g);
@@ -56,7 +56,7 @@ fn changes_are_named_with_their_reasons() {
     assert_eq!(total("resolve_bytes"), Some((24576, 8192)));
     assert_eq!(total("inlined"), Some((0, 1)));
     assert_eq!((total("unresolves"), total("culled")), (None, None));
-    let mates = d.merges.iter().find(|m| m.what == "tonemap").expect("it shares a step now");
+    let mates = d.merges.iter().find(|m| m.what == "tonemap").expect("it shares a step");
     assert_eq!(
         (mates.before.len(), mates.after.as_slice()),
         (0, ["prepass".to_owned(), "scene".to_owned()].as_slice())
@@ -65,10 +65,10 @@ fn changes_are_named_with_their_reasons() {
     for line in [
         "passes:\n  - idle\n  + stray\n",
         "  tonemap: was alone, is with prepass, scene\n",
-        "  resolves: 2 -> 1 (-1)\n",
-        "  resolve_bytes: 24.0 KiB -> 8.0 KiB (-16.0 KiB)\n",
+        "  stores: 2 -> 1 (-1)\n",
+        "  stored_bytes: 24.0 KiB -> 8.0 KiB (-16.0 KiB)\n",
         "  hdr: 64x32 Rgba16Float, 16384 B, slot -> 64x32 Rgba16Float, inlined\n",
-        "  pass `tonemap`\n    - not merged with `scene`: the later one samples what the step writes\n    \
+        "  pass `tonemap`\n    - not merged with `scene`: the later one samples a texture that the step writes\n    \
          + inlined into the shader of `scene`\n",
     ] {
         assert!(text.contains(line), "{text}\nlacks {line}");
@@ -96,9 +96,11 @@ fn culls_in_both_directions_are_told_apart() {
     let d = diff(&make(true), &make(false));
     assert_eq!(d.culls.len(), 1);
     assert_eq!((d.culls[0].pass.as_str(), d.culls[0].culled), ("draw", true));
-    assert_eq!(d.culls[0].reason, "culled, no pass reads `t`");
-    assert!(d.to_string().contains("  draw: now culled: culled, no pass reads `t`\n"));
-    assert!(diff(&make(false), &make(true)).to_string().contains("  draw: runs again: kept, `show` reads `t`\n"));
+    assert_eq!(d.culls[0].reason, "culled because no pass reads `t`");
+    assert!(d.to_string().contains("  draw: now culled: culled because no pass reads `t`\n"));
+    assert!(
+        diff(&make(false), &make(true)).to_string().contains("  draw: runs again: kept because `show` reads `t`\n")
+    );
 }
 
 #[test]
@@ -121,7 +123,7 @@ fn a_device_can_be_compared_with_another() {
     let graph = frame();
     let d = diff(&plan(&graph, &Caps::wgpu()), &plan(&graph, &Caps::desktop()));
     assert!(d.passes_added.is_empty() && d.merges.is_empty());
-    let depth = d.resources.iter().find(|r| r.what == "depth").expect("it takes memory there");
+    let depth = d.resources.iter().find(|r| r.what == "depth").expect("it needs memory there");
     assert!(depth.before.ends_with("memoryless") && depth.after.ends_with("slot"), "{depth:?}");
     let value: serde_json::Value = serde_json::from_str(&d.json()).expect("the form is JSON");
     assert_eq!((&value["schema"], &value["version"]), (&"framegraph-diff".into(), &1.into()));

@@ -1,4 +1,4 @@
-//! Plans as text and pictures: what they hold, and that their readers can read them.
+//! Plans as text and graphics: their content, and validity of the formats.
 
 mod graph;
 mod json;
@@ -8,7 +8,7 @@ use crate::support::*;
 use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::*;
 
-/// Depth prepass, scene over it, a pass that nobody needs, tone mapping into the screen.
+/// Returns a frame with a depth prepass, a scene over it, an unused pass, and tone mapping into the screen.
 pub fn frame() -> Graph {
     let mut g = Graph::new();
     let out = screen(&mut g);
@@ -30,7 +30,7 @@ pub fn frame() -> Graph {
     g
 }
 
-/// Plans of graphs that no hand has made plausible, for each preset.
+/// Returns plans of random graphs for each preset.
 pub fn random_plans(count: u64) -> Vec<Plan> {
     let mut plans = Vec::new();
     for seed in 0..count {
@@ -51,8 +51,8 @@ pub fn random_plans(count: u64) -> Vec<Plan> {
     plans
 }
 
-/// Notes on effects stand in the text and in JSON, under the names of their scopes, and make another plan; they go when the
-/// graph is declared anew.
+/// Notes appear in the text and in JSON, with the names of their scopes, and change the plan. They are removed when the
+/// graph is reset.
 #[test]
 fn notes_are_told() {
     let mut g = frame();
@@ -62,8 +62,8 @@ fn notes_are_told() {
     assert!(!g.same_as(&plain));
     let plan = plan(&g, &Caps::wgpu());
     let text = dump::text(&plan);
-    let told = "decisions:\n  effect `left/glow`: asked for, 3 wide\\n\n  effect `mist`: left out: nothing is far away\n  pass";
-    assert!(text.contains(told), "{text}");
+    let expected = "decisions:\n  effect `left/glow`: asked for, 3 wide\\n\n  effect `mist`: left out: nothing is far away\n  pass";
+    assert!(text.contains(expected), "{text}");
     let value: serde_json::Value = serde_json::from_str(&dump::json(&plan, "")).expect("JSON");
     assert_eq!(value["notes"][1]["about"], "mist");
     assert_eq!(value["notes"][0]["sentence"], "asked for, 3 wide\n");
@@ -71,13 +71,13 @@ fn notes_are_told() {
     assert_eq!(g.notes().len(), 0);
 }
 
-/// Every byte of the golden format, for a plan that is worked out by hand: depth and hdr share a step; depth is cleared by
-/// the prepass, tested by the scene, and never leaves the tile. 64 x 32 texels: hdr 16384 bytes, depth 8192.
+/// Compares every byte of the text with a plan derived by hand. Depth and hdr share a step. Depth is cleared by the
+/// prepass, tested by the scene, and never leaves the tile. With 64 × 32 texels, hdr has 16384 bytes and depth 8192.
 #[test]
 fn text_is_the_golden_format() {
     let expected = "\
-plan 1 for wgpu at 64x32
-counts: 0 unresolves, 2 resolves, 2 clears, 1 discards, 0 multisample resolves, 1 memoryless, 0 inlined, 2 steps, 3 passes, 1 culled
+plan 2 for wgpu at 64x32
+counts: 0 loads, 2 stores, 2 clears, 1 discards, 0 multisample resolves, 1 memoryless, 0 inlined, 2 steps, 3 passes, 1 culled
 traffic: 0 B loaded, 24576 B stored
 memory: 16384 B of 16384 B unaliased, lower bound 16384 B, optimal; 8192 B avoided, 0 B outlive the frame
 
@@ -99,22 +99,22 @@ resources:
   idle_out: 64x32 R8Unorm, unused
 
 decisions:
-  pass `prepass`: kept, `scene` reads `depth`
-  pass `scene`: kept, `tonemap` reads `hdr`
-  pass `idle`: culled, no pass reads `idle_out`
-  pass `tonemap`: kept, it writes `screen`, which is imported and must survive
-  pass `scene`: merged with `prepass`, same attachments
-  pass `tonemap`: not merged with `scene`: the later one samples what the step writes; declare the read `same_pixel` if it reads only its own texel
+  pass `prepass`: kept because `scene` reads `depth`
+  pass `scene`: kept because `tonemap` reads `hdr`
+  pass `idle`: culled because no pass reads `idle_out`
+  pass `tonemap`: kept because it writes `screen`, which is imported with `Exit::Keep`
+  pass `scene`: merged with `prepass`: same attachments
+  pass `tonemap`: not merged with `scene`: the later one samples a texture that the step writes; declare a `same_pixel` read if it reads only its own texel
   load of `hdr` in step 0: cleared
   load of `depth` in step 0: cleared
-  load of `screen` in step 1: don't care, every texel is written
-  store of `hdr` in step 0: stored, `tonemap` reads it
-  store of `depth` in step 0: discarded, no pass reads it any more
-  store of `screen` in step 1: stored, it is imported and must survive
-  resource `depth`: takes no memory, it lives in one step
+  load of `screen` in step 1: don't care: every texel is written
+  store of `hdr` in step 0: stored because `tonemap` reads it
+  store of `depth` in step 0: discarded because no later pass reads it
+  store of `screen` in step 1: stored because it is imported with `Exit::Keep`
+  resource `depth`: needs no memory because it is used in one step only
   resource `screen`: owned outside of the graph
-  resource `idle_out`: no kept pass touches it
-  resource `hdr`: first tenant of its slot
+  resource `idle_out`: no kept pass accesses it
+  resource `hdr`: first resource in its slot
 ";
     assert_eq!(dump::text(&plan(&frame(), &Caps::wgpu())), expected);
 }
@@ -152,7 +152,7 @@ fn every_form_is_reproducible() {
     }
 }
 
-/// A frame whose names hold every sign that one of the forms reads.
+/// A frame whose names contain every special character of the formats.
 pub fn hostile() -> Graph {
     let mut g = Graph::new();
     for name in
@@ -177,7 +177,7 @@ fn dot_mermaid_and_text_keep_names_in_their_places() {
         assert!(line.matches('"').count() % 2 == 0 && line.matches('"').count() <= 2, "{line}");
         let label = line.split('"').nth(1).unwrap_or_default().replace("<br/>", "");
         assert!(!label.contains(['<', '>', '`', '|', '%']), "{line}");
-        assert!(!line.contains("[\"\"") && !line.contains("|\"\"|"), "Mermaid reads no empty text: {line}");
+        assert!(!line.contains("[\"\"") && !line.contains("|\"\"|"), "Mermaid does not accept empty labels: {line}");
     }
     let (text, kinds) = (dump::text(&p), ["  ", "plan ", "counts: ", "traffic: ", "memory: "]);
     let heads = ["", "steps:", "resources:", "barriers:", "decisions:"];
@@ -215,20 +215,20 @@ fn a_refused_plan_reads_as_an_empty_one() {
     })
     .unwrap();
     let good = plan(&frame(), &Caps::wgpu());
-    // Into a fresh plan, and into one that holds another frame.
+    // Into a new plan, and into one that contains another frame.
     for mut refused in [Plan::new(), good.clone()] {
         let outcome = compile(&bad, &Caps::wgpu(), &options(), &mut Scratch::new(), &mut refused);
-        assert!(outcome.is_err(), "nobody writes what is read");
+        assert!(outcome.is_err(), "no pass writes the resource that is read");
         assert!(refused.graph().passes().is_empty() && refused.steps().is_empty() && refused.decisions().is_empty());
-        assert!(dump::text(&refused).starts_with("plan 1 for wgpu at 64x32\ncounts: 0 unresolves, 0 resolves,"));
+        assert!(dump::text(&refused).starts_with("plan 2 for wgpu at 64x32\ncounts: 0 loads, 0 stores,"));
         let totals = dump::totals(&refused);
         assert!(totals.iter().all(|(_, count)| *count == 0), "{totals:?}");
         assert!(dump::json(&refused, "refused").contains("\"passes\": []"));
         assert!(dump::dot(&refused).starts_with("digraph plan {") && dump::mermaid(&refused).starts_with("flowchart"));
-        roxmltree::Document::parse(&dump::svg(&refused)).expect("the picture is XML");
+        roxmltree::Document::parse(&dump::svg(&refused)).expect("the image is XML");
         assert_eq!(dump::graph::bipartite(refused.graph()).node_count(), 0);
         assert!(diff(&refused, &good).to_string().contains("prepass"));
         assert!(!diff(&good, &refused).json().is_empty());
-        assert!(check(&refused).is_err(), "a refused plan is no plan");
+        assert!(check(&refused).is_err(), "an empty plan is not valid");
     }
 }

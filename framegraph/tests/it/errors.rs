@@ -1,4 +1,4 @@
-//! Errors of whole graphs: each row of the validation phase, and all of them at once.
+//! Errors of whole graphs: each error of the validation phase, and all of them at once.
 
 use crate::support::*;
 use framegraph::*;
@@ -90,13 +90,13 @@ fn shapes_that_cannot_be_made_are_all_reported() {
 
 #[test]
 fn more_parts_than_can_be_followed_are_refused() {
-    // 65535 layers of 15 levels each: no device limits what is imported, but 18 of them have more than 2^24 parts.
+    // 65535 layers of 15 levels each. Imports have no device limits, but 18 of them exceed 2^24 parts.
     let desc = TextureDesc::new(Extent::absolute(1 << 14, 1 << 14), Format::R8Unorm).layers(u16::MAX).mips(0);
     let mut g = Graph::new();
     for index in 0..17 {
         let _ = g.import_texture(&format!("array{index}"), desc, Entry::Defined, Exit::Keep);
     }
-    compile(&g, &Caps::wgpu(), &options(), &mut Scratch::new(), &mut Plan::new()).expect("17 can be followed");
+    compile(&g, &Caps::wgpu(), &options(), &mut Scratch::new(), &mut Plan::new()).expect("17 are within the limit");
     for index in 17..40 {
         let _ = g.import_texture(&format!("array{index}"), desc, Entry::Defined, Exit::Keep);
     }
@@ -104,7 +104,7 @@ fn more_parts_than_can_be_followed_are_refused() {
     assert_eq!(found.len(), 1, "{found:?}");
     assert_eq!(name(&found[0].resource), "array17");
     assert!(
-        found[0].to_string().contains("17694450 levels, layers and planes; 16777216 can be followed"),
+        found[0].to_string().contains("17694450 subresources (level, layer and plane), the maximum is 16777216"),
         "{}",
         found[0]
     );
@@ -129,8 +129,8 @@ fn clear_values_must_fit() {
         .map(|e| (name(&e.resource).to_owned(), matches!(e.reason, CompileReason::ClearValue { .. })))
         .collect();
     assert_eq!(found, [("z".into(), true), ("c".into(), true), ("nan".into(), true)]);
-    let told = errors(&g)[2].to_string();
-    assert!(told.contains("cleared to depth NaN and stencil 0, which Depth32Float does not hold"), "{told}");
+    let message = errors(&g)[2].to_string();
+    assert!(message.contains("cleared to depth NaN and stencil 0, which Depth32Float cannot represent"), "{message}");
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn errors_of_calls_without_a_result_are_reported_by_compiling() {
     let never_written = g.texture("a", hdr());
     let out = filter(&mut g, "early", never_written, Format::R8Unorm);
     g.export(out).unwrap();
-    // Together with what compiling finds.
+    // Listed together with errors of compiling.
     let e = errors(&g);
     assert!(matches!(&e[0].reason, CompileReason::Declare(d) if d.reason == DeclareReason::EmptyHistory), "{e:?}");
     assert!(matches!(&e[1].reason, CompileReason::ReadUnwritten { .. }), "{e:?}");

@@ -1,4 +1,4 @@
-//! What the crate costs whoever builds it.
+//! Dependencies of the crate.
 
 #[test]
 fn without_features_the_packer_and_an_arc_are_built() {
@@ -6,7 +6,7 @@ fn without_features_the_packer_and_an_arc_are_built() {
     optional(include_str!("../../pack/Cargo.toml"), &[]);
 }
 
-/// All dependencies but these are optional.
+/// Checks that all other dependencies are optional.
 fn optional(manifest: &str, needed: &[&str]) {
     let section = manifest.split("\n[").find_map(|s| s.strip_prefix("dependencies]")).expect("a list of dependencies");
     let dependencies: Vec<_> = section.lines().filter(|l| l.contains('=') && !l.starts_with('#')).collect();

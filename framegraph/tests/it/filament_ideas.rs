@@ -1,5 +1,5 @@
-//! The sixteen tests of Filament's own frame graph, in the terms of this library. `docs/filament-frame-graph.md` says of
-//! each what it shows and how the ideas are written here; names are those of `filament_framegraph_test.cpp`.
+//! The sixteen tests of Filament's frame graph, written for this library. `docs/filament-frame-graph.md` describes
+//! each; names are those of `filament_framegraph_test.cpp`.
 
 use crate::support::*;
 use framegraph::*;
@@ -41,7 +41,7 @@ fn look(g: &mut Graph, name: &str, input: impl Into<ReadOnly>, desc: TextureDesc
     .unwrap()
 }
 
-/// `Simple`: a chain whose end is wanted is kept.
+/// `Simple`: a chain with an exported end is kept.
 #[test]
 fn graph_simple() {
     let mut g = Graph::new();
@@ -51,7 +51,7 @@ fn graph_simple() {
     assert!(culled(&checked(&g)).is_empty());
 }
 
-/// `Culling1`: a branch that nobody wants goes, with everything that only it needs.
+/// `Culling1`: an unused branch is culled, including everything that only it needs.
 #[test]
 fn graph_culling_1() {
     let mut g = Graph::new();
@@ -63,7 +63,7 @@ fn graph_culling_1() {
     assert_eq!(culled(&checked(&g)), ["c", "d"]);
 }
 
-/// `Culling2`: nothing is wanted, so nothing runs, and the plan says so.
+/// `Culling2`: nothing is exported, so nothing runs, and the plan contains a warning.
 #[test]
 fn graph_culling_2() {
     let mut g = Graph::new();
@@ -74,7 +74,7 @@ fn graph_culling_2() {
     assert_eq!(plan.warnings().next(), Some(Warning::NothingRuns));
 }
 
-/// `ReadRead`: one pass reads a texture in two ways; it gets both uses.
+/// `ReadRead`: one pass reads a texture in two ways, and the texture gets both usages.
 #[test]
 fn read_read() {
     let mut g = Graph::new();
@@ -88,7 +88,7 @@ fn read_read() {
     assert_eq!(usage(&checked(&g), "a out"), Usage::ATTACHMENT.union(Usage::SAMPLED).union(Usage::STORAGE));
 }
 
-/// `WriteWrite`: there one pass may upload and draw; here each is a pass, and the two uses meet in the texture.
+/// `WriteWrite`: in Filament one pass may upload and draw. Here these are two passes, and the texture gets both usages.
 #[test]
 fn write_write() {
     let mut g = Graph::new();
@@ -106,7 +106,7 @@ fn write_write() {
     assert_eq!(usage(&plan, "a"), Usage::ATTACHMENT.union(Usage::COPY_TARGET));
 }
 
-/// `WriteRead`: a pass cannot read what it has written itself.
+/// `WriteRead`: a pass cannot read its own output.
 #[test]
 fn write_read() {
     let mut g = Graph::new();
@@ -116,11 +116,11 @@ fn write_read() {
         p.sampled(a)
     });
     assert!(matches!(refused.unwrap_err().reason, DeclareReason::Conflict { .. }));
-    assert!(g.passes().is_empty(), "a refused pass leaves no trace");
+    assert!(g.passes().is_empty(), "a rejected pass leaves no trace");
 }
 
-/// `ReadWrite`: there read-then-write means that old contents matter; here the intent says it, and reading what nobody wrote
-/// is an error.
+/// `ReadWrite`: in Filament a read before a write means that previous contents are used. Here the intent says so, and
+/// reading unwritten contents is an error.
 #[test]
 fn read_write() {
     let mut g = Graph::new();
@@ -134,7 +134,7 @@ fn read_write() {
     assert!(matches!(errors(&g)[0].reason, CompileReason::ReadUnwritten { .. }));
 }
 
-/// `Culling1` of the frame graph: an output that nobody reads exists as long as its pass runs.
+/// `Culling1` of the frame graph: an unused output exists as long as its pass runs.
 #[test]
 fn an_unread_output_of_a_kept_pass_exists() {
     let mut g = Graph::new();
@@ -184,14 +184,14 @@ fn basic() {
     g.export(back).unwrap();
     let plan = checked(&g);
     assert_eq!(culled(&plan), ["debug"]);
-    // Their flags: depth starts discarded and is kept, the first of the G-buffer is dropped at the end.
+    // Filament's flags: depth starts discarded and is kept; the first G-buffer texture is discarded at the end.
     assert_eq!(ops(&plan, "gbuf1"), [(LoadOp::DontCare, StoreOp::Discard)]);
     assert_eq!(ops(&plan, "gbuf2"), [(LoadOp::DontCare, StoreOp::Store)]);
-    // Depth and G-buffer are one step here, so depth is cleared, not loaded, and stored once.
+    // Depth and G-buffer share one step here, so depth is cleared, not loaded, and stored once.
     assert_eq!(ops(&plan, "depth"), [(LoadOp::Clear, StoreOp::Store)]);
 }
 
-/// `ImportResource`: imports have the size that was said, and keep the pass that writes them.
+/// `ImportResource`: imports have the declared size and keep the pass that writes them.
 #[test]
 fn import_resource() {
     let mut g = Graph::new();
@@ -207,7 +207,8 @@ fn import_resource() {
     assert!(culled(&plan).is_empty() && plan.resources().iter().all(|r| r.placement == Placement::External));
 }
 
-/// `ForwardResource`: what one pass wrote becomes the texture that another pass reads, with that texture's size.
+/// `ForwardResource`: the output of one pass becomes the texture that another pass reads, with the size of that
+/// texture.
 #[test]
 fn forward_resource() {
     let mut g = Graph::new();
@@ -221,13 +222,13 @@ fn forward_resource() {
     assert_eq!(usage(&plan, "debug input"), Usage::ATTACHMENT.union(Usage::SAMPLED));
     assert_eq!(plan.steps()[0].extent, [32, 64]);
     assert_eq!(plan.resources()[g.find_resource("lighting out").unwrap().index()].placement, Placement::Unused);
-    assert!(dump::text(&plan).contains("resource `lighting out`: is `debug input`, to which it was forwarded"));
-    // The handle stands for the target from then on.
+    assert!(dump::text(&plan).contains("resource `lighting out`: forwarded to `debug input`"));
+    // The handle refers to the target afterwards.
     assert_eq!(g.resource_of(lighting), g.find_resource("debug input"));
     g.add_fn("again", |p| p.color(input, Intent::Modify)).unwrap();
 }
 
-/// `ForwardImportedResource`: the last pass draws into the swapchain's image.
+/// `ForwardImportedResource`: the last pass draws into the swapchain image.
 #[test]
 fn forward_imported_resource() {
     let mut g = Graph::new();
@@ -240,7 +241,7 @@ fn forward_imported_resource() {
     assert_eq!(ops(&plan, "screen"), [(LoadOp::DontCare, StoreOp::Store)]);
 }
 
-/// `SubResourcesWrite`: a pass for each level, since a pass of this library is one render pass.
+/// `SubResourcesWrite`: one pass per level, because a pass of this library has one set of attachments.
 #[test]
 fn sub_resources_write() {
     let mut g = Graph::new();
@@ -276,13 +277,13 @@ fn sub_resources_read() {
     assert!(culled(&checked(&g)).is_empty());
 }
 
-/// `SubResourcesWriteRead`: each level is made from the one above, as bloom does it.
+/// `SubResourcesWriteRead`: each level is computed from the previous one, as in bloom.
 #[test]
 fn sub_resources_write_read() {
     let mut g = Graph::new();
     let chain = g.texture("chain", sized(16, 32).mips(4));
     let top = draw(&mut g, "top", sized(16, 32));
-    // The scene's own texture becomes level 0: `forwardResource` to a subresource.
+    // The scene's texture becomes level 0: `forwardResource` to a subresource.
     let mut chain = g.forward(top, chain.mip(0)).unwrap();
     for mip in 1..4 {
         let (source, level) = (chain.mip(mip - 1), chain.mip(mip));
@@ -300,7 +301,7 @@ fn sub_resources_write_read() {
     assert_eq!(ops(&plan, "chain"), [(LoadOp::DontCare, StoreOp::Store); 4]);
 }
 
-/// `BadGraph`: two writers of one version cannot be said, since the first makes the handle stale.
+/// `BadGraph`: two writers of one version are not possible, because the first makes the handle stale.
 #[test]
 fn bad_graph() {
     let mut g = Graph::new();
@@ -320,36 +321,36 @@ fn what_cannot_be_forwarded_is_refused_and_stays() {
         DeclareReason::Forward(fault) => fault,
         reason => panic!("{reason:?}"),
     };
-    assert_eq!(fault(&mut g, screen, other.into()), ForwardFault::NotTransient);
-    assert_eq!(fault(&mut g, other, screen.into()), ForwardFault::Unwritten);
+    assert_eq!(fault(&mut g, screen, other.into()), ForwardReason::NotTransient);
+    assert_eq!(fault(&mut g, other, screen.into()), ForwardReason::Unwritten);
     let drawn = draw(&mut g, "draw", color(Format::Rgba8UnormSrgb));
-    assert_eq!(fault(&mut g, drawn, drawn.into()), ForwardFault::NotTransient);
+    assert_eq!(fault(&mut g, drawn, drawn.into()), ForwardReason::NotTransient);
     let later = g.texture("later", color(Format::Rgba8UnormSrgb));
-    assert_eq!(fault(&mut g, drawn, later.into()), ForwardFault::TargetLater);
-    assert_eq!(fault(&mut g, drawn, screen.mip(1)), ForwardFault::Parts);
+    assert_eq!(fault(&mut g, drawn, later.into()), ForwardReason::TargetLater);
+    assert_eq!(fault(&mut g, drawn, screen.mip(1)), ForwardReason::Parts);
     let chain = g.texture("chain", color(Format::Rgba8UnormSrgb).mips(2));
     let into_chain = draw(&mut g, "second", color(Format::Rgba8UnormSrgb));
-    assert_eq!(fault(&mut g, into_chain, chain.into()), ForwardFault::Parts);
-    // One slice of several would be drawn, and all be taken as cleared.
+    assert_eq!(fault(&mut g, into_chain, chain.into()), ForwardReason::Parts);
+    // Only one of several slices would be drawn, but all would count as cleared.
     let volume = |layers| TextureDesc { dimension: Dimension::D3, ..sized(8, 8) }.layers(layers);
     let (deep, flat) = (g.texture("deep", volume(4).mips(3)), g.texture("flat", volume(1)));
     let slice = draw(&mut g, "slice", volume(1));
-    assert_eq!(fault(&mut g, slice, deep.mip(0)), ForwardFault::Slices);
-    assert_eq!(fault(&mut g, slice, deep.mip(1)), ForwardFault::Slices);
+    assert_eq!(fault(&mut g, slice, deep.mip(0)), ForwardReason::Slices);
+    assert_eq!(fault(&mut g, slice, deep.mip(1)), ForwardReason::Slices);
     let slice = g.forward(slice, deep.mip(2)).unwrap();
     let last = g.accesses().last().unwrap();
     assert_eq!((last.resource, last.range.mip), (g.find_resource("deep").unwrap(), 2));
     let _ = (slice, flat);
     let stored = g.texture("stored", hdr());
     let stored = g.add_fn("store", |p| p.storage_write(stored, Intent::Overwrite)).unwrap();
-    let srgb = ForwardFault::Format { format: Format::Rgba8UnormSrgb, access: AccessKind::StorageWrite };
+    let srgb = ForwardReason::Format { format: Format::Rgba8UnormSrgb, access: AccessKind::StorageWrite };
     assert_eq!(fault(&mut g, stored, screen.into()), srgb);
-    // Used in between: who draws over the screen while the picture is made would be overwritten.
+    // A use in between: a pass that draws on the screen while the image is computed would be overwritten.
     let screen = g.add_fn("between", |p| p.color(screen, BLACK)).unwrap();
     let drawn = g.add_fn("on", |p| p.color(drawn, Intent::Modify)).unwrap();
-    assert!(matches!(fault(&mut g, drawn, screen.into()), ForwardFault::TargetLater | ForwardFault::Touched));
+    assert!(matches!(fault(&mut g, drawn, screen.into()), ForwardReason::TargetLater | ForwardReason::Interleaved));
     assert!(g.forward_of(g.find_resource("draw out").unwrap()).is_none());
-    // What is gone has no handle that works.
+    // The forwarded texture has no valid handle.
     let mut g = Graph::new();
     let screen = self::screen(&mut g);
     let entry = g.texture("a", color(Format::Rgba8UnormSrgb));

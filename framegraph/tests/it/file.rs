@@ -1,4 +1,4 @@
-//! Graphs as files: what they declare, and that the file and the code of one graph agree.
+//! Graph files: what they declare, and equality with graphs declared in code.
 
 mod errors;
 mod hostile;
@@ -25,15 +25,15 @@ fn load_with(text: &str, on: &[&str]) -> Graph {
 
 fn refused(text: &str) -> String {
     let outcome = GraphFile::parse("t.ron", text).and_then(|f| f.graph(&[]));
-    outcome.expect_err("the file is sound").to_string()
+    outcome.expect_err("the file is valid").to_string()
 }
 
-/// A file around some resources, passes and exports.
+/// Returns a file with the given resources, passes and exports.
 fn file(resources: &str, passes: &str, exports: &str) -> String {
     format!("(version: 1,\nresources: [{resources}],\npasses: [{passes}],\nexports: [{exports}])")
 }
 
-/// Every array of the plan but the graph's own numbering of names and versions.
+/// Compares every array of two plans, except names and version numbers of the graphs.
 fn assert_same_plan(a: &Plan, b: &Plan) {
     assert_eq!(dump::text(a), dump::text(b));
     assert_eq!(a.steps(), b.steps());
@@ -86,7 +86,7 @@ const FRAME_FILE: &str = r#"(
     exports: [Readback(of: "lights")],
 )"#;
 
-/// The graph of [`FRAME_FILE`], as code that declares resources before it declares passes.
+/// Returns the graph of [`FRAME_FILE`], declared in code with resources before passes.
 fn frame_in_code() -> Graph {
     let mut g = Graph::new();
     let screen = screen(&mut g);
@@ -163,13 +163,13 @@ fn a_written_graph_reads_back() {
     let again = load(&text);
     assert_eq!(to_ron(&again, "frame", FRAME), text);
     assert_same_plan(&plan(&again, &Caps::tiler()), &plan(&frame_in_code(), &Caps::tiler()));
-    // Read once more, also the numbers of versions agree: resources are declared before passes now.
+    // After reading it again, version numbers are equal too, because resources are declared before passes.
     assert!(load(&to_ron(&again, "", FRAME)).same_as(&again));
 }
 
 #[test]
 fn passes_may_stand_in_any_order() {
-    // The passes of FRAME_FILE, upside down, with the versions named.
+    // The passes of FRAME_FILE in reverse order, with explicit versions.
     let start = FRAME_FILE.find("passes: [").unwrap();
     let passes = r#"passes: [
         Raster(name: "grade", flags: [Pointwise], accesses: [
@@ -204,7 +204,7 @@ fn passes_may_stand_in_any_order() {
 
 #[test]
 fn readers_of_an_old_version_run_before_it_is_replaced() {
-    // `early` stands last, and reads what `first` wrote, not what `second` made of it.
+    // `early` is listed last and reads the output of `first`, before `second` modifies it.
     let text = file(
         r#"Texture(name: "a", format: R8Unorm), Texture(name: "b", format: R8Unorm)"#,
         r#"
@@ -310,6 +310,6 @@ fn a_mark_in_front_of_utf_8_is_no_part_of_the_text() {
     let text = "\u{feff}(version: 1, name: \"marked\")";
     assert_eq!(GraphFile::parse("m.ron", text).map(|f| f.name().to_owned()), Ok("marked".into()));
     assert_eq!(caps("m.ron", "\u{feff}(version: 1, like: \"tiler\")"), Ok(Caps::tiler()));
-    let told = GraphFile::parse("m.ron", "\u{feff}(version: 1, nam: 3)").expect_err("a slip").to_string();
-    assert!(told.starts_with("m.ron:1:14: "), "as an editor counts: {told}");
+    let message = GraphFile::parse("m.ron", "\u{feff}(version: 1, nam: 3)").expect_err("a slip").to_string();
+    assert!(message.starts_with("m.ron:1:14: "), "columns as in an editor: {message}");
 }

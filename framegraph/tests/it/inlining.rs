@@ -1,4 +1,4 @@
-//! Point-wise passes as epilogues: when they vanish into their producer, and why not.
+//! Point-wise passes as epilogues: when they are inlined, and why not.
 
 use crate::support::*;
 use framegraph::*;
@@ -68,7 +68,7 @@ fn with_multisampling_each_sample_is_graded_before_the_resolve() {
     assert_eq!((c.steps, c.unresolves, c.resolves, c.multisample_resolves), (1, 0, 1, 1), "{}", dump::text(&p));
     assert_eq!((placement(&p, "hdr"), placement(&p, "hdr_ms")), (Placement::Inlined, Placement::Memoryless));
     let ms = p.graph().find_resource("hdr_ms").unwrap();
-    assert_eq!(p.format(ms), Some(Format::Rgba8UnormSrgb), "the samples are made in the format of the target");
+    assert_eq!(p.format(ms), Some(Format::Rgba8UnormSrgb), "the samples have the format of the target");
 }
 
 #[test]

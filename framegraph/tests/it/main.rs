@@ -1,4 +1,4 @@
-//! The compiler seen from outside: small graphs whose plans are worked out by hand in the comments.
+//! Integration tests of the compiler with small graphs. Comments derive the plans by hand.
 
 mod barriers;
 mod brute_force;

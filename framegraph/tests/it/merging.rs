@@ -1,9 +1,9 @@
-//! Which passes share a step, and why the others do not.
+//! Merging: the passes that share a step, and the reasons why others do not.
 
 use crate::support::*;
 use framegraph::*;
 
-/// Draws into `target` after `before`, with a depth attachment of its own shape if wanted.
+/// Draws into `target`, optionally with a depth attachment of another shape.
 fn overlay(g: &mut Graph, name: &str, target: Texture) -> Texture {
     g.add_fn(name, |p| {
         p.blends();
@@ -97,7 +97,7 @@ fn draws(g: &mut Graph, name: &str, targets: &[(u8, Texture, Intent)]) -> Vec<Te
     g.add_fn(name, |p| targets.iter().map(|(slot, t, intent)| p.color_at(*slot, *t, *intent)).collect()).unwrap()
 }
 
-/// Two passes that draw the same two textures, the second in these slots.
+/// Returns two passes that draw the same two textures, the second one in the given slots.
 fn exchanged(slots: [u8; 2]) -> Graph {
     let mut g = Graph::new();
     let (a, b) = (g.texture("a", hdr()), g.texture("b", hdr()));
@@ -118,14 +118,14 @@ fn the_same_targets_in_other_slots_merge_where_slots_are_mapped() {
             assert_eq!(p.counts().steps, if merges { 1 } else { 2 }, "{slots:?}, {}", caps.name);
             assert_eq!(split_reason(&p, "second"), (!merges).then_some(Refusal::SlotsDiffer));
             let [a, b] = [p.attachments()[0], p.attachments()[1]];
-            assert_eq!((a.role, b.role), (Role::Color(0), Role::Color(1)), "those of the first pass");
+            assert_eq!((a.role, b.role), (Role::Color(0), Role::Color(1)), "slots of the first pass");
         }
     }
 }
 
 #[test]
 fn slots_that_a_pass_leaves_out_are_masked() {
-    // Depth is shared; the second pass draws into a slot that the first one leaves free.
+    // Depth is shared; the second pass uses a slot that is free in the first.
     let mut g = Graph::new();
     let (a, b, z) = (g.texture("a", hdr()), g.texture("b", hdr()), g.texture("z", depth()));
     let (a, z) = g.add_fn("first", |p| Ok((p.color(a, BLACK)?, p.depth(z, FAR)?))).unwrap();
@@ -205,7 +205,7 @@ fn hazards_are_those_of_parts() {
         };
         assert_eq!([0, 1, 2].map(|read| refused(&layers(read, 1))), [None, elsewhere, None]);
         assert_eq!([0, 1].map(|read| refused(&levels(read))), [None, Some(Refusal::StorageHazard)]);
-        // wgpu follows both planes of a texture as one.
+        // wgpu tracks both planes of a texture together.
         let stencil = if caps.separate_planes { None } else { elsewhere };
         assert_eq!([Aspect::Depth, Aspect::Stencil].map(|read| refused(&planes(read))), [elsewhere, stencil]);
     }
@@ -264,7 +264,7 @@ fn a_resolved_attachment_cannot_change_afterwards() {
     assert_eq!(split_reason(&p, "second"), Some(Refusal::ResolveBetween));
 }
 
-/// The on-tile deferred frame: G-buffer, lighting that reads it at the same pixel, transparent objects on top.
+/// Returns an on-tile deferred frame: G-buffer, lighting that reads it at the same pixel, and transparent objects.
 pub fn deferred() -> Graph {
     let mut g = Graph::new();
     let out = screen(&mut g);

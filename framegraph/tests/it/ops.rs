@@ -1,9 +1,10 @@
-//! Loads and stores of what nobody needs: blending in vain, and depth that is read beside its test.
+//! Loads and stores of contents that are not used: blending without a use of the result, and depth that is sampled
+//! while tested.
 
 use crate::support::*;
 use framegraph::*;
 
-/// What becomes of the second attachment of a pass that blends into it.
+/// Use of the second attachment of a pass that blends into it.
 #[derive(Clone, Copy, PartialEq)]
 enum After {
     Nothing,
@@ -12,7 +13,7 @@ enum After {
     AveragedInVain,
 }
 
-/// `velocity` draws into a texture; `particles` blends into it, and draws what the frame shows.
+/// Returns a frame where `velocity` draws into a texture. `particles` blends into it and draws the exported texture.
 fn blending(after: After, samples: u8) -> Graph {
     let mut g = Graph::new();
     let screen = g.texture("screen", color(Format::Rgba8Unorm).samples(samples));
@@ -70,7 +71,7 @@ fn blending_in_vain_keeps_nobody_alive_and_loads_nothing() {
 #[test]
 fn what_is_blended_for_somebody_is_loaded() {
     for options in orders() {
-        // The device that merges the two passes is left out: it has nothing to load.
+        // Devices that merge the two passes are excluded, because they load nothing.
         let apart = Options { merge: false, ..options };
         for (after, samples) in [(After::Exported, 1), (After::Averaged, 4)] {
             let plan = plan_with(&blending(after, samples), &Caps::wgpu(), &apart);
@@ -81,7 +82,7 @@ fn what_is_blended_for_somebody_is_loaded() {
     }
 }
 
-/// Depth decides what else is drawn, so it is loaded although nobody reads it afterwards.
+/// Depth influences what is drawn, so it is loaded although no later pass reads it.
 #[test]
 fn depth_that_is_tested_in_vain_is_loaded() {
     let mut g = Graph::new();
@@ -96,7 +97,7 @@ fn depth_that_is_tested_in_vain_is_loaded() {
     assert_eq!(ops(&plan, "z"), [(LoadOp::Clear, StoreOp::Store), (LoadOp::Load, StoreOp::Discard)]);
 }
 
-/// Depth that is tested, and sampled too where `sampled`, by the last pass that needs it.
+/// Returns a frame where the last user of depth tests it and, if `sampled`, also samples it.
 fn soft_particles(sampled: bool) -> Graph {
     let mut g = Graph::new();
     let (screen, z) = (screen(&mut g), g.texture("z", depth()));

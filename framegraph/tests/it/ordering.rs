@@ -1,11 +1,11 @@
-//! The optimising order: what it brings together, and that it is never worse.
+//! The optimizing order: which passes it groups, and that it is never worse.
 
 use crate::support::*;
 use framegraph::*;
 
 const OPTIMIZED: Order = Order::Optimized;
 
-/// Two targets drawn in turns: declared A B A B, four steps; together, two.
+/// Returns two targets drawn alternately: four steps in declaration order A B A B, two steps when grouped.
 fn interleaved() -> Graph {
     let mut g = Graph::new();
     let mut targets = ["a", "b"].map(|n| g.texture(n, hdr()));
@@ -34,7 +34,8 @@ fn mergeable_passes_come_together() {
 
 #[test]
 fn fewer_bytes_are_live() {
-    // Declared: all big textures are made first and used afterwards. Better: use each before the next is made.
+    // Declared: all large textures are written first and used afterwards. It is better to use each before the next one
+    // is written.
     let mut g = Graph::new();
     let mut small = Vec::new();
     let big: Vec<_> = (0..4)

@@ -1,9 +1,9 @@
-//! Textures that a driver pads: the heap gives each what the caps say that it takes, and histories stay apart when asked.
+//! Textures padded by a driver: the heap uses the sizes of the caps, and histories are placed separately on request.
 
 use framegraph::testing::generate::{self, Entropy, FRAME, Profile};
 use framegraph::*;
 
-/// Every texture of the graph takes a third more than its texels, and 100 bytes.
+/// Returns caps rows in which every texture of the graph needs a third more than its texels, plus 100 bytes.
 fn padded(graph: &Graph) -> Vec<(TextureDesc, u64)> {
     let textures = graph.resources().iter().filter_map(|row| row.desc.texture());
     let absolute = textures.map(|desc| {

@@ -1,13 +1,13 @@
-//! Random graphs: what must be true of every plan.
+//! Properties of the plans of random graphs.
 //!
-//! `FRAMEGRAPH_PROPERTY_CASES=100000 cargo test --release -p framegraph --test it properties` runs as many graphs as
-//! asked in each property; the default takes about a second each in a debug build.
+//! `FRAMEGRAPH_PROPERTY_CASES=100000 cargo test --release -p framegraph --test it properties` runs this number of
+//! graphs per property. The default takes about a second per property in a debug build.
 
 use framegraph::testing::generate::{self, Entropy, OPTIONS, Profile, options_of};
 use framegraph::*;
 use std::collections::BTreeSet;
 
-/// The seeds of one property: as many as asked for, or a share of the default.
+/// Returns the seeds of one property: the requested number, or a fraction of the default.
 fn seeds(default: u64) -> std::ops::Range<u64> {
     let asked = std::env::var("FRAMEGRAPH_PROPERTY_CASES").ok();
     let asked = asked.map(|n| n.parse().expect("FRAMEGRAPH_PROPERTY_CASES is a whole number"));
@@ -22,7 +22,7 @@ fn graph(seed: u64) -> Graph {
     generate::graph(&mut Entropy::seeded(seed), &Profile::default())
 }
 
-/// One of all combinations of options; over the seeds every preset meets every combination.
+/// Returns a combination of options. Over all seeds, every preset is combined with every one.
 fn options(seed: u64, preset: usize) -> Options {
     options_of((seed as u32 * 3 + preset as u32) % OPTIONS)
 }
@@ -30,11 +30,11 @@ fn options(seed: u64, preset: usize) -> Options {
 fn compiled(graph: &Graph, caps: &Caps, options: &Options) -> Plan {
     let mut plan = Plan::new();
     let outcome = compile(graph, caps, options, &mut Scratch::new(), &mut plan);
-    outcome.unwrap_or_else(|errors| panic!("a valid graph was refused: {errors}"));
+    outcome.unwrap_or_else(|errors| panic!("a valid graph was rejected: {errors}"));
     plan
 }
 
-/// Panics with everything that speaks against the plan, and the plan.
+/// Panics with all findings about the plan, and with the plan.
 #[track_caller]
 fn assert_clean(plan: &Plan, seed: u64) {
     let report = check::examine(plan);
@@ -47,7 +47,7 @@ fn assert_clean(plan: &Plan, seed: u64) {
     );
 }
 
-/// Everything that a plan says, to compare two of them.
+/// Returns the whole content of a plan, for comparisons.
 fn words(plan: &Plan) -> String {
     let rows = (plan.pass_steps(), plan.steps(), plan.step_passes());
     let places = (plan.attachments(), plan.resources(), plan.slots());
@@ -63,7 +63,7 @@ fn plans_are_right_and_waste_nothing() {
         for (index, caps) in presets().iter().enumerate() {
             for options in [options_of(0), options(seed, index)] {
                 let outcome = compile(&graph, caps, &options, &mut scratch, &mut plan);
-                outcome.unwrap_or_else(|e| panic!("seed {seed}: a valid graph was refused: {e}"));
+                outcome.unwrap_or_else(|e| panic!("seed {seed}: a valid graph was rejected: {e}"));
                 assert_clean(&plan, seed);
             }
         }
@@ -83,7 +83,7 @@ fn forwarded_graphs_get_right_plans() {
         let (kept, deep): (Vec<_>, Vec<_>) = gone.partition(flat);
         (forwarded, volumes) = (forwarded + kept.len(), volumes + deep.len());
         let caps = &presets()[seed as usize % 3];
-        // What now has another size may fit the attachments beside it no more.
+        // A texture with another size may no longer match the other attachments.
         match compile(&graph, caps, &options(seed, 0), &mut scratch, &mut plan) {
             Ok(()) => assert_clean(&plan, seed),
             Err(_) => refused += 1,
@@ -91,7 +91,7 @@ fn forwarded_graphs_get_right_plans() {
     }
     let asked = seeds(600).end;
     let enough = forwarded > 100 && volumes > 5 && refused < 300;
-    assert!(asked != 600 || enough, "{forwarded} are forwarded, {volumes} in three dimensions, {refused} refused");
+    assert!(asked != 600 || enough, "{forwarded} are forwarded, {volumes} in three dimensions, {refused} rejected");
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn strange_devices_get_right_plans_or_refusals() {
             Err(_) => refused += 1,
         }
     }
-    assert!(refused < seeds(800).end / 10, "{refused} were refused");
+    assert!(refused < seeds(800).end / 10, "{refused} were rejected");
 }
 
 #[test]
@@ -124,18 +124,18 @@ fn broken_graphs_are_refused_with_reasons_or_right_all_the_same() {
             Ok(()) => assert_clean(&plan, seed),
             Err(errors) => {
                 refused += 1;
-                assert!(!errors.listed.is_empty(), "seed {seed}: refused without a reason");
+                assert!(!errors.listed.is_empty(), "seed {seed}: rejected without a reason");
                 for error in &errors.listed {
                     let sentence = error.to_string();
                     assert!(sentence.len() > 10, "seed {seed}: {sentence}");
                 }
-                assert!(plan.steps().is_empty(), "seed {seed}: a refused plan has steps");
+                assert!(plan.steps().is_empty(), "seed {seed}: the plan of an invalid graph has steps");
             }
         }
     }
     let asked = seeds(1200).end;
     let some = asked / 5..asked * 4 / 5;
-    assert!(asked < 100 || some.contains(&refused), "{refused} were refused");
+    assert!(asked < 100 || some.contains(&refused), "{refused} were rejected");
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn a_used_scratch_gives_the_plan_of_a_fresh_one() {
             assert_eq!(outcome, Ok(()));
             assert_eq!(words(&plan), words(&fresh), "seed {seed}, {}", caps.name);
             let again = recompile(&graph.clone(), caps, &options, &mut scratch, &mut plan);
-            assert_eq!(again, Ok(false), "seed {seed}: an equal graph is not recognised");
+            assert_eq!(again, Ok(false), "seed {seed}: an equal graph is not recognized");
             assert_eq!(words(&plan), words(&fresh), "seed {seed}, {}", caps.name);
         }
     }
@@ -205,8 +205,8 @@ fn merging_never_adds_loads_or_stores() {
     }
 }
 
-/// In steps, resolves and traffic. Memory is what sharing a step may cost, as any merge does: what was dead before the second
-/// step of two lives beside its attachments in the one.
+/// Compares steps, stores and traffic. Memory may grow, as with any merge: textures that are dead before the second
+/// step of two live next to its attachments in a common step.
 #[test]
 fn reading_at_the_same_pixel_is_never_worse_than_sampling() {
     let (mut merged, mut cut) = (0, 0);
@@ -253,7 +253,7 @@ fn the_optimising_order_is_never_worse() {
 
 #[test]
 fn the_generator_reaches_what_it_is_meant_to_reach() {
-    // Not a property of plans, but of the graphs that the properties are tried on.
+    // Checks that the random graphs cover the relevant features.
     let mut sum = Counts::default();
     let (mut shared, mut full_screen, mut roles, mut kinds) = (0, 0, BTreeSet::new(), BTreeSet::new());
     for seed in 0..800 {

@@ -1,4 +1,4 @@
-//! Plans share the arrays of the graph they were made from: nothing is copied, and nobody sees the other's changes.
+//! Plans share the arrays of their graph: nothing is copied, and changes are not visible to the other.
 
 use crate::support::*;
 use framegraph::*;
@@ -35,7 +35,7 @@ fn a_plan_keeps_what_it_was_made_from() {
     let mut g = Graph::new();
     let t = one_pass(&mut g, "a");
     let plan = compiled(&g);
-    // Declared on without a reset: the graph goes on with a copy, on which its handles work.
+    // Without a reset, the graph continues with a copy that accepts its handles.
     g.add_fn("b", |p| p.sampled(t).map(drop)).unwrap();
     assert_eq!((names(plan.graph()), names(&g)), (vec!["a"], vec!["a", "b"]));
     assert!(!g.same_as(plan.graph()));

@@ -1,4 +1,4 @@
-//! Shorthand for declaring small graphs.
+//! Helpers for declaring small graphs.
 
 use framegraph::*;
 
@@ -40,7 +40,7 @@ pub fn errors(graph: &Graph) -> Vec<CompileError> {
     outcome.expect_err("the graph compiles").listed
 }
 
-/// A full-screen pass that samples `input` and writes a new texture.
+/// Adds a full-screen pass that samples `input` and writes a new texture.
 pub fn filter(graph: &mut Graph, name: &str, input: Texture, format: Format) -> Texture {
     graph
         .add_fn(name, |p| {
@@ -48,10 +48,10 @@ pub fn filter(graph: &mut Graph, name: &str, input: Texture, format: Format) -> 
             let out = p.texture(&format!("{name}_out"), color(format));
             p.color(out, Intent::Overwrite)
         })
-        .expect("a filter pass is sound")
+        .expect("a filter pass is valid")
 }
 
-/// An imported texture that must survive the frame, like a swapchain image.
+/// Imports a texture with `Exit::Keep`, like a swapchain image.
 pub fn screen(graph: &mut Graph) -> Texture {
     graph.import_texture("screen", color(Format::Rgba8UnormSrgb), Entry::Undefined, Exit::Keep)
 }
@@ -79,7 +79,7 @@ pub fn split_reason(plan: &Plan, pass: &str) -> Option<Refusal> {
     })
 }
 
-/// The name of the pass or resource that an error is about; empty when it is about none.
+/// Returns the name of the pass or resource of an error; empty if there is none.
 pub fn name<I>(named: &Option<Named<I>>) -> &str {
     named.as_ref().map_or("", |n| &n.name)
 }

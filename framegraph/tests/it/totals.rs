@@ -1,11 +1,12 @@
-//! Counts and traffic of random plans against sums over the operations of their attachments.
+//! Compares counts and traffic of random plans with sums over the operations of their attachments.
 
 use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::*;
 
-/// The planes of an attachment, each with its ops and its bytes a texel; depth takes what stencil leaves of a texel.
+/// Returns the operations and bytes per texel of each plane of an attachment. Depth has the bytes that stencil does
+/// not.
 fn planes(plan: &Plan, a: &Attachment) -> Vec<(LoadOp, StoreOp, u64)> {
-    let format = plan.format(a.resource).expect("what is attached is a texture");
+    let format = plan.format(a.resource).expect("an attachment is a texture");
     let texel = u64::from(format.block_bytes());
     let both = format.has_depth() && format.has_stencil();
     let first = (a.load, a.store, texel - u64::from(both));
@@ -13,15 +14,15 @@ fn planes(plan: &Plan, a: &Attachment) -> Vec<(LoadOp, StoreOp, u64)> {
     std::iter::once(first).chain(stencil).collect()
 }
 
-/// Samples of all texels that an attachment covers.
+/// Returns the number of samples that an attachment covers.
 fn texels(plan: &Plan, a: &Attachment) -> u64 {
-    let texture = plan.graph().resources()[a.resource.index()].desc.texture().expect("what is attached is a texture");
+    let texture = plan.graph().resources()[a.resource.index()].desc.texture().expect("an attachment is a texture");
     let side = |side: u32| u64::from((side >> a.mip).max(1));
     let [width, height] = texture.extent.texels(plan.frame());
     side(width) * side(height) * u64::from(texture.samples) * u64::from(a.layers)
 }
 
-/// What the plan does, counted from its arrays alone.
+/// Counts the operations of the plan, using only its arrays.
 fn counted(plan: &Plan) -> (Counts, Traffic) {
     let placed = |wanted: Placement| plan.resources().iter().filter(|r| r.placement == wanted).count() as u32;
     let mut counts = Counts {
@@ -39,7 +40,7 @@ fn counted(plan: &Plan) -> (Counts, Traffic) {
         let loaded = |op: LoadOp| u32::from(planes.iter().any(|(load, ..)| *load == op));
         let left = |op: StoreOp| planes.iter().any(|(_, store, _)| *store == op);
         let stored = left(StoreOp::Store);
-        // A resolve target that is not stored stands for an average that is not made.
+        // A resolve target that is not stored stands for a resolve that is not performed.
         let resolve = attachment.role.is_resolve();
         counts.unresolves += loaded(LoadOp::Load);
         counts.clears += loaded(LoadOp::Clear);

@@ -1,4 +1,4 @@
-//! Textures seen through the sRGB twin of their format.
+//! Textures viewed in the sRGB twin of their format.
 
 use crate::support::*;
 use framegraph::*;
@@ -37,7 +37,7 @@ fn its_own_format_is_no_view_and_strangers_are_refused() {
     let (a, z) = (g.texture("a", hdr()), g.texture("z", color(Format::Rgba8UnormSrgb)));
     let refused = g.add_fn("p", |p| p.color(a.viewed_as(Format::Rgba8Unorm), BLACK)).unwrap_err();
     assert_eq!(refused.reason, DeclareReason::NoTwin { format: Format::Rgba16Float, view: Format::Rgba8Unorm });
-    // A view is no way to write what its texture cannot be written as.
+    // A view does not allow accesses that the texture does not support.
     let refused = g.add_fn("p", |p| p.storage_write(z.viewed_as(Format::Rgba8Unorm), Intent::Overwrite)).unwrap_err();
     assert!(refused.to_string().contains("use the format without sRGB"), "{refused}");
 }

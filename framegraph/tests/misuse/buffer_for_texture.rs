@@ -1,4 +1,4 @@
-//! A buffer where a texture is wanted.
+//! A buffer instead of a texture.
 
 use framegraph::{Buffer, Graph};
 

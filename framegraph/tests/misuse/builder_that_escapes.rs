@@ -1,4 +1,4 @@
-//! A pass that is still being declared when its closure has ended.
+//! A builder that outlives its closure.
 
 use framegraph::{Graph, PassBuilder};
 

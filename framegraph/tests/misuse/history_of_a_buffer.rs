@@ -1,4 +1,4 @@
-//! The earlier image of what is no history: buffers have none.
+//! The previous image of a buffer, which has no history.
 
 use framegraph::{Buffer, Graph};
 

@@ -1,4 +1,4 @@
-//! The number of a pass where that of a step is wanted, and that of a resource where that of a pass is.
+//! The id of a pass instead of a step, and the id of a resource instead of a pass.
 
 use framegraph::{PassId, Plan, ResourceId};
 

@@ -1,4 +1,4 @@
-//! A load op where an intent is wanted: loads and stores are derived.
+//! A load op instead of an intent: loads and stores are derived.
 
 use framegraph::{Graph, LoadOp, Texture};
 

@@ -1,4 +1,4 @@
-//! A pass that is declared while another one is.
+//! A pass that is declared inside of another one.
 
 use framegraph::{Graph, Intent, Texture};
 

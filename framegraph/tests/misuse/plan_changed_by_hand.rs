@@ -1,4 +1,4 @@
-//! A plan that is changed by hand: it is read, and made by compiling alone.
+//! A change of a plan, which is read-only.
 
 use framegraph::{Plan, StoreOp};
 

@@ -1,4 +1,4 @@
-//! What the other files get wrong, done right: each of them fails for the fault that it is about and for nothing else.
+//! The valid version of every other file, which so fails only for its own error.
 
 use framegraph::{
     AccessKind, Buffer, ClearValue, DeclareError, Entry, Exit, Extent, Format, Graph, Intent, LoadOp, Pass,
@@ -45,9 +45,9 @@ fn report(plan: &Plan, pass: PassId, step: StepId) -> bool {
     dropped || plan.is_culled(pass) || plan.passes_of(step).is_empty()
 }
 
-/// Declares all of it.
+/// Declares everything.
 pub fn main() {
     let mut graph = Graph::new();
-    declare(&mut graph).expect("nothing is wrong with it");
+    declare(&mut graph).expect("the declarations are valid");
     let _ = report;
 }

@@ -1,4 +1,4 @@
-//! A texture where a buffer is wanted.
+//! A texture instead of a buffer.
 
 use framegraph::{AccessKind, Graph, Texture};
 

@@ -1,4 +1,4 @@
-//! The token of a read, which finds a view while recording, in the place of the texture itself.
+//! The token of a read instead of the texture.
 
 use framegraph::{Graph, Intent, Texture};
 

@@ -1,4 +1,4 @@
-//! A write into the image that an earlier frame left.
+//! A write to a history image of an earlier frame.
 
 use framegraph::{Graph, Intent, Previous};
 

@@ -1,4 +1,4 @@
-//! A write through a view that may only be read.
+//! A write through a read-only handle.
 
 use framegraph::{Graph, Intent, Texture};
 

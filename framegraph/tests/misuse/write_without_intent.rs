@@ -1,4 +1,4 @@
-//! A write that does not say what becomes of the old contents.
+//! A write without an intent.
 
 use framegraph::{Graph, Texture};
 

@@ -196,7 +196,7 @@ fn from_wgpu(error: &wgpu::Error, doing: &'static str) -> DeviceError {
 pub(crate) fn one_line(description: &str) -> String {
     let noise = ["Validation Error", "Caused by:"];
     let lines = description.lines().map(str::trim).filter(|l| !l.is_empty() && !noise.contains(l));
-    framegraph::plain::line(&lines.collect::<Vec<_>>().join(": "))
+    framegraph::sanitize::line(&lines.collect::<Vec<_>>().join(": "))
 }
 
 #[cfg(test)]

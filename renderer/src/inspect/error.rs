@@ -4,14 +4,14 @@ use crate::device::readback::ReadbackError;
 use crate::execute::error::ExecuteError;
 use crate::inspect::request::VersionSelector;
 use crate::named::Named;
-use framegraph::{Aspect, CompileError, DeclareError, Format, ResourceId, plain};
+use framegraph::{Aspect, CompileError, DeclareError, Format, ResourceId, sanitize};
 use std::fmt;
 
 /// Error of an inspection. The original frame and its plan are not changed.
 #[derive(Clone, PartialEq, thiserror::Error)]
 pub enum InspectError {
     /// The resource does not exist.
-    #[error("there is no texture `{shown}`; the frame has {}", listed(.known.iter().map(|known| format!("`{}`", plain::name(known)))), shown = plain::name(.name))]
+    #[error("there is no texture `{shown}`; the frame has {}", listed(.known.iter().map(|known| format!("`{}`", sanitize::name(known)))), shown = sanitize::name(.name))]
     NoTexture {
         /// Requested name.
         name: String,
@@ -19,13 +19,13 @@ pub enum InspectError {
         known: Vec<String>,
     },
     /// The resource is a buffer.
-    #[error("`{shown}` is a buffer, which cannot be shown as an image; read it with `read_buffer`", shown = plain::name(.name))]
+    #[error("`{shown}` is a buffer, which cannot be shown as an image; read it with `read_buffer`", shown = sanitize::name(.name))]
     Buffer {
         /// Requested name.
         name: String,
     },
     /// The version does not exist.
-    #[error("`{shown}` has no version {}; it has {}", version_text(.requested, *.steps), listed(.known.iter().map(VersionName::to_string)), shown = plain::name(.name))]
+    #[error("`{shown}` has no version {}; it has {}", version_text(.requested, *.steps), listed(.known.iter().map(VersionName::to_string)), shown = sanitize::name(.name))]
     NoVersion {
         /// Name of the texture.
         name: String,
@@ -37,7 +37,7 @@ pub enum InspectError {
         known: Vec<VersionName>,
     },
     /// The level, layer, plane or sample does not exist.
-    #[error("`{shown}` has no {part}", shown = plain::name(.name))]
+    #[error("`{shown}` has no {part}", shown = sanitize::name(.name))]
     NoPart {
         /// Name of the texture.
         name: String,
@@ -47,7 +47,7 @@ pub enum InspectError {
     /// The inspected frame writes an import that cannot be copied first.
     #[error(
         "inspecting `{shown}` runs passes that write the import `{import}`, which cannot be copied first; create it with \
-         COPY_SRC", shown = plain::name(.name))]
+         COPY_SRC", shown = sanitize::name(.name))]
     Import {
         /// Name of the texture.
         name: String,
@@ -55,7 +55,7 @@ pub enum InspectError {
         import: Named<ResourceId>,
     },
     /// The inspection pass could not be declared.
-    #[error("`{shown}` cannot be read: {error}", shown = plain::name(.name))]
+    #[error("`{shown}` cannot be read: {error}", shown = sanitize::name(.name))]
     Declare {
         /// Name of the texture.
         name: String,
@@ -63,7 +63,7 @@ pub enum InspectError {
         error: Box<DeclareError>,
     },
     /// The inspected frame does not compile, usually because the requested part is not written at that point.
-    #[error("`{shown}` cannot be inspected there: {error}", shown = plain::name(.name))]
+    #[error("`{shown}` cannot be inspected there: {error}", shown = sanitize::name(.name))]
     Compile {
         /// Name of the texture.
         name: String,
@@ -71,7 +71,7 @@ pub enum InspectError {
         error: Box<CompileError>,
     },
     /// The inspected frame could not be executed.
-    #[error("inspecting `{shown}`: {error}", shown = plain::name(.name))]
+    #[error("inspecting `{shown}`: {error}", shown = sanitize::name(.name))]
     Execute {
         /// Name of the texture.
         name: String,
@@ -79,7 +79,7 @@ pub enum InspectError {
         error: Box<ExecuteError>,
     },
     /// The result could not be read back.
-    #[error("inspecting `{shown}`: {error}", shown = plain::name(.name))]
+    #[error("inspecting `{shown}`: {error}", shown = sanitize::name(.name))]
     Readback {
         /// Name of the texture.
         name: String,
@@ -149,7 +149,7 @@ pub struct VersionName {
 impl fmt::Display for VersionName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.writer {
-            Some(writer) => write!(f, "v{} (`{}`)", self.number, plain::name(writer)),
+            Some(writer) => write!(f, "v{} (`{}`)", self.number, sanitize::name(writer)),
             None => write!(f, "v{} (on entry)", self.number),
         }
     }
@@ -158,7 +158,7 @@ impl fmt::Display for VersionName {
 fn version_text(requested: &VersionSelector, steps: usize) -> String {
     match requested {
         VersionSelector::Newest => "that a pass wrote".to_owned(),
-        VersionSelector::After(pass) => format!("of a pass `{}`", plain::name(pass)),
+        VersionSelector::After(pass) => format!("of a pass `{}`", sanitize::name(pass)),
         VersionSelector::Number(number) => format!("v{number}"),
         VersionSelector::Step(step) => format!("at step {step} of {steps}"),
     }

@@ -18,7 +18,7 @@ pub(crate) struct AliasBarrier {
 pub(crate) fn alias_barriers(plan: &Plan, is_placed: impl Fn(ResourceId) -> bool) -> Vec<AliasBarrier> {
     let heap = |r: &ResourceId| matches!(plan.resources()[r.index()].placement, Placement::Heap { .. });
     let mut earliest = vec![0; plan.resources().len()];
-    for barrier in plan.barriers().iter().filter(|b| !b.hand_over.is_none()) {
+    for barrier in plan.barriers().iter().filter(|b| !b.aliases.is_none()) {
         let free = &mut earliest[barrier.resource.index()];
         *free = (barrier.after.index() + 1).max(*free);
     }

@@ -8,12 +8,12 @@ use crate::device::adapter::describe;
 use crate::device::format::{joined, texture_format, texture_usages};
 use crate::device::gpu::Gpu;
 use crate::resources::physical::PhysicalTextureDesc;
-use framegraph::{Dimension, Format, Usage, plain};
+use framegraph::{Dimension, Format, Usage, sanitize};
 use wgpu::{AdapterInfo, Features, TextureFormatFeatures, TextureUsages};
 
 /// Error: the device does not support a texture or buffer.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{}`: {}", plain::name(.name), .reason.sentence(&describe(.adapter)))]
+#[error("`{}`: {}", sanitize::name(.name), .reason.sentence(&describe(.adapter)))]
 pub struct Unsupported {
     /// Full name of the resource.
     pub name: String,

@@ -134,7 +134,7 @@ fn barriers_that_are_left_out_are_noticed() -> Result<(), Trouble> {
         assert!(!messages.is_empty(), "{name}: nothing is said of a stream without barriers");
         let hazards = messages.iter().filter(|message| message.contains("SYNC-HAZARD")).count();
         assert!(hazards > 0, "{name}: {}", messages[0]);
-        let apart = |barrier: &u32| alias == Alias::Off || !plan.barriers()[*barrier as usize].hand_over.is_none();
+        let apart = |barrier: &u32| alias == Alias::Off || !plan.barriers()[*barrier as usize].aliases.is_none();
         for left in test_report::share((0..plan.barriers().len() as u32).filter(apart)) {
             let (messages, _) = told(&device, &plan, &without(&|barrier| barrier == left))?;
             // Older layers allow two accesses to storage, or to an attachment, in the same layout without a barrier.
@@ -219,7 +219,7 @@ fn memory_that_is_not_handed_over_is_noticed() -> Result<(), Trouble> {
         let commands = plan.stream_in(&found, &memory);
         let is_first = |barrier: u32| plan.barriers()[barrier as usize].after.is_none();
         let alone = |command: &Command| match *command {
-            Command::HandOver { .. } => None,
+            Command::AliasingBarrier { .. } => None,
             Command::Barrier { queue, barrier, .. } if is_first(barrier) => {
                 Some(Command::Barrier { queue, barrier, behind_semaphore: false })
             }

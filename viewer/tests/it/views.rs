@@ -98,7 +98,7 @@ fn a_culled_pass_says_why() {
     let plan = session.plan.as_ref().expect("a plan");
     let idle = Item::Pass(plan.pass("idle").expect("a pass"));
     let words = inspector::text(&inspector::sections(plan, Some(idle)));
-    assert!(words.contains("culled, no pass reads `idle_out`") && words.contains("small.ron:6"), "{words}");
+    assert!(words.contains("culled because no pass reads `idle_out`") && words.contains("small.ron:6"), "{words}");
     let frame = inspector::text(&inspector::sections(plan, None));
     assert!(frame.contains("culled passes\n  idle: culled"), "{frame}");
     let timeline = drawing(View::Timeline, plan, ViewContext::default(), 80).words();

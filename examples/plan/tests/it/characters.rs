@@ -14,7 +14,7 @@ fn no_output_has_control_characters() {
     let wrong = file("\u{1b}[31m wrong.ron", "(version: 1, x: 1)");
     let table = file("escaped.csv", "id,lower,upper,size\na\u{1b}[31m,1,2,4\n");
     let cases: [(&[&str], &str); 8] = [
-        (&[&empty, "--caps", &device], r"plan 1 for a\u{1b}[31m at"),
+        (&[&empty, "--caps", &device], r"plan 2 for a\u{1b}[31m at"),
         (&[&empty, "--format", "svg", "--caps", &device], r"plan for a\u{1b}[31m at"),
         (&[&empty], r"\u{1b}[31m empty.ron: warning: no pass runs"),
         (&[&wrong], r"\u{1b}[31m wrong.ron:1:14: "),

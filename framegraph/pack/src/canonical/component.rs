@@ -1,4 +1,4 @@
-//! Components: which item is tried next, and what falls apart when it is placed.
+//! Components: selection of the next item, and decomposition after a placement.
 
 use core::ops::Range;
 
@@ -17,7 +17,8 @@ impl Canonical {
         self.arena.extend(self.keys.iter().map(|key| key.2));
     }
 
-    /// The item of the component that can sit lowest and was not refused there; the first of them in the order.
+    /// Selects the item with the lowest possible position, among the items of the component that were not refused
+    /// there. Ties are resolved by the order of the items.
     pub(super) fn lowest(&mut self, component: Component) -> Choice {
         let (mut best, mut choice) = (u64::MAX, Choice::Done);
         for &i in &self.arena[component.first as usize..component.end as usize] {
@@ -35,7 +36,8 @@ impl Canonical {
         choice
     }
 
-    /// Splits the current component where nothing crosses inside `span`; returns what to solve next.
+    /// Splits the current component at boundaries inside `span` that no item crosses. Returns the component to solve
+    /// next.
     pub(super) fn split(&mut self, problem: &Problem, current: u32, span: Range<usize>, order: Order) -> u32 {
         self.cuts.clear();
         let boundaries = span.start..span.end.max(1) - 1;

@@ -1,10 +1,11 @@
-//! Inference: what a placement or a refusal means for the positions of all others, and whether they still fit.
+//! Inference: effects of a placement or a refusal on the positions of other items, and capacity tests.
 
 use super::super::problem::{Problem, align_up};
 use super::{Canonical, Component, Frame};
 
 impl Canonical {
-    /// Places item `i` on its floor and raises all its neighbors. False if a capacity test fails; undo in any case.
+    /// Places item `i` at its floor and raises its neighbors. Returns `false` if a capacity test fails; must be undone
+    /// in any case.
     pub(super) fn place(&mut self, problem: &Problem, i: usize) -> bool {
         let mark = self.raised.len();
         let span = problem.span(i);
@@ -31,7 +32,7 @@ impl Canonical {
             && (mark..self.raised.len()).all(|k| self.witnesses_hold(problem, self.raised[k].0))
     }
 
-    /// After a placement at `level`: the bounds of refused items may have grown.
+    /// Updates the bounds of refused items after a placement at `level`.
     pub(super) fn reconsider(&mut self, problem: &Problem, component: Component, level: u64, equal: &[u32]) -> bool {
         self.looks += u64::from(component.end - component.first);
         (component.first..component.end).all(|k| {
@@ -40,9 +41,10 @@ impl Canonical {
         })
     }
 
-    /// Item `i` is not on its floor: raises its bound to the end of the lowest item that can hold it up.
+    /// Refuses the floor for item `i`: raises its bound to the end of the lowest item that can be below it.
     ///
-    /// What is still unplaced ends up at `level` or higher. False if nothing can hold it up, or a capacity test fails.
+    /// Unplaced items end up at `level` or higher. Returns `false` if no item can be below it, or if a capacity test
+    /// fails.
     pub(super) fn refuse(&mut self, problem: &Problem, i: usize, level: u64, equal: &[u32]) -> bool {
         let roof = self.floor[i] + problem.size[i];
         let mut end = u64::MAX;
@@ -72,14 +74,14 @@ impl Canonical {
         })
     }
 
-    /// Whether the sections that item `i` is the witness of are still fine, with new witnesses where needed.
+    /// Checks the sections whose witness is item `i`, and selects new witnesses where needed.
     fn witnesses_hold(&mut self, problem: &Problem, i: u32) -> bool {
         let mut span = problem.span(i as usize);
         self.looks += span.len() as u64 / 4;
         span.all(|s| self.witness[s] != i || self.fits(problem, s))
     }
 
-    /// Whether section `s` can still hold its unplaced items above the lowest of their bounds.
+    /// Checks that section `s` can hold its unplaced items above the lowest of their bounds.
     fn fits(&mut self, problem: &Problem, s: usize) -> bool {
         let total = self.total[s];
         let w = self.witness[s] as usize;
@@ -104,7 +106,7 @@ impl Canonical {
         self.within(lowest + total)
     }
 
-    /// Whether an end is within the capacity; if not, by how much it fails is noted.
+    /// Returns `true` if an end is within the capacity. Otherwise records the shortfall.
     fn within(&mut self, end: u64) -> bool {
         if end > self.capacity {
             self.shortfall = self.shortfall.min(end - self.capacity);

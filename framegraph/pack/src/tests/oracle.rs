@@ -1,4 +1,4 @@
-//! What a packing must satisfy, the lowest top by brute force, and generators of instances.
+//! An independent verifier of packings, the optimum by brute force, and random instances.
 
 use super::super::random::Random;
 use super::super::*;
@@ -11,7 +11,7 @@ pub(super) fn meet(a: &Interval, b: &Interval) -> bool {
     a.lower < b.upper && b.lower < a.upper
 }
 
-/// What is wrong with a packing, if anything: by the definition, sharing no code with the solvers.
+/// Returns what is wrong with a packing, if anything. Follows the definition and shares no code with the solvers.
 pub(super) fn fault(items: &[Interval], offsets: &[u64], packing: &Packing) -> Option<String> {
     if offsets.len() != items.len() {
         return Some(format!("{} offsets for {} items", offsets.len(), items.len()));
@@ -62,10 +62,10 @@ pub(super) fn exact(budget_steps: u64) -> Options {
 
 pub(super) const EFFORTS: [Effort; 2] = [Effort::Greedy, Effort::Exact];
 
-/// The lowest top there is: first fit in every order.
+/// Finds the minimum top: first fit in every order.
 ///
-/// Some order reaches it: in an optimal packing where nothing can be moved down, first fit in the order of the
-/// offsets puts every item where it is.
+/// One order reaches it: in an optimal packing in which no item can be moved down, first fit in the order of the
+/// offsets places every item at its offset.
 pub(super) fn brute_force(items: &[Interval], offsets: &mut Vec<Option<u64>>, top: u64, best: &mut u64) {
     if top >= *best {
         return;
@@ -83,14 +83,14 @@ pub(super) fn brute_force(items: &[Interval], offsets: &mut Vec<Option<u64>>, to
             (0..items.len()).filter(|&j| meet(&items[i], &items[j])).filter_map(|j| placed(j, offsets)).collect();
         let candidates = others.iter().map(|other| other.1.next_multiple_of(items[i].align)).chain([0]);
         let free = |&at: &u64| others.iter().all(|other| at + items[i].size <= other.0 || other.1 <= at);
-        let at = candidates.filter(free).min().expect("on top of all is free");
+        let at = candidates.filter(free).min().expect("the place above all items is free");
         offsets[i] = Some(at);
         brute_force(items, offsets, top.max(at + items[i].size), best);
         offsets[i] = None;
     }
 }
 
-/// Up to seven small items, at times aligned, empty or equal.
+/// Returns up to seven small items, sometimes aligned, empty or equal.
 pub(super) fn tiny(random: &mut Random) -> Vec<Interval> {
     let (times, sizes) = (2 + random.below(8), 1 + random.below(9));
     let aligned = random.below(3) == 0;
@@ -106,7 +106,7 @@ pub(super) fn tiny(random: &mut Random) -> Vec<Interval> {
     items
 }
 
-/// A graph of 10 to 60 resources: lifetimes start along the passes, sizes are log-uniform multiples of 64 KiB.
+/// Returns a graph of 10 to 60 resources; sizes are log-uniform multiples of 64 KiB.
 pub(super) fn graph(random: &mut Random) -> Vec<Interval> {
     let count = 10 + random.below(51);
     let passes = count / 2 + 2;

@@ -1,4 +1,4 @@
-//! Packings whose lowest top is known beforehand, and the searches that take turns on them.
+//! Packings with a known optimum, and the searches that run in turn.
 
 use core::ops::ControlFlow;
 
@@ -6,7 +6,7 @@ use super::super::*;
 use super::oracle::{exact, fault, packed};
 use crate::planted::{Cuts, Planted};
 
-/// With so many steps the exact search is nearly alone; then all searches had their turns.
+/// Budgets for the exact search alone, and for turns of all searches.
 const ALONE: u64 = 1 << 18;
 const TURNS: u64 = 3 << 20;
 
@@ -23,12 +23,12 @@ fn planted_packings_are_nearly_found_again() {
             let (items, height) = (plan.items(seed), plan.height_bytes());
             let [first, last] = [ALONE, TURNS].map(|budget| packed(&items, None, exact(budget), &mut scratch).0);
             assert!(first.lower_bound == height && last.top <= first.top, "{plan:?}");
-            // Asked for are 5 % for 1,000 items in a minute. Measured here: at most 1.9 %.
+            // Required is 5 % for 1,000 items in a minute; the result here is at most 1.9 %.
             assert!(last.top * 100 <= height * 105, "{plan:?}, seed {seed}: {} of {height}", last.top);
             alone += u32::from(first.top * 100 > height * 105);
         }
     }
-    assert!(alone >= 4, "the exact search is enough for all but {alone}: nothing is shown");
+    assert!(alone >= 4, "the exact search alone suffices for all but {alone}");
 }
 
 #[test]
@@ -65,6 +65,6 @@ fn who_watches_sees_the_bracket_narrow_and_ends_it() {
     assert!(packing.top <= seen[23].top && seen[23].top < seen[0].top, "{seen:?}");
     let narrows = |a: &Progress, b: &Progress| a.top >= b.top && a.lower_bound <= b.lower_bound && a.steps < b.steps;
     assert!(seen.windows(2).all(|pair| narrows(&pair[0], &pair[1])), "{seen:?}");
-    // The same steps as a budget give the same packing.
+    // The same number of steps as budget gives the same packing.
     assert_eq!(packed(&items, None, exact(packing.steps), &mut Scratch::default()), (packing, offsets));
 }

@@ -1,4 +1,4 @@
-//! The instances of the MiniMalloc paper, where they are at hand.
+//! The instances of the MiniMalloc paper, if available.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -7,11 +7,11 @@ use super::super::*;
 use super::oracle::{exact, packed};
 use crate::csv;
 
-/// The instances of `tests/offset_assignment`: name, items, and a top that is known to be reachable.
+/// Returns the instances of `tests/offset_assignment`: name, items, and a reachable top.
 fn published(test: &str) -> Vec<(String, csv::Table, u64)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/offset_assignment");
     let Ok(entries) = std::fs::read_dir(&folder) else {
-        skip(test, "the published instances are not at tests/offset_assignment");
+        skip(test, "tests/offset_assignment does not exist");
         return Vec::new();
     };
     let mut found: Vec<_> = entries
@@ -31,18 +31,19 @@ fn published(test: &str) -> Vec<(String, csv::Table, u64)> {
     published
 }
 
-/// Says that a test is skipped, on the screen and in the file where `cargo xtask test` collects such lines.
+/// Prints that a test is skipped, and appends the line to the log that `cargo xtask test` collects.
 fn skip(test: &str, why: &str) {
     let line = format!("SKIP: {test}: {why}\n");
     print!("{line}");
     let Some(log) = std::env::var_os("FRAMEGRAPH_SKIP_LOG") else { return };
-    // A log that cannot be written loses a line, not the test.
+    // Failing to write the log must not fail the test.
     if let Ok(mut file) = std::fs::OpenOptions::new().create(true).append(true).open(log) {
         let _ = file.write_all(line.as_bytes());
     }
 }
 
-/// In debug builds the search is ten times slower, and the three that need more than 100,000 steps are left undecided.
+/// In debug builds the search is ten times slower; the three instances that need more than 100,000 steps stay
+/// undecided.
 const BUDGET: u64 = if cfg!(debug_assertions) { 100_000 } else { 1 << 24 };
 
 #[test]

@@ -1,4 +1,4 @@
-//! Earlier offsets.
+//! Previous offsets.
 
 use super::super::random::Random;
 use super::super::*;
@@ -15,7 +15,7 @@ fn previous_offsets_are_kept_where_they_cost_nothing() {
         let mut previous: Vec<_> = offsets.iter().map(|&at| Some(at)).collect();
         let (again, same) = packed(&items, Some(&previous), options, &mut scratch);
         assert_eq!((same, again.top, again.kept), (offsets, first.top, items.len()));
-        // Three resources are replaced: the top is what it would be anyway, and more of the others stay.
+        // After replacing three resources, the top is unaffected, and more of the other offsets stay.
         let others = graph(&mut random);
         for &other in &others[..3] {
             let changed = random.below(items.len() as u64) as usize;
@@ -28,7 +28,7 @@ fn previous_offsets_are_kept_where_they_cost_nothing() {
         by_chance += anew.iter().zip(&previous).filter(|(at, before)| **before == Some(**at)).count();
         total += items.len();
     }
-    // Measured: 62 % kept against 39 % that an unrelated packing has in common with the earlier one.
+    // 62 % are kept, compared with 39 % that an unrelated packing has in common with the previous one.
     assert!(kept * 10 > by_chance * 12 && kept * 2 > total, "{kept} and {by_chance} of {total}");
 }
 

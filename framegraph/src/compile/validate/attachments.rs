@@ -1,4 +1,4 @@
-//! What can be wrong with the attachments of one pass.
+//! Validation of the attachments of a pass.
 
 use crate::access::{Access, AccessKind, Range};
 use crate::caps::Caps;
@@ -10,7 +10,7 @@ use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
 use crate::resource::TextureDesc;
 
-/// Attachments of one pass: one size, layers and samples, fitting clears, resolves from many samples to one, within the device's limits.
+/// Checks the size, layers, samples, resolves and device limits of the attachments of a pass.
 pub(super) fn attachments(
     graph: &Tables,
     caps: &Caps,
@@ -81,7 +81,7 @@ fn resolve(
     }
 }
 
-/// A depth attachment that the pass also reads in memory, on a device that cannot.
+/// Reports a depth attachment that the pass also samples, for devices that do not support it.
 fn sampled_depth(graph: &Tables, pass: PassId, depth: &Access, errors: &mut CompileErrors) {
     let Some(texture) = graph.resources[depth.resource.index()].desc.texture() else {
         return;
@@ -97,7 +97,7 @@ fn sampled_depth(graph: &Tables, pass: PassId, depth: &Access, errors: &mut Comp
     }
 }
 
-/// Same-pixel reads of another size than the attachments, of which no texel is under the fragment.
+/// Reports same-pixel reads whose size differs from that of the attachments.
 fn same_pixel(
     graph: &Tables,
     measures: &[Measured],

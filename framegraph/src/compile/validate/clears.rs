@@ -1,4 +1,4 @@
-//! Clear values that what is cleared does not hold.
+//! Validation of clear values.
 
 use crate::access::{ClearValue, Mode};
 use crate::compile::error::{CompileError, CompileErrors, CompileReason};
@@ -6,7 +6,7 @@ use crate::format::Format;
 use crate::graph::Tables;
 use crate::id::PassId;
 
-/// Reports the clear values of a pass that the format (as it is seen by the access) does not hold.
+/// Reports the clear values of a pass that the view format cannot represent.
 pub(super) fn clears(graph: &Tables, pass: PassId, errors: &mut CompileErrors) {
     for access in graph.accesses_of(pass).iter().filter(|a| a.mode == Mode::Clear) {
         let texture = graph.resources[access.resource.index()].desc.texture();
@@ -19,7 +19,7 @@ pub(super) fn clears(graph: &Tables, pass: PassId, errors: &mut CompileErrors) {
     }
 }
 
-/// Whether a format, or a buffer, holds a value.
+/// Returns `true` if a format, or a buffer, can represent a value.
 fn holds(format: Option<Format>, value: ClearValue) -> bool {
     match (value, format) {
         (ClearValue::Zero, _) => true,
@@ -29,11 +29,11 @@ fn holds(format: Option<Format>, value: ClearValue) -> bool {
             format.is_depth_stencil() && (0.0..=1.0).contains(&depth) && (stencil <= 255 || !format.has_stencil())
         }
         (ClearValue::Color(color), Some(format)) => {
-            let Some(Channels { count, least, most, whole, infinite }) = channels(format) else {
+            let Some(Channels { count, min, max, whole, infinite }) = channels(format) else {
                 return false;
             };
-            let fits = |c: f64| (least..=most).contains(&c) && (!whole || c.fract() == 0.0);
-            let endless = |c: f64| infinite && c.is_infinite() && (c > 0.0 || least < 0.0);
+            let fits = |c: f64| (min..=max).contains(&c) && (!whole || c.fract() == 0.0);
+            let endless = |c: f64| infinite && c.is_infinite() && (c > 0.0 || min < 0.0);
             let alpha = |at: usize, c: f64| format != Format::Rgb10a2Uint || at != 3 || c <= 3.0;
             let used = color.iter().take(count).enumerate();
             !color.iter().any(|c| c.is_nan())
@@ -42,29 +42,28 @@ fn holds(format: Option<Format>, value: ClearValue) -> bool {
     }
 }
 
-/// What the channels of a color format hold.
+/// Value range of the channels of a color format.
 struct Channels {
     count: usize,
-    least: f64,
-    most: f64,
-    /// Whole numbers alone.
+    min: f64,
+    max: f64,
+    /// Integers only.
     whole: bool,
-    /// Infinities too.
+    /// Includes infinities.
     infinite: bool,
 }
 
-/// The channels of a color format that is not compressed.
+/// Returns the channels of an uncompressed color format.
 fn channels(format: Format) -> Option<Channels> {
     use Format::*;
-    let normalized = |count, least| Channels { count, least, most: 1.0, whole: false, infinite: false };
-    let unsigned =
-        |count, bits| Channels { count, least: 0.0, most: f64::exp2(bits) - 1.0, whole: true, infinite: false };
+    let normalized = |count, min| Channels { count, min, max: 1.0, whole: false, infinite: false };
+    let unsigned = |count, bits| Channels { count, min: 0.0, max: f64::exp2(bits) - 1.0, whole: true, infinite: false };
     let signed = |count, bits: f64| {
         let half = f64::exp2(bits - 1.0);
-        Channels { count, least: -half, most: half - 1.0, whole: true, infinite: false }
+        Channels { count, min: -half, max: half - 1.0, whole: true, infinite: false }
     };
-    let float = |count, most: f64| Channels { count, least: -most, most, whole: false, infinite: true };
-    // The largest numbers of half and single precision; of 11 and 10 bits without a sign, and of a shared exponent.
+    let float = |count, max: f64| Channels { count, min: -max, max, whole: false, infinite: true };
+    // Maxima of half and single precision, of unsigned 11- and 10-bit floats, and of shared-exponent formats.
     const HALF: f64 = 65504.0;
     const SINGLE: f64 = f32::MAX as f64;
     const SMALL: f64 = 64512.0;
@@ -101,8 +100,8 @@ fn channels(format: Format) -> Option<Channels> {
         R32Float => float(1, SINGLE),
         Rg32Float => float(2, SINGLE),
         Rgba32Float => float(4, SINGLE),
-        Rg11b10Ufloat => Channels { least: 0.0, ..float(3, SMALL) },
-        Rgb9e5Ufloat => Channels { least: 0.0, infinite: false, ..float(3, SHARED) },
+        Rg11b10Ufloat => Channels { min: 0.0, ..float(3, SMALL) },
+        Rgb9e5Ufloat => Channels { min: 0.0, infinite: false, ..float(3, SHARED) },
         _ => return None,
     })
 }
@@ -148,7 +147,7 @@ mod tests {
             assert_eq!(holds(Some(format), ClearValue::FAR), format.is_depth_stencil(), "{format:?}");
             assert!(!holds(Some(format), ClearValue::DepthStencil(f32::NAN, 0)), "{format:?}");
         }
-        // Channels that the format has not hold anything but NaN.
+        // Channels that the format lacks accept any value except NaN.
         assert!(holds(Some(R8Unorm), ClearValue::Color([1.0, 9.0, 9.0, 9.0])));
         assert!(!holds(Some(R8Unorm), ClearValue::Color([1.0, nan, 0.0, 0.0])));
         assert!(!holds(Some(Stencil8), ClearValue::DepthStencil(0.0, 256)));

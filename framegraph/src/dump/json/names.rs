@@ -1,10 +1,10 @@
-//! Names that stand in the place of ids, and so must differ.
+//! Unique names of passes and resources, used instead of ids.
 
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
 use std::collections::{HashMap, HashSet};
 
-/// The name of each pass and resource; of several with one name, the second has `#2` behind it, and so on.
+/// The name of each pass and resource. Duplicates get the suffix `#2`, `#3` and so on.
 pub(super) struct Names {
     passes: Vec<String>,
     resources: Vec<String>,
@@ -14,7 +14,7 @@ impl Names {
     pub(super) fn new(graph: &Tables) -> Self {
         let passes = graph.pass_ids().map(|p| graph.pass_name(p)).collect();
         let resources = graph.resource_ids().map(|r| graph.resource_name(r)).collect();
-        Self { passes: told_apart(passes), resources: told_apart(resources) }
+        Self { passes: deduplicate(passes), resources: deduplicate(resources) }
     }
 
     pub(super) fn pass(&self, pass: PassId) -> &str {
@@ -26,25 +26,25 @@ impl Names {
     }
 }
 
-/// The names with numbers behind those that came before. A number that makes another's name is passed over.
-fn told_apart(names: Vec<&str>) -> Vec<String> {
+/// Adds suffixes to duplicates. Skips suffixes that would collide with another name.
+fn deduplicate(names: Vec<&str>) -> Vec<String> {
     let given: HashSet<&str> = names.iter().copied().collect();
     let mut counts: HashMap<&str, u32> = HashMap::new();
-    let told = names.into_iter().map(|name| {
+    let unique = names.into_iter().map(|name| {
         let count = counts.entry(name).or_default();
         *count += 1;
         if *count == 1 {
             return name.to_owned();
         }
         loop {
-            let told = format!("{name}#{count}");
-            if !given.contains(told.as_str()) {
-                return told;
+            let unique = format!("{name}#{count}");
+            if !given.contains(unique.as_str()) {
+                return unique;
             }
             *count += 1;
         }
     });
-    told.collect()
+    unique.collect()
 }
 
 #[cfg(test)]
@@ -53,6 +53,6 @@ mod tests {
 
     #[test]
     fn equal_names_are_told_apart() {
-        assert_eq!(told_apart(vec!["a", "b", "a", "a#2", "a", "b"]), ["a", "b", "a#3", "a#2", "a#4", "b#2"]);
+        assert_eq!(deduplicate(vec!["a", "b", "a", "a#2", "a", "b"]), ["a", "b", "a#3", "a#2", "a#4", "b#2"]);
     }
 }

@@ -1,15 +1,15 @@
-//! Resources and the memory they have, with names.
+//! Resources and their memory.
 
 use super::names::Names;
 use super::value::{Json, field, object};
 use crate::access::Usage;
 use crate::barrier::{Stages, State};
-use crate::dump::words::{held, offsets, shape};
+use crate::dump::describe::{held, offsets, shape};
 use crate::id::{ResourceId, StepId};
 use crate::plan::{Placement, Plan, Planned};
 use crate::resource::{Desc, Entry, Exit, Kind};
 
-/// The declared resources.
+/// Returns the declared resources.
 pub(super) fn resources(plan: &Plan, names: &Names) -> Json {
     let offsets = offsets(plan);
     Json::list(plan.graph().resource_ids().map(|r| resource(plan, names, r, offsets[r.index()])))
@@ -51,7 +51,7 @@ fn resource(plan: &Plan, names: &Names, resource: ResourceId, offset: Option<u64
     ])
 }
 
-/// In which state an import comes, and what the first use waits for.
+/// Returns the initial state of an import, and the stages that its first use waits for.
 fn entry_of(entry: Entry) -> Json {
     let (state, stages) = match entry {
         Entry::Defined => (State::Entry, Stages::NONE),
@@ -65,7 +65,7 @@ fn entry_of(entry: Entry) -> Json {
     ])
 }
 
-/// The histories, each with the images of earlier frames that this frame reads.
+/// Returns the histories, each with the earlier images that this frame reads.
 pub(super) fn histories(plan: &Plan, names: &Names) -> Json {
     let graph = plan.graph();
     let rows = || graph.resource_ids().zip(graph.resources());
@@ -95,7 +95,7 @@ pub(super) fn histories(plan: &Plan, names: &Names) -> Json {
     }))
 }
 
-/// The physical textures and buffers of the pool, with their tenants in order of time.
+/// Returns the physical textures and buffers of the pool, each with its resources in order of time.
 pub(super) fn slots(plan: &Plan, names: &Names) -> Json {
     let mut tenants = vec![Vec::new(); plan.slots().len()];
     for resource in plan.graph().resource_ids() {

@@ -1,20 +1,20 @@
-//! Passes, steps and attachments, with names.
+//! Passes, steps and attachments.
 
 use super::names::Names;
 use super::value::{Json, field, object};
 use crate::decision::Subject;
+use crate::dump::describe::part;
 use crate::dump::reasons::Reasons;
-use crate::dump::words::part;
 use crate::format::Aspect;
 use crate::id::{PassId, StepId};
 use crate::plan::{Attachment, Join, Plan, Role};
 
-/// The names of the passes of a step, in order.
+/// Returns the names of the passes of a step, in order.
 pub(super) fn passes(plan: &Plan, names: &Names, step: StepId) -> Json {
     Json::list(plan.passes_of(step).iter().map(|m| names.pass(m.pass)))
 }
 
-/// A declared pass.
+/// Returns a declared pass.
 pub(super) fn pass(plan: &Plan, names: &Names, reasons: &Reasons, pass: PassId) -> Json {
     let graph = plan.graph();
     let step = plan.pass_steps()[pass.index()].some();
@@ -38,7 +38,7 @@ pub(super) fn pass(plan: &Plan, names: &Names, reasons: &Reasons, pass: PassId) 
     ])
 }
 
-/// A step.
+/// Returns a step.
 pub(super) fn step(plan: &Plan, names: &Names, reasons: &Reasons, step: StepId) -> Json {
     let row = &plan.steps()[step.index()];
     let counts = plan.step_counts(step);
@@ -61,7 +61,7 @@ pub(super) fn step(plan: &Plan, names: &Names, reasons: &Reasons, step: StepId) 
     ])
 }
 
-/// One attachment of a step.
+/// Returns one attachment of a step.
 fn attachment(plan: &Plan, names: &Names, reasons: &Reasons, step: StepId, attachment: &Attachment) -> Json {
     let Attachment { resource, mip, layer, layers, view, role, load, store, .. } = *attachment;
     let (role, slot, mode) = match role {

@@ -1,4 +1,4 @@
-//! JSON values (RFC 8259) and their text: as much of it as the dumps write.
+//! JSON values (RFC 8259) and their text, as far as the dumps need them.
 
 use std::fmt::Write;
 
@@ -13,23 +13,23 @@ pub(crate) enum Json {
     Object(Vec<(&'static str, Json)>),
 }
 
-/// An object of these fields.
+/// Creates an object.
 pub(crate) fn object<const N: usize>(fields: [(&'static str, Json); N]) -> Json {
     Json::Object(fields.into())
 }
 
-/// One field of an object.
+/// Creates a field of an object.
 pub(crate) fn field(name: &'static str, value: impl Into<Json>) -> (&'static str, Json) {
     (name, value.into())
 }
 
 impl Json {
-    /// A list of these values.
+    /// Creates a list.
     pub(crate) fn list<T: Into<Self>>(values: impl IntoIterator<Item = T>) -> Self {
         Self::List(values.into_iter().map(T::into).collect())
     }
 
-    /// The text, a value or field a line, indented by two spaces a level, ending in a line feed.
+    /// Returns the text with one value or field per line, indented by two spaces per level, ending in a line feed.
     pub(crate) fn text(&self) -> String {
         let mut out = String::new();
         self.write(&mut out, 0);
@@ -41,7 +41,7 @@ impl Json {
         match self {
             Self::Null => out.push_str("null"),
             Self::Bool(value) => *out += if *value { "true" } else { "false" },
-            // Writing to a string cannot fail; here and below.
+            // Writing to a string cannot fail; also below.
             Self::Number(value) => _ = write!(out, "{value}"),
             Self::Text(text) => quote(text, out),
             Self::List(values) => lines(out, depth, ['[', ']'], values, |value, out| value.write(out, depth + 1)),
@@ -54,7 +54,7 @@ impl Json {
     }
 }
 
-/// Rows between brackets, a line each; nothing between the brackets when there is none.
+/// Writes rows between brackets, one per line; empty brackets stay on one line.
 fn lines<T>(out: &mut String, depth: usize, [open, close]: [char; 2], rows: &[T], row: impl Fn(&T, &mut String)) {
     out.push(open);
     for (index, value) in rows.iter().enumerate() {
@@ -69,7 +69,7 @@ fn lines<T>(out: &mut String, depth: usize, [open, close]: [char; 2], rows: &[T]
     out.push(close);
 }
 
-/// A string between quotes: quotes, backslashes and control characters are escaped.
+/// Writes a quoted string, with quotes, backslashes and control characters escaped.
 fn quote(text: &str, out: &mut String) {
     out.push('"');
     for c in text.chars() {
@@ -153,7 +153,7 @@ mod tests {
         let expected = serde_json::json!({
             "a": [0, u64::MAX], "b": null, "c": { "d": text, "e": [], "f": {} }, "g": [[], true],
         });
-        // The library leaves DEL and the controls above it as they are; a terminal that shows the text does not.
+        // serde_json does not escape DEL and C1 control characters; the dumps do, because a terminal may show them.
         let library = serde_json::to_string_pretty(&expected).unwrap() + "\n";
         let escaped = |c: char| match c {
             '\u{7f}'..='\u{9f}' => format!("\\u{:04x}", u32::from(c)),

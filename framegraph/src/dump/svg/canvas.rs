@@ -1,32 +1,32 @@
-//! Shapes and text as SVG elements, and how far they reach.
+//! Shapes and text as SVG elements, and their bounding box.
 
-use crate::plain::plain;
+use crate::sanitize::escape_controls;
 use std::fmt::Write;
 
-/// Space around everything, in user units (one unit is a pixel at 100 %).
+/// Margin around the image, in user units (pixels at 100 %).
 pub(super) const MARGIN: f64 = 16.0;
-/// Width of the column of names on the left, shared by matrix and memory map.
+/// Width of the column of names, shared by matrix and memory map.
 pub(super) const NAMES: f64 = 330.0;
 /// Width of a step.
 pub(super) const STEP: f64 = 40.0;
 
-/// The left edge of a step.
+/// Returns the left edge of a step.
 pub(super) fn step_x(step: usize) -> f64 {
     MARGIN + NAMES + STEP * step as f64
 }
 
-/// How text looks.
+/// Style of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ink {
-    /// The heading of the picture.
+    /// Title of the image.
     Title,
-    /// The heading of a part.
+    /// Heading of a section.
     Heading,
-    /// Names and figures.
+    /// Names and numbers.
     Plain,
-    /// What matters less.
+    /// Less important text.
     Faint,
-    /// Inside of a coloured box.
+    /// Text inside of a colored box.
     Small,
 }
 
@@ -41,7 +41,7 @@ impl Ink {
         }
     }
 
-    /// Width of a letter, in user units: the fonts asked for are monospaced.
+    /// Width of a character in user units; the fonts are monospaced.
     pub(super) const fn advance(self) -> f64 {
         match self {
             Self::Title => 10.8,
@@ -56,7 +56,7 @@ const STYLE: &str = "\
 text{font-family:'DejaVu Sans Mono',Menlo,Consolas,monospace;font-size:12px;fill:#222}\
 .t{font-size:18px;font-weight:bold}.h{font-size:14px;font-weight:bold}.f{fill:#666}.s{font-size:10px}";
 
-/// A document in the making.
+/// A document under construction.
 #[derive(Debug)]
 pub(super) struct Canvas {
     body: String,
@@ -74,28 +74,31 @@ impl Canvas {
         self.bottom = self.bottom.max(bottom);
     }
 
-    /// Text whose line of writing starts at `x`, `y`.
+    /// Adds text with its baseline starting at `x`, `y`.
     pub(super) fn text(&mut self, x: f64, y: f64, ink: Ink, text: &str) {
         let letters = text.chars().count() as f64;
         self.reach(x + letters * ink.advance(), y + 4.0);
         let class = ink.class();
-        // Writing to a string cannot fail; here and below.
-        let _ =
-            writeln!(self.body, "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>", escaped(&plain(text)));
+        // Writing to a string cannot fail; also below.
+        let _ = writeln!(
+            self.body,
+            "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>",
+            escaped(&escape_controls(text))
+        );
     }
 
-    /// Text that climbs to the right from `x`, `y`, as column heads do.
+    /// Adds text that rises to the right from `x`, `y`, for column heads.
     pub(super) fn slanted(&mut self, x: f64, y: f64, text: &str) {
         let length = text.chars().count() as f64 * Ink::Plain.advance();
         self.reach(x + 0.5 * length, y);
-        let text = escaped(&plain(text));
+        let text = escaped(&escape_controls(text));
         let _ = writeln!(
             self.body,
             "<text class=\"p\" x=\"{x:.1}\" y=\"{y:.1}\" transform=\"rotate(-60 {x:.1} {y:.1})\">{text}</text>"
         );
     }
 
-    /// A box with a tooltip; `stroke` may be `none`.
+    /// Adds a box with a tooltip; `stroke` may be `none`.
     pub(super) fn rect(&mut self, at: [f64; 2], size: [f64; 2], fill: &str, stroke: &str, tip: &str) {
         let ([x, y], [w, h]) = (at, size);
         self.reach(x + w, y + h);
@@ -106,7 +109,7 @@ impl Canvas {
         self.close("rect", tip);
     }
 
-    /// Lines and areas in SVG's path language, with a tooltip.
+    /// Adds lines and areas in SVG path syntax, with a tooltip.
     pub(super) fn path(&mut self, path: &str, fill: &str, stroke: &str, tip: &str) {
         let _ = write!(self.body, "<path d=\"{path}\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"1.5\"");
         self.close("path", tip);
@@ -119,7 +122,7 @@ impl Canvas {
         };
     }
 
-    /// The whole document, with `margin` beyond the farthest shape.
+    /// Returns the document, with `margin` around all shapes.
     pub(super) fn finish(self, margin: f64) -> String {
         let (w, h) = ((self.right + margin).ceil(), (self.bottom + margin).ceil());
         format!(
@@ -130,7 +133,7 @@ impl Canvas {
     }
 }
 
-/// Text that XML 1.0 can hold, of which names are [`plain`] already.
+/// Escapes text for XML 1.0. Names have been sanitized before.
 pub(super) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -139,7 +142,7 @@ pub(super) fn escaped(text: &str) -> String {
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
-            // Line feeds part the lines of a tooltip. The two last of the plane are no characters of XML.
+            // Line feeds separate the lines of a tooltip. U+FFFE and U+FFFF are not XML characters.
             c if c != '\n' && c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}') => out.push('\u{FFFD}'),
             c => out.push(c),
         }
@@ -147,7 +150,7 @@ pub(super) fn escaped(text: &str) -> String {
     out
 }
 
-/// At most `letters` letters, the last of them an ellipsis where some are left out.
+/// Shortens text to `letters` characters, ending in an ellipsis.
 pub(super) fn shortened(text: &str, letters: usize) -> String {
     if text.chars().count() <= letters {
         return text.into();

@@ -1,11 +1,11 @@
-//! What does not run, and why.
+//! The list of culled passes and their reasons.
 
 use super::canvas::{Canvas, Ink, MARGIN};
 use crate::decision::Subject;
 use crate::dump::reasons::Reasons;
 use crate::plan::Plan;
 
-/// Lists the culled passes from `y` down.
+/// Draws the list from `y` down.
 pub(super) fn draw(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, y: f64) {
     let graph = plan.graph();
     canvas.text(MARGIN, y, Ink::Heading, "culled passes");

@@ -1,20 +1,20 @@
-//! Resources down, steps across: lifetimes as bars, and in each cell what the step does to the resource.
+//! The matrix of resources and steps: lifetimes as bars, and in each cell the operations of a step on a resource.
 
 use super::canvas::{Canvas, Ink, MARGIN, NAMES, STEP, shortened, step_x};
 use crate::access::AccessKind;
 use crate::decision::Subject;
+use crate::dump::describe::{bytes, place, shape};
 use crate::dump::reasons::Reasons;
-use crate::dump::words::{bytes, place, shape};
 use crate::id::{ResourceId, StepId};
-use crate::plain::plain;
 use crate::plan::{Attachment, Join, LoadOp, Placement, Plan, StoreOp};
+use crate::sanitize::escape_controls;
 
 /// Height of a row.
 const ROW: f64 = 20.0;
-/// Letters of a pass name in a column head.
+/// Maximum number of characters of a column head.
 const HEAD: usize = 26;
 
-/// Draws the matrix from `y` down; returns where it ends.
+/// Draws the matrix from `y` down. Returns the lower end.
 pub(super) fn draw(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, y: f64) -> f64 {
     canvas.text(MARGIN, y, Ink::Heading, "resources × steps");
     let y = legend(canvas, y + 20.0);
@@ -36,7 +36,7 @@ fn legend(canvas: &mut Canvas, y: f64) -> f64 {
     let entries = [
         (LoadOp::Load, StoreOp::Store, "load from memory, store to memory"),
         (LoadOp::Clear, StoreOp::Discard, "clear, discard"),
-        (LoadOp::DontCare, StoreOp::None, "don't care, left as it is"),
+        (LoadOp::DontCare, StoreOp::None, "don't care, unchanged"),
     ];
     let mut x = MARGIN;
     for (load, store, text) in entries {
@@ -52,12 +52,12 @@ fn legend(canvas: &mut Canvas, y: f64) -> f64 {
         x += 40.0 + text.chars().count() as f64 * Ink::Faint.advance();
     }
     let (x, y) = (MARGIN, y + 18.0);
-    let text = "r: read, w: written as storage or copy target; over the steps +: shares the step, ⤷: inlined into the pass before it, ⤓: resolves of the pass";
+    let text = "r: read, w: written as storage or copy target; step names: +: merged, ⤷: inlined into the previous pass, ⤓: full-screen resolve";
     canvas.text(x, y, Ink::Faint, text);
     y
 }
 
-/// Step numbers and the names of their passes, slanted; the first name stands lowest.
+/// Draws step numbers and the names of their passes, slanted.
 fn heads(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
     let graph = plan.graph();
     let label = |step: StepId| {
@@ -78,7 +78,7 @@ fn heads(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
     for step in plan.step_ids() {
         let x = step_x(step.index());
         canvas.slanted(x + 16.0, y - 18.0, &label(step));
-        let all: Vec<_> = plan.passes_of(step).iter().map(|m| plain(graph.pass_name(m.pass))).collect();
+        let all: Vec<_> = plan.passes_of(step).iter().map(|m| escape_controls(graph.pass_name(m.pass))).collect();
         let traffic = plan.step_traffic(step, plan.frame());
         let tip = format!(
             "step {}: {}\nloads {}, stores {}",
@@ -119,7 +119,8 @@ fn draw_row(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, resource: Resou
     };
     let (first, last) = (step_x(row.first.index()), step_x(row.last.index()) + STEP);
     let declared = &graph.resources()[resource.index()];
-    let mut tip = format!("{}\n{}, {}", plain(name), shape(plan, &declared.desc, row.format), bytes(row.bytes));
+    let mut tip =
+        format!("{}\n{}, {}", escape_controls(name), shape(plan, &declared.desc, row.format), bytes(row.bytes));
     for reason in reasons.of(Subject::Resource(resource)) {
         tip += &format!("\n{}", reason.sentence(graph));
     }
@@ -129,7 +130,7 @@ fn draw_row(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, resource: Resou
     }
 }
 
-/// What one step does to one resource.
+/// Draws the operations of one step on one resource.
 fn cell(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, resource: ResourceId, step: StepId, y: f64) {
     let middle = y + ROW / 2.0;
     let x = step_x(step.index());
@@ -143,7 +144,7 @@ fn cell(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, resource: ResourceI
         glyph_store(canvas, strongest.store, x + 23.0, middle, &store);
         return;
     }
-    let word = match touched(plan, resource, step) {
+    let word = match used(plan, resource, step) {
         (true, true) => "rw",
         (true, false) => "r",
         (false, true) => "w",
@@ -153,15 +154,15 @@ fn cell(plan: &Plan, reasons: &Reasons, canvas: &mut Canvas, resource: ResourceI
     canvas.text(x + (STEP - width) / 2.0, middle + 4.0, Ink::Plain, word);
 }
 
-/// Of several parts of one resource in one step, the ops that cost.
+/// Combines attachments of several subresources: prefers operations with a cost.
 fn stronger(a: &Attachment, b: &Attachment) -> Attachment {
     let load = if b.load == LoadOp::Load { b.load } else { a.load };
     let store = if b.store == StoreOp::Store { b.store } else { a.store };
     Attachment { load, store, ..*a }
 }
 
-/// Whether a step reads a resource, and whether it writes it.
-fn touched(plan: &Plan, resource: ResourceId, step: StepId) -> (bool, bool) {
+/// Returns two flags: the step reads the resource, and it writes it.
+fn used(plan: &Plan, resource: ResourceId, step: StepId) -> (bool, bool) {
     let mut read = plan.full_screen_resolves(step).any(|(samples, _)| samples.resource == resource);
     let mut written = plan.full_screen_resolves(step).any(|(_, target)| target.resource == resource);
     for member in plan.passes_of(step).iter().filter(|m| m.join != Join::Resolve) {
@@ -176,7 +177,7 @@ fn touched(plan: &Plan, resource: ResourceId, step: StepId) -> (bool, bool) {
     (read, written)
 }
 
-/// Left half of a cell: an arrow into the tile, a square, or a dash.
+/// Draws the left half of a cell: an arrow into the tile, a square, or a dash.
 fn glyph_load(canvas: &mut Canvas, load: LoadOp, x: f64, y: f64, tip: &str) {
     match load {
         LoadOp::Load => {
@@ -190,7 +191,7 @@ fn glyph_load(canvas: &mut Canvas, load: LoadOp, x: f64, y: f64, tip: &str) {
     }
 }
 
-/// Right half of a cell: an arrow out of the tile, a cross, or a dot.
+/// Draws the right half of a cell: an arrow out of the tile, a cross, or a dot.
 fn glyph_store(canvas: &mut Canvas, store: StoreOp, x: f64, y: f64, tip: &str) {
     match store {
         StoreOp::Store => {

@@ -1,26 +1,26 @@
-//! The memory that resources share: bytes up, steps across, each resource a box over its lifetime.
+//! The map of shared memory: offsets upwards, steps across, each resource a box over its lifetime.
 
 use super::canvas::{Canvas, Ink, MARGIN, NAMES, STEP, shortened, step_x};
-use crate::dump::words::{bytes, held, offsets};
+use crate::dump::describe::{bytes, held, offsets};
 use crate::id::ResourceId;
-use crate::plain::plain;
 use crate::plan::{Placement, Plan};
+use crate::sanitize::escape_controls;
 
 /// Height of the map.
 const HEIGHT: f64 = 360.0;
 
-/// Fills that tell neighbours apart, light enough for dark letters.
+/// Fill colors of neighboring boxes, light enough for dark text.
 const FILLS: [&str; 8] = ["#cfe3f7", "#fbe3c4", "#d5efd0", "#f6d5dd", "#e3d8f2", "#fff2b8", "#cdeeea", "#e6e0d6"];
 
-/// Draws the map from `y` down; returns where it ends.
+/// Draws the map from `y` down. Returns the lower end.
 pub(super) fn draw(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
     let memory = plan.memory();
     let pool = !plan.slots().is_empty();
-    let what = if pool { "pool, slots laid end to end" } else { "heap" };
+    let what = if pool { "pool, concatenated slots" } else { "heap" };
     canvas.text(MARGIN, y, Ink::Heading, &format!("shared memory ({what})"));
     let y = y + 18.0;
     if memory.bytes == 0 || plan.steps().is_empty() {
-        canvas.text(MARGIN, y, Ink::Plain, "no resource takes shared memory");
+        canvas.text(MARGIN, y, Ink::Plain, "no resource uses shared memory");
         return y;
     }
     let offsets = stacked(plan);
@@ -38,10 +38,10 @@ pub(super) fn draw(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
     }
     let bound = floor - memory.lower_bound_bytes as f64 * scale;
     let line = format!("M{:.1} {bound:.1}h{width:.1}", step_x(0));
-    canvas.path(&line, "none", "#c0392b", "the peak of live bytes: no placement takes less");
+    canvas.path(&line, "none", "#c0392b", "lower bound: the maximum of live bytes");
     live_curve(plan, canvas, floor, scale);
     let text = format!(
-        "red line: lower bound {}; grey curve: live bytes; peak at step {}",
+        "red line: lower bound {}; gray curve: live bytes; peak at step {}",
         bytes(memory.lower_bound_bytes),
         memory.peak.index()
     );
@@ -49,7 +49,7 @@ pub(super) fn draw(plan: &Plan, canvas: &mut Canvas, y: f64) -> f64 {
     floor + 18.0
 }
 
-/// Where each resource is drawn: where it lies, with the heap of buffers, if there is one, above that of textures.
+/// Returns the offset at which each resource is drawn. The buffer heap, if separate, is above the texture heap.
 fn stacked(plan: &Plan) -> Vec<Option<u64>> {
     let mut offsets = offsets(plan);
     if !plan.caps().separate_heaps || !plan.slots().is_empty() {
@@ -69,7 +69,7 @@ fn stacked(plan: &Plan) -> Vec<Option<u64>> {
     offsets
 }
 
-/// Bytes along the left edge: five marks.
+/// Draws five byte marks along the left edge.
 fn axis(canvas: &mut Canvas, top: u64, floor: f64, scale: f64) {
     for mark in 0..=4u64 {
         let value = top / 4 * mark;
@@ -95,7 +95,8 @@ fn draw_box(plan: &Plan, canvas: &mut Canvas, resource: ResourceId, offset: u64,
         Placement::Slot(slot) => format!("slot {}", slot.index()),
         _ => format!("offset {offset}"),
     };
-    let tip = format!("{}\n{} B, {place}, steps {} to {}", plain(name), row.bytes, first.index(), last.index());
+    let tip =
+        format!("{}\n{} B, {place}, steps {} to {}", escape_controls(name), row.bytes, first.index(), last.index());
     let fill = FILLS[resource.index() % FILLS.len()];
     canvas.rect([x + 0.5, y], [width - 1.0, height], fill, "#555", &tip);
     let letters = ((width - 6.0) / Ink::Small.advance()) as usize;
@@ -104,7 +105,7 @@ fn draw_box(plan: &Plan, canvas: &mut Canvas, resource: ResourceId, offset: u64,
     }
 }
 
-/// Live bytes by step, as a stepped line.
+/// Draws the live bytes of each step as a stepped line.
 fn live_curve(plan: &Plan, canvas: &mut Canvas, floor: f64, scale: f64) {
     let mut change = vec![0i128; plan.steps().len() + 1];
     for resource in plan.graph().resource_ids() {

@@ -1,7 +1,7 @@
-//! The decision log: it has its rows, and each of them is true.
+//! Checks the decision log: required rows are present, and every row is true.
 //!
-//! Truth is judged from the reference semantics and from what the run of the plan left behind, never from how the
-//! compiler came to its decision. A row that says why something was *not* done must name an objection that stands.
+//! Rows are checked against the reference semantics and the results of the run, not against the compiler's reasoning. A
+//! row that explains why something was *not* done must name an objection that really exists.
 
 mod epilogues;
 mod merges;
@@ -10,18 +10,18 @@ mod places;
 mod rows;
 mod verdicts;
 
-use super::case::Case;
+use super::rule_input::RuleInput;
 use super::run::Trace;
 use super::tenants::EarlierTenants;
 use crate::decision::Subject;
 
 /// Examines the decision log.
-pub(super) fn decisions(case: &Case<'_>, trace: &Trace, earlier: &EarlierTenants) {
-    let steps = case.plan.steps().len();
-    let mut passes = vec![Vec::new(); case.graph.passes().len()];
-    let mut resources = vec![Vec::new(); case.graph.resources().len()];
+pub(super) fn decisions(ctx: &RuleInput<'_>, trace: &Trace, earlier: &EarlierTenants) {
+    let steps = ctx.plan.steps().len();
+    let mut passes = vec![Vec::new(); ctx.graph.passes().len()];
+    let mut resources = vec![Vec::new(); ctx.graph.resources().len()];
     let (mut loads, mut stores) = (vec![Vec::new(); steps], vec![Vec::new(); steps]);
-    for decision in case.plan.decisions() {
+    for decision in ctx.plan.decisions() {
         match decision.subject {
             Subject::Pass(p) => passes[p.index()].push(decision.reason),
             Subject::Resource(r) => resources[r.index()].push(decision.reason),
@@ -29,14 +29,14 @@ pub(super) fn decisions(case: &Case<'_>, trace: &Trace, earlier: &EarlierTenants
             Subject::Store(s, r) => stores[s.index()].push((r, decision.reason)),
         }
     }
-    for (pass, reasons) in case.graph.pass_ids().zip(&passes) {
-        verdicts::verdict(case, pass, reasons);
-        merges::merges(case, pass, reasons);
+    for (pass, reasons) in ctx.graph.pass_ids().zip(&passes) {
+        verdicts::verdict(ctx, pass, reasons);
+        merges::merges(ctx, pass, reasons);
     }
-    for (step, (loads, stores)) in case.plan.step_ids().zip(loads.iter().zip(&stores)) {
-        ops::ops(case, trace, step, loads, stores);
+    for (step, (loads, stores)) in ctx.plan.step_ids().zip(loads.iter().zip(&stores)) {
+        ops::ops(ctx, trace, step, loads, stores);
     }
-    for (resource, reasons) in case.graph.resource_ids().zip(&resources) {
-        places::places(case, resource, &earlier[resource.index()], reasons);
+    for (resource, reasons) in ctx.graph.resource_ids().zip(&resources) {
+        places::places(ctx, resource, &earlier[resource.index()], reasons);
     }
 }

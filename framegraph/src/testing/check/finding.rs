@@ -1,150 +1,150 @@
-//! What the oracle reports: violations, which make a plan wrong, and waste, which makes it slower than it has to be.
+//! Findings of the oracle: violations, which make a plan incorrect, and waste, which makes it slower than necessary.
 
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId, StepId};
 use std::cell::RefCell;
 use std::fmt;
 
-/// One level of one layer of one plane of a resource: the unit whose contents are followed.
+/// One level of one layer of one plane of a resource: the unit of tracking.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Subresource {
-    /// Mip level, from 0.
+    /// Mip level, starting at 0.
     pub mip: u32,
-    /// Array layer, from 0; of a buffer, which of the pieces that ranges of bytes cut it into.
+    /// Array layer, starting at 0. For a buffer, the index of a section between ends of byte ranges.
     pub layer: u32,
-    /// 0 for color, depth or a buffer; 1 for the stencil of a format that has depth too.
+    /// 0 for color, depth or a buffer; 1 for stencil of a format that also has depth.
     pub plane: u32,
 }
 
-/// Where something was found; what does not apply is none.
+/// Location of a finding; fields that do not apply are none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Place {
-    /// The step of the plan.
+    /// Step of the plan.
     pub step: StepId,
-    /// The declared pass.
+    /// Declared pass.
     pub pass: PassId,
-    /// The declared resource.
+    /// Declared resource.
     pub resource: ResourceId,
-    /// The part of the resource.
+    /// Part of the resource.
     pub part: Option<Subresource>,
 }
 
-/// What a plan must not do. Each rule is one sentence that a good plan makes true.
+/// Rules for plans. Each is stated as a property of correct plans.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Rule {
-    /// The arrays of the plan fit each other: lengths, spans, ids, kinds.
+    /// The arrays of the plan are consistent: lengths, spans, ids, kinds.
     Structure,
     /// Passes run in an order that the options allow.
     Order,
-    /// Passes that the frame needs run, and all passes do when culling is off.
+    /// Needed passes run; with culling disabled, all passes run.
     Culling,
-    /// Passes share a step only where options, caps and flags allow it, and the join says how.
+    /// Passes share a step only if options, caps and flags allow it, and their joins are correct.
     Merging,
-    /// An inlined pass can be an epilogue, and its input is nothing but what its producers draw.
+    /// An inlined pass is a valid epilogue, and its input is used only by its producers and itself.
     Inlining,
-    /// Attachments are those that the passes declare: range, role, slot, order, one size, no overlap.
+    /// Attachments match the declared accesses: range, role, slot, order, size, no overlap.
     Attachments,
-    /// The device's limits hold for the step.
+    /// The step is within the limits of the device.
     Limits,
-    /// No read sees garbage: discarded, don't-care, handed over, or never written contents.
+    /// No read sees garbage: discarded, don't-care, aliased or unwritten contents.
     Garbage,
-    /// Every read sees the version that it sees when passes run as declared.
+    /// Every read sees the same version as in declaration order.
     Version,
     /// A pass that clears finds the clear value that it declares.
     ClearValue,
-    /// A plane that a pass of the step changes is stored or discarded, one that is only read is left or discarded, one
-    /// that no pass touches is left.
+    /// A written plane is stored or discarded; a plane that is only read is left unchanged or discarded; an unused
+    /// plane is left unchanged.
     StoreOp,
-    /// A multisample resolve averages what the pass that declares it left.
+    /// A multisample resolve uses the output of the pass that declares it.
     Resolve,
-    /// Two passes of one step touch a part in memory only if neither writes it.
+    /// Two passes of one step access the same part in memory only if neither writes it.
     Hazard,
-    /// What has no memory is never read from or written to memory.
+    /// Resources without memory are never read from or written to memory.
     NoMemory,
-    /// What must survive the frame does, in the right version.
+    /// Contents that must survive the frame do, in the right version.
     Exit,
-    /// First and last step, format and bytes of each resource are what the steps make of them.
+    /// Lifetime, format and size of each resource match the steps.
     Lifetime,
-    /// The usage flags allow every use.
+    /// The usage flags include every use.
     Usage,
-    /// Each resource lives where its kind and the options allow.
+    /// The placement of each resource matches its kind and the options.
     Placement,
-    /// A slot has the shape and the uses of its tenants.
+    /// A slot has the shape and the usages of its resources.
     Slot,
-    /// Two resources in one place are never live at once.
+    /// Two resources in the same memory are never live at the same time.
     Overlap,
-    /// Bytes, lower bound, peak and optimality are what the placements make of them.
+    /// Size, lower bound, peak and optimality match the placements.
     Memory,
-    /// Where the device needs barriers, each use is in its layout and waits for what it must not overtake; no barrier is
-    /// needless.
+    /// On devices with explicit barriers, each use has its layout and waits for conflicting uses, and no barrier is
+    /// unnecessary.
     Barrier,
-    /// The decision log has its rows, and they are true.
+    /// The decision log contains the required rows, and they are true.
     Decision,
 }
 
-/// What a plan could do without.
+/// Kinds of unnecessary work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum WasteKind {
-    /// A pass runs that is not needed.
+    /// A pass runs although its results are not used.
     Pass,
-    /// Contents are loaded into the tile, and no pass of the step uses them.
+    /// Contents are loaded into the tile, but no pass of the step uses them.
     Load,
-    /// The tile is cleared, and no pass of the step declares a clear.
+    /// The tile is cleared, but no pass of the step declares a clear.
     Clear,
-    /// Contents are stored to memory, and no pass reads them there.
+    /// Contents are stored to memory, but no pass reads them there.
     Store,
-    /// Contents that were only read are left in memory or stored once more, and no pass reads them there.
+    /// Contents that were only read are kept or stored again, but no later pass reads them.
     Discard,
-    /// A multisample resolve is made, and nothing needs the average.
+    /// A multisample resolve is performed, but its result is not used.
     Resolve,
     /// An attachment that never leaves the tile has memory.
     Memory,
-    /// A usage flag that no use asks for.
+    /// A usage flag is set that no use requires.
     Usage,
 }
 
-/// A plan is wrong.
+/// An error in a plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Violation {
-    /// The rule that it breaks.
+    /// The violated rule.
     pub rule: Rule,
-    /// The step, pass, resource and part where it was found.
+    /// Location.
     pub place: Place,
-    /// How, with names.
+    /// Description with names.
     pub sentence: String,
 }
 
-/// A plan costs more than it has to.
+/// Unnecessary work in a plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Waste {
-    /// What is too much.
+    /// The kind of work.
     pub kind: WasteKind,
-    /// The step, pass, resource and part where it was found.
+    /// Location.
     pub place: Place,
-    /// How, with names.
+    /// Description with names.
     pub sentence: String,
 }
 
-/// Everything that was found about one plan, in the order in which it was found.
+/// All findings about one plan, in the order in which they were found.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Report {
-    /// Why the plan is wrong; empty for a sound plan.
+    /// Errors of the plan; empty for a correct one.
     pub violations: Vec<Violation>,
-    /// Why the plan is not the best of its kind; empty for an optimal one.
+    /// Unnecessary work; empty for an optimal plan.
     pub wastes: Vec<Waste>,
 }
 
 impl Report {
-    /// Neither a violation nor waste.
+    /// Returns `true` if there are no findings.
     pub fn is_clean(&self) -> bool {
         self.violations.is_empty() && self.wastes.is_empty()
     }
 }
 
 impl From<()> for Place {
-    /// The plan as a whole.
+    /// Returns the place of the plan as a whole.
     fn from((): ()) -> Self {
         Self::default()
     }
@@ -175,7 +175,7 @@ impl From<Subresource> for Place {
 }
 
 impl<A: Into<Self>, B: Into<Self>> From<(A, B)> for Place {
-    /// Both together: where one says nothing, the other holds.
+    /// Combines two places: the first takes precedence.
     fn from((a, b): (A, B)) -> Self {
         let (a, b): (Self, Self) = (a.into(), b.into());
         Self {
@@ -194,7 +194,7 @@ impl<A: Into<Self>, B: Into<Self>, C: Into<Self>> From<(A, B, C)> for Place {
 }
 
 impl Place {
-    /// The place in words, with a colon behind it; empty for the plan as a whole.
+    /// Describes the place, followed by a colon; empty for the plan as a whole.
     fn prefix(&self, graph: &Graph) -> String {
         let mut words = Vec::new();
         if let Some(step) = self.step.some() {
@@ -214,7 +214,7 @@ impl Place {
     }
 }
 
-/// Where the phases of the oracle put what they find: through a shared reference, since what is examined holds it.
+/// Collects the findings of all phases. Uses interior mutability, because the examined plan is shared.
 pub(super) struct Findings<'p> {
     graph: &'p Graph,
     report: RefCell<Report>,
@@ -225,7 +225,7 @@ impl<'p> Findings<'p> {
         Self { graph, report: RefCell::default() }
     }
 
-    /// Notes a violation.
+    /// Adds a violation.
     #[cold]
     pub(super) fn violation(&self, rule: Rule, place: impl Into<Place>, detail: impl fmt::Display) {
         let place = place.into();
@@ -233,7 +233,7 @@ impl<'p> Findings<'p> {
         self.report.borrow_mut().violations.push(Violation { rule, place, sentence });
     }
 
-    /// Notes waste.
+    /// Adds waste.
     #[cold]
     pub(super) fn waste(&self, kind: WasteKind, place: impl Into<Place>, detail: impl fmt::Display) {
         let place = place.into();
@@ -241,14 +241,14 @@ impl<'p> Findings<'p> {
         self.report.borrow_mut().wastes.push(Waste { kind, place, sentence });
     }
 
-    /// Notes a violation unless `holds`.
+    /// Adds a violation unless `holds`.
     pub(super) fn require(&self, holds: bool, rule: Rule, place: impl Into<Place>, detail: impl fmt::Display) {
         if !holds {
             self.violation(rule, place, detail);
         }
     }
 
-    /// Notes a violation unless two values are equal.
+    /// Adds a violation unless two values are equal.
     pub(super) fn equal<T: PartialEq + fmt::Debug>(
         &self,
         found: T,
@@ -258,7 +258,7 @@ impl<'p> Findings<'p> {
         what: &str,
     ) {
         if found != expected {
-            self.violation(rule, place, format_args!("{what} is {found:?}, should be {expected:?}"));
+            self.violation(rule, place, format_args!("{what} is {found:?}, expected {expected:?}"));
         }
     }
 
@@ -286,10 +286,10 @@ impl fmt::Display for Waste {
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for violation in &self.violations {
-            writeln!(f, "violation, {violation}")?;
+            writeln!(f, "violation: {violation}")?;
         }
         for waste in &self.wastes {
-            writeln!(f, "waste, {waste}")?;
+            writeln!(f, "waste: {waste}")?;
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
-//! Main memory, as the oracle sees it: a value for each subresource, and which resource has which region.
+//! Main memory in the model of the oracle: a value for each part, and the memory region of each resource.
 //!
-//! That resources in one region (a slot of the pool, or overlapping bytes of a heap) take turns is shown by their lives
-//! (`tenants`), so nothing is followed of it here.
+//! Resources that share a region (a slot, or overlapping bytes of a heap) have disjoint lifetimes, which `tenants`
+//! checks. Aliasing is therefore not modeled here.
 
 use super::reference::{Cause, Value};
 use super::subresource::Subresources;
@@ -9,71 +9,71 @@ use crate::id::{PassId, ResourceId};
 use crate::plan::{Placement, Plan, StoreOp};
 use crate::resource::Kind;
 
-/// One plane of an attachment at the end of its step, and what became of the contents that its store op left in memory:
-/// the evidence for the decision log and for waste.
+/// One plane of an attachment at the end of its step, and the later uses of the contents in memory. Evidence for the
+/// decision log and for waste.
 #[derive(Clone, Debug)]
 pub(super) struct StoreRecord {
     pub(super) op: StoreOp,
-    /// The attachment of the plan whose op it was.
+    /// Index of the attachment in the plan.
     pub(super) attachment: usize,
-    /// The plane of that attachment.
+    /// Plane of the attachment.
     pub(super) plane: u32,
     /// Passes that used the contents afterwards.
     pub(super) readers: Vec<PassId>,
-    /// The contents survived the frame, as they had to.
+    /// The contents survived the frame, as required.
     pub(super) survived: bool,
-    /// The contents could not be dropped.
+    /// The contents could not be discarded.
     pub(super) bound: bool,
-    /// How many of its subresources were written over before any pass used them.
+    /// Number of parts that were overwritten before any use.
     pub(super) overwritten: usize,
-    /// How many subresources it covers.
+    /// Number of parts it covers.
     pub(super) parts: usize,
 }
 
-/// The index of the store record that left contents in memory; none for contents that no attachment left.
+/// Index of the store record that left contents in memory; `None` for contents not left by an attachment.
 pub(super) type Source = Option<usize>;
 
 /// Main memory.
 pub(super) struct Memory {
-    /// By subresource: what memory holds, and where that is from.
+    /// By part: its value and the source of the value.
     contents: Vec<(Value, Source)>,
-    /// By resource: whether it has memory at all.
+    /// By resource: it has memory.
     exists: Vec<bool>,
     pub(super) records: Vec<StoreRecord>,
 }
 
-/// Where in memory a resource lives.
+/// The memory region of a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Region {
-    /// Nowhere.
+    /// No memory.
     None,
-    /// In memory that no other resource has.
+    /// Memory that is not shared.
     Alone,
-    /// In a slot.
+    /// A slot.
     Slot(usize),
-    /// In bytes `start..end` of a heap.
+    /// Bytes `start..end` of a heap.
     Bytes {
-        /// 0 for textures or for everything, 1 for buffers.
+        /// 0 for textures, or for everything if there is one heap; 1 for buffers.
         heap: u8,
         start: u64,
         end: u64,
     },
 }
 
-/// The alignment of a resource in a heap, in bytes.
+/// Returns the alignment of a resource in a heap, in bytes.
 pub(super) fn alignment(plan: &Plan, resource: ResourceId) -> u64 {
     let texture = plan.graph().resources()[resource.index()].desc.texture().is_some();
     let caps = plan.caps();
     (if texture { caps.texture_alignment_bytes } else { caps.buffer_alignment_bytes }).max(1)
 }
 
-/// Bytes that a resource, or one image of a history, really takes in a heap: rounded up to the device's alignment.
+/// Returns the bytes that a resource, or one image of a history, occupies in a heap, rounded up to the alignment.
 pub(super) fn reserved_bytes(plan: &Plan, resource: ResourceId) -> u64 {
     let alignment = alignment(plan, resource);
     plan.resources()[resource.index()].bytes.div_ceil(alignment).saturating_mul(alignment)
 }
 
-/// How many images a resource has: a history has a ring of them.
+/// Returns the number of images of a resource: several for a history, otherwise 1.
 pub(super) fn images(plan: &Plan, resource: ResourceId) -> u64 {
     match plan.graph().resources()[resource.index()].kind {
         Kind::HistoryCurrent { frames } => u64::from(frames) + 1,
@@ -81,7 +81,7 @@ pub(super) fn images(plan: &Plan, resource: ResourceId) -> u64 {
     }
 }
 
-/// The region of a resource of a plan, padding left out.
+/// Returns the region of a resource, without padding.
 pub(super) fn region_of(plan: &Plan, resource: ResourceId) -> Region {
     let row = &plan.resources()[resource.index()];
     match row.placement {
@@ -97,7 +97,7 @@ pub(super) fn region_of(plan: &Plan, resource: ResourceId) -> Region {
 }
 
 impl Memory {
-    /// Memory as the frame finds it.
+    /// Returns the memory at the start of the frame.
     pub(super) fn on_entry(plan: &Plan, parts: &Subresources) -> Self {
         let graph = plan.graph();
         let mut contents = vec![(Value::Garbage(Cause::NeverWritten), None); parts.total()];
@@ -110,22 +110,22 @@ impl Memory {
         Self { contents, exists, records: Vec::new() }
     }
 
-    /// Whether a resource has memory at all.
+    /// Returns `true` if a resource has memory.
     pub(super) fn exists(&self, resource: ResourceId) -> bool {
         self.exists[resource.index()]
     }
 
-    /// What memory holds of a part.
+    /// Returns the value of a part in memory.
     pub(super) fn value(&self, resource: ResourceId, part: usize) -> Value {
         if self.exists(resource) { self.contents[part].0 } else { Value::Garbage(Cause::NoMemory) }
     }
 
-    /// Where what memory holds of a part is from.
+    /// Returns the source of the value of a part in memory.
     pub(super) fn source(&self, part: usize) -> Source {
         self.contents[part].1
     }
 
-    /// Notes that a pass used contents.
+    /// Records that a pass used contents.
     pub(super) fn used(&mut self, source: Source, pass: PassId) {
         if let Some(record) = source.map(|s| &mut self.records[s])
             && !record.readers.contains(&pass)
@@ -134,14 +134,14 @@ impl Memory {
         }
     }
 
-    /// Notes that contents are dead, because they were written over.
+    /// Records that contents were overwritten.
     pub(super) fn overwritten(&mut self, source: Source) {
         if let Some(source) = source {
             self.records[source].overwritten += 1;
         }
     }
 
-    /// Changes what memory holds of a part of a resource that has memory.
+    /// Sets the value of a part of a resource with memory.
     pub(super) fn set(&mut self, part: usize, value: Value, source: Source) {
         self.contents[part] = (value, source);
     }

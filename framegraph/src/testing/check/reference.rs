@@ -1,8 +1,8 @@
-//! The reference semantics: the graph as it was declared, pass after pass, with nothing culled, moved or merged.
+//! The reference semantics: runs the graph as declared, without culling, reordering or merging.
 //!
-//! Contents are symbols. A pass's output depends on everything that the pass reads, so two outputs are equal exactly when
-//! the same pass wrote them from equal inputs; once every read of a plan is shown to see the symbol that it sees here, it
-//! is enough to tell symbols apart by the pass that wrote them.
+//! Contents are symbols. A pass's output depends on everything it reads, so two outputs are equal if and only if the
+//! same pass wrote them from equal inputs. If every read of a plan sees the same symbol as here, a symbol is identified
+//! by its writer.
 
 use super::subresource::Subresources;
 use crate::access::{Access, AccessKind};
@@ -12,21 +12,20 @@ use crate::plan::Attachment;
 use crate::resource::Kind;
 use std::ops::Range;
 
-/// What a subresource holds, as a symbol. The flat lattice of the oracle: garbage is its top, every other value stands
-/// beside the others.
+/// Symbolic value of a part: an element of a flat lattice whose top is garbage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Value {
-    /// Nothing that a pass may rely on.
+    /// Undefined contents.
     Garbage(Cause),
     /// A clear value, by its index in the graph.
     Cleared(u32),
-    /// What it held when the frame began.
+    /// The contents at the start of the frame.
     Entry,
-    /// What this pass wrote.
+    /// The output of this pass.
     Written(PassId),
 }
 
-/// How contents became garbage.
+/// The cause of undefined contents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Cause {
     NeverWritten,
@@ -42,7 +41,7 @@ impl Value {
         matches!(self, Self::Garbage(_))
     }
 
-    /// The contents in words.
+    /// Describes the value.
     pub(super) fn sentence(self, graph: &Graph) -> String {
         match self {
             Self::Garbage(cause) => format!("garbage ({})", cause.sentence()),
@@ -51,8 +50,8 @@ impl Value {
                 Some(value) => format!("the clear value {value:?}"),
                 None => format!("clear value {index}, which does not exist"),
             },
-            Self::Entry => "the contents on entry".into(),
-            Self::Written(pass) => format!("what `{}` wrote", graph.pass_name(pass)),
+            Self::Entry => "the initial contents".into(),
+            Self::Written(pass) => format!("the output of `{}`", graph.pass_name(pass)),
         }
     }
 }
@@ -63,14 +62,14 @@ impl Cause {
             Self::NeverWritten => "no pass wrote it",
             Self::Discarded => "it was discarded",
             Self::NotStored => "it was written in the tile and not stored",
-            Self::DontCare => "the step does not care for what was there",
+            Self::DontCare => "its load op is don't care",
             Self::NoMemory => "it has no memory",
             Self::NotAttached => "it is not attached",
         }
     }
 }
 
-/// Why contents must exist when the frame ends.
+/// The reason why contents must exist at the end of the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wanted {
     Export,
@@ -78,7 +77,7 @@ pub(super) enum Wanted {
     History,
 }
 
-/// One subresource that one access reads, with what it holds then.
+/// One part that an access reads, and its value at that time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Read {
     pub(super) pass: PassId,
@@ -87,30 +86,30 @@ pub(super) struct Read {
     pub(super) value: Value,
 }
 
-/// The declared frame, interpreted.
+/// The result of interpreting the declared frame.
 pub(super) struct Reference {
-    /// Every read, in declaration order; those of one access follow [`Subresources::covered`].
+    /// Every read, in declaration order; reads of one access are ordered like [`Subresources::covered`].
     pub(super) reads: Vec<Read>,
     /// The reads of each access of the graph.
     pub(super) of_access: Vec<Range<usize>>,
-    /// The reads, by the subresource that they read, each list in declaration order; and where each list starts.
+    /// Indices of the reads, grouped by part in declaration order, and the start of each group.
     by_part: Vec<usize>,
     starts: Vec<usize>,
-    /// What each subresource holds when the frame ends.
+    /// The final value of each part.
     pub(super) exit: Vec<Value>,
-    /// Whether, and why, it must hold it.
+    /// The reason why each part must survive, if any.
     pub(super) wanted: Vec<Option<Wanted>>,
-    /// The passes from which something that must survive, or a side effect, can be reached.
+    /// Passes on which an exported result or a side effect depends.
     pub(super) needed: Vec<bool>,
-    /// The color attachments that a pass of the plan adds to although nothing comes of the sum: what they held before is
-    /// read in vain. By access.
+    /// By access: color attachments that a pass of the plan blends into without a use of the result. Their previous
+    /// contents are read without effect.
     pub(super) in_vain: Vec<bool>,
 }
 
-/// What some passes, and what must survive, depend on.
+/// The passes and accesses that a result depends on.
 struct Demand {
     passes: Vec<bool>,
-    /// The accesses whose reads matter.
+    /// Accesses whose reads matter.
     accesses: Vec<bool>,
 }
 
@@ -164,7 +163,8 @@ impl Reference {
         reference
     }
 
-    /// Finds what the passes that run read in vain. The averages that they make are needed, but for those `dropped`.
+    /// Determines the reads without effect of the running passes. All their resolves are used, except those in
+    /// `dropped`.
     pub(super) fn settle(&mut self, graph: &Graph, parts: &Subresources, running: &[PassId], dropped: &[bool]) {
         let demand = self.demand(graph, parts, running.iter().copied(), |access| !dropped[access]);
         for pass in running {
@@ -175,9 +175,11 @@ impl Reference {
         }
     }
 
-    /// What must happen so that these passes run and what must survive does. A pass depends on all that it reads, but for
-    /// the old contents of a color attachment: on these depend what it leaves there and the average of it, nothing else.
-    /// An average is needed where it is read or survives, and where `averages` says so of its access.
+    /// Returns what must happen so that `passes` run and all required contents survive.
+    ///
+    /// A pass depends on everything it reads, with one exception: previous contents of a color attachment influence
+    /// only its new contents and its resolve. A resolve is needed if it is read, if it survives, or if `averages` is
+    /// true for its access.
     fn demand(
         &self,
         graph: &Graph,
@@ -213,8 +215,8 @@ impl Reference {
         demand
     }
 
-    /// The color attachment of a pass on whose old contents depends what the pass leaves in a part: the part is of the
-    /// attachment, or of the target that it is averaged into.
+    /// Returns the color attachment whose previous contents influence the output of a pass in a part. The part belongs
+    /// to the attachment, or to its resolve target.
     fn adder(&self, graph: &Graph, parts: &Subresources, pass: PassId, part: usize) -> Option<usize> {
         let mut writes = graph.passes()[pass.index()].accesses.range().zip(graph.accesses_of(pass)).filter(|(_, a)| {
             let drawn = matches!(a.kind, AccessKind::Color | AccessKind::Resolve);
@@ -224,7 +226,7 @@ impl Reference {
         if access.kind == AccessKind::Color { Some(id) } else { averaged(graph, pass, access) }
     }
 
-    /// The passes that read what `writer` wrote into `part`, and not in vain.
+    /// Returns the passes that read the output of `writer` in `part` with an effect.
     pub(super) fn readers(&self, writer: PassId, part: usize) -> impl Iterator<Item = PassId> {
         let of_part = &self.by_part[self.starts[part]..self.starts[part + 1]];
         let reads = of_part.iter().map(|read| &self.reads[*read]);
@@ -233,14 +235,15 @@ impl Reference {
     }
 }
 
-/// The access of a pass that draws what one of its resolves averages.
+/// Returns the access that draws the source of a resolve.
 fn averaged(graph: &Graph, pass: PassId, resolve: &Access) -> Option<usize> {
     let mut ids = graph.passes()[pass.index()].accesses.range().zip(graph.accesses_of(pass));
     ids.find(|(_, a)| a.kind == AccessKind::Color && a.slot == resolve.slot).map(|(id, _)| id)
 }
 
 impl Demand {
-    /// Adds a pass, and one of its accesses by which it adds to a color attachment; what they read is `open`.
+    /// Adds a pass, and one of its accesses that blends into a color attachment. Reads to be processed are added to
+    /// `open`.
     fn take(&mut self, graph: &Graph, pass: PassId, adds: Option<usize>, open: &mut Vec<usize>) {
         let accesses = graph.accesses_of(pass);
         let first = !std::mem::replace(&mut self.passes[pass.index()], true);

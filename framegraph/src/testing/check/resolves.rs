@@ -1,31 +1,31 @@
-//! Resolves: which of them a plan makes, in the store of a step or by full-screen passes, and whether each is what its pass
-//! declares.
+//! Resolves: which of them the plan performs, while storing or with full-screen passes, and if they match the
+//! declaration.
 
-use super::case::{Case, Touch};
 use super::finding::Rule;
 use super::reference::{Read, Value};
+use super::rule_input::{PlannedAccess, RuleInput};
 use crate::access::{Access, AccessKind, Mode, Range};
 use crate::format::{Aspect, Format};
 use crate::id::{PassId, StepId};
 use crate::plan::{Attachment, Join, Role, StepPass};
 use crate::resolve::ResolveMode;
 
-/// A resolve that is made by a full-screen pass: as what that pass does.
+/// A resolve performed by a full-screen pass, as accesses of that pass.
 pub(super) struct FullScreen {
-    /// Who declares it.
+    /// The pass that declares the resolve.
     pub(super) pass: PassId,
     /// Index of the resolve in the graph.
     pub(super) id: usize,
-    /// The samples, fetched from memory.
+    /// The samples, read from memory.
     pub(super) samples: Access,
-    /// What they must hold.
+    /// The expected values of the samples.
     pub(super) reads: Vec<Read>,
-    /// The target, drawn into.
+    /// The target, as an attachment.
     pub(super) target: Access,
 }
 
-impl Case<'_> {
-    /// Fills `dropped` from the attachments of the plan: the average is made for the last pass of the step that declares it.
+impl RuleInput<'_> {
+    /// Fills `dropped` from the attachments of the plan. The last pass of the step that declares a resolve performs it.
     pub(super) fn find_dropped(&mut self) {
         for step in self.plan.step_ids() {
             let mut made = Vec::new();
@@ -54,7 +54,7 @@ impl Case<'_> {
         }
     }
 
-    /// What a full-screen pass does for a resolve.
+    /// Returns the accesses of a full-screen pass for a resolve.
     fn full_screen(&self, pass: PassId, id: usize, resolve: &Access) -> Option<FullScreen> {
         let (own, attached) = self.accesses_of(pass).find(|(_, a)| attaches_samples(a, resolve))?;
         let format = self.texture(attached.resource)?.format;
@@ -72,7 +72,7 @@ impl Case<'_> {
         Some(FullScreen { pass, id, reads: reads.collect(), samples, target })
     }
 
-    /// The resolve target of a step that gets what a pass resolves so.
+    /// Returns the resolve target of a step that a resolve of a pass writes.
     fn resolved_into(&self, step: StepId, member: StepPass, resolve: &Access) -> Option<usize> {
         let spot = |a: &Access| self.effective(a.resource, a.range);
         let samples = self.graph.accesses_of(member.pass).iter().find(|a| attaches_samples(a, resolve))?;
@@ -83,18 +83,18 @@ impl Case<'_> {
         takes_samples(target.role, samples.role).then_some(at)
     }
 
-    /// The attachment whose samples a resolve of a pass takes: that of its own which has the resolve's slot, or depth.
-    pub(super) fn averaged(&self, member: StepPass, resolve: &Touch) -> Option<Touch> {
-        self.touches(member).find(|t| attaches_samples(&t.access, &resolve.access))
+    /// Returns the attachment access whose samples a resolve of the same pass reads.
+    pub(super) fn averaged(&self, member: StepPass, resolve: &PlannedAccess) -> Option<PlannedAccess> {
+        self.planned_accesses(member).find(|t| attaches_samples(&t.access, &resolve.access))
     }
 
-    /// Whether a full-screen pass makes the resolve of that index.
+    /// Returns `true` if a full-screen pass performs the resolve with this index.
     pub(super) fn is_full_screen(&self, resolve: usize) -> bool {
         self.full_screen.iter().any(|m| m.id == resolve)
     }
 }
 
-/// Whether an access attaches what a resolve of the same pass takes.
+/// Returns `true` if an access attaches the source of a resolve of the same pass.
 pub(super) fn attaches_samples(access: &Access, resolve: &Access) -> bool {
     match resolve.slot {
         Access::DEPTH => matches!(access.kind, AccessKind::Depth | AccessKind::DepthReadOnly),
@@ -102,12 +102,12 @@ pub(super) fn attaches_samples(access: &Access, resolve: &Access) -> bool {
     }
 }
 
-/// Whether an attachment is the target of a resolve.
+/// Returns `true` for the role of a resolve target.
 pub(super) const fn is_target(role: Role) -> bool {
     matches!(role, Role::ResolveTarget(..) | Role::ResolveDepth(_))
 }
 
-/// Whether a target takes the samples of an attachment of its step.
+/// Returns `true` if a resolve target receives the samples of an attachment with role `samples`.
 pub(super) const fn takes_samples(target: Role, samples: Role) -> bool {
     match (target, samples) {
         (Role::ResolveTarget(slot, _), Role::Color(color)) => slot == color,
@@ -116,65 +116,70 @@ pub(super) const fn takes_samples(target: Role, samples: Role) -> bool {
     }
 }
 
-/// Each target gets the samples that its pass declares, by its mode, where the device makes it.
-pub(super) fn resolves(case: &Case<'_>, step: StepId) {
-    for &member in case.plan.passes_of(step) {
-        for touch in case.touches(member).filter(|t| t.access.kind == AccessKind::Resolve) {
+/// Checks that each target receives the declared samples with the declared mode, and that the device supports it.
+pub(super) fn resolves(ctx: &RuleInput<'_>, step: StepId) {
+    for &member in ctx.plan.passes_of(step) {
+        for touch in ctx.planned_accesses(member).filter(|t| t.access.kind == AccessKind::Resolve) {
             let place = (step, member.pass, touch.resource);
-            let target = case.attachment(step, AccessKind::Resolve, touch.resource, touch.range);
-            let samples = case.averaged(member, &touch);
-            let samples = samples.and_then(|t| case.attachment(step, t.access.kind, t.resource, t.range));
+            let target = ctx.attachment(step, AccessKind::Resolve, touch.resource, touch.range);
+            let samples = ctx.averaged(member, &touch);
+            let samples = samples.and_then(|t| ctx.attachment(step, t.access.kind, t.resource, t.range));
             let (Some((_, target)), Some((_, samples))) = (target, samples) else {
-                case.report.violation(Rule::Resolve, place, "it resolves nothing that is attached");
+                ctx.report.violation(Rule::Resolve, place, "its source is not attached");
                 continue;
             };
             let takes = takes_samples(target.role, samples.role);
-            let why = format_args!("{:?} does not take the samples of {:?}", target.role, samples.role);
-            case.report.require(takes, Rule::Resolve, place, why);
+            let why = format_args!("{:?} does not receive the samples of {:?}", target.role, samples.role);
+            ctx.report.require(takes, Rule::Resolve, place, why);
             if let Role::ResolveTarget(_, mode) | Role::ResolveDepth(mode) = target.role {
-                case.report.equal(mode, touch.access.resolve, Rule::Resolve, place, "its mode");
+                ctx.report.equal(mode, touch.access.resolve, Rule::Resolve, place, "its mode");
             }
-            let seen = |a: &Attachment| a.view.or(case.format(a.resource));
-            fits(case, seen(target), seen(samples), place);
-            case.report.require(in_store(case, &touch.access), Rule::Resolve, place, "the device does not store so");
+            let seen = |a: &Attachment| a.view.or(ctx.format(a.resource));
+            fits(ctx, seen(target), seen(samples), place);
+            ctx.report.require(
+                in_store(ctx, &touch.access),
+                Rule::Resolve,
+                place,
+                "the device cannot resolve it while storing",
+            );
         }
         if member.join == Join::Resolve {
-            full_screen(case, step, member);
+            full_screen(ctx, step, member);
         }
     }
 }
 
-/// A step that is a full-screen pass makes nothing but resolves which the device does not make in its store.
-fn full_screen(case: &Case<'_>, step: StepId, member: StepPass) {
+/// Checks that a full-screen resolve step performs only resolves that the device cannot perform while storing.
+fn full_screen(ctx: &RuleInput<'_>, step: StepId, member: StepPass) {
     let mut made = 0;
-    for resolve in case.full_screen.iter().filter(|m| m.pass == member.pass) {
+    for resolve in ctx.full_screen.iter().filter(|m| m.pass == member.pass) {
         let (samples, target) = (resolve.samples, resolve.target);
         let place = (step, member.pass, target.resource);
-        let seen = |a: Access| a.range.view.or(case.format(a.resource));
-        fits(case, seen(target), seen(samples), place);
-        let declared = &case.graph.accesses()[resolve.id];
-        case.report.require(!in_store(case, declared), Rule::Resolve, place, "the device stores so");
+        let seen = |a: Access| a.range.view.or(ctx.format(a.resource));
+        fits(ctx, seen(target), seen(samples), place);
+        let declared = &ctx.graph.accesses()[resolve.id];
+        ctx.report.require(!in_store(ctx, declared), Rule::Resolve, place, "the device can resolve it while storing");
         made += 1;
     }
-    let rows = case.plan.attachments_of(step).len();
-    case.report.equal(rows, made, Rule::Resolve, (step, member.pass), "its targets");
+    let rows = ctx.plan.attachments_of(step).len();
+    ctx.report.equal(rows, made, Rule::Resolve, (step, member.pass), "its targets");
 }
 
-/// A target has the format of its samples, or that of their depth plane.
-fn fits(case: &Case<'_>, target: Option<Format>, samples: Option<Format>, place: impl Into<super::finding::Place>) {
+/// Checks that a target has the format of its source, or of its depth plane.
+fn fits(ctx: &RuleInput<'_>, target: Option<Format>, samples: Option<Format>, place: impl Into<super::finding::Place>) {
     let samples = samples.map(|format| match format {
         Format::Depth24PlusStencil8 => Format::Depth24Plus,
         Format::Depth32FloatStencil8 => Format::Depth32Float,
         other => other,
     });
-    case.report.equal(target, samples, Rule::Resolve, place, "its format");
+    ctx.report.equal(target, samples, Rule::Resolve, place, "its format");
 }
 
-/// Whether the device makes a resolve in its store.
-pub(super) fn in_store(case: &Case<'_>, resolve: &Access) -> bool {
-    let caps = case.plan.caps();
+/// Returns `true` if the device performs a resolve while storing.
+pub(super) fn in_store(ctx: &RuleInput<'_>, resolve: &Access) -> bool {
+    let caps = ctx.plan.caps();
     let modes = if resolve.slot == Access::DEPTH { caps.depth_resolves } else { caps.color_resolves };
     let apart = resolve.resolve == ResolveMode::Average
-        && case.texture(resolve.resource).is_some_and(|t| caps.not_averaged.contains(&t.format));
+        && ctx.texture(resolve.resource).is_some_and(|t| caps.not_averaged.contains(&t.format));
     modes.has(resolve.resolve) && !apart
 }

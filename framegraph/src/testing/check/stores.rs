@@ -1,35 +1,35 @@
-//! The end of a raster step: its store ops, and whether its ops are the ones that its passes call for.
+//! The end of a raster step: performs its store operations and checks that they are appropriate.
 
-use super::case::Case;
 use super::finding::{Rule, WasteKind};
 use super::machine::Machine;
 use super::memory::StoreRecord;
 use super::reference::{Cause, Value};
+use super::rule_input::RuleInput;
 use super::tile::{Cell, Tile, ops};
 use crate::id::StepId;
 use crate::plan::{Attachment, LoadOp, Role, StoreOp};
 
-/// The store ops: what memory holds when the step is over.
+/// Performs the store operations, which determine the contents of memory after the step.
 pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
-    let case = machine.case;
-    for (index, attachment) in case.attachments(step) {
+    let ctx = machine.ctx;
+    for (index, attachment) in ctx.attachments(step) {
         let resource = attachment.resource;
-        let bound = attachment.role == Role::DepthReadOnly && is_read_beside(case, step, attachment);
+        let bound = attachment.role == Role::DepthReadOnly && is_read_beside(ctx, step, attachment);
         let place = (step, resource);
         for plane in 0..2 {
-            let cells = case.attached(attachment).filter_map(|part| tile.cell(part).copied());
+            let cells = ctx.attached(attachment).filter_map(|part| tile.cell(part).copied());
             let cells: Vec<Cell> = cells.filter(|cell| cell.plane == plane).collect();
             if cells.is_empty() {
                 continue;
             }
             let written = cells.iter().any(|c| c.written);
-            let touched = written || cells.iter().any(|c| c.touched);
+            let accessed = written || cells.iter().any(|c| c.accessed);
             let (load, store) = ops(attachment, plane);
             let memory = machine.memory.exists(resource);
-            let why = format_args!("the store op of plane {plane} is {store:?}, and it has no memory");
-            case.report.require(memory || store == StoreOp::Discard, Rule::NoMemory, place, why);
+            let why = format_args!("the store op of plane {plane} is {store:?}, but it has no memory");
+            ctx.report.require(memory || store == StoreOp::Discard, Rule::NoMemory, place, why);
             if !cells.iter().any(|c| c.used) {
-                judge_load(case, load, plane, place);
+                judge_load(ctx, load, plane, place);
             }
             if !memory {
                 continue;
@@ -37,12 +37,11 @@ pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId
             let fits = match store {
                 StoreOp::None => !written,
                 StoreOp::Store => written,
-                StoreOp::Discard => touched && !bound,
+                StoreOp::Discard => accessed && !bound,
             };
-            let why =
-                format_args!("the store op of plane {plane} is {store:?}, touched: {touched}, written: {written}");
-            case.report.require(fits, Rule::StoreOp, place, why);
-            if store == StoreOp::None && !touched {
+            let why = format_args!("the store op of plane {plane} is {store:?}, used: {accessed}, written: {written}");
+            ctx.report.require(fits, Rule::StoreOp, place, why);
+            if store == StoreOp::None && !accessed {
                 continue;
             }
             let source = Some(machine.memory.records.len());
@@ -69,24 +68,25 @@ pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId
     }
 }
 
-/// Whether a pass of the step reads the level and layers of a depth attachment otherwise too, in whichever plane.
-fn is_read_beside(case: &Case<'_>, step: StepId, attachment: &Attachment) -> bool {
+/// Returns `true` if a pass of the step also reads the level and layers of a depth attachment in another way, in any
+/// plane.
+fn is_read_beside(ctx: &RuleInput<'_>, step: StepId, attachment: &Attachment) -> bool {
     let place = |part| {
-        let name = case.parts.name(attachment.resource, part);
+        let name = ctx.parts.name(attachment.resource, part);
         (name.mip, name.layer)
     };
-    let attached: Vec<_> = case.attached(attachment).map(place).collect();
-    let touches = case.plan.passes_of(step).iter().flat_map(|m| case.touches(*m));
-    let mut reads = touches.filter(|t| t.resource == attachment.resource && !t.access.kind.is_attachment());
-    reads.any(|t| case.parts.covered(t.resource, t.range).any(|part| attached.contains(&place(part))))
+    let attached: Vec<_> = ctx.attached(attachment).map(place).collect();
+    let uses = ctx.plan.passes_of(step).iter().flat_map(|m| ctx.planned_accesses(*m));
+    let mut reads = uses.filter(|t| t.resource == attachment.resource && !t.access.kind.is_attachment());
+    reads.any(|t| ctx.parts.covered(t.resource, t.range).any(|part| attached.contains(&place(part))))
 }
 
-/// The load op of one plane of which no pass uses what it brought.
-fn judge_load(case: &Case<'_>, load: LoadOp, plane: u32, place: (StepId, crate::ResourceId)) {
+/// Reports the load operation of a plane whose loaded value no pass uses.
+fn judge_load(ctx: &RuleInput<'_>, load: LoadOp, plane: u32, place: (StepId, crate::ResourceId)) {
     let (kind, what) = match load {
-        LoadOp::Load => (WasteKind::Load, "loaded, and no pass uses what was there"),
-        LoadOp::Clear => (WasteKind::Clear, "cleared, and no pass declares it"),
+        LoadOp::Load => (WasteKind::Load, "loaded, but no pass uses the contents"),
+        LoadOp::Clear => (WasteKind::Clear, "cleared, but no pass declares it"),
         LoadOp::DontCare => return,
     };
-    case.report.waste(kind, place, format_args!("plane {plane} is {what}"));
+    ctx.report.waste(kind, place, format_args!("plane {plane} is {what}"));
 }

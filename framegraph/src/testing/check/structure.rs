@@ -1,5 +1,5 @@
-//! First of all: do the arrays of the plan fit each other and the graph? Everything after relies on it, so a plan that
-//! fails here is examined no further.
+//! Checks that the arrays of the plan are consistent. Other phases rely on it, so a plan that fails here is not
+//! examined further.
 
 use super::finding::{Findings, Rule};
 use super::subresource::Subresources;
@@ -9,7 +9,7 @@ use crate::id::{PassId, ResourceId, Span, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Placement, Plan};
 use std::collections::BTreeSet;
 
-/// Lengths, spans and ids.
+/// Checks lengths, spans and ids.
 pub(super) fn structure(plan: &Plan, findings: &Findings<'_>) {
     let graph = plan.graph();
     let require = |holds: bool, why: std::fmt::Arguments<'_>| findings.require(holds, Rule::Structure, (), why);
@@ -24,7 +24,7 @@ pub(super) fn structure(plan: &Plan, findings: &Findings<'_>) {
     spans("passes", plan.steps().iter().map(|s| s.passes), plan.step_passes().len(), findings);
     spans("attachments", plan.steps().iter().map(|s| s.attachments), plan.attachments().len(), findings);
     for member in plan.step_passes() {
-        require(has_pass(plan, member.pass), format_args!("{:?} is no pass of the graph", member.pass));
+        require(has_pass(plan, member.pass), format_args!("{:?} is not a pass of the graph", member.pass));
     }
     for attachment in plan.attachments() {
         if let Some(why) = misfit(plan, attachment) {
@@ -36,7 +36,7 @@ pub(super) fn structure(plan: &Plan, findings: &Findings<'_>) {
         let slot = !matches!(row.placement, Placement::Slot(slot) if slot.index() >= plan.slots().len());
         let alive = row.first.is_none() == row.last.is_none() && (row.first.is_none() || row.first <= row.last);
         let holds = step(row.first) && step(row.last) && slot && alive;
-        let why = format_args!("{row:?} names a step or slot that does not exist");
+        let why = format_args!("{row:?} refers to a step or slot that does not exist");
         findings.require(holds, Rule::Structure, ResourceId::at(index), why);
     }
     let parts = (!plan.barriers().is_empty()).then(|| Subresources::of_graph(graph, plan.frame()));
@@ -45,7 +45,7 @@ pub(super) fn structure(plan: &Plan, findings: &Findings<'_>) {
         let own =
             parts.as_ref().filter(|_| has_resource(plan, barrier.resource)).map(|p| p.all(barrier.resource).len());
         let inside = own.is_some_and(|own| end <= own as u64);
-        require(inside && barrier.parts > 0, format_args!("{barrier:?} lies outside of its resource"));
+        require(inside && barrier.parts > 0, format_args!("{barrier:?} exceeds its resource"));
     }
     for decision in plan.decisions() {
         let Names { pass, resource, step, .. } = decision.reason.names();
@@ -57,14 +57,14 @@ pub(super) fn structure(plan: &Plan, findings: &Findings<'_>) {
             Subject::Load(s, r) | Subject::Store(s, r) => has_step(plan, s) && has_resource(plan, r),
             Subject::Resource(r) => has_resource(plan, r),
         };
-        require(named && about, format_args!("{decision:?} names what does not exist"));
+        require(named && about, format_args!("{decision:?} refers to ids that do not exist"));
     }
     if findings.is_sound() {
         members(plan, findings);
     }
 }
 
-/// Consecutive spans that cover an array.
+/// Checks that consecutive spans cover an array.
 fn spans(name: &str, spans: impl Iterator<Item = Span>, length: usize, findings: &Findings<'_>) {
     let mut end = 0;
     for (index, span) in spans.enumerate() {
@@ -74,19 +74,19 @@ fn spans(name: &str, spans: impl Iterator<Item = Span>, length: usize, findings:
     findings.equal(end, length, Rule::Structure, (), name);
 }
 
-/// What an attachment names that does not exist.
+/// Describes an id or range of an attachment that does not exist.
 fn misfit(plan: &Plan, attachment: &Attachment) -> Option<String> {
     let graph = plan.graph();
     let Some(row) = graph.resources().get(attachment.resource.index()) else {
-        return Some(format!("{:?} is no resource", attachment.resource));
+        return Some(format!("{:?} is not a resource", attachment.resource));
     };
     let Some(texture) = row.desc.texture() else {
-        return Some(format!("{:?} is no texture", attachment.resource));
+        return Some(format!("{:?} is not a texture", attachment.resource));
     };
     let mips = texture.mip_count(plan.frame());
     let end = u32::from(attachment.layer) + u32::from(attachment.layers);
     if u32::from(attachment.mip) >= mips || end > texture.tracked_layers() || attachment.layers == 0 {
-        return Some(format!("{attachment:?} lies outside of its texture"));
+        return Some(format!("{attachment:?} exceeds its texture"));
     }
     let clears = attachment.load == LoadOp::Clear || attachment.stencil_load == LoadOp::Clear;
     let unknown = attachment.clear != Attachment::ZERO && attachment.clear as usize >= graph.clears().len();
@@ -105,7 +105,7 @@ fn has_step(plan: &Plan, step: StepId) -> bool {
     step.index() < plan.steps().len()
 }
 
-/// Which step each pass is in, and what a step may be made of.
+/// Checks the step of each pass, and the composition of steps.
 fn members(plan: &Plan, findings: &Findings<'_>) {
     let graph = plan.graph();
     let mut steps = vec![StepId::NONE; graph.passes().len()];
@@ -116,10 +116,15 @@ fn members(plan: &Plan, findings: &Findings<'_>) {
         for (at, member) in plan.passes_of(step).iter().enumerate() {
             let place = (step, member.pass);
             if member.join == Join::Resolve {
-                // What it attaches and reads is the business of the resolves.
+                // The phase `resolves` checks its accesses.
                 let alone = row.passes.len == 1 && row.kind == PassKind::Raster;
                 let ran = !steps[member.pass.index()].is_none() && resolved.insert(member.pass);
-                findings.require(alone && ran, Rule::Structure, place, "it resolves for no pass, or twice");
+                findings.require(
+                    alone && ran,
+                    Rule::Structure,
+                    place,
+                    "it resolves for a pass that did not run, or twice",
+                );
                 continue;
             }
             let before = std::mem::replace(&mut steps[member.pass.index()], step);
@@ -127,7 +132,7 @@ fn members(plan: &Plan, findings: &Findings<'_>) {
             let kind = graph.passes()[member.pass.index()].kind;
             findings.equal(row.kind, kind, Rule::Structure, place, "the step's kind");
             let opens = (member.join == Join::First) == (at == 0);
-            findings.require(opens, Rule::Structure, place, "the first pass of a step, and only that, opens it");
+            findings.require(opens, Rule::Structure, place, "exactly the first pass of a step has the join `First`");
         }
     }
     for (pass, (found, expected)) in graph.pass_ids().zip(plan.pass_steps().iter().zip(&steps)) {

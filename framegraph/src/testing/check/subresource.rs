@@ -1,7 +1,7 @@
-//! The oracle's own numbering of subresources.
+//! The oracle's numbering of parts.
 //!
-//! Every level × layer × plane of every resource has a number: `first + (mip · layers + layer) · planes + plane`. A buffer
-//! of which accesses name bytes has a layer from each byte at which such a range begins or ends to the next.
+//! Every level × layer × plane of every resource has the number `first + (mip · layers + layer) · planes + plane`. A
+//! buffer with declared byte ranges has one layer for each section between ends of such ranges.
 
 use super::finding::Subresource;
 use crate::access::Range;
@@ -11,12 +11,12 @@ use crate::id::ResourceId;
 use crate::resource::{Desc, Dimension};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The numbers of all subresources of a graph in a frame of a given size.
+/// The numbers of all parts of a graph at a given frame size.
 #[derive(Debug)]
 pub(super) struct Subresources {
     rows: Vec<Row>,
     total: usize,
-    /// By row of [`Tables::byte_ranges`](crate::graph::Tables::byte_ranges): the layers of the buffer that it covers.
+    /// For each row of [`Tables::byte_ranges`](crate::graph::Tables::byte_ranges), the layers of the buffer it covers.
     bytes: Vec<std::ops::Range<u32>>,
 }
 
@@ -30,7 +30,7 @@ struct Row {
 }
 
 impl Subresources {
-    /// Numbers the subresources of `graph` in a frame of `frame` texels.
+    /// Numbers the parts of `graph` for a frame of `frame` texels.
     pub(super) fn of_graph(graph: &Graph, frame: [u32; 2]) -> Self {
         let mut total = 0;
         let mut rows = Vec::with_capacity(graph.resources().len());
@@ -64,7 +64,7 @@ impl Subresources {
         Self { rows, total, bytes }
     }
 
-    /// How many there are.
+    /// Number of parts.
     pub(super) fn total(&self) -> usize {
         self.total
     }
@@ -75,7 +75,7 @@ impl Subresources {
         row.first..row.first + (row.mips * row.layers * row.planes) as usize
     }
 
-    /// The numbers that a range of a resource covers, clipped to what there is.
+    /// The numbers that a range of a resource covers, clipped to the resource.
     pub(super) fn covered(&self, resource: ResourceId, range: Range) -> impl Iterator<Item = usize> + Clone + use<> {
         let row = self.rows[resource.index()];
         let mips = range.mip_range(row.mips);
@@ -92,7 +92,7 @@ impl Subresources {
         })
     }
 
-    /// Level, layer and plane of the subresource of `resource` with the number `part`.
+    /// Level, layer and plane of the part with this number.
     pub(super) fn name(&self, resource: ResourceId, part: usize) -> Subresource {
         let row = self.rows[resource.index()];
         let within = (part - row.first) as u32;
@@ -103,7 +103,7 @@ impl Subresources {
         }
     }
 
-    /// Levels and layers of a resource, as they are numbered.
+    /// Number of levels and layers of a resource.
     pub(super) fn counts(&self, resource: ResourceId) -> (u32, u32) {
         let row = self.rows[resource.index()];
         (row.mips, row.layers)

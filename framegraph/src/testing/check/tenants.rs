@@ -1,9 +1,9 @@
-//! Which resources share memory: tenants of one region take turns, and a slot fits all of its tenants.
+//! Checks shared memory: resources in one region have disjoint lifetimes, and a slot fits all its resources.
 
-use super::case::Case;
 use super::finding::Rule;
 use super::lifetimes::uses;
 use super::memory::{Region, images, region_of, reserved_bytes};
+use super::rule_input::RuleInput;
 use crate::access::Usage;
 use crate::id::{ResourceId, StepId};
 use crate::options::Alias;
@@ -11,24 +11,24 @@ use crate::plan::Slot;
 use crate::resource::{Desc, Extent, Kind, TextureDesc};
 use std::collections::BTreeMap;
 
-/// The shape with which a resource is created.
-fn created(case: &Case<'_>, resource: ResourceId) -> Desc {
-    match case.graph.resources()[resource.index()].desc {
+/// Returns the descriptor used to create a resource.
+fn created(ctx: &RuleInput<'_>, resource: ResourceId) -> Desc {
+    match ctx.graph.resources()[resource.index()].desc {
         Desc::Buffer(buffer) => Desc::Buffer(buffer),
         Desc::Texture(texture) => {
-            let frame = case.plan.frame();
+            let frame = ctx.plan.frame();
             let [width, height] = texture.extent.texels(frame);
             Desc::Texture(TextureDesc {
                 extent: Extent::Absolute { width, height },
                 mips: texture.mip_count(frame) as u8,
-                format: case.format(resource).unwrap_or(texture.format),
+                format: ctx.format(resource).unwrap_or(texture.format),
                 ..texture
             })
         }
     }
 }
 
-/// The shape without the sRGB transfer function of its format.
+/// Returns the descriptor without the sRGB transfer function of its format.
 pub(super) fn without_srgb(desc: Desc) -> Desc {
     match desc {
         Desc::Texture(texture) => Desc::Texture(texture.format(texture.format.without_srgb())),
@@ -36,56 +36,56 @@ pub(super) fn without_srgb(desc: Desc) -> Desc {
     }
 }
 
-/// Tenants of one region, in the order of their first steps, must not be live at once; slots have the shape of the first
-/// and the uses of all.
-pub(super) fn tenants(case: &Case<'_>) {
-    let life = |r: ResourceId| life(case, r);
+/// Checks that resources in one region are not live at the same time. Slots must have the shape of their first resource
+/// and the usages of all.
+pub(super) fn tenants(ctx: &RuleInput<'_>) {
+    let life = |r: ResourceId| life(ctx, r);
     let shares = |region: &Region| matches!(region, Region::Slot(_) | Region::Bytes { .. });
-    let all = case.graph.resource_ids().map(|r| (reserved(case, r), r));
+    let all = ctx.graph.resource_ids().map(|r| (reserved(ctx, r), r));
     let mut tenants: Vec<_> = all.filter(|(region, r)| shares(region) && !life(*r).0.is_none()).collect();
     tenants.sort_by_key(|(_, r)| (life(*r), *r));
     let mut live: Vec<(Region, ResourceId)> = Vec::new();
-    let mut of_slot = vec![Vec::new(); case.plan.slots().len()];
+    let mut of_slot = vec![Vec::new(); ctx.plan.slots().len()];
     for &(region, resource) in &tenants {
         live.retain(|(_, other)| life(*other).1 >= life(resource).0);
         for (_, other) in live.iter().filter(|(other, _)| overlap(*other, region)) {
-            let name = case.graph.resource_name(*other);
-            let why = format_args!("it is live at once with `{name}` in one place");
-            case.report.violation(Rule::Overlap, resource, why);
+            let name = ctx.graph.resource_name(*other);
+            let why = format_args!("it is live at the same time as `{name}` in the same memory");
+            ctx.report.violation(Rule::Overlap, resource, why);
         }
         live.push((region, resource));
         if let Region::Slot(slot) = region {
             of_slot[slot].push(resource);
         }
     }
-    for (index, (slot, tenants)) in case.plan.slots().iter().zip(&of_slot).enumerate() {
-        examine_slot(case, index, slot, tenants);
+    for (index, (slot, tenants)) in ctx.plan.slots().iter().zip(&of_slot).enumerate() {
+        examine_slot(ctx, index, slot, tenants);
     }
 }
 
-/// From which step to which memory is needed. The images of a history are needed all the time, since which of them is
-/// written rotates from frame to frame.
-pub(super) fn life(case: &Case<'_>, resource: ResourceId) -> (StepId, StepId) {
-    let row = case.planned(resource);
-    match (case.kind(resource), case.plan.steps().len().checked_sub(1)) {
+/// Returns the first and last step in which memory is needed. Histories need it during the whole frame, because the
+/// written image changes from frame to frame.
+pub(super) fn life(ctx: &RuleInput<'_>, resource: ResourceId) -> (StepId, StepId) {
+    let row = ctx.planned(resource);
+    match (ctx.kind(resource), ctx.plan.steps().len().checked_sub(1)) {
         (Kind::HistoryCurrent { .. }, Some(last)) => (StepId::at(0), StepId::at(last)),
         _ => (row.first, row.last),
     }
 }
 
-/// The region of a resource with its padding; earlier images of a history are part of the ring of the current one.
-pub(super) fn reserved(case: &Case<'_>, resource: ResourceId) -> Region {
-    match (region_of(case.plan, resource), case.kind(resource)) {
+/// Returns the region of a resource with padding. Earlier history images are part of the current one's region.
+pub(super) fn reserved(ctx: &RuleInput<'_>, resource: ResourceId) -> Region {
+    match (region_of(ctx.plan, resource), ctx.kind(resource)) {
         (Region::Bytes { .. }, Kind::HistoryPrevious { .. }) => Region::None,
         (Region::Bytes { heap, start, .. }, _) => {
-            let bytes = reserved_bytes(case.plan, resource).saturating_mul(images(case.plan, resource));
+            let bytes = reserved_bytes(ctx.plan, resource).saturating_mul(images(ctx.plan, resource));
             Region::Bytes { heap, start, end: start.saturating_add(bytes) }
         }
         (region, _) => region,
     }
 }
 
-/// Whether two regions have memory in common.
+/// Returns `true` if two regions overlap.
 fn overlap(a: Region, b: Region) -> bool {
     match (a, b) {
         (Region::Slot(a), Region::Slot(b)) => a == b,
@@ -96,41 +96,40 @@ fn overlap(a: Region, b: Region) -> bool {
     }
 }
 
-fn examine_slot(case: &Case<'_>, index: usize, slot: &Slot, tenants: &[ResourceId]) {
+fn examine_slot(ctx: &RuleInput<'_>, index: usize, slot: &Slot, tenants: &[ResourceId]) {
     let Some(&first) = tenants.first() else {
-        return case.report.violation(Rule::Slot, (), format_args!("slot {index} has no tenant"));
+        return ctx.report.violation(Rule::Slot, (), format_args!("slot {index} has no resource"));
     };
-    case.report.equal(slot.desc, created(case, first), Rule::Slot, first, "its slot's shape");
-    case.report.equal(slot.bytes, case.planned(first).bytes, Rule::Slot, first, "its slot's bytes");
-    let alone = case.plan.options().alias != Alias::Off || tenants.len() == 1;
-    case.report.require(alone, Rule::Slot, first, "its slot is shared, and sharing is switched off");
+    ctx.report.equal(slot.desc, created(ctx, first), Rule::Slot, first, "its slot's shape");
+    ctx.report.equal(slot.bytes, ctx.planned(first).bytes, Rule::Slot, first, "its slot's bytes");
+    let alone = ctx.plan.options().alias != Alias::Off || tenants.len() == 1;
+    ctx.report.require(alone, Rule::Slot, first, "its slot is shared, but aliasing is disabled");
     let (mut usage, mut views) = (Usage::NONE, false);
     for &tenant in tenants {
-        let desc = created(case, tenant);
+        let desc = created(ctx, tenant);
         let (own, shared) = (without_srgb(desc), without_srgb(slot.desc));
-        case.report.equal(own, shared, Rule::Slot, tenant, "its shape in its slot");
-        usage = usage.union(case.planned(tenant).usage);
-        views |= desc != slot.desc || case.planned(tenant).srgb_views;
+        ctx.report.equal(own, shared, Rule::Slot, tenant, "its shape in its slot");
+        usage = usage.union(ctx.planned(tenant).usage);
+        views |= desc != slot.desc || ctx.planned(tenant).srgb_views;
     }
-    uses(case, slot.usage, usage, first.into());
-    case.report.equal(slot.srgb_views, views, Rule::Slot, first, "its slot's sRGB views");
+    uses(ctx, slot.usage, usage, first.into());
+    ctx.report.equal(slot.srgb_views, views, Rule::Slot, first, "its slot's sRGB views");
 }
 
-/// By resource: the tenants that had a part of its memory when it came, in the order of their bytes. Empty for what shares
-/// no memory.
+/// By resource: the previous resources in its memory, ordered by offset. Empty for resources that do not share memory.
 pub(super) type EarlierTenants = Vec<Vec<ResourceId>>;
 
-/// The earlier tenants of every resource.
-pub(super) fn earlier_tenants(case: &Case<'_>) -> EarlierTenants {
-    let row = |r: ResourceId| case.planned(r);
-    let mut tenants: Vec<ResourceId> = case.graph.resource_ids().collect();
-    tenants.retain(|r| case.kind(*r) == Kind::Transient && !row(*r).first.is_none());
+/// Returns the previous resources in the memory of every resource.
+pub(super) fn earlier_tenants(ctx: &RuleInput<'_>) -> EarlierTenants {
+    let row = |r: ResourceId| ctx.planned(r);
+    let mut tenants: Vec<ResourceId> = ctx.graph.resource_ids().collect();
+    tenants.retain(|r| ctx.kind(*r) == Kind::Transient && !row(*r).first.is_none());
     tenants.sort_by_key(|r| (row(*r).first, *r));
-    let mut earlier = vec![Vec::new(); case.graph.resources().len()];
-    // Ranges by place and first byte: end and owner. They do not overlap.
+    let mut earlier = vec![Vec::new(); ctx.graph.resources().len()];
+    // Ranges by region and first byte: end and owner. They do not overlap.
     let mut owned: BTreeMap<(usize, u64), (u64, ResourceId)> = BTreeMap::new();
     for tenant in tenants {
-        let (place, start, end) = match region_of(case.plan, tenant) {
+        let (place, start, end) = match region_of(ctx.plan, tenant) {
             Region::Slot(slot) => (2 + slot, 0, 1),
             Region::Bytes { heap, start, end } => (usize::from(heap), start, end),
             Region::None | Region::Alone => continue,

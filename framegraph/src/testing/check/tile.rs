@@ -1,38 +1,37 @@
-//! Tile memory: one raster step, from its load ops through its passes; its store ops follow in `stores`.
+//! Tile memory: runs a raster step from its load operations through its passes. Store operations are in `stores`.
 
-use super::case::{Case, Touch};
 use super::finding::Rule;
 use super::machine::Machine;
 use super::memory::Source;
 use super::reference::{Cause, Value};
+use super::rule_input::{PlannedAccess, RuleInput};
 use crate::access::{AccessKind, Mode};
 use crate::id::{PassId, StepId};
 use crate::plan::{Attachment, Join, LoadOp, StepPass, StoreOp};
 
-/// One subresource in the tile.
+/// One part in the tile.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
     pub(super) part: usize,
     pub(super) plane: u32,
     pub(super) value: Value,
-    /// Where the contents are from that memory held before the step.
+    /// The source of the contents in memory before the step.
     source: Source,
-    /// No pass has written it yet: it holds what the load op left.
+    /// No pass has written it yet, so it has the value of the load operation.
     initial: bool,
-    /// A pass used what the load op left.
+    /// A pass used the value of the load operation.
     pub(super) used: bool,
     /// A pass drew into it or read it.
-    pub(super) touched: bool,
+    pub(super) accessed: bool,
     /// A pass changed it.
     pub(super) written: bool,
 }
 
-/// The tile: cells of the attachments of the open step, and which cell each subresource has.
+/// The tile: the parts of the attachments of the current step, and an index by part.
 pub(super) struct Tile {
     cells: Vec<Cell>,
     of_part: Vec<Option<usize>>,
-    /// Resolves that the end of the step will make: the pass that declares each, a subresource of the samples, and what it
-    /// holds behind the pass.
+    /// Resolves at the end of the step: the declaring pass, a part of the samples, and its value after the pass.
     resolves: Vec<(PassId, usize, Value)>,
 }
 
@@ -46,7 +45,7 @@ impl Tile {
         self.cells.get_mut(at)
     }
 
-    /// Empties the tile for the next step.
+    /// Clears the tile for the next step.
     pub(super) fn close(&mut self) {
         for cell in self.cells.drain(..) {
             self.of_part[cell.part] = None;
@@ -54,40 +53,41 @@ impl Tile {
     }
 }
 
-/// Load and store op of one plane of an attachment; `plane` is 1 for the stencil of a format with depth too.
+/// Returns load and store operation of one plane of an attachment; `plane` is 1 for stencil of a format that also has
+/// depth.
 pub(super) const fn ops(attachment: &Attachment, plane: u32) -> (LoadOp, StoreOp) {
     if plane == 0 { (attachment.load, attachment.store) } else { (attachment.stencil_load, attachment.stencil_store) }
 }
 
-/// Runs one raster step up to its store ops.
+/// Runs one raster step up to its store operations.
 pub(super) fn raster(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
-    let case = machine.case;
+    let ctx = machine.ctx;
     load(machine, tile, step);
-    for &member in case.plan.passes_of(step) {
+    for &member in ctx.plan.passes_of(step) {
         draw(machine, tile, step, member);
     }
     for (pass, samples, value) in std::mem::take(&mut tile.resolves) {
         let unchanged = tile.cell(samples).is_some_and(|c| c.value == value);
         let why = "the samples changed after the pass that resolves them";
-        case.report.require(unchanged, Rule::Resolve, (step, pass), why);
+        ctx.report.require(unchanged, Rule::Resolve, (step, pass), why);
     }
 }
 
-/// The load ops: what the tile holds when the first pass begins.
+/// Performs the load operations.
 fn load(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
-    let case = machine.case;
-    for (index, attachment) in case.attachments(step) {
+    let ctx = machine.ctx;
+    for (index, attachment) in ctx.attachments(step) {
         let resource = attachment.resource;
-        for part in case.attached(attachment) {
+        for part in ctx.attached(attachment) {
             if tile.of_part[part].is_some() {
-                continue; // two attachments of one range are reported elsewhere
+                continue; // overlapping attachments are reported elsewhere
             }
-            let plane = case.parts.name(resource, part).plane;
+            let plane = ctx.parts.name(resource, part).plane;
             let source = machine.memory.source(part);
             let value = match ops(attachment, plane).0 {
                 LoadOp::Load => {
                     let exists = machine.memory.exists(resource);
-                    case.report.require(exists, Rule::NoMemory, (step, resource), "it is loaded, and has no memory");
+                    ctx.report.require(exists, Rule::NoMemory, (step, resource), "it is loaded, but has no memory");
                     let value = machine.memory.value(resource, part);
                     machine.loaded.push((index, value));
                     value
@@ -96,56 +96,56 @@ fn load(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
                 LoadOp::DontCare => Value::Garbage(Cause::DontCare),
             };
             tile.of_part[part] = Some(tile.cells.len());
-            let (used, touched, written) = (false, false, false);
-            tile.cells.push(Cell { part, plane, value, source, initial: true, used, touched, written });
+            let (used, accessed, written) = (false, false, false);
+            tile.cells.push(Cell { part, plane, value, source, initial: true, used, accessed, written });
         }
     }
 }
 
-/// One pass that draws: first what it reads, then what it writes. An inlined pass runs inside the shader that draws its
-/// input, so what the tile holds in place of that input becomes its output.
+/// Runs one raster pass: first its reads, then its writes. An inlined pass runs inside of the shader that draws its
+/// input, so its output replaces the input in the tile.
 fn draw(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass) {
-    let case = machine.case;
+    let ctx = machine.ctx;
     let inlined = member.join == Join::Inlined;
-    let in_tile = |t: &Touch| {
-        if inlined { t.in_shader } else { t.access.kind.is_attachment() || case.in_tile(step, member, t) }
+    let in_tile = |t: &PlannedAccess| {
+        if inlined { t.in_shader } else { t.access.kind.is_attachment() || ctx.in_tile(step, member, t) }
     };
     machine.reads(step, member, |t| inlined || !in_tile(t));
-    for touch in case.touches(member).filter(|t| in_tile(t) && !(inlined && t.access.mode.writes())) {
-        consume(machine, tile, step, member.pass, &touch);
+    for planned in ctx.planned_accesses(member).filter(|t| in_tile(t) && !(inlined && t.access.mode.writes())) {
+        consume(machine, tile, step, member.pass, &planned);
     }
-    for touch in case.touches(member).filter(|t| in_tile(t) && t.access.mode.writes()) {
-        produce(machine, tile, step, member, &touch);
+    for planned in ctx.planned_accesses(member).filter(|t| in_tile(t) && t.access.mode.writes()) {
+        produce(machine, tile, step, member, &planned);
     }
     if !inlined {
         machine.writes(step, member);
     }
 }
 
-/// What a pass needs of what the tile holds.
-fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: PassId, touch: &Touch) {
-    let case = machine.case;
-    let access = touch.access;
+/// Checks the values that a pass reads from the tile.
+fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: PassId, planned: &PlannedAccess) {
+    let ctx = machine.ctx;
+    let access = planned.access;
     let place = (step, pass, access.resource);
-    let in_vain = case.reference.in_vain[touch.id];
-    for (at, part) in case.parts.covered(touch.resource, touch.range).enumerate() {
-        let read = case.reads(touch.id).get(at);
+    let in_vain = ctx.reference.in_vain[planned.id];
+    for (at, part) in ctx.parts.covered(planned.resource, planned.range).enumerate() {
+        let read = ctx.reads(planned.id).get(at);
         let Some(cell) = tile.cell(part) else {
             if let Some(read) = read.filter(|_| access.mode.needs_contents()) {
                 let nothing = Value::Garbage(Cause::NotAttached);
-                machine.compare(nothing, read.value, place.into(), touch, read.part);
+                machine.compare(nothing, read.value, place.into(), planned, read.part);
             }
             continue;
         };
-        cell.touched = true;
+        cell.accessed = true;
         let found = cell.value;
         let refuse = |should: &str| {
-            let why = format_args!("the tile holds {}, should hold {should}", found.sentence(case.graph));
-            case.report.violation(Rule::ClearValue, place, why);
+            let why = format_args!("the tile contains {}, expected {should}", found.sentence(ctx.graph));
+            ctx.report.violation(Rule::ClearValue, place, why);
         };
         match access.mode {
             Mode::Read | Mode::Modify if in_vain => {
-                // Contents that no pass needs are not to be loaded, and blending needs some.
+                // Contents that are not used must not be loaded, but blending needs a defined value.
                 let fits = match cell.value {
                     Value::Cleared(index) => !cell.initial || index == Attachment::ZERO,
                     value => !cell.initial || !value.is_garbage(),
@@ -157,7 +157,7 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
             }
             Mode::Read | Mode::Modify => {
                 if let Some(read) = read {
-                    machine.compare(cell.value, read.value, place.into(), touch, read.part);
+                    machine.compare(cell.value, read.value, place.into(), planned, read.part);
                 }
                 if cell.initial {
                     cell.used = true;
@@ -165,13 +165,13 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
                 }
             }
             Mode::Clear => {
-                let value = |index: u32| case.graph.clears().get(index as usize);
+                let value = |index: u32| ctx.graph.clears().get(index as usize);
                 let same = match cell.value {
                     Value::Cleared(found) => value(found).is_some() && value(found) == value(access.clear),
                     _ => false,
                 };
                 if !same {
-                    refuse(&Value::Cleared(access.clear).sentence(case.graph));
+                    refuse(&Value::Cleared(access.clear).sentence(ctx.graph));
                 }
                 cell.used |= cell.initial;
             }
@@ -183,35 +183,34 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
     }
 }
 
-/// What a pass leaves in the tile.
-fn produce(machine: &Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass, touch: &Touch) {
-    let case = machine.case;
-    if touch.access.kind == AccessKind::Resolve {
-        for part in averaged_parts(case, step, member, touch) {
+/// Sets the values that a pass leaves in the tile.
+fn produce(machine: &Machine<'_, '_>, tile: &mut Tile, step: StepId, member: StepPass, planned: &PlannedAccess) {
+    let ctx = machine.ctx;
+    if planned.access.kind == AccessKind::Resolve {
+        for part in averaged_parts(ctx, step, member, planned) {
             let value = tile.cell(part).map_or(Value::Garbage(Cause::NotAttached), |cell| cell.value);
             tile.resolves.push((member.pass, part, value));
         }
     }
-    for part in case.parts.covered(touch.resource, touch.range) {
+    for part in ctx.parts.covered(planned.resource, planned.range) {
         if let Some(cell) = tile.cell(part) {
             cell.value = Value::Written(member.pass);
             (cell.initial, cell.written) = (false, true);
         } else {
-            let place = (step, member.pass, touch.access.resource);
-            case.report.violation(Rule::Attachments, place, "it is drawn into, and not attached");
+            let place = (step, member.pass, planned.access.resource);
+            ctx.report.violation(Rule::Attachments, place, "it is drawn into, but not attached");
         }
     }
 }
 
-/// The subresources of the attachment whose samples a resolve takes, stencil left out: in the plan it must be the one that
-/// the target's role names.
-fn averaged_parts(case: &Case<'_>, step: StepId, member: StepPass, resolve: &Touch) -> Vec<usize> {
-    let averaged = case.averaged(member, resolve);
+/// Returns the parts of the source of a resolve, without stencil. The source must be attached in the plan.
+fn averaged_parts(ctx: &RuleInput<'_>, step: StepId, member: StepPass, resolve: &PlannedAccess) -> Vec<usize> {
+    let averaged = ctx.averaged(member, resolve);
     averaged
-        .filter(|t| case.attachment(step, t.access.kind, t.resource, t.range).is_some())
+        .filter(|t| ctx.attachment(step, t.access.kind, t.resource, t.range).is_some())
         .map(|t| {
-            let parts = case.parts.covered(t.resource, t.range);
-            parts.filter(|part| case.parts.name(t.resource, *part).plane == 0).collect()
+            let parts = ctx.parts.covered(t.resource, t.range);
+            parts.filter(|part| ctx.parts.name(t.resource, *part).plane == 0).collect()
         })
         .unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! The accesses of one pass in the making: chosen first, so that they exclude each other nowhere, declared afterwards.
+//! The accesses of a random pass: chosen first, so that they do not conflict, and declared afterwards.
 
 use super::profile::FRAME;
 use super::world::{PIECE_BYTES, World};
@@ -10,30 +10,30 @@ use crate::handle::{Buffer, Part, Texture};
 use crate::pass_builder::{MAX_COLORS, PassBuilder};
 use crate::resolve::ResolveMode;
 
-/// What is accessed.
+/// The accessed resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum What {
     Texture(usize, Range),
-    /// All of a buffer, or some of its pieces.
+    /// A whole buffer, or a range of its pieces.
     Buffer(usize, Option<(u8, u8)>),
-    /// An earlier image of a history.
+    /// An earlier history image.
     Previous(usize),
 }
 
-/// One access that was chosen.
+/// A chosen access.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chosen {
     pub(super) what: What,
     pub(super) kind: AccessKind,
-    /// None for reads.
+    /// `None` for reads.
     pub(super) intent: Option<Intent>,
-    /// For a resolve target: which of the chosen accesses it averages.
+    /// For a resolve target: index of the chosen access that it resolves.
     pub(super) averages: usize,
-    /// How a resolve is made.
+    /// Mode of a resolve.
     pub(super) resolve: ResolveMode,
 }
 
-/// A pass that was chosen.
+/// A pass under construction.
 #[derive(Default)]
 pub(super) struct Draft {
     pub(super) accesses: Vec<Chosen>,
@@ -43,18 +43,18 @@ pub(super) struct Draft {
     pub(super) blends: bool,
     pub(super) takes_epilogue: bool,
     pub(super) never_merge: bool,
-    /// The slot of the first color attachment, as far as there are slots for all.
+    /// Slot of the first color attachment, if there are enough slots.
     pub(super) first_slot: u8,
 }
 
 impl Draft {
-    /// Whether an access can be added: nothing of the pass touches an overlapping part, where one of the two writes.
+    /// Returns `true` if an access can be added without a conflict.
     pub(super) fn admits(&self, world: &World<'_, '_>, what: What, writes: bool) -> bool {
         self.accesses.iter().all(|a| {
             let both_read = a.intent.is_none() && !writes;
             let apart = match (a.what, what) {
                 (What::Texture(i, r), What::Texture(j, s)) => i != j || !r.overlaps(&s, world.textures[i].desc.format),
-                // Beside a write, other bytes can be written alike; that is left to chance of another kind.
+                // Other bytes may be written in the same way; this case is generated elsewhere.
                 (What::Buffer(i, _), What::Buffer(j, _)) => i != j,
                 (a, b) => a != b,
             };
@@ -70,12 +70,12 @@ impl Draft {
         self.accesses.push(Chosen { what, kind, intent: Some(intent), averages: 0, resolve: ResolveMode::Average });
     }
 
-    /// How many accesses there are of a kind.
+    /// Number of accesses of a kind.
     pub(super) fn count(&self, kind: AccessKind) -> usize {
         self.accesses.iter().filter(|a| a.kind == kind).count()
     }
 
-    /// Bytes a sample of the color attachments.
+    /// Bytes per sample of the color attachments.
     pub(super) fn color_bytes(&self, world: &World<'_, '_>) -> u32 {
         let colors = self.accesses.iter().filter(|a| a.kind == AccessKind::Color);
         let bytes = colors.map(|a| match a.what {
@@ -85,7 +85,7 @@ impl Draft {
         bytes.sum()
     }
 
-    /// Declares the pass and notes what it defines. A refusal is only possible when rules were broken on purpose.
+    /// Declares the pass and records the contents it defines. Fails only if rules were violated on purpose.
     pub(super) fn declare(&self, world: &mut World<'_, '_>, name: &str) {
         let World { graph, textures, buffers, previous, profile, .. } = world;
         let mut handles: Vec<Texture> = textures.iter().map(|t| t.handle).collect();
@@ -129,7 +129,7 @@ impl Draft {
         match declared {
             Ok(()) => {}
             Err(error) => {
-                assert!(profile.sloppy, "a valid pass was refused: {error}");
+                assert!(profile.sloppy, "a valid pass was rejected: {error}");
                 return;
             }
         }
@@ -188,7 +188,7 @@ impl Draft {
 }
 
 impl Chosen {
-    /// Declares an access to a texture; a write gives the new handle.
+    /// Declares an access to a texture. Returns the new handle of a write.
     fn on_texture(
         &self,
         p: &mut PassBuilder<'_>,
@@ -221,10 +221,10 @@ impl Chosen {
     }
 }
 
-/// A handle of no graph, for resolves of nothing.
+/// A handle of no graph, for invalid resolves.
 const NOWHERE: Texture = Texture { tag: crate::handle::Tag(0), version: crate::id::VersionId::NONE };
 
-/// How a write treats older contents, as far as the part holds any; a clear has a fitting value.
+/// Returns the intent of a write, depending on previous contents. A clear has a valid value.
 pub(super) fn intent(world: &mut World<'_, '_>, what: What, kind: AccessKind) -> Intent {
     let (defined, format) = match what {
         What::Texture(index, range) => {
@@ -256,10 +256,10 @@ fn clear(world: &mut World<'_, '_>, format: Option<Format>, kind: AccessKind) ->
     }
 }
 
-/// Size, layers and samples that the attachments of a pass share.
+/// Size, layers and samples of a pass's attachments.
 pub(super) type Shape = ([u32; 2], u32, u8);
 
-/// The shape of a part as an attachment.
+/// Returns the shape of a range as an attachment.
 pub(super) fn shape(world: &World<'_, '_>, texture: usize, range: Range) -> Shape {
     let desc = world.textures[texture].desc;
     let layers = range.layer_range(desc.tracked_layers()).len() as u32;

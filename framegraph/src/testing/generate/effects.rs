@@ -1,4 +1,4 @@
-//! Effects of several passes and attachments that belong together: multisample resolves, and scenes that are graded.
+//! Combinations of passes that belong together: multisample resolves, and scenes with color grading.
 
 use super::accesses::Draft;
 use super::passes::{attach, filter, others, resolve_all, some_target};
@@ -7,8 +7,8 @@ use crate::access::Range;
 use crate::format::Format;
 use crate::resource::TextureDesc;
 
-/// A pass that draws a new texture, perhaps through a multisampled one, and a point-wise pass behind it: what inlining is
-/// made for. Now and then something stands against it.
+/// Declares a pass that draws a new texture, possibly multisampled, and a point-wise pass after it. Sometimes an
+/// obstacle prevents inlining.
 pub(super) fn scene_and_grade(world: &mut World<'_, '_>, index: u32) {
     let format = world.entropy.pick(&[Format::Rgba16Float, Format::Rgba8Unorm]);
     let desc = TextureDesc::new(crate::resource::Extent::FRAME, format);

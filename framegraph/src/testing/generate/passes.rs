@@ -1,4 +1,4 @@
-//! Passes: what a random pass of each kind touches.
+//! Random passes of each kind.
 
 use super::accesses::{Draft, Shape, What, intent, shape};
 use super::profile::FRAME;
@@ -13,7 +13,7 @@ fn is_color(format: Format) -> bool {
     format.is_color_renderable()
 }
 
-/// Draws into attachments, most often into those of the pass before.
+/// Draws into attachments, usually those of the previous pass.
 pub(super) fn draw(world: &mut World<'_, '_>, draft: &mut Draft) {
     draft.takes_epilogue = !world.entropy.one_in(4);
     draft.blends = world.entropy.one_in(6);
@@ -48,7 +48,7 @@ pub(super) fn draw(world: &mut World<'_, '_>, draft: &mut Draft) {
     }
 }
 
-/// Reads one texture at the same pixel and draws another: often point-wise.
+/// Reads one texture at the same pixel and draws another; often point-wise.
 pub(super) fn filter(world: &mut World<'_, '_>, draft: &mut Draft) {
     draft.pointwise = !world.entropy.one_in(3);
     draft.takes_epilogue = world.entropy.one_in(2);
@@ -61,7 +61,7 @@ pub(super) fn filter(world: &mut World<'_, '_>, draft: &mut Draft) {
     let inputs: Vec<_> = inputs.copied().collect();
     let mut wanted = None;
     if !inputs.is_empty() {
-        // The last one is a resolve target, if there is any.
+        // The last one is a resolve target, if there is one.
         let (texture, range) =
             if world.entropy.one_in(4) { world.entropy.pick(&inputs) } else { inputs[inputs.len() - 1] };
         let (extent, layers, _) = shape(world, texture, range);
@@ -79,7 +79,7 @@ pub(super) fn filter(world: &mut World<'_, '_>, draft: &mut Draft) {
     }
 }
 
-/// A texture that can be an attachment of that shape: one that there is, or a new one.
+/// Returns a texture that can be an attachment with this shape: an existing or a new one.
 pub(super) fn some_target(world: &mut World<'_, '_>, wanted: Option<Shape>) -> (usize, Range) {
     if !world.textures.is_empty() && world.entropy.one_in(3) {
         let count = world.textures.len() as u32;
@@ -105,17 +105,17 @@ pub(super) fn some_target(world: &mut World<'_, '_>, wanted: Option<Shape>) -> (
     (texture, one_level(desc, range))
 }
 
-/// Whether the first level of the range has several slices, which cannot be attached.
+/// Returns `true` if the first level of the range has several slices, so that it cannot be attached.
 fn has_slices(desc: TextureDesc, range: Range) -> bool {
     desc.dimension == Dimension::D3 && u32::from(desc.layers) >> range.mip.min(31) > 1
 }
 
-/// The range with one level, as an attachment needs it.
+/// Restricts the range to one level, as an attachment requires.
 fn one_level(desc: TextureDesc, range: Range) -> Range {
     if desc.mips == 1 || range.mips == 1 { range } else { Range { mips: 1, ..range } }
 }
 
-/// Adds an attachment if it fits the pass: its shape, the device's limits, what the pass touches already.
+/// Adds an attachment if it fits the pass's shape, the limits of the device and the other accesses.
 pub(super) fn attach(
     world: &mut World<'_, '_>,
     draft: &mut Draft,
@@ -159,7 +159,7 @@ pub(super) fn attach(
     }
 }
 
-/// Adds a read of some defined texture, or of an earlier frame.
+/// Adds a read of a texture with defined contents, or of an earlier history image.
 fn read(world: &mut World<'_, '_>, draft: &mut Draft, kind: AccessKind) {
     if !world.previous.is_empty() && world.entropy.one_in(6) {
         let index = world.entropy.below(world.previous.len() as u32) as usize;
@@ -204,7 +204,7 @@ fn read(world: &mut World<'_, '_>, draft: &mut Draft, kind: AccessKind) {
     }
 }
 
-/// Width and height of the attachments of a pass so far; no texture has that of a pass without any.
+/// Width and height of the attachments so far; 0 without attachments.
 fn extent_of(world: &World<'_, '_>, draft: &Draft) -> [u32; 2] {
     let first = draft.accesses.iter().find(|a| a.kind.is_attachment());
     match first.map(|a| a.what) {
@@ -219,7 +219,7 @@ fn is_storable(desc: TextureDesc) -> bool {
     shape && !format.is_srgb() && format != Format::Rgb9e5Ufloat
 }
 
-/// Adds reads and storage writes beside the attachments, or without any.
+/// Adds reads and storage writes.
 pub(super) fn others(world: &mut World<'_, '_>, draft: &mut Draft) {
     if world.profile.plain {
         if world.entropy.one_in(2) {
@@ -316,7 +316,7 @@ pub(super) fn copy(world: &mut World<'_, '_>, draft: &mut Draft) {
     }
 }
 
-/// Adds a resolve target for some multisampled attachments.
+/// Adds resolve targets for some multisampled attachments.
 pub(super) fn resolve_all(world: &mut World<'_, '_>, draft: &mut Draft) {
     for index in 0..draft.accesses.len() {
         let attached = draft.accesses[index];
@@ -325,7 +325,7 @@ pub(super) fn resolve_all(world: &mut World<'_, '_>, draft: &mut Draft) {
         };
         let desc = world.textures[texture].desc;
         let depth = attached.kind.is_depth() && range.aspect != Aspect::Stencil;
-        // Depth of 24 bits without stencil cannot be copied (WebGPU), which later passes may want to.
+        // WebGPU cannot copy 24-bit depth without stencil, which later passes may do.
         let copied = desc.format.depth_alone() != Format::Depth24Plus;
         if attached.kind != AccessKind::Color && !(depth && copied) {
             continue;

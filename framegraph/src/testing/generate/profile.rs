@@ -1,22 +1,23 @@
-//! What generated graphs are like.
+//! Parameters of generated graphs.
 
-/// The size of the frame that generated graphs are made for, in texels: small, so that sizes coincide often.
+/// Frame size of generated graphs, in texels. Small, so that sizes often coincide.
 pub const FRAME: [u32; 2] = [64, 32];
 
-/// What kind of graph is wanted.
+/// Parameters of a generated graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Profile {
-    /// Passes at most, at least 1.
+    /// Maximum number of passes, at least 1.
     pub max_passes: u8,
-    /// Breaks rules now and then.
+    /// Violates rules now and then.
     pub sloppy: bool,
-    /// Only whole textures of one part, no buffers, no MSAA: small graphs that brute force can follow.
+    /// Restricts the graph to whole single-subresource textures without multisampling, so that brute force can check
+    /// it.
     pub plain: bool,
-    /// No access names some bytes of a buffer, or sees a texture through another format: for judges that know neither.
+    /// Excludes byte ranges of buffers and views in other formats, for checkers that do not support them.
     pub plain_accesses: bool,
-    /// Textures of three dimensions too.
+    /// Includes three-dimensional textures.
     pub volumes: bool,
-    /// Some of what passes wrote is forwarded to other textures, where that is allowed.
+    /// Includes forwards of textures.
     pub forwards: bool,
 }
 

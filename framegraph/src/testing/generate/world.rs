@@ -1,4 +1,4 @@
-//! What a graph in the making consists of so far: resources, what of them is defined, and what passes did last.
+//! The state of a graph under construction: resources, defined contents, and the attachments of the last pass.
 
 use super::Entropy;
 use super::profile::{FRAME, Profile};
@@ -13,24 +13,24 @@ use crate::resource::{Dimension, Entry, Exit, Extent, TextureDesc};
 pub(super) struct Tex {
     pub(super) handle: Texture,
     pub(super) desc: TextureDesc,
-    /// May be written at all.
+    /// The texture may be written.
     pub(super) writable: bool,
     /// A pass reads it.
     pub(super) read: bool,
-    /// By `(mip · layers + layer) · 2 + plane`.
+    /// Indexed by `(mip · layers + layer) · 2 + plane`.
     defined: Vec<bool>,
 }
 
 /// A buffer of the graph.
 pub(super) struct Buf {
     pub(super) handle: Buffer,
-    /// How many pieces of [`PIECE_BYTES`] it is made of, 64 at most.
+    /// Number of pieces of [`PIECE_BYTES`], at most 64.
     pieces: u8,
-    /// Which pieces hold something, a bit each.
+    /// Bit mask of pieces with defined contents.
     defined: u64,
 }
 
-/// The graph in the making.
+/// A graph under construction.
 pub(super) struct World<'w, 'e> {
     pub(super) entropy: &'w mut Entropy<'e>,
     pub(super) profile: Profile,
@@ -38,14 +38,14 @@ pub(super) struct World<'w, 'e> {
     pub(super) textures: Vec<Tex>,
     pub(super) buffers: Vec<Buf>,
     pub(super) previous: Vec<(Previous, TextureDesc)>,
-    /// What the last raster pass drew into: texture and range.
+    /// Attachments of the last raster pass: texture and range.
     pub(super) last: Vec<(usize, Range)>,
-    /// A few shapes that most textures of this graph have.
+    /// Descriptors that most textures of this graph use.
     palette: Vec<TextureDesc>,
     names: u32,
 }
 
-/// Bytes of the pieces of buffers that accesses name: what wgpu aligns bindings to.
+/// Size of buffer pieces that accesses use: the binding alignment of wgpu.
 pub(super) const PIECE_BYTES: u64 = 256;
 
 impl Buf {
@@ -81,16 +81,16 @@ impl Tex {
         })
     }
 
-    /// Whether every part of the range holds something.
+    /// Returns `true` if every part of the range is defined.
     pub(super) fn is_defined(&self, range: Range) -> bool {
         let holds = |slot: usize| self.defined.get(slot).copied().unwrap_or(false);
         self.slots(range).all(holds)
     }
 
-    /// Every part of the range holds something from now on.
+    /// Marks every part of the range as defined.
     pub(super) fn define(&mut self, range: Range) {
         for slot in self.slots(range) {
-            // Sloppy ranges reach beyond the end.
+            // Sloppy ranges may exceed the texture.
             if let Some(part) = self.defined.get_mut(slot) {
                 *part = true;
             }
@@ -113,18 +113,18 @@ impl<'w, 'e> World<'w, 'e> {
         }
     }
 
-    /// A new name, from a prefix.
+    /// Returns a new name with a prefix.
     pub(super) fn name(&mut self, prefix: &str) -> String {
         self.names += 1;
         format!("{prefix}{}", self.names)
     }
 
-    /// Once in a while when rules may be broken, else never.
+    /// Returns `true` now and then if rules may be violated, otherwise `false`.
     pub(super) fn slips(&mut self) -> bool {
         self.profile.sloppy && self.entropy.one_in(12)
     }
 
-    /// Imports and histories, before the first pass.
+    /// Declares imports and histories.
     pub(super) fn import_and_declare(&mut self) {
         for _ in 0..1 + self.entropy.below(3) {
             let desc = self.any_desc();
@@ -174,14 +174,14 @@ impl<'w, 'e> World<'w, 'e> {
         self.textures.len() - 1
     }
 
-    /// A new transient texture.
+    /// Creates a transient texture.
     pub(super) fn texture(&mut self, desc: TextureDesc) -> usize {
         let name = self.name("t");
         let handle = self.graph.texture(&name, desc);
         self.add(handle, desc, false)
     }
 
-    /// A new transient buffer.
+    /// Creates a transient buffer.
     pub(super) fn buffer(&mut self) -> usize {
         let name = self.name("b");
         let bytes = self.entropy.pick(&[256, 1 << 10, 1 << 14]);
@@ -190,19 +190,19 @@ impl<'w, 'e> World<'w, 'e> {
         self.buffers.len() - 1
     }
 
-    /// All of a buffer, or some pieces.
+    /// Returns a range of pieces, or `None` for the whole buffer.
     pub(super) fn pieces(&mut self, buffer: usize) -> Option<(u8, u8)> {
         if self.profile.plain_accesses || self.entropy.one_in(2) {
             return None;
         }
-        // Near the start, so that ranges meet.
+        // Near the start, so that ranges overlap.
         let most = self.buffers[buffer].pieces.min(5);
         let first = self.entropy.below(most.into()) as u8;
         let end = first + 1 + self.entropy.below(u32::from(most - first)) as u8;
         Some((first, end))
     }
 
-    /// A shape, most often one of the palette.
+    /// Returns a random descriptor, usually from the palette.
     pub(super) fn desc(&mut self) -> TextureDesc {
         if self.palette.is_empty() || self.entropy.one_in(4) {
             self.any_desc()
@@ -268,7 +268,7 @@ impl<'w, 'e> World<'w, 'e> {
         ])
     }
 
-    /// Some range of a texture; for attachments one level of all planes, for others anything.
+    /// Returns a random range of a texture; for attachments, one level.
     pub(super) fn range(&mut self, texture: usize, attachment: bool) -> Range {
         let desc = self.textures[texture].desc;
         let (mips, layers) = (desc.mip_count(FRAME), desc.tracked_layers());
@@ -277,7 +277,7 @@ impl<'w, 'e> World<'w, 'e> {
             range.mip = self.entropy.below(mips) as u8;
             range.mips = 1;
             if mips == 1 && self.entropy.one_in(2) {
-                range.mips = u8::MAX; // the same, spelled otherwise
+                range.mips = u8::MAX; // the same range in another form
             }
         }
         match self.entropy.below(3) {
@@ -306,11 +306,11 @@ impl<'w, 'e> World<'w, 'e> {
         range
     }
 
-    /// Exports; then the graph.
+    /// Adds exports and returns the graph.
     pub(super) fn finish(mut self) -> Graph {
         for index in 0..self.textures.len() {
             let texture = &self.textures[index];
-            // What is read already is exported less often, so that it can share memory or vanish.
+            // Textures with readers are exported less often, so that they can share memory or be inlined.
             let odds = if texture.read { 8 } else { 2 };
             let whole = texture.is_defined(Range::ALL);
             let wanted = self.entropy.one_in(odds) || (!texture.read && self.entropy.one_in(2));
@@ -318,7 +318,7 @@ impl<'w, 'e> World<'w, 'e> {
                 let handle = self.textures[index].handle;
                 let readback = self.entropy.one_in(3);
                 let exported = if readback { self.graph.readback(handle) } else { self.graph.export(handle) };
-                assert!(exported.is_ok() || self.profile.sloppy, "a valid export was refused");
+                assert!(exported.is_ok() || self.profile.sloppy, "a valid export was rejected");
                 self.textures[index].read = true;
             }
         }
@@ -328,7 +328,7 @@ impl<'w, 'e> World<'w, 'e> {
                 let readback = self.entropy.one_in(3);
                 let graph = &mut self.graph;
                 let exported = if readback { graph.readback_buffer(handle) } else { graph.export_buffer(handle) };
-                assert!(exported.is_ok() || self.profile.sloppy, "a valid export was refused");
+                assert!(exported.is_ok() || self.profile.sloppy, "a valid export was rejected");
             }
         }
         let count = if self.profile.forwards { self.textures.len() as u32 } else { 0 };
@@ -336,7 +336,7 @@ impl<'w, 'e> World<'w, 'e> {
             let [from, to] = [(); 2].map(|()| self.entropy.below(count) as usize);
             let (from, to) = (self.textures[from].handle, self.textures[to].handle);
             let mip = self.entropy.below(3) as u8;
-            // What cannot be forwarded stays as it is.
+            // Invalid forwards are ignored.
             let _ = if self.entropy.one_in(2) {
                 self.graph.forward(from, to)
             } else {

@@ -1,4 +1,4 @@
-//! Mutants of the decision log and of the barriers.
+//! Mutants of the decision log and of barriers.
 
 use super::mutator::{Edit, Mutator};
 use crate::barrier::{Barrier, Stages, State};
@@ -6,14 +6,14 @@ use crate::decision::{MemoryNeed, Names, Reason, Refusal, Subject};
 use crate::id::{PassId, ResourceId, StepId};
 use crate::plan::Plan;
 
-/// Rows of `decisions`.
+/// Visits mutants of `decisions`.
 pub(super) fn decisions(m: &mut Mutator<'_>) {
     let plan = m.plan;
     for (row, decision) in plan.decisions.iter().enumerate() {
         m.with("decision missing", row, |p| {
             p.decisions.remove(row);
         });
-        m.with("decision doubled", row, |p| {
+        m.with("decision duplicated", row, |p| {
             let copy = p.decisions[row];
             p.decisions.push(copy);
         });
@@ -26,7 +26,7 @@ pub(super) fn decisions(m: &mut Mutator<'_>) {
     }
 }
 
-/// Neighbouring subjects, and one of another kind.
+/// Returns adjacent subjects, and one of another kind.
 fn subjects(plan: &Plan, subject: Subject) -> Vec<Subject> {
     let (passes, steps) = (plan.graph.passes.len(), plan.steps.len());
     let resources = plan.graph.resources.len();
@@ -57,8 +57,8 @@ fn subjects(plan: &Plan, subject: Subject) -> Vec<Subject> {
     all
 }
 
-/// Reasons of every kind, with the pass or resource that the true one names and with the next one; every refusal and every
-/// need where there is one. Never the reason itself.
+/// Returns other reasons: of every kind, with the same and with the next pass or resource, and with every refusal and
+/// need.
 fn reasons(plan: &Plan, row: usize, reason: Reason) -> Vec<Reason> {
     let (passes, resources) = (plan.graph.passes.len(), plan.graph.resources.len());
     let own = reason.names();
@@ -92,7 +92,7 @@ fn reasons(plan: &Plan, row: usize, reason: Reason) -> Vec<Reason> {
     all
 }
 
-/// The stages with one more, or with only this one where it is among them already and not alone, or with none.
+/// Returns other stages: one more, a single one, or none.
 fn other_stages(stages: Stages) -> Vec<Stages> {
     let mut all: Vec<Stages> = Stages::NAMES.iter().map(|(s, _)| stages.union(*s)).collect();
     all.extend(Stages::NAMES.iter().map(|(s, _)| *s).filter(|s| stages.contains(*s)));
@@ -101,14 +101,14 @@ fn other_stages(stages: Stages) -> Vec<Stages> {
     all
 }
 
-/// Rows of `barriers`.
+/// Visits mutants of `barriers`.
 pub(super) fn barriers(m: &mut Mutator<'_>) {
     let plan = m.plan;
     for (row, barrier) in plan.barriers.iter().enumerate() {
         m.with("barrier missing", row, |p| {
             p.barriers.remove(row);
         });
-        m.with("barrier doubled", row, |p| {
+        m.with("barrier duplicated", row, |p| {
             let copy = p.barriers[row];
             p.barriers.insert(row, copy);
         });
@@ -138,8 +138,8 @@ pub(super) fn barriers(m: &mut Mutator<'_>) {
             }
         }
         for resource in plan.graph.resource_ids().chain([ResourceId::NONE]) {
-            if resource != barrier.hand_over {
-                m.with("barrier.hand_over", row, |p| p.barriers[row].hand_over = resource);
+            if resource != barrier.aliases {
+                m.with("barrier.aliases", row, |p| p.barriers[row].aliases = resource);
             }
             if resource != barrier.resource {
                 m.with("barrier.resource", row, |p| p.barriers[row].resource = resource);

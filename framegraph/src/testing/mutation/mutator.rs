@@ -1,29 +1,29 @@
-//! One change at a time.
+//! Creates mutants with a single change.
 
 use crate::plan::Plan;
 
-/// One broken plan.
+/// A plan with a single change.
 #[derive(Debug)]
 pub struct Mutant {
-    /// Which field was changed.
+    /// The changed field.
     pub field: &'static str,
     /// The row of the field's array.
     pub row: usize,
-    /// The plan with that one change.
+    /// The changed plan.
     pub plan: Plan,
 }
 
-/// A change of one row, with the field's name.
+/// A change of one row, with the name of the field.
 pub(super) type Edit<T> = (&'static str, fn(&mut T));
 
-/// Makes the mutants of one plan.
+/// Creates the mutants of one plan.
 pub(super) struct Mutator<'a> {
     pub(super) plan: &'a Plan,
     pub(super) visit: &'a mut dyn FnMut(Mutant),
 }
 
 impl Mutator<'_> {
-    /// The plan with one change.
+    /// Visits the plan with one change.
     pub(super) fn with(&mut self, field: &'static str, row: usize, edit: impl FnOnce(&mut Plan)) {
         let mut plan = self.plan.clone();
         plan.number();

@@ -1,4 +1,4 @@
-//! Mutants of resources, slots and sums.
+//! Mutants of resources, slots and memory statistics.
 
 use super::mutator::{Edit, Mutator};
 use crate::access::Usage;
@@ -7,12 +7,12 @@ use crate::id::{SlotId, StepId};
 use crate::plan::{Memory, Placement, Slot};
 use crate::resource::{BufferDesc, BufferSize, Desc, Dimension, Extent, TextureDesc};
 
-/// The set with one use more or less.
+/// Returns the set with one usage added or removed.
 fn flipped(usage: Usage, bit: Usage) -> Usage {
     if usage.contains(bit) { usage.without(bit) } else { usage.union(bit) }
 }
 
-/// Rows of `resources`.
+/// Visits mutants of `resources`.
 pub(super) fn resources(m: &mut Mutator<'_>) {
     let plan = m.plan;
     for (row, planned) in plan.resources.iter().enumerate() {
@@ -54,7 +54,7 @@ pub(super) fn resources(m: &mut Mutator<'_>) {
     }
 }
 
-/// Every other kind of place, and every other slot.
+/// Returns all other placements.
 fn placements(slots: usize, now: Placement) -> Vec<Placement> {
     let mut all =
         vec![Placement::Unused, Placement::Memoryless, Placement::Inlined, Placement::External, Placement::Own];
@@ -66,7 +66,7 @@ fn placements(slots: usize, now: Placement) -> Vec<Placement> {
     all
 }
 
-/// Rows of `slots`.
+/// Visits mutants of `slots`.
 pub(super) fn slots(m: &mut Mutator<'_>) {
     let plan = m.plan;
     for (row, slot) in plan.slots.iter().enumerate() {
@@ -94,7 +94,7 @@ pub(super) fn slots(m: &mut Mutator<'_>) {
     });
 }
 
-/// The shape with one thing changed.
+/// Returns the descriptor with single changes.
 fn shapes(desc: &Desc) -> Vec<Desc> {
     let texture = match desc {
         Desc::Buffer(buffer) => {
@@ -119,7 +119,7 @@ fn shapes(desc: &Desc) -> Vec<Desc> {
     changed.map(Desc::Texture).to_vec()
 }
 
-/// The sums over the memory of a plan.
+/// Visits mutants of the memory statistics.
 pub(super) fn memory(m: &mut Mutator<'_>) {
     for (field, edit) in MEMORY_EDITS {
         m.with(field, 0, |p| edit(&mut p.memory));

@@ -6,7 +6,7 @@ use crate::id::{ResourceId, Span, StepId};
 use crate::plan::{Attachment, Join, LoadOp, Plan, Role, Step, StepPass, StoreOp};
 use crate::resolve::ResolveMode;
 
-/// Rows of `pass_steps`, `steps` and `step_passes`.
+/// Visits mutants of `pass_steps`, `steps` and `step_passes`.
 pub(super) fn steps(m: &mut Mutator<'_>) {
     let plan = m.plan;
     for (row, &step) in plan.pass_steps.iter().enumerate() {
@@ -42,7 +42,7 @@ pub(super) fn steps(m: &mut Mutator<'_>) {
                 m.with("step_pass.join", row, |p| p.step_passes[row].join = join);
             }
         }
-        // A pass with a full-screen resolve stands there twice.
+        // A pass with a full-screen resolve occurs twice.
         if plan.step_passes.get(row + 1).is_some_and(|next| next.pass != member.pass) {
             m.with("pass order", row, |p| {
                 let next = p.step_passes[row + 1].pass;
@@ -67,7 +67,7 @@ const STEP_EDITS: [fn(&mut Step); 9] = [
     |s| s.attachments.len = s.attachments.len.wrapping_add(1),
 ];
 
-/// Puts `pass_steps` right after passes have changed places.
+/// Updates `pass_steps` after passes were moved.
 fn renumber(p: &mut Plan) {
     for (index, step) in p.steps.iter().enumerate() {
         for member in step.passes.of(&p.step_passes).iter().filter(|m| m.join != Join::Resolve) {
@@ -76,7 +76,7 @@ fn renumber(p: &mut Plan) {
     }
 }
 
-/// Exchanges a step with the next, and everything that names them.
+/// Exchanges a step with the next one, and updates all references.
 fn exchange(p: &mut Plan, row: usize) {
     let (a, b) = (p.steps[row], p.steps[row + 1]);
     let middle = |first: Span, second: Span| (first.len as usize, first.range().start..second.range().end);
@@ -97,10 +97,10 @@ fn exchange(p: &mut Plan, row: usize) {
     renumber(p);
 }
 
-/// Drops a pass from its step, and the step with it if it was the only one.
+/// Removes a pass from its step, and the step if it is empty then.
 fn remove_pass(p: &mut Plan, row: usize) {
     let owns = |s: &Step| s.passes.range().contains(&row);
-    let step = p.steps.iter().position(owns).expect("each pass has its step");
+    let step = p.steps.iter().position(owns).expect("each pass belongs to a step");
     let member = p.step_passes.remove(row);
     if member.join != Join::Resolve {
         p.pass_steps[member.pass.index()] = StepId::NONE;
@@ -116,7 +116,7 @@ fn remove_pass(p: &mut Plan, row: usize) {
     }
 }
 
-/// Rows of `attachments`.
+/// Visits mutants of `attachments`.
 pub(super) fn attachments(m: &mut Mutator<'_>) {
     let plan = m.plan;
     for (row, attachment) in plan.attachments.iter().enumerate() {
@@ -171,7 +171,7 @@ pub(super) fn attachments(m: &mut Mutator<'_>) {
         let view = attachment.view.is_none().then_some(crate::Format::Rgba8Unorm);
         m.with("attachment.view", row, |p| p.attachments[row].view = view);
         m.with("attachment missing", row, |p| remove_attachment(p, row));
-        m.with("attachment doubled", row, |p| {
+        m.with("attachment duplicated", row, |p| {
             let copy = p.attachments[row];
             p.attachments.insert(row, copy);
             let step = step_of(p, row);
@@ -203,10 +203,10 @@ fn roles(role: Role) -> Vec<Role> {
     all.chain(depth).filter(|r| *r != role).collect()
 }
 
-/// The step that owns an attachment.
+/// Returns the step that owns an attachment.
 fn step_of(p: &Plan, row: usize) -> usize {
     let owns = |s: &Step| s.attachments.range().contains(&row);
-    p.steps.iter().position(owns).expect("each attachment has its step")
+    p.steps.iter().position(owns).expect("each attachment belongs to a step")
 }
 
 fn remove_attachment(p: &mut Plan, row: usize) {

@@ -1,4 +1,4 @@
-//! Random plans and plans made by hand lose every mutant; two changes at once find no crack either.
+//! Mutation tests of random plans and of hand-made plans, and robustness against two changes.
 
 use super::{Mutant, MutationReport, Mutator, difference, examine, log, mutants, places};
 use crate::plan::{Placement, Plan};
@@ -8,14 +8,14 @@ use crate::{
     Alias, Caps, ClearValue, DeclareError, Extent, Format, Graph, Intent, Options, Scratch, TextureDesc, compile,
 };
 
-/// How many plans are mutated: the share of what `FRAMEGRAPH_PROPERTY_CASES` asks for, which is made for whole properties.
+/// Returns the seeds of mutated plans: a hundredth of `FRAMEGRAPH_PROPERTY_CASES`.
 fn seeds(default: u64) -> std::ops::Range<u64> {
     let asked = std::env::var("FRAMEGRAPH_PROPERTY_CASES").ok();
     let asked = asked.and_then(|n| n.parse::<u64>().ok());
     0..asked.map_or(default, |n| n / 100)
 }
 
-/// Examines every mutant of a plan and panics with those that live without an excuse. Returns how many there were.
+/// Examines every mutant of a plan and panics if one is wrongly accepted. Returns the number of mutants.
 #[track_caller]
 fn kill_all(good: &Plan, name: &str) -> usize {
     let report = examine(good);
@@ -24,7 +24,12 @@ fn kill_all(good: &Plan, name: &str) -> usize {
     report.take(good);
     let MutationReport { mutants, alive, .. } = report;
     let text = crate::dump::text(good);
-    assert!(alive.is_empty(), "{name}: {} of {mutants} mutants live:\n{}\n{text}", alive.len(), alive.join("\n"));
+    assert!(
+        alive.is_empty(),
+        "{name}: {} of {mutants} mutants are accepted:\n{}\n{text}",
+        alive.len(),
+        alive.join("\n")
+    );
     mutants
 }
 
@@ -49,8 +54,8 @@ fn no_mutant_of_a_random_plan_lives() {
     assert!(seeds(9).end != 9 || count > 5_000, "only {count} mutants");
 }
 
-/// A frame in which every question of the log has one answer: depth is laid down, tested and sampled, color is modified
-/// once, filtered, and exported; one pass is culled.
+/// Returns a frame with a unique reason for every decision: depth is written, tested and sampled; color is modified,
+/// filtered and exported; one pass is culled.
 fn plain_frame() -> Graph {
     let texture = |format| TextureDesc::new(Extent::absolute(8, 8), format);
     let mut g = Graph::new();
@@ -90,8 +95,8 @@ fn a_frame_with_one_answer_to_each_question_leaves_no_other() {
             other.push(difference(&plan, &mutant));
         }
     });
-    // A depth attachment that is stored and sampled has memory for several reasons, a pass of another size differs in
-    // more than that; nothing else has a second answer.
+    // A stored and sampled depth attachment needs memory for several reasons, and a pass of another size differs in
+    // several ways. All other decisions have a unique reason.
     let known = |d: &&String| d.contains("NeedsMemory") || d.contains("Split");
     let unknown: Vec<_> = other.iter().filter(|d| !known(d)).collect();
     assert!(unknown.is_empty(), "{unknown:#?}");
@@ -101,7 +106,7 @@ fn a_frame_with_one_answer_to_each_question_leaves_no_other() {
 
 #[test]
 fn the_oracle_survives_any_mutant() {
-    // Two changes at once: arrays that fit each other nowhere must not make it panic.
+    // Two changes at the same time: inconsistent arrays must not cause a panic.
     let plan = compiled(&plain_frame(), &Caps::tiler(), &generate::options_of(0));
     let mut firsts = Vec::new();
     mutants(&plan, &mut |mutant| firsts.push(mutant.plan));
@@ -123,7 +128,7 @@ fn the_oracle_survives_any_mutant() {
     assert!(count > 100, "only {count} broken plans");
 }
 
-/// Two textures, of which the larger one is read first and the other last, make room for a third.
+/// Two textures, with the larger one read first, whose memory a third one reuses.
 fn two_make_room() -> Result<Graph, DeclareError> {
     let mut g = Graph::new();
     let texture = |height| TextureDesc::new(Extent::absolute(256, height), Format::Rgba8Unorm);
@@ -147,15 +152,15 @@ fn two_make_room() -> Result<Graph, DeclareError> {
 fn the_later_of_two_earlier_tenants_hands_over() {
     let graph = two_make_room().unwrap_or_else(|error| panic!("{error}"));
     let plan = compiled(&graph, &Caps::desktop(), &Options { alias: Alias::Heap, ..Options::default() });
-    assert_eq!(plan.memory().bytes, 256 * 192 * 4, "the third lies over both");
+    assert_eq!(plan.memory().bytes, 256 * 192 * 4, "the third overlaps both");
     let offset = |name| graph.find_resource(name).map(|r| plan.resources()[r.index()].placement);
-    assert_eq!(offset("a"), Some(Placement::Heap { offset: 0 }), "the first in memory is not the last to be read");
-    let mut takers = plan.barriers().iter().filter(|b| !b.hand_over.is_none());
-    assert_eq!(takers.next().map(|b| graph.resource_name(b.hand_over)), Some("b"));
+    assert_eq!(offset("a"), Some(Placement::Heap { offset: 0 }), "the one at offset 0 is read first");
+    let mut takers = plan.barriers().iter().filter(|b| !b.aliases.is_none());
+    assert_eq!(takers.next().map(|b| graph.resource_name(b.aliases)), Some("b"));
     kill_all(&plan, "two tenants");
 }
 
-/// What the oracle has against a plan, the truth of its log aside, and which waste it finds.
+/// Returns the violated rules, except for the log, and the kinds of waste.
 fn objections(plan: &Plan) -> (Vec<Rule>, Vec<WasteKind>) {
     let report = examine(plan);
     let rules = report.violations.iter().map(|v| v.rule).filter(|rule| *rule != Rule::Decision);
@@ -164,7 +169,7 @@ fn objections(plan: &Plan) -> (Vec<Rule>, Vec<WasteKind>) {
 
 #[test]
 fn an_offset_that_is_not_aligned_is_reported_though_nothing_overlaps() {
-    // The small one is done before the large one, which takes its bytes and many more, comes to be.
+    // The small resource ends before the large one, which reuses its memory, begins.
     let mut graph = Graph::new();
     for (name, height) in [("small", 64), ("large", 512)] {
         let texture = graph.texture(name, TextureDesc::new(Extent::absolute(256, height), Format::Rgba8Unorm));
@@ -176,7 +181,7 @@ fn an_offset_that_is_not_aligned_is_reported_though_nothing_overlaps() {
     }
     let good = compiled(&graph, &Caps::desktop(), &Options { alias: Alias::Heap, ..Options::default() });
     assert_eq!(objections(&good), (vec![], vec![]));
-    let small = graph.find_resource("small").expect("it was declared").index();
+    let small = graph.find_resource("small").expect("the resource was declared").index();
     assert_eq!(good.resources[small].placement, Placement::Heap { offset: 0 });
     for (offset, rules) in [(256, vec![Rule::Placement]), (1 << 16, vec![])] {
         let mut moved = good.clone();
@@ -194,7 +199,7 @@ fn memory_for_what_never_leaves_the_tile_is_waste() {
         p.depth(z, Intent::Clear(ClearValue::FAR))?;
         p.color(out, Intent::Clear(ClearValue::BLACK))
     });
-    graph.export(out.unwrap_or_else(|error| panic!("{error}"))).expect("it is the newest version");
+    graph.export(out.unwrap_or_else(|error| panic!("{error}"))).expect("the handle is the newest version");
     let mut plan = compiled(&graph, &Caps::tiler(), &Options { memoryless: false, ..Options::default() });
     assert_eq!(objections(&plan), (vec![], vec![]));
     plan.options.memoryless = true;
@@ -211,12 +216,12 @@ fn an_average_that_nothing_needs_is_waste() {
         p.resolve(ms, average)?;
         Ok(ms)
     });
-    graph.export(drawn.unwrap_or_else(|error| panic!("{error}"))).expect("it is the newest version");
+    graph.export(drawn.unwrap_or_else(|error| panic!("{error}"))).expect("the handle is the newest version");
     let mut plan = compiled(&graph, &Caps::tiler(), &Options { cull: false, ..Options::default() });
     assert_eq!(objections(&plan), (vec![], vec![]));
     plan.options.cull = true;
     assert_eq!(objections(&plan), (vec![], vec![WasteKind::Resolve]));
-    // And none is left out that is declared, while culling is off.
+    // With culling disabled, no declared resolve is dropped.
     let mut plan = compiled(&graph, &Caps::tiler(), &Options::default());
     assert_eq!(objections(&plan), (vec![], vec![]));
     plan.options.cull = false;

@@ -1,4 +1,5 @@
-//! Attachments of one step: one spot has one spelling, spots do not cross, planes are followed apart.
+//! Attachments of one step: equal ranges compare equal, ranges do not overlap partly, and planes are tracked
+//! separately.
 
 use super::clean;
 use crate::support::*;
@@ -78,7 +79,7 @@ fn a_plane_that_nobody_touches_costs_no_memory_and_is_no_reason() {
     assert_eq!(placement(&plan, "ds"), Placement::Memoryless);
     assert_eq!(plan.counts().discards, 1);
     let plan = clean(&g, &Caps::desktop());
-    assert_eq!(plan.counts().discards, 1, "whichever plane is dropped");
+    assert_eq!(plan.counts().discards, 1, "one plane is discarded");
 }
 
 #[test]
@@ -123,7 +124,7 @@ fn a_device_that_cannot_sample_tested_depth_refuses_it() {
     clean(&g, &Caps::wgpu());
     let caps = Caps { sample_read_only_depth: false, ..Caps::wgpu() };
     let outcome = compile(&g, &caps, &options(), &mut Scratch::new(), &mut Plan::new());
-    let errors = outcome.expect_err("the device cannot").listed;
+    let errors = outcome.expect_err("the device does not support it").listed;
     let access = AccessKind::Sampled;
     assert_eq!(errors[0].reason, CompileReason::SampledDepth { access });
     assert_eq!((name(&errors[0].pass), name(&errors[0].resource)), ("fog", "z"));
@@ -131,7 +132,7 @@ fn a_device_that_cannot_sample_tested_depth_refuses_it() {
 
 #[test]
 fn planes_start_apart_with_one_clear_value_at_most() {
-    // The second pass clears stencil, which no pass of the step used; the first one starts depth so.
+    // The second pass clears stencil, which no earlier pass of the step uses, so that depth starts the same way.
     let starts = |first: Intent| {
         let mut g = Graph::new();
         let ds = g.import_texture("ds", color(Format::Depth32FloatStencil8), Entry::Defined, Exit::Keep);

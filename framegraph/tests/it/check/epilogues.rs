@@ -1,10 +1,10 @@
-//! Point-wise passes that would read or write the wrong thing as an epilogue, and stay passes.
+//! Point-wise passes that would access the wrong contents as an epilogue, and therefore stay passes.
 
 use super::clean;
 use crate::support::*;
 use framegraph::*;
 
-/// A scene that takes an epilogue, and a point-wise pass that wants to be one.
+/// Returns a scene that accepts an epilogue, and a point-wise pass.
 fn epilogue(
     scene: impl FnOnce(&mut PassBuilder<'_>, &mut Option<Buffer>) -> Result<Texture, DeclareError>,
     grade: impl FnOnce(&mut PassBuilder<'_>, Texture, Option<Buffer>) -> Result<Texture, DeclareError>,
@@ -109,7 +109,7 @@ fn unsound_epilogues_are_refused() {
 
 #[test]
 fn who_reads_an_intermediate_in_the_tile_keeps_it_from_vanishing() {
-    // On a device with both: `look` would read graded colors where it wants the scene's.
+    // On a device with both: `look` would read graded colors instead of the scene's.
     let mut g = Graph::new();
     let scene = g.texture("scene", hdr());
     let scene = g

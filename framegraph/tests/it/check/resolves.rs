@@ -1,10 +1,11 @@
-//! Resolves by mode and of depth: in the store where the device has that, else by a full-screen pass that the plan states.
+//! Resolves by mode and of depth: while storing if the device supports it, otherwise with a full-screen pass in the
+//! plan.
 
 use super::{clean, usage};
 use crate::support::*;
 use framegraph::*;
 
-/// Draws color and depth of four samples, resolves depth by `mode`, and reads it.
+/// Returns a graph that draws color and depth with four samples, resolves depth with `mode`, and reads it.
 fn resolved_depth(mode: ResolveMode) -> Graph {
     let mut g = Graph::new();
     let [samples, one] =
@@ -20,7 +21,7 @@ fn resolved_depth(mode: ResolveMode) -> Graph {
     g
 }
 
-/// How each pass of a step came into it, step by step.
+/// Returns the joins of the passes of each step.
 fn joins(plan: &Plan) -> Vec<Vec<Join>> {
     plan.step_ids().map(|s| plan.passes_of(s).iter().map(|m| m.join).collect()).collect()
 }
@@ -36,7 +37,7 @@ fn depth_is_resolved_in_the_store_and_its_samples_take_no_memory() {
     let (counts, texels) = (plan.counts(), u64::from(FRAME[0] * FRAME[1]));
     assert_eq!((counts.passes, counts.multisample_resolves), (2, 1));
     assert_eq!(plan.traffic(FRAME).multisample_resolve_bytes, texels * 4);
-    // The store of colors resolves depth: what comes before the samples again must wait for that.
+    // Depth is resolved in the color output stage, so the next use of the samples must wait for it.
     let depth = plan.graph().find_resource("one").unwrap();
     let fog = plan.barriers().iter().find(|b| b.resource == depth && b.to == State::Sampled).unwrap();
     assert_eq!(fog.from_stages, Stages::COLOR);
@@ -58,7 +59,7 @@ fn without_a_resolve_in_the_store_the_plan_has_a_full_screen_pass() {
         let first = plan.step_ids().next().unwrap();
         assert_eq!(plan.pass_steps()[draw.index()], first);
         assert!(plan.reasons(Subject::Pass(draw)).any(|r| r == Reason::ResolvePass(one)));
-        // The samples are stored, fetched, and take memory; nothing is loaded.
+        // The samples are stored, read and need memory; nothing is loaded.
         let samples = plan.graph().find_resource("samples").unwrap();
         let stored: Vec<_> = plan.reasons(Subject::Store(first, samples)).collect();
         assert_eq!(stored, [Reason::StoreResolved(draw)]);
@@ -98,7 +99,8 @@ fn colors_are_resolved_by_mode() {
     }
 }
 
-/// WebGPU averages 32-bit floats in no store, and a shader does: by format, not by device.
+/// WebGPU cannot average 32-bit floats while storing, so a shader does it; this depends on the format, not on the
+/// device.
 #[test]
 fn a_format_that_is_not_averaged_is_resolved_by_a_pass() {
     let caps = Caps { not_averaged: vec![Format::R32Float], ..Caps::wgpu() };
@@ -125,7 +127,7 @@ fn a_format_that_is_not_averaged_is_resolved_by_a_pass() {
         let plan = clean(&g, &Caps { inline: false, ..caps.clone() });
         assert_eq!(plan.counts().steps, 2 + u32::from(full_screen), "{format:?}");
         assert_eq!(plan.counts().multisample_resolves, u32::from(!full_screen));
-        // Samples of an inlined picture have the format of what is shown, and are averaged in a store.
+        // Samples of an inlined image have the format of the target and are averaged while storing.
         let plan = clean(&g, &caps);
         let averaged = [format, shown] == [Format::R16Float; 2];
         assert_eq!(plan.counts().inlined, u32::from(averaged), "{format:?} {shown:?}");
@@ -146,7 +148,7 @@ fn a_resolve_that_nobody_reads_is_dropped() {
         })
         .unwrap();
     g.export(out).unwrap();
-    // What was forwarded is told of too where resolves were dropped.
+    // Forwarded textures are logged even if resolves were dropped.
     let gone = g.add_fn("post", |p| p.color(gone, Intent::Overwrite)).unwrap();
     g.forward(gone, screen).unwrap();
     let plan = clean(&g, &Caps::wgpu());
@@ -158,7 +160,8 @@ fn a_resolve_that_nobody_reads_is_dropped() {
     assert_eq!(kept.counts().steps, 3);
 }
 
-/// A pass that only resolves shares the step that drew depth; later passes share it as long as they leave depth alone.
+/// A pass that only resolves shares the step that drew depth; later passes share it as long as they do not change
+/// depth.
 #[test]
 fn what_only_resolves_shares_the_step_and_what_changes_the_samples_does_not() {
     for caps in [Caps::tiler(), Caps::wgpu()] {
@@ -249,7 +252,7 @@ fn what_cannot_be_resolved_so_is_refused() {
     assert_eq!(refused(both, Max, All), Ok(()));
     assert_eq!(refused(both, Max, Stencil), Err(D::NothingToResolve));
 
-    // Formats, samples and sizes must fit, which is seen when the frame is compiled.
+    // Formats, samples and sizes must match, which is checked when compiling.
     let compiled = |from: TextureDesc, into: TextureDesc| {
         let mut g = Graph::new();
         let (samples, one) = (g.texture("samples", from), g.texture("one", into));
@@ -284,8 +287,8 @@ fn files_say_depth_and_mode() {
     assert_eq!(dump::text(&clean(&again, &Caps::tiler())), dump::text(&clean(&graph, &Caps::tiler())));
     let slot = text.replace("of: Depth", "slot: 15");
     let refused = GraphFile::parse("frame.ron", &slot).unwrap().declare(&[], &Registry::new(), &mut Graph::new());
-    let told = refused.expect_err("no color has that slot").to_string();
-    assert!(told.contains("`of: Depth`"), "{told}");
+    let message = refused.expect_err("no color attachment has this slot").to_string();
+    assert!(message.contains("`of: Depth`"), "{message}");
     let caps = file::caps("caps.ron", "(version: 1, like: \"desktop\", depth_resolves: [Sample0, Min])").unwrap();
     assert_eq!(clean(&graph, &caps).counts().steps, 2);
 }

@@ -1,4 +1,4 @@
-//! Reads at the same pixel: in the tile where they find it, sampled where they miss it.
+//! Same-pixel reads: in the tile if the attachment is there, otherwise sampled.
 
 use super::{clean, usage};
 use crate::support::*;
@@ -24,7 +24,7 @@ fn a_same_pixel_read_that_misses_the_tile_is_sampled() {
     assert_eq!(usage(&plan, "near"), inside);
 }
 
-/// Draws depth, and reads `plane` at the same pixel while it draws the screen.
+/// Returns a graph that draws depth and reads `plane` at the same pixel while drawing the screen.
 fn reads_plane(plane: Aspect) -> Graph {
     let mut g = Graph::new();
     let format = Format::Depth32FloatStencil8;
@@ -41,7 +41,7 @@ fn reads_plane(plane: Aspect) -> Graph {
 
 #[test]
 fn a_plane_that_nobody_drew_is_not_in_the_tile() {
-    // Depth is; stencil is sampled beside it where planes can be used apart; both together are neither.
+    // Depth is in the tile; stencil is sampled if planes can be used separately; both together are not possible.
     let joined = |plane, caps: &Caps| clean(&reads_plane(plane), caps).counts().steps == 1;
     let apart = Caps { separate_planes: false, ..Caps::tiler() };
     for (caps, stencil) in [(Caps::tiler(), true), (apart, false)] {
@@ -58,7 +58,7 @@ fn a_plane_that_nobody_drew_is_not_in_the_tile() {
 
 #[test]
 fn a_device_without_reads_in_the_tile_samples_what_it_can() {
-    // Depth that is only tested can be sampled in the same step, whatever the read is called.
+    // Read-only depth can be sampled in the same step, also by a same-pixel read.
     let mut g = Graph::new();
     let z = g.import_texture("z", depth(), Entry::Defined, Exit::Keep);
     let mut out = screen(&mut g);
@@ -75,7 +75,7 @@ fn a_device_without_reads_in_the_tile_samples_what_it_can() {
 
 #[test]
 fn a_read_in_the_tile_leaves_room_for_a_later_pass() {
-    // `grade` fits beside the three attachments of `scene`, and `ui`, which brings one more, only beside `grade`.
+    // `grade` fits next to the three attachments of `scene`; `ui` adds another one and fits only next to `grade`.
     let mut g = Graph::new();
     let wide = color(Format::Rgba16Float);
     let [a, b, c] = ["a", "b", "c"].map(|name| g.texture(name, wide));
@@ -104,8 +104,9 @@ fn a_read_in_the_tile_leaves_room_for_a_later_pass() {
     assert_eq!(plan.counts().unresolves, 0);
 }
 
-/// `draw` shares an attachment with a step that is longer for a read in the tile, and `late` shares a step with `draw` alone:
-/// `extra` then never leaves the tile. If `late` draws something else, `draw` stays with the earlier passes.
+/// `draw` shares an attachment with a step that is longer because of a read in the tile, and `late` shares a step with
+/// `draw` only. `extra` then never leaves the tile. If `late` draws something else, `draw` stays with the earlier
+/// passes.
 #[test]
 fn a_pass_that_only_draws_is_cut_off_for_a_later_one() {
     let graph = |shares: bool| {
@@ -180,7 +181,7 @@ fn a_same_pixel_read_has_the_size_of_the_attachments_and_one_level() {
     let desc = hdr().extent(Extent::fraction(2)).mips(2);
     let half = g.import_texture("half", desc, Entry::Defined, Exit::Keep);
     let refused = g.add_fn("levels", |p| p.same_pixel(half));
-    let refused = refused.map(drop).expect_err("two levels are no texel");
+    let refused = refused.map(drop).expect_err("a same-pixel read needs one level");
     let access = AccessKind::SamePixel;
     assert_eq!(refused.reason, DeclareReason::NotOneLevel { access });
     g.add_fn("size", |p| {

@@ -1,4 +1,4 @@
-//! The `petgraph` forms.
+//! Export as `petgraph` graphs.
 
 use super::frame;
 use crate::support::*;
@@ -26,7 +26,7 @@ fn the_bipartite_graph_has_an_edge_for_each_read_and_write() {
             (Node::Resource(r), Node::Pass(_)) => {
                 assert!(access.mode.needs_contents() && access.resource == r);
             }
-            other => panic!("{other:?} is no edge between a pass and a resource"),
+            other => panic!("{other:?} is not an edge between a pass and a resource"),
         }
     }
 }
@@ -64,7 +64,7 @@ fn reducing_keeps_reachability_and_nothing_that_is_implied() {
                 assert_eq!(before, has_path_connecting(&small, a, b, None), "seed {seed}");
             }
         }
-        // Without all edges between two passes, the one cannot be reached from the other.
+        // Without the edges between two passes, one is not reachable from the other.
         for edge in small.edge_references() {
             let ends = (edge.source(), edge.target());
             let mut without = small.clone();
@@ -74,8 +74,8 @@ fn reducing_keeps_reachability_and_nothing_that_is_implied() {
     }
 }
 
-/// A pass runs if and only if what must survive, or a pass with a side effect, can be reached from it: culling, asked once
-/// more of another crate. True of whole textures that no pass modifies, where no write is in vain because of a later one.
+/// A pass runs if and only if an exported result or a pass with a side effect is reachable from it. Compares culling
+/// with reachability in `petgraph`, for whole textures that no pass modifies, where no write is overwritten unused.
 #[test]
 fn culling_is_reachability() {
     let mut culled = 0;
@@ -83,7 +83,7 @@ fn culling_is_reachability() {
         let profile = Profile { plain: true, ..Profile::default() };
         let g = generate::graph(&mut Entropy::seeded(seed), &profile);
         let versions = |r: ResourceId| g.versions_of(r).count();
-        // Who reads the contents on entry needs nothing of who writes over them.
+        // A reader of the initial contents does not depend on passes that overwrite them.
         let of_entry = |a: &Access| !a.mode.writes() && g.versions()[a.version.index()].writer.is_none();
         let stale = g.accesses().iter().any(|a| of_entry(a) && versions(a.resource) > 1);
         if stale || g.resource_ids().any(|r| versions(r) > 2) {

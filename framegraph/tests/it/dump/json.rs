@@ -1,4 +1,4 @@
-//! The JSON form against its schema, and against the plan.
+//! Checks the JSON form against its schema and against the plan.
 
 use super::{frame, random_plans};
 use crate::support::*;
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 fn schema() -> Value {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/plan.schema.json");
-    let text = std::fs::read_to_string(path).expect("docs/plan.schema.json is there");
+    let text = std::fs::read_to_string(path).expect("docs/plan.schema.json exists");
     serde_json::from_str(&text).expect("the schema is JSON")
 }
 
@@ -15,7 +15,7 @@ fn parsed(plan: &Plan) -> Value {
     serde_json::from_str(&dump::json(plan, "frame")).expect("the form is JSON")
 }
 
-/// The keywords of JSON Schema that the schema uses; an unknown one is an error of the schema.
+/// Checks a value against the JSON Schema keywords that the schema uses. An unknown keyword is an error of the schema.
 fn check(root: &Value, schema: &Value, value: &Value, at: &str) -> Result<(), String> {
     let rules = schema.as_object().expect("a schema is an object");
     for (keyword, rule) in rules {
@@ -29,7 +29,7 @@ fn check(root: &Value, schema: &Value, value: &Value, at: &str) -> Result<(), St
                 check(root, target, value, at)?;
             }
             "type" => {
-                let is = |word: &Value| match word.as_str().expect("a type is a word") {
+                let is = |word: &Value| match word.as_str().expect("a type is a string") {
                     "object" => value.is_object(),
                     "array" => value.is_array(),
                     "string" => value.is_string(),
@@ -151,7 +151,7 @@ fn the_values_are_those_of_the_plan() {
     let idle = &value["passes"][2];
     assert_eq!(
         (&idle["name"], &idle["culled"], &idle["step"], &idle["reason"]),
-        (&json!("idle"), &json!(true), &json!(null), &json!("culled, no pass reads `idle_out`"))
+        (&json!("idle"), &json!(true), &json!(null), &json!("culled because no pass reads `idle_out`"))
     );
     let flows = json!([
         {"from": "prepass", "to": "scene", "resources": ["depth"]},
@@ -206,8 +206,8 @@ fn what_comes_from_outside_says_how() {
     assert_eq!(value["histories"], json!([history]));
 }
 
-/// What a reader outside of this repository would check: places of resources that live at one time do not overlap, lie
-/// within the heap, and the sums agree.
+/// Checks what an external reader can verify: resources that are live at the same time do not overlap, offsets lie
+/// within the heap, and sums are correct.
 #[test]
 fn offsets_and_sums_can_be_checked_by_a_reader() {
     for plan in random_plans(60) {
@@ -215,7 +215,7 @@ fn offsets_and_sums_can_be_checked_by_a_reader() {
         let number = |v: &Value, what: &str| v[what].as_u64();
         let list = |what: &str| value[what].as_array().expect("a list").clone();
         let last = list("steps").len().saturating_sub(1) as u64;
-        // Each image of a history is there, whether this frame reads it or not.
+        // Every image of a history is listed, even if this frame does not read it.
         let images = list("histories").into_iter().flat_map(|h| {
             let bytes = number(&h, "image_bytes").expect("a number");
             let offsets = h["offsets"].as_array().expect("a list").clone();

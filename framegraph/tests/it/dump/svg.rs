@@ -1,4 +1,4 @@
-//! The picture is XML that stands alone and holds what it should.
+//! The SVG is self-contained XML with the expected content.
 
 use super::{frame, hostile, random_plans};
 use crate::support::*;
@@ -28,7 +28,7 @@ fn every_picture_is_well_formed_and_stands_alone() {
     }
 }
 
-/// Shapes lie within the picture: nothing is cut off.
+/// All shapes lie within the image.
 #[test]
 fn everything_is_inside_of_the_picture() {
     let number = |n: &Node<'_, '_>, what: &str| n.attribute(what).and_then(|v| v.parse::<f64>().ok());
@@ -55,9 +55,9 @@ fn the_picture_names_steps_resources_and_what_was_culled() {
     for wanted in ["plan for wgpu at 64×32", "prepass +scene", "tonemap", "depth", "hdr", "memoryless", "imported"] {
         assert!(has(wanted), "{wanted} is not in {texts:?}");
     }
-    assert!(has("idle: culled, no pass reads `idle_out`"));
-    // Tooltips say why.
-    assert!(svg.contains("store: stored, `tonemap` reads it"));
+    assert!(has("idle: culled because no pass reads `idle_out`"));
+    // Tooltips contain the reason.
+    assert!(svg.contains("store: stored because `tonemap` reads it"));
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn a_plan_without_steps_is_a_picture_too() {
     }] {
         let svg = dump::svg(&plan(&graph, &Caps::wgpu()));
         Document::parse(&svg).expect("well-formed");
-        assert!(svg.contains("no resource takes shared memory"));
+        assert!(svg.contains("no resource uses shared memory"));
     }
 }
 

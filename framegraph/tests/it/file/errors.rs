@@ -1,4 +1,4 @@
-//! What bad files are told: path, line and column, what is wrong and what to do, in one line.
+//! Errors of invalid files: path, line and column, reason and hint, in one line.
 
 use super::{file, refused};
 use crate::support::*;
@@ -21,10 +21,10 @@ fn cycles_name_their_passes() {
     assert_eq!(
         lines,
         [
-            "t.ron:4:22: pass `one`: passes wait for each other: `one` -> `two`; \
-             let one of them read a history or another texture, or take an `after` away that is not needed",
-            "t.ron:6:23: pass `self`: passes wait for each other: `self`; \
-             let one of them read a history or another texture, or take an `after` away that is not needed",
+            "t.ron:4:22: pass `one`: passes depend on each other: `one` -> `two`; \
+             let one of them read a history or another texture, or remove an unnecessary `after`",
+            "t.ron:6:23: pass `self`: passes depend on each other: `self`; \
+             let one of them read a history or another texture, or remove an unnecessary `after`",
         ]
     );
 }
@@ -43,7 +43,7 @@ fn two_writers_of_one_version_are_named() {
     assert_eq!(
         refused(&text),
         "t.ron:6:50: pass `two`: resource `a`: `one` writes the same version; \
-         let the second pass modify the version that the first one wrote"
+         let the second pass modify the version written by the first"
     );
 }
 
@@ -54,50 +54,50 @@ fn bad_files_are_told_where_what_and_what_to_do() {
     let write = pass(r#"Color(to: "a", intent: Overwrite)"#);
     let cases = [
         ("".into(), "t.ron:1:1: "),
-        ("(".into(), "t.ron:1:1: unexpected end of RON; close the bracket"),
-        ("(name: \"x\")".into(), "`File` needs the field `version`; add `version: …`"),
-        ("(version: 2, nonsense: 3)".into(), "t.ron:1:11: the file is of version 2"),
+        ("(".into(), "t.ron:1:1: unexpected end of RON; add the missing bracket"),
+        ("(name: \"x\")".into(), "`File` requires the field `version`; add `version: …`"),
+        ("(version: 2, nonsense: 3)".into(), "t.ron:1:11: the file has version 2"),
         ("(version: 1, pases: [])".into(), "did you mean `passes`?"),
-        ("(version: 1) x".into(), "a file holds one value"),
-        ("(version: 1, frame: (0, 4))".into(), "t.ron:1:21: a frame of 0 texels"),
-        ("(version: 1, features: {\"a b\": true})".into(), "cannot be the name of a feature"),
-        ("(version: 1, features: {\"a\": true, \"a\": true})".into(), "the key `a` stands twice"),
+        ("(version: 1) x".into(), "remove the text after the first value"),
+        ("(version: 1, frame: (0, 4))".into(), "t.ron:1:21: the frame has 0 texels"),
+        ("(version: 1, features: {\"a b\": true})".into(), "is not a valid feature name"),
+        ("(version: 1, features: {\"a\": true, \"a\": true})".into(), "duplicate key `a`"),
         (file(r#"Texture(name: "a", format: R8Unrm)"#, "", ""), "did you mean `R8Unorm`?"),
         (file(r#"Texture(name: "a", format: R8Unorm, mips: 0)"#, "", ""), "t.ron:2:55: 0 levels; "),
         (file(r#"Texture(name: "a", format: R8Unorm, mips: 300)"#, "", ""), "from 1 to 32, or \"all\""),
         (file(r#"Texture(name: "a", format: R8Unorm, layers: 70000)"#, "", ""), "70000 layers; "),
         (file(r#"Texture(name: "a", format: R8Unorm, samples: "all")"#, "", ""), "samples cannot be \"all\""),
-        (file(r#"Texture(name: "a", format: R8Unorm, samples: {"x": 1})"#, "", ""), "no feature `x`"),
-        (file(r#"Texture(name: "a", format: R8Unorm, samples: {})"#, "", ""), "no choice of samples applies"),
+        (file(r#"Texture(name: "a", format: R8Unorm, samples: {"x": 1})"#, "", ""), "unknown feature `x`"),
+        (file(r#"Texture(name: "a", format: R8Unorm, samples: {})"#, "", ""), "no condition for samples holds"),
         (file(r#"Texture(name: "a", format: R8Unorm, size: Scale(num: 1, den: 0))"#, "", ""), "denominator 0"),
         (file(r#"Texture(name: "a", format: R8Unorm, kind: History(frames: 0))"#, "", ""), "0 frames"),
         (file(r#"Buffer(name: "a", bytes: 0)"#, "", ""), "0 bytes; "),
         (file(r#"Buffer(name: "a", bytes: 99999999999999999999)"#, "", ""), "t.ron:2:38: "),
         (file(r#"Buffer(name: "a", bytes: 4, kind: History(frames: 1))"#, "", ""), "a buffer cannot be a history"),
-        (file(&format!("{texture}, {texture}"), "", ""), "more than one resource is called `a`; rename"),
-        (file(texture, &format!("{write}, {write}"), ""), "more than one pass is called `p`"),
-        (file(r#"Texture(name: "a@b", format: R8Unorm)"#, "", ""), "give it an `id`"),
+        (file(&format!("{texture}, {texture}"), "", ""), "more than one resource is named `a`; rename"),
+        (file(texture, &format!("{write}, {write}"), ""), "more than one pass is named `p`"),
+        (file(r#"Texture(name: "a@b", format: R8Unorm)"#, "", ""), "add an `id`"),
         (file(texture, &pass(r#"Color(to: "aa", intent: Overwrite)"#), ""), "did you mean `a`?"),
-        (file(texture, &pass(r#"Color(to: "a@q", intent: Overwrite)"#), ""), "there is no pass `q`"),
+        (file(texture, &pass(r#"Color(to: "a@q", intent: Overwrite)"#), ""), "unknown pass `q`"),
         (file(texture, &pass(r#"Sampled(of: "a@p")"#), ""), "pass `p` does not write it; no pass writes it"),
         (file(texture, &pass(r#"Sampled(of: "a@-1")"#), ""), "the resource is not a history"),
         (file(texture, &pass(r#"Sampled(of: "a", mip: 1)"#), ""), "levels 1..2"),
         (file(texture, &pass(r#"Uniform(of: "a")"#), ""), "a texture cannot be used as `uniform`; use a buffer"),
-        (file(texture, &pass(r#"Resolve(to: "a")"#), ""), "no multisampled color or depth attachment"),
-        (file(texture, &pass(r#"Color(to: "a", intent: Overwrite, slot: 9)"#), ""), "there is no color slot 9; name a slot from 0 to 7"),
+        (file(texture, &pass(r#"Resolve(to: "a")"#), ""), "not a multisampled color or depth attachment"),
+        (file(texture, &pass(r#"Color(to: "a", intent: Overwrite, slot: 9)"#), ""), "color slot 9 does not exist; use a slot from 0 to 7"),
         (file(texture, &pass(r#"CopySource(of: "a")"#), ""), "a raster pass cannot use `copy_source`"),
         (file(r#"Buffer(name: "a", bytes: 4)"#, &pass(r#"Vertex(of: "a", mip: 0)"#), ""), "a buffer has no levels"),
         (file(r#"Buffer(name: "a", bytes: 4)"#, &write, ""), "a buffer cannot be used as `color`"),
-        (file(texture, &write, r#"Keep(of: "b")"#), "there is no resource `b`"),
-        (file(texture, r#"Plugin(kind: "x", name: "x")"#, ""), "there is no plugin `x`; there are none here"),
-        (file(texture, r#"Raster(name: "p", when: "x")"#, ""), "there is no feature `x`; there are none here"),
+        (file(texture, &write, r#"Keep(of: "b")"#), "unknown resource `b`"),
+        (file(texture, r#"Plugin(kind: "x", name: "x")"#, ""), "unknown plugin `x`; none exist here"),
+        (file(texture, r#"Raster(name: "p", when: "x")"#, ""), "unknown feature `x`; none exist here"),
         (
             "(version: 1, features: {\"aa\": true, \"bb\": true, \"cc\": true, \"dd\": true, \"ee\": true, \"ff\": true, \
               \"gg\": true, \"hh\": true, \"ii\": true}, exports: [Keep(of: \"x\", when: \"what\")])"
                 .into(),
-            "no feature `what`; there are `aa`, `bb`, `cc`, `dd`, `ee`, `ff`, `gg`, `hh` and others",
+            "unknown feature `what`; use one of `aa`, `bb`, `cc`, `dd`, `ee`, `ff`, `gg`, `hh` and others",
         ),
-        (file("Previous(of: \"a\", age: 1)", "", ""), "there is no resource `a`"),
+        (file("Previous(of: \"a\", age: 1)", "", ""), "unknown resource `a`"),
         (file(&format!("{texture}, Previous(of: \"a\", age: 1)"), "", ""), "the resource is not a history"),
     ];
     for (text, expected) in cases {
@@ -129,7 +129,7 @@ fn what_does_not_compile_is_explained_in_the_file() {
     let errors = file.explain(&CompileErrors { listed: crate::support::errors(&file.graph(&[]).unwrap()), more: 0 });
     assert_eq!(
         errors.to_string(),
-        "t.ron:4:22: pass `early`: resource `a`: used as `sampled`, but `late`, which writes it, \
+        "t.ron:4:22: pass `early`: resource `a`: used as `sampled`, but its writer `late` \
          is declared later; declare the writer first"
     );
 }
@@ -141,13 +141,13 @@ fn devices_are_presets_with_differences() {
     assert_eq!(small, expected);
     assert_eq!(caps("c.ron", "(version: 1)").unwrap(), Caps::wgpu());
     let cases = [
-        ("(version: 7)", "c.ron:1:11: the file is of version 7"),
+        ("(version: 7)", "c.ron:1:11: the file has version 7"),
         ("(version: 1, like: \"desktp\")", "did you mean `desktop`?"),
         ("(version: 1, inlin: true)", "did you mean `inline`?"),
-        ("(version: 1, texture_alignment_bytes: 3)", "c.ron:1:39: an alignment of 3 bytes"),
-        ("(version: 1, max_samples: 0)", "0 samples at most"),
-        ("(version: 1, max_color_attachments: 9)", "9 color attachments at most"),
-        ("(version: 1, max_texture_texels: 0)", "0 texels or layers at most"),
+        ("(version: 1, texture_alignment_bytes: 3)", "c.ron:1:39: alignment of 3 bytes"),
+        ("(version: 1, max_samples: 0)", "maximum of 0 samples"),
+        ("(version: 1, max_color_attachments: 9)", "maximum of 9 color attachments"),
+        ("(version: 1, max_texture_texels: 0)", "maximum of 0 texels or layers"),
     ];
     for (text, expected) in cases {
         let errors = caps("c.ron", text).unwrap_err().to_string();

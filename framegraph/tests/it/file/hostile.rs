@@ -1,17 +1,17 @@
-//! Files that are made to break their reader: long, deep, full of errors, with names that no terminal should see.
+//! Files that try to break their reader: long, deeply nested, full of errors, or with control characters in names.
 
 use super::{file, refused};
 use framegraph::file::*;
 use framegraph::*;
 
-/// What declaring and compiling a file refuses.
+/// Returns the errors of declaring and compiling a file.
 fn wrong(text: &str) -> FileErrors {
     let parsed = GraphFile::parse("t.ron", text).unwrap_or_else(|e| panic!("{e}"));
     let (caps, options) = (Caps::wgpu(), Options::default());
     let (mut graph, mut plan, registry) = (Graph::new(), Plan::new(), Registry::new());
     let outcome = parsed.plan(&[], &registry, &mut graph, (&caps, &options), &mut Scratch::new(), &mut plan);
-    assert!(plan.steps().is_empty() && plan.graph().passes().is_empty(), "something is left in the plan");
-    outcome.expect_err("the file is sound")
+    assert!(plan.steps().is_empty() && plan.graph().passes().is_empty(), "the plan is not empty");
+    outcome.expect_err("the file is valid")
 }
 
 #[test]
@@ -20,10 +20,10 @@ fn a_long_cycle_takes_no_stack() {
         .map(|i| format!("Compute(name: \"p{i}\", flags: [SideEffect], after: [\"p{}\"]),", (i + 1) % 20_000))
         .collect();
     let text = file("", &passes, "");
-    // A stack that a search of its own depth would pass many times over.
+    // A recursive search would overflow this stack many times.
     let thread = std::thread::Builder::new().stack_size(1 << 20).spawn(move || refused(&text)).unwrap();
-    let errors = thread.join().expect("the stack was enough");
-    assert!(errors.contains("wait for each other") && errors.contains("and 19988 more"), "{errors}");
+    let errors = thread.join().expect("the stack suffices");
+    assert!(errors.contains("depend on each other") && errors.contains("and 19988 more"), "{errors}");
     assert!(errors.len() < 1000);
 }
 
@@ -34,7 +34,7 @@ fn many_errors_are_a_hundred_and_a_number() {
         (0..3000).map(|i| format!("Raster(name: \"p{i}\", flags: [SideEffect], accesses: [{accesses}]),\n")).collect()
     };
     for accesses in [
-        // Found by compiling, by looking names up, and by declaring.
+        // Errors of compiling, of looking up names, and of declaring.
         r#"Sampled(of: "a"), Color(to: "b", intent: Overwrite)"#,
         r#"Color(to: "c", intent: Overwrite)"#,
         r#"Color(to: "b", intent: Overwrite, mip: 3)"#,
@@ -60,16 +60,16 @@ fn errors_of_declaring_and_of_compiling_stand_together() {
     );
     let lines = wrong(&text).to_string();
     let found: Vec<_> = lines.lines().map(|line| line.split("; ").next().unwrap_or_default()).collect();
-    assert_eq!(found.len(), 4, "what follows from another error is none: {lines}");
+    assert_eq!(found.len(), 4, "consequences of another error are not reported: {lines}");
     assert!(found[0].contains("resource `wide`: 99999x1 texels"), "{lines}");
-    assert!(found[1].contains("pass `bad`: resource `a`: `sampled` touches"), "{lines}");
-    assert!(found[2].contains("there is no resource `bb`"), "{lines}");
+    assert!(found[1].contains("pass `bad`: resource `a`: `sampled` conflicts"), "{lines}");
+    assert!(found[2].contains("unknown resource `bb`"), "{lines}");
     assert!(found[3].contains("pass `early`: resource `b`: used as `sampled`"), "{lines}");
 }
 
 #[test]
 fn a_misspelt_word_is_one_error() {
-    // What the pass would have written may be what the other one reads.
+    // The unknown resource of one pass may be the one that the other reads.
     let text = file(
         r#"Texture(name: "glow", format: R8Unorm)"#,
         r#"Raster(name: "p", accesses: [Color(to: "glo", intent: Overwrite)]),
@@ -77,7 +77,7 @@ fn a_misspelt_word_is_one_error() {
         "",
     );
     assert_eq!(wrong(&text).listed.len(), 1);
-    // Nor are those counted that follow beyond the hundredth.
+    // They are not counted either, beyond the hundredth error.
     let readers: String = (0..300)
         .map(|i| format!("Raster(name: \"q{i}\", flags: [SideEffect], accesses: [Sampled(of: \"glow\")]),"))
         .collect();
@@ -92,7 +92,7 @@ fn a_misspelt_word_is_one_error() {
     );
     let errors = wrong(&text);
     assert_eq!(errors.listed.len(), 1, "{errors}");
-    assert!(errors.to_string().contains("there is no plugin `shadwo`"), "{errors}");
+    assert!(errors.to_string().contains("unknown plugin `shadwo`"), "{errors}");
 }
 
 #[test]
@@ -171,6 +171,6 @@ fn clear_values_are_checked_against_the_format() {
         ("R16Float", "1e9, 0, 0, 0"),
     ] {
         let errors = wrong(&text(format, value)).to_string();
-        assert!(errors.contains(&format!("which {format} does not hold")), "{errors}");
+        assert!(errors.contains(&format!("which {format} cannot represent")), "{errors}");
     }
 }

@@ -1,4 +1,4 @@
-//! Loops and templates: one entry that stands for several, and what is wrong with them.
+//! Loops and templates, and errors in them.
 
 use super::refused;
 use framegraph::file::*;
@@ -59,7 +59,7 @@ fn loops_nest_and_make_resources() {
 
 #[test]
 fn a_template_repeats_as_often_as_it_is_told() {
-    // A chain of levels down and up again: both loops take their bounds from the use.
+    // A mip chain down and up again: both loops take their bounds from the use.
     let text = r#"(version: 1,
         templates: {"chain": (params: ["last"], passes: [
             Each(index: "i", from: 1, count: "{last}", entries: [Raster(name: "down {i}", accesses: [
@@ -139,48 +139,48 @@ fn braces_outside_of_loops_mean_nothing() {
 fn what_is_wrong_with_a_loop_has_its_place() {
     let each = |inside: &str| format!("(version: 1, passes: [Each(index: \"i\", count: 2, entries: [{inside}])])");
     let cases = [
-        (each(r#"Compute(name: "p{j}")"#), "there is no name in braces `j`; there are `i`"),
-        (each(r#"Compute(name: "p{i*2}")"#), "there is no name in braces `i*2`"),
-        (each(r#"Compute(name: "p")"#), "more than one pass is called `p`"),
+        (each(r#"Compute(name: "p{j}")"#), "unknown name in braces `j`; use one of `i`"),
+        (each(r#"Compute(name: "p{i*2}")"#), "unknown name in braces `i*2`"),
+        (each(r#"Compute(name: "p")"#), "more than one pass is named `p`"),
         (
             each(r#"Raster(name: "p{i}", accesses: [Color(to: "a", mip: "{i-1}", intent: Overwrite)])"#),
-            "`-1` is no number from 0 to 254",
+            "`-1` is not a number from 0 to 254",
         ),
-        ("(version: 1, passes: [Use(template: \"t\")])".into(), "there is no template `t`"),
+        ("(version: 1, passes: [Use(template: \"t\")])".into(), "unknown template `t`"),
         (
             r#"(version: 1, templates: {"t": (params: ["a"])}, passes: [Use(template: "t")])"#.into(),
-            "the template needs the parameter `a`; add",
+            "the template requires the parameter `a`; add",
         ),
         (
             r#"(version: 1, templates: {"t": (params: ["a"])}, passes: [Use(template: "t", with: {"a": "", "b": ""})])"#.into(),
-            "there is no parameter `b`",
+            "unknown parameter `b`",
         ),
         (
             r#"(version: 1, templates: {"t": (passes: [Use(template: "t")])}, passes: [Use(template: "t")])"#.into(),
-            "a template uses a template",
+            "a template uses another template",
         ),
         (
             r#"(version: 1, templates: {"t": (passes: [Each(index: "i", count: 1, entries: [
                 Each(index: "j", count: 2, entries: [Use(template: "t")])])])}, passes: [Use(template: "t")])"#
                 .replace('\n', " "),
-            "a template uses a template",
+            "a template uses another template",
         ),
         (
             r#"(version: 1, templates: {"a": (), "b": (passes: [Each(index: "i", count: 1, entries: [Use(template: "a")])])},
                 passes: [Use(template: "b"), Use(template: "b")])"#
                 .replace('\n', " "),
-            "a template uses a template",
+            "a template uses another template",
         ),
         (
             r#"(version: 1, templates: {"t": (params: ["n"], passes: [Each(index: "i", count: "{n}", entries: [])])},
                 passes: [Use(template: "t", with: {"n": "few"})])"#
                 .replace('\n', " "),
-            "`few` is no number from 0 to 4294967295",
+            "`few` is not a number from 0 to 4294967295",
         ),
-        (each(r#"Each(index: "j", from: "{i-1}", count: 1, entries: [])"#), "`-1` is no number from 0 to 4294967295"),
+        (each(r#"Each(index: "j", from: "{i-1}", count: 1, entries: [])"#), "`-1` is not a number from 0 to 4294967295"),
         (
             r#"(version: 1, exports: [Each(index: "i", count: 2, entries: [Keep(of: "a{j}")])])"#.into(),
-            "there is no name in braces `j`",
+            "unknown name in braces `j`",
         ),
         (each(r#"Each(index: "j", count: 4000000000, entries: [Compute(name: "{i} {j}")])"#), "more than 131072 entries"),
     ];
@@ -191,7 +191,7 @@ fn what_is_wrong_with_a_loop_has_its_place() {
     }
 }
 
-/// Files by path, as a program would read them.
+/// Returns a reader of files by path.
 fn read<'f>(files: &'f [(&str, &str)]) -> impl FnMut(&str) -> Result<String, String> + 'f {
     |path| {
         let found = files.iter().find(|(known, _)| *known == path);
@@ -236,20 +236,20 @@ fn what_is_wrong_in_an_included_file_stands_there() {
         let included = Included::load("m.ron", main, read(&files))?;
         GraphFile::parse_with("m.ron", main, &included)?.graph(&[]).map(drop)
     };
-    let told = |main: &str, a: &str| load(main, a).expect_err("it is wrong").to_string();
+    let message = |main: &str, a: &str| load(main, a).expect_err("it is wrong").to_string();
     let wrong = "(version: 1,\n passes: [Raster(name: \"p\", accesses: [Sampled(of: \"b\")])])";
-    assert!(told(main, wrong).starts_with("a.ron:2:52: there is no resource `b`"), "{}", told(main, wrong));
-    assert!(told(main, "(version: 1, x: 1)").starts_with("a.ron:1:14: "));
-    assert!(told(main, "(version: 2)").starts_with("a.ron:1:11: the file is of version 2"));
+    assert!(message(main, wrong).starts_with("a.ron:2:52: unknown resource `b`"), "{}", message(main, wrong));
+    assert!(message(main, "(version: 1, x: 1)").starts_with("a.ron:1:14: "));
+    assert!(message(main, "(version: 2)").starts_with("a.ron:1:11: the file has version 2"));
     assert!(
-        told(r#"(version: 1, include: ["c.ron"])"#, "")
+        message(r#"(version: 1, include: ["c.ron"])"#, "")
             .contains("m.ron:1:24: the file cannot be included: there is no file")
     );
     for path in ["../a.ron", "/etc/passwd", "a//b.ron", "", "c:\\\\a.ron", "./a.ron"] {
         let main = format!("(version: 1, include: [\"{path}\"])");
-        assert!(told(&main, "").contains("leads out of the folder"), "{path}: {}", told(&main, ""));
+        assert!(message(&main, "").contains("outside of the folder"), "{path}: {}", message(&main, ""));
     }
-    // A file that includes itself, or the one that includes it, is read once.
+    // A file that includes itself, or the file that includes it, is read once.
     assert!(load(main, r#"(version: 1, include: ["a.ron", "m.ron"])"#).is_ok());
     let alone = GraphFile::parse("m.ron", main).expect_err("nothing was read");
     assert!(alone.to_string().starts_with("m.ron:1:24: the file cannot be included"), "{alone}");

@@ -1,4 +1,4 @@
-//! Passes that files name by kind.
+//! Passes that files refer to by kind.
 
 use super::{assert_same_plan, file};
 use crate::support::*;
@@ -6,7 +6,7 @@ use framegraph::file::*;
 use framegraph::*;
 use serde::Deserialize;
 
-/// Draws a scene into a target, with a depth buffer of its own.
+/// Draws a scene into a target, with its own depth buffer.
 struct Scene;
 
 #[derive(Deserialize)]
@@ -23,7 +23,7 @@ impl Default for SceneParams {
 
 impl Plugin<Graph> for Scene {
     fn slots(&self) -> &[PluginSlot] {
-        const { &[PluginSlot::required("color", Takes::Target), PluginSlot::optional("lights", Takes::Buffer)] }
+        const { &[PluginSlot::required("color", SlotType::Target), PluginSlot::optional("lights", SlotType::Buffer)] }
     }
 
     fn declare(&self, graph: &mut Graph, call: &mut Call<'_>) -> Result<(), PluginError> {
@@ -51,12 +51,12 @@ impl Plugin<Graph> for Scene {
     }
 }
 
-/// Two passes that halve and blur; the second samples what the first wrote.
+/// Two passes that downsample and blur; the second samples the output of the first.
 struct Blur;
 
 impl Plugin<Graph> for Blur {
     fn slots(&self) -> &[PluginSlot] {
-        const { &[PluginSlot::required("input", Takes::Texture), PluginSlot::required("output", Takes::Target)] }
+        const { &[PluginSlot::required("input", SlotType::Texture), PluginSlot::required("output", SlotType::Target)] }
     }
 
     fn declare(&self, graph: &mut Graph, call: &mut Call<'_>) -> Result<(), PluginError> {
@@ -81,12 +81,12 @@ impl Plugin<Graph> for Blur {
     }
 }
 
-/// Says that it writes, and does not.
+/// Declares a target slot, but does not write it.
 struct Idle;
 
 impl Plugin<Graph> for Idle {
     fn slots(&self) -> &[PluginSlot] {
-        const { &[PluginSlot::optional("output", Takes::Target)] }
+        const { &[PluginSlot::optional("output", SlotType::Target)] }
     }
 
     fn declare(&self, _: &mut Graph, _: &mut Call<'_>) -> Result<(), PluginError> {
@@ -169,7 +169,7 @@ fn in_code() -> Graph {
 #[test]
 fn the_file_with_plugins_and_the_code_compile_to_equal_plans() {
     let from_file = load(&file(SCREEN, PASSES, "")).unwrap();
-    // The code puts its resources into the scope; the text differs in those names only.
+    // The code declares its resources inside of the scope; the text differs only in those names.
     let (a, b) = (plan(&from_file, &Caps::wgpu()), plan(&in_code(), &Caps::wgpu()));
     let plain = dump::text(&b).replace("bloom/../", "").replace("trail/../", "");
     assert_eq!(dump::text(&a), plain);
@@ -192,17 +192,20 @@ fn plugins_may_stand_in_any_order_too() {
 fn slots_parameters_and_kinds_are_checked() {
     let plugin = |rest: &str| file(SCREEN, &format!("Plugin(name: \"p\", {rest})"), "");
     let cases = [
-        (plugin(r#"kind: "scen""#), "no plugin `scen`; did you mean `scene`?"),
-        (plugin(r#"kind: "ssao""#), "no plugin `ssao`; there are `blur`, `idle` and `scene`"),
+        (plugin(r#"kind: "scen""#), "unknown plugin `scen`; did you mean `scene`?"),
+        (plugin(r#"kind: "ssao""#), "unknown plugin `ssao`; use one of `blur`, `idle` and `scene`"),
         (plugin(r#"kind: "scene""#), "t.ron:6:23: pass `p`: slot `color` of plugin `scene` is not bound; add"),
         (
             plugin(r#"kind: "scene", slots: {"colour": "hdr", "color": "x"}"#),
-            "there is no slot `colour`; did you mean `color`?",
+            "unknown slot `colour`; did you mean `color`?",
         ),
-        (plugin(r#"kind: "scene", slots: {"color": "lights"}"#), "slot `color` takes a texture to write"),
-        (plugin(r#"kind: "scene", slots: {"color": "x", "lights": "screen"}"#), "slot `lights` takes a buffer to read"),
+        (plugin(r#"kind: "scene", slots: {"color": "lights"}"#), "slot `color` requires a texture to write"),
+        (
+            plugin(r#"kind: "scene", slots: {"color": "x", "lights": "screen"}"#),
+            "slot `lights` requires a buffer to read",
+        ),
         (plugin(r#"kind: "scene", slots: {"color": "old@-1"}"#), "cannot be written"),
-        (plugin(r#"kind: "blur", slots: {"input": "nowhere", "output": "x"}"#), "there is no resource `nowhere`"),
+        (plugin(r#"kind: "blur", slots: {"input": "nowhere", "output": "x"}"#), "unknown resource `nowhere`"),
         (plugin(r#"kind: "blur", slots: {"input": "screen@-1", "output": "x"}"#), "not a history"),
         (
             plugin("kind: \"scene\", slots: {\"color\": \"x\"},\n  params: (\n  sample: 4)"),
@@ -216,7 +219,7 @@ fn slots_parameters_and_kinds_are_checked() {
             plugin("kind: \"scene\", slots: {\"color\": \"x\"}, params: (samples: 9)"),
             "pass `p`: plugin `scene`: 9 samples; ask for 4 at most",
         ),
-        (plugin(r#"kind: "idle", slots: {"output": "x"}"#), "it did not write its slot `output`"),
+        (plugin(r#"kind: "idle", slots: {"output": "x"}"#), "slot `output` was not written"),
         (
             file(
                 SCREEN,
@@ -225,7 +228,7 @@ fn slots_parameters_and_kinds_are_checked() {
                 Plugin(kind: "scene", name: "s", slots: {"color": "hdr"})"#,
                 "",
             ),
-            "the plugin that makes it is listed later; list it first, or name the version",
+            "the plugin that creates it is listed later; list the plugin first, or select the version",
         ),
     ];
     for (text, expected) in cases {
@@ -235,7 +238,8 @@ fn slots_parameters_and_kinds_are_checked() {
     assert!(load(&plugin(r#"kind: "idle""#)).is_ok(), "an optional slot may stay unbound");
 }
 
-/// Numbers of loops and words of templates reach parameters: alone in quotes as values, else as parts of texts.
+/// Loop indices and template arguments are inserted into parameters: alone in quotes as values, otherwise as parts of
+/// texts.
 #[test]
 fn parameters_take_words_of_templates_and_numbers_of_loops() {
     let samples_of = |passes: &str, with: &str| {
@@ -250,7 +254,7 @@ fn parameters_take_words_of_templates_and_numbers_of_loops() {
     let asked = |with: &str| samples_of(used, with).expect_err("no more than 4 samples").to_string();
     assert!(samples_of(used, "4").is_ok());
     assert!(asked("9").contains("plugin `scene`: 9 samples"), "{}", asked("9"));
-    // A text is no number, and the error is where it would be without a template.
+    // A text is not a number, and the error has the position it would have without a template.
     let place = asked("\"4\"");
     assert!(place.contains("t.ron:4:34: pass `a`: ") && place.contains("expected"), "{place}");
     let each = |entry: &str| format!(r#"Each(index: "i", from: 8, count: 1, entries: [{entry}])"#);
@@ -263,7 +267,7 @@ fn parameters_take_words_of_templates_and_numbers_of_loops() {
 
 #[test]
 fn errors_of_compiling_point_at_the_plugin() {
-    // The scene's depth buffer has the frame's size, the target another one.
+    // The scene's depth buffer has the size of the frame, but the target has another size.
     let resources = format!("{SCREEN}, Texture(name: \"small\", format: Rgba16Float, size: Texels(8, 8))");
     let text = file(
         &resources,
@@ -277,12 +281,12 @@ fn errors_of_compiling_point_at_the_plugin() {
     assert!(errors.to_string().starts_with("t.ron:7:29: pass `s`: "), "{errors}");
 }
 
-/// Counts into a buffer, of its own making where the file has none of that name.
+/// Counts into a buffer, which it creates if the file has none of that name.
 struct Count;
 
 impl Plugin<Graph> for Count {
     fn slots(&self) -> &[PluginSlot] {
-        const { &[PluginSlot::required("sums", Takes::TargetBuffer)] }
+        const { &[PluginSlot::required("sums", SlotType::TargetBuffer)] }
     }
 
     fn declare(&self, graph: &mut Graph, call: &mut Call<'_>) -> Result<(), PluginError> {

@@ -1,13 +1,13 @@
-//! `docs/graph-format.md` against the reader: its examples are read, and what can be written is in it.
+//! Checks `docs/graph-format.md` against the parser: its examples are valid, and every keyword is documented.
 
 use framegraph::file::*;
 
 fn reference() -> String {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/graph-format.md");
-    std::fs::read_to_string(path).expect("docs/graph-format.md is there")
+    std::fs::read_to_string(path).expect("docs/graph-format.md exists")
 }
 
-/// The text of each RON block.
+/// Returns the text of each RON block.
 fn examples(text: &str) -> Vec<&str> {
     let blocks = text.split("```ron\n").skip(1);
     blocks.map(|block| block.split("```").next().unwrap_or_default()).collect()
@@ -35,7 +35,7 @@ fn every_example_is_read() {
     }
 }
 
-/// The reader lists what it knows when it is given something else; each of those words is in the reference.
+/// The parser lists the words it knows in its errors; each of them must be documented.
 #[test]
 fn every_word_that_the_reader_knows_is_documented() {
     let text = reference();
@@ -70,12 +70,12 @@ fn every_word_that_the_reader_knows_is_documented() {
             assert!(text.contains(&word), "`{word}` is not in the reference");
         }
     }
-    let caps_fields = caps("c.ron", "(version: 1, zzz: 0)").expect_err("there is no such field");
+    let caps_fields = caps("c.ron", "(version: 1, zzz: 0)").expect_err("the field does not exist");
     assert!(caps_fields.to_string().contains("`version`"));
     assert!(words > 90, "only {words} words");
 }
 
-/// The words that would have been taken, from the hint.
+/// Returns the accepted words, from the hint.
 fn ron_words(text: &str) -> Vec<String> {
     let error = GraphFile::parse("w.ron", text).expect_err("the text is wrong").to_string();
     let known = error.split("known are ").nth(1).unwrap_or_default();

@@ -1,11 +1,11 @@
-//! Properties over many graphs and many damaged files.
+//! Properties of many random graphs and many damaged files.
 
 use super::{FRAME_FILE, assert_same_plan};
 use crate::support::*;
 use framegraph::file::*;
 use framegraph::*;
 
-/// The generator of Vigna's SplitMix64 (public domain reference, 2015).
+/// The generator SplitMix64 of Vigna (public domain reference, 2015).
 pub struct Random(pub u64);
 
 impl Random {
@@ -71,7 +71,7 @@ fn random_intent(r: &mut Random) -> Intent {
     }
 }
 
-/// A graph of whatever the builder lets through; names repeat, are empty and hold signs that files treat specially.
+/// Returns a random graph of valid declarations. Names are duplicate, empty, or contain special characters.
 fn random_graph(seed: u64) -> Graph {
     const NAMES: [&str; 9] = ["a", "b", "a", "", "x@y", "entry", "tab\t\"quote\" ü", "a#2", "e/f"];
     let r = &mut Random(seed);
@@ -132,7 +132,7 @@ fn random_graph(seed: u64) -> Graph {
     g
 }
 
-/// One access of any kind; refused ones leave nothing.
+/// Declares one access of any kind; invalid ones leave nothing.
 fn random_access(
     p: &mut PassBuilder<'_>,
     r: &mut Random,
@@ -205,14 +205,14 @@ fn every_graph_reads_back_as_it_was() {
                     assert_same_plan(&a, &b);
                     compiled += 1;
                 }
-                // Errors that calls on the graph put off are no part of the file.
+                // Deferred errors of a graph are not part of the file.
                 (Err(a), _) if put_off(&a) => {}
                 (Err(a), Err(b)) => assert_eq!(a.listed.len(), b.listed.len(), "seed {seed}: {a}\n{b}"),
                 (a, b) => panic!("seed {seed}: {:?} against {:?}", a.map(drop), b.map(drop)),
             }
         }
     }
-    assert!(compiled > 60 && passes > 1000, "{compiled} plans of {passes} passes: too tame");
+    assert!(compiled > 60 && passes > 1000, "{compiled} plans of {passes} passes: too few");
 }
 
 #[test]
@@ -252,7 +252,7 @@ fn damaged_files_never_panic_and_every_error_has_its_place() {
         }
         assert!(!errors.listed.is_empty());
     }
-    assert!(outcomes[0] > 20 && outcomes[1] > 1000, "{outcomes:?}: too tame");
+    assert!(outcomes[0] > 20 && outcomes[1] > 1000, "{outcomes:?}: too few");
 }
 
 fn put_off(errors: &CompileErrors) -> bool {
@@ -293,7 +293,7 @@ fn nesting_and_length_are_bounded() {
     ] {
         let _ = GraphFile::parse("n.ron", &text).and_then(|f| f.graph(&[]));
     }
-    // Many errors, each of which asks for the name that was meant.
+    // Many errors, each of which searches a suggestion.
     let resources: Vec<_> = (0..400).map(|i| format!("Buffer(name: \"b{i}\", bytes: 1)")).collect();
     let accesses: Vec<_> = (0..400).map(|i| format!("Uniform(of: \"c{i}\")")).collect();
     let (resources, accesses) = (resources.join(","), accesses.join(","));
@@ -301,7 +301,7 @@ fn nesting_and_length_are_bounded() {
         format!("(version: 1, resources: [{resources}], passes: [Compute(name: \"p\", accesses: [{accesses}])])");
     let errors = GraphFile::parse("n.ron", &text).and_then(|f| f.graph(&[])).unwrap_err();
     assert_eq!(errors.listed.len(), 100);
-    // Many levels and layers, each of which the compiler would follow.
+    // Many subresources, each of which the compiler would track.
     let texture = r#"Texture(name: "t", format: R8Unorm, layers: 65535, mips: 14, size: Texels(8192, 8192))"#;
     let textures: Vec<_> = (0..40).map(|i| texture.replacen("t\"", &format!("t{i}\""), 1)).collect();
     let text = format!("(version: 1, resources: [{}])", textures.join(","));

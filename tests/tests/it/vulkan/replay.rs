@@ -101,7 +101,7 @@ impl<'a> Replay<'a> {
             }
             // All queues belong to one family, so ownership needs no transfer.
             Command::Release { .. } | Command::Acquire { .. } => Ok(()),
-            Command::HandOver { queue, .. } => self.wait_for_all(queue),
+            Command::AliasingBarrier { queue, .. } => self.wait_for_all(queue),
             Command::Barrier { queue, barrier, behind_semaphore } => {
                 self.barriers += 1;
                 self.barrier(queue, &self.plan.barriers()[barrier as usize], behind_semaphore)
@@ -193,7 +193,7 @@ impl<'a> Replay<'a> {
         let thing = self.objects.of(self.plan, row.resource)?;
         let to_stages = stages(row.to_stages, vk::PipelineStageFlags::BOTTOM_OF_PIPE);
         let (reads, writes) = accesses(row.to_stages, row.to);
-        let from = if row.hand_over.is_none() { row.from } else { State::Undefined };
+        let from = if row.aliases.is_none() { row.from } else { State::Undefined };
         // A semaphore wait at all stages precedes, so the barrier depends on the stages that it names.
         let (from_stages, (_, from_writes)) = match behind_semaphore {
             true => (to_stages, Default::default()),
@@ -218,7 +218,7 @@ impl<'a> Replay<'a> {
         }
         // Writes of other resources in this memory.
         let memory = [vk::MemoryBarrier::default().src_access_mask(from_writes).dst_access_mask(reads | writes)];
-        let memory = if row.hand_over.is_none() { &[] } else { &memory[..] };
+        let memory = if row.aliases.is_none() { &[] } else { &memory[..] };
         let commands = self.record(queue)?;
         // SAFETY: the images are of this device and live until it is cleared.
         unsafe {

@@ -1,4 +1,4 @@
-//! Inlining: which passes the producers are, and whether an objection to an epilogue stands.
+//! Inlining: producers of an inlined pass, and objections to an epilogue.
 
 use super::merges::Candidate;
 use crate::access::{Access, AccessKind, Mode, Range};
@@ -8,35 +8,35 @@ use crate::id::{PassId, ResourceId};
 use crate::plan::{Join, Role};
 use crate::resolve::ResolveMode;
 use crate::testing::check::attachments::weight;
-use crate::testing::check::case::{Replaced, only};
 use crate::testing::check::hazards::same_shape;
+use crate::testing::check::rule_input::{Replaced, only};
 
 impl Candidate<'_, '_> {
-    /// The one access that the pass makes at the same pixel.
+    /// Returns the only same-pixel read of the pass.
     fn input(&self) -> Option<&Access> {
         only(self.accesses, |a| a.kind == AccessKind::SamePixel)
     }
 
-    /// The last pass of the step that draws what an inlined pass reads, itself no epilogue.
+    /// Returns the last pass of the step, other than epilogues, that draws the input of an inlined pass.
     pub(super) fn last_producer(&self) -> Option<PassId> {
         let output = only(self.accesses, |a| a.kind == AccessKind::Color)?;
-        let target = self.case.effective(output.resource, output.range);
+        let target = self.ctx.effective(output.resource, output.range);
         let samples = self.samples();
         let mut running = self.members.iter().rev().filter(|m| m.join != Join::Inlined);
         let draws = |m| {
-            let mut touches = self.case.touches(m).filter(|t| t.access.kind == AccessKind::Color);
-            touches.any(|t| (t.resource, t.range) == target || samples.contains(&t.resource))
+            let mut uses = self.ctx.planned_accesses(m).filter(|t| t.access.kind == AccessKind::Color);
+            uses.any(|t| (t.resource, t.range) == target || samples.contains(&t.resource))
         };
         running.find(|m| draws(**m)).map(|m| m.pass)
     }
 
-    /// The attachments that are resolved into what the pass reads at the same pixel.
+    /// Returns the attachments that are resolved into the pass's same-pixel input.
     fn samples(&self) -> Vec<ResourceId> {
         let Some(input) = self.input() else {
             return Vec::new();
         };
-        let target = self.case.effective(input.resource, input.range).0;
-        let rows = self.case.plan.attachments_of(self.step).iter();
+        let target = self.ctx.effective(input.resource, input.range).0;
+        let rows = self.ctx.plan.attachments_of(self.step).iter();
         let slot = rows.filter(|a| a.resource == target).find_map(|a| match a.role {
             Role::ResolveTarget(slot, _) => Some(slot),
             _ => None,
@@ -44,9 +44,9 @@ impl Candidate<'_, '_> {
         self.colors().filter(|a| slot.is_some_and(|s| a.role == Role::Color(s))).map(|a| a.resource).collect()
     }
 
-    /// Whether the objection to becoming an epilogue stands.
+    /// Returns `true` if the objection to becoming an epilogue exists.
     pub(super) fn not_inlined(&self, why: Refusal) -> bool {
-        let flag = |pass: &PassId, flag| self.case.flag(*pass, flag);
+        let flag = |pass: &PassId, flag| self.ctx.flag(*pass, flag);
         if why == Refusal::NeverMerge {
             return self.stays_alone();
         }
@@ -65,7 +65,7 @@ impl Candidate<'_, '_> {
         match why {
             Refusal::BuildsOnContents => {
                 let first = |p: &PassId| {
-                    let mut colors = self.case.graph.accesses_of(*p).iter();
+                    let mut colors = self.ctx.graph.accesses_of(*p).iter();
                     colors.any(|a| a.kind == AccessKind::Color && a.mode == Mode::Modify)
                 };
                 let blends = flag(&self.pass, PassFlags::BLENDS);
@@ -79,10 +79,10 @@ impl Candidate<'_, '_> {
             Refusal::NeededAsTexture => self.needed_as_texture(input.resource),
             Refusal::TargetShape => {
                 let Access { resource: target, range, .. } = *output;
-                let same = same_shape(self.case, input.resource, Replaced { by: self.pass, target, range });
+                let same = same_shape(self.ctx, input.resource, Replaced { by: self.pass, target, range });
                 !same
                     || input.range.view.is_some()
-                    || !self.case.texture(target).is_some_and(|t| t.format.is_resolvable())
+                    || !self.ctx.texture(target).is_some_and(|t| t.format.is_resolvable())
             }
             Refusal::Blends => producers.iter().any(|p| flag(p, PassFlags::BLENDS)),
             Refusal::NoEpilogue => {
@@ -90,11 +90,11 @@ impl Candidate<'_, '_> {
             }
             Refusal::TooManyAttachments | Refusal::TileMemory => self.too_heavy(input, output),
             Refusal::ResolveMode => self.members.iter().any(|m| {
-                let mut into = self.case.accesses_of(m.pass).filter(|(_, a)| a.resource == input.resource);
-                let target = self.case.texture(output.resource).map(|t| t.format);
-                let target = target.is_some_and(|f| self.case.plan.caps().not_averaged.contains(&f));
+                let mut into = self.ctx.accesses_of(m.pass).filter(|(_, a)| a.resource == input.resource);
+                let target = self.ctx.texture(output.resource).map(|t| t.format);
+                let target = target.is_some_and(|f| self.ctx.plan.caps().not_averaged.contains(&f));
                 into.any(|(id, a)| {
-                    let other = a.resolve != ResolveMode::Average || self.case.is_full_screen(id) || target;
+                    let other = a.resolve != ResolveMode::Average || self.ctx.is_full_screen(id) || target;
                     a.kind == AccessKind::Resolve && other
                 })
             }),
@@ -103,9 +103,9 @@ impl Candidate<'_, '_> {
         }
     }
 
-    /// The passes of the step that draw into a resource or into the samples behind it, in order.
+    /// Returns the passes of the step that draw into a resource, or into the samples resolved into it, in order.
     fn producers(&self, input: ResourceId) -> Vec<PassId> {
-        let (target, _) = self.case.effective(input, Range::ALL);
+        let (target, _) = self.ctx.effective(input, Range::ALL);
         let samples = self.samples();
         let mut found = Vec::new();
         for (pass, touch) in self.before() {
@@ -117,33 +117,35 @@ impl Candidate<'_, '_> {
         found
     }
 
-    /// A resource, or the samples behind it, must survive or is used by others than the step's producers.
+    /// Returns `true` if a resource, or the samples resolved into it, must survive or has uses other than the step's
+    /// producers.
     fn needed_as_texture(&self, input: ResourceId) -> bool {
-        let case = self.case;
+        let ctx = self.ctx;
         self.samples().into_iter().chain([input]).any(|resource| {
-            let others = case.users[resource.index()].iter().any(|(pass, access)| {
+            let others = ctx.users[resource.index()].iter().any(|(pass, access)| {
                 let draws = matches!(access.kind, AccessKind::Color | AccessKind::Resolve);
                 let here = self.members.iter().any(|m| m.pass == *pass);
                 let reads_it = *pass == self.pass && access.kind == AccessKind::SamePixel;
                 !(reads_it || draws && here)
             });
-            !case.is_transient(resource) || others
+            !ctx.is_transient(resource) || others
         })
     }
 
-    /// With the target in the place of the input, the step has more color attachments than the device or its tile holds.
+    /// Returns `true` if the step would exceed the attachment limit or the tile memory with the target instead of the
+    /// input.
     fn too_heavy(&self, input: &Access, output: &Access) -> bool {
-        let caps = self.case.plan.caps();
-        let input = self.case.effective(input.resource, input.range).0;
+        let caps = self.ctx.plan.caps();
+        let input = self.ctx.effective(input.resource, input.range).0;
         let samples = self.samples();
         let formats = self.colors().filter_map(|a| {
             let replaced = a.resource == input || samples.contains(&a.resource);
-            self.case.format(if replaced { output.resource } else { a.resource })
+            self.ctx.format(if replaced { output.resource } else { a.resource })
         });
         let (count, bytes) = weight(formats);
         let tile = caps.tile_bytes_per_pixel;
         count > u32::from(caps.max_color_attachments)
             || bytes > caps.max_color_bytes_per_sample
-            || (tile != 0 && bytes * u32::from(self.case.step(self.step).samples) > tile)
+            || (tile != 0 && bytes * u32::from(self.ctx.step(self.step).samples) > tile)
     }
 }

@@ -1,47 +1,47 @@
-//! Rows on load and store ops: one of each for each attachment, in the order of the attachments.
+//! Rows about load and store operations: one of each per attachment, in the order of the attachments.
 
 use super::rows::{judge, number};
 use crate::decision::Reason;
 use crate::id::{PassId, ResourceId, StepId};
 use crate::plan::{Attachment, LoadOp, StoreOp};
-use crate::testing::check::case::Case;
 use crate::testing::check::memory::StoreRecord;
 use crate::testing::check::reference::{Value, Wanted};
 use crate::testing::check::resolves::takes_samples;
+use crate::testing::check::rule_input::RuleInput;
 use crate::testing::check::run::Trace;
 
-/// Examines the rows on one step.
+/// Examines the rows about one step.
 pub(super) fn ops(
-    case: &Case<'_>,
+    ctx: &RuleInput<'_>,
     trace: &Trace,
     step: StepId,
     loads: &[(ResourceId, Reason)],
     stores: &[(ResourceId, Reason)],
 ) {
-    let rows = case.plan.attachments_of(step);
-    number(case, step, "loads", loads.len(), rows.len());
-    number(case, step, "stores", stores.len(), rows.len());
-    for (index, (at, attachment)) in case.attachments(step).enumerate() {
+    let rows = ctx.plan.attachments_of(step);
+    number(ctx, step, "loads", loads.len(), rows.len());
+    number(ctx, step, "stores", stores.len(), rows.len());
+    for (index, (at, attachment)) in ctx.attachments(step).enumerate() {
         let place = (step, attachment.resource);
         if let Some(&(resource, reason)) = loads.get(index) {
             let holds = load(attachment, of(&trace.loaded, at, |(a, _)| *a), reason);
-            judge(case, place, reason, holds && resource == attachment.resource);
+            judge(ctx, place, reason, holds && resource == attachment.resource);
         }
         if let Some(&(resource, reason)) = stores.get(index) {
-            let holds = store(case, step, attachment, of(&trace.records, at, |r| r.attachment), reason);
-            judge(case, place, reason, holds && resource == attachment.resource);
+            let holds = store(ctx, step, attachment, of(&trace.records, at, |r| r.attachment), reason);
+            judge(ctx, place, reason, holds && resource == attachment.resource);
         }
     }
 }
 
-/// The rows about one attachment, among rows that are sorted by attachment.
+/// Returns the rows about one attachment, from rows sorted by attachment.
 fn of<T>(rows: &[T], attachment: usize, key: impl Fn(&T) -> usize) -> &[T] {
     let start = rows.partition_point(|r| key(r) < attachment);
     let end = rows.partition_point(|r| key(r) <= attachment);
     &rows[start..end]
 }
 
-/// Whether the reason for how an attachment comes into the tile is true; what is loaded counts first, then clears.
+/// Returns `true` if the reason of a load operation is correct. Loads take precedence over clears.
 fn load(attachment: &Attachment, loaded: &[(usize, Value)], reason: Reason) -> bool {
     let is = |op: LoadOp| attachment.load == op || attachment.stencil_load == op;
     let found = |value: Value| loaded.iter().any(|(_, v)| *v == value);
@@ -55,21 +55,21 @@ fn load(attachment: &Attachment, loaded: &[(usize, Value)], reason: Reason) -> b
     }
 }
 
-/// Whether the reason for what becomes of an attachment is true; what is stored counts first.
-fn store(case: &Case<'_>, step: StepId, attachment: &Attachment, records: &[StoreRecord], reason: Reason) -> bool {
+/// Returns `true` if the reason of a store operation is correct. Stores take precedence.
+fn store(ctx: &RuleInput<'_>, step: StepId, attachment: &Attachment, records: &[StoreRecord], reason: Reason) -> bool {
     let of = |op: StoreOp| records.iter().filter(move |r| r.op == op);
     let stored = attachment.stores();
-    let resolved = case.plan.attachments_of(step).iter().any(|a| takes_samples(a.role, attachment.role));
-    // Contents that its pass goes on with before are read by that.
+    let resolved = ctx.plan.attachments_of(step).iter().any(|a| takes_samples(a.role, attachment.role));
+    // If the pass itself reads the contents before its full-screen resolve, it counts as the reader.
     let by_full_screen = |pass: PassId| {
-        let here = case.plan.pass_steps()[pass.index()] == step;
-        let mut made = case.full_screen.iter().filter(|m| m.pass == pass);
+        let here = ctx.plan.pass_steps()[pass.index()] == step;
+        let mut made = ctx.full_screen.iter().filter(|m| m.pass == pass);
         here && made.any(|m| m.samples.resource == attachment.resource)
     };
     let read_by = |pass: PassId| of(StoreOp::Store).any(|r| r.readers.contains(&pass));
     let survived = |why: Wanted| {
-        let wanted = case.parts.all(attachment.resource);
-        let mut wanted = case.reference.wanted[wanted].iter();
+        let wanted = ctx.parts.all(attachment.resource);
+        let mut wanted = ctx.reference.wanted[wanted].iter();
         of(StoreOp::Store).any(|r| r.survived) && wanted.any(|w| *w == Some(why))
     };
     let dropped = attachment.store == StoreOp::Discard || attachment.stencil_store == StoreOp::Discard;
@@ -82,7 +82,7 @@ fn store(case: &Case<'_>, step: StepId, attachment: &Attachment, records: &[Stor
         Reason::StoreHistory => survived(Wanted::History),
         Reason::DiscardResolved => discarded && resolved,
         Reason::DiscardOverwritten => discarded && !resolved && of(StoreOp::Discard).any(|r| r.overwritten > 0),
-        // What has no memory leaves no record behind.
+        // Memoryless resources leave no record.
         Reason::DiscardUnread => {
             let unread = of(StoreOp::Discard).any(|r| r.overwritten < r.parts);
             discarded && !resolved && (records.is_empty() || unread)

@@ -1,4 +1,4 @@
-//! Rows on passes: kept, culled, moved.
+//! Rows about passes: kept, culled, moved.
 
 use super::rows::{judge, number, predecessor};
 use crate::access::Access;
@@ -6,23 +6,23 @@ use crate::decision::Reason;
 use crate::graph::PassFlags;
 use crate::id::{PassId, ResourceId};
 use crate::options::Order;
-use crate::testing::check::case::Case;
 use crate::testing::check::reference::{Value, Wanted};
+use crate::testing::check::rule_input::RuleInput;
 
-/// One verdict, and a row on the order when the pass was moved.
-pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
+/// Checks that there is one correct verdict, and a row about the order if the pass was moved.
+pub(super) fn verdict(ctx: &RuleInput<'_>, pass: PassId, reasons: &[Reason]) {
     let (mut verdicts, mut moves, mut averages, mut full_screen) = (0, 0, 0, 0);
-    let by_full_screen = || case.full_screen.iter().filter(|m| m.pass == pass);
-    let dropped = || case.accesses_of(pass).filter(|(id, _)| case.dropped[*id]);
-    // As many rows as there are such resolves: one too many of a target is one too few of another.
+    let by_full_screen = || ctx.full_screen.iter().filter(|m| m.pass == pass);
+    let dropped = || ctx.accesses_of(pass).filter(|(id, _)| ctx.dropped[*id]);
+    // The number of rows must equal the number of such resolves; a surplus for one target is a lack for another.
     let rows = |reason| reasons.iter().filter(|r| **r == reason).count();
     for &reason in reasons {
         let holds = match reason {
             Reason::OrderMerge(before) | Reason::OrderBytes(before) => {
                 moves += 1;
-                let steps = case.plan.pass_steps();
+                let steps = ctx.plan.pass_steps();
                 let shares = steps[pass.index()] == steps[before.index()];
-                predecessor(case, pass) == Some(before) && shares == matches!(reason, Reason::OrderMerge(_))
+                predecessor(ctx, pass) == Some(before) && shares == matches!(reason, Reason::OrderMerge(_))
             }
             Reason::ResolveDropped(resource) => {
                 averages += 1;
@@ -32,89 +32,89 @@ pub(super) fn verdict(case: &Case<'_>, pass: PassId, reasons: &[Reason]) {
                 full_screen += 1;
                 by_full_screen().filter(|m| m.target.resource == resource).count() == rows(reason)
             }
-            // Judged by `merges`.
+            // Checked by `merges`.
             Reason::MergedAttachments(_)
             | Reason::MergedSamePixel(_)
             | Reason::MergedInline(_)
             | Reason::Split(..)
             | Reason::NotInlined(..) => true,
             _ => {
-                let holds = stands(case, pass, reason);
+                let holds = stands(ctx, pass, reason);
                 verdicts += usize::from(holds.is_some());
                 holds.unwrap_or(false)
             }
         };
-        judge(case, pass, reason, holds);
+        judge(ctx, pass, reason, holds);
     }
-    number(case, pass, "its verdict", verdicts, 1);
-    number(case, pass, "its averages", averages, dropped().count());
-    number(case, pass, "its full-screen resolves", full_screen, by_full_screen().count());
-    number(case, pass, "its order", moves, usize::from(was_moved(case, pass)));
+    number(ctx, pass, "its verdict", verdicts, 1);
+    number(ctx, pass, "its averages", averages, dropped().count());
+    number(ctx, pass, "its full-screen resolves", full_screen, by_full_screen().count());
+    number(ctx, pass, "its order", moves, usize::from(was_moved(ctx, pass)));
 }
 
-/// Whether a pass runs after another one than in declaration order.
-fn was_moved(case: &Case<'_>, pass: PassId) -> bool {
-    if case.plan.options().order == Order::Declared {
+/// Returns `true` if a pass follows another pass than in declaration order.
+fn was_moved(ctx: &RuleInput<'_>, pass: PassId) -> bool {
+    if ctx.plan.options().order == Order::Declared {
         return false;
     }
-    let Some(before) = predecessor(case, pass) else {
+    let Some(before) = predecessor(ctx, pass) else {
         return false;
     };
     let earlier = (0..pass.index()).rev().map(PassId::at);
-    let declared = earlier.into_iter().find(|p| case.position[p.index()].is_some());
+    let declared = earlier.into_iter().find(|p| ctx.position[p.index()].is_some());
     declared != Some(before)
 }
 
-/// The parts that a pass writes of a resource.
-fn written(case: &Case<'_>, pass: PassId, resource: ResourceId) -> Vec<usize> {
-    let accesses = case.graph.accesses_of(pass).iter();
+/// Returns the parts of a resource that a pass writes.
+fn written(ctx: &RuleInput<'_>, pass: PassId, resource: ResourceId) -> Vec<usize> {
+    let accesses = ctx.graph.accesses_of(pass).iter();
     let writes = accesses.filter(|a| a.resource == resource && a.mode.writes());
-    writes.flat_map(|a| case.covered(a)).collect()
+    writes.flat_map(|a| ctx.covered(a)).collect()
 }
 
-/// Whether a verdict on a pass is true; none for what is no verdict.
-fn stands(case: &Case<'_>, pass: PassId, reason: Reason) -> Option<bool> {
-    let reference = &case.reference;
-    let runs = |p: PassId| case.position[p.index()].is_some();
+/// Returns if a verdict about a pass is correct; `None` for rows that are not verdicts.
+fn stands(ctx: &RuleInput<'_>, pass: PassId, reason: Reason) -> Option<bool> {
+    let reference = &ctx.reference;
+    let runs = |p: PassId| ctx.position[p.index()].is_some();
     let kept = runs(pass);
-    let any = |resource, holds: &dyn Fn(usize) -> bool| written(case, pass, resource).into_iter().any(holds);
+    let any = |resource, holds: &dyn Fn(usize) -> bool| written(ctx, pass, resource).into_iter().any(holds);
     let survives = |resource, why: Wanted| {
         any(resource, &|part| reference.exit[part] == Value::Written(pass) && reference.wanted[part] == Some(why))
     };
     let read_by = |resource, reader| any(resource, &|part| reference.readers(pass, part).any(|p| p == reader));
     let unread = |part| reference.readers(pass, part).next().is_none();
     Some(match reason {
-        Reason::KeptSideEffect => kept && case.flag(pass, PassFlags::SIDE_EFFECT),
+        Reason::KeptSideEffect => kept && ctx.flag(pass, PassFlags::SIDE_EFFECT),
         Reason::KeptExport(r) => kept && survives(r, Wanted::Export),
         Reason::KeptImport(r) => kept && survives(r, Wanted::Import),
         Reason::KeptHistory(r) => kept && survives(r, Wanted::History),
         Reason::KeptReadBy(r, reader) => kept && runs(reader) && read_by(r, reader),
-        Reason::KeptCullingOff => kept && !case.plan.options().cull && !keeps_itself(case, pass),
-        Reason::CulledNoOutput => !kept && !case.graph.accesses_of(pass).iter().any(|a| a.mode.writes()),
-        // No pass reads it, and none writes over it either.
-        Reason::CulledUnread(r) => !kept && any(r, &|part| unread(part) && !overwrites(case, pass, part, |_| true)),
+        Reason::KeptCullingOff => kept && !ctx.plan.options().cull && !keeps_itself(ctx, pass),
+        Reason::CulledNoOutput => !kept && !ctx.graph.accesses_of(pass).iter().any(|a| a.mode.writes()),
+        // No pass reads or overwrites it.
+        Reason::CulledUnread(r) => !kept && any(r, &|part| unread(part) && !overwrites(ctx, pass, part, |_| true)),
         Reason::CulledReaderCulled(r, reader) => !kept && !runs(reader) && read_by(r, reader),
         Reason::CulledOverwritten(r, writer) => {
-            !kept && any(r, &|part| unread(part) && overwrites(case, pass, part, |p| p == writer))
+            !kept && any(r, &|part| unread(part) && overwrites(ctx, pass, part, |p| p == writer))
         }
         _ => return None,
     })
 }
 
-/// Whether a pass has a better reason to be kept than that culling is off.
-fn keeps_itself(case: &Case<'_>, pass: PassId) -> bool {
-    let mut writes = case.graph.accesses_of(pass).iter().filter(|a| a.mode.writes());
-    let needed = |a: &Access| case.covered(a).any(|part| case.is_needed(pass, part));
-    case.flag(pass, PassFlags::SIDE_EFFECT) || writes.any(needed)
+/// Returns `true` if a pass has a reason to be kept other than disabled culling.
+fn keeps_itself(ctx: &RuleInput<'_>, pass: PassId) -> bool {
+    let mut writes = ctx.graph.accesses_of(pass).iter().filter(|a| a.mode.writes());
+    let needed = |a: &Access| ctx.covered(a).any(|part| ctx.is_needed(pass, part));
+    ctx.flag(pass, PassFlags::SIDE_EFFECT) || writes.any(needed)
 }
 
-/// Whether a later pass of which `chosen` is true writes over a part without need of what it held.
-fn overwrites(case: &Case<'_>, pass: PassId, part: usize, chosen: impl Fn(PassId) -> bool) -> bool {
-    let later = (pass.index() + 1..case.graph.passes().len()).map(PassId::at);
+/// Returns `true` if a later pass for which `chosen` is true overwrites a part without using its contents.
+fn overwrites(ctx: &RuleInput<'_>, pass: PassId, part: usize, chosen: impl Fn(PassId) -> bool) -> bool {
+    let later = (pass.index() + 1..ctx.graph.passes().len()).map(PassId::at);
     later.filter(|p| chosen(*p)).any(|p| {
-        case.accesses_of(p).any(|(id, a)| {
-            let adds = a.mode.needs_contents() && !case.reference.in_vain[id];
-            a.mode.writes() && !adds && case.covered(a).any(|q| q == part)
+        ctx.accesses_of(p).any(|(id, a)| {
+            let adds = a.mode.needs_contents() && !ctx.reference.in_vain[id];
+            a.mode.writes() && !adds && ctx.covered(a).any(|q| q == part)
         })
     })
 }

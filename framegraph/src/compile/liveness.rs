@@ -1,4 +1,4 @@
-//! What becomes of the contents of a part after a given moment: the value that the backward sweeps carry.
+//! Liveness: the next use of the contents of a subresource, as tracked by the backward sweeps.
 
 use crate::decision::Reason;
 use crate::graph::Tables;
@@ -9,55 +9,55 @@ use super::measure::Measures;
 use super::parts::Parts;
 use crate::access::Range;
 
-/// Who needs what a part holds at this moment, or what becomes of it instead.
+/// The next use of the contents of a subresource, or the way they are lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Need {
-    /// This pass reads it.
+pub(crate) enum NextUse {
+    /// This pass reads them.
     Reader(PassId),
-    /// It is exported.
+    /// They are exported.
     Export,
-    /// It is imported and must survive.
+    /// They are imported and must survive the frame.
     Import,
-    /// Later frames read it.
+    /// Later frames read them.
     History,
-    /// No pass reads it, and none writes over it.
+    /// No pass reads or overwrites them.
     Unread,
-    /// Only this culled pass reads it.
+    /// Only this culled pass reads them.
     CulledReader(PassId),
-    /// Only this culled pass reads it; then a pass that is kept writes over it.
+    /// Only this culled pass reads them, before a kept pass overwrites them.
     CulledReaderThenKept(PassId),
-    /// This culled pass writes over it, and no pass that is kept.
+    /// This culled pass overwrites them, and no kept pass does.
     CulledWriter(PassId),
-    /// This pass writes over it first, and a pass that is kept does: this one or a later one.
+    /// This pass overwrites them first. It is kept, or a later pass that overwrites them is.
     Overwritten(PassId),
 }
 
-impl Need {
-    /// A culled pass reads what otherwise has this fate, which is not to be needed.
+impl NextUse {
+    /// Returns the next use before a culled pass that reads contents which are not needed.
     #[inline]
     pub(crate) const fn or_culled_reader(self, pass: PassId) -> Self {
         if self.is_overwritten() { Self::CulledReaderThenKept(pass) } else { Self::CulledReader(pass) }
     }
 
-    /// A culled pass writes over what otherwise has this fate, which is not to be needed.
+    /// Returns the next use before a culled pass that overwrites contents which are not needed.
     #[inline]
     pub(crate) const fn or_culled_writer(self, pass: PassId) -> Self {
         if self.is_overwritten() { Self::Overwritten(pass) } else { Self::CulledWriter(pass) }
     }
 
-    /// Whether the contents must be kept.
+    /// Returns `true` if the contents must be kept.
     #[inline]
     pub(crate) const fn is_needed(self) -> bool {
         matches!(self, Self::Reader(_) | Self::Export | Self::Import | Self::History)
     }
 
-    /// Whether a kept pass writes over the contents before any kept pass reads them.
+    /// Returns `true` if a kept pass overwrites the contents before any kept pass reads them.
     #[inline]
     pub(crate) const fn is_overwritten(self) -> bool {
         matches!(self, Self::CulledReaderThenKept(_) | Self::Overwritten(_))
     }
 
-    /// The reason to keep the pass that writes `resource`.
+    /// Returns the reason to keep the pass that writes `resource`.
     #[inline]
     pub(crate) fn kept(self, resource: ResourceId) -> Reason {
         match self {
@@ -69,7 +69,7 @@ impl Need {
         }
     }
 
-    /// The reason to drop the pass that writes `resource`.
+    /// Returns the reason to cull the pass that writes `resource`.
     pub(crate) fn culled(self, resource: ResourceId) -> Reason {
         match self {
             Self::CulledReader(pass) | Self::CulledReaderThenKept(pass) => Reason::CulledReaderCulled(resource, pass),
@@ -78,7 +78,7 @@ impl Need {
         }
     }
 
-    /// The reason to store what was written, when it is needed.
+    /// Returns the reason to store the contents if they are needed.
     #[inline]
     pub(crate) fn stored(self) -> Option<Reason> {
         match self {
@@ -91,20 +91,20 @@ impl Need {
     }
 }
 
-/// Fills `needs` with what is needed when the frame ends: histories, imports that survive, exports.
-pub(crate) fn needs_at_exit(graph: &Tables, parts: &Parts, measures: &Measures, needs: &mut Vec<Need>) {
+/// Fills `needs` with the uses at the end of the frame: histories, kept imports and exports.
+pub(crate) fn uses_at_exit(graph: &Tables, parts: &Parts, measures: &Measures, needs: &mut Vec<NextUse>) {
     needs.clear();
-    needs.resize(parts.total(), Need::Unread);
+    needs.resize(parts.total(), NextUse::Unread);
     for &resource in &measures.outside {
         let need = match graph.resources[resource.index()].kind {
-            Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. } => Need::History,
-            kind if kind.kept_on_exit() => Need::Import,
+            Kind::HistoryCurrent { .. } | Kind::HistoryPrevious { .. } => NextUse::History,
+            kind if kind.kept_on_exit() => NextUse::Import,
             _ => continue,
         };
         parts.fill(needs, resource, Range::ALL, need);
     }
     for export in &graph.exports {
-        parts.fill(needs, export.resource, Range::ALL, Need::Export);
+        parts.fill(needs, export.resource, Range::ALL, NextUse::Export);
     }
 }
 
@@ -115,13 +115,13 @@ mod tests {
     #[test]
     fn culled_passes_hide_no_kept_writer() {
         let [p, q] = [PassId::at(3), PassId::at(1)];
-        let overwritten = Need::Overwritten(p);
+        let overwritten = NextUse::Overwritten(p);
         for hidden in [overwritten.or_culled_reader(q), overwritten.or_culled_writer(q)] {
             assert!(hidden.is_overwritten() && hidden.or_culled_reader(q).is_overwritten() && !hidden.is_needed());
         }
-        for free in [Need::Unread, Need::Unread.or_culled_reader(q), Need::Unread.or_culled_writer(q)] {
+        for free in [NextUse::Unread, NextUse::Unread.or_culled_reader(q), NextUse::Unread.or_culled_writer(q)] {
             assert!(!free.is_overwritten() && !free.is_needed());
         }
-        assert!(!Need::Reader(p).is_overwritten() && !Need::Export.is_overwritten());
+        assert!(!NextUse::Reader(p).is_overwritten() && !NextUse::Export.is_overwritten());
     }
 }

@@ -1,32 +1,32 @@
-//! Phase 4, the open step: what all of its passes have in common.
+//! Phase 4: the current step, to which the next pass may be added.
 
 use super::framebuffer::Framebuffer;
 use crate::decision::Refusal;
 use crate::graph::PassFlags;
 use crate::id::PassId;
 
-/// The open step.
+/// The current step.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Open {
-    /// Whether it draws.
+pub(super) struct CurrentStep {
+    /// The step is a raster step.
     pub(super) raster: bool,
-    /// One of its passes asks to stay alone.
+    /// A pass of the step is declared `never_merge`.
     pub(super) alone: bool,
     pub(super) framebuffer: Framebuffer,
-    /// Where its passes begin in `step_passes`.
+    /// Index of its first pass in `step_passes`.
     pub(super) first: usize,
     /// Its last pass; none before the first step.
     pub(super) last: PassId,
 }
 
-impl Open {
-    /// Before the first step.
+impl CurrentStep {
+    /// State before the first step.
     pub(super) const NONE: Self =
         Self { raster: false, alone: false, framebuffer: Framebuffer::NONE, first: 0, last: PassId::NONE };
 
-    /// What stands against a pass whatever the step's attachments are.
+    /// Returns the objection against a pass that does not depend on its attachments, if any.
     #[inline]
-    pub(super) fn plain_objection(&self, merging: bool, flags: PassFlags, framebuffer: Framebuffer) -> Option<Refusal> {
+    pub(super) fn basic_objection(&self, merging: bool, flags: PassFlags, framebuffer: Framebuffer) -> Option<Refusal> {
         if !merging {
             Some(Refusal::Disabled)
         } else if self.alone || flags.has(PassFlags::NEVER_MERGE) {

@@ -1,17 +1,17 @@
-//! The first hundred errors, and how many more there are: a wrong loop in a program or file can make as many as there are
-//! passes, and each costs a search for what to say.
+//! A list of errors with a maximum length. A faulty loop in a program or file can produce one error per pass, and
+//! formatting each one is expensive.
 
 use std::fmt;
 
-/// So many errors are kept.
-const MOST: usize = 100;
+/// Maximum number of errors that are kept.
+const MAX_LISTED: usize = 100;
 
-/// The first hundred errors in their order, and how many more there are. Displayed as a line each.
+/// Up to 100 errors in the order they were found, and the number of further errors. Displays one error per line.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Errors<E> {
-    /// The first hundred at most.
+    /// The first errors, at most 100.
     pub listed: Vec<E>,
-    /// How many there are beside these.
+    /// Number of errors that are not listed.
     pub more: usize,
 }
 
@@ -22,7 +22,7 @@ impl<E> Default for Errors<E> {
 }
 
 impl<E> Errors<E> {
-    /// Counts an error, and makes it as long as there is room.
+    /// Adds an error, or only counts it if the list is full.
     #[cold]
     pub(crate) fn push(&mut self, make: impl FnOnce() -> E) {
         if !self.is_full() {
@@ -32,17 +32,17 @@ impl<E> Errors<E> {
         }
     }
 
-    /// Whether another one is only counted.
+    /// Returns `true` if further errors are only counted.
     pub(crate) const fn is_full(&self) -> bool {
-        self.listed.len() >= MOST
+        self.listed.len() >= MAX_LISTED
     }
 
-    /// How many were found.
+    /// Number of errors, listed or not.
     pub(crate) const fn count(&self) -> usize {
         self.listed.len() + self.more
     }
 
-    /// `value`, unless there are errors.
+    /// Returns `value` if there are no errors.
     pub(crate) fn or<T>(self, value: T) -> Result<T, Self> {
         if self.count() == 0 { Ok(value) } else { Err(self) }
     }
@@ -65,7 +65,7 @@ impl<E: fmt::Display> fmt::Display for Errors<E> {
 }
 
 impl<E: fmt::Display> fmt::Debug for Errors<E> {
-    /// The sentences, since that is what an `unwrap` shows.
+    /// Shows the messages, because `unwrap` prints this.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
     }

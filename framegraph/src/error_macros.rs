@@ -1,15 +1,16 @@
-//! What can be wrong, said once: enumerations of faults, and how the errors that hold them are shown.
+//! Macros that define error enumerations together with their messages and hints.
 //!
-//! Macros, since no function can make the variants of an enumeration or implement a trait.
+//! Macros are needed because a function cannot define the variants of an enumeration.
 
-use crate::plain::line;
+use crate::sanitize::line;
 use std::fmt;
 use std::panic::Location;
 
-/// Makes an enumeration of rows `Variant { field: Type, … } "sentence", "hint", more = …;`. Sentence and hint name in braces
-/// what the row holds, or what it works out from that behind them; the sentence is the variant's documentation too. A row
-/// whose words are those of what it holds has `=> words` in their place.
-macro_rules! faults {
+/// Defines an error enumeration from rows of the form `Variant { field: Type, … } "message", "hint", more = …;`.
+///
+/// Messages and hints can use the fields and the values bound behind them in braces. The message is also the
+/// documentation of the variant. A row that wraps another error uses `=> expression` instead of the two strings.
+macro_rules! error_enum {
     ($(#[$meta:meta])* $name:ident { $(
         $(#[$doc:meta])*
         $variant:ident $({ $($(#[$of_field:meta])* $field:ident: $type:ty),+ })? $(($inner:ident: $of:ty))?
@@ -18,14 +19,14 @@ macro_rules! faults {
         $(#[$meta])*
         #[derive(Clone, PartialEq, Eq)]
         #[non_exhaustive]
-        #[allow(missing_docs, reason = "the sentence says what the fields are")]
+        #[allow(missing_docs, reason = "the message describes the fields")]
         pub enum $name {
             $($(#[$doc])* $(#[doc = $sentence])? $variant $({ $($(#[$of_field])* $field: $type),+ })? $(($of))?,)+
         }
 
         impl $name {
-            /// What is wrong, without names of pass and resource, and what to do about it: empty when the sentence says that.
-            #[allow(unused_variables, clippy::useless_format, reason = "not every sentence names every field")]
+            /// Returns message and hint, without the names of pass and resource. The hint may be empty.
+            #[allow(unused_variables, clippy::useless_format, reason = "not every message uses every field")]
             pub(crate) fn words(&self) -> (String, String) {
                 match self {
                     $(Self::$variant $({ $($field),+ })? $(($inner))? => {
@@ -34,12 +35,12 @@ macro_rules! faults {
                 }
             }
 
-            /// What is wrong, without names of pass and resource.
+            /// Returns the message, without the names of pass and resource.
             pub fn sentence(&self) -> String {
                 self.words().0
             }
 
-            /// What to do about it; empty when the sentence says so already.
+            /// Returns the hint: how to fix the error. Empty if the message says so already.
             pub fn hint(&self) -> String {
                 self.words().1
             }
@@ -47,16 +48,16 @@ macro_rules! faults {
 
         impl std::fmt::Display for $name {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                $crate::faults::show(f, "", (None, None), self.words(), None)
+                $crate::error_macros::show(f, "", (None, None), self.words(), None)
             }
         }
 
-        $crate::faults::errors!($name);
+        $crate::error_macros::impl_error!($name);
     };
 }
 
-/// Makes types with a `Display` errors, whose `Debug` is the sentence too, since that is what an `unwrap` shows.
-macro_rules! errors {
+/// Implements `Error` for types with `Display`, and `Debug` by the same text, because `unwrap` prints that.
+macro_rules! impl_error {
     ($($error:ident),+) => { $(
         impl std::fmt::Debug for $error {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -68,9 +69,9 @@ macro_rules! errors {
     )+ };
 }
 
-pub(crate) use {errors, faults};
+pub(crate) use {error_enum, impl_error};
 
-/// Writes an error as one line: where in a file, whom it is about, what is wrong, where in code, and what to do.
+/// Formats an error as one line: position in a file, pass, resource, message, position in code, hint.
 pub(crate) fn show(
     f: &mut fmt::Formatter<'_>,
     start: &str,

@@ -1,9 +1,9 @@
-//! Names as outputs show them: on one line, without control characters, and short.
+//! Sanitizes names for output: one line, no control characters, limited length.
 
 use std::borrow::Cow;
 
-/// Text on one line, whatever is in a name: control characters are written as Rust would (`\n`, `\u{1b}`).
-pub fn plain(text: &str) -> Cow<'_, str> {
+/// Escapes control characters as Rust does (`\n`, `\u{1b}`), so that the text fits on one line.
+pub fn escape_controls(text: &str) -> Cow<'_, str> {
     if !text.contains(char::is_control) {
         return Cow::Borrowed(text);
     }
@@ -18,25 +18,25 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// Characters of a name that an error shows at most.
-const MOST_OF_A_NAME: usize = 120;
+/// Maximum number of characters of a name in an error.
+const MAX_NAME_CHARS: usize = 120;
 
-/// Characters of an error at most.
-const MOST_OF_A_LINE: usize = 4000;
+/// Maximum number of characters of an error.
+const MAX_LINE_CHARS: usize = 4000;
 
-/// The line of an error: [`plain`], each name in backticks shortened, and the whole too.
+/// Formats an error as one line: escapes control characters, and shortens long names in backticks and the whole line.
 pub fn line(text: &str) -> String {
     let pieces = text.split('`').enumerate();
-    let pieces = pieces.map(|(i, piece)| if i % 2 == 1 { short(piece, MOST_OF_A_NAME) } else { piece.into() });
-    plain(&short(&pieces.collect::<Vec<_>>().join("`"), MOST_OF_A_LINE)).into_owned()
+    let pieces = pieces.map(|(i, piece)| if i % 2 == 1 { short(piece, MAX_NAME_CHARS) } else { piece.into() });
+    escape_controls(&short(&pieces.collect::<Vec<_>>().join("`"), MAX_LINE_CHARS)).into_owned()
 }
 
-/// A name in an error: [`plain`], and shortened.
+/// Formats a name for an error: escapes control characters and shortens it.
 pub fn name(text: &str) -> String {
-    plain(&short(text, MOST_OF_A_NAME)).into_owned()
+    escape_controls(&short(text, MAX_NAME_CHARS)).into_owned()
 }
 
-/// `text`, or if it has more than `most` characters, so many of them and how many there are.
+/// Shortens `text` to `most` characters and appends its length if it is longer.
 fn short(text: &str, most: usize) -> Cow<'_, str> {
     match text.char_indices().nth(most) {
         Some((end, _)) => format!("{}… ({} characters)", &text[..end], text.chars().count()).into(),
@@ -50,8 +50,8 @@ mod tests {
 
     #[test]
     fn control_characters_are_written_out() {
-        assert_eq!(plain("a\0b\u{1b}[31m\n\u{9b}\u{7f}ü"), "a\\u{0}b\\u{1b}[31m\\n\\u{9b}\\u{7f}ü");
-        assert!(matches!(plain("plain"), Cow::Borrowed("plain")));
+        assert_eq!(escape_controls("a\0b\u{1b}[31m\n\u{9b}\u{7f}ü"), "a\\u{0}b\\u{1b}[31m\\n\\u{9b}\\u{7f}ü");
+        assert!(matches!(escape_controls("plain"), Cow::Borrowed("plain")));
     }
 
     #[test]

@@ -1,6 +1,6 @@
-//! The raster step that is being put together: what is attached to it so far.
+//! The attachments of a raster step under construction.
 
-use super::steps::{Spot, overlapping, same_spot};
+use super::steps::{ResourceRange, overlapping, same_range};
 use crate::access::{Access, AccessKind, Mode, Range};
 use crate::caps::Caps;
 use crate::decision::Refusal;
@@ -8,37 +8,37 @@ use crate::format::{Aspect, Format};
 use crate::graph::Tables;
 use crate::id::ResourceId;
 
-/// The most color attachments of one step: several passes that read each other in the tile can have more than one pass.
+/// Maximum number of color attachments of a step. Merged passes with same-pixel reads can have more than a single pass.
 const STEP_COLORS: usize = 16;
 
-/// Behind the slots of colors: where the resolve of depth is kept.
+/// Slot behind the color slots, for the depth resolve.
 const DEPTH: u8 = Access::DEPTH;
 
-/// Attachments of a step in the making. The masks say which slots are taken, so that opening a step clears three words.
+/// Attachments of a step under construction. Masks mark the used slots, so that a reset clears only three words.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct StepAttachments {
-    colors: [Spot; STEP_COLORS],
-    resolves: [Spot; STEP_COLORS],
-    depth: Spot,
+pub(crate) struct AttachmentSet {
+    colors: [ResourceRange; STEP_COLORS],
+    resolves: [ResourceRange; STEP_COLORS],
+    depth: ResourceRange,
     color_slots: u16,
     resolve_slots: u16,
     has_depth: Option<Planes>,
     samples: u8,
 }
 
-/// Which planes of the depth attachment passes of the step use, and whether one of them is cleared.
+/// Planes of the depth attachment in use, and if one of them is cleared.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Planes {
     used: Aspect,
     cleared: bool,
 }
 
-/// Which slots of a step are taken: colors, resolve targets, depth.
+/// Slots in use: colors, resolve targets, depth.
 pub(crate) type Taken = (u16, u16, Option<Planes>);
 
-const NOWHERE: Spot = (ResourceId::NONE, Range::ALL);
+const NOWHERE: ResourceRange = (ResourceId::NONE, Range::ALL);
 
-impl Default for StepAttachments {
+impl Default for AttachmentSet {
     fn default() -> Self {
         Self {
             colors: [NOWHERE; STEP_COLORS],
@@ -52,7 +52,7 @@ impl Default for StepAttachments {
     }
 }
 
-/// The slots of a mask, from the lowest up.
+/// Iterates over the slots of a mask, lowest first.
 #[derive(Clone)]
 struct Slots(u16);
 
@@ -67,9 +67,9 @@ impl Iterator for Slots {
     }
 }
 
-impl StepAttachments {
-    /// Becomes the step that `accesses`, of that many samples, open.
-    pub(crate) fn open(&mut self, accesses: &[Access], samples: u8) {
+impl AttachmentSet {
+    /// Resets to the attachments of `accesses` with this sample count.
+    pub(crate) fn reset_to(&mut self, accesses: &[Access], samples: u8) {
         self.restore((0, 0, None));
         self.samples = samples;
         for access in accesses {
@@ -77,18 +77,18 @@ impl StepAttachments {
         }
     }
 
-    /// Which slots are taken.
+    /// Returns the slots in use.
     pub(crate) const fn taken(&self) -> Taken {
         (self.color_slots, self.resolve_slots, self.has_depth)
     }
 
-    /// Forgets what was attached since `taken` was asked for: what lies in free slots means nothing.
+    /// Restores the slots in use, and so removes attachments added since `taken` was called.
     pub(crate) const fn restore(&mut self, taken: Taken) {
         (self.color_slots, self.resolve_slots, self.has_depth) = taken;
     }
 
-    /// Attaches what one access of a pass names. Where the wanted color slot is taken by another, the next free one is
-    /// used if `remap`. Returns false when there is no place.
+    /// Adds the attachment of one access. Uses the next free color slot if the wanted one is in use and `remap` is set.
+    /// Returns `false` if there is no valid slot.
     #[inline]
     pub(crate) fn attach(&mut self, pass: &[Access], access: &Access, remap: bool) -> bool {
         let spot = (access.resource, access.range);
@@ -102,7 +102,7 @@ impl StepAttachments {
                 };
                 let used = if planes.used == own.used { own.used } else { Aspect::All };
                 self.has_depth = Some(Planes { used, cleared: planes.cleared | own.cleared });
-                same_spot(self.depth, spot)
+                same_range(self.depth, spot)
             }
             AccessKind::Resolve => {
                 let samples = pass.iter().find(|a| a.is_resolved_by(access)).map(|a| (a.resource, a.range));
@@ -120,17 +120,17 @@ impl StepAttachments {
         }
     }
 
-    /// Whether a spot overlaps an attachment without being the same: one layer cannot be attached twice. A resolve target
-    /// is attached once, for one color attachment.
-    pub(crate) fn crosses(&self, spot: Spot) -> bool {
-        let of = |(_, s): (u8, Spot)| s;
+    /// Returns `true` if a range partly overlaps an attachment, or overlaps a resolve target. A layer cannot be
+    /// attached twice.
+    pub(crate) fn crosses(&self, spot: ResourceRange) -> bool {
+        let of = |(_, s): (u8, ResourceRange)| s;
         let depth = self.has_depth.map(|_| self.depth);
         let mut shown = self.colors().map(of).chain(depth);
-        shown.any(|s| overlapping(s, spot) && !same_spot(s, spot))
+        shown.any(|s| overlapping(s, spot) && !same_range(s, spot))
             || self.resolves().map(of).any(|s| overlapping(s, spot))
     }
 
-    fn attach_color(&mut self, wanted: u8, spot: Spot, remap: bool) -> bool {
+    fn attach_color(&mut self, wanted: u8, spot: ResourceRange, remap: bool) -> bool {
         if let Some(slot) = self.color_slot(spot) {
             return remap || slot == wanted;
         }
@@ -149,63 +149,64 @@ impl StepAttachments {
     }
 
     /// The color attachments with their slots.
-    pub(crate) fn colors(&self) -> impl Iterator<Item = (u8, Spot)> + Clone {
+    pub(crate) fn colors(&self) -> impl Iterator<Item = (u8, ResourceRange)> + Clone {
         Slots(self.color_slots).map(|s| (s, self.colors[usize::from(s)]))
     }
 
-    /// The resolve targets with the slots of the color attachments whose samples they get; [`Access::DEPTH`] for depth.
-    pub(crate) fn resolves(&self) -> impl Iterator<Item = (u8, Spot)> {
+    /// The resolve targets with the slots of their source; [`Access::DEPTH`] for depth.
+    pub(crate) fn resolves(&self) -> impl Iterator<Item = (u8, ResourceRange)> {
         Slots(self.resolve_slots).map(|s| (s, self.resolves[usize::from(s)]))
     }
 
-    /// The resolve target of a color slot.
-    pub(crate) fn resolve_of(&self, slot: u8) -> Option<Spot> {
+    /// Returns the resolve target of a slot.
+    pub(crate) fn resolve_of(&self, slot: u8) -> Option<ResourceRange> {
         let has = self.resolve_slots & (1 << slot) != 0;
         has.then(|| self.resolves[usize::from(slot)])
     }
 
-    /// Puts a spot into a color slot.
-    pub(crate) fn set_color(&mut self, slot: u8, spot: Spot) {
+    /// Sets the attachment of a color slot.
+    pub(crate) fn set_color(&mut self, slot: u8, spot: ResourceRange) {
         self.colors[usize::from(slot)] = spot;
         self.color_slots |= 1 << slot;
     }
 
-    /// Makes a spot the resolve target of a color slot.
-    pub(crate) fn set_resolve(&mut self, slot: u8, spot: Spot) {
+    /// Sets the resolve target of a color slot.
+    pub(crate) fn set_resolve(&mut self, slot: u8, spot: ResourceRange) {
         self.resolves[usize::from(slot)] = spot;
         self.resolve_slots |= 1 << slot;
     }
 
-    /// The slot of the step in which a spot is attached as color.
+    /// Returns the slot in which a range is attached as color.
     #[inline]
-    pub(crate) fn color_slot(&self, spot: Spot) -> Option<u8> {
-        self.colors().find(|(_, c)| same_spot(*c, spot)).map(|(slot, _)| slot)
+    pub(crate) fn color_slot(&self, spot: ResourceRange) -> Option<u8> {
+        self.colors().find(|(_, c)| same_range(*c, spot)).map(|(slot, _)| slot)
     }
 
-    /// Whether a spot is the depth attachment.
+    /// Returns `true` if a range is the depth attachment.
     #[inline]
-    pub(crate) fn is_depth(&self, spot: Spot) -> bool {
-        self.has_depth.is_some() && same_spot(self.depth, spot)
+    pub(crate) fn is_depth(&self, spot: ResourceRange) -> bool {
+        self.has_depth.is_some() && same_range(self.depth, spot)
     }
 
-    /// Whether a spot is in the tile: a color attachment, or planes of the depth attachment that passes of the step use.
+    /// Returns `true` if a range is in the tile: a color attachment, or a plane of the depth attachment that the step
+    /// uses.
     #[inline]
-    pub(crate) fn shows(&self, spot: Spot) -> bool {
+    pub(crate) fn shows(&self, spot: ResourceRange) -> bool {
         let used = |planes: Planes| planes.used == Aspect::All || planes.used == spot.1.aspect;
         self.color_slot(spot).is_some() || self.has_depth.is_some_and(used) && self.is_depth(spot)
     }
 
-    /// Whether a spot of the depth attachment can still start with a clear: no pass uses its plane, and its other plane is
-    /// not cleared, since both clears are of one value.
-    pub(crate) fn can_clear(&self, spot: Spot) -> bool {
+    /// Returns `true` if a plane of the depth attachment can still be cleared at the start of the step. No pass may use
+    /// that plane, and the other plane must not be cleared, because both share one clear value.
+    pub(crate) fn can_clear(&self, spot: ResourceRange) -> bool {
         let apart = |a: Aspect, b: Aspect| a != b && a != Aspect::All && b != Aspect::All;
         self.has_depth.is_some_and(|planes| !planes.cleared && apart(planes.used, spot.1.aspect))
     }
 
-    /// Whether the color attachments fit the device. Where same-pixel reads stay in the tile, each pass of a step has the
-    /// device's number of attachments to itself, and the tile's memory is what they share.
+    /// Checks that the color attachments fit the limits of the device. If same-pixel reads stay in the tile, the
+    /// attachment limit applies to each pass; only the tile memory is shared.
     pub(crate) fn fits(&self, graph: &Tables, caps: &Caps) -> Result<(), Refusal> {
-        let format = |(_, (r, _)): (u8, Spot)| graph.resources[r.index()].desc.texture().map(|t| t.format);
+        let format = |(_, (r, _)): (u8, ResourceRange)| graph.resources[r.index()].desc.texture().map(|t| t.format);
         let formats = self.colors().filter_map(format);
         let count = formats.clone().count();
         let bytes: u32 = formats.map(Format::tile_bytes).sum();

@@ -1,10 +1,10 @@
-//! The words by which dumps, errors and JSON call the variants of an enumeration, or the bits of a set.
+//! Macros that define the names of enumeration variants and of bits, as used in dumps, errors and JSON.
 
-/// Gives an enumeration its words.
-macro_rules! words {
+/// Defines the names of an enumeration's variants.
+macro_rules! enum_names {
     ($name:ident: $($variant:ident $word:literal),+) => {
         impl $name {
-            /// The word that dumps, errors and JSON use.
+            /// Name of the variant in dumps, errors and JSON.
             pub const fn word(self) -> &'static str {
                 match self {
                     $(Self::$variant { .. } => $word,)+
@@ -20,7 +20,7 @@ macro_rules! words {
     };
 }
 
-/// Makes a set of bits, each with its name.
+/// Defines a set of named bits.
 macro_rules! bits {
     ($(#[$meta:meta])* $set:ident { $($(#[$doc:meta])* $bit:ident = $value:literal $name:literal;)+ }) => {
         $(#[$meta])*
@@ -34,20 +34,20 @@ macro_rules! bits {
 
             pub(crate) const NAMES: &[(Self, &'static str)] = &[$((Self::$bit, $name)),+];
 
-            /// What is in either.
+            /// Returns the union of both sets.
             #[inline]
             #[must_use]
             pub const fn union(self, other: Self) -> Self {
                 Self(self.0 | other.0)
             }
 
-            /// Whether everything of `other` is in `self`.
+            /// Returns `true` if `self` contains all of `other`.
             #[inline]
             pub const fn contains(self, other: Self) -> bool {
                 self.0 & other.0 == other.0
             }
 
-            /// The names of what is in it, in a fixed order.
+            /// Returns the names of the elements, in a fixed order.
             pub fn names(self) -> impl Iterator<Item = &'static str> {
                 Self::NAMES.iter().filter(move |(bit, _)| self.contains(*bit)).map(|(_, name)| *name)
             }
@@ -55,4 +55,4 @@ macro_rules! bits {
     };
 }
 
-pub(crate) use {bits, words};
+pub(crate) use {bits, enum_names};

@@ -1,4 +1,4 @@
-//! One plan under examination: what all phases of the oracle look at.
+//! The plan under examination, as input of all phases of the oracle.
 
 use super::finding::{Findings, Rule};
 use super::reference::{Read, Reference, Value};
@@ -11,58 +11,58 @@ use crate::id::{PassId, ResourceId, StepId};
 use crate::plan::{Attachment, Join, Placement, Plan, Planned, Role, Step, StepPass};
 use crate::resource::{Kind, TextureDesc};
 
-/// A plan, its graph's reference semantics, and what inlining put in whose place.
-pub(super) struct Case<'p> {
+/// A plan, the reference semantics of its graph, and derived tables.
+pub(super) struct RuleInput<'p> {
     pub(super) plan: &'p Plan,
     pub(super) graph: &'p Graph,
-    /// What was found against the plan so far.
+    /// Findings so far.
     pub(super) report: Findings<'p>,
     pub(super) parts: Subresources,
     pub(super) reference: Reference,
-    /// For each resource that an inlined pass reads at the same pixel: where that pass draws, and the pass.
+    /// For each resource that an inlined pass reads at the same pixel: the pass and its target.
     pub(super) replaced: Vec<Option<Replaced>>,
-    /// The multisample resolves that running passes declare and the plan does not make, by access.
+    /// By access: multisample resolves that running passes declare and the plan does not perform.
     pub(super) dropped: Vec<bool>,
-    /// The resolves that the plan makes by full-screen passes.
+    /// Resolves that the plan performs with full-screen passes.
     pub(super) full_screen: Vec<FullScreen>,
-    /// Passes in the order in which they run, full-screen resolves left out.
+    /// Passes in execution order, without full-screen resolves.
     pub(super) running: Vec<StepPass>,
-    /// Passes in the order in which they run.
+    /// Ids of the passes in execution order.
     pub(super) order: Vec<PassId>,
-    /// The index of each pass in `order`; none for culled passes.
+    /// Index of each pass in `order`; `None` for culled passes.
     pub(super) position: Vec<Option<usize>>,
-    /// Whether each resource is exported.
+    /// Export flag of each resource.
     pub(super) exported: Vec<bool>,
-    /// The accesses that running passes make to each resource, in the order in which the passes run.
+    /// Accesses of running passes to each resource, in execution order.
     pub(super) users: Vec<Vec<(PassId, &'p Access)>>,
 }
 
-/// What an inlined pass made of its input: its producers draw here instead.
+/// The attachment that replaces the input of an inlined pass.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Replaced {
     /// The inlined pass.
     pub(super) by: PassId,
-    /// What it draws into.
+    /// Its target.
     pub(super) target: ResourceId,
-    /// Which part of it.
+    /// The range of the target.
     pub(super) range: Range,
 }
 
-/// What one access of a running pass touches.
+/// An access of a running pass, and the resource it refers to in the plan.
 #[derive(Clone, Copy)]
-pub(super) struct Touch {
+pub(super) struct PlannedAccess {
     pub(super) access: Access,
-    /// Index of the access in the graph; of both accesses of a full-screen resolve, that of the resolve.
+    /// Index of the access in the graph. Both accesses of a full-screen resolve have that of the resolve.
     pub(super) id: usize,
-    /// What it touches in the plan: its own resource, or what replaced it.
+    /// The resource in the plan: its own, or the replacement after inlining.
     pub(super) resource: ResourceId,
     pub(super) range: Range,
-    /// The access belongs to an inlined pass and is made by its producer's shader.
+    /// The access belongs to an inlined pass and is performed by its producer's shader.
     pub(super) in_shader: bool,
 }
 
-impl<'p> Case<'p> {
-    /// Takes a plan whose arrays fit each other apart.
+impl<'p> RuleInput<'p> {
+    /// Builds the tables of a plan with consistent arrays.
     pub(super) fn new(plan: &'p Plan) -> Self {
         let graph = plan.graph();
         let parts = Subresources::of_graph(graph, plan.frame());
@@ -80,7 +80,7 @@ impl<'p> Case<'p> {
         }
         let replaced = vec![None; graph.resources().len()];
         let report = Findings::new(graph);
-        let mut case = Self {
+        let mut ctx = Self {
             plan,
             graph,
             report,
@@ -95,15 +95,15 @@ impl<'p> Case<'p> {
             position,
             exported,
         };
-        case.replace();
-        case.find_dropped();
-        for pass in &case.order {
-            for (_, access) in case.accesses_of(*pass).filter(|(id, _)| !case.dropped[*id]) {
-                case.users[access.resource.index()].push((*pass, access));
+        ctx.replace();
+        ctx.find_dropped();
+        for pass in &ctx.order {
+            for (_, access) in ctx.accesses_of(*pass).filter(|(id, _)| !ctx.dropped[*id]) {
+                ctx.users[access.resource.index()].push((*pass, access));
             }
         }
-        case.reference.settle(graph, &case.parts, &case.order, &case.dropped);
-        case
+        ctx.reference.settle(graph, &ctx.parts, &ctx.order, &ctx.dropped);
+        ctx
     }
 
     /// Fills `replaced` from the inlined passes of the plan.
@@ -131,8 +131,8 @@ impl<'p> Case<'p> {
         }
     }
 
-    /// What stands in the plan for a range of a resource: itself, or what replaced it, through any number of inlined
-    /// passes. Replacements never form a circle, since none is added that would close one.
+    /// Returns the resource and range that a declared range refers to in the plan, after any number of replacements.
+    /// Replacements are free of cycles, because none is added that would close one.
     pub(super) fn effective(&self, resource: ResourceId, range: Range) -> (ResourceId, Range) {
         let mut found = (resource, range);
         while let Some(next) = self.replaced[found.0.index()] {
@@ -141,57 +141,57 @@ impl<'p> Case<'p> {
         found
     }
 
-    /// The accesses of a running pass with what they touch in their step; none of those dropped.
-    pub(super) fn touches(&self, member: StepPass) -> impl Iterator<Item = Touch> {
+    /// Returns the accesses of a running pass in its step, without dropped ones.
+    pub(super) fn planned_accesses(&self, member: StepPass) -> impl Iterator<Item = PlannedAccess> {
         let full_screen = member.join == Join::Resolve;
         let of_full_screen = move |m: &&FullScreen| full_screen && m.pass == member.pass;
         let resolves =
             self.full_screen.iter().filter(of_full_screen).flat_map(|m| [(m.id, m.samples), (m.id, m.target)]);
-        let touch = move |(id, access): (usize, Access)| {
+        let planned = move |(id, access): (usize, Access)| {
             let (resource, range) = self.effective(access.resource, access.range);
-            Touch { access, id, resource, range, in_shader: false }
+            PlannedAccess { access, id, resource, range, in_shader: false }
         };
-        let here = move |t: &Touch| !full_screen && self.full_screen.iter().all(|m| m.id != t.id);
-        self.declared_touches(member).filter(here).chain(resolves.map(touch))
+        let here = move |t: &PlannedAccess| !full_screen && self.full_screen.iter().all(|m| m.id != t.id);
+        self.declared_accesses(member).filter(here).chain(resolves.map(planned))
     }
 
-    /// As [`Case::touches`], and with the resolves that full-screen passes make behind the step, as they are declared.
-    pub(super) fn declared_touches(&self, member: StepPass) -> impl Iterator<Item = Touch> {
+    /// Returns the accesses of a running pass as declared, including resolves performed by full-screen passes.
+    pub(super) fn declared_accesses(&self, member: StepPass) -> impl Iterator<Item = PlannedAccess> {
         self.accesses_of(member.pass).filter(|(id, _)| !self.dropped[*id]).map(move |(id, access)| {
             let (resource, range) = self.effective(access.resource, access.range);
             let drawn = matches!(access.kind, AccessKind::SamePixel | AccessKind::Color);
-            Touch { access: *access, id, resource, range, in_shader: member.join == Join::Inlined && drawn }
+            PlannedAccess { access: *access, id, resource, range, in_shader: member.join == Join::Inlined && drawn }
         })
     }
 
-    /// A running pass, as its step has it.
+    /// Returns a running pass with its join.
     pub(super) fn member(&self, pass: PassId) -> Option<StepPass> {
         self.position[pass.index()].map(|at| self.running[at])
     }
 
-    /// What the passes of a step touch, epilogues left out: those run within the shader of another pass.
-    pub(super) fn touched_by(&self, passes: &'p [StepPass]) -> impl Iterator<Item = (StepPass, Touch)> {
-        let touches = passes.iter().flat_map(|m| self.touches(*m).map(|t| (*m, t)));
-        touches.filter(|(_, t)| !t.in_shader)
+    /// Returns the accesses of the passes of a step, without those performed inside of another pass's shader.
+    pub(super) fn accesses_by(&self, passes: &'p [StepPass]) -> impl Iterator<Item = (StepPass, PlannedAccess)> {
+        let uses = passes.iter().flat_map(|m| self.planned_accesses(*m).map(|t| (*m, t)));
+        uses.filter(|(_, t)| !t.in_shader)
     }
 
-    /// The accesses of a pass with their indices in the graph.
+    /// Returns the accesses of a pass with their indices in the graph.
     pub(super) fn accesses_of(&self, pass: PassId) -> impl Iterator<Item = (usize, &'p Access)> + use<'p> {
         self.graph.passes()[pass.index()].accesses.range().zip(self.graph.accesses_of(pass))
     }
 
-    /// What an access reads, part by part, in the reference semantics.
+    /// Returns the values that an access reads in the reference semantics, one for each part.
     pub(super) fn reads(&self, access: usize) -> &[Read] {
         let full_screen = self.full_screen.iter().find(|m| m.id == access);
         full_screen.map_or(&self.reference.reads[self.reference.of_access[access].clone()], |m| &m.reads)
     }
 
-    /// The attachments of a step, with their indices in the plan.
+    /// Returns the attachments of a step with their indices in the plan.
     pub(super) fn attachments(&self, step: StepId) -> impl Iterator<Item = (usize, &'p Attachment)> + use<'p> {
         self.step(step).attachments.range().zip(self.plan.attachments_of(step))
     }
 
-    /// The attachment of a step that a range of a resource is attached as, in the role that `kind` asks for.
+    /// Returns the attachment of a step for an access of this kind to a range of a resource.
     pub(super) fn attachment(
         &self,
         step: StepId,
@@ -213,89 +213,95 @@ impl<'p> Case<'p> {
         })
     }
 
-    /// Whether a same-pixel read of a pass finds its texels in the tile: earlier passes of the step attached all of its
-    /// planes, and the pass came in for that.
-    pub(super) fn in_tile(&self, step: StepId, member: StepPass, touch: &Touch) -> bool {
-        touch.access.kind == AccessKind::SamePixel
+    /// Returns `true` if a same-pixel read finds its texels in the tile. Earlier passes of the step must have attached
+    /// all its planes, and the pass must have joined because of it.
+    pub(super) fn in_tile(&self, step: StepId, member: StepPass, planned: &PlannedAccess) -> bool {
+        planned.access.kind == AccessKind::SamePixel
             && member.join == Join::SamePixel
-            && self.shown_by(self.before(step, member.pass), touch.resource, touch.range)
+            && self.shown_by(self.before(step, member.pass), planned.resource, planned.range)
     }
 
-    /// The passes of a step that run before one of them.
+    /// Returns the passes of a step that run before one of them.
     pub(super) fn before(&self, step: StepId, pass: PassId) -> &'p [StepPass] {
         let members = self.plan.passes_of(step);
         &members[..members.iter().position(|m| m.pass == pass).unwrap_or(0)]
     }
 
-    /// Whether some passes have each part of a range of a resource as color or depth attachment, by accesses of that spot.
+    /// Returns `true` if the given passes attach every part of the range as color or depth, with the same level and
+    /// layers.
     pub(super) fn shown_by(&self, passes: &[StepPass], resource: ResourceId, range: Range) -> bool {
         self.parts.covered(resource, range).all(|part| {
-            let shows = |t: Touch| self.parts.covered(t.resource, t.range).any(|p| p == part);
+            let shows = |t: PlannedAccess| self.parts.covered(t.resource, t.range).any(|p| p == part);
             let attaches = |m: &StepPass| self.attached_accesses(*m, resource, range).any(shows);
             passes.iter().any(attaches)
         })
     }
 
-    /// Whether one of some passes has a range of a resource as color or depth attachment.
+    /// Returns `true` if one of the given passes attaches the range as color or depth.
     pub(super) fn attached_by(&self, passes: &[StepPass], resource: ResourceId, range: Range) -> bool {
         passes.iter().any(|m| self.attached_accesses(*m, resource, range).next().is_some())
     }
 
-    /// The accesses by which a pass has the level and layers of a range as color or depth attachment, whichever the planes.
-    fn attached_accesses(&self, member: StepPass, resource: ResourceId, range: Range) -> impl Iterator<Item = Touch> {
+    /// Returns the accesses that attach the level and layers of a range as color or depth, in any plane.
+    fn attached_accesses(
+        &self,
+        member: StepPass,
+        resource: ResourceId,
+        range: Range,
+    ) -> impl Iterator<Item = PlannedAccess> {
         let (_, count) = self.parts.counts(resource);
         let same =
             move |r: Range| (r.mip, r.view, r.layer_range(count)) == (range.mip, range.view, range.layer_range(count));
-        self.touches(member).filter(move |t| {
+        self.planned_accesses(member).filter(move |t| {
             let attached = t.access.kind.is_attachment() && t.access.kind != AccessKind::Resolve;
             attached && t.resource == resource && same(t.range)
         })
     }
 
-    /// The numbers of the subresources that an attachment covers, all planes.
+    /// Returns the parts that an attachment covers, in all planes.
     pub(super) fn attached(&self, attachment: &Attachment) -> impl Iterator<Item = usize> + use<> {
         let Attachment { mip, layer, layers, .. } = *attachment;
         self.parts.covered(attachment.resource, Range { mip, mips: 1, layer, layers, ..Range::ALL })
     }
 
-    /// The numbers of the subresources that an access covers.
+    /// Returns the parts that an access covers.
     pub(super) fn covered(&self, access: &Access) -> impl Iterator<Item = usize> + use<> {
         self.parts.covered(access.resource, access.range)
     }
 
-    /// The format with which a texture is made.
+    /// Returns the format of the physical texture.
     pub(super) fn format(&self, resource: ResourceId) -> Option<Format> {
         let declared = self.texture(resource)?;
         Some(self.planned(resource).format.unwrap_or(declared.format))
     }
 
-    /// The declared shape of a texture; none for a buffer.
+    /// Returns the declared descriptor of a texture; `None` for a buffer.
     pub(super) fn texture(&self, resource: ResourceId) -> Option<&'p TextureDesc> {
         self.graph.resources()[resource.index()].desc.texture()
     }
 
-    /// Where a resource comes from.
+    /// Returns the origin of a resource.
     pub(super) fn kind(&self, resource: ResourceId) -> Kind {
         self.graph.resources()[resource.index()].kind
     }
 
-    /// Whether a resource is of this frame alone.
+    /// Returns `true` if a resource lives only in this frame.
     pub(super) fn is_transient(&self, resource: ResourceId) -> bool {
         self.kind(resource) == Kind::Transient && !self.exported[resource.index()]
     }
 
-    /// What the plan says of a resource.
+    /// Returns the plan's row of a resource.
     pub(super) fn planned(&self, resource: ResourceId) -> &'p Planned {
         &self.plan.resources()[resource.index()]
     }
 
-    /// Where the plan puts a resource.
+    /// Returns the placement of a resource.
     pub(super) fn placement(&self, resource: ResourceId) -> Placement {
         self.planned(resource).placement
     }
 
-    /// What two uses of a part have in common that exclude each other within a step: the part, its level and layer where
-    /// the device cannot use planes apart, or all of a buffer.
+    /// Returns the number under which hazards within a step are tracked: the part, its level and layer if the device
+    /// cannot use planes separately, or the whole buffer.
     pub(super) fn spot(&self, resource: ResourceId, part: usize) -> usize {
         if self.texture(resource).is_none() {
             return self.parts.all(resource).start;
@@ -305,36 +311,36 @@ impl<'p> Case<'p> {
         if apart { part } else { part - self.parts.name(resource, part).plane as usize }
     }
 
-    /// Whether a running pass reads what `writer` left in a part, or it must survive.
+    /// Returns `true` if the output of `writer` in a part is read by a running pass or must survive.
     pub(super) fn is_needed(&self, writer: PassId, part: usize) -> bool {
         let reference = &self.reference;
         let survives = reference.exit[part] == Value::Written(writer) && reference.wanted[part].is_some();
         survives || reference.readers(writer, part).any(|reader| self.position[reader.index()].is_some())
     }
 
-    /// A row of the plan's steps.
+    /// Returns a row of the plan's steps.
     pub(super) fn step(&self, step: StepId) -> &'p Step {
         &self.plan.steps()[step.index()]
     }
 
-    /// Whether a step draws.
+    /// Returns `true` for a raster step.
     pub(super) fn is_raster(&self, step: StepId) -> bool {
         self.step(step).kind == PassKind::Raster
     }
 
-    /// Whether a pass says that of itself.
+    /// Returns `true` if a pass has a flag.
     pub(super) fn flag(&self, pass: PassId, flag: PassFlags) -> bool {
         self.graph.passes()[pass.index()].flags.has(flag)
     }
 }
 
-/// The layers that an attachment covers.
+/// Returns the layers that an attachment covers.
 pub(super) fn layers_of(attachment: &Attachment) -> std::ops::Range<u32> {
     let first = u32::from(attachment.layer);
     first..first + u32::from(attachment.layers)
 }
 
-/// The one element of which `holds` is true, if there is exactly one.
+/// Returns the only element for which `holds` is true; `None` if there are several.
 pub(super) fn only<T>(rows: &[T], holds: impl Fn(&T) -> bool) -> Option<&T> {
     let mut found = rows.iter().filter(|r| holds(r));
     found.next().filter(|_| found.next().is_none())

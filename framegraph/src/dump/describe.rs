@@ -1,4 +1,4 @@
-//! What the forms share: resources, places and bytes in words.
+//! Descriptions of resources, placements and sizes, shared by all text forms.
 
 use crate::access::{ByteRange, Range};
 use crate::format::Aspect;
@@ -7,7 +7,7 @@ use crate::plan::{Join, Placement, Plan, Role};
 use crate::resolve::ResolveMode;
 use crate::resource::{Desc, Dimension, Kind};
 
-/// What `write` writes.
+/// Returns the text that `write` writes.
 pub(crate) fn written(write: impl FnOnce(&mut String) -> std::fmt::Result) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
@@ -15,7 +15,7 @@ pub(crate) fn written(write: impl FnOnce(&mut String) -> std::fmt::Result) -> St
     out
 }
 
-/// Where a resource lives.
+/// Describes where a resource is placed.
 pub(crate) fn place(placement: Placement) -> String {
     match placement {
         Placement::Slot(slot) => format!("slot {}", slot.index()),
@@ -25,7 +25,7 @@ pub(crate) fn place(placement: Placement) -> String {
     }
 }
 
-/// How a pass came into its step; empty for the first one.
+/// Describes why a pass is part of its step; empty for the first one.
 pub(crate) const fn joined(join: Join) -> &'static str {
     match join {
         Join::First => "",
@@ -36,13 +36,13 @@ pub(crate) const fn joined(join: Join) -> &'static str {
     }
 }
 
-/// Whether a resource takes memory of the heap or pool, which others take at other times.
+/// Returns `true` if a resource uses memory of the heap or pool, which may be shared.
 pub(crate) const fn is_shared(placement: Placement) -> bool {
     matches!(placement, Placement::Slot(_) | Placement::Heap { .. })
 }
 
-/// The first and last step over which a resource keeps its place in shared memory: the image of a history in a heap keeps
-/// it all the time. None for what takes none.
+/// Returns the first and last step in which a resource occupies shared memory; `None` if it has none. History images in
+/// a heap occupy it during the whole frame.
 pub(crate) fn held(plan: &Plan, resource: ResourceId) -> Option<(StepId, StepId)> {
     let row = &plan.resources()[resource.index()];
     if !is_shared(row.placement) {
@@ -56,8 +56,8 @@ pub(crate) fn held(plan: &Plan, resource: ResourceId) -> Option<(StepId, StepId)
     Some((row.first.some()?, row.last.some()?))
 }
 
-/// Where each resource lies, in bytes from the start of the heap, or of the slots laid end to end; none for those that
-/// take no shared memory.
+/// Returns the offset of each resource in bytes, in the heap or in the concatenated slots; `None` for resources without
+/// shared memory.
 pub(crate) fn offsets(plan: &Plan) -> Vec<Option<u64>> {
     let mut starts = Vec::with_capacity(plan.slots().len());
     let mut end = 0u64;
@@ -73,7 +73,7 @@ pub(crate) fn offsets(plan: &Plan) -> Vec<Option<u64>> {
     plan.resources().iter().map(place).collect()
 }
 
-/// The words for a role.
+/// Describes a role.
 pub(crate) fn role_words(role: Role) -> String {
     match role {
         Role::Color(slot) => format!("color {slot}"),
@@ -84,12 +84,12 @@ pub(crate) fn role_words(role: Role) -> String {
     }
 }
 
-/// How a resolve is made, where it is no average.
+/// Describes a resolve mode; empty for the average.
 fn mode_words(mode: ResolveMode) -> String {
     if mode == ResolveMode::Average { String::new() } else { format!(" by {}", mode.word()) }
 }
 
-/// The shape of a resource in a frame of `frame` texels, in one short line.
+/// Describes a resource in one short line.
 pub(crate) fn shape(plan: &Plan, desc: &Desc, format: Option<crate::format::Format>) -> String {
     match desc {
         Desc::Buffer(b) => format!("buffer {} B", b.bytes(plan.frame())),
@@ -112,7 +112,7 @@ pub(crate) fn shape(plan: &Plan, desc: &Desc, format: Option<crate::format::Form
     }
 }
 
-/// The levels, layers, planes, view and bytes of an access; nothing when it is of all there are, as declared.
+/// Describes the levels, layers, planes, view format and bytes of an access; empty for the whole resource.
 pub(crate) fn part(range: &Range, bytes: Option<ByteRange>) -> String {
     let all = Range::ALL;
     let span = |what: &str, first: u32, count: u32, every: bool| match (every, count) {
@@ -133,7 +133,7 @@ pub(crate) fn part(range: &Range, bytes: Option<ByteRange>) -> String {
     format!("{mips}{layers}{aspect}{view}{bytes}")
 }
 
-/// Bytes with a unit that keeps three or four digits.
+/// Formats a number of bytes with a unit, keeping three or four digits.
 pub(crate) fn bytes(count: u64) -> String {
     const UNITS: [&str; 5] = ["B", "KiB", "MiB", "GiB", "TiB"];
     let mut value = count as f64;
@@ -145,7 +145,7 @@ pub(crate) fn bytes(count: u64) -> String {
     if unit == 0 { format!("{count} B") } else { format!("{value:.1} {}", UNITS[unit]) }
 }
 
-/// Puts the names of the uses side by side.
+/// Joins the names of the usages.
 pub(crate) fn uses(usage: crate::access::Usage) -> String {
     usage.names().collect::<Vec<_>>().join("+")
 }

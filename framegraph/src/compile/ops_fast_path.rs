@@ -1,12 +1,13 @@
-//! Phase 6 where every resource has one part, passes run as declared and nothing is inlined: most frames.
+//! Phase 6, fast path: load and store operations if every resource has one part, passes run in declaration order and
+//! nothing is inlined. This covers most frames.
 //!
-//! Versions know who wrote what then, and culling has noted what is needed after each access, so nothing is followed: each
-//! attachment is decided at once, load and store.
+//! Versions contain the last writer, and culling has computed the next use after each access. No sweep is needed, so
+//! load and store operations are computed together.
 
 use super::cull::reads;
 use super::framebuffer::sole_color;
+use super::liveness::NextUse;
 use super::loads::{gather, is_resolved, load_op, loaded_after, why_loaded};
-use super::need::Need;
 use super::steps::{Members, StepView};
 use super::stores::{decide, start_from_zero, written};
 use crate::access::Access;
@@ -15,13 +16,13 @@ use crate::graph::{PassKind, Tables};
 use crate::id::{AccessId, PassId, ResourceId, Span, StepId};
 use crate::plan::{Attachment, LoadOp, Role, Step, StepPass, StoreOp};
 
-/// Fills `attachments` and each step's span of them, with load and store ops, from what is needed `after` each access;
-/// `stores` is scratch (the log of stores, which follows that of loads).
+/// Fills `attachments` with load and store operations, and each step's span of them. `after` is the next use after each
+/// access; `stores` is scratch memory for the log of stores, which follows that of loads.
 #[inline(never)]
 pub(crate) fn ops(
     view: StepView<'_>,
     steps: &mut [Step],
-    after: &[Need],
+    after: &[NextUse],
     stores: &mut Vec<Decision>,
     attachments: &mut Vec<Attachment>,
     decisions: &mut Vec<Decision>,
@@ -29,10 +30,10 @@ pub(crate) fn ops(
     let graph = view.graph;
     attachments.clear();
     stores.clear();
-    // One row an access: one check of its number serves for both.
+    // Equal lengths, so that one bounds check serves both arrays.
     let after = &after[..graph.accesses.len()];
     for (index, step) in steps.iter_mut().enumerate() {
-        // There are no more steps than passes, and passes were counted.
+        // Cannot overflow: there are at most as many steps as passes.
         let (step_id, start) = (StepId::unchecked(index), attachments.len());
         if step.kind != PassKind::Raster {
             step.attachments = Span::new(start, start);
@@ -51,14 +52,14 @@ pub(crate) fn ops(
     decisions.extend_from_slice(stores);
 }
 
-/// Adds the color attachment that a step of one pass has alone, and that is not averaged. A decision is made where its
-/// reason is found: handed on through memory it would cost more than all the rest.
+/// Adds the color attachment of a step with a single attachment that is not resolved. Decisions are logged where they
+/// are made, because passing them through memory is measurably slower.
 #[inline]
 fn only_color(
     graph: &Tables,
     step: StepId,
     access: &Access,
-    need: Need,
+    need: NextUse,
     stores: &mut Vec<Decision>,
     attachments: &mut Vec<Attachment>,
     decisions: &mut Vec<Decision>,
@@ -81,7 +82,7 @@ fn only_color(
         }
         LoadOp::DontCare => decisions.push(Decision { subject, reason: Reason::LoadOverwritten }),
     }
-    let store = if let Need::Reader(reader) = need {
+    let store = if let NextUse::Reader(reader) = need {
         stores.push(Decision { subject: of_store, reason: Reason::StoreReadBy(reader) });
         StoreOp::Store
     } else {
@@ -104,12 +105,12 @@ fn only_color(
     });
 }
 
-/// Decides the attachments of a step, which have load ops.
+/// Completes the attachments of a step, which have load operations.
 #[inline(never)]
 fn several(
     members: Members<'_>,
     step: StepId,
-    after: &[Need],
+    after: &[NextUse],
     stores: &mut Vec<Decision>,
     of_step: &mut [Attachment],
     decisions: &mut Vec<Decision>,
@@ -135,7 +136,7 @@ fn several(
     }
 }
 
-/// The first of these passes that touches a resource which one of them attaches, and its first access to it.
+/// Returns the first of these passes that accesses an attached resource, and its first access to it.
 fn touch<'p>(
     graph: &Tables,
     mut members: impl Iterator<Item = &'p StepPass>,
@@ -146,10 +147,10 @@ fn touch<'p>(
         let at = accesses.of(&graph.accesses).iter().position(|a| a.resource == resource)?;
         Some((pass, AccessId::at(accesses.start as usize + at)))
     };
-    members.find_map(|m| of_pass(m.pass)).expect("a step attaches what its passes name")
+    members.find_map(|m| of_pass(m.pass)).expect("attachments are accesses of the step's passes")
 }
 
-/// Who wrote a resource last before this access.
+/// Returns the last writer of a resource before this access.
 #[inline(never)]
 fn writer_before(graph: &Tables, access: &Access) -> Option<PassId> {
     let version = if access.mode.writes() { graph.versions[access.version.index()].previous } else { access.version };
