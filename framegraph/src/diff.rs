@@ -83,7 +83,7 @@ pub fn diff(before: &Plan, after: &Plan) -> Diff {
 pub const DIFF_VERSION: u32 = 1;
 
 impl Diff {
-    /// Returns the diff as indented JSON text, ending in a line feed. `docs/plan-json.md` documents the fields.
+    /// Returns the diff as indented JSON text, ending in a line feed. `docs/reference/plan-json.md` documents the fields.
     pub fn json(&self) -> String {
         let culls = self.culls.iter().map(|c| {
             object([field("pass", c.pass.as_str()), field("culled", c.culled), field("reason", c.reason.as_str())])

@@ -1,6 +1,6 @@
 //! Graphs as RON files.
 //!
-//! A file lists resources, passes and exports; `docs/graph-format.md` documents every field. A pass lists its accesses,
+//! A file lists resources, passes and exports; `docs/reference/graph-format.md` documents every field. A pass lists its accesses,
 //! or refers to a [`Plugin`] by kind. Passes can be listed in any order.
 //!
 //! A plain name refers to the newest version of a resource at that position of the file. `"hdr@scene"` refers to the

@@ -8,7 +8,7 @@
 //!
 //! The first pass keeps what glows, and nothing that is not finite; each further one makes it smaller, and on the way back all
 //! sizes are added up. Post-processing lays that over the picture, which takes the radiance as a texture: so it is not inlined
-//! into the color pass. Filament's filters and order; `docs/lens.md` has the errors.
+//! into the color pass. Filament's filters and order; `docs/design/lens.md` has the errors.
 
 mod chain;
 mod flare;

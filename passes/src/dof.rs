@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Alpha holds the radius of each texel's circle of confusion. Tiles know the radii that reach into them, so parts in
-//! focus are skipped. The gather is Filament's, in fewer passes. `docs/lens.md` has its cost, and its error against
+//! focus are skipped. The gather is Filament's, in fewer passes. `docs/design/lens.md` has its cost, and its error against
 //! rays through a thin lens.
 
 mod keys;

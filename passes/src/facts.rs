@@ -19,7 +19,7 @@
 //! | `savings.rs`, `told.rs` | what each drop saves; text and JSON |
 //!
 //! Rules are conservative: bounds are of boxes and factors, what is unknown is kept, and what is dropped is dropped with its
-//! readers: shaders are other variants then, so that nothing reads a texture that nobody wrote. `docs/facts.md` has every rule
+//! readers: shaders are other variants then, so that nothing reads a texture that nobody wrote. `docs/design/feature-culling.md` has every rule
 //! with its bound.
 
 mod apply;

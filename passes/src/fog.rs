@@ -1,5 +1,5 @@
 //! Fog: what is far away fades into the light that the air scatters. A feature of the shaders of surfaces and sky, so a frame
-//! without fog has nothing of it. Filament's model; `docs/lens.md` has how far off it is.
+//! without fog has nothing of it. Filament's model; `docs/design/lens.md` has how far off it is.
 
 mod keys;
 

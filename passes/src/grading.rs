@@ -3,7 +3,7 @@
 //! [`Look`] is all that happens to a color between radiance and code, but dither. It is computed for each pixel, or once for
 //! each entry of a table ([`GradeBy`]): the same functions either way, in f32 by the shader and in f64 on the CPU. What only
 //! the CPU knows, a curve of the application's own and a file of colors, needs a table; [`GradingTables`] holds these, and
-//! the tables made of them. `docs/grading.md` has the errors.
+//! the tables made of them. `docs/design/grading.md` has the errors.
 
 mod bake;
 mod by;

@@ -7,7 +7,7 @@
 //! Estimates the visible fraction of the environment from the depth around a pixel, within
 //! [`OcclusionSettings::radius_m`]. Two methods are available: scalable ambient obscurance as in Filament
 //! ([`Method::Sao`]), and horizons in slices ([`Method::Gtao`]). The color pass takes the lesser of it and the
-//! material's own occlusion, and occludes reflections with it. `docs/occlusion.md` has cost and error of each.
+//! material's own occlusion, and occludes reflections with it. `docs/design/occlusion.md` has cost and error of each.
 
 mod blur;
 mod keys;

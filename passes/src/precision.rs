@@ -31,7 +31,7 @@ pub enum Precision {
     #[default]
     Full,
     /// 16 bits, if shaders support them. Perceptual roughness is at least 0.089; below it highlights exceed the range
-    /// of half floats. `docs/half-floats.md` has the errors.
+    /// of half floats. `docs/measurements/half-floats.md` has the errors.
     Half,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Each preset is the most accurate set of options of [`GROUPS`](crate::budget::GROUPS) within its fraction
 //! ([`Preset::share`]) of the time that the finest frame takes beyond the fastest. [`Preset::choose`] finds it in any
-//! record. [`Preset::frame`] has the choice for `docs/accuracy.json`. The record lacks punctual lights and levels of
+//! record. [`Preset::frame`] has the choice for `docs/measurements/accuracy.json`. The record lacks punctual lights and levels of
 //! detail: the number of their shadow maps and the LOD error are set by hand.
 
 mod chosen;
@@ -121,7 +121,7 @@ pub fn source(measured: &Measured) -> Result<String, MeasuredError> {
     };
     let rows: String = (0..chosen[0].len()).map(row).collect();
     Ok(format!(
-        "//! What presets have, chosen from docs/accuracy.json; renewed by\n\
+        "//! What presets have, chosen from docs/measurements/accuracy.json; renewed by\n\
         //! `cargo run -p tests --bin accuracy -- --out docs --presets passes/src/preset/chosen.rs`.\n\n\
         /// Each group with its option in low, medium, high and ultra.\n\
         #[rustfmt::skip]\n\

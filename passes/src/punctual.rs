@@ -10,7 +10,7 @@
 //! | `lists.rs` | the lists of lights that shaders read, and what became of the lights |
 //!
 //! All of it is arithmetic on the CPU, done when a view is made. A light that reaches a place is never missed; a list may
-//! hold lights that do not quite reach into its froxel, and they add nothing there. `docs/lights.md` has what it takes.
+//! hold lights that do not quite reach into its froxel, and they add nothing there. `docs/design/lights.md` has what it takes.
 
 mod assign;
 mod grid;

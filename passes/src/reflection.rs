@@ -8,7 +8,7 @@
 //!
 //! Surfaces are drawn once more, each pixel's mirrored ray is followed through the structure, and what it meets is taken from
 //! the radiance of the frame before, which is kept for that: a history, no copy. Rough surfaces read a level of the
-//! result that is as blurred as the ray's way makes it. Where rays found nothing, the color pass reflects the environment as without. `docs/reflections.md` has how far off
+//! result that is as blurred as the ray's way makes it. Where rays found nothing, the color pass reflects the environment as without. `docs/design/reflections.md` has how far off
 //! it is.
 
 mod pass;

@@ -1,4 +1,4 @@
-//! Settings as files: RON text with a version. `docs/settings.md` is the written schema.
+//! Settings as files: RON text with a version. `docs/reference/settings.md` is the written schema.
 
 mod lens;
 

@@ -185,7 +185,7 @@ impl Quality {
     }
 
     /// What its light is made with: the low one has Filament's five levels, the high one seven, which err less between
-    /// levels, and the ultra one eight of a cube of 512 texels (`docs/image-light.md`).
+    /// levels, and the ultra one eight of a cube of 512 texels (`docs/measurements/image-light.md`).
     pub const fn light(self) -> LightSettings {
         self.shading().light(self)
     }

@@ -9,7 +9,7 @@
 //! Each frame is offset by a fraction of a pixel ([`CameraView::jitter`](crate::CameraView::jitter), by
 //! [`TaaSettings::jitter_px`]). The pass reprojects each pixel into the history with its depth and both cameras. It
 //! clamps the history to the colors around the pixel and blends in this frame. The history is not copied.
-//! `docs/taa.md` has the errors.
+//! `docs/design/taa.md` has the errors.
 
 mod jitter;
 mod pass;

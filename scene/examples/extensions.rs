@@ -1,4 +1,4 @@
-//! Prints the table of glTF extensions in `docs/files.md`.
+//! Prints the table of glTF extensions in `docs/reference/files.md`.
 
 use framegraph_scene::import::extensions_table;
 use std::io::Write as _;

@@ -9,7 +9,7 @@ pub const DEFAULT_PRIORITY: u8 = 4;
 /// The highest priority: such instances are drawn last.
 pub const MAX_PRIORITY: u8 = 7;
 
-/// How an instance takes part in drawing. Files state it in `extras`, see `docs/files.md`.
+/// How an instance takes part in drawing. Files state it in `extras`, see `docs/reference/files.md`.
 ///
 /// ```
 /// use framegraph_scene::{DrawOptions, Material, Scene, geometry};

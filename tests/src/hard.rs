@@ -2,7 +2,7 @@
 //!
 //! [`probe`] defines inputs and invariants of functions, [`judge`] evaluates them on the device, and [`guard`] finds
 //! guards and removes them. [`strict`] rewrites shaders as stricter drivers may evaluate them, and [`rows`] lists the
-//! kinds of hard inputs. The program `hard_cases` prints `docs/hard-cases.md`, and a test compares the document.
+//! kinds of hard inputs. The program `hard_cases` prints `docs/measurements/hard-cases.md`, and a test compares the document.
 
 pub mod document;
 pub mod guard;

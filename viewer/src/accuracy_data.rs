@@ -1,4 +1,4 @@
-//! Measured errors and costs of every setting, as written by the accuracy lab (`accuracy.json`, `docs/accuracy.md`).
+//! Measured errors and costs of every setting, as written by the accuracy lab (`accuracy.json`, `docs/measurements/accuracy.md`).
 
 use framegraph_passes::Facts;
 use framegraph_passes::budget::{Choices, Measured, Offers};
@@ -174,7 +174,7 @@ pub fn read(text: &[u8]) -> Result<AccuracyData, String> {
     if (schema.as_str(), version) != (SCHEMA, VERSION) {
         return Err(format!(
             "unsupported schema `{schema}` version {version}; expected `{SCHEMA}` version {VERSION}; measure again with `accuracy` \
-             (docs/accuracy.md)"
+             (docs/measurements/accuracy.md)"
         ));
     }
     let data: AccuracyData = serde_json::from_slice(text).map_err(failed)?;

@@ -17,12 +17,12 @@ usage: viewer [FILE] [options]
        viewer --standard PRESET|SETTINGS.ron [options]
        viewer --live [SCENE] [--settings PRESET|SETTINGS.ron] [--environment FILE] [options]
 
-FILE is a plan (JSON, docs/plan-json.md), a graph (FRAME.ron, docs/graph-format.md), or a trace (`render --trace`).
-Graphs are compiled here, and again after each change. docs/viewer.md shows the views.
+FILE is a plan (JSON, docs/reference/plan-json.md), a graph (FRAME.ron, docs/reference/graph-format.md), or a trace (`render --trace`).
+Graphs are compiled here, and again after each change. docs/reference/viewer.md shows the views.
 
   --plan FILE         same as FILE
   --standard PRESET   show the standard frame instead of a file: low, medium, high, ultra, or a FILE.ron of settings
-                      (docs/settings.md); its effects are features
+                      (docs/reference/settings.md); its effects are features
   --live [SCENE]      draw the standard frame in the window and show its plan; SCENE is a glTF or GLB file or a built-in
                       scene (spheres)
   --settings PRESET   initial settings with --live: a preset or a FILE.ron (high)

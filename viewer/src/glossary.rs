@@ -1,7 +1,7 @@
-//! Terms of the glossary (`docs/glossary.md`) for tooltips.
+//! Terms of the glossary (`docs/reference/glossary.md`) for tooltips.
 
 /// Text of the document at build time.
-const TEXT: &str = include_str!("../../docs/glossary.md");
+const TEXT: &str = include_str!("../../docs/reference/glossary.md");
 
 /// Returns the definition of a term as plain text: the second column of the row with the term in bold.
 pub fn meaning(word: &str) -> Option<String> {
@@ -40,7 +40,7 @@ mod tests {
     #[test]
     fn the_words_of_the_panels_are_explained() {
         for word in super::super::panel::TERMS {
-            let meaning = meaning(word).unwrap_or_else(|| panic!("`{word}` is not in docs/glossary.md"));
+            let meaning = meaning(word).unwrap_or_else(|| panic!("`{word}` is not in docs/reference/glossary.md"));
             assert!(meaning.len() > 20 && !meaning.contains("**"), "{word}: {meaning}");
         }
         assert_eq!(meaning("toaster"), None);

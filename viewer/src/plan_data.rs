@@ -1,6 +1,6 @@
 //! A plan as named rows, for live and saved plans alike.
 //!
-//! The rows are the fields of the JSON form (`docs/plan-json.md`), which programs save with [`framegraph::dump::json`]. A
+//! The rows are the fields of the JSON form (`docs/reference/plan-json.md`), which programs save with [`framegraph::dump::json`]. A
 //! live plan is converted through JSON too, so one reader and one set of views suffice.
 
 mod data;

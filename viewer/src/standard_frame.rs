@@ -23,7 +23,7 @@ pub struct StandardFrame {
 }
 
 impl StandardFrame {
-    /// Opens a preset or a settings file (`docs/settings.md`), for a scene without glass.
+    /// Opens a preset or a settings file (`docs/reference/settings.md`), for a scene without glass.
     ///
     /// # Errors
     /// An unknown preset, an unreadable file, or an invalid setting.

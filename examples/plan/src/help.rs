@@ -7,14 +7,14 @@ Compiles a frame graph from a file without a GPU and prints the plan.
 usage: plan FRAME.ron [options]
        plan --offsets FILE.csv [--budget-steps N] [--seconds S] [--out FILE]
 
-FRAME.ron is a graph; docs/graph-format.md documents its fields.
+FRAME.ron is a graph; docs/reference/graph-format.md documents its fields.
 
   --caps DEVICE       desktop, tiler, wgpu (default), or a FILE.ron that describes a device
   --size WxH          frame size in texels; default: the size in the file, else 1920x1080
   --set FEATURE=on|off
                       enable or disable a feature of the file; repeatable
   --order ORDER       declared (default) or optimized
-  --format FORMAT     text (default), json (docs/plan-json.md), dot, mermaid or svg
+  --format FORMAT     text (default), json (docs/reference/plan-json.md), dot, mermaid or svg
   --diff OTHER.ron    print the changes from FRAME.ron to OTHER.ron for the same device, size and features, as text
                       or json; a feature that only one file has is set in that file
   --budget LIMITS     exit with code 1 and list the responsible decisions if a limit is exceeded.

@@ -1,6 +1,6 @@
 //! Measures declaring and compiling: time, instructions and memory, on the graphs used for other render graphs.
 //!
-//! `cargo xtask bench` runs it, and `docs/performance.md` is its output. All compared cases run in one process. With
+//! `cargo xtask bench` runs it, and `docs/measurements/performance.md` is its output. All compared cases run in one process. With
 //! `--count GRAPH WHAT FRAMES` it only runs frames, for a profiler that counts instructions.
 
 mod count;

@@ -1,4 +1,4 @@
-//! Plans as JSON, for external tools. `docs/plan-json.md` documents the fields, and `docs/plan.schema.json` is their
+//! Plans as JSON, for external tools. `docs/reference/plan-json.md` documents the fields, and `docs/reference/plan.schema.json` is their
 //! JSON schema (draft 2020-12). A test checks the output against both.
 //!
 //! The JSON form uses names instead of ids and is stable: fields change their meaning only with a new [`JSON_VERSION`].

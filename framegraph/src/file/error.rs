@@ -32,7 +32,7 @@ error_enum! {
         /// The text is not valid RON, or has an unsupported form.
         Syntax { message: String, hint: String } => (message.clone(), hint.clone());
         Version { found: u32, known: u32 } "the file has version {found}, this program reads version {known}",
-            "write `version: {known}` once the file follows docs/graph-format.md";
+            "write `version: {known}` once the file follows docs/reference/graph-format.md";
         Unknown {
             what: &'static str,
             name: String,

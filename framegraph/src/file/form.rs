@@ -1,4 +1,4 @@
-//! Serde representation of a graph file. `docs/graph-format.md` documents the fields.
+//! Serde representation of a graph file. `docs/reference/graph-format.md` documents the fields.
 
 use super::access_form::{AccessForm, Level};
 use super::entries::{Count, Entries};

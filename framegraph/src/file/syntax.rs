@@ -38,10 +38,10 @@ pub(super) fn explained(error: &ron::Error) -> (String, String) {
         | E::UnclosedBlockComment => "add the missing bracket, quote or comma".into(),
         E::ExceededRecursionLimit => format!("nest at most {DEPTH} brackets"),
         E::IntegerOutOfBounds | E::InvalidValueForType { .. } => {
-            "docs/graph-format.md lists the range of each field".into()
+            "docs/reference/graph-format.md lists the range of each field".into()
         }
         E::TrailingCharacters => "remove the text after the first value".into(),
-        _ => "docs/graph-format.md documents the fields".into(),
+        _ => "docs/reference/graph-format.md documents the fields".into(),
     };
     let message = match error {
         E::NoSuchStructField { found, outer, .. } => match outer {

@@ -1,4 +1,4 @@
-//! The sixteen tests of Filament's frame graph, written for this library. `docs/filament-frame-graph.md` describes
+//! The sixteen tests of Filament's frame graph, written for this library. `docs/design/filament-frame-graph.md` describes
 //! each; names are those of `filament_framegraph_test.cpp`.
 
 use crate::support::*;

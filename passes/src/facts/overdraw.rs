@@ -12,7 +12,7 @@ use super::seen::fit_camera;
 use framegraph_scene::levels::level_of;
 use framegraph_scene::{BatchOrder, SHADED_POINTS, shaded_at_points};
 
-/// Cost of drawing a triangle into depth, in shaded pixels (`docs/facts.md`).
+/// Cost of drawing a triangle into depth, in shaded pixels (`docs/design/feature-culling.md`).
 const TRIANGLE: f64 = 1.0;
 /// Cost of drawing a pixel into depth, in shaded pixels.
 const DEPTH_PIXEL: f64 = 0.02;

@@ -10,7 +10,7 @@ use glam::Vec4;
 /// Reflectance at normal incidence up to which single scattering loses too little to be seen: that of an index of 1.5, with
 /// room for its rounding.
 const DIELECTRIC_F0: f32 = 0.0401;
-/// What compensation adds at most to a surface of that reflectance, in codes, where it is black beside (`docs/facts.md`).
+/// What compensation adds at most to a surface of that reflectance, in codes, where it is black beside (`docs/design/feature-culling.md`).
 const COMPENSATION_CODES: f32 = 1.6;
 /// Codes of 255 that a relative change of light by 1 is worth at most, on a curve no steeper than encoding alone.
 const CODES_OF_LIGHT: f64 = 255.0 / 2.2;

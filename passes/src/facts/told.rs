@@ -1,4 +1,4 @@
-//! Facts as text and as JSON. `docs/facts.md` documents the fields.
+//! Facts as text and as JSON. `docs/design/feature-culling.md` documents the fields.
 
 use super::decided::Facts;
 use super::fact::{Decision, Fact, Proof};

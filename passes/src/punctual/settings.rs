@@ -50,7 +50,7 @@ impl FroxelSettings {
 }
 
 impl LightSearch {
-    /// So many lights that have an end are found faster by froxels (`docs/lights.md`).
+    /// So many lights that have an end are found faster by froxels (`docs/design/lights.md`).
     pub const FEW: usize = 4;
 
     /// What is asked for as `auto`, `all` or `froxels`; the first and the last with changes: `froxels:slices=24,far=200`.

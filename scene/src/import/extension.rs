@@ -41,7 +41,7 @@ const fn none(name: &'static str, note: &'static str) -> Extension {
     Extension { name, support: Support::None, note }
 }
 
-/// Every Khronos (`KHR_`) and multi-vendor (`EXT_`) extension of glTF 2.0, sorted by name. `docs/files.md` prints this
+/// Every Khronos (`KHR_`) and multi-vendor (`EXT_`) extension of glTF 2.0, sorted by name. `docs/reference/files.md` prints this
 /// table.
 pub const EXTENSIONS: &[Extension] = &[
     none("EXT_instance_features", "feature identifiers of instances are not read"),
@@ -191,13 +191,13 @@ mod tests {
 
     #[test]
     fn the_document_has_the_table_of_extensions() {
-        let document = include_str!("../../../docs/files.md");
+        let document = include_str!("../../../docs/reference/files.md");
         let after = document.split_once("<!-- table: extensions -->\n").map(|(_, after)| after);
         let table = after.and_then(|after| after.split_once("<!-- end -->")).map(|(table, _)| table);
         let expected = extensions_table();
         assert!(
             table == Some(&expected),
-            "docs/files.md: the table is out of date; replace it by the output of `cargo run -p framegraph-scene --example \
+            "docs/reference/files.md: the table is out of date; replace it by the output of `cargo run -p framegraph-scene --example \
              extensions`:\n{expected}"
         );
     }

@@ -1,5 +1,5 @@
 //! What texts cost as instructions of SPIR-V: with loops counted at run time and without, and of the color pass feature by feature.
-//! `docs/performance.md` has both tables.
+//! `docs/measurements/performance.md` has both tables.
 
 use crate::variants;
 use framegraph_shaders::{Feature, Features, Module, resolve};
@@ -7,7 +7,7 @@ use naga::back::{pipeline_constants, spv};
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-const DOCUMENT: &str = include_str!("../../../docs/performance.md");
+const DOCUMENT: &str = include_str!("../../../docs/measurements/performance.md");
 
 /// Instructions within functions, and how many of them read textures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -72,7 +72,7 @@ fn compare(table: &str, expected: &[String]) {
     let (rows, _) = after.split_once("<!-- end -->").expect("the table ends");
     let rows: Vec<_> = rows.lines().filter(|line| line.starts_with("| ")).skip(1).collect();
     let rows: Vec<_> = rows.into_iter().filter(|row| !row.starts_with("| ---")).collect();
-    assert_eq!(rows, expected, "table `{table}` of docs/performance.md");
+    assert_eq!(rows, expected, "table `{table}` of docs/measurements/performance.md");
 }
 
 /// The plainest variant of each standard shader.

@@ -102,7 +102,7 @@ fn add_punctual(radiance: vec3<f32>, s: Surface, receiver: Receiver) -> vec3<f32
             sum += reflect_punctual(s, lights[i], receiver);
         } else {
             // Never, but something has to be in the loop: of a shader without any loop llvmpipe
-            // makes code that takes up to 1.8 times as long (docs/performance.md).
+            // makes code that takes up to 1.8 times as long (docs/measurements/performance.md).
             sum += f32(i);
         }
     }

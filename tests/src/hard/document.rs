@@ -1,4 +1,4 @@
-//! Rows of the tables in `docs/hard-cases.md`, printed by the program `hard_cases` and compared by a test.
+//! Rows of the tables in `docs/measurements/hard-cases.md`, printed by the program `hard_cases` and compared by a test.
 
 use super::guard::guards;
 use super::judge::Questions;

@@ -1,4 +1,4 @@
-//! Markdown document of a record, such as `docs/accuracy.md`.
+//! Markdown document of a record, such as `docs/measurements/accuracy.md`.
 
 use super::answers;
 use super::record::{ChoiceRecord, Record, TechniqueRecord};

@@ -1,4 +1,4 @@
-//! Rows of the tables in `docs/half-floats.md`, printed by the program `shading_errors` and compared by tests.
+//! Rows of the tables in `docs/measurements/half-floats.md`, printed by the program `shading_errors` and compared by tests.
 
 use crate::compare::{Difference, compare};
 use crate::executors;

@@ -294,7 +294,7 @@ const CHOICES: [&str; 12] = [
     "on:converge=on,filter-input=off,jitter=halton32",
 ];
 
-/// Returns the rows of the table in `docs/taa.md`, starting with its head.
+/// Returns the rows of the table in `docs/design/taa.md`, starting with its head.
 ///
 /// # Errors
 /// The device fails.

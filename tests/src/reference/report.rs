@@ -89,7 +89,7 @@ pub const fn word(verdict: &Verdict) -> &'static str {
     }
 }
 
-/// Version of the output of [`json()`]; `docs/references.md` has its schema.
+/// Version of the output of [`json()`]; `docs/measurements/references.md` has its schema.
 pub const JSON_VERSION: u32 = 1;
 
 /// Returns the results as JSON. References that could not be examined follow with the reason. Infinite values are the

@@ -11,11 +11,11 @@ use tests::lab::markdown::document;
 use tests::lab::record::{Record, Rounds};
 use tests::lab::studio::Studio;
 
-const DOCUMENT: &str = include_str!("../../../docs/accuracy.md");
+const DOCUMENT: &str = include_str!("../../../docs/measurements/accuracy.md");
 const CHOSEN: &str = include_str!("../../../passes/src/preset/chosen.rs");
 
 fn record() -> Record {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/accuracy.json");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/measurements/accuracy.json");
     Record::read(&path).expect("the record of the document")
 }
 
@@ -40,10 +40,10 @@ fn the_document_is_that_of_its_record() {
 /// The record of a GPU has its own document, with the same techniques.
 #[test]
 fn the_document_of_a_gpu_is_that_of_its_record() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/nvidia-h200");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/measurements/nvidia-h200");
     let own = Record::read(&folder.join("accuracy.json")).expect("the record of the document");
     let text = std::fs::read_to_string(folder.join("accuracy.md")).expect("the document");
-    let renew = "renew it: cargo run -p tests --bin accuracy -- --out docs/nvidia-h200 --document";
+    let renew = "renew it: cargo run -p tests --bin accuracy -- --out docs/measurements/nvidia-h200 --document";
     assert_eq!(text, document(&own), "{renew}");
     let known = record().techniques;
     assert!(own.adapter.contains("NVIDIA H200") && own.techniques.len() >= 24);
@@ -53,7 +53,7 @@ fn the_document_of_a_gpu_is_that_of_its_record() {
 /// The presets match the choice from the committed record, and another record leads to another choice.
 #[test]
 fn presets_are_those_of_the_record() {
-    let mut measured = record().budget.expect("docs/accuracy.json has what frames are chosen from");
+    let mut measured = record().budget.expect("docs/measurements/accuracy.json has what frames are chosen from");
     let renew = "renew them: cargo run -p tests --bin accuracy -- --out docs --presets passes/src/preset/chosen.rs";
     assert_eq!(CHOSEN, source(&measured).expect("options that there are"), "{renew}");
     for preset in Preset::ALL {
@@ -67,7 +67,7 @@ fn presets_are_those_of_the_record() {
 /// Chosen sets meet a hundred budgets. By the record, no change of one option within the budget reduces the error.
 #[test]
 fn chosen_sets_fit_their_budgets() {
-    let measured = record().budget.expect("docs/accuracy.json has what frames are chosen from");
+    let measured = record().budget.expect("docs/measurements/accuracy.json has what frames are chosen from");
     let choices = measured.choices(&Facts::default(), |_| true).expect("options that there are");
     let offers = measured.offers(&choices, measured.fastest_ms, measured.reference_ms);
     assert!(offers.groups.len() > 5, "{} groups", offers.groups.len());
@@ -93,7 +93,7 @@ fn chosen_sets_fit_their_budgets() {
 fn no_change_of_a_chosen_frame_has_less_error() -> Result<(), Box<dyn std::error::Error>> {
     let Some(gpu) = gpu("no_change_of_a_chosen_frame_has_less_error") else { return Ok(()) };
     let record = record();
-    let mut measured = record.budget.clone().ok_or("docs/accuracy.json has what frames are chosen from")?;
+    let mut measured = record.budget.clone().ok_or("docs/measurements/accuracy.json has what frames are chosen from")?;
     let studio = Studio::new(&gpu, record.size_px, Rounds::QUICK);
     let mut bench = Bench::new(&studio);
     let verified = |bench: &mut Bench<'_>, measured: &Measured| {

@@ -1,8 +1,8 @@
 //! Consistency of figures within rows of long runs: sums, quotients, differences, proofs. `cargo xtask documents`
 //! compares with new runs; this test detects a changed figure.
 
-const PROOFS: &str = include_str!("../../../docs/proofs.md");
-const PERFORMANCE: &str = include_str!("../../../docs/performance.md");
+const PROOFS: &str = include_str!("../../../docs/measurements/proofs.md");
+const PERFORMANCE: &str = include_str!("../../../docs/measurements/performance.md");
 
 /// A table row, accessed by column names.
 struct Row<'a> {

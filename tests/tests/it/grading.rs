@@ -22,7 +22,7 @@ type TestResult = Result<(), Box<dyn Error>>;
 /// Extras of settings alone.
 static NO_EXTRAS: Extras = Extras { own: None, colors: None };
 
-const DOCUMENT: &str = include_str!("../../../docs/grading.md");
+const DOCUMENT: &str = include_str!("../../../docs/design/grading.md");
 
 /// The document's table matches the command's output; tables with 64 entries per axis are left to the command.
 #[test]

@@ -50,7 +50,7 @@ fn every_function_of_the_half_build_equals_its_mirror_on_the_device() -> TestRes
     Ok(())
 }
 
-const DOCUMENT: &str = include_str!("../../../docs/half-floats.md");
+const DOCUMENT: &str = include_str!("../../../docs/measurements/half-floats.md");
 
 /// Returns the cells of the table below a heading.
 fn documented(heading: &str) -> Vec<Vec<&'static str>> {
@@ -66,7 +66,7 @@ fn documented(heading: &str) -> Vec<Vec<&'static str>> {
 fn on_the_documents_adapter(test: &str, gpu: &Gpu) -> bool {
     let same = DOCUMENT.contains(&format!("Adapter: {}\n", gpu.describe()));
     if !same {
-        test_report::skip(test, &format!("the figures of docs/half-floats.md are not of {}", gpu.describe()));
+        test_report::skip(test, &format!("the figures of docs/measurements/half-floats.md are not of {}", gpu.describe()));
     }
     same
 }

@@ -12,8 +12,8 @@ use tests::measure::half_model::HalfModel;
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-const DOCUMENT: &str = include_str!("../../../docs/hard-cases.md");
-const RENEW: &str = "renew docs/hard-cases.md: cargo run -p tests --bin hard_cases";
+const DOCUMENT: &str = include_str!("../../../docs/measurements/hard-cases.md");
+const RENEW: &str = "renew docs/measurements/hard-cases.md: cargo run -p tests --bin hard_cases";
 
 /// Returns true if a file has a test with a name.
 fn is_tested(file: &str, test: &str) -> Result<bool, Box<dyn Error>> {
@@ -58,7 +58,7 @@ fn hard_inputs_leave_every_invariant_and_guards_are_missed() -> TestResult {
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
     if !DOCUMENT.contains(&format!("Adapter: {}\n", gpu.describe())) {
-        test_report::skip(test, &format!("the figures of docs/hard-cases.md are not of {}", gpu.describe()));
+        test_report::skip(test, &format!("the figures of docs/measurements/hard-cases.md are not of {}", gpu.describe()));
         return Ok(());
     }
     let guards = kept(&gpu, 0, 5)?;

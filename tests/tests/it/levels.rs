@@ -109,7 +109,7 @@ fn a_pixel_off_is_hardly_seen_and_surfaces_shadow_nothing_of_their_own() -> Resu
 
 /// Compares the document's rows: triangle counts exactly, pictures within the tolerance between drivers.
 fn is_documented(table: &[(f32, usize, f64, f64)]) {
-    let document = include_str!("../../../docs/performance.md");
+    let document = include_str!("../../../docs/measurements/performance.md");
     let marked = document.split_once("<!-- table: levels -->").and_then(|(_, rest)| rest.split_once("<!-- end -->"));
     let rows: Vec<Vec<&str>> =
         marked.map_or("", |(rows, _)| rows).lines().filter(|line| line.starts_with("| ")).map(cells).collect();
@@ -126,7 +126,7 @@ fn is_documented(table: &[(f32, usize, f64, f64)]) {
             let same = cells[0] == error_px.to_string() && cells[1] == triangles.to_string();
             same && is(2, 100.0 * share, 0.1 + 20.0 * share) && is(3, *db, 1.0)
         };
-        assert!(rows.iter().any(near), "docs/performance.md has not: {}", row(own));
+        assert!(rows.iter().any(near), "docs/measurements/performance.md has not: {}", row(own));
     }
 }
 

@@ -1,7 +1,7 @@
-//! Figures of `docs/image-light.md`. Tests that measure less than the program compare with its output. `cargo xtask
+//! Figures of `docs/measurements/image-light.md`. Tests that measure less than the program compare with its output. `cargo xtask
 //! documents` prints the document again and compares every row.
 
-const DOCUMENT: &str = include_str!("../../../docs/image-light.md");
+const DOCUMENT: &str = include_str!("../../../docs/measurements/image-light.md");
 
 /// Returns the cells of rows below a heading, with the heads of tables.
 pub fn rows(heading: &str) -> Vec<Vec<&'static str>> {

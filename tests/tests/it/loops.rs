@@ -24,7 +24,7 @@ fn told(of: impl Fn(&str) -> Option<String>) -> (BTreeMap<String, String>, usize
 }
 
 fn compare(table: &str, found: &BTreeMap<String, String>) -> Result<(), Box<dyn Error>> {
-    let document = include_str!("../../../docs/performance.md");
+    let document = include_str!("../../../docs/measurements/performance.md");
     let (_, after) = document.split_once(&format!("<!-- table: {table} -->")).ok_or("the document has the table")?;
     let (rows, _) = after.split_once("<!-- end -->").ok_or("the table ends")?;
     let rows: Vec<_> = rows.lines().filter(|line| line.starts_with("| `")).collect();

@@ -1,8 +1,8 @@
-//! `docs/proofs.md` matches the output of the `prove` program, for the parts that are quick and machine-independent.
+//! `docs/measurements/proofs.md` matches the output of the `prove` program, for the parts that are quick and machine-independent.
 
 use std::process::{Command, Output};
 
-const DOCUMENT: &str = include_str!("../../../docs/proofs.md");
+const DOCUMENT: &str = include_str!("../../../docs/measurements/proofs.md");
 
 fn prove(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_prove")).args(args).output().expect("the program starts")
@@ -23,7 +23,7 @@ fn the_document_is_what_the_program_prints() {
     let lines: Vec<_> = text.lines().filter(|line| !line.is_empty()).collect();
     let rows = lines.iter().filter(|line| line.starts_with("| ")).count();
     assert!(rows > 36, "{text}");
-    let renew = "renew docs/proofs.md: cargo xtask prove --dsa tests/offset_assignment --out docs/proofs.md";
+    let renew = "renew docs/measurements/proofs.md: cargo xtask prove --dsa tests/offset_assignment --out docs/measurements/proofs.md";
     assert_eq!(missing(&lines), None, "{renew}");
     // Negative control: a number changed by one in any row is detected.
     for (at, line) in lines.iter().enumerate().filter(|(_, line)| line.starts_with("| ") && !line.contains("---")) {

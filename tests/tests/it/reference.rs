@@ -29,7 +29,7 @@ fn examined(test: &str, (command, folder): Table<'_>, ids: &[&str]) -> Result<Op
 /// A table of the document: the command that prints it, and the folder of its references.
 type Table<'a> = (&'a str, &'a Path);
 
-const DOCUMENT: &str = include_str!("../../../docs/references.md");
+const DOCUMENT: &str = include_str!("../../../docs/measurements/references.md");
 
 /// Returns the cells of a scene's row in the table that a command prints.
 fn row(command: &str, id: &str) -> Vec<&'static str> {

@@ -53,24 +53,24 @@ fn counts_are_filaments() {
     }
 }
 
-/// The rows of `docs/taa.md`, with a tolerance for other devices of half a decibel and 0.01.
+/// The rows of `docs/design/taa.md`, with a tolerance for other devices of half a decibel and 0.01.
 #[test]
 fn the_document_has_what_is_printed() -> TestResult {
     let Some(gpu) = gpu("the_document_has_what_is_printed") else { return Ok(()) };
     let cells = |row: &str| -> Vec<String> {
         row.trim_matches('|').split('|').map(|cell| cell.trim().trim_matches('`').to_owned()).collect()
     };
-    let documented = include_str!("../../../docs/taa.md").lines().filter(|line| line.starts_with("| "));
+    let documented = include_str!("../../../docs/design/taa.md").lines().filter(|line| line.starts_with("| "));
     let documented: Vec<Vec<String>> = documented.filter(|line| !line.contains("---")).map(cells).collect();
     let found: Vec<Vec<String>> =
         table(&gpu)?.iter().filter(|row| !row.contains("---")).map(|row| cells(row)).collect();
-    assert_eq!(documented.len(), found.len(), "renew docs/taa.md: cargo run --release -p tests --bin taa");
+    assert_eq!(documented.len(), found.len(), "renew docs/design/taa.md: cargo run --release -p tests --bin taa");
     for (old, new) in documented.iter().zip(&found) {
         let near = |(old, new): (&String, &String)| match (old.parse::<f64>(), new.parse::<f64>()) {
             (Ok(old), Ok(new)) => (old - new).abs() <= if old > 5.0 { 0.5 } else { 0.01 },
             _ => old == new,
         };
-        assert!(old.iter().zip(new).all(near), "docs/taa.md has {old:?}, and this is {new:?}");
+        assert!(old.iter().zip(new).all(near), "docs/design/taa.md has {old:?}, and this is {new:?}");
     }
     Ok(())
 }

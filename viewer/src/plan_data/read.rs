@@ -36,7 +36,7 @@ pub enum ReadError {
         known: u32,
     },
     /// A field is missing or has the wrong type.
-    #[error("line {line}: {reason}; docs/plan-json.md documents the fields")]
+    #[error("line {line}: {reason}; docs/reference/plan-json.md documents the fields")]
     Field {
         /// Line, from 1.
         line: usize,

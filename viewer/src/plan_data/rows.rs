@@ -1,5 +1,5 @@
-//! Rows of a saved plan, one field each as documented in `docs/plan-json.md`.
-#![expect(missing_docs, reason = "docs/plan-json.md documents each field under the same name")]
+//! Rows of a saved plan, one field each as documented in `docs/reference/plan-json.md`.
+#![expect(missing_docs, reason = "docs/reference/plan-json.md documents each field under the same name")]
 
 use serde::Deserialize;
 

@@ -1,7 +1,7 @@
-//! Tooltips of settings fields from `docs/settings.md`.
+//! Tooltips of settings fields from `docs/reference/settings.md`.
 
 /// Text of the document at build time.
-const TEXT: &str = include_str!("../../../docs/settings.md");
+const TEXT: &str = include_str!("../../../docs/reference/settings.md");
 
 /// Returns the documentation of a field by its path, such as `settings.shadows.filter`: its own row, or that of its parent.
 pub fn about(path: &str) -> Option<String> {

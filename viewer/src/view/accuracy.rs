@@ -19,7 +19,7 @@ const MARK: f32 = 4.0;
 pub fn drawing(data: Option<&AccuracyData>, budget_ms: f64) -> Drawing {
     let mut drawing = Drawing::default();
     let Some(data) = data else {
-        let text = "No accuracy record: open one written by `accuracy`, such as docs/accuracy.json";
+        let text = "No accuracy record: open one written by `accuracy`, such as docs/measurements/accuracy.json";
         drawing.text([0.0, 10.0], 12.0, Ink::Faint, text);
         return drawing;
     };

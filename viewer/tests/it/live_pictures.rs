@@ -1,6 +1,6 @@
 //! Pictures of the panels of a live frame: at common window sizes, and at twice the font size.
 //!
-//! `VIEWER_PICTURES=write cargo test -p viewer --test it live_pictures` renews the picture of `docs/viewer.md`.
+//! `VIEWER_PICTURES=write cargo test -p viewer --test it live_pictures` renews the picture of `docs/reference/viewer.md`.
 
 use crate::live::{document, viewer};
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Compares the pictures of `docs/viewer.md` with the current panels.
+//! Compares the pictures of `docs/reference/viewer.md` with the current panels.
 //!
 //! `VIEWER_PICTURES=write cargo test -p viewer --test it pictures` renews them.
 

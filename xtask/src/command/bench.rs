@@ -19,7 +19,7 @@ Stages:
            time, and in instructions if valgrind is installed
   scenes   frames of 10,000 to 1,000,000 nodes on the noop device; culling
 
-Each stage prints a section of docs/performance.md. The peer needs a newer
+Each stage prints a section of docs/measurements/performance.md. The peer needs a newer
 compiler than the workspace and is built with --ignore-rust-version. The command
 checks no limits, since times depend on the machine and its load.
 

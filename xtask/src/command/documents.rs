@@ -10,12 +10,12 @@ pub const COMMAND: Command = Command {
     name: "documents",
     summary: "print every table of docs/ again, long runs too, and compare",
     details: "\
-Runs the programs that print the tables of docs/proofs.md, docs/image-light.md,
-docs/half-floats.md, docs/hard-cases.md, docs/occlusion.md, docs/reflections.md,
-docs/taa.md, docs/lights.md and docs/references.md, in release and with all cases.
+Runs the programs that print the tables of docs/measurements/proofs.md, docs/measurements/image-light.md,
+docs/measurements/half-floats.md, docs/measurements/hard-cases.md, docs/design/occlusion.md, docs/design/reflections.md,
+docs/design/taa.md, docs/design/lights.md and docs/measurements/references.md, in release and with all cases.
 Lists printed rows that the document lacks. Columns of times are ignored. Marked
 tables of other documents are compared by tests. `cargo xtask bench` prints the
-tables of docs/performance.md, and tests check that their figures are consistent.
+tables of docs/measurements/performance.md, and tests check that their figures are consistent.
 The command takes about 15 minutes. Figures that depend on rounding are those of
 Mesa's software driver. Exit code 1 if a row is missing or a program fails.
 ",
@@ -37,33 +37,33 @@ const FRAMES: &str = "tests/references/filament_frame";
 
 const PRINTED: [Printed; 12] = [
     Printed {
-        document: "docs/proofs.md",
+        document: "docs/measurements/proofs.md",
         program: &["prove", "--dsa", "tests/offset_assignment"],
         mark: None,
         may_fail: false,
     },
-    Printed { document: "docs/image-light.md", program: &["ibl_errors"], mark: None, may_fail: false },
-    Printed { document: "docs/occlusion.md", program: &["occlusion"], mark: None, may_fail: false },
-    Printed { document: "docs/reflections.md", program: &["reflections"], mark: None, may_fail: false },
-    Printed { document: "docs/taa.md", program: &["taa"], mark: None, may_fail: false },
-    Printed { document: "docs/lights.md", program: &["lights"], mark: None, may_fail: false },
-    Printed { document: "docs/hard-cases.md", program: &["hard_cases"], mark: None, may_fail: false },
-    Printed { document: "docs/half-floats.md", program: &["shading_errors"], mark: None, may_fail: false },
-    Printed { document: "docs/references.md", program: &["reference"], mark: Some("reference"), may_fail: false },
+    Printed { document: "docs/measurements/image-light.md", program: &["ibl_errors"], mark: None, may_fail: false },
+    Printed { document: "docs/design/occlusion.md", program: &["occlusion"], mark: None, may_fail: false },
+    Printed { document: "docs/design/reflections.md", program: &["reflections"], mark: None, may_fail: false },
+    Printed { document: "docs/design/taa.md", program: &["taa"], mark: None, may_fail: false },
+    Printed { document: "docs/design/lights.md", program: &["lights"], mark: None, may_fail: false },
+    Printed { document: "docs/measurements/hard-cases.md", program: &["hard_cases"], mark: None, may_fail: false },
+    Printed { document: "docs/measurements/half-floats.md", program: &["shading_errors"], mark: None, may_fail: false },
+    Printed { document: "docs/measurements/references.md", program: &["reference"], mark: Some("reference"), may_fail: false },
     Printed {
-        document: "docs/references.md",
+        document: "docs/measurements/references.md",
         program: &["reference", "--quality", "low"],
         mark: Some("reference --quality low"),
         may_fail: false,
     },
     Printed {
-        document: "docs/references.md",
+        document: "docs/measurements/references.md",
         program: &["reference", "--compare-quality"],
         mark: Some("reference --compare-quality"),
         may_fail: false,
     },
     Printed {
-        document: "docs/references.md",
+        document: "docs/measurements/references.md",
         program: &["reference", FRAMES],
         mark: Some("reference tests/references/filament_frame"),
         may_fail: true,

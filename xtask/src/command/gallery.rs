@@ -1,4 +1,4 @@
-//! `cargo xtask gallery`: renders the pictures of docs/gallery.md.
+//! `cargo xtask gallery`: renders the pictures of docs/gallery/README.md.
 
 use std::fs;
 use std::path::Path;
@@ -10,9 +10,9 @@ use crate::{Failure, adapter, stage, workspace};
 /// The command.
 pub const COMMAND: Command = Command {
     name: "gallery",
-    summary: "build in release and render the pictures of docs/gallery.md",
+    summary: "build in release and render the pictures of docs/gallery/README.md",
     details: "\
-Renders the pictures of docs/gallery.md into docs/gallery/ by the commands listed
+Renders the pictures of docs/gallery/README.md into docs/gallery/ by the commands listed
 there. FlightHelmet is not part of the repository; if it is missing, its pictures
 are kept and a message says so. tests/assets/README.md says where to find it.
 ",
@@ -163,12 +163,12 @@ mod tests {
     /// The document lists the command of every picture, every picture exists, and none is too large.
     #[test]
     fn the_document_shows_every_picture_with_its_command() {
-        let document = include_str!("../../../docs/gallery.md");
+        let document = include_str!("../../../docs/gallery/README.md");
         for picture in PICTURES {
             let (name, ..) = picture;
             let command = format!("cargo run --release --bin render -- {}", words(picture));
-            assert!(document.contains(&command), "docs/gallery.md lacks `{command}`");
-            assert!(document.contains(&format!("](gallery/{name}.png)")), "docs/gallery.md does not show {name}");
+            assert!(document.contains(&command), "docs/gallery/README.md lacks `{command}`");
+            assert!(document.contains(&format!("](gallery/{name}.png)")), "docs/gallery/README.md does not show {name}");
             small(&workspace::root().join(FOLDER).join(format!("{name}.png"))).expect("a small picture");
         }
         let shown = document.matches("](gallery/").count();

@@ -31,7 +31,7 @@ neither detected nor explained in xtask/src/mutant/explained.rs.
   --count N     try the first N mutants instead of a sample
   --list        print the mutants without running tests
   --out FILE    write the document to FILE instead of printing it, usually
-                docs/mutants.md
+                docs/measurements/mutants.md
 ",
     run,
 };

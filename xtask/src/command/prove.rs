@@ -1,4 +1,4 @@
-//! `cargo xtask prove`: prints docs/proofs.md, the evidence for what the compiler claims.
+//! `cargo xtask prove`: prints docs/measurements/proofs.md, the evidence for what the compiler claims.
 
 use super::Command;
 use crate::options::Options;
@@ -7,7 +7,7 @@ use crate::{Failure, stage, workspace};
 /// The command.
 pub const COMMAND: Command = Command {
     name: "prove",
-    summary: "print docs/proofs.md",
+    summary: "print docs/measurements/proofs.md",
     details: "\
 Prints the document: memory compared to its lower bound and to brute force, an
 independent checker on random graphs, and mutants of valid plans. Takes a few
@@ -17,7 +17,7 @@ minutes and prints its progress. Paths are relative to the workspace's root.
   --dsa DIR     folder of offset-assignment instances NAME.CAPACITY.csv; without
                 it, the document says that their table was skipped
   --out FILE    write the document to FILE instead of printing it, usually
-                docs/proofs.md
+                docs/measurements/proofs.md
 ",
     run,
 };

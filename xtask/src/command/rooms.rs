@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// The command.
 pub const COMMAND: Command = Command {
     name: "rooms",
-    summary: "print the table of docs/rooms.md: crates, lines and build time per package",
+    summary: "print the table of docs/measurements/rooms.md: crates, lines and build time per package",
     details: "\
 Prints counts for each package at commit f6971f2, before the packages were split,
 and now: crates that a user compiles, crates that wgpu does not need itself, lines
@@ -250,7 +250,7 @@ fn build(root: &Path) -> Result<BTreeMap<String, f64>, Failure> {
 mod tests {
     use super::*;
 
-    const DOCUMENT: &str = include_str!("../../../docs/rooms.md");
+    const DOCUMENT: &str = include_str!("../../../docs/measurements/rooms.md");
 
     /// Crate counts must match, since Cargo.lock fixes them. Lines may differ by 2 % before the table has to be printed
     /// again. Build times are not compared.

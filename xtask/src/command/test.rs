@@ -28,7 +28,7 @@ Stages; a failed stage does not stop the others:
 Some tests need Vulkan's validation layers, or Xvfb to open windows. The command
 installs both like a driver; if that fails, these tests are skipped.
 
-Slow tests with many cases run every third case; docs/time.md lists them.
+Slow tests with many cases run every third case; docs/measurements/time.md lists them.
 
 Every pair of effects, options and scene parts is rendered by its own `render`
 process; --all renders every triple. The summary counts the verdicts.

@@ -1,4 +1,4 @@
-//! Text of `docs/mutants.md`.
+//! Text of `docs/measurements/mutants.md`.
 
 use crate::mutant::explained::why;
 use crate::mutant::judge;
@@ -34,7 +34,7 @@ impl Tried {
 pub fn document(rooms: &[Tried]) -> String {
     let mut text = format!(
         "# Mutation testing\n\n\
-         Printed by `cargo xtask mutants{named} --out docs/mutants.md`. A mutant changes an operator, comparison, constant or\n\
+         Printed by `cargo xtask mutants{named} --out docs/measurements/mutants.md`. A mutant changes an operator, comparison, constant or\n\
          vector component, or removes a statement. Tests run one at a time until one fails, the most likely first, and only tests\n\
          that compile the changed line. Tests of up to {quick} s of processor time run first, then longer ones, each group for up to\n\
          {asked} s. Mutants that do not compile are invalid and not counted.\n\n\

@@ -20,15 +20,15 @@ pub const HELP: &str = "\
 BUDGET
   --budget-ms X        choose the most accurate frame within X ms on this device. Candidates for edges, shadows, ambient
                        occlusion, shading, precision, HDR format, reflections and glass come from measured costs and errors
-                       (docs/accuracy.md), and are verified on this scene against the reference frame
+                       (docs/measurements/accuracy.md), and are verified on this scene against the reference frame
   --max-error X        choose the fastest frame whose root-mean-square error against the reference frame is at most X 8-bit
                        steps
-  --record FILE.json   measurements of `accuracy --technique budget`; default: docs/accuracy.json, measured with a software
+  --record FILE.json   measurements of `accuracy --technique budget`; default: docs/measurements/accuracy.json, measured with a software
                        driver. With --preset, the options of the preset are chosen from it
 ";
 
 /// Measurements committed to the repository.
-const OWN: &str = include_str!("../../../../docs/accuracy.json");
+const OWN: &str = include_str!("../../../../docs/measurements/accuracy.json");
 
 /// Limit of the frame and the measurements to choose from.
 #[derive(Clone, Debug, Default)]
@@ -72,7 +72,7 @@ struct Record {
 
 /// Reads a record: the measurements and the name of the measured adapter.
 pub fn record(file: Option<&Path>) -> Result<(Measured, String), String> {
-    let shown = file.map_or_else(|| "docs/accuracy.json".into(), |file| file.to_string_lossy());
+    let shown = file.map_or_else(|| "docs/measurements/accuracy.json".into(), |file| file.to_string_lossy());
     let failed = |what: &dyn std::fmt::Display| format!("--record {shown}: {what}");
     let text = match file {
         Some(file) => &text(file, MAX_TEXT_BYTES).map_err(|error| format!("--record {error}"))?,

@@ -19,19 +19,19 @@ use std::path::{Path, PathBuf};
 /// Help section.
 pub const HELP: &str = "\
 FRAME
-  --preset NAME        settings of the whole frame: low, medium, high or ultra (docs/settings.md); other options override
+  --preset NAME        settings of the whole frame: low, medium, high or ultra (docs/reference/settings.md); other options override
                        them. With --record, the preset's options are chosen from the record
-  --settings FILE.ron  settings of the whole frame from a file (docs/settings.md); other options override them
+  --settings FILE.ron  settings of the whole frame from a file (docs/reference/settings.md); other options override them
   --enable EFFECT      always draw the effect, at its default strength; repeatable
   --disable EFFECT     never draw the effect; repeatable. EFFECT is NAMES
   --force-effects      draw every requested effect. By default, effects that provably change nothing in this scene are
-                       dropped, and listed with their reasons after the table (docs/facts.md)
+                       dropped, and listed with their reasons after the table (docs/design/feature-culling.md)
   --facts FILE.json    write the decision on each effect
   --effect-costs       also print the cost of each effect: the frame with and without it, measured alternately, all other
                        decisions unchanged. Times are medians of --frames, from recording to completion
-  --graph FILE.ron     write the graph of the frame, for the program `plan` (docs/graph-format.md)
+  --graph FILE.ron     write the graph of the frame, for the program `plan` (docs/reference/graph-format.md)
   --what-if DEVICE     compare the plan's counts with those on another device: desktop, tiler, wgpu, or a FILE.ron that
-                       describes one (docs/graph-format.md)
+                       describes one (docs/reference/graph-format.md)
   --turntable N DIR    write N pictures DIR/turntable_0000.png, … of one camera orbit around the scene instead of one picture
   --sequence N DIR     write N consecutive frames DIR/frame_0000.png, … instead of one picture; with --time S an animation
                        plays from there at 30 frames per second

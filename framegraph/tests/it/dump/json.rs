@@ -6,8 +6,8 @@ use framegraph::*;
 use serde_json::{Value, json};
 
 fn schema() -> Value {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/plan.schema.json");
-    let text = std::fs::read_to_string(path).expect("docs/plan.schema.json exists");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/reference/plan.schema.json");
+    let text = std::fs::read_to_string(path).expect("docs/reference/plan.schema.json exists");
     serde_json::from_str(&text).expect("the schema is JSON")
 }
 

@@ -1,10 +1,10 @@
-//! Checks `docs/graph-format.md` against the parser: its examples are valid, and every keyword is documented.
+//! Checks `docs/reference/graph-format.md` against the parser: its examples are valid, and every keyword is documented.
 
 use framegraph::file::*;
 
 fn reference() -> String {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/graph-format.md");
-    std::fs::read_to_string(path).expect("docs/graph-format.md exists")
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/reference/graph-format.md");
+    std::fs::read_to_string(path).expect("docs/reference/graph-format.md exists")
 }
 
 /// Returns the text of each RON block.

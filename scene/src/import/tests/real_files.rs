@@ -39,7 +39,7 @@ fn flight_helmet_comes_in_whole() {
     assert!(camera.eye.distance(DVec3::ZERO) < 3.0);
 }
 
-/// The row of `docs/performance.md`: vertices shaded for a triangle, in the order of the file and as drawn.
+/// The row of `docs/measurements/performance.md`: vertices shaded for a triangle, in the order of the file and as drawn.
 #[test]
 fn flight_helmet_is_ordered_for_drawing() {
     let Some(path) = file("assets/models/FlightHelmet/FlightHelmet.gltf") else {
@@ -57,7 +57,7 @@ fn flight_helmet_is_ordered_for_drawing() {
     let [before, after] = [before, after].map(|shaded| shaded / triangles as f64);
     let row = format!("| FlightHelmet | {triangles} | {before:.3} | {after:.3} |");
     println!("{row}");
-    assert!(include_str!("../../../../docs/performance.md").contains(&row), "docs/performance.md has no {row}");
+    assert!(include_str!("../../../../docs/measurements/performance.md").contains(&row), "docs/measurements/performance.md has no {row}");
 }
 
 /// Tangents of the file against generated ones: baked by another implementation of the same

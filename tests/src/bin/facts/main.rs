@@ -1,6 +1,6 @@
 //! `facts`: effects that feature culling drops from six scenes under four presets, and the time saved.
 //!
-//! `cargo run --release -p tests --bin facts` prints the tables of `docs/facts.md`. `--every-mask` draws all 4096
+//! `cargo run --release -p tests --bin facts` prints the tables of `docs/design/feature-culling.md`. `--every-mask` draws all 4096
 //! combinations of twelve effects in each of six small scenes, with and without feature culling, and compares them.
 //! `--masks N` draws N evenly spread combinations instead. `--scene NAME` selects one scene.
 

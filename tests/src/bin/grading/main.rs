@@ -1,6 +1,6 @@
 //! `grading`: error of color grading tables against the exact functions.
 //!
-//! `cargo run --release -p tests --bin grading` prints the table of `docs/grading.md`. It is computed on the CPU in
+//! `cargo run --release -p tests --bin grading` prints the table of `docs/design/grading.md`. It is computed on the CPU in
 //! f64, so it is the same on every machine.
 
 use std::error::Error;

@@ -1,6 +1,6 @@
 //! `hard_cases`: tests of hard inputs, and the test case that needs each guard of the shader library.
 //!
-//! `cargo run -p tests --bin hard_cases` prints the tables of `docs/hard-cases.md`. The exit code is 1 if an invariant
+//! `cargo run -p tests --bin hard_cases` prints the tables of `docs/measurements/hard-cases.md`. The exit code is 1 if an invariant
 //! fails, or if a guard is neither covered by a test case nor explained.
 
 use framegraph_wgpu::{AdapterRequest, Gpu};

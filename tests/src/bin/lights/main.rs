@@ -1,6 +1,6 @@
 //! `lights`: cost of many lights with froxels and with a loop over all lights, on the default adapter.
 //!
-//! `cargo run --release -p tests --bin lights` prints the tables of `docs/lights.md`. Each time is the minimum of
+//! `cargo run --release -p tests --bin lights` prints the tables of `docs/design/lights.md`. Each time is the minimum of
 //! several frames, and valid for this device only.
 
 use framegraph_passes::punctual::{Found, FroxelSettings, LightSearch};

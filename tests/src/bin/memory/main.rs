@@ -1,6 +1,6 @@
 //! `memory`: bytes that the device allocates for the standard frame under each aliasing mode.
 //!
-//! `cargo run --release -p tests --bin memory` prints the table of `docs/performance.md`: one frame per size.
+//! `cargo run --release -p tests --bin memory` prints the table of `docs/measurements/performance.md`: one frame per size.
 
 use framegraph::{Alias, Options};
 use framegraph_passes::bloom::BloomSettings;

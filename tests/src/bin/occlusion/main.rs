@@ -1,6 +1,6 @@
 //! `occlusion`: error and cost of ambient occlusion on the default adapter.
 //!
-//! `cargo run --release -p tests --bin occlusion` prints the tables of `docs/occlusion.md`. Each time is the minimum of
+//! `cargo run --release -p tests --bin occlusion` prints the tables of `docs/design/occlusion.md`. Each time is the minimum of
 //! several frames that only contain the structure's levels, ambient occlusion and its blur. Times are valid for this
 //! device only.
 

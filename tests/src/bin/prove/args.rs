@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 /// Text of `--help`.
 pub const HELP: &str = "\
-Verifies the compiler's claims and prints docs/proofs.md.
+Verifies the compiler's claims and prints docs/measurements/proofs.md.
 
 usage: prove [--quick] [--dsa DIR] [--out FILE]
 

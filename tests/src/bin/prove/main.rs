@@ -2,7 +2,7 @@
 //! optimum, checks plans for correctness, and tests the checker itself.
 //!
 //! Apart from times, the output is the same on every machine. `--quick` prints only the parts that a test compares with
-//! `docs/proofs.md`. The document goes to standard output, progress to standard error. The document is written once it
+//! `docs/measurements/proofs.md`. The document goes to standard output, progress to standard error. The document is written once it
 //! is complete, so the program can be interrupted at any time. Exit codes: 0 every claim holds, 1 a claim is refuted
 //! and named, 2 invalid input.
 

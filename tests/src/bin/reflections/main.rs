@@ -1,6 +1,6 @@
 //! `reflections`: accuracy of screen-space reflections on the default adapter.
 //!
-//! `cargo run --release -p tests --bin reflections` prints the table of `docs/reflections.md`: three mirror balls over
+//! `cargo run --release -p tests --bin reflections` prints the table of `docs/design/reflections.md`: three mirror balls over
 //! a mirror floor, compared with the formulas of `truth::reflection`.
 
 use framegraph_passes::ReflectionSettings;

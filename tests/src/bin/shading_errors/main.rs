@@ -1,6 +1,6 @@
 //! `shading_errors`: error of half floats in the shading library on the default adapter.
 //!
-//! `cargo run -p tests --bin shading_errors` prints the tables of `docs/half-floats.md`. Each has a negative control,
+//! `cargo run -p tests --bin shading_errors` prints the tables of `docs/measurements/half-floats.md`. Each has a negative control,
 //! an error made on purpose that its comparison must detect. The exit code is 1 if it does not.
 
 use framegraph_shaders::reference::cases;

@@ -1,6 +1,6 @@
 //! `taa`: error and ghosting of temporal anti-aliasing on the default adapter.
 //!
-//! `cargo run --release -p tests --bin taa` prints the table of `docs/taa.md`.
+//! `cargo run --release -p tests --bin taa` prints the table of `docs/design/taa.md`.
 
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::error::Error;

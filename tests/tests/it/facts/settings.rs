@@ -7,14 +7,14 @@ use framegraph::{Caps, Options, Plan, Scratch, compile, dump};
 use framegraph_passes::budget::GROUPS;
 use framegraph_passes::{FrameSettings, Preset, Settings};
 
-const DOCUMENT: &str = include_str!("../../../../docs/settings.md");
+const DOCUMENT: &str = include_str!("../../../../docs/reference/settings.md");
 
 #[test]
 fn the_examples_of_the_document_load() -> TestResult {
     let examples: Vec<&str> = DOCUMENT.split("```ron\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
     assert_eq!(examples.len(), 2);
     for example in examples {
-        let frame = FrameSettings::from_ron("docs/settings.md", example)?;
+        let frame = FrameSettings::from_ron("docs/reference/settings.md", example)?;
         assert_ne!(frame, FrameSettings::DEFAULT, "{example}");
         assert_eq!(FrameSettings::from_ron("again", &frame.to_ron()?)?, frame);
     }
@@ -30,7 +30,7 @@ fn the_document_names_every_field() -> TestResult {
     assert!(fields.len() > 60, "{fields:?}");
     for field in fields {
         let named = [format!("`{field}`"), format!("{field}: ")].iter().any(|name| DOCUMENT.contains(name));
-        assert!(named, "docs/settings.md does not name {field}");
+        assert!(named, "docs/reference/settings.md does not name {field}");
     }
     Ok(())
 }

@@ -1,10 +1,10 @@
-//! The table of `docs/facts.md` is the program's output, without times.
+//! The table of `docs/design/feature-culling.md` is the program's output, without times.
 
 use super::TestResult;
 use framegraph_wgpu::Gpu;
 use tests::measure::facts::table::{heads, rows};
 
-const DOCUMENT: &str = include_str!("../../../../docs/facts.md");
+const DOCUMENT: &str = include_str!("../../../../docs/design/feature-culling.md");
 
 fn cells(row: &str) -> Vec<&str> {
     row.trim_matches('|').split('|').map(str::trim).collect()

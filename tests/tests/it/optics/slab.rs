@@ -39,11 +39,11 @@ fn off(slab: &Slab) -> [f64; 4] {
     })
 }
 
-/// The figures of `docs/optics.md`: over roughness 0.2 to 0.7 and indices 1.33 to 1.8, the default is nearest to the
+/// The figures of `docs/design/optics.md`: over roughness 0.2 to 0.7 and indices 1.33 to 1.8, the default is nearest to the
 /// truth at every thickness and distance.
 #[test]
 fn the_default_blur_of_rough_bodies_is_nearest_to_the_truth() {
-    let document = include_str!("../../../../docs/optics.md");
+    let document = include_str!("../../../../docs/design/optics.md");
     let (mut all, mut rows) = ([0.0; 4], 0.0);
     let show = |name: &str, figures: [f64; 4]| {
         let [a, b, c, d] = figures.map(|rms| format!("{rms:.4}"));
@@ -51,7 +51,7 @@ fn the_default_blur_of_rough_bodies_is_nearest_to_the_truth() {
     };
     let check = |line: String| {
         println!("{line}");
-        assert!(document.contains(&line), "docs/optics.md lacks the line\n{line}");
+        assert!(document.contains(&line), "docs/design/optics.md lacks the line\n{line}");
     };
     for thickness_m in [0.0, 0.1, 0.3] {
         for behind_m in [0.02, 0.3, 1.0] {

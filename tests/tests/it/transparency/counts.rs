@@ -5,7 +5,7 @@ use framegraph::{Caps, Counts, Options, Plan};
 use framegraph_passes::transparency::MomentTransparency;
 use framegraph_passes::{Settings, Transparency};
 
-const DOCUMENT: &str = include_str!("../../../../docs/transparency.md");
+const DOCUMENT: &str = include_str!("../../../../docs/design/transparency.md");
 
 const TECHNIQUES: [Transparency; 3] =
     [Transparency::Weighted, Transparency::Moments(MomentTransparency::DEFAULT), Transparency::Peeled { layers: 3 }];
@@ -39,7 +39,7 @@ fn sums_on_a_device_that_samples_them() {
             for ((name, wgpu), tiler) in ["weighted", "moments", "peeled:layers=3"].into_iter().zip(counts).zip(tiler) {
                 let of = |c: Counts| format!("{} | {} | {}", c.steps, c.unresolves, c.resolves);
                 let row = format!("| `{name}` | {} | {} |", of(wgpu), of(tiler));
-                assert!(DOCUMENT.contains(&row), "docs/transparency.md lacks {row}");
+                assert!(DOCUMENT.contains(&row), "docs/design/transparency.md lacks {row}");
             }
         }
         assert_eq!((weighted.steps, weighted.unresolves), (2, 0));

@@ -10,7 +10,7 @@ use framegraph_scene::geometry::plane;
 use glam::{DMat4, DQuat, DVec3, Vec2, Vec3};
 use std::f64::consts::FRAC_PI_2;
 
-const DOCUMENT: &str = include_str!("../../../../docs/lens.md");
+const DOCUMENT: &str = include_str!("../../../../docs/design/lens.md");
 
 /// A pane in focus over the left half of bars that are far behind it.
 fn scene() -> Scene {
@@ -49,7 +49,7 @@ fn a_pane_in_focus() -> TestResult {
         let stated: f64 = row.and_then(|row| row.trim_end_matches(" |").parse().ok()).unwrap_or(0.0);
         assert!(
             (found - stated).abs() < 0.2 * stated,
-            "{name}: {found} of {before} {after}, and docs/lens.md has {stated}"
+            "{name}: {found} of {before} {after}, and docs/design/lens.md has {stated}"
         );
     }
     assert!(after < 0.5 * before, "{before} {after}");

@@ -88,7 +88,7 @@ fn bar(ui: &mut Ui, live: &mut Live) {
         let named = !live.path.trim().is_empty();
         if ui
             .add_enabled(named, egui::Button::new("Load"))
-            .on_hover_text("Load a settings file (docs/settings.md)")
+            .on_hover_text("Load a settings file (docs/reference/settings.md)")
             .clicked()
         {
             let read = crate::standard_frame::settings(live.path.trim());
