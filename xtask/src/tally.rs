@@ -244,8 +244,7 @@ mod tests {
         assert_eq!(with(""), None);
         assert_eq!(with("SKIP: a_window_is_drawn_into: there is no Xvfb to open a window on\n"), None);
         assert_eq!(with("SKIP: opposite_light_is_finite: llvmpipe has no half floats in shaders\n"), None);
-        let elsewhere =
-            "hard_inputs_leave_every_invariant_and_guards_are_missed: the figures of docs/measurements/hard-cases.md are not of it";
+        let elsewhere = "hard_inputs_leave_every_invariant_and_guards_are_missed: the figures of docs/measurements/hard-cases.md are not of it";
         assert_eq!(with(&format!("SKIP: {elsewhere}\n")), None);
         // A wrong test, a wrong reason, and a test that lost its adapter.
         for skip in [

@@ -93,7 +93,8 @@ fn chosen_sets_fit_their_budgets() {
 fn no_change_of_a_chosen_frame_has_less_error() -> Result<(), Box<dyn std::error::Error>> {
     let Some(gpu) = gpu("no_change_of_a_chosen_frame_has_less_error") else { return Ok(()) };
     let record = record();
-    let mut measured = record.budget.clone().ok_or("docs/measurements/accuracy.json has what frames are chosen from")?;
+    let mut measured =
+        record.budget.clone().ok_or("docs/measurements/accuracy.json has what frames are chosen from")?;
     let studio = Studio::new(&gpu, record.size_px, Rounds::QUICK);
     let mut bench = Bench::new(&studio);
     let verified = |bench: &mut Bench<'_>, measured: &Measured| {

@@ -265,7 +265,8 @@ fn bloom_of_nothing_is_no_bloom() {
     let blooms = text(Some(BloomSettings::DEFAULT));
     assert!(none.contains("pass `post`: inlined into the shader of `color`"), "{none}");
     // The log states why post-processing is a separate pass.
-    let why = ["store of `hdr` in step 1: stored because `bloom/half` reads it", "pass `post`: not merged with `bloom/up`"];
+    let why =
+        ["store of `hdr` in step 1: stored because `bloom/half` reads it", "pass `post`: not merged with `bloom/up`"];
     assert!(why.iter().all(|why| blooms.contains(why)), "{blooms}");
 }
 

@@ -25,7 +25,7 @@ fn pictures_are_the_same_by_every_format_and_by_the_cube() -> TestResult {
     const TEST: &str = "pictures_are_the_same_by_every_format_and_by_the_cube";
     let Some(gpu) = stage::gpu(TEST) else { return Ok(()) };
     let fog = FogSettings {
-        color: FogColor::Environment { tint: [1.0; 3], sharp_m: 10.0 },
+        color: FogColor::Environment { tint: [1.0; 3], sharp_m: 10.0, sharp_levels: 1.0 },
         density: 0.05,
         ..FogSettings::default()
     };

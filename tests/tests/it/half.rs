@@ -66,7 +66,10 @@ fn documented(heading: &str) -> Vec<Vec<&'static str>> {
 fn on_the_documents_adapter(test: &str, gpu: &Gpu) -> bool {
     let same = DOCUMENT.contains(&format!("Adapter: {}\n", gpu.describe()));
     if !same {
-        test_report::skip(test, &format!("the figures of docs/measurements/half-floats.md are not of {}", gpu.describe()));
+        test_report::skip(
+            test,
+            &format!("the figures of docs/measurements/half-floats.md are not of {}", gpu.describe()),
+        );
     }
     same
 }

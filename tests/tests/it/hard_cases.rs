@@ -58,7 +58,10 @@ fn hard_inputs_leave_every_invariant_and_guards_are_missed() -> TestResult {
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
     if !DOCUMENT.contains(&format!("Adapter: {}\n", gpu.describe())) {
-        test_report::skip(test, &format!("the figures of docs/measurements/hard-cases.md are not of {}", gpu.describe()));
+        test_report::skip(
+            test,
+            &format!("the figures of docs/measurements/hard-cases.md are not of {}", gpu.describe()),
+        );
         return Ok(());
     }
     let guards = kept(&gpu, 0, 5)?;

@@ -11,5 +11,8 @@ pub fn documented(row: &str, found: f64) {
     let line = line.unwrap_or_else(|| panic!("docs/design/lens.md has no row {row}"));
     let stated = line.trim_end_matches([' ', '|']).rsplit('|').next().and_then(|cell| cell.trim().parse::<f64>().ok());
     let stated = stated.unwrap_or_else(|| panic!("{line}: no number"));
-    assert!((stated - found).abs() <= 0.1 * stated + 5e-4, "{row}: docs/design/lens.md says {stated}, and {found} was found");
+    assert!(
+        (stated - found).abs() <= 0.1 * stated + 5e-4,
+        "{row}: docs/design/lens.md says {stated}, and {found} was found"
+    );
 }

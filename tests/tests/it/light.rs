@@ -57,7 +57,10 @@ fn harmonics_have_the_stated_error_and_a_wrong_band_is_detected() {
         assert!((e.worst - worst).abs() < 0.005, "{window:?}: {e:?}");
         let printed = numbers("Spherical harmonics", &[&format!("{window:?}")]).concat();
         let apart = [e.worst, e.lowest, e.clamped].iter().zip(&printed).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(printed.len() == 3 && apart < 6e-5, "{window:?}: {e:?}, and docs/measurements/image-light.md has {printed:?}");
+        assert!(
+            printed.len() == 3 && apart < 6e-5,
+            "{window:?}: {e:?}, and docs/measurements/image-light.md has {printed:?}"
+        );
     }
     let spoil = |sh: Sh| {
         let scale = |(i, c): (usize, &DVec3)| if i >= 4 { *c * 1.2 } else { *c };

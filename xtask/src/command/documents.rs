@@ -49,7 +49,12 @@ const PRINTED: [Printed; 12] = [
     Printed { document: "docs/design/lights.md", program: &["lights"], mark: None, may_fail: false },
     Printed { document: "docs/measurements/hard-cases.md", program: &["hard_cases"], mark: None, may_fail: false },
     Printed { document: "docs/measurements/half-floats.md", program: &["shading_errors"], mark: None, may_fail: false },
-    Printed { document: "docs/measurements/references.md", program: &["reference"], mark: Some("reference"), may_fail: false },
+    Printed {
+        document: "docs/measurements/references.md",
+        program: &["reference"],
+        mark: Some("reference"),
+        may_fail: false,
+    },
     Printed {
         document: "docs/measurements/references.md",
         program: &["reference", "--quality", "low"],

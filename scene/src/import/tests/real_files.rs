@@ -57,7 +57,10 @@ fn flight_helmet_is_ordered_for_drawing() {
     let [before, after] = [before, after].map(|shaded| shaded / triangles as f64);
     let row = format!("| FlightHelmet | {triangles} | {before:.3} | {after:.3} |");
     println!("{row}");
-    assert!(include_str!("../../../../docs/measurements/performance.md").contains(&row), "docs/measurements/performance.md has no {row}");
+    assert!(
+        include_str!("../../../../docs/measurements/performance.md").contains(&row),
+        "docs/measurements/performance.md has no {row}"
+    );
 }
 
 /// Tangents of the file against generated ones: baked by another implementation of the same
