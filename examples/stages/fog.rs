@@ -2,9 +2,9 @@
 
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use framegraph_passes::ViewId;
-use framegraph_passes::full_screen::FullScreen;
+use framegraph_passes::gpu_scene::view::Views;
+use framegraph_passes::program::full_screen::FullScreen;
 use framegraph_passes::program::{Interface, ProgramDesc, Programs};
-use framegraph_passes::view::Views;
 use framegraph_shaders::Module;
 use framegraph_wgpu::{Cx, Record, RecordError};
 

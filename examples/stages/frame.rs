@@ -2,7 +2,7 @@
 
 use crate::fog::Fog;
 use crate::sharpen::Sharpen;
-use framegraph_passes::depth_resolve::{DepthOf, single_sample_depth};
+use framegraph_passes::effects::depth::resolve::{DepthOf, single_sample_depth};
 use framegraph_passes::stages::Stages;
 use framegraph_passes::{Settings, Slot, Stage, StageError, StandardWorld, stages};
 

@@ -7,8 +7,8 @@ mod sharpen;
 
 use frame::foggy;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile, dump};
-use framegraph_passes::ibl::cache::Cache;
-use framegraph_passes::view::Background;
+use framegraph_passes::gpu_scene::view::Background;
+use framegraph_passes::light::ibl::cache::Cache;
 use framegraph_passes::{CameraView, Handles, LightSearch, Lighting, Quality, Settings, Slot, ViewSettings, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::picture::encode_png;

@@ -1,7 +1,7 @@
 //! Sharpening filter for the final picture. It requires shaders and a picture, no scene.
 
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
-use framegraph_passes::full_screen::FullScreen;
+use framegraph_passes::program::full_screen::FullScreen;
 use framegraph_passes::program::{Interface, ProgramDesc, Programs};
 use framegraph_shaders::Module;
 use framegraph_wgpu::{Cx, Record, RecordError};

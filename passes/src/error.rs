@@ -1,7 +1,7 @@
 //! Errors of recording a pass.
 
 use crate::grading::GradingError;
-use crate::precision::PrecisionError;
+use crate::settings::precision::PrecisionError;
 use framegraph::Format;
 use framegraph_shaders::ShaderError;
 use framegraph_shaders::reference::dfg::Visibility;

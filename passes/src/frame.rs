@@ -25,35 +25,41 @@
 
 mod before;
 mod blended;
+pub mod frame_settings;
 mod glass;
 mod lens;
 mod picture;
+#[cfg(feature = "files")]
+pub mod plugins;
+#[cfg(feature = "files")]
+pub mod settings_file;
 mod shadows;
+pub mod world;
 
-use crate::bloom::BloomSettings;
-use crate::color::{Color, ColorDepth};
-use crate::dof::DofSettings;
-use crate::fog::FogSettings;
-use crate::frame_index::FrameIndex;
+use crate::effects::bloom::BloomSettings;
+use crate::effects::color::surface::HDR_FORMAT;
+use crate::effects::color::{Color, ColorDepth};
+use crate::effects::depth::structure::{Resolution, structure_levels};
+use crate::effects::dof::DofSettings;
+use crate::effects::exposure::{Measure, MeasuredTextures, measure};
+use crate::effects::fog::FogSettings;
+use crate::effects::occlusion::OcclusionSettings;
+use crate::effects::post::PostSettings;
+use crate::effects::post::tone_resolve::ToneResolve;
+use crate::effects::reflection::ReflectionSettings;
+use crate::effects::taa::{TaaSettings, temporal};
+use crate::effects::transmission::{MAX_GLASS_LAYERS, scene_levels};
+use crate::effects::transparency::Transparency;
+use crate::effects::upscale::{Upscale, enlarge};
+use crate::gpu_scene::lighting::Lighting;
+use crate::gpu_scene::shadow_views::ShadowSettings;
+use crate::gpu_scene::upload::GpuScene;
+use crate::gpu_scene::view::Views;
 use crate::grading::GradingTables;
-use crate::lighting::Lighting;
-use crate::measure::{Measure, MeasuredTextures, measure};
-use crate::occlusion::OcclusionSettings;
-use crate::post::PostSettings;
+use crate::light::shading::{Quality, Shading};
 use crate::program::Programs;
-use crate::reflection::ReflectionSettings;
-use crate::shading::{Quality, Shading};
-use crate::shadow::ShadowSettings;
+use crate::settings::frame_index::FrameIndex;
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
-use crate::structure::{Resolution, structure_levels};
-use crate::surface::HDR_FORMAT;
-use crate::taa::{TaaSettings, temporal};
-use crate::tone_resolve::ToneResolve;
-use crate::transmission::{MOST_GLASS_LAYERS, scene_levels};
-use crate::transparency::Transparency;
-use crate::upload::GpuScene;
-use crate::upscale::{Upscale, enlarge};
-use crate::view::Views;
 use before::{occlusion, prepass, reflection};
 use blended::{Blended, blended};
 use framegraph::{Extent, Format, Target, Texture};
@@ -133,7 +139,7 @@ pub struct Settings {
     /// [`scene_levels`] of the frame's size; 0: no surface transmits.
     #[cfg_attr(feature = "files", serde(skip))]
     pub scene_levels: u8,
-    /// Layers of glass that is seen through glass, 1 to [`MOST_GLASS_LAYERS`]: in 1 all glass shows what is opaque alone. What
+    /// Layers of glass that is seen through glass, 1 to [`MAX_GLASS_LAYERS`]: in 1 all glass shows what is opaque alone. What
     /// lies farther back than there are layers is in the last of them.
     pub glass_layers: u8,
     /// Depth is drawn before surfaces are shaded, so that each pixel is shaded once. Without, what overlaps is shaded several times, and
@@ -227,7 +233,7 @@ impl Settings {
 
     /// Returns handles of the main view in the size that it is drawn in ([`extent`](Self::extent)), without textures.
     pub fn handles(&self) -> Handles {
-        Handles::for_view(crate::view::ViewId::MAIN, self.extent())
+        Handles::for_view(crate::gpu_scene::view::ViewId::MAIN, self.extent())
     }
 
     /// Returns the size of the view's pictures: the frame's, or the share of it that [`Settings::upscale`] names.
@@ -238,7 +244,7 @@ impl Settings {
     /// Returns the width and height in which the view is drawn, in texels, for a picture of `shown_px`. [`ViewSettings::size_px`]
     /// and [`Settings::for_scene`] take this size.
     ///
-    /// [`ViewSettings::size_px`]: crate::view::ViewSettings::size_px
+    /// [`ViewSettings::size_px`]: crate::gpu_scene::view::ViewSettings::size_px
     pub fn drawn_px(&self, shown_px: [u32; 2]) -> [u32; 2] {
         self.extent().texels(shown_px)
     }
@@ -280,7 +286,7 @@ impl Settings {
 fn glass_instances(scene: &Scene) -> u8 {
     let transmits = |m: MaterialId| scene.materials[m.index()].lobes().contains(Lobe::Transmission);
     let count = scene.instances.iter().filter(|instance| transmits(instance.material)).count();
-    count.clamp(1, MOST_GLASS_LAYERS.into()) as u8
+    count.clamp(1, MAX_GLASS_LAYERS.into()) as u8
 }
 
 /// The frame's results.

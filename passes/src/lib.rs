@@ -9,8 +9,8 @@
 //! | [`Programs`](program::Programs) | shaders with their bindings | all passes |
 //! | [`FrameIndex`] | which frame it is | post |
 //! | [`GradingTables`](grading::GradingTables) | tables of looks, made when they are asked for | post |
-//! | [`Views`](view::Views) | cameras, suns, draw lists, placement of instances | passes over a scene |
-//! | [`GpuScene`](upload::GpuScene) | meshes, materials, textures | shadow, prepass, structure, color, transparent |
+//! | [`Views`](gpu_scene::view::Views) | cameras, suns, draw lists, placement of instances | passes over a scene |
+//! | [`GpuScene`](gpu_scene::upload::GpuScene) | meshes, materials, textures | shadow, prepass, structure, color, transparent |
 //! | [`Lighting`] | light from all around, and its tables | color, transparent |
 //!
 //! [`World`] has them all. [`frame::stages`] composes the passes into named [`stages`](mod@stages), and [`standard`] declares them
@@ -26,83 +26,39 @@
 
 #[cfg(test)]
 mod adapter;
-mod background;
-pub mod bloom;
-pub mod budget;
-pub mod choice;
-pub mod color;
-pub mod depth_resolve;
-pub mod dof;
-pub mod draw;
-pub mod draws;
-pub mod effect;
+pub mod effects;
 pub mod error;
-pub mod facts;
-pub mod fog;
+pub mod feature_culling;
 pub mod frame;
-pub mod frame_index;
-pub mod frame_settings;
-pub mod full_screen;
-pub mod fxaa;
+pub mod gpu_scene;
 pub mod grading;
-pub mod ibl;
-pub mod indirect;
-pub mod lighting;
-pub mod measure;
-pub mod occlusion;
-pub mod pick;
-#[cfg(feature = "files")]
-pub mod plugins;
-pub mod post;
-pub mod precision;
-pub mod prepared;
-pub mod prepass;
-pub mod preset;
+pub mod light;
 pub mod program;
-pub mod punctual;
-pub mod reflection;
-#[cfg(feature = "files")]
-pub mod settings_file;
-pub mod shading;
-pub mod shadow;
-pub mod sharpen;
+pub mod quality;
+pub mod settings;
 pub mod stages;
-pub mod stand;
-pub mod streams;
-pub mod structure;
-pub mod sun;
-pub mod surface;
-pub mod taa;
-pub mod tone_resolve;
-pub mod transmission;
-pub mod transparency;
-pub mod upload;
-pub mod upscale;
-pub mod velocity;
-pub mod view;
-pub mod world;
 
-pub use bloom::BloomSettings;
-pub use dof::DofSettings;
+pub use effects::bloom::BloomSettings;
+pub use effects::dof::DofSettings;
+pub use effects::fog::FogSettings;
+pub use effects::occlusion::OcclusionSettings;
+pub use effects::picking::{Pick, Pickable, Picker};
+pub use effects::post::PostSettings;
+pub use effects::reflection::ReflectionSettings;
+pub use effects::taa::TaaSettings;
+pub use effects::transparency::Transparency;
+pub use effects::upscale::Upscale;
 pub use error::PassError;
-pub use facts::{Effect, EffectSet, FactInput, FactMemory, Facts};
-pub use fog::FogSettings;
+pub use feature_culling::{Effect, EffectSet, FactInput, FactMemory, Facts};
+pub use frame::frame_settings::FrameSettings;
+pub use frame::world::World;
 pub use frame::{FrameIo, Settings, StandardWorld, stages, standard};
-pub use frame_index::FrameIndex;
-pub use frame_settings::FrameSettings;
-pub use lighting::Lighting;
-pub use occlusion::OcclusionSettings;
-pub use pick::{Pick, Pickable, Picker};
-pub use post::PostSettings;
-pub use precision::Precision;
-pub use prepared::PreparedScene;
-pub use preset::Preset;
-pub use punctual::LightSearch;
-pub use reflection::ReflectionSettings;
-pub use shading::{Quality, Shading};
+pub use gpu_scene::lighting::Lighting;
+pub use gpu_scene::prepared::PreparedScene;
+pub use gpu_scene::punctual::LightSearch;
+pub use gpu_scene::view::{CameraView, ViewId, ViewSettings};
+pub use light::shading::{Quality, Shading};
+pub use quality::preset::Preset;
+pub use settings::frame_index::FrameIndex;
+pub use settings::precision::Precision;
 pub use stages::{Handles, Slot, Stage, StageError};
-pub use taa::TaaSettings;
-pub use transparency::Transparency;
-pub use upscale::Upscale;
-pub use view::{CameraView, ViewId, ViewSettings};
-pub use world::World;

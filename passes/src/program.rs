@@ -28,6 +28,8 @@
 //! # Ok::<(), framegraph_passes::PassError>(())
 //! ```
 
+pub mod full_screen;
+
 use crate::error::PassError;
 use framegraph_shaders::reflect::BindingKind;
 use framegraph_shaders::{Feature, Features, Module, ShaderError};
@@ -250,7 +252,7 @@ impl Program {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::upload::MATERIAL_BINDINGS;
+    use crate::gpu_scene::upload::MATERIAL_BINDINGS;
     use framegraph_shaders::library;
     use framegraph_wgpu::SettingName;
     use std::sync::Arc;
@@ -315,7 +317,7 @@ mod tests {
         };
         let buffer: Binding = gpu.device.create_buffer(&size).into();
         let epilogue = Epilogue {
-            effects: vec![crate::effect::EXPOSE, crate::effect::TONE],
+            effects: vec![crate::effects::post::pixel_effects::EXPOSE, crate::effects::post::pixel_effects::TONE],
             constants: vec![(SettingName::new("TONE_MAP"), 2.0)],
             bindings: vec![(SettingName::new("exposing"), buffer)],
         };

@@ -1,7 +1,7 @@
 //! The standard frame as a value: stages are inserted and replaced by name, and what they do wrong is said in words.
 
 use framegraph::{Extent, Format, Graph, Intent, Target, Texture, TextureDesc};
-use framegraph_passes::depth_resolve::{DepthOf, single_sample_depth};
+use framegraph_passes::effects::depth::resolve::{DepthOf, single_sample_depth};
 use framegraph_passes::stages::{Handles, SlotFault, Stages};
 use framegraph_passes::{Settings, Slot, Stage, StageError, ViewId, World, stages};
 use framegraph_wgpu::Frame;

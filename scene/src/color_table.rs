@@ -8,9 +8,9 @@ use glam::DVec3;
 use std::path::{Path, PathBuf};
 
 /// Most entries along each axis of a table in three dimensions, as the specification says.
-pub const MOST_CUBE_ENTRIES: usize = 256;
+pub const MAX_CUBE_ENTRIES: usize = 256;
 /// Most entries of a table of one dimension, as the specification says.
-pub const MOST_CURVE_ENTRIES: usize = 65536;
+pub const MAX_CURVE_ENTRIES: usize = 65536;
 
 /// A file is no table of colors.
 #[derive(thiserror::Error)]
@@ -260,7 +260,7 @@ impl Reading {
                 self.ranges[kind].replace(numbers::<2>(rest).ok_or(wrong)?).is_none()
             }
             _ => {
-                let most = [MOST_CURVE_ENTRIES, MOST_CUBE_ENTRIES][kind];
+                let most = [MAX_CURVE_ENTRIES, MAX_CUBE_ENTRIES][kind];
                 let value = rest.trim();
                 let size = value.parse().ok().filter(|size| (2..=most).contains(size));
                 let wrong = || ColorTableFault::Size { keyword, value: value.chars().take(40).collect(), most };

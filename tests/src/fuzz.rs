@@ -6,7 +6,7 @@
 
 use crate::reference::document::Document;
 use crate::reference::rule;
-use framegraph_passes::ibl::cache;
+use framegraph_passes::light::ibl::cache;
 use framegraph_scene::environment::MAX_RADIANCE;
 use framegraph_scene::{ColorTable, Environment, LoadOptions, Memory, import, progress};
 use glam::DVec3;

@@ -1,6 +1,6 @@
 //! Image-based light evaluated on the device as in shading passes: specular cube, DFG table, harmonics.
 
-use framegraph_passes::ibl::{DfgTable, ImageLight};
+use framegraph_passes::light::ibl::{DfgTable, ImageLight};
 use framegraph_shaders::{Features, Module};
 use framegraph_wgpu::{Gpu, read_buffer};
 use std::error::Error;

@@ -3,10 +3,10 @@
 
 use crate::stage::Stage;
 use framegraph::Alias;
-use framegraph_passes::bloom::BloomSettings;
-use framegraph_passes::dof::DofSettings;
-use framegraph_passes::fog::FogSettings;
-use framegraph_passes::shadow::{ShadowFilter, ShadowSettings};
+use framegraph_passes::effects::bloom::BloomSettings;
+use framegraph_passes::effects::dof::DofSettings;
+use framegraph_passes::effects::fog::FogSettings;
+use framegraph_passes::gpu_scene::shadow_views::{ShadowFilter, ShadowSettings};
 use framegraph_passes::{OcclusionSettings, ReflectionSettings, Settings, TaaSettings, Upscale, World};
 use framegraph_wgpu::{FrameLoop, Gpu, OpenError, PoolCounts, Workers, read_texture};
 use std::error::Error;

@@ -1,10 +1,10 @@
 //! A scene on a device, drawn repeatedly by the standard frame.
 
 use framegraph::{Extent, Format, Target, Texture, TextureDesc};
-use framegraph_passes::ibl::cache::Cache;
-use framegraph_passes::ibl::{DfgSettings, IblSettings};
-use framegraph_passes::shading::LightSettings;
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
+use framegraph_passes::light::ibl::cache::Cache;
+use framegraph_passes::light::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::light::shading::LightSettings;
 use framegraph_passes::{
     CameraView, LightSearch, Lighting, PreparedScene, Settings, StageError, ViewId, World, standard,
 };

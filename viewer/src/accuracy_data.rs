@@ -1,7 +1,7 @@
 //! Measured errors and costs of every setting, as written by the accuracy lab (`accuracy.json`, `docs/measurements/accuracy.md`).
 
 use framegraph_passes::Facts;
-use framegraph_passes::budget::{Choices, Measured, Offers};
+use framegraph_passes::quality::{Choices, Measured, Offers};
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -46,7 +46,7 @@ pub struct ChosenFrame {
 }
 
 impl AccuracyData {
-    /// Returns the options of `render --budget-ms` ([`framegraph_passes::budget`]) for a scene that uses every effect.
+    /// Returns the options of `render --budget-ms` ([`framegraph_passes::quality`]) for a scene that uses every effect.
     fn offers(&self) -> Option<(Choices, Offers)> {
         let measured = self.budget.as_ref()?;
         let choices = measured.choices(&Facts::default(), |_| true).ok()?;

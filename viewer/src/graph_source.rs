@@ -63,7 +63,7 @@ impl Planner for GraphSource {
         let frame = frame.or(file.frame()).unwrap_or(FRAME);
         let options = Options { frame, order, alias, cull, merge, inline, memoryless, ..Options::default() };
         let (mut graph, mut plan) = (Graph::new(), Plan::new());
-        let registry = framegraph_passes::plugins::registry();
+        let registry = framegraph_passes::frame::plugins::registry();
         file.plan(&features, &registry, &mut graph, (&caps, &options), &mut Scratch::new(), &mut plan)
             .map_err(|e| e.to_string())?;
         let mut data = PlanData::of(&plan, file.name()).map_err(|e| e.to_string())?;

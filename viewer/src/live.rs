@@ -208,7 +208,7 @@ impl Live {
     }
 
     /// Returns the light settings of the current settings.
-    fn light_settings(&self) -> framegraph_passes::shading::LightSettings {
+    fn light_settings(&self) -> framegraph_passes::light::shading::LightSettings {
         let frame = &self.document().frame;
         frame.settings.shading.light(frame.quality)
     }

@@ -28,7 +28,7 @@ pub fn tree(frame: &FrameSettings) -> Result<Node, String> {
 /// # Errors
 /// The invalid field and its expected value.
 pub fn settings(frame: &Node) -> Result<FrameSettings, String> {
-    let version = framegraph_passes::settings_file::SETTINGS_VERSION;
+    let version = framegraph_passes::frame::settings_file::SETTINGS_VERSION;
     let text = format!("(version: {version}, {FRAME}: {frame})");
     FrameSettings::from_ron("settings", &text).map_err(|error| error.to_string())
 }

@@ -5,7 +5,7 @@ use framegraph::file::{Registry, SlotType};
 
 /// Returns the registry of the standard passes.
 pub fn registry() -> Registry<'static, Graph> {
-    framegraph_passes::plugins::registry()
+    framegraph_passes::frame::plugins::registry()
 }
 
 /// Lists every kind with its slots, one line per kind.

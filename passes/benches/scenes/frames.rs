@@ -3,10 +3,10 @@
 use super::cpu_ms;
 use super::workload::Workload;
 use framegraph::{Options, Plan, Scratch, Target, compile};
-use framegraph_passes::ibl::cache::Cache;
-use framegraph_passes::ibl::{DfgSettings, IblSettings};
-use framegraph_passes::shading::LightSettings;
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
+use framegraph_passes::light::ibl::cache::Cache;
+use framegraph_passes::light::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::light::shading::LightSettings;
 use framegraph_passes::{CameraView, LightSearch, Lighting, PreparedScene, Settings, ViewId, World, standard};
 use framegraph_scene::{Environment, progress};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports};

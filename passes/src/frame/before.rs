@@ -1,15 +1,16 @@
 //! Stages before surfaces are shaded: depth, ambient occlusion, reflections.
 
-use crate::occlusion::{self, OcclusionSettings};
-use crate::precision::Precision;
-use crate::prepass::Prepass;
+use crate::effects::depth::prepass::Prepass;
+use crate::effects::depth::structure::Resolution;
+use crate::effects::occlusion;
+use crate::effects::occlusion::OcclusionSettings;
+use crate::effects::reflection::{ReflectionSettings, reflections};
+use crate::effects::taa::velocity::Velocity;
+use crate::gpu_scene::upload::GpuScene;
+use crate::gpu_scene::view::Views;
 use crate::program::Programs;
-use crate::reflection::{ReflectionSettings, reflections};
+use crate::settings::precision::Precision;
 use crate::stages::{Handles, Slot, StageError};
-use crate::structure::Resolution;
-use crate::upload::GpuScene;
-use crate::velocity::Velocity;
-use crate::view::Views;
 use framegraph::Format;
 use framegraph_wgpu::Frame;
 

@@ -1,17 +1,17 @@
 //! Blended surfaces that need no order: passes of their own, behind those of what transmits.
 
 use super::shadows::maps_of;
-use crate::fog::FogSettings;
-use crate::lighting::Lighting;
-use crate::program::Programs;
-use crate::shading::Shading;
-use crate::stages::{Handles, Slot, StageError};
-use crate::transparency::{
+use crate::effects::fog::FogSettings;
+use crate::effects::transparency::{
     Absorbance, BlendedComposite, BlendedSums, BlendedSurfaces, MAX_PEEL_LAYERS, MomentPrecision, MomentShade,
     MomentTransparency, PeelDepth, PeelLayer, Transparency, Weighted,
 };
-use crate::upload::GpuScene;
-use crate::view::Views;
+use crate::gpu_scene::lighting::Lighting;
+use crate::gpu_scene::upload::GpuScene;
+use crate::gpu_scene::view::Views;
+use crate::light::shading::Shading;
+use crate::program::Programs;
+use crate::stages::{Handles, Slot, StageError};
 use framegraph::{Target, Texture};
 use framegraph_wgpu::Frame;
 

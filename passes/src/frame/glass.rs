@@ -1,15 +1,15 @@
 //! Stages of what transmits: the picture of what is behind it, and its layers.
 
 use super::shadows::maps_of;
-use crate::fog::FogSettings;
-use crate::lighting::Lighting;
+use crate::effects::fog::FogSettings;
+use crate::effects::transmission::{Layer, MAX_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent};
+use crate::effects::transparency::Transparency;
+use crate::gpu_scene::lighting::Lighting;
+use crate::gpu_scene::upload::GpuScene;
+use crate::gpu_scene::view::Views;
+use crate::light::shading::Shading;
 use crate::program::Programs;
-use crate::shading::Shading;
 use crate::stages::{Handles, Slot, StageError};
-use crate::transmission::{Layer, MOST_GLASS_LAYERS, SceneCopy, SceneLevel, Transparent};
-use crate::transparency::Transparency;
-use crate::upload::GpuScene;
-use crate::view::Views;
 use framegraph::{AccessKind, Texture};
 use framegraph_wgpu::Frame;
 
@@ -63,7 +63,7 @@ where
         return Ok(());
     }
     let multisampled = glass.samples > 1;
-    for layer in Layer::all(glass.layers.clamp(1, MOST_GLASS_LAYERS)) {
+    for layer in Layer::all(glass.layers.clamp(1, MAX_GLASS_LAYERS)) {
         if !layer.last {
             scene(frame, handles, glass.levels)?;
         }

@@ -1,10 +1,11 @@
 //! Stages of what a lens does to the radiance.
 
-use crate::bloom::{self, BloomChain, BloomMix, BloomSettings};
-use crate::dof::{DofSettings, depth_of_field};
+use crate::effects::bloom;
+use crate::effects::bloom::{BloomChain, BloomMix, BloomSettings};
+use crate::effects::dof::{DofSettings, depth_of_field};
+use crate::gpu_scene::view::Views;
 use crate::program::Programs;
 use crate::stages::{Handles, Slot, StageError};
-use crate::view::Views;
 use framegraph_wgpu::Frame;
 
 pub(super) fn dof<W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static>(

@@ -1,13 +1,13 @@
 //! Stages that make the picture for the display.
 
-use crate::bloom::BloomMix;
-use crate::frame_index::FrameIndex;
-use crate::fxaa::Fxaa;
+use crate::effects::bloom::BloomMix;
+use crate::effects::fxaa::Fxaa;
+use crate::effects::post::{Post, PostEffect, PostSettings};
+use crate::effects::upscale::{Upscale, encoded_target};
 use crate::grading::GradingTables;
-use crate::post::{Post, PostEffect, PostSettings};
 use crate::program::Programs;
+use crate::settings::frame_index::FrameIndex;
 use crate::stages::{Handles, Slot, StageError};
-use crate::upscale::{Upscale, encoded_target};
 use framegraph::{Target, Texture};
 use framegraph_shaders::layout::FxaaUniforms;
 use framegraph_wgpu::{Frame, StoreRounding};

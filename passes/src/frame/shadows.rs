@@ -1,11 +1,12 @@
 //! The stage that draws shadow maps.
 
+use crate::effects::depth::structure::{Resolution, structure};
+use crate::effects::shadow::{maps_slot, shadow_maps};
+use crate::gpu_scene::shadow_views::ShadowSettings;
+use crate::gpu_scene::upload::GpuScene;
+use crate::gpu_scene::view::Views;
 use crate::program::Programs;
-use crate::shadow::{ShadowSettings, maps_slot, shadow_maps};
 use crate::stages::{Handles, Slot, StageError};
-use crate::structure::{Resolution, structure};
-use crate::upload::GpuScene;
-use crate::view::Views;
 use framegraph::Texture;
 use framegraph_wgpu::Frame;
 

@@ -1,6 +1,6 @@
 //! Whether colors are graded one by one, or looked up.
 
-use crate::choice::{Choice, ChoiceError};
+use crate::settings::key_value::{KeyValue, OptionError};
 
 /// How a look is brought to a picture. Which is faster is the device's matter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -58,10 +58,10 @@ impl GradeBy {
     /// `direct`, `table`, `table:SIZE`, or `table:SIZE:rgb10|f16`.
     ///
     /// # Errors
-    /// [`ChoiceError::Value`].
-    pub fn from_text(text: &str) -> Result<Self, ChoiceError> {
+    /// [`OptionError::Value`].
+    pub fn from_text(text: &str) -> Result<Self, OptionError> {
         let mut desc = TableDesc::DEFAULT;
-        let choice = Choice { key: "by", value: text };
+        let choice = KeyValue { key: "by", value: text };
         let wrong = || choice.wrong("`direct` or `table[:SIZE[:rgb10|f16]]` with a size from 16 to 64");
         let mut words = text.split(':');
         match words.next() {

@@ -1,7 +1,7 @@
 //! Looks by name: `contrast=1.2`, `shadows=1.2:1:1:0.05`, and tone curves: `aces`, `generic:1.5:0.18:0.2:8`.
 
 use super::look::Look;
-use crate::choice::{Choice, ChoiceError};
+use crate::settings::key_value::{KeyValue, OptionError};
 use framegraph_shaders::layout::{GenericCurve, ToneMap};
 use glam::{Vec3, Vec4};
 
@@ -75,9 +75,9 @@ impl Look {
     /// Changes one choice by name. Colors are numbers separated by `:`; one number is for all three channels.
     ///
     /// # Errors
-    /// [`ChoiceError`] with the name, the value and what is needed.
-    pub fn set(&mut self, key: &str, value: &str) -> Result<(), ChoiceError> {
-        let choice = Choice { key, value };
+    /// [`OptionError`] with the name, the value and what is needed.
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), OptionError> {
+        let choice = KeyValue { key, value };
         match self.place(key) {
             Some(Place::Number(place, low, high)) => *place = choice.number(low, high)?,
             Some(Place::Three(place, low, high)) => {
@@ -108,12 +108,12 @@ const CURVES: [&str; ToneMap::ALL.len()] = {
 /// A tone curve by name; `generic:CONTRAST:IN:OUT:WHITE` has numbers of its own.
 ///
 /// # Errors
-/// [`ChoiceError`] with the curves that there are, or the numbers that are needed.
-pub fn tone_map(text: &str) -> Result<ToneMap, ChoiceError> {
+/// [`OptionError`] with the curves that there are, or the numbers that are needed.
+pub fn tone_map(text: &str) -> Result<ToneMap, OptionError> {
     let Some(own) = text.strip_prefix("generic:") else {
-        return ToneMap::from_name(text).ok_or_else(|| Choice { key: text, value: "" }.unknown(&CURVES));
+        return ToneMap::from_name(text).ok_or_else(|| KeyValue { key: text, value: "" }.unknown(&CURVES));
     };
-    let [contrast, middle_in, middle_out, white] = Choice { key: "generic", value: own }.numbers(1e-5, 65504.0)?;
+    let [contrast, middle_in, middle_out, white] = KeyValue { key: "generic", value: own }.numbers(1e-5, 65504.0)?;
     Ok(ToneMap::Generic(GenericCurve { contrast, middle_in, middle_out, white }))
 }
 
@@ -123,7 +123,7 @@ mod tests {
     use framegraph_shaders::layout::Grading;
 
     #[test]
-    fn every_choice_is_made_by_name() -> Result<(), ChoiceError> {
+    fn every_choice_is_made_by_name() -> Result<(), OptionError> {
         let mut look = Look::default();
         for key in Look::KEYS {
             let before = look;

@@ -11,10 +11,10 @@ use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView};
 
 /// Most tables that are kept: one for each of a few views. The one made first goes first.
-const MOST_TABLES: usize = 8;
+const MAX_TABLES: usize = 8;
 
 /// Tables of looks, by what they were made of: a look that stays has its table made once. A part of the world that
-/// [`Post`](crate::post::Post) is recorded with; of one device.
+/// [`Post`](crate::effects::post::Post) is recorded with; of one device.
 #[derive(Debug, Default)]
 pub struct GradingTables {
     extras: Extras,
@@ -71,7 +71,7 @@ impl GradingTables {
             return Ok(found.table.clone());
         }
         let table = upload(gpu, &Baked::new(look, &self.extras, desc)?);
-        if made.len() == MOST_TABLES {
+        if made.len() == MAX_TABLES {
             made.remove(0);
         }
         made.push(Made { look: *look, desc, table: table.clone() });

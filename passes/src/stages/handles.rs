@@ -2,7 +2,7 @@
 
 use super::error::StageError;
 use super::slot::Slot;
-use crate::view::ViewId;
+use crate::gpu_scene::view::ViewId;
 use framegraph::{Extent, Graph, Target, Texture};
 
 /// Name of the caller in errors outside of stages.

@@ -29,12 +29,12 @@ pub struct Slot {
 impl Slot {
     /// The shadow maps, reversed depth, a layer each. Those that are there from the start are not made again.
     pub const SHADOW_MAP: Self = Self::new("shadow_map", Holds::Depth);
-    /// The shadow maps where they hold moments instead ([`ShadowFilter::Vsm`](crate::shadow::ShadowFilter)).
+    /// The shadow maps where they hold moments instead ([`ShadowFilter::Vsm`](crate::gpu_scene::shadow_views::ShadowFilter)).
     pub const SHADOW_MOMENTS: Self = Self::new("shadow_moments", Holds::Color);
     /// Reversed depth of what is drawn so far, of as many samples as the frame has. For one sample per texel see
-    /// [`single_sample_depth`](crate::depth_resolve::single_sample_depth).
+    /// [`single_sample_depth`](crate::effects::depth::resolve::single_sample_depth).
     pub const DEPTH: Self = Self::new("depth", Holds::DepthSamples);
-    /// Reversed depth of opaque surfaces as a pyramid of one sample per texel; see [`structure`](crate::structure::structure),
+    /// Reversed depth of opaque surfaces as a pyramid of one sample per texel; see [`structure`](crate::effects::depth::structure::structure),
     /// which declares it for the first stage that asks.
     pub const STRUCTURE: Self = Self::new("structure", Holds::Depth);
     /// Ambient occlusion: visibility, 0 to 1, in red, and where it is of the format Rgba16Float the mean open direction in the
@@ -65,7 +65,7 @@ impl Slot {
     /// What dirt on the lens lets light up of bloom, over the whole picture; an application's own.
     pub const LENS_DIRT: Self = Self::new("lens_dirt", Holds::Color);
     /// The most and the least light of parts of the picture, to be read back; only where it is measured
-    /// ([`Measure`](crate::measure::Measure)).
+    /// ([`Measure`](crate::effects::exposure::Measure)).
     pub const MEASURED_LIGHT: Self = Self::new("measured_light", Holds::Color);
     /// The nearest and the farthest depth of parts of the picture, reversed, to be read back; only where it is measured.
     pub const MEASURED_DEPTH: Self = Self::new("measured_depth", Holds::Color);

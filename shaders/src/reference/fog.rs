@@ -1,17 +1,17 @@
 //! Mirror of `wgsl/lib/fog.wgsl`.
 
 /// Exponent up to which density is followed along a ray.
-const MOST_EXPONENT: f64 = 40.0;
+const MAX_EXPONENT: f64 = 40.0;
 
 /// Mean of e^(-x t) over t in 0…1.
 pub fn mean_decay(x: f64) -> f64 {
-    if x == 0.0 { 1.0 } else { -(-x.clamp(-MOST_EXPONENT, MOST_EXPONENT)).exp_m1() / x }
+    if x == 0.0 { 1.0 } else { -(-x.clamp(-MAX_EXPONENT, MAX_EXPONENT)).exp_m1() / x }
 }
 
 /// Optical depth of a ray whose first `start_m` are clear.
 pub fn fog_optical_depth(density: f64, decay: f64, start_m: f64, way_m: f64, exact: f64) -> f64 {
     let clear = exact * (start_m / way_m.max(1e-6)).clamp(0.0, 1.0);
-    let reached = (-(decay * clear).clamp(-MOST_EXPONENT, MOST_EXPONENT)).exp();
+    let reached = (-(decay * clear).clamp(-MAX_EXPONENT, MAX_EXPONENT)).exp();
     density * (way_m - start_m).max(0.0) * (reached * mean_decay(decay * (1.0 - clear))).min(1e20)
 }
 

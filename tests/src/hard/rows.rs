@@ -26,7 +26,7 @@ pub struct Row {
 const OCCLUSION: &str = "tests/tests/it/occlusion/hard.rs";
 const PICTURES: &str = "tests/tests/it/shadow_rays/hard.rs";
 const RAYS: &str = "tests/tests/it/shadow_rays.rs";
-const FIT: &str = "passes/src/shadow/tests.rs";
+const FIT: &str = "passes/src/gpu_scene/shadow_views/tests.rs";
 const SHADOW: &str = "shaders/src/reference/shadow.rs";
 const MOMENTS: &str = "shaders/src/reference/shadow_moments.rs";
 const BLOOM: &str = "tests/tests/it/bloom.rs";
@@ -34,9 +34,9 @@ const CAMERA: &str = "scene/src/camera/tests.rs";
 const POISON: &str = "tests/tests/it/poison.rs";
 const SCENES: &str = "tests/tests/it/degenerate.rs";
 const GLOW: &str = "shaders/src/reference/bloom.rs";
-const LEVELS: &str = "passes/src/bloom/chain.rs";
+const LEVELS: &str = "passes/src/effects/bloom/chain.rs";
 const FOG: &str = "shaders/src/reference/fog.rs";
-const LENS: &str = "passes/src/dof/settings.rs";
+const LENS: &str = "passes/src/effects/dof/settings.rs";
 const DOF: &str = "tests/tests/it/dof.rs";
 const BLENDED: &str = "shaders/src/reference/moment_transparency.rs";
 const HALF: &str = "tests/tests/it/half.rs";
@@ -211,7 +211,7 @@ pub const ROWS: [Row; 58] = [
         57,
         "froxels behind the eye and at NaN",
         &[
-            Test("passes/src/punctual/tests.rs", "no_light_is_missed_by_other_cuts_and_far_away"),
+            Test("passes/src/gpu_scene/punctual/tests.rs", "no_light_is_missed_by_other_cuts_and_far_away"),
             Test("tests/tests/it/lights/hard.rs", "hard_case_57_every_distance_has_a_froxel"),
         ],
     ),

@@ -3,7 +3,7 @@
 
 use super::record::{ChoiceRecord, Record};
 use super::statistics::number;
-use framegraph_passes::budget::{Choices, Chosen, Measured, Offers};
+use framegraph_passes::quality::{Choices, Chosen, Measured, Offers};
 use framegraph_passes::{Facts, FrameSettings, Preset};
 use std::fmt::Write as _;
 
@@ -58,7 +58,7 @@ pub fn presets(record: &Record) -> String {
 
 /// Returns the frame's option in each group; `None` if its value is not among the options.
 fn set_of(choices: &Choices, frame: &FrameSettings) -> Vec<Option<usize>> {
-    let has = |options: &Vec<&framegraph_passes::budget::FrameOption>| {
+    let has = |options: &Vec<&framegraph_passes::quality::FrameOption>| {
         options.iter().position(|option| {
             let mut changed = *frame;
             (option.apply)(&mut changed);
@@ -133,7 +133,7 @@ fn preset_rows(choices: &Choices, offers: &Offers) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use framegraph_passes::budget::{FrameOption, GROUPS};
+    use framegraph_passes::quality::{FrameOption, GROUPS};
 
     #[test]
     fn every_preset_is_a_set_of_the_groups() {

@@ -5,12 +5,12 @@ use super::statistics::quantile;
 use super::studio::{Ready, Setup, Studio, codes};
 use super::technique::Outcome;
 use crate::reference::picture::Picture;
-use framegraph_passes::budget::{
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
+use framegraph_passes::light::shading::LightSettings;
+use framegraph_passes::quality::{
     Bound, Choices, FrameOption, GROUPS, Group, Measured, MeasuredGroup, MeasuredOption, MeasuredPair, Offers, Trial,
     reference, settle,
 };
-use framegraph_passes::shading::LightSettings;
-use framegraph_passes::shadow::ShadowSettings;
 use framegraph_passes::{FrameSettings, Preset};
 use glam::Vec3;
 

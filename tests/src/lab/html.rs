@@ -6,7 +6,7 @@ use super::record::{Record, TechniqueRecord};
 use super::run::file_name;
 use super::technique::Outcome;
 use crate::reference::picture::Picture;
-use framegraph_passes::budget::Measured;
+use framegraph_passes::quality::Measured;
 use image::{ImageEncoder as _, codecs::png::PngEncoder};
 use std::fmt::Write as _;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Measurements as a file: `accuracy.json`.
 
 use super::statistics::{Times, undominated};
-use framegraph_passes::budget::Measured;
+use framegraph_passes::quality::Measured;
 use serde::{Deserialize, Serialize};
 use std::error::Error;
 use std::path::Path;

@@ -6,10 +6,10 @@ use crate::reference::metrics::Metrics;
 use crate::reference::picture::Picture;
 use crate::stage::light_cache;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
-use framegraph_passes::facts::{Around, Survey, decide};
-use framegraph_passes::measure::Measurement;
-use framegraph_passes::shading::LightSettings;
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::effects::exposure::Measurement;
+use framegraph_passes::feature_culling::{EnvironmentSummary, SceneSummary, decide};
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
+use framegraph_passes::light::shading::LightSettings;
 use framegraph_passes::{
     CameraView, EffectSet, FactInput, FactMemory, Facts, FrameIndex, LightSearch, Lighting, Settings, ViewId, World,
     standard,
@@ -304,13 +304,13 @@ impl Ready {
     pub fn facts(&self) -> Facts {
         let input = FactInput {
             scene: &self.scene,
-            survey: &Survey::new(&self.scene),
-            around: Around::from(&self.world.lighting.image),
+            survey: &SceneSummary::new(&self.scene),
+            around: EnvironmentSummary::from(&self.world.lighting.image),
             background: &Background::Environment,
             views: std::slice::from_ref(&self.moment),
             settings: &self.settings.for_scene(&self.scene, self.moment.size_px),
             forced: EffectSet::NONE,
-            most_codes: FactInput::MOST_CODES,
+            max_steps: FactInput::MAX_CODES,
             measured: Measurement::Off,
         };
         decide(&input, &mut FactMemory::default())

@@ -11,7 +11,7 @@ mod terms;
 
 use super::studio::{Setup, Truth};
 use super::technique::{Choice, Measured, Outcome, Subject, Technique};
-use framegraph_passes::shadow::ShadowSettings;
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
 use framegraph_passes::{FrameSettings, LightSearch, PostSettings, Quality, Settings};
 use framegraph_wgpu::Gpu;
 

@@ -1,7 +1,7 @@
 //! The DFG table, evaluated as in shaders, compared with integration over half vectors.
 
 use crate::lookup;
-use framegraph_passes::ibl::DfgTable;
+use framegraph_passes::light::ibl::DfgTable;
 use framegraph_wgpu::Gpu;
 use std::error::Error;
 use truth::albedo::{Masking, cloth, ggx};

@@ -6,11 +6,11 @@
 use crate::executors;
 use crate::stage::light_cache;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::grading::Look;
-use framegraph_passes::ibl::{DfgSettings, IblSettings};
-use framegraph_passes::shading::LightSettings;
-use framegraph_passes::shadow::ShadowSettings;
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::light::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::light::shading::LightSettings;
 use framegraph_passes::{CameraView, LightSearch, Lighting, PostSettings, Settings, Shading, World, standard};
 use framegraph_scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
 use framegraph_scene::{Aabb, Camera, Environment, Light, Material, Mesh, Projection, Scene, progress};

@@ -4,7 +4,7 @@ use crate::reference::asset::Sources;
 use crate::reference::document::Document;
 use crate::reference::picture::Picture;
 use crate::reference::studio;
-use framegraph_passes::occlusion::OcclusionSettings;
+use framegraph_passes::effects::occlusion::OcclusionSettings;
 use framegraph_wgpu::Gpu;
 use std::error::Error;
 use std::path::Path;

@@ -6,13 +6,15 @@ pub mod table;
 
 use crate::stage::light_cache;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
-use framegraph_passes::facts::{Around, Effect, EffectSet, FactInput, FactMemory, Facts, Proof, Survey, decide};
-use framegraph_passes::ibl::{DfgSettings, IblSettings};
-use framegraph_passes::measure::Measurement;
+use framegraph_passes::effects::exposure::Measurement;
+use framegraph_passes::feature_culling::{
+    Effect, EffectSet, EnvironmentSummary, FactInput, FactMemory, Facts, Proof, SceneSummary, decide,
+};
+use framegraph_passes::gpu_scene::shadow_views::{ContactShadows, ShadowSettings};
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
+use framegraph_passes::light::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::light::shading::LightSettings;
 use framegraph_passes::program::Programs;
-use framegraph_passes::shading::LightSettings;
-use framegraph_passes::shadow::{ContactShadows, ShadowSettings};
-use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{
     CameraView, LightSearch, Lighting, OcclusionSettings, PostSettings, ReflectionSettings, Settings, ViewId, World,
     standard,
@@ -227,7 +229,7 @@ impl Easel {
 pub struct Drawn {
     /// Case to draw.
     pub case: Case,
-    survey: Survey,
+    survey: SceneSummary,
     world: World,
     /// Pictures by settings in text form.
     known: BTreeMap<String, Vec<u8>>,
@@ -247,7 +249,7 @@ impl Drawn {
         let seen = case.view(&case.asked, case.size_px);
         let view = CameraView::new(&case.scene, &lighting.image, &case.background, &seen);
         let world = World::new(gpu, &case.scene, lighting, [view], &mut progress::silent)?;
-        Ok(Self { survey: Survey::new(&case.scene), case, world, known: BTreeMap::new() })
+        Ok(Self { survey: SceneSummary::new(&case.scene), case, world, known: BTreeMap::new() })
     }
 
     /// Returns the feature culling of the case with these settings.
@@ -256,13 +258,13 @@ impl Drawn {
         let input = FactInput {
             scene: &self.case.scene,
             survey: &self.survey,
-            around: Around::from(&self.world.lighting.image),
+            around: EnvironmentSummary::from(&self.world.lighting.image),
             background: &self.case.background,
             views: &views,
             settings: asked,
             forced,
             measured: Measurement::Off,
-            most_codes: FactInput::MOST_CODES,
+            max_steps: FactInput::MAX_CODES,
         };
         decide(&input, memory)
     }

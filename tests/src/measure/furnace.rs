@@ -3,7 +3,7 @@
 use super::cards::{Card, Wall};
 use crate::lookup;
 use framegraph_passes::Shading;
-use framegraph_passes::ibl::DfgTable;
+use framegraph_passes::light::ibl::DfgTable;
 use framegraph_scene::{Environment, Material};
 use framegraph_wgpu::Gpu;
 use glam::{DVec3, Vec3};

@@ -6,10 +6,10 @@ use crate::measure::half::{Form, LobeError, lobe_error};
 use crate::mirror;
 use crate::stage::light_cache;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
-use framegraph_passes::ibl::{DfgSettings, IblSettings};
-use framegraph_passes::shading::LightSettings;
-use framegraph_passes::shadow::ShadowSettings;
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
+use framegraph_passes::light::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::light::shading::LightSettings;
 use framegraph_passes::{
     CameraView, LightSearch, Lighting, PostSettings, Precision, Settings, Shading, World, standard,
 };

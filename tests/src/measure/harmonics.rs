@@ -2,8 +2,8 @@
 
 use super::averaged_map;
 use crate::lookup::{self, Mapping};
-use framegraph_passes::ibl::cache::Cache;
-use framegraph_passes::ibl::{IblSettings, ImageLight};
+use framegraph_passes::light::ibl::cache::Cache;
+use framegraph_passes::light::ibl::{IblSettings, ImageLight};
 use framegraph_scene::environment::{EquirectMap, Sh, ShBands, ShWindow};
 use framegraph_scene::{Environment, progress};
 use framegraph_wgpu::Gpu;

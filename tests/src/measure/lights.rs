@@ -3,11 +3,11 @@
 use crate::executors;
 use crate::stage::light_cache;
 use framegraph::{Extent, Options, Plan, Scratch, Target, Texture, compile};
-use framegraph_passes::ibl::{DfgSettings, IblSettings};
-use framegraph_passes::punctual::LightLists;
-use framegraph_passes::shading::LightSettings;
-use framegraph_passes::shadow::{KeptShadows, maps_slot};
-use framegraph_passes::view::{Background, ViewSettings, Views};
+use framegraph_passes::effects::shadow::{KeptShadows, maps_slot};
+use framegraph_passes::gpu_scene::punctual::LightLists;
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings, Views};
+use framegraph_passes::light::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::light::shading::LightSettings;
 use framegraph_passes::{CameraView, Handles, LightSearch, Lighting, Settings, Slot, ViewId, World, stages};
 use framegraph_scene::{Camera, Environment, Light, LightKind, Scene, progress};
 use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};

@@ -4,10 +4,10 @@ pub mod mirror;
 
 use crate::executors;
 use framegraph::{Entry, Exit, Extent, Format, Intent, Options, Plan, Scratch, Texture, TextureDesc, compile};
-use framegraph_passes::occlusion::{AmbientOcclusion, Axis, OcclusionBlur, OcclusionSettings};
+use framegraph_passes::effects::depth::structure::{Resolution, StructureLevel, structure_levels};
+use framegraph_passes::effects::occlusion::{AmbientOcclusion, Axis, OcclusionBlur, OcclusionSettings};
+use framegraph_passes::gpu_scene::view::Views;
 use framegraph_passes::program::Programs;
-use framegraph_passes::structure::{Resolution, StructureLevel, structure_levels};
-use framegraph_passes::view::Views;
 use framegraph_passes::{CameraView, LightSearch, Precision, ViewId, ViewSettings};
 use framegraph_scene::{Camera, Projection};
 use framegraph_wgpu::{Depth, Frame, Gpu, Imports, Raster, Shader, read_texture};

@@ -2,12 +2,12 @@
 
 use crate::executors;
 use framegraph::{Extent, Format, Intent, Options, Plan, Scratch, Texture, compile};
+use framegraph_passes::effects::depth::structure::Resolution;
+use framegraph_passes::effects::reflection::{ReflectionSettings, reflections};
+use framegraph_passes::gpu_scene::upload::GpuScene;
+use framegraph_passes::gpu_scene::view::Views;
 use framegraph_passes::program::Programs;
-use framegraph_passes::reflection::{ReflectionSettings, reflections};
 use framegraph_passes::stages::Slot;
-use framegraph_passes::structure::Resolution;
-use framegraph_passes::upload::GpuScene;
-use framegraph_passes::view::Views;
 use framegraph_passes::{CameraView, Handles, LightSearch, PreparedScene, ViewId, ViewSettings};
 use framegraph_scene::geometry::{plane, sphere};
 use framegraph_scene::{Camera, Material, Projection, Scene, progress};

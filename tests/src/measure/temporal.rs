@@ -3,9 +3,9 @@
 use framegraph::{
     ClearValue, DeclareError, Extent, Format, Intent, Options, Plan, Scratch, Target, Texture, TextureDesc, compile,
 };
+use framegraph_passes::effects::taa::Taa;
+use framegraph_passes::gpu_scene::view::Views;
 use framegraph_passes::program::Programs;
-use framegraph_passes::taa::Taa;
-use framegraph_passes::view::Views;
 use framegraph_passes::{CameraView, LightSearch, TaaSettings, ViewId, ViewSettings};
 use framegraph_scene::{Camera, Projection};
 use framegraph_shaders::reference::srgb::srgb_from_linear_channel;

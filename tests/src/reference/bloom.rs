@@ -2,7 +2,7 @@
 
 use super::document::{BlendMode, Bloom, BloomQuality as Stated};
 use framegraph_passes::BloomSettings;
-use framegraph_passes::bloom::{Blend, BloomQuality, FlareSettings, Threshold};
+use framegraph_passes::effects::bloom::{Blend, BloomQuality, FlareSettings, Threshold};
 
 /// Converts bloom; missing options have Filament's defaults. If `as_made`, filters are those of Filament's mobile
 /// quality, otherwise those of its desktop quality. Returns `None` if bloom is off.

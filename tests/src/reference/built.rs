@@ -2,7 +2,7 @@
 
 use super::document::{Document, Msaa, ShadowType};
 use super::occlusion;
-use framegraph_passes::shadow::MOST_CASCADES;
+use framegraph_passes::gpu_scene::shadow_views::MAX_CASCADES;
 
 /// Differences between a statement and our renderer.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -41,7 +41,7 @@ pub fn gaps(document: &Document) -> Gaps {
     };
     for light in scene.lights.iter().filter(|light| light.cast_shadows) {
         let options = &light.shadow_options;
-        let cascades = options.shadow_cascades.is_some_and(|count| count > MOST_CASCADES as u32);
+        let cascades = options.shadow_cascades.is_some_and(|count| count > MAX_CASCADES as u32);
         differs(cascades, "scene.lights.shadow_options.shadowCascades", "four");
         let soft = shadow_type.is_some_and(|kind| matches!(kind, ShadowType::Dpcf | ShadowType::Pcss));
         differs(soft, "shadow_type", "other taps over the same disc");

@@ -2,7 +2,7 @@
 
 use super::document::{Fog, Scene};
 use framegraph_passes::FogSettings;
-use framegraph_passes::fog::{FogColor, FogGlow};
+use framegraph_passes::effects::fog::{FogColor, FogGlow};
 
 /// Filament's default brightness of the environment, a factor on the fog's color.
 const NO_ENVIRONMENT: f64 = 30_000.0;

@@ -1,8 +1,8 @@
 //! Conversion of stated ambient occlusion to our settings.
 
 use super::document::{self, Ao, AoQuality, AoType, Ssct};
-use framegraph_passes::occlusion::{Blur, ConeTrace, Gtao, Method, Occluders, OcclusionSettings, SaoQuality};
-use framegraph_passes::structure::Resolution;
+use framegraph_passes::effects::depth::structure::Resolution;
+use framegraph_passes::effects::occlusion::{Blur, ConeTrace, Gtao, Method, Occluders, OcclusionSettings, SaoQuality};
 
 /// Converts ambient occlusion; `None` if it is off. If `as_made`, details match Filament. Otherwise they are ours:
 /// samples at the position of their depth, and normals from the nearer neighbors.

@@ -13,14 +13,16 @@ use crate::executors;
 use crate::filtered::filtered;
 use crate::stage::light_cache;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
-use framegraph_passes::fxaa::Fxaa;
-use framegraph_passes::ibl::{DfgSettings, IblSettings};
-use framegraph_passes::occlusion::OcclusionSettings;
-use framegraph_passes::reflection::ReflectionSettings;
-use framegraph_passes::shading::{LightSettings, LightWindow, SpecularAa, TransmissionBlur};
-use framegraph_passes::shadow::{ContactShadows, Fit, MOST_CASCADES, ShadowBias, ShadowFilter, ShadowSettings, Splits};
+use framegraph_passes::effects::fxaa::Fxaa;
+use framegraph_passes::effects::occlusion::OcclusionSettings;
+use framegraph_passes::effects::reflection::ReflectionSettings;
+use framegraph_passes::gpu_scene::shadow_views::{
+    ContactShadows, Fit, MAX_CASCADES, ShadowBias, ShadowFilter, ShadowSettings, Splits,
+};
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
+use framegraph_passes::light::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::light::shading::{LightSettings, LightWindow, SpecularAa, TransmissionBlur};
 use framegraph_passes::stages::{Handles, Slot, StageError};
-use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{
     CameraView, LightSearch, Lighting, PostSettings, Quality, Settings, Shading, ViewId, World, stages,
 };
@@ -36,7 +38,7 @@ use std::error::Error;
 /// Filament's default size of shadow maps, in texels.
 const SHADOW_MAP_TEXELS: u32 = 1024;
 /// Maximum accepted illuminance in lux, so that sums stay finite in f32.
-const MOST_LUX: f64 = 1e10;
+const MAX_LUX: f64 = 1e10;
 
 /// Number of frames until multiple reflections converge, since reflections show the previous frame.
 const FRAMES_WITH_HISTORY: u32 = 4;
@@ -188,7 +190,7 @@ fn shading(document: &Document, shade: Shade) -> Shading {
 /// Creates the environment with the sun; other lights are added to the scene.
 fn surroundings(document: &Document, sources: &Sources, scene: &mut Scene) -> Result<Environment, Box<dyn Error>> {
     let stated = &document.scene;
-    if stated.clear_color.iter().any(|c| !(0.0..=MOST_LUX).contains(c)) {
+    if stated.clear_color.iter().any(|c| !(0.0..=MAX_LUX).contains(c)) {
         return Err("scene.clear_color: needs four channels from 0 to 1e10".into());
     }
     if stated.specular_aa.iter().any(|x| !(0.0..=1.0).contains(x)) {
@@ -199,7 +201,7 @@ fn surroundings(document: &Document, sources: &Sources, scene: &mut Scene) -> Re
     for (index, light) in stated.lights.iter().enumerate() {
         let finite = |v: [f64; 3]| Some(DVec3::from_array(v)).filter(|v| v.is_finite());
         let wrong = |key: &str, needed: &str| format!("scene.lights[{index}].{key}: {needed} is needed");
-        if !(0.0..=MOST_LUX).contains(&light.intensity) {
+        if !(0.0..=MAX_LUX).contains(&light.intensity) {
             return Err(wrong("intensity", "an illuminance from 0 to 1e10 lux").into());
         }
         let direction = finite(light.direction).and_then(DVec3::try_normalize);
@@ -305,7 +307,7 @@ fn shadows(document: &Document) -> Option<ShadowSettings> {
             ShadowType::Dpcf => ShadowFilter::Dpcf,
             ShadowType::Pcss => ShadowFilter::Pcss,
         },
-        cascades: options.shadow_cascades.unwrap_or(1).clamp(1, MOST_CASCADES as u32) as u8,
+        cascades: options.shadow_cascades.unwrap_or(1).clamp(1, MAX_CASCADES as u32) as u8,
         splits: options.cascade_split_positions.map_or(usual.splits, Splits::At),
         fit: match options.stable {
             Some(true) => Fit::Stable,

@@ -1,7 +1,7 @@
 //! Conversion of stated temporal anti-aliasing to our settings.
 
 use super::document::{Taa, TaaBox, TaaClipping, TaaJitter};
-use framegraph_passes::taa::{Clipping, ColorBox, JitterPattern, TaaSettings};
+use framegraph_passes::effects::taa::{Clipping, ColorBox, JitterPattern, TaaSettings};
 
 /// Number of frames that the references accumulate.
 pub const FRAMES: u32 = 24;

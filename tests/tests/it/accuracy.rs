@@ -1,8 +1,8 @@
 //! The committed documents match their records, and `accuracy` reports invalid options.
 
 use crate::stage::gpu;
-use framegraph_passes::budget::Measured;
-use framegraph_passes::preset::source;
+use framegraph_passes::quality::Measured;
+use framegraph_passes::quality::preset::source;
 use framegraph_passes::{Facts, Preset};
 use std::path::Path;
 use std::process::{Command, Output};
@@ -12,7 +12,7 @@ use tests::lab::record::{Record, Rounds};
 use tests::lab::studio::Studio;
 
 const DOCUMENT: &str = include_str!("../../../docs/measurements/accuracy.md");
-const CHOSEN: &str = include_str!("../../../passes/src/preset/chosen.rs");
+const CHOSEN: &str = include_str!("../../../passes/src/quality/preset/chosen.rs");
 
 fn record() -> Record {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/measurements/accuracy.json");
@@ -54,7 +54,8 @@ fn the_document_of_a_gpu_is_that_of_its_record() {
 #[test]
 fn presets_are_those_of_the_record() {
     let mut measured = record().budget.expect("docs/measurements/accuracy.json has what frames are chosen from");
-    let renew = "renew them: cargo run -p tests --bin accuracy -- --out docs --presets passes/src/preset/chosen.rs";
+    let renew =
+        "renew them: cargo run -p tests --bin accuracy -- --out docs --presets passes/src/quality/preset/chosen.rs";
     assert_eq!(CHOSEN, source(&measured).expect("options that there are"), "{renew}");
     for preset in Preset::ALL {
         assert_eq!(preset.measured(&measured, |_| true).expect("options that there are"), preset.frame(), "{renew}");

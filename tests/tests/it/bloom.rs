@@ -7,10 +7,12 @@ use crate::lens_document::documented;
 use crate::parts::Parts;
 use crate::stage::{gpu, plan};
 use framegraph::{Caps, Counts, Options, Target, Texture, dump};
-use framegraph_passes::bloom::bloom;
-use framegraph_passes::bloom::{Blend, BloomChain, BloomMix, BloomQuality, BloomSettings, FlareSettings, Threshold};
-use framegraph_passes::post::{Post, PostEffect};
-use framegraph_passes::view::{ViewSettings, Views};
+use framegraph_passes::effects::bloom::bloom;
+use framegraph_passes::effects::bloom::{
+    Blend, BloomChain, BloomMix, BloomQuality, BloomSettings, FlareSettings, Threshold,
+};
+use framegraph_passes::effects::post::{Post, PostEffect};
+use framegraph_passes::gpu_scene::view::{ViewSettings, Views};
 use framegraph_passes::{CameraView, Handles, LightSearch, PostSettings, Settings, Slot, StageError};
 use framegraph_scene::{Camera, Projection};
 use framegraph_shaders::reference::flare::starburst;

@@ -1,7 +1,7 @@
 //! Combinations of effects that once crashed a driver, each drawn in a child process.
 
 use crate::stage::gpu;
-use framegraph_passes::shadow::{ShadowFilter, ShadowSettings};
+use framegraph_passes::gpu_scene::shadow_views::{ShadowFilter, ShadowSettings};
 use framegraph_passes::{FogSettings, Settings};
 use framegraph_wgpu::FrameLoop;
 use std::error::Error;

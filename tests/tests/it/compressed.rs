@@ -3,7 +3,7 @@
 use crate::stage::{Set, Shot, gpu};
 use framegraph::Options;
 use framegraph_passes::Settings;
-use framegraph_passes::view::Background;
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_scene::{Camera, Scene, import, progress};
 use framegraph_wgpu::Gpu;
 use std::error::Error;

@@ -1,8 +1,8 @@
 //! Environments from Khronos textures, written by an independent encoder: exact values and correct lighting.
 
 use crate::stage::gpu;
-use framegraph_passes::ibl::cache::Cache;
-use framegraph_passes::ibl::{IblSettings, ImageLight};
+use framegraph_passes::light::ibl::cache::Cache;
+use framegraph_passes::light::ibl::{IblSettings, ImageLight};
 use framegraph_scene::environment::{Environment, ShBands, SunExtraction};
 use framegraph_scene::{LoadOptions, Memory, progress};
 use glam::DVec3;

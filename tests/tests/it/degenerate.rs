@@ -3,7 +3,7 @@
 
 use crate::stage::{Shot, declared, gpu, lighting};
 use framegraph::{Plan, Scratch, compile};
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, LightSearch, Settings, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::geometry::{plane, sphere};

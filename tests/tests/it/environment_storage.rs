@@ -1,10 +1,10 @@
 //! Formats of the prefiltered environment, and irradiance from its last level.
 
 use crate::stage::{self, Set, Shot};
-use framegraph_passes::fog::{FogColor, FogSettings};
-use framegraph_passes::ibl::EnvironmentFormat;
-use framegraph_passes::shading::Irradiance;
-use framegraph_passes::view::Background;
+use framegraph_passes::effects::fog::{FogColor, FogSettings};
+use framegraph_passes::gpu_scene::view::Background;
+use framegraph_passes::light::ibl::EnvironmentFormat;
+use framegraph_passes::light::shading::Irradiance;
 use framegraph_passes::{Settings, Shading};
 use framegraph_scene::environment::{ShBands, ShWindow};
 use std::error::Error;

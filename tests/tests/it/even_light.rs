@@ -2,7 +2,7 @@
 
 use crate::stage::{self, Shot};
 use framegraph::{Plan, Scratch, compile};
-use framegraph_passes::view::Background;
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{Settings, World};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::{Environment, Scene, progress};

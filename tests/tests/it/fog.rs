@@ -3,8 +3,8 @@
 use crate::lens_document::documented;
 use crate::stage::{gpu, lighting, plan};
 use framegraph::{Caps, Options, Plan, Scratch, Target, compile};
-use framegraph_passes::fog::{FogColor, FogGlow};
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::effects::fog::{FogColor, FogGlow};
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, FogSettings, LightSearch, Settings, Shading, World, standard};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::{Camera, Environment, Light, Projection, Scene, progress};

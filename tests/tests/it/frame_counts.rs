@@ -3,9 +3,9 @@
 use crate::stage::plan;
 use framegraph::{Caps, Counts, LoadOp, Options, StoreOp, dump};
 use framegraph_passes::Settings;
-use framegraph_passes::occlusion::OcclusionSettings;
-use framegraph_passes::reflection::ReflectionSettings;
-use framegraph_passes::shadow::{ContactShadows, MomentSettings, ShadowFilter, ShadowSettings};
+use framegraph_passes::effects::occlusion::OcclusionSettings;
+use framegraph_passes::effects::reflection::ReflectionSettings;
+use framegraph_passes::gpu_scene::shadow_views::{ContactShadows, MomentSettings, ShadowFilter, ShadowSettings};
 
 const FRAME: [u32; 2] = [1280, 720];
 

@@ -3,8 +3,8 @@
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Alias, Options, Order, Placement, Plan, Scratch};
-use framegraph_passes::shadow::ShadowSettings;
-use framegraph_passes::view::Background;
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{Preset, Settings, ViewId, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};

@@ -2,8 +2,8 @@
 //! design.
 
 use crate::stage::{Set, Shot, gpu};
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::grading::{Extras, GradeBy, GradingTables, Look, OwnCurve, TableDesc};
-use framegraph_passes::view::Background;
 use framegraph_passes::{PostSettings, Settings};
 use framegraph_scene::ColorTable;
 use framegraph_shaders::layout::{EncodingUniforms, ExposureUniforms, ToneMap};

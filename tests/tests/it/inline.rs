@@ -9,8 +9,8 @@ mod samples;
 
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{Format, Options, Plan, Reason, Refusal, Subject};
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::grading::Look;
-use framegraph_passes::view::Background;
 use framegraph_passes::{PostSettings, Settings};
 use framegraph_shaders::layout::Grading;
 use framegraph_wgpu::{Gpu, Rounding, StoreRounding};

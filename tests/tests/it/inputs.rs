@@ -6,7 +6,7 @@
 mod lobes;
 
 use crate::stage::{Set, Shot, gpu, lighting};
-use framegraph_passes::view::Background;
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{Quality, Settings, Shading};
 use framegraph_scene::material::{AlphaMode, EmissiveUnit};
 use framegraph_scene::texture::{Filter, Sampler, TextureRole, TextureSlot, UvTransform};

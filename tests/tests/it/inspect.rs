@@ -2,8 +2,8 @@
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Placement, Plan, Scratch, compile, dump};
-use framegraph_passes::shadow::ShadowSettings;
-use framegraph_passes::view::Background;
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{Settings, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};

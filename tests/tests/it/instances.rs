@@ -2,9 +2,9 @@
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Options, Plan, Scratch, compile};
-use framegraph_passes::indirect::{LEAST_BATCHES, draws_indirectly};
-use framegraph_passes::shadow::{MomentSettings, ShadowFilter, ShadowSettings};
-use framegraph_passes::view::{Background, MOST_STREAMED};
+use framegraph_passes::gpu_scene::indirect::{LEAST_BATCHES, draws_indirectly};
+use framegraph_passes::gpu_scene::shadow_views::{MomentSettings, ShadowFilter, ShadowSettings};
+use framegraph_passes::gpu_scene::view::{Background, MAX_STREAMED};
 use framegraph_passes::{CameraView, PreparedScene, Settings, ViewId, ViewSettings, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::geometry::{cuboid, plane, sphere};
@@ -105,7 +105,7 @@ fn objects_in_a_stream_and_in_buffers_are_the_same_picture() -> TestResult {
     let settings = Settings { shadows: Some(ShadowSettings::texels(128)), ..Settings::DEFAULT };
     let shot = Shot { size_px: [96, 64], options: Options::for_frame(96, 64), ..Shot::small(settings) };
     let environment = Sky::default().environment(128)?;
-    for (scene, variant) in [(crowd, "VERTEX_COLORS"), (wall(MOST_STREAMED), "MATERIAL_TABLE")] {
+    for (scene, variant) in [(crowd, "VERTEX_COLORS"), (wall(MAX_STREAMED), "MATERIAL_TABLE")] {
         let settings = settings.for_scene(&scene, shot.size_px);
         let picture = |streamed: bool| -> Result<_, Box<dyn Error>> {
             let lighting = lighting(&gpu, &environment, &settings.shading)?;
@@ -122,7 +122,7 @@ fn objects_in_a_stream_and_in_buffers_are_the_same_picture() -> TestResult {
         assert!(streams > 2 && none == 0 && own > 0 && other > 0, "{streams} and {none} variants, {own} and {other}");
         assert!(streamed == read, "{variant}: objects in a stream are another picture");
     }
-    let larger = wall(MOST_STREAMED + 1);
+    let larger = wall(MAX_STREAMED + 1);
     let image = lighting(&gpu, &environment, &settings.shading)?.image;
     assert!(!view_of(&larger, &image, &Background::Environment, &shot).streams_objects);
     Ok(())
@@ -166,8 +166,9 @@ fn instanced_draws_are_the_same_picture() -> TestResult {
         visible_layers: 1,
     };
     let coarse = CameraView::new(&scene, &world.lighting.image, &background, &seen);
-    let levels =
-        |list: &framegraph_passes::indirect::DrawList| list.iter().map(|batch| batch.level).collect::<Vec<_>>();
+    let levels = |list: &framegraph_passes::gpu_scene::indirect::DrawList| {
+        list.iter().map(|batch| batch.level).collect::<Vec<_>>()
+    };
     let drawn = levels(&coarse.draws.surfaces[0]);
     assert!(drawn.contains(&0) && drawn.iter().any(|level| *level > 0), "{drawn:?}");
     let apart = CameraView { draws: coarse.draws.clone().one_by_one(), ..coarse.clone() };

@@ -1,7 +1,8 @@
 //! Cached shadow maps: number of rendered maps, and equality with new maps.
 
 use crate::stage::gpu;
-use framegraph_passes::shadow::{Fit, KeptShadows, MomentSettings, Redraw, ShadowFilter, ShadowSettings};
+use framegraph_passes::effects::shadow::{KeptShadows, Redraw};
+use framegraph_passes::gpu_scene::shadow_views::{Fit, MomentSettings, ShadowFilter, ShadowSettings};
 use framegraph_passes::{LightSearch, Settings};
 use framegraph_scene::{Light, Scene, progress};
 use framegraph_wgpu::Gpu;

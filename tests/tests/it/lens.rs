@@ -3,8 +3,8 @@
 
 use crate::stage::{declared, gpu, lighting};
 use framegraph::{Options, Plan, Scratch, compile};
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::grading::{Baked, GradeBy, GradingTables, Look};
-use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, LightSearch, PostSettings, Settings, Shading, World};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::light::LightKind;

@@ -2,9 +2,9 @@
 
 use crate::stage::{Shot, declared, gpu, lighting};
 use framegraph::{Options, Plan, Scratch, compile};
-use framegraph_passes::draws::ViewDraws;
-use framegraph_passes::shadow::ShadowSettings;
-use framegraph_passes::view::Background;
+use framegraph_passes::gpu_scene::draws::ViewDraws;
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{CameraView, LightSearch, Settings, ViewId, ViewSettings, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::geometry::{plane, sphere, torus};

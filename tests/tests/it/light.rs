@@ -2,8 +2,8 @@
 
 use crate::light_document::numbers;
 use crate::stage;
-use framegraph_passes::ibl::cache::Cache;
-use framegraph_passes::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight};
+use framegraph_passes::light::ibl::cache::Cache;
+use framegraph_passes::light::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight};
 use framegraph_scene::environment::{Sh, ShBands, ShWindow, SunExtraction};
 use framegraph_scene::{Environment, progress};
 use framegraph_shaders::reference::dfg::Visibility;

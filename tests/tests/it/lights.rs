@@ -3,8 +3,8 @@
 mod hard;
 
 use crate::stage::gpu;
-use framegraph_passes::punctual::{Found, FroxelSettings, LightSearch};
-use framegraph_passes::shadow::ShadowSettings;
+use framegraph_passes::gpu_scene::punctual::{Found, FroxelSettings, LightSearch};
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
 use framegraph_passes::{Precision, Settings, Shading};
 use framegraph_scene::material::AlphaMode;
 use framegraph_scene::{Camera, Light, Projection, Scene, progress};

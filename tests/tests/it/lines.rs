@@ -4,8 +4,8 @@ mod frames;
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Options, Plan, Scratch, compile};
-use framegraph_passes::shadow::ShadowSettings;
-use framegraph_passes::view::Background;
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{Settings, World};
 use framegraph_scene::{Aabb, AlphaMode, Camera, Environment, Material, Mesh, Projection, Scene, Topology, progress};
 use framegraph_wgpu::{Gpu, Imports, read_texture};

@@ -1,9 +1,9 @@
 //! Shadows of the sun without casters: a single plane or convex box has no shadow, for any filter and fit.
 
 use crate::stage::gpu;
-use framegraph_passes::facts::Effect;
-use framegraph_passes::shadow::{Fit, ShadowFilter, ShadowSettings};
-use framegraph_passes::view::Background;
+use framegraph_passes::feature_culling::Effect;
+use framegraph_passes::gpu_scene::shadow_views::{Fit, ShadowFilter, ShadowSettings};
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{Settings, Shading};
 use framegraph_scene::geometry::{cuboid, plane};
 use framegraph_scene::{Camera, Light, Material, Mesh, Projection, Scene};

@@ -2,8 +2,8 @@
 
 use crate::stage::{declared, gpu, lighting};
 use framegraph::{Options, Plan, Scratch};
-use framegraph_passes::shadow::{ContactShadows, ShadowSettings};
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::gpu_scene::shadow_views::{ContactShadows, ShadowSettings};
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, LightSearch, Settings, World};
 use framegraph_scene::{Camera, Environment, Light, LightKind, Material, Projection, Scene, geometry, progress};
 use framegraph_wgpu::{Gpu, Imports, read_texture};

@@ -5,9 +5,9 @@ mod shaded;
 
 use crate::stage::{self, gpu, precisions};
 use framegraph::{Caps, Counts, Options, Target, TextureDesc};
-use framegraph_passes::occlusion::OcclusionSettings;
+use framegraph_passes::effects::depth::structure::{Resolution, structure};
+use framegraph_passes::effects::occlusion::OcclusionSettings;
 use framegraph_passes::stages::Handles;
-use framegraph_passes::structure::{Resolution, structure};
 use framegraph_passes::{Precision, Settings, World, standard};
 use framegraph_scene::Projection;
 use framegraph_wgpu::Frame;

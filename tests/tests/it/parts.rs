@@ -6,13 +6,13 @@ use framegraph::{
     ClearValue, DeclareError, Entry, Exit, Extent, Format, Intent, Options, Plan, Scratch, Target, Texture,
     TextureDesc, compile,
 };
-use framegraph_passes::depth_resolve::{DepthOf, DepthResolve};
-use framegraph_passes::fxaa::Fxaa;
+use framegraph_passes::effects::depth::resolve::{DepthOf, DepthResolve};
+use framegraph_passes::effects::fxaa::Fxaa;
+use framegraph_passes::effects::post::Post;
+use framegraph_passes::effects::transmission::{SceneCopy, SceneLevel};
+use framegraph_passes::gpu_scene::view::Views;
 use framegraph_passes::grading::{GradingTables, Look};
-use framegraph_passes::post::Post;
 use framegraph_passes::program::Programs;
-use framegraph_passes::transmission::{SceneCopy, SceneLevel};
-use framegraph_passes::view::Views;
 use framegraph_passes::{CameraView, FrameIndex, LightSearch, PostSettings, ViewId, ViewSettings};
 use framegraph_scene::{Camera, Projection};
 use framegraph_shaders::layout::{FxaaUniforms, ToneMap};

@@ -1,7 +1,7 @@
 //! Picking: what is under a pixel, how deep and where, against rays that meet known planes.
 
 use crate::stage::{gpu, lighting};
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, LightSearch, Pickable, Picker, Settings, ViewId, World};
 use framegraph_scene::motion::{Body, Moves, Shape};
 use framegraph_scene::texture::Filter;

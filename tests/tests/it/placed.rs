@@ -4,8 +4,8 @@ use crate::executed::{Staged, staged};
 use crate::stage::gpu;
 use framegraph::file::{GraphFile, Registry};
 use framegraph::{Alias, Options, Placement, Plan, Scratch, Usage};
-use framegraph_passes::dof::DofSettings;
-use framegraph_passes::shadow::{ShadowFilter, ShadowSettings};
+use framegraph_passes::effects::dof::DofSettings;
+use framegraph_passes::gpu_scene::shadow_views::{ShadowFilter, ShadowSettings};
 use framegraph_passes::{OcclusionSettings, ReflectionSettings, Settings, TaaSettings};
 use framegraph_wgpu::{
     AdapterRequest, ExecuteError, Executor, ExecutorOptions, Frame, FrameLoop, Gpu, NotPlaced, Unsupported, Workers,

@@ -2,11 +2,11 @@
 
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{DeclareError, Intent, Pass, PassBuilder, Plan, Scratch, Target, Texture, TextureDesc, View, compile};
-use framegraph_passes::full_screen::FullScreen;
-use framegraph_passes::occlusion::{OcclusionSettings, SaoQuality};
+use framegraph_passes::effects::occlusion::{OcclusionSettings, SaoQuality};
+use framegraph_passes::gpu_scene::view::Background;
+use framegraph_passes::program::full_screen::FullScreen;
 use framegraph_passes::program::{Interface, ProgramDesc, Programs};
 use framegraph_passes::stages::{Handles, Slot, Stage};
-use framegraph_passes::view::Background;
 use framegraph_passes::{BloomSettings, DofSettings, Settings, TaaSettings, World, stages};
 use framegraph_scene::{Scene, progress};
 use framegraph_shaders::Module;

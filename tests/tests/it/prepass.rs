@@ -2,11 +2,13 @@
 
 use crate::stage::{Set, Shot, gpu};
 use framegraph::Options;
-use framegraph_passes::facts::{Around, Decision, Effect, EffectSet, FactInput, FactMemory, Survey, decide};
-use framegraph_passes::measure::Measurement;
-use framegraph_passes::shadow::ShadowSettings;
-use framegraph_passes::taa::TaaSettings;
-use framegraph_passes::view::Background;
+use framegraph_passes::effects::exposure::Measurement;
+use framegraph_passes::effects::taa::TaaSettings;
+use framegraph_passes::feature_culling::{
+    Decision, Effect, EffectSet, EnvironmentSummary, FactInput, FactMemory, SceneSummary, decide,
+};
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{LightSearch, OcclusionSettings, Settings, ViewSettings};
 use framegraph_scene::environment::ShBands;
 use framegraph_scene::geometry::{cuboid, plane, sphere};
@@ -67,14 +69,14 @@ fn decided(scene: &Scene, asked: Settings) -> (bool, String) {
     let irradiance = &[Vec4::ONE; 18];
     let input = FactInput {
         scene,
-        survey: &Survey::new(scene),
-        around: Around { irradiance, bands: ShBands::Three, luminance_nits: 1.0, sun: None },
+        survey: &SceneSummary::new(scene),
+        around: EnvironmentSummary { irradiance, bands: ShBands::Three, luminance_nits: 1.0, sun: None },
         background: &Background::Environment,
         views: &[view],
         settings: &asked,
         forced: EffectSet::NONE,
         measured: Measurement::Off,
-        most_codes: FactInput::MOST_CODES,
+        max_steps: FactInput::MAX_CODES,
     };
     let facts = decide(&input, &mut FactMemory::default());
     let fact = facts.of(Effect::Prepass).expect("a prepass is asked for");

@@ -2,7 +2,7 @@
 
 use crate::stage::{gpu, lighting};
 use framegraph_passes::Shading;
-use framegraph_passes::shading::LightWindow;
+use framegraph_passes::light::shading::LightWindow;
 use framegraph_scene::light::LightKind;
 use framegraph_scene::{Environment, Light, Material, Specular};
 use glam::{DMat4, DVec3, Vec3};

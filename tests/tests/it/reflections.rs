@@ -5,9 +5,9 @@ mod shaded;
 
 use crate::stage::{self, gpu};
 use framegraph::{Caps, Counts, Options};
-use framegraph_passes::reflection::ReflectionSettings;
-use framegraph_passes::structure::Resolution;
-use framegraph_passes::transmission::scene_levels;
+use framegraph_passes::effects::depth::structure::Resolution;
+use framegraph_passes::effects::reflection::ReflectionSettings;
+use framegraph_passes::effects::transmission::scene_levels;
 use framegraph_passes::{OcclusionSettings, Settings};
 use glam::DVec3;
 use std::error::Error;

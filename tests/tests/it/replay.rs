@@ -6,7 +6,7 @@ use tests::fuzz::{Damage, TARGETS};
 /// Number of damaged copies of each file.
 const ROUNDS: usize = 400;
 /// Maximum size of a corpus file in bytes, so that it remains readable.
-const MOST_BYTES: usize = 8 << 10;
+const MAX_BYTES: usize = 8 << 10;
 
 #[test]
 fn the_corpus_is_read_and_no_damage_to_it_panics() {
@@ -21,7 +21,7 @@ fn the_corpus_is_read_and_no_damage_to_it_panics() {
         let (mut sound, mut broken) = (0, 0);
         for (index, (path, file)) in paths.iter().zip(&files).enumerate() {
             let shown = path.display();
-            assert!(file.len() <= MOST_BYTES, "{shown}: {} bytes", file.len());
+            assert!(file.len() <= MAX_BYTES, "{shown}: {} bytes", file.len());
             assert!(target(file), "{shown}: it is refused as it is");
             for round in 0..ROUNDS {
                 let bytes = damage.done_to(file, &files[(index + 1) % files.len()]);

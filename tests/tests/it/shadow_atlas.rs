@@ -1,7 +1,7 @@
 //! Shadow maps of punctual lights that share layers: pictures equal those with one layer per map, for any neighbors.
 
 use crate::stage::gpu;
-use framegraph_passes::shadow::{MomentSettings, Place, ShadowFilter, ShadowSettings};
+use framegraph_passes::gpu_scene::shadow_views::{MomentSettings, Place, ShadowFilter, ShadowSettings};
 use framegraph_passes::{LightSearch, Settings};
 use framegraph_scene::geometry::cuboid;
 use framegraph_scene::{Camera, Light, LightKind, Material, Projection, Scene};

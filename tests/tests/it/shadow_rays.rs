@@ -7,9 +7,11 @@ mod shimmer;
 mod strength;
 
 use crate::stage::{gpu, precisions};
-use framegraph_passes::occlusion::OcclusionSettings;
-use framegraph_passes::shadow::{ContactShadows, Fit, ShadowBias, ShadowFilter, ShadowSettings, Splits};
-use framegraph_passes::structure::Resolution;
+use framegraph_passes::effects::depth::structure::Resolution;
+use framegraph_passes::effects::occlusion::OcclusionSettings;
+use framegraph_passes::gpu_scene::shadow_views::{
+    ContactShadows, Fit, ShadowBias, ShadowFilter, ShadowSettings, Splits,
+};
 use framegraph_scene::geometry::cuboid;
 use framegraph_scene::{AlphaMode, Camera, Light, LightKind, Material, Projection, Scene, progress};
 use glam::{DMat4, DVec3, Vec3};

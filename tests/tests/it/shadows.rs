@@ -2,7 +2,7 @@
 
 use crate::stage::{gpu, lighting};
 use framegraph_passes::Shading;
-use framegraph_passes::shadow::{Fit, ShadowSettings, Splits};
+use framegraph_passes::gpu_scene::shadow_views::{Fit, ShadowSettings, Splits};
 use framegraph_scene::material::AlphaMode;
 use framegraph_scene::texture::{Sampler, TextureRole};
 use framegraph_scene::{Environment, Light, Material, Mesh, Specular};

@@ -3,9 +3,9 @@
 
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use framegraph::{Plan, Scratch, compile};
-use framegraph_passes::ibl::{DfgSettings, IblSettings};
-use framegraph_passes::shading::LightSettings;
-use framegraph_passes::view::Background;
+use framegraph_passes::gpu_scene::view::Background;
+use framegraph_passes::light::ibl::{DfgSettings, IblSettings};
+use framegraph_passes::light::shading::LightSettings;
 use framegraph_passes::{Lighting, Quality, Settings, Shading, World};
 use framegraph_scene::environment::{EquirectMap, ShBands};
 use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular};

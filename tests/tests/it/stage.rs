@@ -1,10 +1,10 @@
 //! The standard frame in tests: planning without a device, drawing with one.
 
 use framegraph::{Caps, Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
-use framegraph_passes::ibl::{DfgSettings, IblSettings, ImageLight};
-use framegraph_passes::lighting::LightingError;
-use framegraph_passes::shading::LightSettings;
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::gpu_scene::lighting::LightingError;
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
+use framegraph_passes::light::ibl::{DfgSettings, IblSettings, ImageLight};
+use framegraph_passes::light::shading::LightSettings;
 use framegraph_passes::{CameraView, FrameIo, LightSearch, Lighting, Precision, Settings, Shading, World, standard};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Environment, Scene, progress};

@@ -2,7 +2,7 @@
 
 use crate::stage::{declared, gpu, lighting};
 use framegraph::{Caps, Counts, Format, Options, Plan, Scratch, compile};
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, LightSearch, Settings, World};
 use framegraph_scene::material::{Stencil, StencilCompare, StencilFace, StencilOp};
 use framegraph_scene::{AlphaMode, Camera, DrawOptions, Environment, Material, Projection, Scene, geometry, progress};

@@ -2,8 +2,8 @@
 
 use crate::stage::{self, Set, Shot, declared, gpu};
 use framegraph::{Caps, Counts, Options, Plan, Scratch, compile};
-use framegraph_passes::taa::Clipping;
-use framegraph_passes::view::Background;
+use framegraph_passes::effects::taa::Clipping;
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{Settings, Shading, TaaSettings, ViewId};
 use framegraph_scene::Scene;
 use framegraph_wgpu::{Executor, Gpu, Imports, read_texture};

@@ -4,8 +4,8 @@
 use crate::stage::{Set, Shot, gpu};
 use framegraph::Options;
 use framegraph_passes::Settings;
-use framegraph_passes::upload::{GpuScene, MATERIAL_BINDINGS, block_formats};
-use framegraph_passes::view::Background;
+use framegraph_passes::gpu_scene::upload::{GpuScene, MATERIAL_BINDINGS, block_formats};
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_scene::{BlockFormats, ImageFormat, LoadOptions, MaterialId, Scene, import, progress};
 use framegraph_wgpu::{Binding, Gpu, read_buffer};
 use glam::Vec3;

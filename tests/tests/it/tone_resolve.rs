@@ -5,9 +5,9 @@ use framegraph::{
     Caps, DeclareError, Extent, Format, Intent, Options, Pass, PassBuilder, Plan, Scratch, Texture, TextureDesc,
     compile,
 };
-use framegraph_passes::full_screen::FullScreen;
+use framegraph_passes::effects::post::tone_resolve::ToneResolve;
+use framegraph_passes::program::full_screen::FullScreen;
 use framegraph_passes::program::{Interface, ProgramDesc, Programs};
-use framegraph_passes::tone_resolve::ToneResolve;
 use framegraph_passes::{BloomSettings, Settings};
 use framegraph_shaders::Module;
 use framegraph_shaders::reference::bloom::firefly_weight;

@@ -5,9 +5,9 @@ mod layers;
 
 use crate::stage::{Shot, declared, gpu, lighting, plan, view_of};
 use framegraph::{Caps, Counts, Options, Plan, Scratch, compile};
-use framegraph_passes::shading::TransmissionBlur;
-use framegraph_passes::transmission::scene_levels;
-use framegraph_passes::view::Background;
+use framegraph_passes::effects::transmission::scene_levels;
+use framegraph_passes::gpu_scene::view::Background;
+use framegraph_passes::light::shading::TransmissionBlur;
 use framegraph_passes::{Settings, Shading, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::geometry::plane;

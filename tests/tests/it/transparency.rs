@@ -6,9 +6,9 @@ mod rays;
 
 use crate::stage::{Set, Shot, declared, gpu, lighting, view_of};
 use framegraph::{Options, Plan, Scratch, compile};
-use framegraph_passes::fog::{FogColor, FogSettings};
-use framegraph_passes::transparency::{MomentPrecision, MomentTransparency};
-use framegraph_passes::view::Background;
+use framegraph_passes::effects::fog::{FogColor, FogSettings};
+use framegraph_passes::effects::transparency::{MomentPrecision, MomentTransparency};
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{Settings, Transparency, ViewId, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::geometry::{cuboid, plane};
@@ -309,7 +309,7 @@ fn two_passes_of_a_material() -> TestResult {
 fn the_range_of_moments_is_that_of_blended_surfaces_in_view() -> TestResult {
     let Some(gpu) = gpu("the_range_of_moments_is_that_of_blended_surfaces_in_view") else { return Ok(()) };
     let drawn = Drawn::new(&gpu, stack(&[(Vec3::ONE, 0.5, 2.0), (Vec3::ONE, 0.5, 800.0)]))?;
-    let views: &framegraph_passes::view::Views = drawn.world.as_ref();
+    let views: &framegraph_passes::gpu_scene::view::Views = drawn.world.as_ref();
     let range = views.get(ViewId::MAIN)?.view.frame.blended;
     let warped = |distance_m: f32| distance_m.log2() * range.x + range.y;
     let ends = [warped(2.0), warped(800.0)];

@@ -2,9 +2,9 @@
 
 use crate::stage::{self, Shot, gpu, picture};
 use framegraph::{Caps, Counts, Extent, Options, Target};
+use framegraph_passes::effects::upscale::sharpen::Sharpen;
+use framegraph_passes::effects::upscale::{DynamicResolution, Enlarge, UpscaleFilter};
 use framegraph_passes::program::Programs;
-use framegraph_passes::sharpen::Sharpen;
-use framegraph_passes::upscale::{DynamicResolution, Enlarge, UpscaleFilter};
 use framegraph_passes::{Settings, Upscale};
 use framegraph_shaders::reference::sharpen::sharpened;
 use framegraph_shaders::reference::upscale::upscaled;

@@ -2,8 +2,8 @@
 
 use crate::stage::{self, gpu, lighting};
 use framegraph::{Caps, Counts, Options, Plan, Scratch, Target, Texture, compile};
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::stages::{Handles, Slot};
-use framegraph_passes::view::{Background, ViewSettings};
 use framegraph_passes::{CameraView, LightSearch, Settings, Shading, TaaSettings, ViewId, World, stages};
 use framegraph_scene::geometry::{plane, sphere};
 use framegraph_scene::motion::{Body, Moves, Shape};

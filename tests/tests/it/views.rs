@@ -5,9 +5,10 @@ use framegraph::{
     DeclareError, Extent, Format, Intent, Options, Pass, PassBuilder, Plan, Scratch, Target, Texture, TextureDesc,
     compile,
 };
-use framegraph_passes::ibl::ImageLight;
-use framegraph_passes::shadow::{ShadowSettings, shadow_maps};
-use framegraph_passes::view::Background;
+use framegraph_passes::effects::shadow::shadow_maps;
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
+use framegraph_passes::gpu_scene::view::Background;
+use framegraph_passes::light::ibl::ImageLight;
 use framegraph_passes::{
     CameraView, Handles, LightSearch, Settings, Slot, StageError, ViewId, ViewSettings, World, stages,
 };

@@ -17,8 +17,8 @@ use framegraph::file::GraphFile;
 use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{Alias, Caps, Desc, Extent, Graph, Options, Placement, Plan, Scratch, compile};
 use framegraph_passes::Settings;
-use framegraph_passes::occlusion::OcclusionSettings;
-use framegraph_passes::shadow::ShadowSettings;
+use framegraph_passes::effects::occlusion::OcclusionSettings;
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
 use framegraph_queues::{Command, PlanStream, QueueId, QueueLayout, Schedule, SharedMemory, schedule, share_memory};
 use replay::Replay;
 

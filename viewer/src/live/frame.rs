@@ -9,11 +9,11 @@ use crate::standard_frame::{StandardFrame, declare};
 use crate::what_if::WhatIf;
 use egui::TextureId;
 use framegraph::{Options, Plan};
-use framegraph_passes::facts::{Around, Survey, decide};
-use framegraph_passes::measure::Measurement;
-use framegraph_passes::shadow::{ShadowSettings, local_layers, local_maps};
-use framegraph_passes::sun::has_sun;
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::effects::exposure::Measurement;
+use framegraph_passes::feature_culling::{EnvironmentSummary, SceneSummary, decide};
+use framegraph_passes::gpu_scene::shadow_views::{ShadowSettings, local_layers, local_maps};
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
+use framegraph_passes::light::sun::has_sun;
 use framegraph_passes::{
     CameraView, Effect, EffectSet, FactInput, FactMemory, Facts, FrameIndex, FrameSettings, Settings, ViewId, World,
 };
@@ -170,7 +170,7 @@ impl Running {
                 // Its edited factors are applied again over the posed ones.
                 self.painted.remove(&material.index());
             }
-            *survey = Arc::new(Survey::new(scene));
+            *survey = Arc::new(SceneSummary::new(scene));
         }
         self.posed = moment;
         posed
@@ -195,7 +195,7 @@ impl Running {
                 scene.materials[number] = material;
             }
         }
-        *survey = Arc::new(Survey::new(scene));
+        *survey = Arc::new(SceneSummary::new(scene));
         (self.painted, self.view_inputs) = (wanted.clone(), None);
         Ok(())
     }
@@ -240,13 +240,13 @@ impl Running {
             &FactInput {
                 scene,
                 survey: &loaded.survey,
-                around: Around::from(image),
+                around: EnvironmentSummary::from(image),
                 background: &loaded.background(capture.background),
                 views: std::slice::from_ref(&seen),
                 settings: &settings,
                 measured: Measurement::Off,
                 forced: shown.collect::<EffectSet>(),
-                most_codes: FactInput::MOST_CODES,
+                max_steps: FactInput::MAX_CODES,
             },
             memory,
         );

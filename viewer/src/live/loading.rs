@@ -2,11 +2,11 @@
 
 use super::capture::{BackgroundSource, Sun};
 use crate::job::Handle;
-use framegraph_passes::facts::Survey;
-use framegraph_passes::ibl::cache::Cache;
-use framegraph_passes::shading::LightSettings;
-use framegraph_passes::upload::{GpuScene, block_formats};
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::feature_culling::SceneSummary;
+use framegraph_passes::gpu_scene::upload::{GpuScene, block_formats};
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
+use framegraph_passes::light::ibl::cache::Cache;
+use framegraph_passes::light::shading::LightSettings;
 use framegraph_passes::{CameraView, LightSearch, Lighting, PreparedScene, World};
 use framegraph_scene::environment::{Sky, SunExtraction};
 use framegraph_scene::{Environment, Light, LightKind, LoadOptions, Progress, Scene};
@@ -64,7 +64,7 @@ pub struct Loaded {
     /// All lights of the scene; those of `scene` depend on the selected sun.
     pub lights: Vec<Light>,
     /// Summary of the materials for feature culling.
-    pub survey: Arc<Survey>,
+    pub survey: Arc<SceneSummary>,
     /// Scene data for views.
     pub prepared: PreparedScene,
     /// Scene and light on the device.
@@ -126,7 +126,7 @@ pub fn load(
     };
     let view = CameraView::prepared(&scene, &prepared, &lighting.image, &background, &first);
     let world = World::of(gpu, uploaded, lighting, [view]).map_err(|e| e.to_string())?;
-    let (lights, survey) = (scene.lights.clone(), Arc::new(Survey::new(&scene)));
+    let (lights, survey) = (scene.lights.clone(), Arc::new(SceneSummary::new(&scene)));
     let name = name.to_owned();
     let light_settings = settings;
     let loaded = Loaded {

@@ -1,9 +1,9 @@
 //! Fields with variants or optional values.
 
 use super::Node;
-use framegraph_passes::bloom::FlareSettings;
-use framegraph_passes::fog::FogGlow;
-use framegraph_passes::occlusion::{Blur, ConeTrace};
+use framegraph_passes::effects::bloom::FlareSettings;
+use framegraph_passes::effects::fog::FogGlow;
+use framegraph_passes::effects::occlusion::{Blur, ConeTrace};
 use framegraph_passes::{Effect, FrameSettings, Settings, Upscale};
 use std::sync::OnceLock;
 

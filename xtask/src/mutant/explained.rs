@@ -225,7 +225,7 @@ pub const EXPLAINED: &[Explained] = &[
         why: "Indices beyond 4 are clamped to 4.",
     },
     Explained {
-        file: "passes/src/upload/textures.rs",
+        file: "passes/src/gpu_scene/upload/textures.rs",
         before: "gpu.wait()?;",
         after: "",
         why: "The wait only frees staging memory earlier; the uploaded data are the same.",

@@ -126,7 +126,12 @@ pub const ROOMS: &[Room] = &[
         name: "passes",
         language: Language::Rust,
         without: &[],
-        paths: &["passes/src/upload", "passes/src/view.rs", "passes/src/sun.rs", "passes/src/draw.rs"],
+        paths: &[
+            "passes/src/upload",
+            "passes/src/gpu_scene/view.rs",
+            "passes/src/light/sun.rs",
+            "passes/src/gpu_scene/draw.rs",
+        ],
         sample: 20,
         judges: &[PASSES, DRAWN],
     },

@@ -5,8 +5,8 @@ use crate::run::{Failure, Frames, Prepared, WARM_UP, device, input, prepare, ren
 use crate::table::aligned;
 use framegraph::{Plan, Scratch, compile};
 use framegraph_passes::FrameSettings;
-use framegraph_passes::budget::{Bound, Choices, GROUPS, Measured, Offers, Settled, Trial, reference, settle};
-use framegraph_passes::facts::{Decision, Facts};
+use framegraph_passes::feature_culling::{Decision, Facts};
+use framegraph_passes::quality::{Bound, Choices, GROUPS, Measured, Offers, Settled, Trial, reference, settle};
 use framegraph_wgpu::read_texture;
 use lexopt::Parser;
 use program::input::{MAX_TEXT_BYTES, text};
@@ -107,7 +107,7 @@ pub fn choose(args: &Args, bound: Bound) -> Result<Args, Failure> {
     let finest = reference(&base);
     let truth = draw_candidate(&args.with(&finest))?;
     let gpu = crate::run::open()?;
-    let has = |option: &framegraph_passes::budget::FrameOption| {
+    let has = |option: &framegraph_passes::quality::FrameOption| {
         let mut frame = finest;
         (option.apply)(&mut frame);
         frame.settings.shading.precision.check(&gpu).is_ok()

@@ -5,10 +5,10 @@ use crate::effects::Effects;
 use crate::grade::Grade;
 use crate::load::Loaded;
 use crate::shadows::Shadows;
-use framegraph_passes::facts::{Around, Survey, decide};
-use framegraph_passes::ibl::ImageLight;
-use framegraph_passes::measure::Measurement;
-use framegraph_passes::view::ViewSettings;
+use framegraph_passes::effects::exposure::Measurement;
+use framegraph_passes::feature_culling::{EnvironmentSummary, SceneSummary, decide};
+use framegraph_passes::gpu_scene::view::ViewSettings;
+use framegraph_passes::light::ibl::ImageLight;
 use framegraph_passes::{Effect, EffectSet, FactInput, FactMemory, Facts, FrameSettings, Preset, Settings};
 use framegraph_scene::Scene;
 use lexopt::Parser;
@@ -208,7 +208,7 @@ impl Args {
 /// Inputs of feature culling that persist between frames.
 #[derive(Debug)]
 pub struct FeatureCulling {
-    survey: Survey,
+    survey: SceneSummary,
     memory: FactMemory,
     forced: EffectSet,
     off: bool,
@@ -222,12 +222,12 @@ impl FeatureCulling {
             forced = forced.with(Effect::SunShadows).with(Effect::Cascades);
         }
         let memory = FactMemory::default();
-        Self { survey: Survey::new(&loaded.scene), memory, forced, off: asked.forced }
+        Self { survey: SceneSummary::new(&loaded.scene), memory, forced, off: asked.forced }
     }
 
     /// Summarizes the materials of the scene again after an animation changed them.
     pub fn resurvey(&mut self, scene: &Scene) {
-        self.survey = Survey::new(scene);
+        self.survey = SceneSummary::new(scene);
     }
 
     /// Returns the decisions on all effects of a view; none if effects are forced.
@@ -245,13 +245,13 @@ impl FeatureCulling {
         let input = FactInput {
             scene: &loaded.scene,
             survey: &self.survey,
-            around: Around::from(light),
+            around: EnvironmentSummary::from(light),
             background: &loaded.background,
             views: std::slice::from_ref(seen),
             settings,
             measured,
             forced: self.forced,
-            most_codes: FactInput::MOST_CODES,
+            max_steps: FactInput::MAX_CODES,
         };
         decide(&input, &mut self.memory)
     }

@@ -2,8 +2,8 @@
 //! levels of detail, transparency and visible layers.
 
 use crate::parse::number;
-use framegraph_passes::transmission::MOST_GLASS_LAYERS;
-use framegraph_passes::upscale::{DynamicResolution, UpscaleFilter};
+use framegraph_passes::effects::transmission::MAX_GLASS_LAYERS;
+use framegraph_passes::effects::upscale::{DynamicResolution, UpscaleFilter};
 use framegraph_passes::{
     BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, Settings, TaaSettings,
     Transparency, Upscale,
@@ -189,8 +189,8 @@ impl Effects {
             "dynamic-resolution" => self.dynamic = Some(dynamic(&value()?)?),
             "glass-layers" => {
                 let text = value()?;
-                let wrong = || format!("--glass-layers {text}: expected a number from 1 to {MOST_GLASS_LAYERS}");
-                let layers = text.parse().ok().filter(|layers| (1..=MOST_GLASS_LAYERS).contains(layers));
+                let wrong = || format!("--glass-layers {text}: expected a number from 1 to {MAX_GLASS_LAYERS}");
+                let layers = text.parse().ok().filter(|layers| (1..=MAX_GLASS_LAYERS).contains(layers));
                 self.glass_layers = layers.ok_or_else(wrong)?;
             }
             "layers" => {

@@ -4,8 +4,9 @@ use crate::args::Args;
 use crate::dirt::Dirt;
 use crate::run::{Failure, Frames, Prepared, device, input, render};
 use framegraph::{Extent, Format, Plan, Scratch, Target, TextureDesc};
-use framegraph_passes::measure::MeasuredTextures;
-use framegraph_passes::shadow::{KeptShadows, Redraw, ViewShadows, maps_slot};
+use framegraph_passes::effects::exposure::MeasuredTextures;
+use framegraph_passes::effects::shadow::{KeptShadows, Redraw, maps_slot};
+use framegraph_passes::gpu_scene::shadow_views::ViewShadows;
 use framegraph_passes::{Facts, FrameIo, Settings, Slot, ViewId, World, stages};
 use framegraph_wgpu::{Frame, Gpu, Imports};
 

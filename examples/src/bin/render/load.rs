@@ -3,10 +3,10 @@
 use crate::args::Args;
 use crate::light::{BackgroundSource, EnvironmentSource, Sun};
 use crate::run::{Failure, device, input};
-use framegraph_passes::ibl::cache::Cache;
-use framegraph_passes::lighting::LightingError;
-use framegraph_passes::upload::GpuScene;
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::gpu_scene::lighting::LightingError;
+use framegraph_passes::gpu_scene::upload::GpuScene;
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
+use framegraph_passes::light::ibl::cache::Cache;
 use framegraph_passes::{CameraView, Lighting, World};
 use framegraph_scene::environment::{Sky, SunExtraction};
 use framegraph_scene::{ColorTable, Environment, Light, LightKind, LoadOptions, Progress, Scene, SceneError};

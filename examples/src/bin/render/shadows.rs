@@ -1,10 +1,10 @@
 //! Shadow options.
 
 use crate::parse::pairs;
-use framegraph_passes::shadow::{
-    ContactShadows, Fit, MOST_MAPS, ShadowFilter, ShadowSettings, Splits, local_layers, local_maps,
+use framegraph_passes::gpu_scene::shadow_views::{
+    ContactShadows, Fit, MAX_MAPS, ShadowFilter, ShadowSettings, Splits, local_layers, local_maps,
 };
-use framegraph_passes::sun::has_sun;
+use framegraph_passes::light::sun::has_sun;
 use framegraph_scene::{Light, Scene};
 use glam::DVec3;
 use lexopt::Parser;
@@ -139,8 +139,8 @@ impl Shadows {
                     _ => return Err(format!("{option}={value}: expected `on` or `off`")),
                 }
             }
-            "layers" => settings.local_layers = number(1.0, f64::from(MOST_MAPS))? as u8,
-            "punctual" | "local" => settings.local_maps = number(0.0, f64::from(MOST_MAPS - 4))? as u8,
+            "layers" => settings.local_layers = number(1.0, f64::from(MAX_MAPS))? as u8,
+            "punctual" | "local" => settings.local_maps = number(0.0, f64::from(MAX_MAPS - 4))? as u8,
             _ => return Err(format!("--shadow {key}: unknown key; see `render --help`")),
         }
         Ok(())

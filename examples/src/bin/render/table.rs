@@ -1,7 +1,7 @@
 //! Main table of a run: each step with its passes, memory traffic and times.
 
 use framegraph::{Alias, Join, Plan, StepId};
-use framegraph_passes::facts::{Cost, Decision, Facts, Saved};
+use framegraph_passes::feature_culling::{Cost, Decision, Facts, Saved};
 use framegraph_wgpu::{Executor, Summary, Times, Timing};
 
 /// Formats one line per step, then the totals. Times are medians in milliseconds.

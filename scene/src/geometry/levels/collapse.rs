@@ -5,7 +5,7 @@
 //! Framework for Mesh Decimation", Graphics Interface 1998). Vertices at one place are one point of the surface; where they differ in
 //! what else they have there is a seam, which stays a seam, as a border stays a border.
 
-use super::fan::{Corner, Fan, MOST_CORNERS, Spoke};
+use super::fan::{Corner, Fan, MAX_CORNERS, Spoke};
 use super::quadric::{Quadric, Shift};
 use super::stream::Stream;
 use crate::bounds::Aabb;
@@ -21,7 +21,7 @@ const BORDER_WEIGHT: f64 = 1.0;
 /// Weight of how far a point goes, in times the square of its square: where the surface is flat what is near comes first.
 const MOVED_WEIGHT: f64 = 1e-6;
 /// Cosine of how far a triangle may turn.
-const MOST_TURN: f64 = 0.5;
+const MAX_TURN: f64 = 0.5;
 /// Height of a triangle over its longest side, in times that side, below which it is a splinter, unless it was one.
 const LEAST_WIDTH: f64 = 0.05;
 
@@ -238,7 +238,7 @@ impl Collapse {
             let [apex, next, last] = corner.map(at);
             let (_, width) = shape([apex, next, last]);
             let ((normal, then), facing) = (shape([at(rim), next, last]), self.facing[*number as usize]);
-            let turned = facing != DVec3::ZERO && normal.dot(facing) < MOST_TURN * normal.length();
+            let turned = facing != DVec3::ZERO && normal.dot(facing) < MAX_TURN * normal.length();
             turned || then < LEAST_WIDTH.min(0.5 * width) || normal == DVec3::ZERO
         })
     }
@@ -269,7 +269,7 @@ impl Collapse {
             [0, 1, 2].map(|step| vertices[(at + step) % 3])
         };
         let about = &self.about[hub as usize];
-        let about = if about.len() > MOST_CORNERS { &[][..] } else { about };
+        let about = if about.len() > MAX_CORNERS { &[][..] } else { about };
         let about = about.iter().filter_map(|number| self.triangles[*number as usize]);
         fan.fill(about.map(corner), &self.point);
     }

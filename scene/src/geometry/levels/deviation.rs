@@ -1,14 +1,14 @@
 //! How far a level of a mesh is from the mesh.
 
 use super::super::order::Fans;
-use super::fan::MOST_CORNERS;
+use super::fan::MAX_CORNERS;
 use super::stream::Stream;
 use super::tree::Tree;
 use crate::mesh::Mesh;
 use glam::{DVec3, Vec3, Vec4};
 
 /// Middles of edges that are looked at, at most: of more, every so many.
-const MOST_EDGES: usize = 1 << 19;
+const MAX_EDGES: usize = 1 << 19;
 
 /// The largest distance between a mesh and triangles over its vertices, in meters, of what is looked at: vertices that are gone and
 /// middles of edges of the mesh, each by the triangle that is nearest to it. None if it is `most` or more.
@@ -32,7 +32,7 @@ pub(super) fn deviation(mesh: &Mesh, indices: &[u32], streams: &[Stream<'_>], mo
     }
     edges.sort_unstable();
     edges.dedup();
-    let step = edges.len().div_ceil(MOST_EDGES).max(1);
+    let step = edges.len().div_ceil(MAX_EDGES).max(1);
     let (mut worst, mut open) = (0.0, Vec::new());
     for ends in gone.chain(edges.into_iter().step_by(step)) {
         worst = level.off(ends, [worst, most], &mut open).max(worst);
@@ -95,7 +95,7 @@ impl Level<'_> {
         // About the ends, or some of what is about them: on an edge that changes as much, or as far as edges there change on the whole.
         for end in ends {
             let (from, [mut changed, mut gone]) = (place.distance(self.mesh.positions[end as usize]), [0.0; 2]);
-            let about = self.fans.of(end).iter().take(MOST_CORNERS);
+            let about = self.fans.of(end).iter().take(MAX_CORNERS);
             let about = about.flat_map(|triangle| &self.mesh.indices[3 * *triangle as usize..][..3]);
             for other in about.filter(|other| **other != end) {
                 let (change, length) = (stream.of(end).distance(stream.of(*other)), length(end, *other));

@@ -1,7 +1,7 @@
 //! The triangles about a point of a surface, and the edges from it.
 
 /// A point with more triangles about it, the tip of a cone, stays where it is, and nothing goes to it: its fan is left empty.
-pub(super) const MOST_CORNERS: usize = 64;
+pub(super) const MAX_CORNERS: usize = 64;
 
 /// A triangle about a point: the vertex at the point, then the others in the order of the triangle.
 pub(super) type Corner = [u32; 3];

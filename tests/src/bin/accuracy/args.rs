@@ -1,6 +1,6 @@
 //! Command line of `accuracy`.
 
-use framegraph_passes::budget::Bound;
+use framegraph_passes::quality::Bound;
 use framegraph_scene::builtin;
 use lexopt::prelude::*;
 use std::path::PathBuf;

@@ -1,7 +1,7 @@
 //! Budgets: chooses settings from a record, and verifies the choice.
 
 use framegraph_passes::Facts;
-use framegraph_passes::budget::{Bound, Measured};
+use framegraph_passes::quality::{Bound, Measured};
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use program::progress::Shown;
 use tests::lab::budget::{Bench, verify};

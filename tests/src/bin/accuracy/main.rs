@@ -5,7 +5,7 @@ mod args;
 mod budget;
 
 use args::{Args, Wanted};
-use framegraph_passes::preset;
+use framegraph_passes::quality::preset;
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use program::interrupt;
 use program::outputs::Outputs;

@@ -1,7 +1,7 @@
 //! Tables of the program. Each function prints one and returns whether its negative control was detected.
 
-use framegraph_passes::ibl::cache::Cache;
-use framegraph_passes::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight};
+use framegraph_passes::light::ibl::cache::Cache;
+use framegraph_passes::light::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight};
 use framegraph_passes::{Quality, Shading};
 use framegraph_scene::environment::{Sh, ShBands, ShWindow, Sky};
 use framegraph_scene::{Environment, progress};

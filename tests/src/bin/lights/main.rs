@@ -3,7 +3,7 @@
 //! `cargo run --release -p tests --bin lights` prints the tables of `docs/design/lights.md`. Each time is the minimum of
 //! several frames, and valid for this device only.
 
-use framegraph_passes::punctual::{Found, FroxelSettings, LightSearch};
+use framegraph_passes::gpu_scene::punctual::{Found, FroxelSettings, LightSearch};
 use framegraph_passes::{CameraView, Settings};
 use framegraph_scene::{LightKind, Scene, progress};
 use framegraph_wgpu::{AdapterRequest, Gpu};

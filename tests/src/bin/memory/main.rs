@@ -3,9 +3,9 @@
 //! `cargo run --release -p tests --bin memory` prints the table of `docs/measurements/performance.md`: one frame per size.
 
 use framegraph::{Alias, Options};
-use framegraph_passes::bloom::BloomSettings;
-use framegraph_passes::dof::DofSettings;
-use framegraph_passes::fog::FogSettings;
+use framegraph_passes::effects::bloom::BloomSettings;
+use framegraph_passes::effects::dof::DofSettings;
+use framegraph_passes::effects::fog::FogSettings;
 use framegraph_passes::{Preset, Settings};
 use framegraph_wgpu::{AdapterRequest, Allocated, ExecutorOptions, FrameLoop, Gpu};
 use std::error::Error;

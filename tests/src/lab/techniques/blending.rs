@@ -3,7 +3,7 @@
 use super::{Technique, base, nowhere, pictures};
 use crate::lab::studio::Truth;
 use framegraph_passes::Transparency;
-use framegraph_passes::transparency::{MomentPrecision, MomentTransparency};
+use framegraph_passes::effects::transparency::{MomentPrecision, MomentTransparency};
 use framegraph_wgpu::Gpu;
 
 /// Layers that no ray through `panes` has more of.

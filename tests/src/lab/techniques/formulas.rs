@@ -2,7 +2,7 @@
 
 use super::{Choice, Technique, formula, number};
 use crate::lab::technique::Measured;
-use framegraph_passes::shading::TransmissionBlur;
+use framegraph_passes::light::shading::TransmissionBlur;
 use framegraph_shaders::reference::clear_coat::{f0_under_clear_coat, f0_under_clear_coat_fast, v_kelemen};
 use framegraph_shaders::reference::depth_normal::continues_ahead;
 use framegraph_shaders::reference::fresnel::f_schlick_scalar;

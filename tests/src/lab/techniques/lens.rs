@@ -3,12 +3,12 @@
 use super::{Choice, Technique, base, formula, nowhere, number, pictures};
 use crate::lab::studio::{Setup, Truth};
 use crate::lab::technique::Measured;
-use framegraph_passes::bloom::Threshold;
-use framegraph_passes::dof::DofSettings;
-use framegraph_passes::punctual::FroxelSettings;
-use framegraph_passes::structure::Resolution;
-use framegraph_passes::taa::JitterPattern;
-use framegraph_passes::upscale::UpscaleFilter;
+use framegraph_passes::effects::bloom::Threshold;
+use framegraph_passes::effects::depth::structure::Resolution;
+use framegraph_passes::effects::dof::DofSettings;
+use framegraph_passes::effects::taa::JitterPattern;
+use framegraph_passes::effects::upscale::UpscaleFilter;
+use framegraph_passes::gpu_scene::punctual::FroxelSettings;
 use framegraph_passes::{BloomSettings, FogSettings, LightSearch, TaaSettings, Upscale};
 use framegraph_shaders::reference::fog::{fog_opacity, fog_optical_depth};
 use framegraph_wgpu::Gpu;
@@ -72,7 +72,7 @@ fn bloom_levels() -> Technique {
         setup.settings.bloom = Some(bloom);
     }
     let mut truth = base("spheres");
-    glowing(&mut truth, BloomSettings::MOST_LEVELS);
+    glowing(&mut truth, BloomSettings::MAX_LEVELS);
     pictures(
         "bloom-levels",
         "Levels of bloom's pyramid, at a strength of 0.3 without a threshold.",

@@ -2,9 +2,9 @@
 
 use super::{Case, Drawn, Easel};
 use framegraph::{Extent, Format, Options, Plan, Target, TextureDesc, recompile};
-use framegraph_passes::facts::{Around, EffectSet, FactInput, FactMemory, Facts, decide};
-use framegraph_passes::measure::{Measurement, Measuring};
-use framegraph_passes::view::ViewSettings;
+use framegraph_passes::effects::exposure::{Measurement, Measuring};
+use framegraph_passes::feature_culling::{EffectSet, EnvironmentSummary, FactInput, FactMemory, Facts, decide};
+use framegraph_passes::gpu_scene::view::ViewSettings;
 use framegraph_passes::{CameraView, FrameIo, Settings, ViewId, World, standard};
 use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use std::error::Error;
@@ -48,13 +48,13 @@ impl InARow {
         let input = FactInput {
             scene: &case.scene,
             survey,
-            around: Around::from(&world.lighting.image),
+            around: EnvironmentSummary::from(&world.lighting.image),
             background: &case.background,
             views: std::slice::from_ref(seen),
             settings: asked,
             measured,
             forced: EffectSet::NONE,
-            most_codes: FactInput::MOST_CODES,
+            max_steps: FactInput::MAX_CODES,
         };
         let facts = decide(&input, memory);
         let settings = facts.apply(asked);

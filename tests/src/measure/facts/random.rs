@@ -1,9 +1,9 @@
 //! Random scenes with random settings: planes, boxes and spheres with all kinds of materials, lights, fog and lens.
 
 use super::{Case, every_effect, matt, scene, sun};
-use framegraph_passes::fog::FogSettings;
-use framegraph_passes::shadow::{ContactShadows, Fit, ShadowFilter, ShadowSettings};
-use framegraph_passes::view::Background;
+use framegraph_passes::effects::fog::FogSettings;
+use framegraph_passes::gpu_scene::shadow_views::{ContactShadows, Fit, ShadowFilter, ShadowSettings};
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{BloomSettings, DofSettings, Settings};
 use framegraph_scene::geometry::{cuboid, plane, sphere};
 use framegraph_scene::material::AlphaMode;

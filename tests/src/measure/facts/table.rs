@@ -2,10 +2,10 @@
 
 use super::{Case, Drawn, Easel, SIZE_PX, cases};
 use framegraph::{Caps, Options, Scratch};
-use framegraph_passes::facts::{Cost, EffectSet, FactMemory, costs};
-use framegraph_passes::shadow::{local_layers, local_maps};
-use framegraph_passes::sun::has_sun;
-use framegraph_passes::view::Background;
+use framegraph_passes::feature_culling::{Cost, EffectSet, FactMemory, costs};
+use framegraph_passes::gpu_scene::shadow_views::{local_layers, local_maps};
+use framegraph_passes::gpu_scene::view::Background;
+use framegraph_passes::light::sun::has_sun;
 use framegraph_passes::{PostSettings, Preset, Settings, World};
 use framegraph_wgpu::Gpu;
 use std::error::Error;

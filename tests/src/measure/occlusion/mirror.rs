@@ -1,8 +1,8 @@
 //! The ambient occlusion pass in f64, texel by texel, as a reference for `shaders/wgsl/pass/occlusion.wgsl`.
 
 use super::Stage;
-use framegraph_passes::occlusion::{ConeTrace, Gtao, Method, Occluders, OcclusionSettings};
-use framegraph_passes::structure::{Resolution, structure_levels};
+use framegraph_passes::effects::depth::structure::{Resolution, structure_levels};
+use framegraph_passes::effects::occlusion::{ConeTrace, Gtao, Method, Occluders, OcclusionSettings};
 use framegraph_shaders::reference::cone_trace::cone_slice;
 use framegraph_shaders::reference::depth_normal::continues_ahead;
 use framegraph_shaders::reference::depth_pyramid::{finer_texel, finest_texel, pyramid_level};

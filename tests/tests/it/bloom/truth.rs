@@ -1,7 +1,7 @@
 //! Bloom and flare on the CPU in f64, from the published formulas, without the shader's optimizations.
 
 use super::stage::Image;
-use framegraph_passes::bloom::{BloomChain, BloomSettings, FlareSettings, Threshold};
+use framegraph_passes::effects::bloom::{BloomChain, BloomSettings, FlareSettings, Threshold};
 use glam::{DVec2, DVec3};
 
 fn picture(size: [u32; 2], color: impl Fn(f64, f64) -> DVec3) -> Image {

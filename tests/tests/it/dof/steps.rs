@@ -3,13 +3,13 @@
 
 use crate::bloom::stage::Image;
 use framegraph_passes::DofSettings;
-use framegraph_passes::structure::Resolution;
+use framegraph_passes::effects::depth::structure::Resolution;
 use glam::{DVec2, DVec3, DVec4, Vec4Swizzles};
 use half::f16;
 use std::f64::consts::TAU;
 
 const TILE_PX: usize = 16;
-const MOST_PX: f64 = 32.0;
+const MAX_PX: f64 = 32.0;
 const LEVELS: usize = 4;
 
 /// Texels rounded to half floats, rows from the top.
@@ -88,9 +88,9 @@ impl Shot<'_> {
         Texels::new(size, |x, y| {
             let places = (0..texel_px * texel_px)
                 .map(|i| (x as i64 * texel_px + i % texel_px, y as i64 * texel_px + i / texel_px));
-            let (mut color, mut whole, mut nearest) = (DVec3::ZERO, 0.0, MOST_PX);
+            let (mut color, mut whole, mut nearest) = (DVec3::ZERO, 0.0, MAX_PX);
             for (x, y) in places {
-                let radius = (self.radius_px * (1.0 - (self.per_focus)(x, y))).clamp(-MOST_PX, MOST_PX);
+                let radius = (self.radius_px * (1.0 - (self.per_focus)(x, y))).clamp(-MAX_PX, MAX_PX);
                 nearest = f64::min(nearest, if radius.abs() < 1.0 { 0.0 } else { radius });
                 let weight = 1.0 / (1.0 + self.image.at(x, y).max_element());
                 color += self.image.at(x, y) * weight;
@@ -105,7 +105,7 @@ fn halved(field: &Texels) -> Texels {
     Texels::new(field.size.map(|side| (side / 2).max(1)), |x, y| {
         let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| field.at(2 * x as i64 + i, 2 * y as i64 + j));
         let color = four.iter().map(|t| t.xyz()).sum::<DVec3>() / 4.0;
-        color.extend(four.iter().map(|t| t.w).fold(MOST_PX, f64::min))
+        color.extend(four.iter().map(|t| t.w).fold(MAX_PX, f64::min))
     })
 }
 

@@ -3,10 +3,10 @@
 use super::TestResult;
 use crate::stage::{gpu, plan};
 use framegraph::{Caps, Desc, Options};
-use framegraph_passes::bloom::{Blend, Threshold};
-use framegraph_passes::facts::{Decision, Effect, Proof};
-use framegraph_passes::measure::{Measure, Measurement};
-use framegraph_passes::view::ViewSettings;
+use framegraph_passes::effects::bloom::{Blend, Threshold};
+use framegraph_passes::effects::exposure::{Measure, Measurement};
+use framegraph_passes::feature_culling::{Decision, Effect, Proof};
+use framegraph_passes::gpu_scene::view::ViewSettings;
 use framegraph_passes::{BloomSettings, DofSettings, Settings};
 use framegraph_scene::Projection;
 use framegraph_wgpu::Gpu;

@@ -2,7 +2,7 @@
 
 use super::TestResult;
 use crate::stage::gpu;
-use framegraph_passes::facts::{Effect, EffectSet, FactMemory};
+use framegraph_passes::feature_culling::{Effect, EffectSet, FactMemory};
 use framegraph_scene::{Light, LightKind};
 use glam::{DMat4, DVec3};
 use tests::measure::facts::{Case, Drawn, Easel, MASKED, cases, compare_mask, some_masks};

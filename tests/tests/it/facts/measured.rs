@@ -3,7 +3,7 @@
 use super::TestResult;
 use crate::stage::gpu;
 use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Texture, TextureDesc, compile};
-use framegraph_passes::measure::{MeasurePass, MeasureStep};
+use framegraph_passes::effects::exposure::{MeasurePass, MeasureStep};
 use framegraph_passes::program::Programs;
 use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use half::f16;

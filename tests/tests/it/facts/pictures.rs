@@ -3,7 +3,7 @@
 
 use super::TestResult;
 use crate::stage::gpu;
-use framegraph_passes::facts::{Decision, Effect, EffectSet, FactMemory, Proof};
+use framegraph_passes::feature_culling::{Decision, Effect, EffectSet, FactMemory, Proof};
 use framegraph_passes::{BloomSettings, DofSettings, FogSettings, Settings};
 use tests::measure::facts::{Drawn, Easel, SIZE_PX, cases};
 

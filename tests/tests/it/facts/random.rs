@@ -2,7 +2,7 @@
 
 use super::TestResult;
 use crate::stage::gpu;
-use framegraph_passes::facts::{Decision, Effect, EffectSet, FactMemory, Proof};
+use framegraph_passes::feature_culling::{Decision, Effect, EffectSet, FactMemory, Proof};
 use tests::measure::facts::random::random_case;
 use tests::measure::facts::{Drawn, Easel, compare};
 

@@ -1,11 +1,11 @@
 //! Scenes on both sides of every threshold, and cameras that cross one slowly.
 
-use framegraph_passes::facts::{
-    Around, Decision, Effect, EffectSet, FactInput, FactMemory, Facts, Proof, Survey, decide,
+use framegraph_passes::effects::exposure::{Measure, Measured, Measurement};
+use framegraph_passes::feature_culling::{
+    Decision, Effect, EffectSet, EnvironmentSummary, FactInput, FactMemory, Facts, Proof, SceneSummary, decide,
 };
-use framegraph_passes::measure::{Measure, Measured, Measurement};
-use framegraph_passes::shadow::ShadowSettings;
-use framegraph_passes::view::{Background, ViewSettings};
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
+use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::{BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, Settings};
 use framegraph_scene::environment::ShBands;
 use framegraph_scene::geometry::{cuboid, sphere};
@@ -45,18 +45,22 @@ impl Stage {
         memory: &mut FactMemory,
     ) -> Facts {
         let Self { case, sh, sun, luminance_nits } = self;
-        let around =
-            Around { irradiance: sh, bands: ShBands::Three, luminance_nits: *luminance_nits, sun: sun.as_ref() };
+        let around = EnvironmentSummary {
+            irradiance: sh,
+            bands: ShBands::Three,
+            luminance_nits: *luminance_nits,
+            sun: sun.as_ref(),
+        };
         let input = FactInput {
             scene: &case.scene,
-            survey: &Survey::new(&case.scene),
+            survey: &SceneSummary::new(&case.scene),
             around,
             background: &case.background,
             views,
             settings: &case.asked,
             forced,
             measured,
-            most_codes: FactInput::MOST_CODES,
+            max_steps: FactInput::MAX_CODES,
         };
         decide(&input, memory)
     }
@@ -371,14 +375,14 @@ fn forced_effects_stay() {
     let view = [floor.case.view(&floor.case.asked, SIZE_PX)];
     let input = FactInput {
         scene: &floor.case.scene,
-        survey: &Survey::new(&floor.case.scene),
-        around: Around { irradiance: &floor.sh, bands: ShBands::Three, luminance_nits: 1.0, sun: None },
+        survey: &SceneSummary::new(&floor.case.scene),
+        around: EnvironmentSummary { irradiance: &floor.sh, bands: ShBands::Three, luminance_nits: 1.0, sun: None },
         background: &floor.case.background,
         views: &view,
         settings: &floor.case.asked,
         forced: EffectSet::ALL,
         measured: Measurement::Off,
-        most_codes: 1.0,
+        max_steps: 1.0,
     };
     let facts = decide(&input, &mut FactMemory::default());
     assert_eq!((facts.dropped(), facts.apply(&floor.case.asked)), (EffectSet::NONE, floor.case.asked));

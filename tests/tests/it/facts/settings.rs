@@ -4,7 +4,7 @@ use super::TestResult;
 use crate::stage::declared;
 use framegraph::file::{GraphFile, to_ron};
 use framegraph::{Caps, Options, Plan, Scratch, compile, dump};
-use framegraph_passes::budget::GROUPS;
+use framegraph_passes::quality::GROUPS;
 use framegraph_passes::{FrameSettings, Preset, Settings};
 
 const DOCUMENT: &str = include_str!("../../../../docs/reference/settings.md");

@@ -3,13 +3,13 @@
 use super::{TestResult, differing, rounding_of};
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{DeclareError, Extent, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
-use framegraph_passes::color::Color;
-use framegraph_passes::effect;
-use framegraph_passes::full_screen::FullScreen;
-use framegraph_passes::post::Post;
-use framegraph_passes::prepass::Prepass;
+use framegraph_passes::effects::color::Color;
+use framegraph_passes::effects::depth::prepass::Prepass;
+use framegraph_passes::effects::post::Post;
+use framegraph_passes::effects::post::pixel_effects;
+use framegraph_passes::gpu_scene::view::Background;
+use framegraph_passes::program::full_screen::FullScreen;
 use framegraph_passes::program::{Interface, ProgramDesc, Programs};
-use framegraph_passes::view::Background;
 use framegraph_passes::{Settings, World};
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::Effect;
@@ -77,7 +77,7 @@ impl<W: AsRef<Programs>> Record<W> for Sepia {
         let mut all = Epilogue::default();
         if let Some(stored) = self.stored {
             let zero = f64::from(u8::from(stored.rgba16float == Rounding::TowardZero));
-            all.effects.push(effect::STORE_RGBA16FLOAT);
+            all.effects.push(pixel_effects::STORE_RGBA16FLOAT);
             all.constants.push((SettingName::new("RGBA16FLOAT_TOWARD_ZERO"), zero));
         }
         match self.says {

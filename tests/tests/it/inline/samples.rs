@@ -4,10 +4,10 @@
 use super::{TestResult, apart, graded, rounding_of};
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{DeclareError, Extent, Format, Intent, Target, Texture, TextureDesc, View};
-use framegraph_passes::color::Color;
-use framegraph_passes::post::Post;
-use framegraph_passes::prepass::Prepass;
-use framegraph_passes::view::Background;
+use framegraph_passes::effects::color::Color;
+use framegraph_passes::effects::depth::prepass::Prepass;
+use framegraph_passes::effects::post::Post;
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{PostSettings, Settings, World};
 use framegraph_shaders::layout::{EncodingUniforms, ExposureUniforms, GradingUniforms, VignetteUniforms};
 use framegraph_shaders::reference::grade::Grade;
@@ -110,7 +110,7 @@ fn judge(post: PostSettings, target: Format) -> Result<(Frame<World>, Texture), 
 
 /// The average of four values may round up or down: one step. An sRGB target may have an encoding error of 0.6 steps
 /// (Vulkan's tolerance): one step per stored sample, and one for the stored average.
-const fn most_codes(target: Format) -> u8 {
+const fn max_steps(target: Format) -> u8 {
     if target.is_srgb() { 2 } else { 1 }
 }
 
@@ -139,12 +139,12 @@ fn with_four_samples_each_is_graded_before_the_average() -> TestResult {
         let (inlined, count) = against(&shot.options)?;
         println!("{scene}: each sample graded: {inlined:?}");
         assert_eq!(count, 1);
-        assert!(inlined.largest_codes <= most_codes(target), "{scene}: {inlined:?}");
+        assert!(inlined.largest_codes <= max_steps(target), "{scene}: {inlined:?}");
         // Negative control: grading after the average changes edges between surfaces of different brightness.
         let (two, count) = against(&apart(&shot).options)?;
         println!("{scene}: graded after the average: {two:?}");
         assert_eq!(count, 0);
-        assert!(two.largest_codes > 4 * most_codes(target), "{scene}: {two:?}");
+        assert!(two.largest_codes > 4 * max_steps(target), "{scene}: {two:?}");
     }
     Ok(())
 }

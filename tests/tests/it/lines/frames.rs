@@ -3,10 +3,10 @@
 use super::{SIZE, TestResult, mesh, plain, put, radiance, scene, unlit};
 use crate::stage::{Shot, gpu, lighting, view_of};
 use framegraph::{Options, Plan, Scratch, Target, compile};
-use framegraph_passes::facts::{EffectSet, FactMemory};
-use framegraph_passes::indirect::LEAST_BATCHES;
+use framegraph_passes::feature_culling::{EffectSet, FactMemory};
+use framegraph_passes::gpu_scene::indirect::LEAST_BATCHES;
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::stages::{Handles, Slot};
-use framegraph_passes::view::Background;
 use framegraph_passes::{OcclusionSettings, Preset, ReflectionSettings, Settings, TaaSettings, World, stages};
 use framegraph_scene::geometry::cuboid;
 use framegraph_scene::{AlphaMode, Environment, Light, Material, Mesh, Scene, Topology, progress};

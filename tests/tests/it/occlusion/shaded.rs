@@ -3,9 +3,9 @@
 use super::TestResult;
 use crate::stage::{Set, Shot, gpu};
 use framegraph::{ClearValue, Extent, Format, Intent, Target, Texture, TextureDesc};
+use framegraph_passes::effects::depth::structure::{Resolution, structure};
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::stages::{Handles, Slot, Stage};
-use framegraph_passes::structure::{Resolution, structure};
-use framegraph_passes::view::Background;
 use framegraph_passes::{Settings, StageError, World, stages};
 use framegraph_scene::{Scene, progress};
 use framegraph_wgpu::{Frame, Raster, Shader};

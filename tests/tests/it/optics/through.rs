@@ -2,7 +2,7 @@
 
 use super::{TestResult, gradient, near};
 use crate::stage::gpu;
-use framegraph_passes::shadow::ShadowSettings;
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
 use framegraph_passes::{Precision, Shading};
 use framegraph_scene::geometry::plane;
 use framegraph_scene::material::{DiffuseTransmission, Specular, Transmission, Volume};

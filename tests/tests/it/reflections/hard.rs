@@ -2,8 +2,8 @@
 
 use super::TestResult;
 use crate::stage::gpu;
-use framegraph_passes::reflection::ReflectionSettings;
-use framegraph_passes::structure::Resolution;
+use framegraph_passes::effects::depth::structure::Resolution;
+use framegraph_passes::effects::reflection::ReflectionSettings;
 use framegraph_scene::Projection;
 use glam::{DVec3, Vec3};
 use tests::measure::reflection::{BROKEN, Stage};

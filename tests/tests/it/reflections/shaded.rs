@@ -4,7 +4,7 @@ use super::TestResult;
 use crate::stage::{Shot, declared, gpu, lighting, view_of};
 use crate::transmission::below;
 use framegraph::{Plan, Scratch, compile};
-use framegraph_passes::view::Background;
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{Precision, ReflectionSettings, Settings, ViewId, World};
 use framegraph_scene::geometry::plane;
 use framegraph_scene::{Camera, Environment, Material, Projection, Scene, Transmission, progress};

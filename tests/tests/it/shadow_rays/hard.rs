@@ -3,7 +3,7 @@
 
 use super::{JUDGED, Set, TestResult, camera, field, scene_of};
 use crate::stage::{gpu, precisions};
-use framegraph_passes::shadow::{Fit, ShadowFilter, ShadowSettings};
+use framegraph_passes::gpu_scene::shadow_views::{Fit, ShadowFilter, ShadowSettings};
 use framegraph_wgpu::Gpu;
 use glam::DVec3;
 

@@ -2,7 +2,7 @@
 
 use super::{Lamp, Set, TestResult, camera, scene_of};
 use crate::stage::gpu;
-use framegraph_passes::shadow::{ShadowFilter, ShadowSettings};
+use framegraph_passes::gpu_scene::shadow_views::{ShadowFilter, ShadowSettings};
 use framegraph_scene::{Light, LightKind};
 use framegraph_wgpu::Gpu;
 use glam::{DVec3, Vec3};

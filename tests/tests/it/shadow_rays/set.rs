@@ -2,9 +2,9 @@
 
 use crate::stage::lighting;
 use framegraph::{Options, Plan, Scratch, Target, compile};
-use framegraph_passes::occlusion::OcclusionSettings;
-use framegraph_passes::shadow::ShadowSettings;
-use framegraph_passes::view::Background;
+use framegraph_passes::effects::occlusion::OcclusionSettings;
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{
     CameraView, LightSearch, Precision, Quality, Settings, Shading, ViewSettings, World, standard,
 };

@@ -2,7 +2,7 @@
 
 use super::{SIZE, Set, TestResult, field};
 use crate::stage::gpu;
-use framegraph_passes::shadow::{Fit, ShadowSettings};
+use framegraph_passes::gpu_scene::shadow_views::{Fit, ShadowSettings};
 use framegraph_scene::Camera;
 use framegraph_wgpu::Gpu;
 use glam::{DQuat, DVec2, DVec3, Vec2};

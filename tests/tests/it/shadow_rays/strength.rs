@@ -3,7 +3,7 @@
 use super::set::{Lamp, Set};
 use super::{camera, scene_of};
 use crate::stage::gpu;
-use framegraph_passes::shadow::ShadowSettings;
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
 use framegraph_scene::material::AlphaMode;
 use framegraph_scene::{Light, LightKind, Material};
 use glam::{DVec3, Vec3};

@@ -3,9 +3,11 @@
 
 use super::{TestResult, middle, pane, stage};
 use crate::stage::{Shot, gpu};
-use framegraph_passes::facts::{Around, Decision, Effect, EffectSet, FactInput, FactMemory, Facts, Survey, decide};
-use framegraph_passes::measure::Measurement;
-use framegraph_passes::view::Background;
+use framegraph_passes::effects::exposure::Measurement;
+use framegraph_passes::feature_culling::{
+    Decision, Effect, EffectSet, EnvironmentSummary, FactInput, FactMemory, Facts, SceneSummary, decide,
+};
+use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{Preset, Settings};
 use framegraph_scene::environment::ShBands;
 use framegraph_scene::geometry::{plane, sphere};
@@ -40,17 +42,17 @@ fn case(scene: Scene, asked: Settings) -> Case {
 /// Returns the feature culling of a case.
 fn facts(case: &Case) -> Facts {
     let sh = [Vec4::ONE; 18];
-    let around = Around { irradiance: &sh, bands: ShBands::Three, luminance_nits: 2000.0, sun: None };
+    let around = EnvironmentSummary { irradiance: &sh, bands: ShBands::Three, luminance_nits: 2000.0, sun: None };
     let input = FactInput {
         scene: &case.scene,
-        survey: &Survey::new(&case.scene),
+        survey: &SceneSummary::new(&case.scene),
         around,
         background: &case.background,
         views: &[case.view(&case.asked, SIZE_PX)],
         settings: &case.asked,
         forced: EffectSet::NONE,
         measured: Measurement::Off,
-        most_codes: FactInput::MOST_CODES,
+        max_steps: FactInput::MAX_CODES,
     };
     decide(&input, &mut FactMemory::default())
 }

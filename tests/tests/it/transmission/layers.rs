@@ -4,7 +4,7 @@ use super::{EYE_M, FOV_Y_RAD, TestResult, counts, middle_row, pane, stage};
 use crate::stage::{Shot, gpu};
 use framegraph::Counts;
 use framegraph_passes::Settings;
-use framegraph_passes::transmission::MOST_GLASS_LAYERS;
+use framegraph_passes::effects::transmission::MAX_GLASS_LAYERS;
 use framegraph_scene::geometry::{plane, sphere};
 use framegraph_scene::{Camera, Material, Projection, Scene, Volume};
 use framegraph_wgpu::Gpu;
@@ -27,7 +27,7 @@ fn a_layer_costs_its_picture_and_color_and_depth_once_more() {
             |layers: u8| counts(Settings { samples, scene_levels: 4, glass_layers: layers, ..Settings::default() });
         let one = of(1);
         assert_eq!(one, counts(Settings { samples, scene_levels: 4, ..Settings::default() }));
-        for layers in 2..=MOST_GLASS_LAYERS {
+        for layers in 2..=MAX_GLASS_LAYERS {
             let further = u32::from(layers) - 1;
             // Each layer is resolved for the copy.
             let averages = if samples > 1 { further } else { 0 };

@@ -2,7 +2,7 @@
 
 use crate::stage::plan;
 use framegraph::{Caps, Counts, Options, Plan};
-use framegraph_passes::transparency::MomentTransparency;
+use framegraph_passes::effects::transparency::MomentTransparency;
 use framegraph_passes::{Settings, Transparency};
 
 const DOCUMENT: &str = include_str!("../../../../docs/design/transparency.md");

@@ -2,8 +2,8 @@
 
 use super::{Drawn, SIZE_PX, TestResult, apart, clear, looking, rays};
 use crate::stage::gpu;
-use framegraph_passes::dof::FILM_HEIGHT_M;
-use framegraph_passes::structure::Resolution;
+use framegraph_passes::effects::depth::structure::Resolution;
+use framegraph_passes::effects::dof::FILM_HEIGHT_M;
 use framegraph_passes::{DofSettings, Settings, Transparency};
 use framegraph_scene::Scene;
 use framegraph_scene::geometry::plane;

@@ -4,7 +4,7 @@ use crate::drawing::Ink;
 use crate::live::Live;
 use crate::live::capture::Document;
 use egui::{RichText, ScrollArea, Ui};
-use framegraph_passes::facts::Decision;
+use framegraph_passes::feature_culling::Decision;
 use framegraph_passes::{Effect, Settings};
 
 /// Effects that only the scene enables, not a setting.

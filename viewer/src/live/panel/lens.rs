@@ -5,8 +5,8 @@ use crate::live::Live;
 use crate::live::capture::{BackgroundSource, Capture, Exposure, Sun, focal_length_mm};
 use egui::{Checkbox, DragValue, Grid, ScrollArea, Slider, TextEdit, Ui};
 use framegraph_passes::DofSettings;
-use framegraph_passes::fog::FogSettings;
-use framegraph_passes::shadow::ShadowSettings;
+use framegraph_passes::effects::fog::FogSettings;
+use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
 use framegraph_scene::camera::EV100_RANGE;
 use std::path::PathBuf;
 

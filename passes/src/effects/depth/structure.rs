@@ -1,0 +1,173 @@
+//! Structure: the depth of opaque and masked surfaces as a pyramid, for effects that look around in it.
+//!
+//! It is drawn anew, with one sample per texel, although the depth prepass has drawn the same: so the depth of the color pass
+//! never leaves the tile, with any number of samples, and the structure may be smaller than the picture. Nothing of it runs
+//! unless a pass reads it.
+//!
+//! ```text
+//! structure ─> structure_level 1 ─> structure_level 2 ─> …   each keeps one texel of four, in a rotated grid
+//! ```
+
+use crate::effects::depth::prepass::{DEPTH_FORMAT, draw_depth};
+use crate::gpu_scene::upload::GpuScene;
+use crate::gpu_scene::view::{ViewId, Views};
+use crate::program::full_screen::FullScreen;
+use crate::program::{Interface, ProgramDesc, Programs};
+use crate::stages::{Handles, Slot, StageError};
+use framegraph::{ClearValue, DeclareError, Extent, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
+use framegraph_shaders::{Module, library};
+use framegraph_wgpu::{Cx, Depth, Frame, Record, RecordError};
+use wgpu::CompareFunction;
+
+static SHADER: Module<'static> = library::pass("pass/structure.wgsl").unwrap();
+
+static INTERFACE: Interface = Interface { groups: &[&["finer"]], constants: &[] };
+
+/// How large the structure is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+pub enum Resolution {
+    /// As the picture.
+    #[default]
+    Full,
+    /// Half as wide and high: a quarter of the texels.
+    Half,
+}
+
+impl Resolution {
+    /// The size of pictures in it, in a view whose pictures are of `extent`.
+    #[must_use]
+    pub const fn of(self, extent: Extent) -> Extent {
+        match (self, extent) {
+            (Self::Full, _) => extent,
+            (Self::Half, Extent::Relative { num, den, align }) => Extent::Relative { num, den: 2 * den, align },
+            (Self::Half, Extent::Absolute { width, height }) => Extent::absolute(width.div_ceil(2), height.div_ceil(2)),
+        }
+    }
+}
+
+/// How many levels the structure of a picture of this size has, Filament's number: five fewer than there could be, so that
+/// the last is still some 32 texels wide; at least one, at most eight.
+#[must_use]
+pub fn structure_levels(picture_texels: [u32; 2], resolution: Resolution) -> u8 {
+    let texels = Resolution::of(resolution, Extent::absolute(picture_texels[0], picture_texels[1])).texels([1, 1]);
+    let larger = texels[0].max(texels[1]).max(1);
+    (larger.ilog2() as u8 + 1).saturating_sub(5).clamp(1, 8)
+}
+
+/// Level 0: opaque and masked surfaces as the view sees them, reversed depth.
+#[derive(Clone, Copy, Debug)]
+pub struct Structure {
+    /// The view that is drawn.
+    pub view: ViewId,
+    /// Size of level 0.
+    pub extent: Extent,
+    /// How many levels the texture has.
+    pub levels: u8,
+}
+
+impl Pass for Structure {
+    type Io = Texture;
+
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Texture, DeclareError> {
+        let desc = TextureDesc::new(self.extent, DEPTH_FORMAT).mips(self.levels.max(1));
+        let structure = pass.texture("structure", desc);
+        pass.depth(structure.mip(0), Intent::Clear(ClearValue::FAR_REVERSED))
+    }
+}
+
+impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for Structure {
+    fn record(&self, _: &Texture, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        draw_depth(self.view, false, world, cx)
+    }
+}
+
+/// One further level, made of the one above.
+#[derive(Clone, Copy, Debug)]
+pub struct StructureLevel {
+    /// The structure, its levels above `level` written.
+    pub structure: Texture,
+    /// Which level to make, 1 or more.
+    pub level: u8,
+}
+
+/// What the pass reads and wrote.
+#[derive(Clone, Copy, Debug)]
+pub struct StructureLevelIo {
+    finer: View,
+    /// The structure, this level written too.
+    pub structure: Texture,
+}
+
+impl Pass for StructureLevel {
+    type Io = StructureLevelIo;
+
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<StructureLevelIo, DeclareError> {
+        if self.level == 0 {
+            return Err(pass.error("level 0 is drawn, not made of another", "declare `Structure` for it"));
+        }
+        let finer = pass.sampled(self.structure.mip(self.level - 1))?;
+        Ok(StructureLevelIo { finer, structure: pass.depth(self.structure.mip(self.level), Intent::Overwrite)? })
+    }
+}
+
+impl<W: AsRef<Programs> + ?Sized> Record<W> for StructureLevel {
+    fn record(&self, io: &StructureLevelIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let provided = [Some(cx.view(io.finer)?.into())];
+        let program = ProgramDesc { fragment: Some("fs_level"), ..ProgramDesc::new(&SHADER, &INTERFACE) };
+        let depth = Depth { compare: CompareFunction::Always, write: true, ..Depth::NONE };
+        FullScreen { depth, ..FullScreen::new(program, &[&provided]) }.draw(world.as_ref(), cx)
+    }
+}
+
+/// The structure of the frame, for a stage whose effect looks around in it: declared when the first stage asks, and the same
+/// for all that ask later, in [`Slot::STRUCTURE`], of the resolution that the first asked for.
+///
+/// # Errors
+/// What a pass refuses.
+pub fn structure<W>(
+    frame: &mut Frame<W>,
+    handles: &mut Handles,
+    resolution: Resolution,
+    levels: u8,
+) -> Result<Texture, StageError>
+where
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
+{
+    if let Some(structure) = handles.find(Slot::STRUCTURE) {
+        return Ok(structure);
+    }
+    let pass = Structure { view: handles.view(), extent: resolution.of(handles.extent()), levels };
+    let mut structure = frame.add("structure", pass)?;
+    for level in 1..levels {
+        structure = frame.add("structure_level", StructureLevel { structure, level })?.structure;
+    }
+    handles.set(Slot::STRUCTURE, structure);
+    Ok(structure)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_are_filaments() {
+        for (size, resolution, levels) in [
+            ([1920, 1088], Resolution::Half, 5),
+            ([1920, 1088], Resolution::Full, 6),
+            ([640, 360], Resolution::Full, 5),
+            ([64, 64], Resolution::Full, 2),
+            ([1, 1], Resolution::Half, 1),
+            ([16384, 16384], Resolution::Full, 8),
+        ] {
+            assert_eq!(structure_levels(size, resolution), levels, "{size:?} {resolution:?}");
+        }
+    }
+
+    #[test]
+    fn half_a_size_is_rounded_up() {
+        assert_eq!(Resolution::Half.of(Extent::FRAME).texels([1281, 721]), [641, 361]);
+        assert_eq!(Resolution::Half.of(Extent::absolute(5, 1)).texels([9, 9]), [3, 1]);
+        assert_eq!(Resolution::Full.of(Extent::FRAME), Extent::FRAME);
+    }
+}

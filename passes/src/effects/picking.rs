@@ -1,0 +1,216 @@
+//! Picking: which instance of a scene is seen at a pixel, how deep and where.
+//!
+//! A graph of its own draws the view's surfaces into one texel whose clip space is that of the picked pixel. So a pick costs
+//! the vertices of a depth prepass and nothing for pixels, and the frame itself has no part in it. Stencil is ignored.
+//! Filament's `View::pick`.
+
+use crate::effects::depth::prepass::DEPTH_FORMAT;
+use crate::error::PassError;
+use crate::gpu_scene::draw::{SurfaceDraw, SurfaceVariant};
+use crate::gpu_scene::indirect::DrawList;
+use crate::gpu_scene::upload::{GpuScene, MATERIAL_BINDINGS};
+use crate::gpu_scene::view::{CameraView, ViewId, Views};
+use crate::program::{Interface, ProgramDesc, Programs};
+use framegraph::{
+    ClearValue, CompileErrors, DeclareError, Extent, Format, Intent, Options, Pass, PassBuilder, Plan, Scratch,
+    Texture, TextureDesc,
+};
+use framegraph_shaders::layout::FrameUniforms;
+use framegraph_shaders::{Module, library};
+use framegraph_wgpu::{
+    Cx, Depth, ExecuteError, Executor, Frame, Gpu, Imports, ReadbackError, Record, RecordError, read_texture,
+};
+use glam::{DMat4, DVec2, DVec3};
+
+/// Format of what a pick draws: the instance's number plus one, and the bits of its depth.
+pub const PICK_FORMAT: Format = Format::Rg32Uint;
+
+static SHADER: Module<'static> = library::pass("pass/pick.wgsl").unwrap();
+
+static INTERFACE: Interface =
+    Interface { groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &[SurfaceDraw::TRAITS] };
+
+/// Surface that a pick found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pick {
+    /// Number of the instance in [`Scene::instances`](framegraph_scene::Scene::instances).
+    pub instance: usize,
+    /// Reversed depth at the middle of the pixel: 1 at the near plane, 0 at the far plane.
+    pub depth: f32,
+    /// Position of the surface at the middle of the pixel, in meters, world space.
+    pub position: DVec3,
+}
+
+impl Pick {
+    /// Reads the bytes of the texel that [`PickPass`] wrote for a pixel of `view`; `None` where no surface is.
+    #[must_use]
+    pub fn from_texel(texel: &[u8], view: &CameraView, pixel: [u32; 2]) -> Option<Self> {
+        let (words, _) = texel.as_chunks::<4>();
+        let [number, depth] = [words.first()?, words.get(1)?].map(|bytes| u32::from_le_bytes(*bytes));
+        let (instance, depth) = (number.checked_sub(1)? as usize, f32::from_bits(depth));
+        let ndc = middle_ndc(view, pixel).extend(depth.into());
+        let position = view.eye + view.clip_from_world.inverse().project_point3(ndc);
+        Some(Self { instance, depth, position })
+    }
+}
+
+/// Which surfaces a pick finds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Pickable {
+    /// Opaque and alpha-tested ones, as in Filament.
+    #[default]
+    Opaque,
+    /// Those that blend or transmit too, at whatever alpha. Filament's `View::setTransparentPickingEnabled`.
+    All,
+}
+
+/// Draws the number and the depth of the instance that a view shows at one pixel into a texture of one texel.
+#[derive(Clone, Copy, Debug)]
+pub struct PickPass {
+    /// The view that is picked in. Jitter is left out.
+    pub view: ViewId,
+    /// The pixel, from the left and the top of the view as it is drawn.
+    pub pixel: [u32; 2],
+    /// Which surfaces are found.
+    pub pickable: Pickable,
+}
+
+impl Pass for PickPass {
+    type Io = Texture;
+
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Texture, DeclareError> {
+        let one = Extent::absolute(1, 1);
+        let depth = pass.texture("pick_depth", TextureDesc::new(one, DEPTH_FORMAT));
+        pass.depth(depth, Intent::Clear(ClearValue::FAR_REVERSED))?;
+        let picked = pass.texture("pick", TextureDesc::new(one, PICK_FORMAT));
+        pass.color(picked, Intent::Clear(ClearValue::TRANSPARENT))
+    }
+}
+
+impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for PickPass {
+    fn record(&self, _: &Texture, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let (views, programs): (&Views, &Programs) = (world.as_ref(), world.as_ref());
+        let seen = views.get(self.view)?;
+        let frame = [Some(cx.uniform(&frame_of_pixel(&seen.view, self.pixel)))];
+        let draws = &seen.view.draws;
+        let [opaque, mask] = &draws.depth;
+        let transmit = DrawList::from(draws.transmit.clone());
+        let lists = [(opaque, false), (mask, true), (&transmit, false), (&draws.blend, false)];
+        let count = if self.pickable == Pickable::All { lists.len() } else { 2 };
+        for (list, masked) in lists.into_iter().take(count) {
+            let (vertex, fragment) = if masked { ("vs_mask", "fs_mask") } else { ("vs_opaque", "fs_opaque") };
+            let surfaces = SurfaceDraw {
+                program: &|variant: SurfaceVariant| {
+                    let (fragment, features) = (Some(fragment), &variant.vertex_features());
+                    programs.get(&ProgramDesc { vertex, fragment, features, ..ProgramDesc::new(&SHADER, &INTERFACE) })
+                },
+                frame: &frame,
+                constants: &[],
+                depth: Depth::NEARER,
+                colors: &[],
+            };
+            surfaces.draw(list, seen.instances(world.as_ref()), cx)?;
+        }
+        Ok(())
+    }
+}
+
+/// Middle of a pixel in normalized device coordinates.
+fn middle_ndc(view: &CameraView, [x, y]: [u32; 2]) -> DVec2 {
+    let uv = (DVec2::new(x.into(), y.into()) + 0.5) / size_px(view);
+    DVec2::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y)
+}
+
+fn size_px(view: &CameraView) -> DVec2 {
+    view.frame.viewport_size_px.as_dvec2().max(DVec2::ONE)
+}
+
+/// The frame of a view whose clip space is that of one pixel.
+fn frame_of_pixel(view: &CameraView, pixel: [u32; 2]) -> FrameUniforms {
+    let to_middle = DMat4::from_translation(-middle_ndc(view, pixel).extend(0.0));
+    let to_pixel = DMat4::from_scale(size_px(view).extend(1.0)) * to_middle;
+    FrameUniforms { clip_from_world: (to_pixel * view.clip_from_world).as_mat4(), ..view.frame }
+}
+
+/// A pick that failed.
+#[derive(thiserror::Error)]
+#[non_exhaustive]
+pub enum PickError {
+    /// The pixel is not in the view.
+    #[error("pixel {},{} is outside of the view of {}x{} pixels; pick one within it", pixel[0], pixel[1], size[0], size[1])]
+    Outside {
+        /// The pixel that was picked.
+        pixel: [u32; 2],
+        /// Width and height of the view in pixels.
+        size: [u32; 2],
+    },
+    /// The world has no such view.
+    #[error(transparent)]
+    Pass(#[from] PassError),
+    /// The pass was refused.
+    #[error(transparent)]
+    Declare(#[from] DeclareError),
+    /// The graph of the pick does not compile.
+    #[error(transparent)]
+    Compile(#[from] CompileErrors),
+    /// The device failed.
+    #[error(transparent)]
+    Execute(#[from] ExecuteError),
+    /// The texel could not be read back.
+    #[error(transparent)]
+    Readback(#[from] ReadbackError),
+}
+
+impl std::fmt::Debug for PickError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
+}
+
+/// Picks in the views of a world, one pixel at a time, and waits for the answer. Keeps pipelines and plan from pick to pick.
+pub struct Picker<W: ?Sized + 'static> {
+    executor: Executor,
+    frame: Frame<W>,
+    plan: Plan,
+    scratch: Scratch,
+}
+
+impl<W> Picker<W>
+where
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + Sync + ?Sized + 'static,
+{
+    /// A picker on this device.
+    #[must_use]
+    pub fn new(gpu: &Gpu) -> Self {
+        Self { executor: Executor::new(gpu), frame: Frame::new(), plan: Plan::new(), scratch: Scratch::new() }
+    }
+
+    /// Returns the surface that a view shows at the middle of a pixel, from the left and the top of the view as it is drawn;
+    /// `None` where only the background is.
+    ///
+    /// # Errors
+    /// Fails for a pixel outside of the view, a view that the world does not have, and if the device fails.
+    pub fn pick(
+        &mut self,
+        world: &W,
+        view: ViewId,
+        pixel: [u32; 2],
+        pickable: Pickable,
+    ) -> Result<Option<Pick>, PickError> {
+        let views: &Views = world.as_ref();
+        let seen = &views.get(view)?.view;
+        let size = seen.frame.viewport_size_px.to_array().map(|side| side as u32);
+        if pixel[0] >= size[0] || pixel[1] >= size[1] {
+            return Err(PickError::Outside { pixel, size });
+        }
+        let Self { executor, frame, plan, scratch } = self;
+        frame.reset();
+        let picked = frame.add("pick", PickPass { view, pixel, pickable })?;
+        frame.graph_mut().readback(picked)?;
+        executor.compile(frame.graph(), &Options::for_frame(1, 1), scratch, plan)?;
+        executor.execute(plan, frame, world, &Imports::new())?;
+        let texture = executor.texture(plan, picked).ok_or(ReadbackError::Usage)?;
+        let texel = read_texture(executor.gpu(), texture)?.bytes;
+        Ok(Pick::from_texel(&texel, seen, pixel))
+    }
+}

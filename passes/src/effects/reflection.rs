@@ -1,0 +1,66 @@
+//! Reflections in what the picture shows.
+//!
+//! ```text
+//! structure ───────────────────────┬─> reflection ─> reflection_level 1 ─> reflection_level 2 ─> … ─> color ─> hdr
+//! reflection_depth ────────────────┤                                                                          │
+//! hdr of the frame before ─────────┘ <────────────────────────────────────────────────────────────────────────┘
+//! ```
+//!
+//! Surfaces are drawn once more, each pixel's mirrored ray is followed through the structure, and what it meets is taken from
+//! the radiance of the frame before, which is kept for that: a history, no copy. Rough surfaces read a level of the
+//! result that is as blurred as the ray's way makes it. Where rays found nothing, the color pass reflects the environment as without. `docs/design/reflections.md` has how far off
+//! it is.
+
+mod pass;
+mod settings;
+
+pub use pass::{Reflection, ReflectionIo};
+pub use settings::ReflectionSettings;
+
+use crate::effects::depth::prepass::Prepass;
+use crate::effects::depth::structure::{Resolution, structure};
+use crate::effects::transmission::SceneLevel;
+use crate::gpu_scene::upload::GpuScene;
+use crate::gpu_scene::view::Views;
+use crate::program::Programs;
+use crate::stages::{Handles, Slot, StageError};
+use framegraph::{Format, TextureDesc};
+use framegraph_wgpu::Frame;
+
+/// Declares reflections of a view, the structure that they are followed through, and the history of its radiance, of `format`,
+/// which the color pass is to draw into; hands on [`Slot::REFLECTIONS`],
+/// [`Slot::REFLECTION_WAYS`] and [`Slot::HDR_HISTORY`].
+///
+/// # Errors
+/// What a pass refuses; the history's name, `hdr`, when another view of the graph has it, which a scope of its own prevents.
+pub fn reflections<W>(
+    frame: &mut Frame<W>,
+    handles: &mut Handles,
+    settings: &ReflectionSettings,
+    (resolution, structure_levels): (Resolution, u8),
+    levels: u8,
+    format: Format,
+) -> Result<(), StageError>
+where
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
+{
+    let (view, extent) = (handles.view(), handles.extent());
+    let told = format_args!(
+        "the settings ask for it: rays of {} m find places in the radiance of the frame before, which is kept for them",
+        settings.reach_m
+    );
+    frame.graph_mut().note("reflection", told);
+    let structure = structure(frame, handles, resolution, structure_levels)?;
+    let hdr = frame.graph_mut().history("hdr", TextureDesc::new(extent, format), 1);
+    let earlier = frame.graph_mut().previous(hdr, 1)?;
+    let depth = frame.add("reflection_depth", Prepass { view, extent, samples: 1, stencil: false })?;
+    let pass = Reflection { view, structure, depth, earlier, levels, settings: *settings };
+    let ReflectionIo { mut reflections, ways, .. } = frame.add("reflection", pass)?;
+    for level in 1..levels {
+        reflections = frame.add("reflection_level", SceneLevel { scene: reflections, level })?.scene;
+    }
+    handles.set(Slot::REFLECTIONS, reflections);
+    handles.set(Slot::REFLECTION_WAYS, ways);
+    handles.set(Slot::HDR_HISTORY, hdr);
+    Ok(())
+}

@@ -1,0 +1,115 @@
+//! The pass that follows mirrored rays.
+
+use super::settings::ReflectionSettings;
+use crate::gpu_scene::draw::{SurfaceDraw, SurfaceVariant};
+use crate::gpu_scene::upload::{GpuScene, MATERIAL_BINDINGS};
+use crate::gpu_scene::view::{CameraView, ViewId, Views};
+use crate::program::{Interface, ProgramDesc, Programs};
+use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Previous, Texture, TextureDesc, View};
+use framegraph_shaders::layout::ReflectionUniforms;
+use framegraph_shaders::{Module, library};
+use framegraph_wgpu::{Cx, Depth, Record, RecordError, SamplerDesc};
+
+/// Format of what was found: radiance as the frame has it, and how much it counts.
+const REFLECTION_FORMAT: Format = Format::Rgba16Float;
+
+static SHADER: Module<'static> = library::pass("pass/reflection.wgsl").unwrap();
+
+static INTERFACE: Interface = Interface {
+    groups: &[
+        &["frame", "settings", "structure", "earlier", "earlier_sampler"],
+        &MATERIAL_BINDINGS,
+        &["objects", "origins"],
+    ],
+    constants: &[SurfaceDraw::TRAITS],
+};
+
+/// Follows the mirrored ray of each pixel of opaque and masked surfaces through the structure of a view. Positions and depths
+/// are f32 whatever surfaces are shaded in.
+#[derive(Clone, Copy, Debug)]
+pub struct Reflection {
+    /// The view that is drawn.
+    pub view: ViewId,
+    /// Reversed depth of the scene; its first level is read.
+    pub structure: Texture,
+    /// Depth of the nearest surfaces, of one sample per texel; the result gets its size.
+    pub depth: Texture,
+    /// Radiance of the frame before, times its exposure, seen as [`CameraView::after`] says.
+    pub earlier: Previous,
+    /// How many levels the result is to have.
+    pub levels: u8,
+    /// How.
+    pub settings: ReflectionSettings,
+}
+
+/// What the pass reads and wrote.
+#[derive(Clone, Copy, Debug)]
+pub struct ReflectionIo {
+    structure: View,
+    earlier: View,
+    /// Radiance times how much it counts, and that in alpha; level 0 is written. All 0 in a frame without an earlier one.
+    pub reflections: Texture,
+    /// Length of each ray's way, in m.
+    pub ways: Texture,
+}
+
+impl Pass for Reflection {
+    type Io = ReflectionIo;
+
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<ReflectionIo, DeclareError> {
+        let extent = pass.desc(self.depth)?.extent;
+        let structure = pass.sampled(self.structure.mip(0))?;
+        let earlier = pass.sampled(self.earlier)?;
+        pass.depth_read_only(self.depth)?;
+        let reflections = pass.texture("reflections", TextureDesc::new(extent, REFLECTION_FORMAT).mips(self.levels));
+        let nothing = Intent::Clear(ClearValue::Color([0.0; 4]));
+        let ways = pass.texture("reflection_ways", TextureDesc::new(extent, Format::R16Float));
+        let reflections = pass.color(reflections.mip(0), nothing)?;
+        Ok(ReflectionIo { structure, earlier, reflections, ways: pass.color(ways, nothing)? })
+    }
+}
+
+impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for Reflection {
+    fn record(&self, io: &ReflectionIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        if !cx.is_valid(self.earlier)? {
+            return Ok(());
+        }
+        let (views, programs): (&Views, &Programs) = (world.as_ref(), world.as_ref());
+        let seen = views.get(self.view)?;
+        let frame = [
+            Some(cx.uniform(&seen.view.frame)),
+            Some(cx.uniform(&self.uniforms(&seen.view))),
+            Some(cx.view(io.structure)?.into()),
+            Some(cx.view(io.earlier)?.into()),
+            Some(cx.sampler(SamplerDesc::LINEAR).into()),
+        ];
+        let program = |variant: SurfaceVariant| {
+            let features = &variant.vertex_features();
+            programs.get(&ProgramDesc { features, ..ProgramDesc::new(&SHADER, &INTERFACE) })
+        };
+        let surfaces =
+            SurfaceDraw { program: &program, frame: &frame, constants: &[], depth: Depth::EQUAL, colors: &[] };
+        let [opaque, masked] = &seen.view.draws.surfaces;
+        surfaces.draw(opaque, seen.instances(world.as_ref()), cx)?;
+        surfaces.draw(masked, seen.instances(world.as_ref()), cx)
+    }
+}
+
+impl Reflection {
+    fn uniforms(&self, view: &CameraView) -> ReflectionUniforms {
+        let ReflectionSettings { thickness_m, bias_m, reach_m, stride_texels, most_roughness } = self.settings;
+        let stand = view.stand();
+        let (earlier_clip_from_view, exposure_ratio) = stand.to_earlier(view.earlier);
+        ReflectionUniforms {
+            projection: stand.projection(),
+            earlier_clip_from_view,
+            thickness_m,
+            bias_m,
+            reach_m,
+            stride: stride_texels,
+            most_roughness,
+            exposure_ratio,
+            ..ReflectionUniforms::default()
+        }
+    }
+}

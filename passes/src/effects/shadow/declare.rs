@@ -1,0 +1,100 @@
+//! The passes that make the shadow maps of a view.
+
+use super::draw::{Shadow, ShadowLayer, maps_desc};
+use super::moments::{MomentStep, ShadowBlur, ShadowLevel};
+use crate::gpu_scene::shadow_views::{MomentSettings, ShadowSettings};
+use crate::gpu_scene::upload::GpuScene;
+use crate::gpu_scene::view::{ViewId, Views};
+use crate::program::Programs;
+use crate::stages::Slot;
+use framegraph::{DeclareError, Texture};
+use framegraph_wgpu::Frame;
+
+/// Declares a pass a layer: `shadow` if there is one, else `shadow/cascade` for each map of the sun and `shadow/local` for each
+/// layer that maps of other lights share. Moments are blurred and halved after it. None where no light casts.
+///
+/// # Errors
+/// What a pass refuses: a layer beyond those of the texture.
+pub fn shadow_maps<W>(
+    frame: &mut Frame<W>,
+    view: ViewId,
+    settings: &ShadowSettings,
+) -> Result<Option<Texture>, DeclareError>
+where
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
+{
+    let ShadowSettings { cascades, map_texels, filter, .. } = *settings;
+    if settings.layers() > 0 {
+        let shared = settings.local_layers();
+        let told = format_args!(
+            "the settings ask for it: a layer for each of {cascades} cascades, {shared} for maps of other lights, {map_texels} \
+             texels across, read by `{}`",
+            filter.name()
+        );
+        frame.graph_mut().note("shadow", told);
+    }
+    draw_maps(frame, view, settings, None, (0..settings.layers()).map(ShadowLayer::anew))
+}
+
+/// Where stages take such maps from.
+pub const fn maps_slot(settings: &ShadowSettings) -> Slot {
+    if settings.has_moments() { Slot::SHADOW_MOMENTS } else { Slot::SHADOW_MAP }
+}
+
+/// Declares the passes of these layers, into a texture that is there or into one that the first of them makes.
+pub(super) fn draw_maps<W>(
+    frame: &mut Frame<W>,
+    view: ViewId,
+    settings: &ShadowSettings,
+    mut maps: Option<Texture>,
+    layers: impl Iterator<Item = ShadowLayer>,
+) -> Result<Option<Texture>, DeclareError>
+where
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
+{
+    let settings = *settings;
+    let shadow = |layer, maps| Shadow { view, settings, layer, maps };
+    if settings.layers() == 1 && !settings.has_moments() {
+        for layer in layers {
+            let into = maps.unwrap_or_else(|| made(frame, &settings));
+            maps = Some(frame.add("shadow", shadow(layer, into))?);
+        }
+        return Ok(maps);
+    }
+    frame.scope("shadow", |frame| {
+        for layer in layers {
+            let into = maps.unwrap_or_else(|| made(frame, &settings));
+            let name = if layer.layer < u16::from(settings.cascades) { "cascade" } else { "local" };
+            let drawn = frame.add(name, shadow(layer, into))?;
+            maps = Some(if settings.has_moments() { filtered(frame, shadow(layer, into), drawn)? } else { drawn });
+        }
+        Ok(maps)
+    })
+}
+
+/// A texture for all maps.
+fn made<W: ?Sized + 'static>(frame: &mut Frame<W>, settings: &ShadowSettings) -> Texture {
+    let (desc, name) = maps_desc(settings);
+    frame.graph_mut().texture(name, desc)
+}
+
+/// Brings what was drawn into its layer where it is not there yet, blurs and halves it.
+fn filtered<W>(frame: &mut Frame<W>, shadow: Shadow, drawn: Texture) -> Result<Texture, DeclareError>
+where
+    W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static,
+{
+    let Shadow { view, settings, layer, maps } = shadow;
+    let MomentSettings { samples, blur_texels, levels, .. } = settings.moments;
+    let (mut maps, averages) = if samples > 1 { (maps, Some(drawn)) } else { (drawn, None) };
+    let step = |maps, source, step| ShadowBlur { view, settings, layer, maps, source, step };
+    if blur_texels > 0.0 {
+        let across = frame.add("blur", step(maps, averages, MomentStep::Across))?.blurred;
+        maps = frame.add("blur", step(maps, Some(across), MomentStep::Up))?.blurred;
+    } else if averages.is_some() {
+        maps = frame.add("average", step(maps, averages, MomentStep::Average))?.blurred;
+    }
+    for level in 1..levels {
+        maps = frame.add("level", ShadowLevel { layer: layer.layer, level, maps })?.maps;
+    }
+    Ok(maps)
+}

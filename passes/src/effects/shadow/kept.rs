@@ -1,0 +1,194 @@
+//! Shadow maps that stay from frame to frame, and of which those alone are drawn that would be others than they are.
+//!
+//! A map depends on its light, on what it is fitted to and on what casts into it, and not on where the eye is; maps of local
+//! lights are fitted to the light alone. So over a still scene they are drawn once, wherever the camera goes, and cascades
+//! are drawn while the camera moves. What is compared is what maps are made of, number by number, in the view of this frame
+//! against that of the frame which drew the map last. Meshes and materials of a scene are taken to stay what they are. A map
+//! with an instance that is seen in another level of detail than before, since the eye is nearer or farther, is drawn anew.
+
+use super::declare::draw_maps;
+use super::draw::{ShadowLayer, maps_desc};
+use crate::gpu_scene::shadow_views::MapKey;
+use crate::gpu_scene::shadow_views::ShadowSettings;
+use crate::gpu_scene::shadow_views::ViewShadows;
+use crate::gpu_scene::upload::GpuScene;
+use crate::gpu_scene::view::{ViewId, Views};
+use crate::program::Programs;
+use framegraph::{DeclareError, Entry, Exit, Texture};
+use framegraph_wgpu::{DeviceError, Frame, Gpu, Imports, texture_format};
+use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureUsages};
+
+/// Why a map is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Redraw {
+    /// It was never drawn, or the frame that was to draw it failed.
+    First,
+    /// Its light moved, what it is fitted to did, or it has another size or place.
+    Light,
+    /// Something that casts into it moved, came or went, or is drawn in another level of detail.
+    Casters,
+}
+
+impl std::fmt::Display for Redraw {
+    /// What is said of maps that are drawn: how many it are goes before it.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::First => "never drawn before",
+            Self::Light => "of another light or fit",
+            Self::Casters => "of other casters",
+        })
+    }
+}
+
+/// The shadow maps of a view, kept by the application from frame to frame.
+///
+/// ```no_run
+/// # use framegraph::{Extent, Target};
+/// # use framegraph_passes::{stages, Handles, PassError, Settings, ViewId, World};
+/// # use framegraph_passes::effects::shadow::{KeptShadows, maps_slot};
+/// # use framegraph_wgpu::{Executor, Frame, Gpu, Imports};
+/// # fn a(gpu: &Gpu, world: &World, settings: &Settings, kept: &mut KeptShadows) -> Result<(), Box<dyn std::error::Error>> {
+/// let mut frame = Frame::<World>::new();
+/// let shadows = world.views.get(ViewId::MAIN)?.view.shadows.as_ref().ok_or("a view with shadows")?;
+/// let maps = kept.declare(gpu, &mut frame, ViewId::MAIN, shadows)?.ok_or("something casts")?;
+/// let handles = Handles::for_view(ViewId::MAIN, Extent::FRAME).with(maps_slot(&shadows.settings), maps);
+/// stages(settings).declare(&mut frame, handles, Target::New)?;
+/// let mut imports = Imports::new();
+/// kept.import(maps, &mut imports);
+/// // … the plan is executed with these imports …
+/// kept.drawn(shadows);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Default)]
+pub struct KeptShadows(Option<Held>);
+
+#[derive(Debug)]
+struct Held {
+    texture: wgpu::Texture,
+    settings: ShadowSettings,
+    /// What each map was drawn of; none where nobody knows what its place holds.
+    keys: Vec<Option<MapKey>>,
+}
+
+impl KeptShadows {
+    /// The maps of a view that have to be drawn, by number, and why each.
+    pub fn due(&self, shadows: &ViewShadows) -> Vec<(u16, Redraw)> {
+        let held = self.0.as_ref().filter(|held| held.settings == shadows.settings);
+        let why = |(number, key): (u16, &MapKey)| {
+            let before = held.and_then(|held| held.keys.get(usize::from(number))?.as_ref());
+            let why = match before {
+                None => Redraw::First,
+                Some(before) if before == key => return None,
+                Some(before) if before.casters != key.casters => Redraw::Casters,
+                Some(_) => Redraw::Light,
+            };
+            Some((number, why))
+        };
+        (0..).zip(&shadows.keys).filter_map(why).collect()
+    }
+
+    /// Declares the maps as an import, and a pass for each layer of which some are due, which draws those, or the whole layer
+    /// if all are. None where no light casts.
+    ///
+    /// # Errors
+    /// When the device refuses the texture, or a pass its layer.
+    pub fn declare<W>(
+        &mut self,
+        gpu: &Gpu,
+        frame: &mut Frame<W>,
+        view: ViewId,
+        shadows: &ViewShadows,
+    ) -> Result<Option<Texture>, KeptShadowsError>
+    where
+        W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
+    {
+        let settings = &shadows.settings;
+        if settings.layers() == 0 {
+            return Ok(None);
+        }
+        let due = self.due(shadows);
+        let held = match self.0.take() {
+            Some(held) if held.settings == *settings => self.0.insert(held),
+            _ => self.0.insert(Held::new(gpu, settings)?),
+        };
+        let graph = frame.graph_mut();
+        if due.is_empty() {
+            graph.note("shadow", format_args!("all {} maps are kept", shadows.keys.len()));
+        }
+        for (number, why) in &due {
+            graph.note("shadow", format_args!("map {number} is drawn: {why}"));
+        }
+        let bits = due.iter().fold(0_u64, |bits, (number, _)| bits | 1 << number);
+        // What is not in this view may be drawn over.
+        let keys = shadows.keys.iter().enumerate();
+        held.keys = keys.map(|(number, key)| (bits >> number & 1 == 0).then(|| key.clone())).collect();
+        let (desc, name) = maps_desc(settings);
+        let maps = frame.graph_mut().import_texture(name, desc, Entry::Defined, Exit::Keep);
+        let layer = |layer: u16| {
+            let here = shadows.keys.iter().enumerate().filter(|(_, key)| key.place.layer == layer);
+            let here = here.fold(0_u64, |bits, (number, _)| bits | 1 << number);
+            let only = (here & !bits != 0).then_some(bits);
+            (here & bits != 0).then_some(ShadowLayer { layer, only })
+        };
+        let layers = (0..settings.layers()).filter_map(layer);
+        Ok(draw_maps(frame, view, settings, Some(maps), layers)?)
+    }
+
+    /// Binds the texture to what [`KeptShadows::declare`] returned.
+    pub fn import(&self, maps: Texture, imports: &mut Imports) {
+        if let Some(held) = &self.0 {
+            imports.texture(maps, &held.texture);
+        }
+    }
+
+    /// Notes that a frame with these maps was executed. Without it every map that was due is drawn again.
+    pub fn drawn(&mut self, shadows: &ViewShadows) {
+        if let Some(held) = self.0.as_mut().filter(|held| held.settings == shadows.settings) {
+            held.keys = shadows.keys.iter().cloned().map(Some).collect();
+        }
+    }
+}
+
+impl Held {
+    fn new(gpu: &Gpu, settings: &ShadowSettings) -> Result<Self, DeviceError> {
+        let (desc, name) = maps_desc(settings);
+        let size = Extent3d {
+            width: settings.map_texels,
+            height: settings.map_texels,
+            depth_or_array_layers: desc.layers.into(),
+        };
+        let texture = gpu.guard("shadow maps that are kept", || {
+            gpu.device.create_texture(&TextureDescriptor {
+                label: Some(name),
+                size,
+                mip_level_count: desc.mips.into(),
+                sample_count: 1,
+                dimension: TextureDimension::D2,
+                format: texture_format(desc.format),
+                usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
+                view_formats: &[],
+            })
+        })?;
+        Ok(Self { texture, settings: *settings, keys: Vec::new() })
+    }
+}
+
+/// Maps that are kept cannot be declared.
+#[derive(thiserror::Error)]
+#[non_exhaustive]
+pub enum KeptShadowsError {
+    /// The device refuses the texture.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+    /// A pass refuses its layer.
+    #[error(transparent)]
+    Declare(#[from] DeclareError),
+}
+
+impl std::fmt::Debug for KeptShadowsError {
+    /// The sentence, since that is what an `unwrap` shows.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
+}

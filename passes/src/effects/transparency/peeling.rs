@@ -1,0 +1,158 @@
+//! Depth peeling: the layers of blended surfaces one after another, from the nearest (Everitt, "Interactive order-independent
+//! transparency", 2001).
+//!
+//! Each layer is two passes in one step. The first finds the depth that is nearest behind the layer before, and not hidden by
+//! what is opaque; the second shades what has that depth. Surfaces at equal depth are in one layer: all of them are shaded,
+//! those that sorting draws last in front. Texels without coverage are no layer.
+
+use super::surfaces::{BEHIND, BlendedDraw, BlendedInputs, BlendedSurfaces};
+use crate::effects::color::surface::{HDR_FORMAT, SurfaceWorld};
+use crate::effects::depth::prepass::{DEPTH_FORMAT, PREPASS_SHADER};
+use crate::effects::depth::resolve::can_read_samples;
+use crate::gpu_scene::draw::{SurfaceDraw, SurfaceVariant};
+use crate::gpu_scene::indirect::DrawList;
+use crate::gpu_scene::lighting::Lighting;
+use crate::gpu_scene::upload::{GpuScene, MATERIAL_BINDINGS};
+use crate::gpu_scene::view::{CameraView, ViewId, Views};
+use crate::program::{Interface, ProgramDesc, Programs};
+use framegraph::{ClearValue, DeclareError, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
+use framegraph_scene::Batch;
+use framegraph_wgpu::{Cx, Depth, Record, RecordError};
+
+/// Depth is read as one of two variables, by its samples.
+static INTERFACE: Interface = Interface {
+    groups: &[
+        &["frame", "opaque_depth", "opaque_depth_samples", "nearer_layer", "nearer_layer_samples"],
+        &MATERIAL_BINDINGS,
+        &["objects", "origins"],
+    ],
+    constants: &[SurfaceDraw::TRAITS, "FIRST_LAYER"],
+};
+
+/// Depth of a layer of blended surfaces.
+#[derive(Clone, Copy, Debug)]
+pub struct PeelDepth {
+    /// The view that is drawn.
+    pub view: ViewId,
+    /// Depth of what hides blended surfaces; the layer gets its size and samples.
+    pub opaque: Texture,
+    /// Depth of the layer before it; none for the first.
+    pub nearer: Option<Texture>,
+}
+
+/// What the pass reads and wrote.
+#[derive(Clone, Copy, Debug)]
+pub struct PeelDepthIo {
+    read: [View; 2],
+    samples: u8,
+    /// Reversed depth of the layer; 0 where there is none.
+    pub depth: Texture,
+}
+
+impl Pass for PeelDepth {
+    type Io = PeelDepthIo;
+
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<PeelDepthIo, DeclareError> {
+        let desc = pass.desc(self.opaque)?;
+        let opaque = pass.same_pixel(self.opaque)?;
+        let nearer = self.nearer.map_or(Ok(opaque), |nearer| pass.same_pixel(nearer))?;
+        let depth = TextureDesc::new(desc.extent, DEPTH_FORMAT).samples(desc.samples);
+        let depth = pass.texture("layer_depth", depth);
+        let depth = pass.depth(depth, Intent::Clear(ClearValue::FAR_REVERSED))?;
+        Ok(PeelDepthIo { read: [opaque, nearer], samples: desc.samples, depth })
+    }
+}
+
+impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for PeelDepth {
+    fn record(&self, io: &PeelDepthIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        can_read_samples(io.samples, cx.gpu())?;
+        let (programs, views): (&Programs, &Views) = (world.as_ref(), world.as_ref());
+        let view = views.get(self.view)?;
+        let [opaque, nearer] = io.read.map(|view| cx.view(view));
+        let (opaque, nearer) = (opaque?, nearer?);
+        let frame = cx.uniform(&view.view.frame);
+        let read = [opaque.clone(), opaque, nearer.clone(), nearer];
+        let provided: Vec<_> = [frame].into_iter().chain(read.map(Into::into)).map(Some).collect();
+        let fragment = Some(if io.samples == 1 { "fs_peel" } else { "fs_peel_samples" });
+        let program = |variant: SurfaceVariant| {
+            let features = &variant.vertex_features();
+            let desc = ProgramDesc { vertex: "vs_mask", fragment, ..ProgramDesc::new(&PREPASS_SHADER, &INTERFACE) };
+            programs.get(&ProgramDesc { features, ..desc })
+        };
+        let layer = SurfaceDraw {
+            program: &program,
+            frame: &provided,
+            constants: &[f64::from(self.nearer.is_none())],
+            depth: Depth::NEARER,
+            colors: &[],
+        };
+        layer.draw(&view.view.draws.blend, view.instances(world.as_ref()), cx)
+    }
+}
+
+/// Shades a layer of blended surfaces, behind those before it.
+#[derive(Clone, Copy, Debug)]
+pub struct PeelLayer {
+    /// What is drawn.
+    pub surfaces: BlendedSurfaces,
+    /// Depth of the layer.
+    pub depth: Texture,
+    /// The layers before it; none for the first.
+    pub nearer: Option<Texture>,
+}
+
+/// What the pass reads and wrote.
+#[derive(Clone, Copy, Debug)]
+pub struct PeelLayerIo {
+    inputs: BlendedInputs,
+    /// Color of all layers so far, and in alpha what they let through.
+    pub layers: Texture,
+}
+
+impl Pass for PeelLayer {
+    type Io = PeelLayerIo;
+
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<PeelLayerIo, DeclareError> {
+        let desc = pass.desc(self.depth)?;
+        pass.depth_read_only(self.depth)?;
+        let inputs = self.surfaces.inputs(pass)?;
+        let layers = match self.nearer {
+            Some(nearer) => pass.color(nearer, Intent::Modify)?,
+            None => {
+                let layers = TextureDesc::new(desc.extent, HDR_FORMAT).samples(desc.samples);
+                let layers = pass.texture("peeled_layers", layers);
+                pass.color(layers, Intent::Clear(ClearValue::BLACK))?
+            }
+        };
+        Ok(PeelLayerIo { inputs, layers })
+    }
+}
+
+impl<W> Record<W> for PeelLayer
+where
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized,
+{
+    fn record(&self, io: &PeelLayerIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let world = SurfaceWorld::of(world, self.surfaces.view)?;
+        let own = BlendedDraw {
+            fragment: "fs_main",
+            depth: Depth::EQUAL,
+            colors: &[BEHIND],
+            inputs: Some(io.inputs),
+            moments: None,
+        };
+        self.surfaces.draw(&nearest_first(&world.view.view), &world, own, cx)
+    }
+}
+
+/// The draws of blended surfaces in the opposite order, an instance each: of surfaces at equal depth, sorting shows the last in
+/// front, and a layer the first.
+fn nearest_first(view: &CameraView) -> DrawList {
+    let draws = &view.draws;
+    let alone = |batch: &Batch| {
+        let own = *batch;
+        let instance = |first: u32| draws.numbers[first as usize];
+        batch.range().rev().map(move |first| Batch { instance: instance(first), first, count: 1, ..own })
+    };
+    draws.blend.iter().rev().flat_map(alone).collect::<Vec<_>>().into()
+}

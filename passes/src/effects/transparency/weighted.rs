@@ -1,0 +1,67 @@
+//! Weighted blended transparency: one pass over the surfaces, in any order.
+//!
+//! Exact for one layer, and for layers of one color. Where colors differ, near ones count more (`shaders/wgsl/lib/weighted_blending.wgsl`).
+
+use super::surfaces::{ADDED, BlendedDraw, BlendedInputs, BlendedSurfaces, MULTIPLIED, TESTED};
+use crate::effects::color::surface::{HDR_FORMAT, SurfaceWorld};
+use crate::gpu_scene::lighting::Lighting;
+use crate::gpu_scene::upload::GpuScene;
+use crate::gpu_scene::view::Views;
+use crate::program::Programs;
+use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
+use framegraph_wgpu::{Cx, Output, Record, RecordError};
+
+/// Adds up weighted colors, and multiplies what surfaces let through.
+#[derive(Clone, Copy, Debug)]
+pub struct Weighted {
+    /// What is drawn.
+    pub surfaces: BlendedSurfaces,
+    /// Depth of what hides blended surfaces; the sums get its size and samples.
+    pub depth: Texture,
+}
+
+/// What the pass reads and wrote.
+#[derive(Clone, Copy, Debug)]
+pub struct WeightedIo {
+    inputs: BlendedInputs,
+    /// Colors and alphas, both times their weights.
+    pub accumulated: Texture,
+    /// What all surfaces together let through.
+    pub transmittance: Texture,
+}
+
+impl Pass for Weighted {
+    type Io = WeightedIo;
+
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<WeightedIo, DeclareError> {
+        let depth = pass.desc(self.depth)?;
+        pass.depth_read_only(self.depth)?;
+        let inputs = self.surfaces.inputs(pass)?;
+        let desc = |format| TextureDesc::new(depth.extent, format).samples(depth.samples);
+        let accumulated = pass.texture("weighted_color", desc(HDR_FORMAT));
+        let transmittance = pass.texture("transmittance", desc(Format::R16Float));
+        // Slot 0 has the radiance of the color pass: so both passes share a step.
+        Ok(WeightedIo {
+            inputs,
+            accumulated: pass.color_at(1, accumulated, Intent::Clear(ClearValue::TRANSPARENT))?,
+            transmittance: pass.color_at(2, transmittance, Intent::Clear(ClearValue::Color([1.0; 4])))?,
+        })
+    }
+}
+
+impl<W> Record<W> for Weighted
+where
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized,
+{
+    fn record(&self, io: &WeightedIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let world = SurfaceWorld::of(world, self.surfaces.view)?;
+        let own = BlendedDraw {
+            fragment: "fs_weighted",
+            depth: TESTED,
+            colors: &[Output::REPLACE, ADDED, MULTIPLIED],
+            inputs: Some(io.inputs),
+            moments: None,
+        };
+        self.surfaces.draw(&world.view.view.draws.blend, &world, own, cx)
+    }
+}

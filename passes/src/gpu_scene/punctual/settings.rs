@@ -1,0 +1,117 @@
+//! How shading finds the lights that reach a place, by name: `auto`, `all`, `froxels`, `froxels:slices=24,far=200`.
+
+use crate::settings::key_value::{KeyValue, OptionError, choices};
+
+/// How shading finds the lights that reach a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+pub enum LightSearch {
+    /// By froxels where at least [`LightSearch::FEW`] lights have an end, else as `All`.
+    Auto(FroxelSettings),
+    /// In the list of the froxel that the place is in.
+    Froxels(FroxelSettings),
+    /// Every light is looked at everywhere.
+    All,
+}
+
+/// How what is seen is cut into froxels. Numbers are Filament's, but for the tiles: it cuts into 512 at most, of which a
+/// picture of 1280×720 has 27×15.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct FroxelSettings {
+    /// Tiles of the picture, at most, 1…4096; they are squares, whole multiples of 8 pixels a side.
+    pub tiles: u32,
+    /// Slices of distance, 1…64.
+    pub slices: u32,
+    /// Where the first slice ends, in meters ahead of the eye, above 0.
+    pub near_m: f32,
+    /// Where the last slice would end if the next one were as much larger, in meters, above `near_m`; it goes on from
+    /// there without end.
+    pub far_m: f32,
+}
+
+impl FroxelSettings {
+    /// 16×9 tiles of a picture of that shape, 16 slices, of which the first ends at 5 m and the last is cut for 100 m.
+    pub const DEFAULT: Self = Self { tiles: 144, slices: 16, near_m: 5.0, far_m: 100.0 };
+
+    /// The names that can be set.
+    pub const KEYS: [&str; 4] = ["tiles", "slices", "near", "far"];
+
+    fn set(&mut self, choice: KeyValue<'_>) -> Result<(), OptionError> {
+        match choice.key {
+            "tiles" => self.tiles = choice.whole(1, 4096)?,
+            "slices" => self.slices = choice.whole(1, 64)?,
+            "near" => self.near_m = choice.number(1e-3, 1e6)?,
+            "far" => self.far_m = choice.number(1e-3, 1e6)?,
+            _ => return Err(choice.unknown(&Self::KEYS)),
+        }
+        Ok(())
+    }
+}
+
+impl LightSearch {
+    /// So many lights that have an end are found faster by froxels (`docs/design/lights.md`).
+    pub const FEW: usize = 4;
+
+    /// What is asked for as `auto`, `all` or `froxels`; the first and the last with changes: `froxels:slices=24,far=200`.
+    ///
+    /// # Errors
+    /// When there is no such way or choice, or it does not take the value: one line that names it and what it takes.
+    pub fn from_text(text: &str) -> Result<Self, OptionError> {
+        let (way, changes) = text.split_once(':').unwrap_or((text, ""));
+        let mut settings = FroxelSettings::DEFAULT;
+        for choice in choices(changes) {
+            if way == "all" {
+                return Err(choice.only("froxels"));
+            }
+            settings.set(choice)?;
+        }
+        let FroxelSettings { near_m, far_m, .. } = settings;
+        if near_m >= far_m {
+            return Err(KeyValue { key: "near", value: &near_m.to_string() }.wrong("less than `far`"));
+        }
+        match way {
+            "auto" => Ok(Self::Auto(settings)),
+            "froxels" => Ok(Self::Froxels(settings)),
+            "all" => Ok(Self::All),
+            _ => Err(KeyValue { key: way, value: "" }.unknown(&["auto", "froxels", "all"])),
+        }
+    }
+}
+
+impl Default for LightSearch {
+    /// [`LightSearch::Auto`].
+    fn default() -> Self {
+        Self::Auto(FroxelSettings::DEFAULT)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn choices_are_made_by_name() -> Result<(), OptionError> {
+        assert_eq!(LightSearch::from_text("auto")?, LightSearch::default());
+        assert_eq!(LightSearch::from_text("all")?, LightSearch::All);
+        let own = FroxelSettings { tiles: 512, slices: 24, near_m: 0.5, far_m: 200.0 };
+        let asked = LightSearch::from_text("froxels:tiles=512,slices=24,near=0.5,far=200")?;
+        assert_eq!(asked, LightSearch::Froxels(own));
+        for key in FroxelSettings::KEYS {
+            assert!(LightSearch::from_text(&format!("auto:{key}=6")).is_ok(), "{key}");
+        }
+        for (wrong, named) in [
+            ("tiled", "tiled: "),
+            ("froxels:depth=2", "depth: "),
+            ("froxels:slices=0", "slices=0: "),
+            ("froxels:far=NaN", "far=NaN: "),
+            ("froxels:near", "near=: "),
+            ("froxels:near=9,far=9", "near=9"),
+            ("all:slices=2", "slices: "),
+        ] {
+            let told = LightSearch::from_text(wrong).err().map(|error| error.to_string()).unwrap_or_default();
+            assert!(told.starts_with(named) && !told.contains('\n'), "{wrong}: {told}");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,128 @@
+//! The shadow maps of a view.
+
+use super::fitted::{Fitted, MapKey, Penumbra, ShadowMap};
+use super::local;
+use super::settings::{MAX_MAPS, ShadowSettings};
+use super::sun::SunScene;
+use super::volume::FitCamera;
+use framegraph_scene::levels::level_of;
+use framegraph_scene::{DrawLists, Light, LightKind, Renderables, Scene};
+use framegraph_shaders::layout::{ShadowMapUniforms, ShadowUniforms};
+use glam::{DVec3, Vec4};
+
+/// Radius of a spot or point light's bulb in meters where the settings have none: Filament's.
+const BULB_M: f32 = 0.02;
+
+/// The shadow maps of a view: cascades of the sun, a layer each of one texture, then maps of local lights, which share the
+/// other layers.
+#[derive(Clone, Debug)]
+pub struct ViewShadows {
+    /// What shaders read that is the same for all maps, and of the sun's.
+    pub uniforms: ShadowUniforms,
+    /// How many of the maps are cascades of the sun.
+    pub cascades: usize,
+    /// Cascades, then those of local lights.
+    pub maps: Vec<ShadowMap>,
+    /// What each map is made of.
+    pub(crate) keys: Vec<MapKey>,
+    /// Of each punctual light of the view, the number of its first map among those of local lights.
+    pub(crate) of_lights: Vec<Option<u32>>,
+    /// Whether the shadows of a light are weaker than 1.
+    pub are_weak: bool,
+    /// As asked for.
+    pub settings: ShadowSettings,
+}
+
+impl ViewShadows {
+    /// Fits maps for a view at `eye` that shares them with other cameras: all see what they need in them. The first camera
+    /// of `cameras` is the one that cascades are told apart by, and whose perspective the maps follow if it is alone. `levels` are
+    /// limited to what is `lod_error_texels` from the meshes at most.
+    pub(crate) fn fit(
+        scene: &Renderables,
+        sun: Option<&Light>,
+        lights: &[&Light],
+        cameras: &[FitCamera<'_>],
+        eye: DVec3,
+        settings: &ShadowSettings,
+        (lod_error_texels, mut levels): (f32, Vec<u8>),
+    ) -> (Self, Vec<u8>) {
+        let toward = sun.map_or(DVec3::Y, |sun| -sun.direction.as_dvec3());
+        let mut fitted = Vec::new();
+        let (mut far_ends, mut far_m) = (Vec::new(), 0.0);
+        if settings.cascades > 0 {
+            let sun = SunScene::new(scene, cameras, toward, settings).fit();
+            (fitted, far_ends, far_m) = (sun.maps, sun.far_ends, sun.far_m);
+        }
+        let cascades = fitted.len();
+        let first_eye = cameras.first().map_or(eye, |camera| camera.camera.eye);
+        let (of_lights, local) = local::fit(scene, lights, first_eye, settings);
+        fitted.extend(local);
+        fitted.iter().for_each(|map| map.limit_levels(scene, lod_error_texels.into(), &mut levels));
+        let angle = sun.map_or(0.0, |sun| match sun.kind {
+            LightKind::Directional { angular_radius_rad, .. } => angular_radius_rad,
+            _ => 0.0,
+        });
+        let of_sun = settings.bulb_m.map_or(Penumbra::Disc(angle.tan()), Penumbra::Bulb);
+        let of_local = Penumbra::Bulb(settings.bulb_m.unwrap_or(BULB_M));
+        let key = |fitted: &Fitted| {
+            let DrawLists { opaque, mask, .. } = &fitted.casters;
+            let stands = |i: &u32| (*i, scene.stamps()[*i as usize], 0);
+            let casters = opaque.iter().chain(mask).map(stands).collect();
+            MapKey { clip_from_world: fitted.clip_from_world, place: fitted.place, casters }
+        };
+        let keys = fitted.iter().map(key).collect();
+        let map = |(i, fitted): (usize, Fitted)| {
+            let penumbra = if i < cascades { of_sun } else { of_local };
+            ShadowMap::new(fitted, eye, settings, penumbra)
+        };
+        let ends = |i: usize| far_ends.get(i).map_or(f32::MAX, |end| *end as f32);
+        let moments = &settings.moments;
+        let exponent = settings.filter.exponent();
+        let fades = settings.far_m.is_some_and(|limit| limit <= far_m * (1.0 + 1e-9));
+        let mut uniforms = ShadowUniforms {
+            far_ends: Vec4::new(ends(0), ends(1), ends(2), ends(3)),
+            filter_kind: settings.filter.code(),
+            texels: settings.map_texels as f32,
+            inv_far2: if fades { (1.0 / (far_m * far_m)) as f32 } else { 0.0 },
+            exponent,
+            variance_floor: (moments.min_variance_scale * 0.01 * exponent).powi(2),
+            bleed: moments.bleed,
+            contact_m: settings.contact.map_or(0.0, |contact| contact.distance_m),
+            sun_strength: sun.map_or(1.0, Light::held_shadow_strength),
+            cascades: Default::default(),
+        };
+        let maps: Vec<ShadowMap> = fitted.into_iter().enumerate().map(map).collect();
+        for (own, map) in uniforms.cascades.iter_mut().zip(&maps[..cascades]) {
+            *own = map.uniforms;
+        }
+        let are_weak = lights.iter().copied().chain(sun).any(|light| light.held_shadow_strength() < 1.0);
+        (Self { uniforms, cascades, maps, keys, of_lights, are_weak, settings: *settings }, levels)
+    }
+
+    /// Notes in which level of detail each instance is drawn, by its number.
+    pub(crate) fn set_levels(&mut self, levels: &[u8]) {
+        for (number, _, level) in self.keys.iter_mut().flat_map(|key| &mut key.casters) {
+            *level = level_of(levels, *number);
+        }
+    }
+
+    /// What shaders read of each map of a local light.
+    pub(crate) fn local_uniforms(&self) -> Vec<ShadowMapUniforms> {
+        self.maps[self.cascades..].iter().map(|map| map.uniforms).collect()
+    }
+}
+
+/// How many maps the spot and point lights of a scene call for, beside the sun's, at most as many as there may be.
+#[must_use]
+pub fn local_maps(scene: &Scene, cascades: u8) -> u8 {
+    let count: usize = scene.lights.iter().filter(|light| light.is_on()).map(local::maps_of).sum();
+    count.min(usize::from(MAX_MAPS) - usize::from(cascades)) as u8
+}
+
+/// How many layers the spot and point lights of a scene share, seen from `eye`, at most as many as the settings allow: what
+/// to set [`ShadowSettings::local_layers`] to where they allow more.
+#[must_use]
+pub fn local_layers(scene: &Scene, eye: DVec3, settings: &ShadowSettings) -> u8 {
+    let lights: Vec<&Light> = scene.lights.iter().filter(|light| light.is_on()).collect();
+    local::layers(&scene.bounds(), &lights, eye, settings) as u8
+}

@@ -1,0 +1,7 @@
+//! Building blocks of settings: options given as `key=value`, the precision of shading, and the frame index.
+//!
+//! This folder uses no other one of this crate.
+
+pub mod frame_index;
+pub mod key_value;
+pub mod precision;
