@@ -333,7 +333,7 @@ mod tests {
 
     #[test]
     fn invalid_options_are_reported_in_one_line() {
-        let cases: [(&[&str], &str); 44] = [
+        let cases: [(&[&str], &str); 46] = [
             (&["--threads", "0"], "--threads 0"),
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
