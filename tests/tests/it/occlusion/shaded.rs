@@ -56,8 +56,9 @@ fn handed_on_occlusion_is_shaded() -> TestResult {
     let (up, down) = (picture(bent(1.0))?, picture(bent(-1.0))?);
     assert!(sum(&up) > sum(&down), "reflections of what is open are seen, and of what is closed not");
     // Filament takes the minimum of cone and scalar occlusion, so mirrors, whose cone has no width, keep contact
-    // shadows.
-    assert!(up.iter().zip(&half).all(|(bent, plain)| bent <= plain), "bent normals only take");
+    // shadows. Both are rounded to 8 bits.
+    assert!(up.iter().zip(&half).all(|(bent, plain)| *bent <= plain.saturating_add(1)), "bent normals only darken");
+    assert!(sum(&up) <= sum(&half) + half.len() as u64 / 100, "bent normals brighten few channels by rounding");
     Ok(())
 }
 
