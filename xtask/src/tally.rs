@@ -120,7 +120,7 @@ const KNOWN: [Known; 13] = [
         tests: &["compressed_textures_draw_their_source_picture", "every_level_is_sampled_as_rgba"],
         reason: "this device does not sample",
     },
-    Known { tests: &["misuse_does_not_compile"], reason: "the words are those of Rust" },
+    Known { tests: &["misuse_does_not_compile"], reason: "the expected output is of Rust" },
     // A model that is too large to be committed.
     Known { tests: &["scene", "the_helmet_agrees_with_rays"], reason: "tests/assets/models/FlightHelmet" },
     Known { tests: &["one_depth_of_four_samples_is_that_asked_for"], reason: "depth of several samples" },

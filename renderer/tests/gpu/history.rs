@@ -283,7 +283,7 @@ fn scopes_separate_histories_of_one_name() -> TestResult {
         let message = bench.run(|f| declare(f, &valid).and_then(|_| declare(f, &valid)));
         let message = message.map(|_| ()).map_err(|e| e.to_string()).err().unwrap_or_default();
         assert!(
-            message.contains("resource `sum`: another history has this name") && message.contains("scope"),
+            message.contains("resource `sum`: two histories have this name") && message.contains("scope"),
             "{message}"
         );
         for sum in [1.0, 2.0, 4.0] {

@@ -28,8 +28,6 @@ pub struct LightUniforms {
     pub shadow_strength: f32,
     /// Light channels in bits 0 to 7.
     pub channels: u32,
-    /// Padding to 16 bytes; zero.
-    pub _pad: f32,
 }
 
 /// Shape of a punctual light, as KHR_lights_punctual has it.
@@ -168,8 +166,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
         spot_offset,
         shadow_map,
         shadow_strength,
-        channels,
-        _pad
+        channels
     })]
 }
 

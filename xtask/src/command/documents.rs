@@ -198,7 +198,10 @@ mod tests {
     #[test]
     fn every_marked_table_is_compared_by_somebody() {
         let root = workspace::root();
-        let documents = fs::read_dir(root.join("docs")).expect("the folder is there").flatten().map(|file| file.path());
+        let files =
+            |folder| fs::read_dir(root.join(folder)).expect("the folder is there").flatten().map(|file| file.path());
+        let documents =
+            ["docs", "docs/design", "docs/guide", "docs/measurements", "docs/reference"].into_iter().flat_map(files);
         let mut marked = 0;
         for document in documents.chain([root.join("README.md")]) {
             let Ok(text) = fs::read_to_string(&document) else { continue };

@@ -168,10 +168,7 @@ mod tests {
             let (name, ..) = picture;
             let command = format!("cargo run --release --bin render -- {}", words(picture));
             assert!(document.contains(&command), "docs/gallery/README.md lacks `{command}`");
-            assert!(
-                document.contains(&format!("](gallery/{name}.png)")),
-                "docs/gallery/README.md does not show {name}"
-            );
+            assert!(document.contains(&format!("]({name}.png)")), "docs/gallery/README.md does not show {name}");
             small(&workspace::root().join(FOLDER).join(format!("{name}.png"))).expect("a small picture");
         }
         let shown = document.matches("](gallery/").count();

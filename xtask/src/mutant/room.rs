@@ -127,7 +127,7 @@ pub const ROOMS: &[Room] = &[
         language: Language::Rust,
         without: &[],
         paths: &[
-            "passes/src/upload",
+            "passes/src/gpu_scene/upload",
             "passes/src/gpu_scene/view.rs",
             "passes/src/light/sun.rs",
             "passes/src/gpu_scene/draw.rs",

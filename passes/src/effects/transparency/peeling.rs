@@ -26,7 +26,7 @@ static INTERFACE: Interface = Interface {
         &MATERIAL_BINDINGS,
         &["objects", "origins"],
     ],
-    constants: &[SurfaceDraw::TRAITS, "FIRST_LAYER"],
+    constants: &[SurfaceDraw::TRAITS, SurfaceDraw::OBJECT_LIGHT, "FIRST_LAYER"],
 };
 
 /// Depth of a layer of blended surfaces.
