@@ -1,4 +1,4 @@
-//! The numbers in the README match the program's output.
+//! The numbers in `docs/render.md` match the program's output.
 
 use crate::stage::plan;
 use framegraph::{Caps, Join, Options, StepId};
@@ -6,12 +6,12 @@ use framegraph_passes::grading::Look;
 use framegraph_passes::{PostSettings, Settings};
 use framegraph_shaders::layout::Grading;
 
-const README: &str = include_str!("../../../README.md");
+const README: &str = include_str!("../../../docs/render.md");
 
 /// Returns the cells of the rows of a command's table, without the head.
 fn rows(command: &str) -> Vec<Vec<&'static str>> {
     let mark = format!("<!-- table: {command} -->");
-    let (_, after) = README.split_once(&mark).expect("the README has the table");
+    let (_, after) = README.split_once(&mark).expect("docs/render.md has the table");
     let (table, _) = after.split_once("<!-- end -->").expect("the table ends");
     let lines = table.lines().filter(|line| line.starts_with('|'));
     let cells = |line: &'static str| line.trim_matches('|').split('|').map(str::trim).collect();
