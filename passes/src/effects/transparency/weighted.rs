@@ -1,6 +1,7 @@
 //! Weighted blended transparency: one pass over the surfaces, in any order.
 //!
-//! Exact for one layer, and for layers of one color. Where colors differ, near ones count more (`shaders/wgsl/lib/weighted_blending.wgsl`).
+//! Exact for one layer, and for layers of the same color. Otherwise nearer colors have more weight; see
+//! `shaders/wgsl/lib/weighted_blending.wgsl`.
 
 use super::surfaces::{ADDED, BlendedDraw, BlendedInputs, BlendedSurfaces, MULTIPLIED, TESTED};
 use crate::effects::color::surface::{HDR_FORMAT, SurfaceWorld};
