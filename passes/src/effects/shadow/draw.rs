@@ -132,7 +132,7 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
                 FullScreen { depth: Depth { write: true, ..Depth::NONE }, ..FullScreen::new(far, &[&frame]) }
                     .draw(programs, cx)?;
             }
-            // The draws of a view are merged by its maps, so each has its own.
+            // Draws are merged separately for each map.
             let batches = view.view.draws.casters.get(number).map_or(&[][..], |own| own);
             for (desc, batches) in [opaque, masked].into_iter().zip(batches) {
                 let draw = SurfaceDraw {

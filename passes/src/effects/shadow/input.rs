@@ -38,8 +38,8 @@ impl ShadowBindings {
     pub const NAMES: [&'static str; 6] =
         ["shadow", "local_maps", "shadow_map", "shadow_sampler", "shadow_depth", "shadow_moments"];
 
-    /// Names of the `override` constants: steps of contact shadows, maps of the sun and of punctual lights, a maximum
-    /// shadow distance of the sun, strengths below 1, and the display of cascades.
+    /// Names of the `override` constants: steps of contact shadows, whether the sun and punctual lights have maps, and
+    /// whether the sun's shadows end. Then whether any shadow is weaker than 1, and whether cascades are displayed.
     pub const CONSTANTS: [&'static str; 6] =
         ["CONTACT_STEPS", "CASCADES", "SHADOWS_END", "LAMP_SHADOWS", "WEAK_SHADOWS", "SHOW_CASCADES"];
 
