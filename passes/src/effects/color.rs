@@ -201,8 +201,8 @@ impl Color {
             _ if desc.extent == extent => None,
             Some(structure) => Some(pass.sampled(structure.mip(0))?),
             None => {
-                let hint = "give the color pass the structure that it was made of";
-                return Err(pass.error("ambient occlusion is of another size than the depth", hint));
+                let hint = "pass the structure that it was computed from";
+                return Err(pass.error("ambient occlusion has another size than the depth", hint));
             }
         };
         let bent_normals = desc.format == Format::Rgba16Float;

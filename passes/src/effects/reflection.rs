@@ -3,12 +3,12 @@
 //! ```text
 //! structure ───────────────────────┬─> reflection ─> reflection_level 1 ─> reflection_level 2 ─> … ─> color ─> hdr
 //! reflection_depth ────────────────┤                                                                          │
-//! hdr of the frame before ─────────┘ <────────────────────────────────────────────────────────────────────────┘
+//! hdr of the previous frame ───────┘ <────────────────────────────────────────────────────────────────────────┘
 //! ```
 //!
 //! Draws surfaces again, traces the reflected ray of each pixel through the structure, and reads radiance at the hit
 //! from the previous frame. The previous radiance is a history, not a copy. Rough surfaces read coarser levels of the
-//! result, selected by hit distance. Where rays hit nothing, the color pass reflects the environment.
+//! result, selected by hit distance. The color pass reflects the environment where rays hit nothing.
 
 mod pass;
 mod settings;
@@ -46,7 +46,7 @@ where
 {
     let (view, extent) = (handles.view(), handles.extent());
     let told = format_args!(
-        "the settings ask for it: rays of {} m find places in the radiance of the frame before, which is kept for them",
+        "the settings ask for it: rays of {} m read the radiance of the previous frame, which is kept for them",
         settings.reach_m
     );
     frame.graph_mut().note("reflection", told);

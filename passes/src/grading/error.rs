@@ -5,13 +5,13 @@
 #[non_exhaustive]
 pub enum GradingError {
     /// The look has a part that requires a table.
-    #[error("{what} is known to a table of grading alone; choose `GradeBy::Table` (`--grade-by table`)")]
+    #[error("{what} requires a grading table; choose `GradeBy::Table` (`--grade-by table`)")]
     NeedsTable {
         /// The part that requires a table.
         what: &'static str,
     },
     /// The tone curve is [`ToneMap::Own`](framegraph_shaders::layout::ToneMap::Own), but no curve is set.
-    #[error("the tone curve is the application's own, but it gave none; call `GradingTables::set_own`")]
+    #[error("the look selects `ToneMap::Own`, but no curve is set; call `GradingTables::set_own`")]
     NoOwnCurve,
 }
 

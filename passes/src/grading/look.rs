@@ -59,7 +59,7 @@ impl Look {
     /// Fails with [`GradingError::NeedsTable`] if a part requires a table.
     pub fn is_direct(&self, extras: &Extras) -> Result<(), GradingError> {
         match (self.tone_map, &extras.colors) {
-            (ToneMap::Own, _) => Err(GradingError::NeedsTable { what: "a tone curve of one's own" }),
+            (ToneMap::Own, _) => Err(GradingError::NeedsTable { what: "a custom tone curve" }),
             (_, Some(_)) => Err(GradingError::NeedsTable { what: "a file of colors" }),
             _ => Ok(()),
         }

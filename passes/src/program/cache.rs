@@ -91,7 +91,7 @@ mod tests {
     use crate::program::Interface;
     use framegraph_shaders::{Module, Source};
 
-    /// Two shaders of one text that import different files are two programs.
+    /// Shaders with the same text but different imports are different programs.
     #[test]
     fn shaders_of_one_text_are_told_apart_by_what_they_import() -> Result<(), PassError> {
         const TEXT: &str = "import package::own::tint::tint;

@@ -79,7 +79,7 @@ mod tests {
         assert_eq!(BloomChain::new(&padded, [640, 360]), chain(High, [640, 368]));
     }
 
-    /// No size has no level, and no level no texel.
+    /// Every size has at least one level, and every level at least one texel.
     #[test]
     fn hard_case_52_every_level_has_texels() {
         for quality in [BloomQuality::Low, BloomQuality::Medium, BloomQuality::High] {

@@ -300,7 +300,7 @@ mod tests {
         Program::new(&ProgramDesc { features, ..ProgramDesc::new(&SURFACE_SHADER, &SURFACE) })
     }
 
-    /// Every kind of surface and background finds all that it binds.
+    /// The interface provides every binding of all surface and background variants.
     #[test]
     fn every_variable_is_provided() -> Result<(), PassError> {
         let map = || Features::NONE.with(Feature::ENVIRONMENT_MAP);
@@ -318,7 +318,7 @@ mod tests {
         Ok(())
     }
 
-    /// Every lobe at once binds more textures than WebGPU promises; one lobe does not.
+    /// All lobes together bind more textures than WebGPU guarantees; one lobe does not.
     #[test]
     fn a_material_over_the_devices_limit_is_named() -> Result<(), PassError> {
         let frame = [Feature::SHADOWS, Feature::ENVIRONMENT_MAP, Feature::TEXTURED].into_iter().collect::<Features>();

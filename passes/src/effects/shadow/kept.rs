@@ -33,8 +33,8 @@ impl std::fmt::Display for Redraw {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::First => "never drawn before",
-            Self::Light => "of another light or fit",
-            Self::Casters => "of other casters",
+            Self::Light => "with a changed light or fit",
+            Self::Casters => "with changed casters",
         })
     }
 }
