@@ -51,8 +51,8 @@ pub enum StageError {
     },
     /// A stage would overwrite the result of an earlier one.
     #[error(
-        "stage `{stage}`: resolving `{samples}` into `{slot}` would overwrite the result of stage `{by}`; insert `{by}` after \
-         `{stage}`, or let it write `{samples}` and set `{slot}` to the resolved texture"
+        "stage `{stage}`: resolving `{samples}` into `{slot}` would overwrite the result of stage `{by}`; \
+         insert `{by}` after `{stage}`, or let it write `{samples}` and set `{slot}` to the resolved texture"
     )]
     Lost {
         /// The stage that would write.

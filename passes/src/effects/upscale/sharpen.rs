@@ -11,7 +11,7 @@ static SHADER: Module<'static> = library::pass("pass/sharpen.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface { groups: &[&["sharpening", "picture"]], constants: &["DECODE"] };
 
-/// Halvings of the strength at a sharpness of 0; there are none at 1. Filament's scale.
+/// Number of times that sharpness 0 halves the strength of sharpness 1, as in Filament.
 const MAX_STOPS: f32 = 2.0;
 
 /// Sharpens a picture depending on local contrast (RCAS of FSR 1.0). Uses [`Programs`] of the world.
