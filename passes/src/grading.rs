@@ -1,9 +1,9 @@
-//! Color grading and the tone curve: settings by name, and tables that both are baked into.
+//! Color grading and tone curves: settings by name, and lookup tables.
 //!
-//! [`Look`] is all that happens to a color between radiance and code, but dither. It is computed for each pixel, or once for
-//! each entry of a table ([`GradeBy`]): the same functions either way, in f32 by the shader and in f64 on the CPU. What only
-//! the CPU knows, a curve of the application's own and a file of colors, needs a table; [`GradingTables`] holds these, and
-//! the tables made of them. `docs/design/grading.md` has the errors.
+//! [`Look`] describes all color processing between radiance and the encoded picture, except dither. It is evaluated per
+//! pixel, or once for each entry of a table ([`GradeBy`]). Both use the same functions, in `f32` in the shader and in
+//! `f64` on the CPU. Custom tone curves and color tables exist only on the CPU, so they require a table.
+//! [`GradingTables`] holds them and the tables made from them. `docs/design/grading.md` has the errors.
 
 mod bake;
 mod by;

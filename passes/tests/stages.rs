@@ -127,10 +127,10 @@ fn the_last_picture_goes_into_the_target() -> Result<(), StageError> {
 fn names_that_are_wrong_are_said_with_those_that_are_right() {
     let mut stages = stages(&Settings::DEFAULT);
     let told = stages.insert_after("colour", radiance("glow", HDR)).map(drop).map_err(|e| e.to_string());
-    let expected = "there is no stage `colour`; the stages are shadow, occlusion, reflection, prepass, color, scene, transparent, resolve, taa, measure, dof, bloom, post, fxaa, upscale";
+    let expected = "unknown stage `colour`; use one of shadow, occlusion, reflection, prepass, color, scene, transparent, resolve, taa, measure, dof, bloom, post, fxaa, upscale";
     assert_eq!(told, Err(expected.to_owned()));
     let told = stages.replace(radiance("glow", HDR)).map(drop).map_err(|e| e.to_string());
-    assert!(told.is_err_and(|told| told.contains("no stage `glow`")));
+    assert!(told.is_err_and(|told| told.contains("unknown stage `glow`")));
     let told = stages.insert_before("post", radiance("color", HDR)).map(drop);
     assert_eq!(told, Err(StageError::Twice { name: "color" }));
 }

@@ -1,4 +1,4 @@
-//! Bloom and lens flare: what a lens scatters of what is bright.
+//! Bloom and lens flare: light that a lens scatters from bright parts of the picture.
 //!
 //! ```text
 //! hdr ─> bloom_first ─> bloom_down 1 ─> bloom_down 2 ─> … ─> bloom_up … ─> bloom_up 0 ─┐
@@ -6,9 +6,9 @@
 //!  └───────────────────────────────────────────────────────────────────────────────────┘
 //! ```
 //!
-//! The first pass keeps what glows, and nothing that is not finite; each further one makes it smaller, and on the way back all
-//! sizes are added up. Post-processing lays that over the picture, which takes the radiance as a texture: so it is not inlined
-//! into the color pass. Filament's filters and order; `docs/design/lens.md` has the errors.
+//! The first pass selects bright parts and discards NaN and infinity. Each further pass halves the size, and on the way
+//! back all levels are summed. Post-processing adds the sum to the radiance at other pixels too, so it is not inlined
+//! into the color pass. Filters and order are Filament's; `docs/design/lens.md` has the errors.
 
 mod chain;
 mod flare;
@@ -27,11 +27,10 @@ use crate::program::Programs;
 use crate::stages::{Handles, Slot, StageError};
 use framegraph_wgpu::Frame;
 
-/// Declares bloom of a picture of `size_texels`, with lens flare where the settings say so; hands on [`Slot::BLOOM`] and
-/// [`Slot::FLARE`].
+/// Declares bloom for a picture of `size_texels`, with lens flare if enabled; sets [`Slot::BLOOM`] and [`Slot::FLARE`].
 ///
 /// # Errors
-/// What a pass refuses.
+/// Returns the error of a refused pass.
 pub fn bloom<W>(
     frame: &mut Frame<W>,
     handles: &mut Handles,

@@ -1,10 +1,11 @@
-//! The color pass: opaque and masked surfaces, the sky behind them, blended surfaces in front.
+//! The color pass: opaque and masked surfaces, the background, and sorted blended surfaces.
 //!
-//! Over a depth prepass it shades what that found nearest, each pixel once. Without one it finds the nearest itself and may shade a
-//! pixel several times; the picture is the same to the bit, since the last of equally near surfaces is seen either way.
+//! After a depth prepass, only the nearest surfaces are shaded, each pixel once. Otherwise the pass tests depth itself
+//! and may shade a pixel several times. Both give bit-identical pictures, since the last of equally near surfaces wins
+//! either way.
 //!
-//! Where the plan inlines point-wise passes that read the radiance, every draw of this pass ends with what they do, and
-//! the radiance is never written.
+//! If the plan inlines point-wise passes that read the radiance, the shaders of this pass apply them, and the radiance
+//! is never written.
 
 mod background;
 pub mod surface;
@@ -27,63 +28,64 @@ use framegraph::{
 };
 use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError};
 
-/// Shades what is nearest.
+/// Shades the visible surfaces and the background.
 #[derive(Clone, Copy, Debug)]
 pub struct Color {
-    /// The view that is drawn: that of the depth.
+    /// View to draw; must be the view of the depth.
     pub view: ViewId,
-    /// Where depth comes from; the radiance gets its size.
+    /// Source of the depth; the radiance has its size.
     pub depth: ColorDepth,
-    /// The shadow maps of the view, depth or moments; without them nothing casts.
+    /// Shadow maps of the view, depth or moments; `None` for no shadows.
     pub shadow: Option<Texture>,
-    /// Ambient occlusion of what does not blend: visibility in red, and where it is of the format Rgba16Float the mean open
-    /// direction in the other channels. Of the depth's size, or smaller.
+    /// Ambient occlusion of opaque and masked surfaces: visibility in red; in format Rgba16Float, the bent normal in
+    /// the other channels. Has the size of the depth, or is smaller.
     pub occlusion: Option<Texture>,
-    /// The structure of the scene: what ambient occlusion was made of, needed where that is smaller than the depth; and what
-    /// contact shadows look around in.
+    /// Depth pyramid of the scene. Required if the ambient occlusion is smaller than the depth, and for contact
+    /// shadows.
     pub structure: Option<Texture>,
-    /// What rays found in the picture, all levels written, and how long their ways were: it takes the place of the environment in
-    /// the reflections of what does not blend.
+    /// Screen-space reflections with all levels written, and their hit distances. Replace reflections of the
+    /// environment on opaque and masked surfaces.
     pub reflections: Option<[Texture; 2]>,
-    /// The sun's shadow maps are completed by contact shadows, where there are maps and a structure.
+    /// Adds contact shadows to the sun's shadow maps, if maps and structure are given.
     pub contact_shadows: bool,
-    /// Samples per texel, those of the depth; above 1 the result is averaged.
+    /// Samples per texel, as in the depth; above 1, the result is resolved.
     pub samples: u8,
-    /// Materials test and write stencil: depth of this pass's own then has it. That of a prepass says itself whether it has.
+    /// Gives the pass's own depth a stencil aspect, for materials that use stencil. A prepass's depth brings its own.
     pub stencil: bool,
-    /// Some surface blends.
+    /// True if any surface blends.
     pub blended: bool,
-    /// How blended surfaces are put in order: those of an unordered technique are left to later passes.
+    /// Order of blended surfaces. Unordered techniques draw them in later passes.
     pub transparency: Transparency,
-    /// A blended surface writes depth ([`TransparencyMode::TwoPassesOneSide`](framegraph_scene::TransparencyMode)).
+    /// True if a blended surface writes depth
+    /// ([`TransparencyMode::TwoPassesOneSide`](framegraph_scene::TransparencyMode)).
     pub blended_depth: bool,
-    /// A later pass draws what transmits and blends ([`Transparent`](crate::effects::transmission::Transparent)): this one leaves it
-    /// out.
+    /// Skips transmissive and blended surfaces, which a later pass draws
+    /// ([`Transparent`](crate::effects::transmission::Transparent)).
     pub opaque_only: bool,
-    /// What stands behind everything is drawn; not needed where surfaces cover the picture.
+    /// Draws the background; not needed if surfaces cover the picture.
     pub sky: bool,
-    /// Format of the radiance: [`HDR_FORMAT`], or another that can be drawn into.
+    /// Format of the radiance: [`HDR_FORMAT`], or another renderable format.
     pub format: Format,
-    /// Where the radiance goes; a new texture has the size of the depth, and the format.
+    /// Target of the radiance; a new texture has the size of the depth and this format.
     pub into: Target,
-    /// How surfaces are shaded.
+    /// Shading options.
     pub shading: Shading,
-    /// Fog before all that is drawn.
+    /// Fog; `None` for no fog.
     pub fog: Option<FogSettings>,
 }
 
-/// Where the depth comes from that the color pass tests.
+/// Source of the depth that the color pass tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColorDepth {
-    /// From a [`Prepass`](crate::effects::depth::prepass::Prepass): the nearest surfaces, which are shaded where depth is equal.
+    /// Depth of a [`Prepass`](crate::effects::depth::prepass::Prepass). Surfaces are shaded where their depth is equal.
     Prepass(Texture),
-    /// From the color pass itself, of this size.
+    /// Depth of the color pass itself, of this size.
     Own(Extent),
 }
 
 impl Color {
-    /// The main view over the depth of a prepass: one sample per texel, no shadow map, no ambient occlusion, nothing that blends, no fog, half floats. Other fields
-    /// are set in a struct expression that ends with `..Color::new(depth)`.
+    /// Creates a pass for the main view over the depth of a prepass: one sample per texel, half floats, and no shadows,
+    /// ambient occlusion, blending or fog. Override other fields with `..Color::new(depth)`.
     pub fn new(depth: Texture) -> Self {
         Self {
             view: ViewId::MAIN,
@@ -108,20 +110,20 @@ impl Color {
     }
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct ColorIo {
     shadow: Option<ShadowInput>,
     contact: Option<View>,
     occlusion: Option<OcclusionInput>,
     reflections: Option<[View; 2]>,
-    /// The depth has stencil.
+    /// True if the depth has stencil.
     stencil: bool,
-    /// Depth of the nearest surfaces, reversed.
+    /// Reversed depth of the nearest surfaces.
     pub depth: Texture,
-    /// Scene-referred radiance times exposure, linear Rec.709, single-sampled.
+    /// Pre-exposed radiance, linear Rec.709, with one sample.
     pub hdr: Texture,
-    /// The same, of each sample; `hdr` itself at one sample per texel.
+    /// Radiance of each sample; the same as `hdr` at one sample per texel.
     pub samples: Texture,
 }
 
@@ -159,8 +161,8 @@ impl Pass for Color {
         }
         let desc = TextureDesc::new(extent, self.format);
         let hdr = pass.target(self.into, "hdr", desc);
-        // The sky covers what no surface does, but samples at the edge of a surface are covered one by one: clearing costs
-        // a tile nothing and leaves nothing to chance.
+        // The background covers texels without surfaces. Samples at surface edges are covered one by one, so clear
+        // them; this is free on tilers.
         let black = Intent::Clear(ClearValue::BLACK);
         if self.samples == 1 {
             let hdr = pass.color(hdr, black)?;
@@ -183,7 +185,7 @@ where
 }
 
 impl Color {
-    /// Whether no later pass draws blended surfaces.
+    /// Returns true if no later pass draws blended surfaces.
     fn draws_blended(&self) -> bool {
         !self.opaque_only && !self.transparency.is_unordered()
     }
@@ -199,8 +201,8 @@ impl Color {
             _ if desc.extent == extent => None,
             Some(structure) => Some(pass.sampled(structure.mip(0))?),
             None => {
-                let hint = "give the color pass the structure that it was made of";
-                return Err(pass.error("ambient occlusion is of another size than the depth", hint));
+                let hint = "pass the structure that it was computed from";
+                return Err(pass.error("ambient occlusion has another size than the depth", hint));
             }
         };
         let bent_normals = desc.format == Format::Rgba16Float;
@@ -226,10 +228,10 @@ impl Color {
             ..SurfaceInputs::shadowed(shadow)
         };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, epilogue, cx)?;
-        // A prepass has tested and written the stencil of what it drew.
+        // A prepass has already tested and written stencil.
         let own_stencil = stencil && matches!(self.depth, ColorDepth::Own(_));
         let program = |variant| bindings.program(world.programs, variant);
-        // A prepass has cut the holes of masked surfaces, but something else may be as near there.
+        // A prepass has cut out masked surfaces, but another surface may have equal depth there.
         let depth = match self.depth {
             ColorDepth::Prepass(_) => Depth::EQUAL,
             ColorDepth::Own(_) => Depth::NEARER,
@@ -251,7 +253,7 @@ impl Color {
     }
 }
 
-/// What the passes do that the plan inlined into this one.
+/// Returns the effects that the plan inlined into this pass.
 fn epilogue(cx: &mut Cx<'_>) -> Result<Epilogue, RecordError> {
     let mut all = Epilogue::default();
     for (_, epilogue) in cx.epilogues()? {

@@ -1,4 +1,4 @@
-//! Measuring a frame: how bright its light is, and how near and far what it shows; for facts that only the GPU knows.
+//! Measures a frame: the range of its light and of its depth, for feature culling by values that only the GPU knows.
 //!
 //! ```text
 //! hdr ───> light ─> smaller ─┐
@@ -6,8 +6,8 @@
 //! depth ─> depth ─> smaller ─┘
 //! ```
 //!
-//! Each pass takes eight by eight texels to their most and their least; what is left, a texel for 4096 of the picture, is
-//! copied to the CPU, which looks at it when it has come.
+//! Each pass reduces 8×8 texels to their maximum and minimum. The remaining texels, one per 4096 pixels, are copied to
+//! the CPU, which reads them once they have arrived.
 
 mod pass;
 mod readback;
@@ -23,10 +23,10 @@ use crate::stages::{Handles, Slot, StageError};
 use framegraph::Texture;
 use framegraph_wgpu::Frame;
 
-/// Declares what is to be measured; hands on [`Slot::MEASURED_LIGHT`] and [`Slot::MEASURED_DEPTH`].
+/// Declares the requested measurements; sets [`Slot::MEASURED_LIGHT`] and [`Slot::MEASURED_DEPTH`].
 ///
 /// # Errors
-/// What a pass refuses.
+/// Returns the error of a refused pass.
 pub(crate) fn measure<W>(frame: &mut Frame<W>, handles: &mut Handles, measure: Measure) -> Result<(), StageError>
 where
     W: AsRef<Programs> + ?Sized + 'static,
@@ -43,7 +43,7 @@ where
     Ok(())
 }
 
-/// The step, and one that makes its result an eighth as wide and high again.
+/// Declares a step, and one that reduces its result to an eighth of the width and height again.
 fn smaller<W>(frame: &mut Frame<W>, handles: &Handles, first: MeasureStep) -> Result<Texture, StageError>
 where
     W: AsRef<Programs> + ?Sized + 'static,

@@ -1,5 +1,5 @@
-//! Fog: what is far away fades into the light that the air scatters. A feature of the shaders of surfaces and sky, so a frame
-//! without fog has nothing of it. Filament's model; `docs/design/lens.md` has how far off it is.
+//! Fog: distant surfaces fade into light scattered by the air. A shader feature of surfaces and background, so a frame
+//! without fog pays nothing. Filament's model; `docs/design/lens.md` has its error.
 
 mod keys;
 
@@ -7,79 +7,80 @@ use crate::gpu_scene::view::CameraView;
 use framegraph_shaders::layout::FogUniforms;
 use glam::Vec3;
 
-/// Exponent of density between the fog's height and the eye that is followed, either way.
+/// Limit of the density exponent between the fog's height and the eye, in either direction.
 const MAX_EXPONENT: f64 = 80.0;
 
-/// Fog that lies about a height. Defaults are Filament's, but for the color.
+/// Height fog. Defaults are Filament's, except for the color.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct FogSettings {
-    /// Extinction at the height, in 1/m, 0 or more; 0 leaves fog out.
+    /// Extinction at `height_m`, in 1/m, 0 or more; 0 disables fog.
     pub density: f32,
-    /// The height that the density is that of, in m, world space.
+    /// Height at which `density` applies, in meters, world space.
     pub height_m: f32,
-    /// How fast density falls with height, in 1/m, 0 or more: one over the height over which it falls to 1/e. 0: it is the
-    /// same everywhere.
+    /// Height falloff of density, in 1/m, 0 or more: the inverse of the height over which density falls to 1/e. 0 is
+    /// uniform fog.
     pub falloff: f32,
-    /// The first meters from the eye that are clear, 0 or more.
+    /// Distance from the eye at which fog begins, in meters, 0 or more.
     pub start_m: f32,
-    /// What is farther from the eye than this, in m, is not in fog; the sky is 1e10 m away.
+    /// Distance beyond which there is no fog, in meters; the sky is at 1e10 m.
     pub cut_off_m: f32,
-    /// The most that fog hides, 0 to 1.
+    /// Maximum opacity, 0 to 1.
     pub most_opacity: f32,
-    /// What it scatters from all around.
+    /// Ambient in-scattered light.
     pub color: FogColor,
-    /// What it scatters of the sun; none for nothing.
+    /// In-scattered sunlight; `None` for none.
     pub glow: Option<FogGlow>,
-    /// Where there is a clear start, the mean density is that of what is not clear; else it is that of the whole way, as in
-    /// Filament.
+    /// If fog begins at a distance, averages density over the foggy part of the ray only. Otherwise over the whole ray,
+    /// as in Filament.
     pub exact: bool,
 }
 
-/// What fog scatters from all around, at full opacity.
+/// Ambient light that fog scatters, at full opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub enum FogColor {
-    /// Radiance in nits, linear Rec.709.
+    /// Constant radiance in nits, linear Rec.709.
     Radiance([f32; 3]),
-    /// The environment's, blurred as for the roughest surface.
+    /// The environment, blurred as for the roughest surface.
     Environment {
-        /// Factor on it, linear Rec.709.
+        /// Factor on the radiance, linear Rec.709.
         tint: [f32; 3],
-        /// Distance in m from which on it is sharper by `sharp_levels`, above 0. Before, it gets sharper in proportion.
+        /// Distance in meters at which the environment is sharper by `sharp_levels`, above 0. It sharpens linearly up
+        /// to there.
         sharp_m: f32,
-        /// Levels of blur that the distance removes, 0 or more. One is Filament's `fogColorFromIbl`. With as many as the
-        /// environment has, fog at `sharp_m` is the sky itself, as of a `skyColor` in Filament.
+        /// Mip levels of blur removed at that distance, 0 or more. 1 is Filament's `fogColorFromIbl`. With all levels
+        /// of the environment, fog at `sharp_m` is the sky itself, as with Filament's `skyColor`.
         #[cfg_attr(feature = "files", serde(default = "one_level"))]
         sharp_levels: f32,
     },
 }
 
-/// What fog scatters of the sun toward the eye.
+/// Sunlight that fog scatters toward the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct FogGlow {
-    /// Where scattering begins, in m from the eye, 0 or more.
+    /// Distance from the eye at which scattering begins, in meters, 0 or more.
     pub start_m: f32,
-    /// Exponent of the cosine between the ray and the sun, above 0: more is a smaller glow.
+    /// Exponent of the cosine between ray and sun, above 0; larger values give a smaller glow.
     pub size: f32,
 }
 
-/// The levels that files leave out.
+/// Default of `sharp_levels` in files.
 #[cfg(feature = "files")]
 fn one_level() -> f32 {
     1.0
 }
 
 impl Default for FogSettings {
-    /// [`FogSettings::DEFAULT`].
+    /// Returns [`FogSettings::DEFAULT`].
     fn default() -> Self {
         Self::DEFAULT
     }
 }
 
 impl FogSettings {
-    /// Filament's fog, in the color of the environment.
+    /// Filament's defaults, with the color of the environment.
     pub const DEFAULT: Self = Self {
         density: 0.1,
         height_m: 0.0,
@@ -92,12 +93,12 @@ impl FogSettings {
         exact: true,
     };
 
-    /// Whether there is any fog.
+    /// Returns true if there is any fog.
     pub fn is_seen(&self) -> bool {
         self.density > 0.0
     }
 
-    /// As the shaders of a view read it.
+    /// Returns the uniforms for a view.
     pub(crate) fn uniforms(&self, view: &CameraView) -> FogUniforms {
         let exponent = -f64::from(self.falloff) * (view.eye.y - f64::from(self.height_m));
         let here = f64::from(self.density) * exponent.clamp(-MAX_EXPONENT, MAX_EXPONENT).exp();
@@ -110,7 +111,7 @@ impl FogSettings {
         let flag = |on: bool| f32::from(u8::from(on));
         FogUniforms {
             color,
-            // So dense that nothing is seen through a millimeter.
+            // Opaque within a millimeter.
             density: here.min(1e6) as f32,
             falloff: self.falloff,
             start_m: self.start_m,

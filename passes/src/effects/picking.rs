@@ -1,7 +1,7 @@
-//! Picking: which instance of a scene is seen at a pixel, how deep and where.
+//! Picking: returns the instance visible at a pixel, its depth and its position.
 //!
-//! A graph of its own draws the view's surfaces into one texel whose clip space is that of the picked pixel. So a pick costs
-//! the vertices of a depth prepass and nothing for pixels, and the frame itself has no part in it. Stencil is ignored.
+//! A separate graph draws the view's surfaces into one texel whose clip space is that of the picked pixel. A pick costs
+//! the vertices of a depth prepass and one pixel; the frame itself is unaffected. Stencil is ignored. Corresponds to
 //! Filament's `View::pick`.
 
 use crate::effects::depth::prepass::DEPTH_FORMAT;
@@ -22,7 +22,7 @@ use framegraph_wgpu::{
 };
 use glam::{DMat4, DVec2, DVec3};
 
-/// Format of what a pick draws: the instance's number plus one, and the bits of its depth.
+/// Format of a pick: instance index plus one, and the bits of the depth.
 pub const PICK_FORMAT: Format = Format::Rg32Uint;
 
 static SHADER: Module<'static> = library::pass("pass/pick.wgsl").unwrap();
@@ -30,19 +30,19 @@ static SHADER: Module<'static> = library::pass("pass/pick.wgsl").unwrap();
 static INTERFACE: Interface =
     Interface { groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &[SurfaceDraw::TRAITS] };
 
-/// Surface that a pick found.
+/// Surface found by a pick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pick {
-    /// Number of the instance in [`Scene::instances`](framegraph_scene::Scene::instances).
+    /// Index of the instance in [`Scene::instances`](framegraph_scene::Scene::instances).
     pub instance: usize,
-    /// Reversed depth at the middle of the pixel: 1 at the near plane, 0 at the far plane.
+    /// Reversed depth at the pixel center: 1 at the near plane, 0 at the far plane.
     pub depth: f32,
-    /// Position of the surface at the middle of the pixel, in meters, world space.
+    /// Position of the surface at the pixel center, in meters, world space.
     pub position: DVec3,
 }
 
 impl Pick {
-    /// Reads the bytes of the texel that [`PickPass`] wrote for a pixel of `view`; `None` where no surface is.
+    /// Reads the bytes of the texel that [`PickPass`] wrote for a pixel of `view`. Returns `None` for the background.
     #[must_use]
     pub fn from_texel(texel: &[u8], view: &CameraView, pixel: [u32; 2]) -> Option<Self> {
         let (words, _) = texel.as_chunks::<4>();
@@ -54,24 +54,25 @@ impl Pick {
     }
 }
 
-/// Which surfaces a pick finds.
+/// Surfaces that can be picked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pickable {
-    /// Opaque and alpha-tested ones, as in Filament.
+    /// Opaque and alpha-tested surfaces, as in Filament.
     #[default]
     Opaque,
-    /// Those that blend or transmit too, at whatever alpha. Filament's `View::setTransparentPickingEnabled`.
+    /// All surfaces, including blended and transmissive ones at any alpha. Filament's
+    /// `View::setTransparentPickingEnabled`.
     All,
 }
 
-/// Draws the number and the depth of the instance that a view shows at one pixel into a texture of one texel.
+/// Draws the index and depth of the instance visible at one pixel of a view into a texture of one texel.
 #[derive(Clone, Copy, Debug)]
 pub struct PickPass {
-    /// The view that is picked in. Jitter is left out.
+    /// View to pick in. Its jitter is ignored.
     pub view: ViewId,
-    /// The pixel, from the left and the top of the view as it is drawn.
+    /// Pixel, from the top left of the view as rendered.
     pub pixel: [u32; 2],
-    /// Which surfaces are found.
+    /// Surfaces that can be picked.
     pub pickable: Pickable,
 }
 
@@ -115,7 +116,7 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
     }
 }
 
-/// Middle of a pixel in normalized device coordinates.
+/// Returns the pixel center in normalized device coordinates.
 fn middle_ndc(view: &CameraView, [x, y]: [u32; 2]) -> DVec2 {
     let uv = (DVec2::new(x.into(), y.into()) + 0.5) / size_px(view);
     DVec2::new(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y)
@@ -125,21 +126,21 @@ fn size_px(view: &CameraView) -> DVec2 {
     view.frame.viewport_size_px.as_dvec2().max(DVec2::ONE)
 }
 
-/// The frame of a view whose clip space is that of one pixel.
+/// Returns the frame uniforms of a view whose clip space is that of one pixel.
 fn frame_of_pixel(view: &CameraView, pixel: [u32; 2]) -> FrameUniforms {
     let to_middle = DMat4::from_translation(-middle_ndc(view, pixel).extend(0.0));
     let to_pixel = DMat4::from_scale(size_px(view).extend(1.0)) * to_middle;
     FrameUniforms { clip_from_world: (to_pixel * view.clip_from_world).as_mat4(), ..view.frame }
 }
 
-/// A pick that failed.
+/// Error of a pick.
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum PickError {
-    /// The pixel is not in the view.
+    /// The pixel is outside the view.
     #[error("pixel {},{} is outside of the view of {}x{} pixels; pick one within it", pixel[0], pixel[1], size[0], size[1])]
     Outside {
-        /// The pixel that was picked.
+        /// The requested pixel.
         pixel: [u32; 2],
         /// Width and height of the view in pixels.
         size: [u32; 2],
@@ -167,7 +168,7 @@ impl std::fmt::Debug for PickError {
     }
 }
 
-/// Picks in the views of a world, one pixel at a time, and waits for the answer. Keeps pipelines and plan from pick to pick.
+/// Picks single pixels in the views of a world and waits for the result. Keeps its pipelines and plan between picks.
 pub struct Picker<W: ?Sized + 'static> {
     executor: Executor,
     frame: Frame<W>,
@@ -179,17 +180,17 @@ impl<W> Picker<W>
 where
     W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + Sync + ?Sized + 'static,
 {
-    /// A picker on this device.
+    /// Creates a picker for this device.
     #[must_use]
     pub fn new(gpu: &Gpu) -> Self {
         Self { executor: Executor::new(gpu), frame: Frame::new(), plan: Plan::new(), scratch: Scratch::new() }
     }
 
-    /// Returns the surface that a view shows at the middle of a pixel, from the left and the top of the view as it is drawn;
-    /// `None` where only the background is.
+    /// Returns the surface at the center of a pixel, counted from the top left of the view as rendered. Returns `None`
+    /// for the background.
     ///
     /// # Errors
-    /// Fails for a pixel outside of the view, a view that the world does not have, and if the device fails.
+    /// Fails if the pixel is outside the view, the world does not have the view, or the device fails.
     pub fn pick(
         &mut self,
         world: &W,

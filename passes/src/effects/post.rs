@@ -1,8 +1,8 @@
-//! Post: what happens to a color between shading and the display, all of it point-wise.
+//! Post-processing: point-wise effects between shading and the display.
 //!
-//! The effects are bloom, exposure, vignette, edge fade, grading, tone curve and encoding with dither, in this order; a table takes
-//! the place of grading and tone curve where that is asked for. A pass does all of them, or one of several passes does its
-//! share. Where the plan inlines it, the pass hands the same effects to the shader that makes the color.
+//! The effects are bloom, exposure, vignette, edge fade, grading, tone curve, and encoding with dither, in this order.
+//! A lookup table can replace grading and tone curve. One pass applies all effects, or each has a pass of its own. If
+//! the plan inlines the pass, the shader that computes the color applies the effects.
 
 pub mod pixel_effects;
 pub mod tone_resolve;
@@ -26,29 +26,29 @@ static SHADER: Module<'static> = library::pass("pass/post.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface { groups: &[&["hdr"]], constants: &[] };
 
-/// One of the effects.
+/// A point-wise effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PostEffect {
-    /// What glows over the picture.
+    /// Adds bloom.
     Bloom,
-    /// Exposure compensation.
+    /// Applies exposure compensation.
     Exposure,
-    /// Darker corners.
+    /// Darkens the corners.
     Vignette,
-    /// A color toward the edges.
+    /// Fades to a color toward the edges.
     EdgeFade,
-    /// White balance, contrast, saturation and what else changes colors.
+    /// Grades colors: white balance, contrast, saturation and others.
     Grading,
-    /// The tone curve.
+    /// Applies the tone curve.
     ToneMap,
-    /// Grading, tone curve and encoding from a table.
+    /// Applies grading, tone curve and encoding from a lookup table.
     Table,
-    /// Codes of the target, with dither.
+    /// Encodes for the target, with dither.
     Encode,
 }
 
 impl PostEffect {
-    /// All of them, in their order.
+    /// All effects, in the order of application.
     pub const ALL: [Self; 8] = [
         Self::Bloom,
         Self::Exposure,
@@ -60,7 +60,7 @@ impl PostEffect {
         Self::Encode,
     ];
 
-    /// Name of a pass that does nothing else.
+    /// Returns the name of a pass with only this effect.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Bloom => "bloom_mix",
@@ -75,26 +75,26 @@ impl PostEffect {
     }
 }
 
-/// Parameters of the effects.
+/// Settings of post-processing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct PostSettings {
-    /// Exposure compensation in EV, before the vignette. (That of grading comes after it.)
+    /// Exposure compensation in EV, before the vignette. The compensation of grading is applied after it.
     pub compensation_ev: f32,
-    /// By how many stops the corners are darker than the middle; 0 leaves the effect out.
+    /// Darkening of the corners relative to the center, in stops; 0 disables the vignette.
     pub vignette_ev: f32,
-    /// A color that the picture fades into toward its edges; none leaves the effect out.
+    /// Color to which the picture fades toward its edges; `None` disables the fade.
     pub edge_fade: Option<EdgeFade>,
-    /// Color grading and tone curve; neutral grading leaves that effect out.
+    /// Color grading and tone curve; neutral grading is skipped.
     pub look: Look,
-    /// Whether the look is computed or looked up.
+    /// Evaluation of the look: per pixel or from a lookup table.
     pub by: GradeBy,
-    /// Amplitude of the dither: 1 is half a code either way, 0 is none.
+    /// Amplitude of the dither: 1 is ± half an 8-bit step, 0 disables it.
     pub dither: f32,
 }
 
 impl PostSettings {
-    /// Hill's curve of ACES and dither, nothing else.
+    /// Hill's fit of the ACES curve, and dither.
     pub const DEFAULT: Self = Self {
         compensation_ev: 0.0,
         vignette_ev: 0.0,
@@ -109,7 +109,7 @@ impl PostSettings {
         dither: 1.0,
     };
 
-    /// The effects that make a difference, in their order; with what `blooms`, bloom too.
+    /// Returns the effects with a visible result, in order; includes bloom if `blooms`.
     pub fn effects(&self, blooms: bool) -> impl Iterator<Item = PostEffect> + use<> {
         let (vignette, fade, table) = (self.vignette_ev > 0.0, self.edge_fade.is_some(), self.by != GradeBy::Direct);
         let grading = self.look.grading != Grading::NEUTRAL;
@@ -126,47 +126,47 @@ impl PostSettings {
 }
 
 impl Default for PostSettings {
-    /// [`PostSettings::DEFAULT`].
+    /// Returns [`PostSettings::DEFAULT`].
     fn default() -> Self {
         Self::DEFAULT
     }
 }
 
-/// From pre-exposed linear Rec.709 toward the display. Of the world it needs [`Programs`], the [`FrameIndex`] and
-/// [`GradingTables`].
+/// Applies post-processing to pre-exposed linear Rec.709. Uses [`Programs`], the [`FrameIndex`] and [`GradingTables`]
+/// of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct Post {
-    /// Scene-referred radiance times exposure, single-sampled.
+    /// Pre-exposed radiance with one sample.
     pub hdr: Texture,
-    /// What glows, laid over it first. It is read at other pixels too: such a pass is not inlined.
+    /// Bloom, applied first. It is read at other pixels too, so the pass is not inlined.
     pub bloom: Option<BloomMix>,
-    /// Where the picture goes; a new one has the size of `hdr`, eight bits a channel after the last effect, and half floats
+    /// Target. A new texture has the size of `hdr`, with 8 bits per channel after the last effect and half floats
     /// before.
     pub into: Target,
-    /// Parameters of the effects.
+    /// Settings of the effects.
     pub settings: PostSettings,
-    /// The only effect, where each has a pass of its own.
+    /// The only effect to apply, if each has a pass of its own.
     pub only: Option<PostEffect>,
-    /// An edge filter follows: write encoded values with their luma in alpha.
+    /// Writes encoded values with luma in alpha, for an edge filter that follows.
     pub for_fxaa: bool,
-    /// Where the pass is inlined, round its input as the device would on the way through a texture: the same bits as
-    /// without inlining. None works on what was shaded, in 32 bits.
+    /// If inlined, rounds the input as a store to its texture would, so the result is bit-identical to no inlining.
+    /// `None` uses the shaded color in 32 bits.
     pub stored: Option<StoreRounding>,
 }
 
-/// What the post pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct PostIo {
     hdr: View,
     bloom: Option<MixViews>,
-    /// What the target is seen through.
+    /// Format of the view through which the target is written.
     view: Option<Format>,
-    /// The picture: sRGB encoded, by the target's format or (for an edge filter) by the shader; linear before the last
+    /// The picture: sRGB encoded, by the target's format or, for an edge filter, by the shader. Linear before the last
     /// effect.
     pub ldr: Texture,
 }
 
-/// What the effect `bloom` reads: the glow; flare and dirt, or the glow again where there is none.
+/// Inputs of the bloom effect: the glow, flare and dirt. The glow stands in for missing textures.
 #[derive(Clone, Copy, Debug)]
 struct MixViews {
     mix: BloomMix,
@@ -219,7 +219,7 @@ impl<W: AsRef<Programs> + AsRef<FrameIndex> + AsRef<GradingTables> + ?Sized> Rec
 }
 
 impl Post {
-    /// The effects of this pass with their settings.
+    /// Returns the effects of this pass with their settings.
     fn effects(
         &self,
         io: &PostIo,
@@ -308,7 +308,7 @@ impl Post {
         Ok(all)
     }
 
-    /// What the way through the texture that the epilogue does without would have done.
+    /// Returns an effect that rounds as the store to the skipped texture would have done.
     fn rounding(&self, cx: &Cx<'_>) -> Result<Epilogue, RecordError> {
         let Some(stored) = self.stored else { return Ok(Epilogue::default()) };
         let format = cx.format_of(self.hdr)?;
@@ -327,7 +327,7 @@ impl Post {
     }
 }
 
-/// Values of the overrides of the effect `tone`. Every curve that a shader has, has a number.
+/// Returns the overrides of the effect `tone`. Every curve with shader code has a number.
 fn tone_constants(look: &Look) -> Vec<(SettingName, f64)> {
     let flag = |on: bool| f64::from(u8::from(on));
     let generic = look.tone_map.generic();

@@ -1,15 +1,14 @@
-//! Reflections in what the picture shows.
+//! Screen-space reflections.
 //!
 //! ```text
 //! structure ───────────────────────┬─> reflection ─> reflection_level 1 ─> reflection_level 2 ─> … ─> color ─> hdr
 //! reflection_depth ────────────────┤                                                                          │
-//! hdr of the frame before ─────────┘ <────────────────────────────────────────────────────────────────────────┘
+//! hdr of the previous frame ───────┘ <────────────────────────────────────────────────────────────────────────┘
 //! ```
 //!
-//! Surfaces are drawn once more, each pixel's mirrored ray is followed through the structure, and what it meets is taken from
-//! the radiance of the frame before, which is kept for that: a history, no copy. Rough surfaces read a level of the
-//! result that is as blurred as the ray's way makes it. Where rays found nothing, the color pass reflects the environment as without. `docs/design/reflections.md` has how far off
-//! it is.
+//! Draws surfaces again, traces the reflected ray of each pixel through the structure, and reads radiance at the hit
+//! from the previous frame. The previous radiance is a history, not a copy. Rough surfaces read coarser levels of the
+//! result, selected by hit distance. The color pass reflects the environment where rays hit nothing.
 
 mod pass;
 mod settings;
@@ -27,12 +26,13 @@ use crate::stages::{Handles, Slot, StageError};
 use framegraph::{Format, TextureDesc};
 use framegraph_wgpu::Frame;
 
-/// Declares reflections of a view, the structure that they are followed through, and the history of its radiance, of `format`,
-/// which the color pass is to draw into; hands on [`Slot::REFLECTIONS`],
-/// [`Slot::REFLECTION_WAYS`] and [`Slot::HDR_HISTORY`].
+/// Declares screen-space reflections of a view, with the structure and a history of the radiance. The color pass has to
+/// draw into that history, of format `format`. Sets [`Slot::REFLECTIONS`], [`Slot::REFLECTION_WAYS`] and
+/// [`Slot::HDR_HISTORY`].
 ///
 /// # Errors
-/// What a pass refuses; the history's name, `hdr`, when another view of the graph has it, which a scope of its own prevents.
+/// Returns the error of a refused pass. The history is named `hdr`; a second view of the graph needs a scope of its
+/// own.
 pub fn reflections<W>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
@@ -46,7 +46,7 @@ where
 {
     let (view, extent) = (handles.view(), handles.extent());
     let told = format_args!(
-        "the settings ask for it: rays of {} m find places in the radiance of the frame before, which is kept for them",
+        "the settings ask for it: rays of {} m read the radiance of the previous frame, which is kept for them",
         settings.reach_m
     );
     frame.graph_mut().note("reflection", told);

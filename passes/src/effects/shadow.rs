@@ -1,4 +1,5 @@
-//! Shadow maps on the GPU: one texture with a layer for each cascade of the sun, and layers shared by spot and point lights.
+//! Shadow maps on the GPU: one texture, with a layer for each cascade of the sun, and layers shared by spot and point
+//! lights.
 //!
 //! | file | content |
 //! | --- | --- |

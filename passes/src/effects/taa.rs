@@ -1,9 +1,9 @@
 //! Temporal anti-aliasing: accumulates frames with different sub-pixel offsets.
 //!
 //! ```text
-//! hdr ─────────────────────┬─> taa ─> what frames come to ─> sharpen (where asked for) ─> post
+//! hdr ─────────────────────┬─> taa ─> accumulated hdr ─> sharpen (optional) ─> post
 //! depth ───────────────────┤             │
-//! that of the frame before ┘ <───────────┘
+//! previous accumulated hdr ┘ <───────────┘
 //! ```
 //!
 //! Each frame is offset by a fraction of a pixel ([`CameraView::jitter`](crate::CameraView::jitter), by

@@ -1,16 +1,16 @@
-//! Surfaces that let light through: a picture of everything behind them, and a second pass that draws them over it.
+//! Transmission: a picture of everything behind transmissive surfaces, and a pass that draws them over it.
 //!
 //! ```text
 //! color (opaque, sky) ─> scene/0 (copy, with distance) ─> scene/1 ─> … ─> scene/n   each level of the one above
 //!                    └───────────────────────────────────────────────────┴─> transparent (transmissive, blended)
 //! ```
 //!
-//! A frame has these passes only where the scene transmits; each level of the picture is written once and read by the next,
-//! which the plan follows level by level.
+//! A frame has these passes only if the scene has transmissive surfaces. Each level of the picture is written once and
+//! read by the next; the plan tracks levels separately.
 //!
-//! Glass is not seen through glass of the same [`Layer`]. With several layers, all of this is done once for each, from the back
-//! to the front, and each sees those behind it. A further layer costs its copy with its levels, and color and depth are stored
-//! and loaded once more.
+//! Glass is not visible through glass of the same [`Layer`]. With several layers, the passes repeat for each, from back
+//! to front, and each layer sees the layers behind it. A further layer costs its copy with all levels, and one more
+//! store and load of color and depth.
 
 use crate::effects::color::surface::{SurfaceBindings, SurfaceInputs, SurfaceWorld};
 use crate::effects::depth::resolve::can_read_samples;
@@ -31,44 +31,44 @@ use framegraph_wgpu::{Cx, Depth, Epilogue, Record, RecordError, SamplerDesc};
 
 static SHADER: Module<'static> = library::pass("pass/scene.wgsl").unwrap();
 
-/// The copy reads the depth as one of two variables, by its samples.
+/// The shader reads depth as one of two variables, depending on its sample count.
 static COPY: Interface =
     Interface { groups: &[&["frame", "hdr", "scene_depth", "scene_depth_samples"]], constants: &[] };
 
 static LEVEL: Interface = Interface { groups: &[&["source", "source_sampler"]], constants: &[] };
 
-/// Format of the picture: radiance, and the distance in alpha.
+/// Format of the picture: radiance, and distance in alpha.
 const SCENE_FORMAT: Format = Format::Rgba16Float;
 
-/// How many levels a picture of a frame of this size has: until the smaller side is a few texels, of which no blur is left
-/// to make, and at least one.
+/// Returns the number of levels for a frame of this size, at least one. The last level is a few texels wide, beyond
+/// which no blur remains.
 #[must_use]
 pub fn scene_levels(frame_texels: [u32; 2]) -> u8 {
     let smaller = frame_texels[0].min(frame_texels[1]).max(1);
     (smaller.ilog2() as u8).saturating_sub(1).max(1)
 }
 
-/// Level 0 of the picture: the radiance of opaque surfaces and the sky, and how far away they are. Of the world it needs
-/// [`Programs`] and the camera of its view.
+/// Makes level 0 of the picture: radiance of opaque surfaces and background, with their distance. Uses [`Programs`] and
+/// the view's camera of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneCopy {
-    /// The view whose camera the depth belongs to.
+    /// View of the depth.
     pub view: ViewId,
-    /// Radiance, single-sampled; the picture gets its size.
+    /// Radiance with one sample; the picture has its size.
     pub hdr: Texture,
-    /// Depth of what is there, of as many samples as the frame has.
+    /// Depth so far, with the samples of the frame.
     pub depth: Texture,
-    /// How many levels the picture is to have.
+    /// Number of levels of the picture.
     pub levels: u8,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneCopyIo {
     hdr: View,
     depth: View,
     samples: u8,
-    /// The picture, level 0 written.
+    /// The picture, with level 0 written.
     pub scene: Texture,
 }
 
@@ -96,20 +96,20 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for SceneCopy {
     }
 }
 
-/// One further level of the picture, made of the one above.
+/// Makes one further level of the picture from the level above.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneLevel {
-    /// The picture, its levels above `level` written.
+    /// The picture, with all levels above `level` written.
     pub scene: Texture,
-    /// Which level to make, 1 or more.
+    /// Index of the level, at least 1.
     pub level: u8,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneLevelIo {
     above: View,
-    /// The picture, this level written too.
+    /// The picture, including this level.
     pub scene: Texture,
 }
 
@@ -130,28 +130,28 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for SceneLevel {
     }
 }
 
-/// The most layers of glass.
+/// Maximum number of layers of glass.
 pub const MAX_GLASS_LAYERS: u8 = 4;
 
-/// Which transmissive surfaces are drawn together: of those that lie over one another, all in one place of the order.
+/// Layer of transmissive surfaces that are drawn together. Overlapping surfaces are sorted into layers by depth order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layer {
-    /// How many layers of glass are before it.
+    /// Number of layers in front of it.
     pub before: u8,
-    /// It has all that is farther back, too.
+    /// True if the layer also holds everything farther back.
     pub last: bool,
 }
 
 impl Layer {
-    /// All glass in one.
+    /// A single layer with all transmissive surfaces.
     pub const ONLY: Self = Self { before: 0, last: true };
 
-    /// So many layers, from the back to the front.
+    /// Returns this number of layers, from back to front.
     pub fn all(count: u8) -> impl Iterator<Item = Self> {
         (0..count).rev().map(move |before| Self { before, last: before + 1 == count })
     }
 
-    /// The draws of this layer, nearest first.
+    /// Returns the draws of this layer, nearest first.
     fn of(self, view: &CameraView) -> DrawList {
         let is_own = |layer: u8| if self.last { layer >= self.before } else { layer == self.before };
         let draws = view.draws.transmit.iter().zip(&view.visible.transmit_layers);
@@ -159,43 +159,43 @@ impl Layer {
     }
 }
 
-/// Transmissive surfaces of a layer over what is behind it, and after the first layer's the blended ones.
+/// Draws transmissive surfaces of a layer over everything behind it; after the nearest layer, draws blended surfaces.
 #[derive(Clone, Copy, Debug)]
 pub struct Transparent {
-    /// The view that is drawn.
+    /// View to draw.
     pub view: ViewId,
-    /// Depth of opaque surfaces, and of glass farther back.
+    /// Depth of opaque surfaces and of farther layers.
     pub depth: Texture,
-    /// The picture of what is behind, all levels written.
+    /// The picture behind the layer, with all levels written.
     pub scene: Texture,
-    /// Radiance of opaque surfaces and the sky, and of glass farther back, single-sampled.
+    /// Radiance of everything behind the layer, with one sample.
     pub hdr: Texture,
-    /// The same, of each sample; `hdr` itself at one sample per texel.
+    /// Radiance of each sample; the same as `hdr` at one sample per texel.
     pub samples: Texture,
-    /// The shadow maps of the view.
+    /// Shadow maps of the view; `None` for no shadows.
     pub shadow: Option<Texture>,
-    /// Which of the transmissive surfaces.
+    /// Layer to draw.
     pub layer: Layer,
-    /// How blended surfaces are put in order: those of an unordered technique are left to later passes.
+    /// Order of blended surfaces. Unordered techniques draw them in later passes.
     pub transparency: Transparency,
-    /// How surfaces are shaded.
+    /// Shading options.
     pub shading: Shading,
-    /// Fog before all that is drawn.
+    /// Fog; `None` for no fog.
     pub fog: Option<FogSettings>,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct TransparentIo {
     scene: View,
     shadow: Option<ShadowInput>,
-    /// The depth has stencil.
+    /// True if the depth has stencil.
     stencil: bool,
     /// Depth of opaque and transmissive surfaces.
     pub depth: Texture,
-    /// Radiance with everything in it, of each sample; `hdr` itself at one sample per texel.
+    /// Radiance of each sample, including this layer; the same as `hdr` at one sample per texel.
     pub samples: Texture,
-    /// Scene-referred radiance times exposure with everything in it, single-sampled.
+    /// Pre-exposed radiance with one sample, including this layer.
     pub hdr: Texture,
 }
 
@@ -233,7 +233,7 @@ impl Transparent {
         };
         let bindings = SurfaceBindings::new(inputs, &self.shading, world, Epilogue::default(), cx)?;
         let program = |variant| bindings.program(world.programs, variant);
-        // The prepass has not drawn these: masked ones are cut here, and the cutoff of opaque ones cuts nothing.
+        // The prepass has not drawn these: masked surfaces are cut out here; opaque surfaces ignore the cutoff.
         let transmissive = SurfaceDraw {
             program: &program,
             frame: &bindings.frame,

@@ -1,7 +1,7 @@
-//! Blended surfaces in the right order, whatever the order of the draws.
+//! Order-independent transparency.
 //!
-//! Sorting by object is wrong where surfaces cross, and where a surface lies in front of itself. [`Transparency`] has the
-//! techniques that do without it:
+//! Sorting by object is wrong for intersecting surfaces, and for a surface in front of itself. [`Transparency`] lists
+//! techniques that need no sorting:
 //!
 //! ```text
 //! weighted: color (opaque) ─> weighted (sums) ──────────────────────────┐
@@ -9,9 +9,9 @@
 //! peeled:   color (opaque) ─> depth 1, layer 1 ─> depth 2, layer 2 ─> … ┘
 //! ```
 //!
-//! Surfaces that transmit are drawn before, in their own passes ([`transmission`](crate::effects::transmission)): blended surfaces lie
-//! over them where they are nearer, and are hidden by them where they are farther, as with sorted surfaces.
-//! With several samples a texel, sums are kept for each sample.
+//! Transmissive surfaces are drawn earlier, in their own passes ([`transmission`](crate::effects::transmission)).
+//! Blended surfaces cover farther ones and are hidden by nearer ones, as with sorting. With several samples per texel,
+//! sums are kept per sample.
 
 mod composite;
 mod keys;

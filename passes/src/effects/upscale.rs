@@ -1,8 +1,8 @@
-//! Upscaling: a frame that is drawn smaller than it is shown, made as large as it is shown.
+//! Upscaling: renders a frame at a lower resolution and enlarges the picture for display.
 //!
-//! The view's pictures are of a share of the output's width and height ([`Upscale::extent`]); all stages draw so many texels, and
-//! the last makes the picture larger: bilinearly, or along its edges and then sharpened (FSR 1.0). The share may change from frame
-//! to frame: histories are read by coordinate and go on.
+//! The view's pictures have a percentage of the output's width and height ([`Upscale::extent`]). The last stage
+//! enlarges the picture: bilinearly, or along edges with sharpening (FSR 1.0). The percentage may change every frame;
+//! histories are read by texture coordinate and stay valid.
 
 mod dynamic;
 mod settings;
@@ -23,27 +23,27 @@ static SHADER: Module<'static> = library::pass("pass/upscale.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface { groups: &[&["picture", "picture_sampler"]], constants: &["DECODE"] };
 
-/// Format of pictures between post-processing and upscaling: encoded codes, which are filtered as they are.
+/// Format of pictures between post-processing and upscaling: sRGB encoded, and filtered without decoding.
 const ENCODED: Format = Format::Rgba8Unorm;
 
-/// Makes a picture larger. Needs no more of the world than [`Programs`].
+/// Enlarges a picture. Uses [`Programs`] of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct Enlarge {
-    /// The picture, sRGB encoded in a linear format.
+    /// Picture, sRGB encoded in a linear format.
     pub picture: Texture,
-    /// How.
+    /// Upscaling filter.
     pub filter: UpscaleFilter,
-    /// Size of a new picture.
+    /// Size of a new target.
     pub extent: Extent,
-    /// Where the result goes; into an sRGB format it is decoded. A new one is encoded as the picture is.
+    /// Target. Colors are decoded for sRGB formats; a new texture is encoded like the picture.
     pub into: Target,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct EnlargeIo {
     picture: View,
-    /// The larger picture.
+    /// The enlarged picture.
     pub output: Texture,
 }
 
@@ -71,7 +71,8 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for Enlarge {
     }
 }
 
-/// Where a stage before puts its picture: encoded and of the view's size where upscaling comes, else in the stage's target.
+/// Returns the target for a stage before upscaling: encoded and of the view's size if upscaling follows, otherwise
+/// [`Handles::target`].
 pub(crate) fn encoded_target<W: ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &Handles,
@@ -83,10 +84,10 @@ pub(crate) fn encoded_target<W: ?Sized + 'static>(
     }
 }
 
-/// Declares upscaling of [`Slot::PICTURE`], encoded, to the frame's size, and sharpening where it is asked for.
+/// Declares upscaling of the encoded [`Slot::PICTURE`] to the frame's size, and sharpening if enabled.
 ///
 /// # Errors
-/// What a pass refuses.
+/// Returns the error of a refused pass.
 pub fn enlarge<W>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Upscale) -> Result<(), StageError>
 where
     W: AsRef<Programs> + ?Sized + 'static,

@@ -1,4 +1,4 @@
-//! Tables of looks, on the CPU.
+//! Baking of looks into tables, on the CPU.
 
 use super::by::{TableDesc, TableFormat};
 use super::error::GradingError;
@@ -10,24 +10,24 @@ use glam::DVec3;
 use half::f16;
 use std::ops::ControlFlow;
 
-/// A look as a table: sRGB codes by LogC of linear Rec.709.
+/// Look baked into a table: maps LogC of linear Rec.709 to sRGB encoded colors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Baked {
     /// Entries along each axis.
     pub entries: usize,
-    /// Whether there are three axes; otherwise each channel has its own column of one axis.
+    /// True for three axes; otherwise each channel has a curve along one axis.
     pub cube: bool,
-    /// Numbers of the entries.
+    /// Number format of the entries.
     pub format: TableFormat,
-    /// Entries as they are uploaded, red fastest.
+    /// Entries in upload order, red fastest.
     pub bytes: Vec<u8>,
 }
 
 impl Baked {
-    /// Evaluates the look at each entry, on as many threads as there are cores.
+    /// Evaluates the look at each entry, with one thread per core.
     ///
     /// # Errors
-    /// As [`Look::function`].
+    /// Fails as [`Look::function`] does.
     pub fn new(look: &Look, extras: &Extras, desc: TableDesc) -> Result<Self, GradingError> {
         let function = look.function(extras)?;
         let cube = !look.keeps_channels_apart(extras);
@@ -58,7 +58,7 @@ impl Baked {
         Ok(Self { entries, cube, format, bytes })
     }
 
-    /// The entry at a place, as a device reads it.
+    /// Returns the entry at these indices, as the device reads it.
     pub fn entry(&self, [r, g, b]: [usize; 3]) -> DVec3 {
         let index = r + self.entries * (g + self.entries * b);
         match self.format {
@@ -75,8 +75,8 @@ impl Baked {
         }
     }
 
-    /// The codes that the table has for linear Rec.709 light: `tetrahedral` between the four entries of a simplex, otherwise
-    /// between eight, as a device's filter does.
+    /// Returns the sRGB encoded color that the table gives for linear Rec.709. `tetrahedral` interpolates between four
+    /// entries; otherwise between eight, as texture filtering does.
     pub fn sample(&self, color: DVec3, tetrahedral: bool) -> DVec3 {
         let last = self.entries - 1;
         let at = table_coordinates(color, self.entries as f64) * self.entries as f64 - 0.5;
@@ -89,7 +89,7 @@ impl Baked {
             return DVec3::new(channel(0), channel(1), channel(2));
         }
         if tetrahedral {
-            // From the near corner along the axes by falling share.
+            // Walks from the near corner along the axes, largest fraction first.
             let mut order = [0, 1, 2];
             order.sort_by(|a, b| share[*b].total_cmp(&share[*a]));
             let mut place = below;
@@ -109,7 +109,7 @@ impl Baked {
     }
 }
 
-/// Codes as bytes of an entry.
+/// Packs a color into the bytes of an entry.
 fn pack(codes: DVec3, format: TableFormat) -> Vec<u8> {
     match format {
         TableFormat::Rgb10 => {

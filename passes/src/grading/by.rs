@@ -1,44 +1,44 @@
-//! Whether colors are graded one by one, or looked up.
+//! Evaluation of color grading: per pixel, or from a table.
 
 use crate::settings::key_value::{KeyValue, OptionError};
 
-/// How a look is brought to a picture. Which is faster is the device's matter.
+/// Evaluation of a look. The faster one depends on the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum GradeBy {
-    /// Every pixel is computed.
+    /// Computes every pixel.
     #[default]
     Direct,
-    /// Every pixel is looked up in a table, which is made when the look changes.
+    /// Looks up every pixel in a table, which is rebuilt when the look changes.
     Table(TableDesc),
 }
 
-/// Size and numbers of a table.
+/// Size and number format of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct TableDesc {
-    /// Entries along each of three axes, 16 to 64. Where channels do not mix, a table of one axis with
-    /// [`TableDesc::CURVE_ENTRIES`] is made instead.
+    /// Entries along each of three axes, 16 to 64. If channels do not mix, a one-dimensional table with
+    /// [`TableDesc::CURVE_ENTRIES`] entries is used instead.
     pub entries: u8,
-    /// Numbers of the entries.
+    /// Number format of the entries.
     pub format: TableFormat,
 }
 
-/// Numbers of a table's entries, which are sRGB encoded.
+/// Number format of table entries, which are sRGB encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum TableFormat {
-    /// Ten bits a channel: `Rgb10a2Unorm`, four bytes an entry.
+    /// `Rgb10a2Unorm`: 10 bits per channel, 4 bytes per entry.
     Rgb10,
-    /// Half floats: `Rgba16Float`, eight bytes an entry. Curves of one axis always have them.
+    /// `Rgba16Float`: half floats, 8 bytes per entry. Always used by one-dimensional tables.
     Half,
 }
 
 impl TableFormat {
-    /// Both.
+    /// Both formats.
     pub const ALL: [Self; 2] = [Self::Rgb10, Self::Half];
 
-    /// As it is asked for.
+    /// Returns the name used in options.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rgb10 => "rgb10",
@@ -48,17 +48,17 @@ impl TableFormat {
 }
 
 impl TableDesc {
-    /// Entries of a table of one axis.
+    /// Number of entries of a one-dimensional table.
     pub const CURVE_ENTRIES: usize = 1024;
-    /// 32 entries of half floats: Filament's high quality.
+    /// 32 entries in half floats: Filament's high quality.
     pub const DEFAULT: Self = Self { entries: 32, format: TableFormat::Half };
 }
 
 impl GradeBy {
-    /// `direct`, `table`, `table:SIZE`, or `table:SIZE:rgb10|f16`.
+    /// Parses `direct`, `table`, `table:SIZE`, or `table:SIZE:FORMAT` with the format `rgb10` or `f16`.
     ///
     /// # Errors
-    /// [`OptionError::Value`].
+    /// Fails with [`OptionError::Value`] for any other text.
     pub fn from_text(text: &str) -> Result<Self, OptionError> {
         let mut desc = TableDesc::DEFAULT;
         let choice = KeyValue { key: "by", value: text };

@@ -1,22 +1,22 @@
-//! Why a look cannot be brought to a picture.
+//! Errors of color grading.
 
-/// A look cannot be brought to a picture as it is asked for.
+/// Error of evaluating a look.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GradingError {
-    /// What was chosen is only known to a table.
-    #[error("{what} is known to a table of grading alone; choose `GradeBy::Table` (`--grade-by table`)")]
+    /// The look has a part that requires a table.
+    #[error("{what} requires a grading table; choose `GradeBy::Table` (`--grade-by table`)")]
     NeedsTable {
-        /// What was chosen.
+        /// The part that requires a table.
         what: &'static str,
     },
-    /// The tone curve of the application's own is missing.
-    #[error("the tone curve is the application's own, but it gave none; call `GradingTables::set_own`")]
+    /// The tone curve is [`ToneMap::Own`](framegraph_shaders::layout::ToneMap::Own), but no curve is set.
+    #[error("the look selects `ToneMap::Own`, but no curve is set; call `GradingTables::set_own`")]
     NoOwnCurve,
 }
 
 impl std::fmt::Debug for GradingError {
-    /// The sentence, since that is what an `unwrap` shows.
+    /// Writes the message, since `unwrap` shows it.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         std::fmt::Display::fmt(self, f)
     }

@@ -1,14 +1,15 @@
-//! Looks by name: `contrast=1.2`, `shadows=1.2:1:1:0.05`, and tone curves: `aces`, `generic:1.5:0.18:0.2:8`.
+//! Option parsing of looks, such as `contrast=1.2` or `shadows=1.2:1:1:0.05`, and of tone curves, such as `aces` or
+//! `generic:1.5:0.18:0.2:8`.
 
 use super::look::Look;
 use crate::settings::key_value::{KeyValue, OptionError};
 use framegraph_shaders::layout::{GenericCurve, ToneMap};
 use glam::{Vec3, Vec4};
 
-/// The most that light, offsets and slopes may be.
+/// Limit of light, offsets and slopes.
 const MOST: f32 = 1000.0;
 
-/// What a choice takes, and where it goes.
+/// Setting to change, with its limits.
 enum Place<'a> {
     Number(&'a mut f32, f32, f32),
     Three(&'a mut Vec3, f32, f32),
@@ -17,7 +18,7 @@ enum Place<'a> {
 }
 
 impl Look {
-    /// The names that [`Look::set`] takes, in the order in which their effects are applied.
+    /// Names accepted by [`Look::set`], in the order in which their effects are applied.
     pub const KEYS: [&'static str; 22] = [
         "exposure",
         "night",
@@ -72,10 +73,10 @@ impl Look {
         })
     }
 
-    /// Changes one choice by name. Colors are numbers separated by `:`; one number is for all three channels.
+    /// Changes one setting by name. Colors are numbers separated by `:`; one number sets all three channels.
     ///
     /// # Errors
-    /// [`OptionError`] with the name, the value and what is needed.
+    /// Fails for an unknown name or an invalid value; the [`OptionError`] names it and the accepted values.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), OptionError> {
         let choice = KeyValue { key, value };
         match self.place(key) {
@@ -105,10 +106,10 @@ const CURVES: [&str; ToneMap::ALL.len()] = {
     names
 };
 
-/// A tone curve by name; `generic:CONTRAST:IN:OUT:WHITE` has numbers of its own.
+/// Parses the name of a tone curve, or `generic:CONTRAST:IN:OUT:WHITE`.
 ///
 /// # Errors
-/// [`OptionError`] with the curves that there are, or the numbers that are needed.
+/// Fails for an unknown name or invalid numbers; the [`OptionError`] lists the curves or the accepted numbers.
 pub fn tone_map(text: &str) -> Result<ToneMap, OptionError> {
     let Some(own) = text.strip_prefix("generic:") else {
         return ToneMap::from_name(text).ok_or_else(|| KeyValue { key: text, value: "" }.unknown(&CURVES));

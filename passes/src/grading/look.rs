@@ -1,4 +1,4 @@
-//! All that happens to a color between radiance and code, but dither; and its value in f64.
+//! Color processing from radiance to the encoded picture, except dither; with its `f64` reference.
 
 use super::error::GradingError;
 use framegraph_scene::ColorTable;
@@ -10,27 +10,28 @@ use glam::DVec3;
 use std::fmt;
 use std::sync::Arc;
 
-/// Grading and tone curve.
+/// Color grading and tone curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Look {
-    /// Before the curve.
+    /// Grading, before the tone curve.
     pub grading: Grading,
-    /// The curve.
+    /// Tone curve.
     pub tone_map: ToneMap,
-    /// Only luminance goes through the curve, and hues stay (Filament's luminance scaling).
+    /// Applies the curve to luminance only, which keeps hues (Filament's luminance scaling).
     pub luminance_scaling: bool,
-    /// What the display cannot show is moved to where it can, at its hue, and not cut off (Filament's gamut mapping).
+    /// Moves colors outside the display's gamut into it at the same hue, instead of clipping (Filament's gamut
+    /// mapping).
     pub gamut_mapping: bool,
 }
 
-/// A tone curve as a function of linear Rec.2020, to linear Rec.2020 of a display whose white is 1. It is called with
-/// finite numbers, none below 0, from several threads; what it makes beyond 0…1 is cut off, and no number is 0.
+/// Custom tone curve: maps linear Rec.2020 to linear Rec.2020 of a display with white at 1. Called with finite
+/// non-negative numbers, from several threads. Results are clamped to 0…1, and NaN becomes 0.
 #[derive(Clone)]
 pub struct OwnCurve(Arc<dyn Fn(DVec3) -> DVec3 + Send + Sync>);
 
 impl OwnCurve {
-    /// A function as a curve.
+    /// Wraps a function as a tone curve.
     pub fn new(curve: impl Fn(DVec3) -> DVec3 + Send + Sync + 'static) -> Self {
         Self(Arc::new(curve))
     }
@@ -42,37 +43,37 @@ impl fmt::Debug for OwnCurve {
     }
 }
 
-/// What a look may have beside its settings, known to tables alone.
+/// Parts of a look that exist only on the CPU and require a table.
 #[derive(Clone, Debug, Default)]
 pub struct Extras {
-    /// The curve of [`ToneMap::Own`].
+    /// Curve for [`ToneMap::Own`].
     pub own: Option<OwnCurve>,
-    /// Colors that sRGB codes become at the end.
+    /// Color table applied last, to sRGB encoded colors.
     pub colors: Option<Arc<ColorTable>>,
 }
 
 impl Look {
-    /// Whether all of it is settings, which a shader can compute.
+    /// Checks that a shader can compute the whole look.
     ///
     /// # Errors
-    /// [`GradingError::NeedsTable`] with what it is that is not.
+    /// Fails with [`GradingError::NeedsTable`] if a part requires a table.
     pub fn is_direct(&self, extras: &Extras) -> Result<(), GradingError> {
         match (self.tone_map, &extras.colors) {
-            (ToneMap::Own, _) => Err(GradingError::NeedsTable { what: "a tone curve of one's own" }),
+            (ToneMap::Own, _) => Err(GradingError::NeedsTable { what: "a custom tone curve" }),
             (_, Some(_)) => Err(GradingError::NeedsTable { what: "a file of colors" }),
             _ => Ok(()),
         }
     }
 
-    /// Whether the tone effect gives sRGB encoded colors: the curve is an encoded one, and neither luminance scaling nor gamut
-    /// mapping, which work on light, follows.
+    /// Returns true if the tone effect outputs sRGB encoded colors. The curve is then an encoded one, without luminance
+    /// scaling and gamut mapping, which need linear light.
     pub const fn is_encoded(&self) -> bool {
         self.tone_map.is_encoded() && !self.luminance_scaling && !self.gamut_mapping
     }
 
-    /// Whether no channel of what comes out depends on another, so that a table of one axis holds it.
+    /// Returns true if output channels are independent, so that a one-dimensional table suffices.
     pub fn keeps_channels_apart(&self, extras: &Extras) -> bool {
-        // Grading in Rec.2020 mixes channels of Rec.709, but where it is left out.
+        // Grading in Rec.2020 mixes the channels of Rec.709, unless it is neutral and skipped.
         let grading = if self.tone_map.graded_in_rec2020() {
             self.grading == Grading::NEUTRAL
         } else {
@@ -85,10 +86,10 @@ impl Look {
             && extras.colors.is_none()
     }
 
-    /// The look as a function of linear Rec.709 light to sRGB codes, 0…1.
+    /// Returns the look as a function from linear Rec.709 to sRGB encoded colors, 0…1.
     ///
     /// # Errors
-    /// [`GradingError::NoOwnCurve`].
+    /// Fails with [`GradingError::NoOwnCurve`] if the custom curve is missing.
     pub fn function<'a>(&self, extras: &'a Extras) -> Result<impl Fn(DVec3) -> DVec3 + Sync + use<'a>, GradingError> {
         let Self { grading, tone_map, luminance_scaling, gamut_mapping } = *self;
         let grade = (grading != Grading::NEUTRAL).then(|| Grade::new(&grading, tone_map.graded_in_rec2020()));

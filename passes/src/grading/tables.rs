@@ -1,4 +1,4 @@
-//! Tables on the device, made when they are first asked for.
+//! Lookup tables on the device, made on first use.
 
 use super::bake::Baked;
 use super::by::{TableDesc, TableFormat};
@@ -10,11 +10,11 @@ use std::sync::{Arc, Mutex};
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView};
 
-/// Most tables that are kept: one for each of a few views. The one made first goes first.
+/// Maximum number of cached tables: one for each of a few views. The oldest is removed first.
 const MAX_TABLES: usize = 8;
 
-/// Tables of looks, by what they were made of: a look that stays has its table made once. A part of the world that
-/// [`Post`](crate::effects::post::Post) is recorded with; of one device.
+/// Cache of lookup tables by look: a table is made once while its look stays the same. Part of the world of
+/// [`Post`](crate::effects::post::Post). Belongs to one device.
 #[derive(Debug, Default)]
 pub struct GradingTables {
     extras: Extras,
@@ -28,34 +28,34 @@ struct Made {
     table: GpuTable,
 }
 
-/// A table to sample.
+/// Lookup table on the device.
 #[derive(Clone, Debug)]
 pub(crate) struct GpuTable {
-    /// Whether it has three axes.
+    /// True for three axes.
     pub(crate) cube: bool,
-    /// The texture.
+    /// Texture of the table.
     pub(crate) view: TextureView,
 }
 
 impl GradingTables {
-    /// The curve of [`ToneMap::Own`](framegraph_shaders::layout::ToneMap::Own). Tables are made anew.
+    /// Sets the curve for [`ToneMap::Own`](framegraph_shaders::layout::ToneMap::Own). Discards all tables.
     pub fn set_own(&mut self, curve: Option<OwnCurve>) {
         self.extras.own = curve;
         self.forget();
     }
 
-    /// Colors that sRGB codes become after everything else, as a `.cube` file states them. Tables are made anew.
+    /// Sets the color table applied after everything else, such as one from a `.cube` file. Discards all tables.
     pub fn set_colors(&mut self, colors: Option<ColorTable>) {
         self.extras.colors = colors.map(Arc::new);
         self.forget();
     }
 
-    /// What looks may have beside their settings.
+    /// Returns the parts of looks that exist only on the CPU.
     pub fn extras(&self) -> &Extras {
         &self.extras
     }
 
-    /// How many tables there are.
+    /// Returns the number of cached tables.
     pub fn count(&self) -> usize {
         self.made.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).len()
     }
@@ -64,7 +64,7 @@ impl GradingTables {
         self.made.get_mut().unwrap_or_else(|poisoned| poisoned.into_inner()).clear();
     }
 
-    /// The table of a look, made if there is none yet.
+    /// Returns the table of a look, and makes it if it is not cached.
     pub(crate) fn get(&self, gpu: &Gpu, look: &Look, desc: TableDesc) -> Result<GpuTable, GradingError> {
         let mut made = self.made.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if let Some(found) = made.iter().find(|made| made.look == *look && made.desc == desc) {

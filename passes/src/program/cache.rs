@@ -1,12 +1,12 @@
-//! Programs by what they were made from, kept from frame to frame.
+//! Cache of programs by description, kept from frame to frame.
 
 use super::{Program, ProgramDesc};
 use crate::error::PassError;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 
-/// The programs of a world's passes, each made when it is first asked for: which effects a shader ends with is the plan's
-/// choice. What it is made of is static, so what another `Programs` of the process has made is taken and not made again.
+/// Cache of the programs of a world's passes. Programs are made on first use, since the plan selects the effects of a
+/// shader. Programs with equal descriptions are shared between all caches of the process.
 #[derive(Debug, Default)]
 pub struct Programs {
     known: Table,
@@ -19,7 +19,7 @@ static MADE: LazyLock<Table> = LazyLock::new(Table::default);
 #[derive(Debug, Default)]
 struct Table(RwLock<HashMap<u64, Vec<Known>>>);
 
-/// A program with the description that it was made from.
+/// Program with its description.
 #[derive(Debug)]
 struct Known {
     addresses: Box<[(usize, usize)]>,
@@ -27,7 +27,7 @@ struct Known {
 }
 
 impl Table {
-    /// The program of a description that has that hash; what `make` returns, where there is none.
+    /// Returns the program of a description with this hash; if it is missing, inserts the result of `make`.
     fn get(
         &self,
         desc: &ProgramDesc<'_>,
@@ -35,7 +35,7 @@ impl Table {
         make: impl FnOnce() -> Result<Arc<Program>, PassError>,
     ) -> Result<Arc<Program>, PassError> {
         let same = |known: &&Known| known.addresses.iter().copied().eq(desc.addresses());
-        // A panic in another thread leaves the table as it was.
+        // A panic in another thread leaves the table consistent.
         let known = self.0.read().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = known.get(&hash).and_then(|bucket| bucket.iter().find(same)) {
             return Ok(Arc::clone(&known.program));
@@ -44,7 +44,7 @@ impl Table {
         let program = make()?;
         let mut known = self.0.write().unwrap_or_else(PoisonError::into_inner);
         let bucket = known.entry(hash).or_default();
-        // Another thread may have been quicker; all are to hold one program.
+        // If another thread was faster, all use its program.
         if let Some(known) = bucket.iter().find(same) {
             return Ok(Arc::clone(&known.program));
         }
@@ -54,21 +54,21 @@ impl Table {
 }
 
 impl Programs {
-    /// None yet.
+    /// Creates an empty cache.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The program of that description.
+    /// Returns the program of a description, and makes it if it is missing.
     ///
     /// # Errors
-    /// As [`Program::new`].
+    /// Fails as [`Program::new`] does.
     pub fn get(&self, desc: &ProgramDesc<'_>) -> Result<Arc<Program>, PassError> {
         let hash = desc.hash();
         self.known.get(desc, hash, || MADE.get(desc, hash, || Program::new(desc).map(Arc::new)))
     }
 
-    /// All that were made so far, ordered by the hashes of their shaders: for who reloads them
+    /// Returns all programs made so far, ordered by the hashes of their shaders; used to reload shaders
     /// ([`Executor::reload_shader`](framegraph_wgpu::Executor::reload_shader)).
     pub fn made(&self) -> Vec<Arc<Program>> {
         let known = self.known.0.read().unwrap_or_else(PoisonError::into_inner);
@@ -78,7 +78,7 @@ impl Programs {
     }
 }
 
-/// Passes that need no more than programs are executed with them alone.
+/// Lets programs be the whole world of passes that use nothing else.
 impl AsRef<Self> for Programs {
     fn as_ref(&self) -> &Self {
         self
@@ -91,7 +91,7 @@ mod tests {
     use crate::program::Interface;
     use framegraph_shaders::{Module, Source};
 
-    /// Two shaders of one text that import different files are two programs.
+    /// Shaders with the same text but different imports are different programs.
     #[test]
     fn shaders_of_one_text_are_told_apart_by_what_they_import() -> Result<(), PassError> {
         const TEXT: &str = "import package::own::tint::tint;

@@ -1,6 +1,6 @@
-//! Which frame it is.
+//! Frame index.
 
-/// Counts frames from 0, wrapping. Passes whose result must not repeat from frame to frame (dither) depend on it; two
-/// frames of one index and the same inputs are equal to the bit.
+/// Index of the frame, from 0, wrapping. Passes whose result must not repeat, such as dither, depend on it. Frames with
+/// the same index and inputs are bit-identical.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct FrameIndex(pub u32);

@@ -8,7 +8,7 @@ use framegraph::DeclareError;
 #[non_exhaustive]
 pub enum StageError {
     /// No stage has this name.
-    #[error("there is no stage `{name}`; the stages are {}", .known.join(", "))]
+    #[error("unknown stage `{name}`; use one of {}", .known.join(", "))]
     Unknown {
         /// The requested name.
         name: String,
@@ -16,13 +16,13 @@ pub enum StageError {
         known: Vec<&'static str>,
     },
     /// Another stage has this name.
-    #[error("there is a stage `{name}` already; choose another name, or replace it")]
+    #[error("stage `{name}`: the name is already in use; choose another one, or replace the stage")]
     Twice {
         /// The name.
         name: &'static str,
     },
     /// A stage needs a texture that no earlier stage set.
-    #[error("stage `{stage}` needs `{slot}`, which no stage before it handed on (`Handles::set`)")]
+    #[error("stage `{stage}`: needs `{slot}`, which no earlier stage set; set it with `Handles::set`")]
     Missing {
         /// The stage; `the caller` outside of stages.
         stage: &'static str,
@@ -30,7 +30,7 @@ pub enum StageError {
         slot: &'static str,
     },
     /// A stage set a handle of another frame.
-    #[error("stage `{stage}` handed on a `{slot}` of another frame, or of before this one was reset")]
+    #[error("stage `{stage}`: set `{slot}` to a texture of another frame; use one declared after this frame was reset")]
     Foreign {
         /// The stage.
         stage: &'static str,
@@ -38,7 +38,7 @@ pub enum StageError {
         slot: &'static str,
     },
     /// A stage set a texture that does not fit the slot.
-    #[error("stage `{stage}` handed on `{texture}` as `{slot}`: {fault}")]
+    #[error("stage `{stage}`: cannot set `{slot}` to `{texture}`: {fault}")]
     Wrong {
         /// The stage.
         stage: &'static str,
@@ -51,8 +51,8 @@ pub enum StageError {
     },
     /// A stage would overwrite the result of an earlier one.
     #[error(
-        "stage `{stage}` draws into `{samples}` and averages that into `{slot}`, which would lose what stage `{by}` wrote; \
-         insert that stage after `{stage}`, or hand on `{samples}` with the same in it, and `{slot}` as its average"
+        "stage `{stage}`: resolving `{samples}` into `{slot}` would overwrite the result of stage `{by}`; \
+         insert `{by}` after `{stage}`, or let it write `{samples}` and set `{slot}` to the resolved texture"
     )]
     Lost {
         /// The stage that would write.
@@ -66,7 +66,7 @@ pub enum StageError {
     },
     /// The last picture is not in the frame's target.
     #[error(
-        "stage `{stage}` left the picture in `{texture}`, which is not the frame's target; make the stage with \
+        "stage `{stage}`: the picture is in `{texture}`, which is not the frame's target; create the stage with \
          `Stage::picture`, and draw into `Handles::target`"
     )]
     OtherTarget {

@@ -1,83 +1,84 @@
-//! Places of the textures that stages hand on.
+//! Slots of the textures that stages exchange.
 
 use framegraph::Format;
 use std::fmt;
 
-/// What a slot's texture is.
+/// Content of a slot's texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Holds {
-    /// Color of one sample per texel.
+    /// Color with one sample per texel.
     Color,
-    /// Color of one or more samples per texel.
+    /// Color with one or more samples per texel.
     ColorSamples,
-    /// Depth of one sample per texel.
+    /// Depth with one sample per texel.
     Depth,
-    /// Depth of one or more samples per texel.
+    /// Depth with one or more samples per texel.
     DepthSamples,
 }
 
-/// A texture that stages hand on, by name. The constants are those of the standard frame; an application's own stages make
-/// slots of their own.
+/// Named slot for a texture that stages exchange. The constants are the slots of the standard frame; applications can
+/// create their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Slot {
-    /// Name for messages; slots of one name are one slot.
+    /// Name, also used in messages. Slots with the same name are the same slot.
     pub name: &'static str,
-    /// What its texture is.
+    /// Content of the texture.
     pub holds: Holds,
 }
 
 impl Slot {
-    /// The shadow maps, reversed depth, a layer each. Those that are there from the start are not made again.
+    /// Shadow maps with reversed depth, one layer each. If set before the first stage, they are not drawn again.
     pub const SHADOW_MAP: Self = Self::new("shadow_map", Holds::Depth);
-    /// The shadow maps where they hold moments instead ([`ShadowFilter::Vsm`](crate::gpu_scene::shadow_views::ShadowFilter)).
+    /// Shadow maps with moments, for [`ShadowFilter::Vsm`](crate::gpu_scene::shadow_views::ShadowFilter).
     pub const SHADOW_MOMENTS: Self = Self::new("shadow_moments", Holds::Color);
-    /// Reversed depth of what is drawn so far, of as many samples as the frame has. For one sample per texel see
+    /// Reversed depth of everything drawn so far, with the samples of the frame. For one sample per texel see
     /// [`single_sample_depth`](crate::effects::depth::resolve::single_sample_depth).
     pub const DEPTH: Self = Self::new("depth", Holds::DepthSamples);
-    /// Reversed depth of opaque surfaces as a pyramid of one sample per texel; see [`structure`](crate::effects::depth::structure::structure),
-    /// which declares it for the first stage that asks.
+    /// Pyramid of the reversed depth of opaque surfaces, with one sample per texel. The first stage that needs it
+    /// declares it; see [`structure`](crate::effects::depth::structure::structure).
     pub const STRUCTURE: Self = Self::new("structure", Holds::Depth);
-    /// Ambient occlusion: visibility, 0 to 1, in red, and where it is of the format Rgba16Float the mean open direction in the
-    /// other channels, in world space. One that is smaller than the view's pictures needs [`Slot::STRUCTURE`].
+    /// Ambient occlusion: visibility, 0 to 1, in red. In format Rgba16Float, the other channels hold the bent normal in
+    /// world space. If smaller than the view's pictures, it needs [`Slot::STRUCTURE`].
     pub const OCCLUSION: Self = Self::new("occlusion", Holds::Color);
-    /// What rays found in the picture: radiance times how much it counts, and that in alpha, as a pyramid; of the size of the
-    /// view's pictures.
+    /// Pyramid of screen-space reflections: radiance premultiplied by its weight, and the weight in alpha. Has the size
+    /// of the view's pictures.
     pub const REFLECTIONS: Self = Self::new("reflections", Holds::Color);
-    /// How long the way to what [`Slot::REFLECTIONS`] shows is, in m; needed beside it.
+    /// Hit distances of [`Slot::REFLECTIONS`] in meters; required with it.
     pub const REFLECTION_WAYS: Self = Self::new("reflection_ways", Holds::Color);
-    /// The texture that the radiance is to be drawn into, where the next frame reads it; nothing is in it before. The radiance
+    /// Texture into which to draw the radiance, so that the next frame can read it. Still empty when set; the radiance
     /// itself is [`Slot::HDR`].
     pub const HDR_HISTORY: Self = Self::new("hdr_history", Holds::Color);
-    /// Way from a pixel to where its surface was in the frame before, in texture coordinates, times a count, and that count in
-    /// alpha: 0 where nothing moves; only where something may.
+    /// Motion vectors: offset to the previous position in texture coordinates, multiplied by a count, and the count in
+    /// alpha. Alpha is 0 where nothing moves. Only set if something may move.
     pub const VELOCITY: Self = Self::new("velocity", Holds::Color);
-    /// Scene-referred radiance times exposure, linear Rec.709.
+    /// Pre-exposed scene-referred radiance, linear Rec.709.
     pub const HDR: Self = Self::new("hdr", Holds::Color);
-    /// The same, of each sample, where the frame has several per texel. The stage `transparent` draws into these and
-    /// averages them into [`Slot::HDR`] anew: a stage between `color` and it that changes one has to hand on both.
+    /// Radiance of each sample, if the frame has several per texel. The stage `transparent` draws into it and resolves
+    /// it into [`Slot::HDR`] again. A stage between `color` and `transparent` that changes one of them has to set both.
     pub const HDR_SAMPLES: Self = Self::new("hdr_samples", Holds::ColorSamples);
-    /// What is behind transmissive surfaces, a pyramid of radiance with distance in alpha; only where the scene transmits.
+    /// Pyramid of the radiance behind transmissive surfaces, with distance in alpha. Only set if the scene has such
+    /// surfaces.
     pub const SCENE_LEVELS: Self = Self::new("scene_levels", Holds::Color);
-    /// What glows, all its levels added up: what post-processing lays over the radiance.
+    /// Sum of all bloom levels, which post-processing adds to the radiance.
     pub const BLOOM: Self = Self::new("bloom", Holds::Color);
-    /// Lens flare, laid over the radiance with [`Slot::BLOOM`].
+    /// Lens flare, added to the radiance with [`Slot::BLOOM`].
     pub const FLARE: Self = Self::new("flare", Holds::Color);
-    /// What dirt on the lens lets light up of bloom, over the whole picture; an application's own.
+    /// Lens dirt: fraction of bloom that lights up, over the whole picture. Set by the application.
     pub const LENS_DIRT: Self = Self::new("lens_dirt", Holds::Color);
-    /// The most and the least light of parts of the picture, to be read back; only where it is measured
+    /// Maximum and minimum light of parts of the picture, for readback. Only set if measured
     /// ([`Measure`](crate::effects::exposure::Measure)).
     pub const MEASURED_LIGHT: Self = Self::new("measured_light", Holds::Color);
-    /// The nearest and the farthest depth of parts of the picture, reversed, to be read back; only where it is measured.
+    /// Nearest and farthest reversed depth of parts of the picture, for readback. Only set if measured.
     pub const MEASURED_DEPTH: Self = Self::new("measured_depth", Holds::Color);
-    /// The picture for the display.
+    /// Picture for the display.
     pub const PICTURE: Self = Self::new("picture", Holds::Color);
 
-    /// A slot.
+    /// Creates a slot.
     pub const fn new(name: &'static str, holds: Holds) -> Self {
         Self { name, holds }
     }
 
-    /// What a texture of this format and sample count lacks to be held here.
+    /// Returns the reason why a texture of this format and sample count does not fit the slot, if any.
     pub(super) fn fault(self, format: Format, samples: u8) -> Option<SlotFault> {
         let depth = matches!(self.holds, Holds::Depth | Holds::DepthSamples);
         let single = matches!(self.holds, Holds::Color | Holds::Depth);
@@ -91,21 +92,21 @@ impl Slot {
     }
 }
 
-/// Why a texture cannot be in a slot.
+/// Reason why a texture does not fit a slot.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum SlotFault {
-    /// It is depth where color is needed, or the other way around.
+    /// The format is depth where color is required, or the reverse.
     #[error("its format is {format:?}, and a {} format is needed", if *.depth { "depth" } else { "color" })]
     Format {
-        /// Its format.
+        /// Format of the texture.
         format: Format,
-        /// Depth is needed.
+        /// True if the slot requires depth.
         depth: bool,
     },
-    /// It has several samples per texel where one is needed.
+    /// The texture has several samples per texel, and the slot requires one.
     #[error("it has {samples} samples per texel, and one is needed; resolve it")]
     Samples {
-        /// Its samples per texel.
+        /// Samples per texel of the texture.
         samples: u8,
     },
 }

@@ -185,8 +185,7 @@ fn effects_say_why_they_are_there() {
         "shadow: the settings ask for it: a layer for each of 1 cascades, 0 for maps of other lights, 2048 texels across, read \
          by `pcf`",
         "occlusion: the settings ask for it: SAO within 0.3 m",
-        "reflection: the settings ask for it: rays of 3 m find places in the radiance of the frame before, which is kept for \
-         them",
+        "reflection: the settings ask for it: rays of 3 m read the radiance of the previous frame, which is kept for them",
         "scene: surfaces of the scene transmit: what is behind them is copied, in 3 levels",
     ];
     assert_eq!(told(&all), expected);

@@ -2,24 +2,24 @@
 
 use super::settings::{BloomQuality, BloomSettings};
 
-/// The most texels that a side may have.
+/// Maximum side of a level in texels.
 const MAX_TEXELS: f32 = 2048.0;
-/// Sides of levels in low quality are multiples of this: four halves.
+/// Sides of levels in low quality are multiples of this number: four exact halvings.
 const LOW_MULTIPLE: u32 = 16;
 
-/// What is drawn for bloom of a picture of some size.
+/// Sizes of the bloom passes for a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BloomChain {
-    /// Sizes on the way from the picture to the largest level, in texels.
+    /// Sizes between the picture and the largest level, in texels.
     pub halves: Vec<[u32; 2]>,
     /// Size of the largest level, in texels.
     pub size: [u32; 2],
-    /// How many levels, at least one.
+    /// Number of levels, at least one.
     pub levels: u8,
 }
 
 impl BloomChain {
-    /// For a picture of `size_texels`.
+    /// Returns the sizes for a picture of `size_texels`.
     pub fn new(settings: &BloomSettings, size_texels: [u32; 2]) -> Self {
         let (span, _) = BloomSettings::span(size_texels, settings.multiple_px);
         let mut picture = span.map(|side| side as u32);
@@ -46,7 +46,7 @@ impl BloomChain {
         Self { halves, size: size.map(|side| (side as u32).max(1)), levels }
     }
 
-    /// Size of a level, in texels.
+    /// Returns the size of a level in texels.
     pub fn level_size(&self, level: u8) -> [u32; 2] {
         self.size.map(|side| (side >> level).max(1))
     }
@@ -79,7 +79,7 @@ mod tests {
         assert_eq!(BloomChain::new(&padded, [640, 360]), chain(High, [640, 368]));
     }
 
-    /// No size has no level, and no level no texel.
+    /// Every size has at least one level, and every level at least one texel.
     #[test]
     fn hard_case_52_every_level_has_texels() {
         for quality in [BloomQuality::Low, BloomQuality::Medium, BloomQuality::High] {

@@ -1,10 +1,10 @@
-//! Bloom by name.
+//! Option parsing of bloom.
 
 use super::settings::{Blend, BloomQuality, BloomSettings, FlareSettings, Threshold};
 use crate::settings::key_value::{KeyValue, OptionError, switched};
 
 impl BloomSettings {
-    /// The names that [`BloomSettings::set`] takes.
+    /// Names accepted by [`BloomSettings::set`].
     pub const KEYS: [&str; 21] = [
         "strength",
         "height",
@@ -29,18 +29,18 @@ impl BloomSettings {
         "flare-multiple",
     ];
 
-    /// What is asked for as `off`, or as `on` with changes: `on:strength=0.3,flare=on`. None is `off`.
+    /// Parses `off`, or `on` with changes such as `on:strength=0.3,flare=on`. Returns `None` for `off`.
     ///
     /// # Errors
-    /// When it is neither, or a choice is unknown or does not take the value: one line that names it and what it takes.
+    /// Fails for another word, an unknown name or an invalid value; the message names it and the accepted values.
     pub fn from_text(text: &str) -> Result<Option<Self>, OptionError> {
         switched(text, Self::DEFAULT, Self::set)
     }
 
-    /// Changes one choice by name.
+    /// Changes one setting by name.
     ///
     /// # Errors
-    /// As [`BloomSettings::from_text`].
+    /// Fails as [`BloomSettings::from_text`] does.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), OptionError> {
         let choice = KeyValue { key, value };
         match key {

@@ -31,8 +31,8 @@ pub struct BloomSettings {
     pub dirt: f32,
     /// Lens flare; `None` for none.
     pub flare: Option<FlareSettings>,
-    /// The glow covers a picture whose sides are rounded up to a multiple of this number of pixels, with the own
-    /// picture at its bottom left. 1 for the picture's own sides; Filament renders into multiples of 16.
+    /// Extends the glow to an area whose sides are the picture's, rounded up to a multiple of this number of pixels.
+    /// The picture is at its bottom left. 1 adds no area; Filament renders into multiples of 16.
     pub multiple_px: u32,
 }
 
@@ -90,9 +90,9 @@ pub struct FlareSettings {
     pub halo_thickness: f32,
     /// Glow above which the halo appears, 0 or more.
     pub halo_threshold: f32,
-    /// Ghosts, halo and rays are centered in a picture whose sides are rounded up to a multiple of this number of
-    /// pixels, with the own picture at its bottom left. 1 centers them in the own picture; Filament renders into
-    /// multiples of 16.
+    /// Centers ghosts, halo and rays in an area whose sides are the picture's, rounded up to a multiple of this number
+    /// of pixels. The picture is at its bottom left. 1 centers them in the picture; Filament renders into multiples of
+    /// 16.
     pub multiple_px: u32,
 }
 

@@ -1,4 +1,4 @@
-//! What stands behind everything: a full-screen triangle on the far plane, drawn where no surface is.
+//! The background: a full-screen triangle on the far plane, drawn where no surface is.
 
 use crate::effects::color::surface::{SKY, SKY_SHADER, SurfaceBindings, SurfaceWorld};
 use crate::gpu_scene::view::BackgroundUniforms;
@@ -9,8 +9,8 @@ use framegraph_wgpu::{Cx, Depth, RecordError};
 
 /// Draws the background of the world's view.
 ///
-/// Black needs no triangle, being the clear value; but where there is fog before it, or colors are graded in the same shader, it
-/// is drawn too: what becomes of it may depend on the pixel, and only the shader gives the shader's bits.
+/// A black background needs no triangle, since it is the clear value. With fog or inlined grading it is drawn as well:
+/// the result may depend on the pixel, and must match the shader bit for bit.
 pub(crate) fn draw_background(
     world: &SurfaceWorld<'_>,
     bindings: &SurfaceBindings,

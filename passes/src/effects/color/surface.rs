@@ -1,4 +1,4 @@
-//! What shading a surface binds: the interface of the color and sky shaders, and how passes fill it.
+//! Bindings of surface shading: the interface of the color and sky shaders, and how passes fill it.
 
 use crate::effects::fog::FogSettings;
 use crate::effects::shadow::{ShadowBindings, ShadowInput};
@@ -20,25 +20,25 @@ use glam::Vec3;
 use std::sync::Arc;
 use wgpu::AddressMode;
 
-/// Format of scene-referred radiance: half floats, since the eleven bits of Rg11b10Ufloat tint greys by a code of 255.
+/// Format of pre-exposed radiance: half floats, since the 11 bits of Rg11b10Ufloat tint greys by one 8-bit step.
 pub const HDR_FORMAT: Format = Format::Rgba16Float;
 
-/// Shades surfaces.
+/// Shader of surfaces.
 static SURFACE_SHADER: Module<'static> = library::pass("pass/color.wgsl").unwrap();
 
-/// Shades what no surface covers.
+/// Shader of the background.
 pub(crate) static SKY_SHADER: Module<'static> = library::pass("pass/sky.wgsl").unwrap();
 
-/// What the color passes provide to the shader of surfaces, `pass/color.wgsl`.
+/// Interface of the surface shader, `pass/color.wgsl`.
 pub static SURFACE: Interface =
     Interface { groups: &[FRAME_BINDINGS, &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &CONSTANTS };
 
-/// Constants of light, beside shading and shadows: bent normals, a sun, punctual lights, the sun's channels, differing channels
-/// of instances and lights, and an environment stored as RGBM.
+/// Constants of lights: bent normals, a sun, punctual lights, the sun's channels, differing channels of instances and
+/// lights, and an environment stored as RGBM.
 const LIGHT_CONSTANTS: [&str; 6] =
     ["BENT_NORMALS", "SUN", "LAMPS", "SUN_CHANNELS", "CHANNELS_DIFFER", SKY.constants[0]];
 
-/// The material's, the instance's, those of shading, of light and of shadows.
+/// Constants of material, instance, shading, lights and shadows.
 const CONSTANTS: [&str; 2 + Shading::CONSTANTS.len() + LIGHT_CONSTANTS.len() + ShadowBindings::CONSTANTS.len()] = {
     let parts: [&[&str]; 3] = [&Shading::CONSTANTS, &LIGHT_CONSTANTS, &ShadowBindings::CONSTANTS];
     let mut names = [SurfaceDraw::TRAITS; _];
@@ -55,10 +55,10 @@ const CONSTANTS: [&str; 2 + Shading::CONSTANTS.len() + LIGHT_CONSTANTS.len() + S
     names
 };
 
-/// What they provide to the shader of the background, `pass/sky.wgsl`.
+/// Interface of the background shader, `pass/sky.wgsl`.
 pub static SKY: Interface = Interface { groups: &[FRAME_BINDINGS, &["sky"]], constants: &["ENVIRONMENT_RGBM"] };
 
-/// Group 0: what is the same for all draws of a view. [`SurfaceBindings`] has the bindings in this order.
+/// Bind group 0: bindings shared by all draws of a view. [`SurfaceBindings`] fills them in this order.
 const FRAME_BINDINGS: &[&str] = &[
     "frame",
     "lights",
@@ -86,7 +86,7 @@ const FRAME_BINDINGS: &[&str] = &[
     ShadowBindings::NAMES[5],
 ];
 
-/// The parts of a world that shading takes.
+/// Parts of a world that shading reads.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SurfaceWorld<'a> {
     pub programs: &'a Programs,
@@ -96,7 +96,7 @@ pub(crate) struct SurfaceWorld<'a> {
 }
 
 impl<'a> SurfaceWorld<'a> {
-    /// Those of `world`, with its view of that number.
+    /// Returns the parts of `world`, with the view of this index.
     pub fn of<W>(world: &'a W, view: ViewId) -> Result<Self, PassError>
     where
         W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized,
@@ -105,70 +105,69 @@ impl<'a> SurfaceWorld<'a> {
         Ok(Self { programs: world.as_ref(), scene: world.as_ref(), lighting: world.as_ref(), view: views.get(view)? })
     }
 
-    /// Where draws take instances from.
+    /// Returns the source of instances for draws.
     pub fn instances(&self) -> InstanceSource<'a> {
         self.view.instances(self.scene)
     }
 }
 
-/// What shading reads beside the scene, each where the pass has it.
+/// Optional inputs of shading besides the scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SurfaceInputs {
-    /// The shadow maps.
+    /// Shadow maps.
     pub shadow: Option<ShadowInput>,
-    /// The picture of what is behind transmissive surfaces, all levels.
+    /// Pyramid of the radiance behind transmissive surfaces.
     pub scene: Option<View>,
     /// Depth of the scene, for contact shadows.
     pub contact: Option<View>,
     /// Ambient occlusion.
     pub occlusion: Option<OcclusionInput>,
-    /// What rays found in the picture, all levels, and how long their ways were.
+    /// Pyramid of screen-space reflections, and hit distances.
     pub reflections: Option<[View; 2]>,
     /// Fog.
     pub fog: Option<FogSettings>,
-    /// The pass draws into depth with stencil.
+    /// True if the depth attachment has stencil.
     pub stencil: bool,
-    /// Sums of absorbance and of its moments, for surfaces that are shaded by them; with the bias and the overestimation of the
-    /// estimate.
+    /// Sums of absorbance and of its moments, with the bias and overestimation of the estimate.
     pub moments: Option<([View; 2], [f32; 2])>,
 }
 
-/// Ambient occlusion as shading reads it.
+/// Ambient occlusion as read by shading.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OcclusionInput {
     /// Visibility in red.
     pub picture: View,
-    /// The depth that it was made of, where it is smaller than what is shaded.
+    /// Depth pyramid it was computed from, if smaller than the picture.
     pub structure: Option<View>,
-    /// The other channels have the mean open direction.
+    /// True if the other channels hold the bent normal.
     pub bent_normals: bool,
 }
 
 impl SurfaceInputs {
-    /// The shadow maps alone, where there are any.
+    /// Returns inputs with shadow maps only, if any.
     pub fn shadowed(shadow: Option<ShadowInput>) -> Self {
         Self { shadow, ..Self::default() }
     }
 }
 
-/// What all draws of a color pass share: bindings of group 0, features and constants of the shaders.
+/// State shared by all draws of a color pass: bindings of group 0, and shader features and constants.
 #[derive(Debug)]
 pub(crate) struct SurfaceBindings {
-    /// In the order of [`FRAME_BINDINGS`], then what the epilogue's effects bind.
+    /// Bindings in the order of [`FRAME_BINDINGS`], then those of inlined effects.
     pub frame: Vec<Option<Binding>>,
     features: Features,
     shading: Shading,
-    /// Bands of irradiance that the light has.
+    /// Number of spherical-harmonic bands of the irradiance.
     bands: ShBands,
-    /// Depth has stencil, which materials test and write.
+    /// True if the depth has stencil, which materials test and write.
     pub stencil: bool,
-    /// There is a picture of what is behind transmissive surfaces.
+    /// True if radiance behind transmissive surfaces is available.
     transmits: bool,
-    /// In the order of [`LIGHT_CONSTANTS`].
+    /// Values of [`LIGHT_CONSTANTS`].
     light: [f64; LIGHT_CONSTANTS.len()],
-    /// In the order of [`ShadowBindings::CONSTANTS`].
+    /// Values of [`ShadowBindings::CONSTANTS`].
     shadows: [f64; ShadowBindings::CONSTANTS.len()],
-    /// What the plan inlined into the pass.
+    /// Effects that the plan inlined into the pass.
     pub epilogue: Epilogue,
 }
 
@@ -249,12 +248,12 @@ impl SurfaceBindings {
         })
     }
 
-    /// The program of a variant of surfaces.
+    /// Returns the program of a surface variant.
     pub fn program(&self, programs: &Programs, variant: SurfaceVariant) -> Result<Arc<Program>, PassError> {
         self.program_with(programs, variant, "fs_main")
     }
 
-    /// The program of a variant of surfaces with a fragment entry point of `pass/color.wgsl`.
+    /// Returns the program of a surface variant with this fragment entry point of `pass/color.wgsl`.
     pub fn program_with(
         &self,
         programs: &Programs,
@@ -272,18 +271,18 @@ impl SurfaceBindings {
         programs.get(&ProgramDesc { features, epilogue: &self.epilogue, ..desc })
     }
 
-    /// The features of the shader of the background, which is seen through the same fog.
+    /// Returns the features of the background shader, which applies the same fog.
     pub fn background_features(&self) -> Features {
         Features::NONE.with_if(Feature::FOG, self.features.contains(Feature::FOG))
     }
 
-    /// The values of the constants of [`SKY`], then those of the effects.
+    /// Returns the values of the constants of [`SKY`], then those of effects.
     pub fn background_constants(&self) -> Vec<f64> {
         let effects = self.epilogue.constants.iter().map(|(_, value)| *value);
         [self.light[LIGHT_CONSTANTS.len() - 1]].into_iter().chain(effects).collect()
     }
 
-    /// The values of the shader's constants behind the material's, then those of the effects.
+    /// Returns the values of the constants after the material's, then those of effects.
     pub fn constants(&self, alpha: AlphaUse) -> Vec<f64> {
         let effects = self.epilogue.constants.iter().map(|(_, value)| *value);
         let shading = self.shading.constants(alpha, self.bands).into_iter();
@@ -301,7 +300,7 @@ mod tests {
         Program::new(&ProgramDesc { features, ..ProgramDesc::new(&SURFACE_SHADER, &SURFACE) })
     }
 
-    /// Every kind of surface and background finds all that it binds.
+    /// The interface provides every binding of all surface and background variants.
     #[test]
     fn every_variable_is_provided() -> Result<(), PassError> {
         let map = || Features::NONE.with(Feature::ENVIRONMENT_MAP);
@@ -319,7 +318,7 @@ mod tests {
         Ok(())
     }
 
-    /// Every lobe at once binds more textures than WebGPU promises; one lobe does not.
+    /// All lobes together bind more textures than WebGPU guarantees; one lobe does not.
     #[test]
     fn a_material_over_the_devices_limit_is_named() -> Result<(), PassError> {
         let frame = [Feature::SHADOWS, Feature::ENVIRONMENT_MAP, Feature::TEXTURED].into_iter().collect::<Features>();

@@ -1,4 +1,4 @@
-//! Depth prepass: the depth of the visible surfaces, so that the color pass shades each pixel once.
+//! Depth prepass: draws the depth of visible surfaces, so that the color pass shades each pixel once.
 
 use crate::gpu_scene::draw::{DepthDraw, SurfaceDraw};
 use crate::gpu_scene::indirect::DrawList;
@@ -9,32 +9,32 @@ use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Pass, PassBui
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Record, RecordError};
 
-/// Format of the depth attachment: 32-bit float, in which reversed Z spreads precision evenly over distance.
+/// Format of the depth attachment: 32-bit float, in which reversed depth spreads precision evenly over distance.
 pub const DEPTH_FORMAT: Format = Format::Depth32Float;
-/// Format of the depth attachment where a material uses stencil.
+/// Format of the depth attachment if any material uses stencil.
 pub const DEPTH_STENCIL_FORMAT: Format = Format::Depth32FloatStencil8;
 
-/// Draws depth.
+/// Shader of the prepass.
 pub(crate) static PREPASS_SHADER: Module<'static> = library::pass("pass/prepass.wgsl").unwrap();
 
 static INTERFACE: Interface =
     Interface { groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &[SurfaceDraw::TRAITS] };
 
-/// Draws opaque and masked surfaces into a new depth texture; depth is reversed and cleared to the far plane.
+/// Draws opaque and masked surfaces into a new reversed-depth texture, cleared to the far plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Prepass {
-    /// The view that is drawn.
+    /// View to draw.
     pub view: ViewId,
-    /// Size of the view's pictures; passes that shade over this depth take theirs from it.
+    /// Size of the view's pictures. Passes that shade over this depth use its size.
     pub extent: Extent,
     /// Samples per texel.
     pub samples: u8,
-    /// Materials test and write stencil, which the depth then has.
+    /// Adds a stencil aspect, for materials that use stencil.
     pub stencil: bool,
 }
 
 impl Default for Prepass {
-    /// The main view in the frame's size, one sample per texel.
+    /// Returns the pass for the main view at the frame's size, with one sample per texel.
     fn default() -> Self {
         Self { view: ViewId::MAIN, extent: Extent::FRAME, samples: 1, stencil: false }
     }
@@ -48,7 +48,7 @@ impl Pass for Prepass {
     }
 }
 
-/// A new depth texture that the pass draws into, cleared to the far plane; with a `stencil` of 0, or without.
+/// Declares a new depth attachment, cleared to the far plane and, with `stencil`, to stencil 0.
 pub(crate) fn new_depth(
     pass: &mut PassBuilder<'_>,
     extent: Extent,
@@ -66,7 +66,7 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
     }
 }
 
-/// Draws the depth of what a view sees, opaque and masked, with the stencil states of materials or without.
+/// Draws the depth of a view's opaque and masked surfaces, optionally with the stencil states of materials.
 pub(crate) fn draw_depth<W>(view: ViewId, stencil: bool, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError>
 where
     W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized,
@@ -76,7 +76,7 @@ where
     draw_batches(&view.view.draws.depth, view, stencil, world.as_ref(), world.as_ref(), cx)
 }
 
-/// Draws the depth of a list of a view's instances, whatever their alpha is.
+/// Draws the depth of a list of a view's instances, regardless of their alpha.
 pub(crate) fn draw_depth_of(
     list: &DrawList,
     view: &GpuView,

@@ -1,24 +1,24 @@
-//! One depth per texel from several samples, for effects that read depth.
+//! Resolves multisampled depth to one value per texel, for effects that read depth.
 
 use crate::error::PassError;
 use crate::stages::{Handles, Holds, Slot, StageError};
 use framegraph::{DeclareError, Pass, PassBuilder, ResolveMode, Texture, TextureDesc};
 use framegraph_wgpu::{Cx, Frame, Gpu, Record, RecordError};
 
-/// Which of a texel's samples gives its depth.
+/// Sample that gives the depth of a texel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum DepthOf {
-    /// The first: a depth that some surface has there, the same one from frame to frame.
+    /// Sample 0: the depth of a real surface, stable from frame to frame.
     #[default]
     FirstSample = 0,
-    /// The one nearest to the eye.
+    /// Sample nearest to the eye.
     Nearest = 1,
-    /// The one farthest from the eye.
+    /// Sample farthest from the eye.
     Farthest = 2,
 }
 
 impl DepthOf {
-    /// The resolve that takes that sample of reversed depth: nearer is larger.
+    /// Returns the resolve mode for reversed depth, in which nearer is larger.
     pub const fn mode(self) -> ResolveMode {
         match self {
             Self::FirstSample => ResolveMode::Sample0,
@@ -28,20 +28,20 @@ impl DepthOf {
     }
 }
 
-/// Resolves depth of several samples into a texture of one. It draws nothing, so it shares the step that drew the depth when
-/// it is declared right behind; a device that resolves depth in its store then does that without leaving the tile.
+/// Resolves multisampled depth into a single-sampled texture. Draws nothing, so it shares the step that drew the depth
+/// if declared directly after it. Devices that resolve depth at the end of a pass then keep it in the tile.
 #[derive(Clone, Copy, Debug)]
 pub struct DepthResolve {
-    /// Reversed depth, of several samples.
+    /// Reversed depth with several samples.
     pub depth: Texture,
-    /// Which sample counts.
+    /// Sample that gives the depth.
     pub which: DepthOf,
 }
 
-/// What the pass wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct DepthResolveIo {
-    /// Reversed depth, of one sample and the same size.
+    /// Reversed depth with one sample, of the same size.
     pub depth: Texture,
 }
 
@@ -65,8 +65,8 @@ impl<W: ?Sized> Record<W> for DepthResolve {
     }
 }
 
-/// Refuses a back end that cannot read depth of so many samples: wgpu 30 makes no storage for textures of several samples
-/// that OpenGL is to read; they hold nothing.
+/// Fails if the back end cannot read depth with this number of samples. On OpenGL, wgpu 30 does not allocate sampled
+/// multisampled textures; they stay empty.
 pub(crate) fn can_read_samples(samples: u8, gpu: &Gpu) -> Result<(), PassError> {
     if samples > 1 && gpu.info().backend == wgpu::Backend::Gl {
         return Err(PassError::DepthSamples);
@@ -74,11 +74,11 @@ pub(crate) fn can_read_samples(samples: u8, gpu: &Gpu) -> Result<(), PassError> 
     Ok(())
 }
 
-/// Depth of one sample per texel, for a stage whose effect reads depth: the depth so far as it is where the frame has one
-/// sample, else of a pass `depth_resolve`, which is declared when the first stage asks and serves all that ask alike.
+/// Returns single-sampled depth for a stage. If the frame has several samples, the first request declares a pass
+/// `depth_resolve`; later requests for the same sample share it.
 ///
 /// # Errors
-/// When no stage has handed on depth.
+/// Fails if no stage has set the depth.
 pub fn single_sample_depth<W: ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
@@ -95,7 +95,7 @@ pub fn single_sample_depth<W: ?Sized + 'static>(
         DepthOf::Nearest => ["depth_nearest", "depth_nearest_of"],
         DepthOf::Farthest => ["depth_farthest", "depth_farthest_of"],
     };
-    // Transmissive surfaces add to the depth: what was resolved before is not the depth so far any more.
+    // Transmissive surfaces write depth later; an earlier resolve is then outdated.
     let (slot, of) = (Slot::new(slot, Holds::Depth), Slot::new(of, Holds::DepthSamples));
     if let Some(resolved) = handles.find(slot).filter(|_| handles.find(of) == Some(depth)) {
         return Ok(resolved);

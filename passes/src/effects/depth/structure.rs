@@ -1,8 +1,8 @@
-//! Structure: the depth of opaque and masked surfaces as a pyramid, for effects that look around in it.
+//! Structure: the depth of opaque and masked surfaces as a pyramid, for screen-space effects.
 //!
-//! It is drawn anew, with one sample per texel, although the depth prepass has drawn the same: so the depth of the color pass
-//! never leaves the tile, with any number of samples, and the structure may be smaller than the picture. Nothing of it runs
-//! unless a pass reads it.
+//! Draws the geometry again with one sample per texel, even after a depth prepass. The depth of the color pass
+//! therefore never leaves the tile, at any sample count, and the structure may be smaller than the picture. Nothing
+//! runs unless a pass reads it.
 //!
 //! ```text
 //! structure ─> structure_level 1 ─> structure_level 2 ─> …   each keeps one texel of four, in a rotated grid
@@ -23,19 +23,19 @@ static SHADER: Module<'static> = library::pass("pass/structure.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface { groups: &[&["finer"]], constants: &[] };
 
-/// How large the structure is.
+/// Resolution of the structure, relative to the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Resolution {
-    /// As the picture.
+    /// Size of the picture.
     #[default]
     Full,
-    /// Half as wide and high: a quarter of the texels.
+    /// Half the width and height: a quarter of the texels.
     Half,
 }
 
 impl Resolution {
-    /// The size of pictures in it, in a view whose pictures are of `extent`.
+    /// Returns the size at this resolution, for a view whose pictures have the size `extent`.
     #[must_use]
     pub const fn of(self, extent: Extent) -> Extent {
         match (self, extent) {
@@ -46,8 +46,8 @@ impl Resolution {
     }
 }
 
-/// How many levels the structure of a picture of this size has, Filament's number: five fewer than there could be, so that
-/// the last is still some 32 texels wide; at least one, at most eight.
+/// Returns the number of levels of the structure for a picture of this size, as in Filament. Five fewer than a full mip
+/// chain, so the last level is about 32 texels wide; 1 to 8.
 #[must_use]
 pub fn structure_levels(picture_texels: [u32; 2], resolution: Resolution) -> u8 {
     let texels = Resolution::of(resolution, Extent::absolute(picture_texels[0], picture_texels[1])).texels([1, 1]);
@@ -55,14 +55,14 @@ pub fn structure_levels(picture_texels: [u32; 2], resolution: Resolution) -> u8 
     (larger.ilog2() as u8 + 1).saturating_sub(5).clamp(1, 8)
 }
 
-/// Level 0: opaque and masked surfaces as the view sees them, reversed depth.
+/// Draws level 0: reversed depth of opaque and masked surfaces.
 #[derive(Clone, Copy, Debug)]
 pub struct Structure {
-    /// The view that is drawn.
+    /// View to draw.
     pub view: ViewId,
     /// Size of level 0.
     pub extent: Extent,
-    /// How many levels the texture has.
+    /// Number of levels of the texture.
     pub levels: u8,
 }
 
@@ -82,20 +82,20 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
     }
 }
 
-/// One further level, made of the one above.
+/// Makes one further level from the level above.
 #[derive(Clone, Copy, Debug)]
 pub struct StructureLevel {
-    /// The structure, its levels above `level` written.
+    /// The structure, with all levels above `level` written.
     pub structure: Texture,
-    /// Which level to make, 1 or more.
+    /// Index of the level, at least 1.
     pub level: u8,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct StructureLevelIo {
     finer: View,
-    /// The structure, this level written too.
+    /// The structure, including this level.
     pub structure: Texture,
 }
 
@@ -120,11 +120,11 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for StructureLevel {
     }
 }
 
-/// The structure of the frame, for a stage whose effect looks around in it: declared when the first stage asks, and the same
-/// for all that ask later, in [`Slot::STRUCTURE`], of the resolution that the first asked for.
+/// Returns the structure of the frame ([`Slot::STRUCTURE`]). The first request declares it with its resolution; later
+/// requests share it.
 ///
 /// # Errors
-/// What a pass refuses.
+/// Returns the error of a refused pass.
 pub fn structure<W>(
     frame: &mut Frame<W>,
     handles: &mut Handles,

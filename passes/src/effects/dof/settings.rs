@@ -34,9 +34,9 @@ pub struct DofSettings {
     pub rings_even: u8,
     /// Removes noise of the taps with a 3×3 median.
     pub median: bool,
-    /// Blended surfaces that need no order ([`Transparency`](crate::Transparency)) are drawn over the blurred picture: they are
-    /// sharp, at every distance. Off, they are blurred like what is behind them. Asks for one sample per texel and no
-    /// anti-aliasing over time; otherwise it has no effect.
+    /// Draws order-independent blended surfaces ([`Transparency`](crate::Transparency)) after depth of field, so they
+    /// are sharp at every distance. Otherwise they are blurred with the surface behind them. Requires one sample per
+    /// texel and no temporal anti-aliasing; otherwise it has no effect.
     pub blended_after: bool,
 }
 

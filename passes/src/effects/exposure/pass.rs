@@ -1,4 +1,4 @@
-//! The passes that measure: full-screen steps of one shader.
+//! Passes that measure: full-screen steps of one shader.
 
 use crate::program::full_screen::FullScreen;
 use crate::program::{Interface, ProgramDesc, Programs};
@@ -10,34 +10,35 @@ static SHADER: Module<'static> = library::pass("pass/measure.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface { groups: &[&["hdr", "scene_depth", "measured"]], constants: &[] };
 
-/// Texels to a side of what one texel stands for, as in the shader.
+/// Side of the block that one texel summarizes, in texels, as in the shader.
 const SIDE: u16 = 8;
 
-/// The most and the least: half floats hold light as radiance does, and reversed depth to a 2048th of the distance.
+/// Format of maximum and minimum. Half floats hold light as radiance does, and reversed depth to 1/2048 of the
+/// distance.
 const FORMAT: Format = Format::Rg16Float;
 
-/// A step, with what it reads.
+/// A step with its inputs.
 #[derive(Clone, Copy, Debug)]
 pub enum MeasureStep {
-    /// The most and the least light.
+    /// Finds the maximum and minimum light.
     Light {
         /// Pre-exposed radiance, single-sampled.
         hdr: Texture,
     },
-    /// The nearest and the farthest depth.
+    /// Finds the nearest and the farthest depth.
     Depth {
         /// Reversed depth, single-sampled.
         depth: Texture,
     },
-    /// The most and the least of those.
+    /// Reduces an earlier result.
     Smaller {
-        /// What was measured before.
+        /// Result of an earlier step.
         measured: Texture,
     },
 }
 
 impl MeasureStep {
-    /// Name of its pass.
+    /// Returns the name of the pass.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Light { .. } => "light",
@@ -55,23 +56,23 @@ impl MeasureStep {
     }
 }
 
-/// A step of measuring. Of the world it needs [`Programs`].
+/// A step of measuring. Uses [`Programs`] of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct MeasurePass {
-    /// Which step.
+    /// The step.
     pub step: MeasureStep,
     /// Size of the picture.
     pub extent: Extent,
-    /// How often the picture is an eighth as wide and high in what is made: 1 or 2.
+    /// Number of reductions to an eighth so far, including this step: 1 or 2.
     pub eighths: u8,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct MeasureIo {
-    /// In the order of the shader's bindings.
+    /// Inputs in the order of the shader's bindings.
     read: [Option<View>; 3],
-    /// The most and the least.
+    /// Maximum and minimum.
     pub result: Texture,
 }
 
@@ -113,7 +114,7 @@ mod tests {
     use super::*;
     use framegraph::{Caps, Desc, Options, Plan, Scratch, compile};
 
-    /// What remains at the edge of a picture has a texel of its own, whether the size is the frame's or the picture's.
+    /// Partial blocks at the edge have a texel of their own, for relative and absolute sizes.
     #[test]
     fn no_texel_of_the_edge_is_left_out() -> Result<(), Box<dyn std::error::Error>> {
         for extent in [Extent::FRAME, Extent::absolute(75, 41)] {

@@ -1,4 +1,4 @@
-//! What was measured on its way to the CPU: frames late, and never waited for.
+//! Measurements on their way to the CPU: some frames late, without waiting.
 
 use super::wanted::MeasuredTextures;
 use crate::gpu_scene::previous_view::PreviousView;
@@ -6,47 +6,47 @@ use framegraph::{Plan, Texture};
 use framegraph_wgpu::{Executor, Gpu, Pixels, Readback, ReadbackError, Subresource};
 use std::collections::VecDeque;
 
-/// What is older than so many frames is not known any more.
+/// Measurements older than this number of frames are ignored.
 const OLDEST_FRAMES: u64 = 8;
-/// So many frames are on their way at most; those between are not measured.
+/// Maximum number of frames in flight; further frames are not measured.
 const MAX_FLIGHTS: usize = 4;
 
-/// What is known of frames before by measuring them.
+/// Latest measurement of earlier frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Measurement {
-    /// Nothing is measured.
+    /// Measuring is off.
     #[default]
     Off,
-    /// It is measured, and nothing has come yet, or what has come is too old.
+    /// Nothing has arrived yet, or it is too old.
     Unknown,
-    /// The youngest that has come.
+    /// The latest measurement that has arrived.
     Known(Measured),
 }
 
-/// What a frame had.
+/// Measurement of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// The brightest channel of all pixels in nits, before depth of field and bloom; none if that was not measured.
+    /// Brightest channel of all pixels in nits, before depth of field and bloom; `None` if not measured.
     pub most_nits: Option<f32>,
-    /// Distance from the eye's plane of the nearest and the farthest that was seen, in m, infinite for the sky; none if that
-    /// was not measured, or not through a perspective.
+    /// Distance of the nearest and the farthest surface from the eye plane, in meters; infinite for the background.
+    /// `None` if not measured, or without a perspective projection.
     pub distances_m: Option<[f64; 2]>,
-    /// How many frames ago that was, at least 1.
+    /// Age in frames, at least 1.
     pub frames_ago: u32,
 }
 
-/// How often what was measured had come when it was looked for.
+/// Number of readbacks that were started, arrived and were skipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeasureCounts {
-    /// Frames that were measured.
+    /// Number of measured frames.
     pub begun: u32,
-    /// Frames whose measures have come.
+    /// Number of frames whose measurements have arrived.
     pub come: u32,
-    /// Frames that were not measured, since others were still on their way.
+    /// Number of frames not measured because too many were in flight.
     pub left_out: u32,
 }
 
-/// Kept by the caller from frame to frame, one for each view that is measured.
+/// Measurements of a view. Kept by the caller from frame to frame, one for each measured view.
 #[derive(Debug, Default)]
 pub struct Measuring {
     frame: u64,
@@ -55,7 +55,7 @@ pub struct Measuring {
     counts: MeasureCounts,
 }
 
-/// A frame on its way.
+/// A frame in flight.
 #[derive(Debug)]
 struct Flight {
     frame: u64,
@@ -64,7 +64,7 @@ struct Flight {
     depth: Option<Arriving>,
 }
 
-/// A copy that has come, or not yet.
+/// A readback that is pending or has arrived.
 #[derive(Debug)]
 enum Arriving {
     Away(Readback),
@@ -82,7 +82,7 @@ impl Arriving {
         }
     }
 
-    /// The most and the least of all texels, where they have come.
+    /// Returns the maximum and minimum of all texels, if they have arrived.
     fn both(&self) -> Option<[f32; 2]> {
         match self {
             Self::Away(_) => None,
@@ -97,16 +97,16 @@ impl Arriving {
 }
 
 impl Measuring {
-    /// None yet.
+    /// Creates an empty history.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Begins to copy what the frame that was executed last has measured, if it has; `stand` is the view's.
+    /// Starts to read back the measurements of the frame executed last, if any. `stand` is the view of that frame.
     ///
     /// # Errors
-    /// When the device fails.
+    /// Fails if the device fails.
     pub fn begin(
         &mut self,
         gpu: &Gpu,
@@ -132,10 +132,10 @@ impl Measuring {
         Ok(())
     }
 
-    /// What is known for the frame that is decided next. Never waits.
+    /// Returns the latest measurement, for decisions about the next frame. Never waits.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// Fails if the device is lost.
     pub fn known(&mut self, gpu: &Gpu) -> Result<Measurement, ReadbackError> {
         while let Some(flight) = self.flights.pop_front() {
             let look = |arriving: Option<Arriving>| arriving.map(|arriving| arriving.look(gpu)).transpose();
@@ -155,13 +155,13 @@ impl Measuring {
         })
     }
 
-    /// Forgets what was measured, for a view that looks elsewhere at once.
+    /// Discards all measurements, for example after a camera cut.
     pub fn forget(&mut self) {
         self.flights.clear();
         self.latest = None;
     }
 
-    /// How often it had come.
+    /// Returns the number of readbacks so far.
     pub fn counts(&self) -> MeasureCounts {
         self.counts
     }
@@ -176,7 +176,7 @@ impl Flight {
             let per_m = (depth * row.z - row.x) / (depth * row.w - row.y);
             if per_m > 0.0 { per_m.recip() } else { f64::INFINITY }
         };
-        // The w of a parallel projection does not depend on z.
+        // For a parallel projection, w does not depend on z.
         let perspective = row.z != 0.0;
         Measured {
             most_nits: both(&self.light).map(|[most, _]| most / self.stand.exposure),

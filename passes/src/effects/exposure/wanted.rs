@@ -1,33 +1,33 @@
-//! What of a frame is measured, and what it leaves of that.
+//! Requested measurements of a frame, and their results.
 
 use crate::stages::{Handles, Slot};
 use framegraph::Texture;
 
-/// What of a frame is measured.
+/// Requested measurements of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Measure {
-    /// The brightest light before depth of field and bloom.
+    /// Measures the brightest light before depth of field and bloom.
     pub light: bool,
-    /// The nearest and the farthest that is seen.
+    /// Measures the nearest and the farthest visible depth.
     pub depth: bool,
 }
 
-/// What a frame leaves of its measures: handles that are read back.
+/// Textures with measurements of a frame, for readback.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MeasuredTextures {
-    /// The most and the least light.
+    /// Maximum and minimum light.
     pub light: Option<Texture>,
-    /// The nearest and the farthest depth, reversed.
+    /// Nearest and farthest reversed depth.
     pub depth: Option<Texture>,
 }
 
 impl Measure {
-    /// Nothing.
+    /// No measurements.
     pub const NONE: Self = Self { light: false, depth: false };
 }
 
 impl MeasuredTextures {
-    /// What stages have handed on.
+    /// Returns the textures that stages have set.
     pub fn of(handles: &Handles) -> Self {
         Self { light: handles.find(Slot::MEASURED_LIGHT), depth: handles.find(Slot::MEASURED_DEPTH) }
     }

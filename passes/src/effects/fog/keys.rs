@@ -1,10 +1,10 @@
-//! Fog by name.
+//! Option parsing of fog.
 
 use super::{FogColor, FogGlow, FogSettings};
 use crate::settings::key_value::{KeyValue, OptionError, switched};
 
 impl FogSettings {
-    /// The names that [`FogSettings::set`] takes.
+    /// Names accepted by [`FogSettings::set`].
     pub const KEYS: [&str; 13] = [
         "density",
         "height",
@@ -21,18 +21,18 @@ impl FogSettings {
         "mean",
     ];
 
-    /// What is asked for as `off`, or as `on` with changes: `on:density=0.05,color=400:450:500`. None is `off`.
+    /// Parses `off`, or `on` with changes such as `on:density=0.05,color=400:450:500`. Returns `None` for `off`.
     ///
     /// # Errors
-    /// When it is neither, or a choice is unknown or does not take the value: one line that names it and what it takes.
+    /// Fails for another word, an unknown name or an invalid value; the message names it and the accepted values.
     pub fn from_text(text: &str) -> Result<Option<Self>, OptionError> {
         switched(text, Self::DEFAULT, Self::set)
     }
 
-    /// Changes one choice by name.
+    /// Changes one setting by name.
     ///
     /// # Errors
-    /// As [`FogSettings::from_text`].
+    /// Fails as [`FogSettings::from_text`] does.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), OptionError> {
         let choice = KeyValue { key, value };
         match key {

@@ -12,19 +12,20 @@ pub const STORE_RG11B10UFLOAT: Effect =
 /// Adds bloom. Binds `blooming`, `bloom_glow`, `bloom_sampler`, `bloom_flare` and `bloom_dirt`; overrides
 /// `LENS_FLARE`, `LENS_DIRT`.
 pub const BLOOM: Effect = Effect { name: "bloom", wgsl: library::text("effect/bloom.wgsl").unwrap() };
-/// Exposure compensation. Binds `exposing`.
+/// Applies exposure compensation. Binds `exposing`.
 pub const EXPOSE: Effect = Effect { name: "expose", wgsl: library::text("effect/expose.wgsl").unwrap() };
-/// Vignette. Binds `vignetting`.
+/// Darkens the corners. Binds `vignetting`.
 pub const VIGNETTE: Effect = Effect { name: "vignette", wgsl: library::text("effect/vignette.wgsl").unwrap() };
 /// Fades to a color toward the edges. Binds `fading`.
 pub const EDGE_FADE: Effect = Effect { name: "edge_fade", wgsl: library::text("effect/edge_fade.wgsl").unwrap() };
-/// Color grading. Binds `grading`. Override `NIGHT`.
+/// Grades colors. Binds `grading`. Override `NIGHT`.
 pub const GRADE: Effect = Effect { name: "grade", wgsl: library::text("effect/grade.wgsl").unwrap() };
-/// The tone curve. Overrides `TONE_MAP`, `GENERIC_CONTRAST`, `GENERIC_INPUT`, `GENERIC_OUTPUT`, `BY_LUMINANCE`, `INTO_GAMUT`.
+/// Applies the tone curve. Overrides `TONE_MAP`, `GENERIC_CONTRAST`, `GENERIC_INPUT`, `GENERIC_OUTPUT`, `BY_LUMINANCE`,
+/// `INTO_GAMUT`.
 pub const TONE: Effect = Effect { name: "tone", wgsl: library::text("effect/tone.wgsl").unwrap() };
-/// Color grading, tone curve and encoding from a 3D table. Binds `grading_table` and `grading_sampler`.
+/// Grades, applies the tone curve and encodes with a 3D table. Binds `grading_table` and `grading_sampler`.
 pub const LOOK_UP: Effect = Effect { name: "look_up", wgsl: library::text("effect/look_up.wgsl").unwrap() };
-/// Color grading, tone curve and encoding from a 1D table. Binds `grading_curves` and `curves_sampler`.
+/// Grades, applies the tone curve and encodes with a 1D table. Binds `grading_curves` and `curves_sampler`.
 pub const LOOK_UP_CURVES: Effect =
     Effect { name: "look_up_curves", wgsl: library::text("effect/look_up_curves.wgsl").unwrap() };
 /// Encodes for the target, with dither. Binds `encoding`; overrides `OUTPUT_ENCODED`, `INPUT_ENCODED`,

@@ -1,4 +1,4 @@
-//! Samples of radiance averaged as a display would show them.
+//! MSAA resolve weighted by tone mapping.
 
 use crate::effects::depth::resolve::can_read_samples;
 use crate::program::full_screen::FullScreen;
@@ -11,24 +11,24 @@ static SHADER: Module<'static> = library::pass("pass/tone_resolve.wgsl").unwrap(
 
 static INTERFACE: Interface = Interface { groups: &[&["hdr_samples"]], constants: &["SAMPLES"] };
 
-/// Resolves radiance of several samples, each weighted by one over one and its brightest channel (Karis, "Tone mapping",
-/// 2013): the mean of what is shown rather than of light, so that an edge before a lamp is as smooth as any. Needs no more of
-/// the world than [`Programs`].
+/// Resolves multisampled radiance with the weight 1 / (1 + brightest channel) per sample (Karis, "Tone mapping", 2013).
+/// Approximates the mean of displayed colors instead of radiance, so edges against bright lights stay smooth. Uses
+/// [`Programs`] of the world.
 ///
-/// The samples are stored and read, where a device's own resolve leaves them in the tile. Where post-processing is inlined into
-/// the color pass, it grades each sample before the resolve, which is as smooth and costs neither.
+/// Samples are stored and read back, while a device's own resolve keeps them in the tile. If post-processing is inlined
+/// into the color pass, it grades each sample before the resolve, which is as smooth and needs neither.
 #[derive(Clone, Copy, Debug)]
 pub struct ToneResolve {
-    /// Radiance, of several samples.
+    /// Multisampled radiance.
     pub samples: Texture,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct ToneResolveIo {
     samples: View,
     count: u8,
-    /// Radiance, of one sample and the same size and format.
+    /// Radiance with one sample, of the same size and format.
     pub hdr: Texture,
 }
 

@@ -1,4 +1,4 @@
-//! The pass that follows mirrored rays.
+//! The pass that traces reflected rays.
 
 use super::settings::ReflectionSettings;
 use crate::gpu_scene::draw::{SurfaceDraw, SurfaceVariant};
@@ -10,7 +10,7 @@ use framegraph_shaders::layout::ReflectionUniforms;
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Record, RecordError, SamplerDesc};
 
-/// Format of what was found: radiance as the frame has it, and how much it counts.
+/// Format of reflections: pre-exposed radiance, and its weight in alpha.
 const REFLECTION_FORMAT: Format = Format::Rgba16Float;
 
 static SHADER: Module<'static> = library::pass("pass/reflection.wgsl").unwrap();
@@ -24,32 +24,33 @@ static INTERFACE: Interface = Interface {
     constants: &[SurfaceDraw::TRAITS],
 };
 
-/// Follows the mirrored ray of each pixel of opaque and masked surfaces through the structure of a view. Positions and depths
-/// are f32 whatever surfaces are shaded in.
+/// Traces the reflected ray of each pixel of opaque and masked surfaces through the structure of a view. Positions and
+/// depths are always `f32`, regardless of [`Precision`](crate::Precision).
 #[derive(Clone, Copy, Debug)]
 pub struct Reflection {
-    /// The view that is drawn.
+    /// View to draw.
     pub view: ViewId,
     /// Reversed depth of the scene; its first level is read.
     pub structure: Texture,
-    /// Depth of the nearest surfaces, of one sample per texel; the result gets its size.
+    /// Depth of the nearest surfaces, with one sample per texel; the result has its size.
     pub depth: Texture,
-    /// Radiance of the frame before, times its exposure, seen as [`CameraView::after`] says.
+    /// Pre-exposed radiance of the previous frame, seen from the previous view ([`CameraView::after`]).
     pub earlier: Previous,
-    /// How many levels the result is to have.
+    /// Number of levels of the result.
     pub levels: u8,
-    /// How.
+    /// Settings.
     pub settings: ReflectionSettings,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct ReflectionIo {
     structure: View,
     earlier: View,
-    /// Radiance times how much it counts, and that in alpha; level 0 is written. All 0 in a frame without an earlier one.
+    /// Radiance premultiplied by its weight, and the weight in alpha, with level 0 written. All 0 without a previous
+    /// frame.
     pub reflections: Texture,
-    /// Length of each ray's way, in m.
+    /// Hit distances along the rays, in meters.
     pub ways: Texture,
 }
 

@@ -1,32 +1,32 @@
-//! What reflections are made of, and the same by name. Defaults are Filament's.
+//! Settings of screen-space reflections, and option parsing. Defaults are Filament's.
 
 use crate::settings::key_value::{KeyValue, OptionError, switched};
 
-/// How rays are followed through what the picture shows.
+/// Settings of ray tracing in screen space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct ReflectionSettings {
-    /// How far behind its front a surface is still met, in m: what passes farther behind passes.
+    /// Assumed thickness of surfaces in meters; a ray farther behind a surface than this misses it.
     pub thickness_m: f32,
-    /// Where rays begin, in m along them.
+    /// Start of rays along their direction, in meters.
     pub bias_m: f32,
-    /// Where they end, in m along them, above 0.
+    /// Maximum length of rays in meters, above 0.
     pub reach_m: f32,
-    /// Texels of the structure from step to step, 1 or more: more is faster, and misses what is thinner.
+    /// Step size in texels of the structure, 1 or more. Larger steps are faster and miss thin objects.
     pub stride_texels: f32,
-    /// Perceptual roughness from which on nothing is traced, 0 to 1; it fades from three quarters of it on.
+    /// Perceptual roughness at which reflections end, 0 to 1; they fade out from three quarters of it.
     pub most_roughness: f32,
 }
 
 impl Default for ReflectionSettings {
-    /// [`ReflectionSettings::DEFAULT`].
+    /// Returns [`ReflectionSettings::DEFAULT`].
     fn default() -> Self {
         Self::DEFAULT
     }
 }
 
 impl ReflectionSettings {
-    /// Filament's; there the roughness is a constant, √½, at which reflections end at once.
+    /// Filament's defaults. Filament's maximum roughness is a constant, √½, without a fade.
     pub const DEFAULT: Self = Self {
         thickness_m: 0.1,
         bias_m: 0.01,
@@ -35,21 +35,21 @@ impl ReflectionSettings {
         most_roughness: std::f32::consts::FRAC_1_SQRT_2,
     };
 
-    /// The names that [`ReflectionSettings::set`] takes.
+    /// Names accepted by [`ReflectionSettings::set`].
     pub const KEYS: [&str; 5] = ["thickness", "bias", "distance", "stride", "roughness"];
 
-    /// What is asked for as `off`, or as `on` with changes: `on:thickness=0.2,distance=5`. None is `off`.
+    /// Parses `off`, or `on` with changes such as `on:thickness=0.2,distance=5`. Returns `None` for `off`.
     ///
     /// # Errors
-    /// When it is neither, or a choice is unknown or does not take the value: one line that names it and what it takes.
+    /// Fails for another word, an unknown name or an invalid value; the message names it and the accepted values.
     pub fn from_text(text: &str) -> Result<Option<Self>, OptionError> {
         switched(text, Self::DEFAULT, Self::set)
     }
 
-    /// Changes one choice by name.
+    /// Changes one setting by name.
     ///
     /// # Errors
-    /// As [`ReflectionSettings::from_text`].
+    /// Fails as [`ReflectionSettings::from_text`] does.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), OptionError> {
         let choice = KeyValue { key, value };
         match key {

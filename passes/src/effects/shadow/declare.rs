@@ -10,11 +10,12 @@ use crate::stages::Slot;
 use framegraph::{DeclareError, Texture};
 use framegraph_wgpu::Frame;
 
-/// Declares a pass a layer: `shadow` if there is one, else `shadow/cascade` for each map of the sun and `shadow/local` for each
-/// layer that maps of other lights share. Moments are blurred and halved after it. None where no light casts.
+/// Declares a pass for each layer of the view's shadow maps. A single pass is named `shadow`; otherwise
+/// `shadow/cascade` for each map of the sun, and `shadow/local` for each layer of punctual lights. Moments are blurred
+/// and halved afterwards. Returns `None` if no light casts shadows.
 ///
 /// # Errors
-/// What a pass refuses: a layer beyond those of the texture.
+/// Fails if a layer is outside the texture.
 pub fn shadow_maps<W>(
     frame: &mut Frame<W>,
     view: ViewId,
@@ -36,12 +37,12 @@ where
     draw_maps(frame, view, settings, None, (0..settings.layers()).map(ShadowLayer::anew))
 }
 
-/// Where stages take such maps from.
+/// Returns the slot of the shadow maps.
 pub const fn maps_slot(settings: &ShadowSettings) -> Slot {
     if settings.has_moments() { Slot::SHADOW_MOMENTS } else { Slot::SHADOW_MAP }
 }
 
-/// Declares the passes of these layers, into a texture that is there or into one that the first of them makes.
+/// Declares the passes of these layers, into a given texture or into one that the first pass creates.
 pub(super) fn draw_maps<W>(
     frame: &mut Frame<W>,
     view: ViewId,
@@ -72,13 +73,13 @@ where
     })
 }
 
-/// A texture for all maps.
+/// Declares a texture for all maps.
 fn made<W: ?Sized + 'static>(frame: &mut Frame<W>, settings: &ShadowSettings) -> Texture {
     let (desc, name) = maps_desc(settings);
     frame.graph_mut().texture(name, desc)
 }
 
-/// Brings what was drawn into its layer where it is not there yet, blurs and halves it.
+/// Copies the result into its layer if it is not there yet, then blurs and halves it.
 fn filtered<W>(frame: &mut Frame<W>, shadow: Shadow, drawn: Texture) -> Result<Texture, DeclareError>
 where
     W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static,

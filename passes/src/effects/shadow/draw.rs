@@ -1,4 +1,4 @@
-//! Draws what casts into one layer of the shadow maps.
+//! Draws casters into one layer of the shadow maps.
 
 use crate::gpu_scene::draw::SurfaceDraw;
 use crate::gpu_scene::shadow_views::ShadowMap;
@@ -13,7 +13,7 @@ use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Record, RecordError};
 use wgpu::DepthBiasState;
 
-/// Format of depth: sixteen bits would do for a fitted view, but not every adapter compares them alike.
+/// Format of depth. 16 bits would suffice for fitted views, but adapters compare them differently.
 pub const SHADOW_FORMAT: Format = Format::Depth32Float;
 
 static SHADER: Module<'static> = library::pass("pass/shadow.wgsl").unwrap();
@@ -23,23 +23,22 @@ static INTERFACE: Interface = Interface {
     constants: &[SurfaceDraw::TRAITS],
 };
 
-/// A layer of the shadow maps, and which of its maps a pass draws.
+/// Layer of the shadow maps, and the maps in it that a pass draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShadowLayer {
-    /// Its number.
+    /// Index of the layer.
     pub layer: u16,
-    /// By bits, the numbers of the maps that are drawn over what the layer holds; none draws the layer anew, with all of its
-    /// maps.
+    /// Bit mask of the maps to draw over the contents of the layer; `None` clears the layer and draws all of its maps.
     pub only: Option<u64>,
 }
 
 impl ShadowLayer {
-    /// The layer drawn anew.
+    /// Returns the layer with all of its maps, cleared first.
     pub const fn anew(layer: u16) -> Self {
         Self { layer, only: None }
     }
 
-    /// The maps that are drawn, each with its number.
+    /// Returns the maps to draw, with their indices.
     pub(super) fn maps<'a>(&self, shadows: &'a ViewShadows) -> impl Iterator<Item = (usize, &'a ShadowMap)> + use<'a> {
         let Self { layer, only } = *self;
         let drawn = move |number: usize| only.is_none_or(|only| only >> number & 1 == 1);
@@ -48,22 +47,23 @@ impl ShadowLayer {
     }
 }
 
-/// Draws every caster of the maps of one layer: reversed depth, or moments of it, cleared to the far end.
+/// Draws all casters of the maps of one layer: reversed depth or its moments, cleared to the far plane.
 ///
-/// Hands on the maps, or where moments have several samples a texture of a layer's size with their averages.
+/// Returns the texture with all maps. Multisampled moments are resolved into a separate texture of a layer's size
+/// instead.
 #[derive(Clone, Copy, Debug)]
 pub struct Shadow {
-    /// The view whose maps they are.
+    /// View of the maps.
     pub view: ViewId,
-    /// How shadows are made, as the view's [`ViewSettings`](crate::ViewSettings) have it.
+    /// Shadow settings, as in the view's [`ViewSettings`](crate::ViewSettings).
     pub settings: ShadowSettings,
-    /// Which maps.
+    /// Layer and maps to draw.
     pub layer: ShadowLayer,
-    /// The texture with all layers.
+    /// Texture with all layers.
     pub maps: Texture,
 }
 
-/// The texture that holds all maps, depth or moments, and its name.
+/// Returns the description and name of the texture for all maps, depth or moments.
 pub(crate) fn maps_desc(settings: &ShadowSettings) -> (TextureDesc, &'static str) {
     let of = |format| TextureDesc::new(Extent::absolute(settings.map_texels, settings.map_texels), format);
     match settings.filter.moments() {
@@ -72,7 +72,7 @@ pub(crate) fn maps_desc(settings: &ShadowSettings) -> (TextureDesc, &'static str
     }
 }
 
-/// Confines draws to the place of a map.
+/// Restricts draws to the rectangle of a map.
 pub(super) fn confine(map: &ShadowMap, cx: &mut Cx<'_>) -> Result<(), RecordError> {
     let ([x, y], texels) = (map.place.corner, map.place.texels);
     let pass = cx.render_pass()?;
@@ -101,7 +101,7 @@ impl Pass for Shadow {
         if samples <= 1 {
             return pass.color(self.maps.mip(0).layer(layer), before(far));
         }
-        // Not into the layer at once: a driver (Mesa 22.3, in software) resolves into the first one, whichever is asked for.
+        // Not directly into the layer: Mesa 22.3 (software) always resolves into the first layer.
         let averages = pass.texture("shadow_averages", desc(format));
         let many = pass.texture("shadow_samples", desc(format).samples(samples));
         let many = pass.color(many, far)?;
@@ -115,7 +115,7 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
         let view = views.get(self.view)?;
         let has_moments = self.settings.has_moments();
         let bias = &self.settings.bias;
-        // Depth is reversed: away from the light is less. The variance of moments takes the place of a bias.
+        // Depth is reversed, so away from the light is smaller. Moments need no bias because of their variance.
         let bias = DepthBiasState { constant: -bias.steps, slope_scale: -bias.slope, clamp: 0.0 };
         let bias = if has_moments { DepthBiasState::default() } else { bias };
         let fragment = |depth, moments| if has_moments { Some(moments) } else { depth };
@@ -128,11 +128,11 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
             confine(map, cx)?;
             let frame = [Some(cx.uniform(&map.view))];
             if self.layer.only.is_some() {
-                // What another map or an earlier one left.
+                // Clears contents of other or earlier maps.
                 FullScreen { depth: Depth { write: true, ..Depth::NONE }, ..FullScreen::new(far, &[&frame]) }
                     .draw(programs, cx)?;
             }
-            // The draws of a view are made of its maps, so each has its own.
+            // Draws are merged separately for each map.
             let batches = view.view.draws.casters.get(number).map_or(&[][..], |own| own);
             for (desc, batches) in [opaque, masked].into_iter().zip(batches) {
                 let draw = SurfaceDraw {

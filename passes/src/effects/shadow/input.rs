@@ -1,4 +1,4 @@
-//! The shadow maps as passes that shade take them.
+//! Bindings of the shadow maps for shading passes.
 
 use crate::gpu_scene::shadow_views::ShadowFilter;
 use crate::gpu_scene::view::GpuView;
@@ -7,7 +7,7 @@ use framegraph_shaders::{Feature, Features};
 use framegraph_wgpu::{Binding, Cx, RecordError, SamplerDesc, ViewPart};
 use wgpu::TextureViewDimension;
 
-/// The shadow maps of a view, declared to be read.
+/// Shadow maps of a view, declared as read.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShadowInput {
     view: View,
@@ -15,7 +15,7 @@ pub(crate) struct ShadowInput {
 }
 
 impl ShadowInput {
-    /// Declares that the pass reads the maps, where there are any.
+    /// Declares the maps as read, if there are any.
     pub fn declare(maps: Option<Texture>, pass: &mut PassBuilder<'_>) -> Result<Option<Self>, DeclareError> {
         let Some(maps) = maps else { return Ok(None) };
         let layers = pass.desc(maps)?.layers;
@@ -23,13 +23,13 @@ impl ShadowInput {
     }
 }
 
-/// What is bound of the shadow maps, and what shaders are compiled with to read them.
+/// Bindings of the shadow maps, and the features and constants of shaders that read them.
 #[derive(Debug, Default)]
 pub(crate) struct ShadowBindings {
-    /// In the order of [`ShadowBindings::NAMES`].
+    /// Bindings in the order of [`ShadowBindings::NAMES`].
     pub bindings: [Option<Binding>; Self::NAMES.len()],
     pub features: Features,
-    /// In the order of [`ShadowBindings::CONSTANTS`].
+    /// Values in the order of [`ShadowBindings::CONSTANTS`].
     pub constants: [f64; Self::CONSTANTS.len()],
 }
 
@@ -38,12 +38,12 @@ impl ShadowBindings {
     pub const NAMES: [&'static str; 6] =
         ["shadow", "local_maps", "shadow_map", "shadow_sampler", "shadow_depth", "shadow_moments"];
 
-    /// Names of the `override` constants: steps of the ray of contact shadows, what there are maps of, whether shadows of the
-    /// sun have an end, and whether any are weaker than 1.
+    /// Names of the `override` constants: steps of contact shadows, whether the sun and punctual lights have maps, and
+    /// whether the sun's shadows end. Then whether any shadow is weaker than 1, and whether cascades are displayed.
     pub const CONSTANTS: [&'static str; 6] =
         ["CONTACT_STEPS", "CASCADES", "SHADOWS_END", "LAMP_SHADOWS", "WEAK_SHADOWS", "SHOW_CASCADES"];
 
-    /// The bindings for a view: none where it has no maps.
+    /// Creates the bindings for a view; empty without maps.
     pub fn new(input: Option<ShadowInput>, view: &GpuView, cx: &mut Cx<'_>) -> Result<Self, RecordError> {
         let Some(ShadowInput { view: maps, layers }) = input else { return Ok(Self::default()) };
         let shadows = view.shadows(layers)?;

@@ -1,10 +1,9 @@
-//! Shadow maps that stay from frame to frame, and of which those alone are drawn that would be others than they are.
+//! Shadow maps kept from frame to frame; only maps whose contents would change are drawn.
 //!
-//! A map depends on its light, on what it is fitted to and on what casts into it, and not on where the eye is; maps of local
-//! lights are fitted to the light alone. So over a still scene they are drawn once, wherever the camera goes, and cascades
-//! are drawn while the camera moves. What is compared is what maps are made of, number by number, in the view of this frame
-//! against that of the frame which drew the map last. Meshes and materials of a scene are taken to stay what they are. A map
-//! with an instance that is seen in another level of detail than before, since the eye is nearer or farther, is drawn anew.
+//! A map depends on its light, its fit and its casters, but not on the eye; maps of punctual lights are fitted to the
+//! light alone. In a still scene they are drawn once, wherever the camera moves; cascades are drawn again when the
+//! camera moves. All inputs of a map are compared with those of the frame that drew it last. Meshes and materials of a
+//! scene are assumed constant. A map is drawn again if an instance in it changes its level of detail.
 
 use super::declare::draw_maps;
 use super::draw::{ShadowLayer, maps_desc};
@@ -18,29 +17,29 @@ use framegraph::{DeclareError, Entry, Exit, Texture};
 use framegraph_wgpu::{DeviceError, Frame, Gpu, Imports, texture_format};
 use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureUsages};
 
-/// Why a map is drawn.
+/// Reason for drawing a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Redraw {
-    /// It was never drawn, or the frame that was to draw it failed.
+    /// The map was never drawn, or the frame that should have drawn it failed.
     First,
-    /// Its light moved, what it is fitted to did, or it has another size or place.
+    /// The light or its fit changed, or the map has another size or place.
     Light,
-    /// Something that casts into it moved, came or went, or is drawn in another level of detail.
+    /// A caster moved, appeared, disappeared or changed its level of detail.
     Casters,
 }
 
 impl std::fmt::Display for Redraw {
-    /// What is said of maps that are drawn: how many it are goes before it.
+    /// Writes the reason, to follow a number of maps.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::First => "never drawn before",
-            Self::Light => "of another light or fit",
-            Self::Casters => "of other casters",
+            Self::Light => "with a changed light or fit",
+            Self::Casters => "with changed casters",
         })
     }
 }
 
-/// The shadow maps of a view, kept by the application from frame to frame.
+/// Shadow maps of a view, kept by the application from frame to frame.
 ///
 /// ```no_run
 /// # use framegraph::{Extent, Target};
@@ -67,12 +66,12 @@ pub struct KeptShadows(Option<Held>);
 struct Held {
     texture: wgpu::Texture,
     settings: ShadowSettings,
-    /// What each map was drawn of; none where nobody knows what its place holds.
+    /// Inputs from which each map was drawn; `None` if the contents of its place are unknown.
     keys: Vec<Option<MapKey>>,
 }
 
 impl KeptShadows {
-    /// The maps of a view that have to be drawn, by number, and why each.
+    /// Returns the indices of the maps to draw, and the reason for each.
     pub fn due(&self, shadows: &ViewShadows) -> Vec<(u16, Redraw)> {
         let held = self.0.as_ref().filter(|held| held.settings == shadows.settings);
         let why = |(number, key): (u16, &MapKey)| {
@@ -88,11 +87,11 @@ impl KeptShadows {
         (0..).zip(&shadows.keys).filter_map(why).collect()
     }
 
-    /// Declares the maps as an import, and a pass for each layer of which some are due, which draws those, or the whole layer
-    /// if all are. None where no light casts.
+    /// Declares the maps as an import, and a pass for each layer with maps to draw. The pass draws these maps, or the
+    /// whole layer if all have to be drawn. Returns `None` if no light casts shadows.
     ///
     /// # Errors
-    /// When the device refuses the texture, or a pass its layer.
+    /// Fails if the texture cannot be created, or a layer is outside the texture.
     pub fn declare<W>(
         &mut self,
         gpu: &Gpu,
@@ -120,7 +119,7 @@ impl KeptShadows {
             graph.note("shadow", format_args!("map {number} is drawn: {why}"));
         }
         let bits = due.iter().fold(0_u64, |bits, (number, _)| bits | 1 << number);
-        // What is not in this view may be drawn over.
+        // Maps outside of this view may be overwritten.
         let keys = shadows.keys.iter().enumerate();
         held.keys = keys.map(|(number, key)| (bits >> number & 1 == 0).then(|| key.clone())).collect();
         let (desc, name) = maps_desc(settings);
@@ -135,14 +134,14 @@ impl KeptShadows {
         Ok(draw_maps(frame, view, settings, Some(maps), layers)?)
     }
 
-    /// Binds the texture to what [`KeptShadows::declare`] returned.
+    /// Binds the texture to the import returned by [`KeptShadows::declare`].
     pub fn import(&self, maps: Texture, imports: &mut Imports) {
         if let Some(held) = &self.0 {
             imports.texture(maps, &held.texture);
         }
     }
 
-    /// Notes that a frame with these maps was executed. Without it every map that was due is drawn again.
+    /// Marks the maps as drawn after the frame was executed. Without this call, they are drawn again.
     pub fn drawn(&mut self, shadows: &ViewShadows) {
         if let Some(held) = self.0.as_mut().filter(|held| held.settings == shadows.settings) {
             held.keys = shadows.keys.iter().cloned().map(Some).collect();
@@ -174,20 +173,20 @@ impl Held {
     }
 }
 
-/// Maps that are kept cannot be declared.
+/// Error of declaring kept shadow maps.
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum KeptShadowsError {
-    /// The device refuses the texture.
+    /// The texture cannot be created.
     #[error(transparent)]
     Device(#[from] DeviceError),
-    /// A pass refuses its layer.
+    /// A pass was refused.
     #[error(transparent)]
     Declare(#[from] DeclareError),
 }
 
 impl std::fmt::Debug for KeptShadowsError {
-    /// The sentence, since that is what an `unwrap` shows.
+    /// Writes the message, since `unwrap` shows it.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         std::fmt::Display::fmt(self, f)
     }

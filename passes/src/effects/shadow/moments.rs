@@ -79,7 +79,7 @@ impl Pass for ShadowBlur {
 impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for ShadowBlur {
     fn record(&self, io: &ShadowBlurIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let width = self.settings.moments.blur_texels.clamp(1.0, 125.0);
-        // As Filament: a sigma of a sixth of the width, with taps over the whole width.
+        // Filament's filter: sigma is a sixth of the width, with taps over the whole width.
         let sigma = (width + 1.0) / 6.0;
         let reach = (0.5 * width).ceil() as i32;
         let (step, reach) = match self.step {

@@ -71,9 +71,9 @@ fn halton(mut index: u32, base: u32) -> f64 {
     sum
 }
 
-/// Returns the weights of a texel and its neighbors, row by row from the top left, for the color at the pixel center
-/// of a picture offset by `jitter_px` to the right and up. The filter is a Gaussian as wide as a Blackman-Harris
-/// window of 3.3 pixels (Karis), scaled by `width`. The weights sum to 1.
+/// Returns the weights of a texel and its neighbors, row by row from the top left. They filter the color at the pixel
+/// center of a picture that is offset by `jitter_px` to the right and up. The filter is a Gaussian as wide as a
+/// Blackman-Harris window of 3.3 pixels (Karis), scaled by `width`. The weights sum to 1.
 pub(super) fn weights(jitter_px: DVec2, width: f64) -> [Vec4; 3] {
     let bell = |index: usize| {
         let neighbor = DVec2::new((index % 3) as f64 - 1.0, 1.0 - (index / 3) as f64);

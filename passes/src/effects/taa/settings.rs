@@ -32,8 +32,8 @@ pub struct TaaSettings {
     pub prevent_flickering: bool,
     /// Reads the history at the pixel's previous position; otherwise at the same pixel.
     pub reproject: bool,
-    /// While view and scene stand still ([`Views::again`](crate::gpu_scene::view::Views::again)), accumulates the mean of all
-    /// frames without clamping. Filament's history never settles.
+    /// While view and scene are still ([`Views::again`](crate::gpu_scene::view::Views::again)), accumulates the mean of
+    /// all frames without clamping. Filament's history never settles.
     pub converge: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Blended surfaces over what is behind them: the last pass of every technique that needs no order.
+//! Composites blended surfaces over everything behind them: the last pass of every order-independent technique.
 
 use crate::effects::depth::resolve::can_read_samples;
 use crate::program::full_screen::FullScreen;
@@ -9,7 +9,7 @@ use framegraph_wgpu::{Cx, Epilogue, Record, RecordError};
 
 static SHADER: Module<'static> = library::pass("pass/blended.wgsl").unwrap();
 
-/// Each picture is read as one of two variables, by its samples.
+/// The shader reads each texture as one of two variables, depending on its sample count.
 static INTERFACE: Interface = Interface {
     groups: &[&[
         "behind",
@@ -22,49 +22,49 @@ static INTERFACE: Interface = Interface {
     constants: &["SUMS"],
 };
 
-/// What the passes over blended surfaces left.
+/// Results of the passes over blended surfaces.
 #[derive(Clone, Copy, Debug)]
 pub enum BlendedSums {
-    /// Those of [`Weighted`](super::Weighted).
+    /// Results of [`Weighted`](super::Weighted).
     Weighted {
         /// Weighted colors.
         accumulated: Texture,
-        /// What all surfaces together let through.
+        /// Product of the transmittances of all surfaces.
         transmittance: Texture,
     },
-    /// Those of [`MomentShade`](super::MomentShade).
+    /// Results of [`MomentShade`](super::MomentShade).
     Moments {
         /// Weighted colors.
         accumulated: Texture,
-        /// The sum of absorbances of each sample.
+        /// Sum of absorbances of each sample.
         absorbance: Texture,
     },
-    /// Those of [`PeelLayer`](super::PeelLayer).
+    /// Results of [`PeelLayer`](super::PeelLayer).
     Peeled {
-        /// Color of all layers, and in alpha what they let through.
+        /// Color of all layers, and their transmittance in alpha.
         layers: Texture,
     },
 }
 
-/// Puts blended surfaces over the radiance of what is behind them. A point-wise effect that follows can be inlined.
+/// Composites blended surfaces over the radiance behind them. Later point-wise effects can be inlined into it.
 #[derive(Clone, Copy, Debug)]
 pub struct BlendedComposite {
-    /// Radiance of what does not blend, of each sample.
+    /// Radiance of surfaces that do not blend, of each sample.
     pub behind: Texture,
-    /// Blended surfaces.
+    /// Results of the passes over blended surfaces.
     pub sums: BlendedSums,
-    /// Where the radiance goes, of one sample per texel.
+    /// Target of the radiance, with one sample per texel.
     pub into: Target,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct BlendedCompositeIo {
     read: [View; 3],
     count: u8,
-    /// Radiance with everything in it, of each sample; `hdr` itself at one sample per texel.
+    /// Radiance of each sample, including blended surfaces; the same as `hdr` at one sample per texel.
     pub samples: Texture,
-    /// Scene-referred radiance times exposure with everything in it, single-sampled.
+    /// Pre-exposed radiance with one sample, including blended surfaces.
     pub hdr: Texture,
 }
 
@@ -83,7 +83,7 @@ impl Pass for BlendedComposite {
         let read = [hdr, accumulated, through.map_or(Ok(accumulated), |through| pass.same_pixel(through))?];
         let desc = TextureDesc::new(behind.extent, behind.format);
         let hdr = pass.target(self.into, "hdr", desc);
-        // The slots before have the radiance and the sums: so all passes share a step where a device reads them there.
+        // Earlier slots hold radiance and sums, so all passes share a step on devices that read attachments in place.
         if behind.samples == 1 {
             let hdr = pass.color_at(4, hdr, Intent::Overwrite)?;
             return Ok(BlendedCompositeIo { read, count: 1, samples: hdr, hdr });

@@ -1,13 +1,13 @@
-//! Transparency by name, as options of programs have it.
+//! Option parsing of transparency.
 
 use super::settings::{MAX_PEEL_LAYERS, MomentPrecision, MomentTransparency, Transparency};
 use crate::settings::key_value::{KeyValue, OptionError, choices};
 
 impl Transparency {
-    /// The names that [`Transparency::from_text`] takes.
+    /// Names accepted by [`Transparency::from_text`].
     pub const NAMES: [&str; 5] = ["sorted", "two-passes", "weighted", "moments", "peeled"];
 
-    /// Layers that are peeled where no number is given.
+    /// Default number of layers for `peeled`.
     pub const PEEL_LAYERS: u8 = 4;
 
     /// Returns the technique's name.
@@ -22,10 +22,11 @@ impl Transparency {
         }
     }
 
-    /// Reads a name, and behind a colon changes: `moments:precision=full,overestimation=0.1`, `peeled:layers=8`.
+    /// Parses a name, with optional changes after a colon: `moments:precision=full,overestimation=0.1`,
+    /// `peeled:layers=8`.
     ///
     /// # Errors
-    /// One line that names what is wrong and what is needed.
+    /// Fails for an unknown name or an invalid value; the message names it and the accepted values.
     pub fn from_text(text: &str) -> Result<Self, OptionError> {
         let (name, changes) = text.split_once(':').unwrap_or((text, ""));
         let mut own = match name {

@@ -1,7 +1,7 @@
-//! Moment-based transparency: one pass over the surfaces adds up where they absorb, a second one shades them.
+//! Moment-based transparency: one pass over the surfaces sums up absorbance, a second one shades them.
 //!
-//! `shaders/wgsl/lib/moment_transparency.wgsl` has the arithmetic. Distances are warped to the range that blended surfaces in
-//! view lie in, so that no depth of a scene is too large.
+//! `shaders/wgsl/lib/moment_transparency.wgsl` has the math. Distances are warped to the range of visible blended
+//! surfaces, so scenes can have any depth.
 
 use super::settings::{MomentPrecision, MomentTransparency};
 use super::surfaces::{ADDED, BlendedDraw, BlendedInputs, BlendedSurfaces, TESTED};
@@ -13,32 +13,32 @@ use crate::program::Programs;
 use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use framegraph_wgpu::{Cx, Output, Record, RecordError};
 
-/// Adds up absorbance and its moments.
+/// Sums up absorbance and its moments.
 #[derive(Clone, Copy, Debug)]
 pub struct Absorbance {
-    /// What is drawn.
+    /// Surfaces to draw.
     pub surfaces: BlendedSurfaces,
-    /// Depth of what hides blended surfaces; the sums get its size and samples.
+    /// Depth of opaque surfaces; the sums have its size and samples.
     pub depth: Texture,
-    /// How sums are stored; depth of several samples asks for `Half`.
+    /// Format of the sums; multisampled depth requires `Half`.
     pub precision: MomentPrecision,
 }
 
 /// Sums of absorbance.
 #[derive(Clone, Copy, Debug)]
 pub struct AbsorbanceSums {
-    /// Of each sample.
+    /// Sum of absorbances of each sample.
     pub total_samples: Texture,
-    /// The mean of a texel's samples; `total_samples` itself at one sample per texel.
+    /// Mean over the samples of a texel; the same as `total_samples` at one sample per texel.
     pub total: Texture,
-    /// The mean of the moments of a texel's samples.
+    /// Moments, averaged over the samples of a texel.
     pub moments: Texture,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct AbsorbanceIo {
-    /// What it added up.
+    /// Sums of absorbance.
     pub sums: AbsorbanceSums,
 }
 
@@ -92,25 +92,25 @@ where
     }
 }
 
-/// Shades surfaces, each by what those in front of it let through.
+/// Shades surfaces, each weighted by the transmittance in front of it.
 #[derive(Clone, Copy, Debug)]
 pub struct MomentShade {
-    /// What is drawn.
+    /// Surfaces to draw.
     pub surfaces: BlendedSurfaces,
-    /// Depth of what hides blended surfaces.
+    /// Depth of opaque surfaces.
     pub depth: Texture,
-    /// What [`Absorbance`] added up.
+    /// Sums of [`Absorbance`].
     pub sums: AbsorbanceSums,
-    /// How the estimate is made of it.
+    /// Settings of the estimate.
     pub moments: MomentTransparency,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct MomentShadeIo {
     inputs: BlendedInputs,
     sums: [View; 2],
-    /// Colors and alphas, both times what surfaces in front let through.
+    /// Colors and alphas, weighted by the transmittance in front of them.
     pub accumulated: Texture,
 }
 

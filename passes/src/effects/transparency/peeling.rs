@@ -1,9 +1,9 @@
-//! Depth peeling: the layers of blended surfaces one after another, from the nearest (Everitt, "Interactive order-independent
-//! transparency", 2001).
+//! Depth peeling: draws layers of blended surfaces one by one, from the nearest (Everitt, "Interactive
+//! order-independent transparency", 2001).
 //!
-//! Each layer is two passes in one step. The first finds the depth that is nearest behind the layer before, and not hidden by
-//! what is opaque; the second shades what has that depth. Surfaces at equal depth are in one layer: all of them are shaded,
-//! those that sorting draws last in front. Texels without coverage are no layer.
+//! Each layer is two passes in one step. The first finds the nearest depth behind the previous layer that opaque
+//! surfaces do not hide. The second shades surfaces at that depth. Surfaces at equal depth share a layer and are all
+//! shaded, in the order of sorting. Texels without coverage are not a layer.
 
 use super::surfaces::{BEHIND, BlendedDraw, BlendedInputs, BlendedSurfaces};
 use crate::effects::color::surface::{HDR_FORMAT, SurfaceWorld};
@@ -19,7 +19,7 @@ use framegraph::{ClearValue, DeclareError, Intent, Pass, PassBuilder, Texture, T
 use framegraph_scene::Batch;
 use framegraph_wgpu::{Cx, Depth, Record, RecordError};
 
-/// Depth is read as one of two variables, by its samples.
+/// The shader reads depth as one of two variables, depending on its sample count.
 static INTERFACE: Interface = Interface {
     groups: &[
         &["frame", "opaque_depth", "opaque_depth_samples", "nearer_layer", "nearer_layer_samples"],
@@ -29,23 +29,23 @@ static INTERFACE: Interface = Interface {
     constants: &[SurfaceDraw::TRAITS, SurfaceDraw::OBJECT_LIGHT, "FIRST_LAYER"],
 };
 
-/// Depth of a layer of blended surfaces.
+/// Finds the depth of a layer of blended surfaces.
 #[derive(Clone, Copy, Debug)]
 pub struct PeelDepth {
-    /// The view that is drawn.
+    /// View to draw.
     pub view: ViewId,
-    /// Depth of what hides blended surfaces; the layer gets its size and samples.
+    /// Depth of opaque surfaces; the layer has its size and samples.
     pub opaque: Texture,
-    /// Depth of the layer before it; none for the first.
+    /// Depth of the previous layer; `None` for the first.
     pub nearer: Option<Texture>,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct PeelDepthIo {
     read: [View; 2],
     samples: u8,
-    /// Reversed depth of the layer; 0 where there is none.
+    /// Reversed depth of the layer; 0 where it is empty.
     pub depth: Texture,
 }
 
@@ -90,22 +90,22 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
     }
 }
 
-/// Shades a layer of blended surfaces, behind those before it.
+/// Shades a layer of blended surfaces behind the previous layers.
 #[derive(Clone, Copy, Debug)]
 pub struct PeelLayer {
-    /// What is drawn.
+    /// Surfaces to draw.
     pub surfaces: BlendedSurfaces,
     /// Depth of the layer.
     pub depth: Texture,
-    /// The layers before it; none for the first.
+    /// The previous layers; `None` for the first.
     pub nearer: Option<Texture>,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct PeelLayerIo {
     inputs: BlendedInputs,
-    /// Color of all layers so far, and in alpha what they let through.
+    /// Color of all layers so far, and their transmittance in alpha.
     pub layers: Texture,
 }
 
@@ -145,8 +145,8 @@ where
     }
 }
 
-/// The draws of blended surfaces in the opposite order, an instance each: of surfaces at equal depth, sorting shows the last in
-/// front, and a layer the first.
+/// Returns the draws of blended surfaces in reverse order, one instance each. At equal depth, sorting shows the last
+/// surface in front, and a layer shows the first.
 fn nearest_first(view: &CameraView) -> DrawList {
     let draws = &view.draws;
     let alone = |batch: &Batch| {

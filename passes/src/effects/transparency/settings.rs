@@ -1,63 +1,63 @@
-//! Techniques of transparency, and what they are made with.
+//! Techniques of transparency, and their settings.
 
-/// The most layers that are peeled.
+/// Maximum number of peeled layers.
 pub const MAX_PEEL_LAYERS: u8 = 32;
 
-/// How blended surfaces are put in order.
+/// Ordering of blended surfaces.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Transparency {
-    /// Objects from back to front, and triangles of an object in the order of the mesh, as in Filament. A material may ask
-    /// for two passes ([`TransparencyMode`](framegraph_scene::TransparencyMode)).
+    /// Sorts objects from back to front, with triangles in mesh order, as in Filament. Materials can request two passes
+    /// ([`TransparencyMode`](framegraph_scene::TransparencyMode)).
     #[default]
     Sorted,
-    /// As `Sorted`, with the back faces of every double-sided object before its front faces: Filament's
-    /// `TWO_PASSES_TWO_SIDES` for all of them.
+    /// Sorts like `Sorted`, and draws the back faces of each double-sided object before its front faces: Filament's
+    /// `TWO_PASSES_TWO_SIDES` for all objects.
     TwoPasses,
-    /// Weighted averages of all surfaces of a pixel (McGuire and Bavoil, JCGT 2(2), 2013).
+    /// Weighted average of all surfaces of a pixel (McGuire and Bavoil, JCGT 2(2), 2013).
     Weighted,
-    /// Weights from four moments of where surfaces absorb (Münstermann et al., I3D 2018).
+    /// Weights from four moments of the absorbance (Münstermann et al., I3D 2018).
     Moments(MomentTransparency),
-    /// Depth peeling: the nearest layers of every pixel, exactly; farther ones are left out.
+    /// Depth peeling: the nearest layers of each pixel are exact; farther ones are dropped.
     Peeled {
-        /// Layers a pixel, 1 to [`MAX_PEEL_LAYERS`].
+        /// Number of layers, 1 to [`MAX_PEEL_LAYERS`].
         layers: u8,
     },
 }
 
 impl Transparency {
-    /// Whether the technique draws blended surfaces in passes of their own, in any order.
+    /// Returns true if the technique draws blended surfaces in separate passes, in any order.
     #[must_use]
     pub const fn is_unordered(self) -> bool {
         matches!(self, Self::Weighted | Self::Moments(_) | Self::Peeled { .. })
     }
 }
 
-/// Numbers of moment-based transparency.
+/// Settings of moment-based transparency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct MomentTransparency {
-    /// How sums are stored.
+    /// Format of the sums.
     pub precision: MomentPrecision,
-    /// Share of absorbance at a surface itself that counts as in front of it, 0 to 1; the paper has 0.25.
+    /// Share of a surface's own absorbance that counts as in front of it, 0 to 1; 0.25 in the paper.
     pub overestimation: f32,
 }
 
-/// Formats of sums of moments.
+/// Format of the moment sums.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum MomentPrecision {
-    /// 16 bits a channel, ten bytes a texel. Every device blends them.
+    /// 16 bits per channel, 10 bytes per texel. Every device can blend it.
     #[default]
     Half,
-    /// 32 bits a channel, twenty bytes a texel, for devices with `FLOAT32_BLENDABLE`. With several samples a texel, sums are
-    /// stored in 16 bits all the same.
+    /// 32 bits per channel, 20 bytes per texel. Requires `FLOAT32_BLENDABLE`. Falls back to 16 bits with several
+    /// samples per texel.
     Full,
 }
 
 impl MomentPrecision {
-    /// Share of an even distribution that is mixed into the moments, against rounding: the paper's number for 32 bits. In 16
-    /// bits, less lets a surface behind one of alpha 1 shine through at the ends of the range.
+    /// Returns the weight of a uniform distribution mixed into the moments against rounding: the paper's value for 32
+    /// bits. For 16 bits it is larger; otherwise surfaces behind an opaque one shine through at the ends of the range.
     #[must_use]
     pub const fn bias(self) -> f32 {
         match self {
@@ -73,7 +73,7 @@ impl MomentTransparency {
 }
 
 impl Default for MomentTransparency {
-    /// [`MomentTransparency::DEFAULT`].
+    /// Returns [`MomentTransparency::DEFAULT`].
     fn default() -> Self {
         Self::DEFAULT
     }

@@ -1,4 +1,4 @@
-//! Blended surfaces sorted by object, with two passes where a material or the frame asks for them.
+//! Blended surfaces sorted by object, with two passes for materials or frames that request them.
 
 use super::settings::Transparency;
 use crate::effects::color::surface::{SurfaceBindings, SurfaceWorld};
@@ -10,7 +10,7 @@ use framegraph_scene::{Batch, TransparencyMode};
 use framegraph_wgpu::{Cx, Depth, Output, RecordError};
 use wgpu::BlendState;
 
-/// Draws the blended surfaces of the world's view, from back to front, over what is there.
+/// Draws the blended surfaces of the world's view from back to front, over the current radiance.
 pub(crate) fn draw_sorted(
     world: &SurfaceWorld<'_>,
     bindings: &SurfaceBindings,
@@ -52,7 +52,7 @@ pub(crate) fn draw_sorted(
             draw(&own.to_vec().into(), Faces::OfMaterial, tested(), cx)?;
             continue;
         }
-        // An instance is finished before the next one, which may lie in front of it.
+        // Finishes an instance before the next one, which may be in front of it.
         for at in first.range() {
             let alone = Batch { instance: draws.numbers[at as usize], first: at, count: 1, ..*first };
             let alone = DrawList::from(vec![alone]);

@@ -1,4 +1,4 @@
-//! What all passes over blended surfaces have in common.
+//! Shared code of passes over blended surfaces.
 
 use crate::effects::color::surface::{SurfaceBindings, SurfaceInputs, SurfaceWorld};
 use crate::effects::fog::FogSettings;
@@ -12,50 +12,50 @@ use framegraph_scene::Lobes;
 use framegraph_wgpu::{Cx, Depth, Epilogue, Output, RecordError};
 use wgpu::{BlendComponent, BlendFactor, BlendOperation, BlendState};
 
-/// Blended surfaces of a view, and how they are shaded.
+/// Blended surfaces of a view, and their shading.
 #[derive(Clone, Copy, Debug)]
 pub struct BlendedSurfaces {
-    /// The view that is drawn.
+    /// View to draw.
     pub view: ViewId,
-    /// The shadow maps of the view.
+    /// Shadow maps of the view; `None` for no shadows.
     pub shadow: Option<Texture>,
-    /// The picture of what is behind transmissive surfaces, all levels written; needed where one of them blends.
+    /// Radiance behind transmissive surfaces, with all levels written; required if one of them blends.
     pub scene: Option<Texture>,
-    /// How surfaces are shaded.
+    /// Shading options.
     pub shading: Shading,
-    /// Fog before all that is drawn.
+    /// Fog; `None` for no fog.
     pub fog: Option<FogSettings>,
 }
 
-/// What shading them reads.
+/// Inputs of shading.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct BlendedInputs {
     shadow: Option<ShadowInput>,
     scene: Option<View>,
 }
 
-/// How a pass draws them.
+/// State of a draw of blended surfaces.
 pub(super) struct BlendedDraw<'a> {
-    /// The fragment entry point of `pass/color.wgsl`.
+    /// Fragment entry point of `pass/color.wgsl`.
     pub fragment: &'static str,
-    /// The depth test.
+    /// Depth test.
     pub depth: Depth,
-    /// Blending, by color slot.
+    /// Blending of each color slot.
     pub colors: &'a [Output],
-    /// What shading reads; none for a pass that needs alpha alone.
+    /// Inputs of shading; `None` for passes that need alpha only.
     pub inputs: Option<BlendedInputs>,
     /// Sums of absorbance and of its moments, with bias and overestimation.
     pub moments: Option<([View; 2], [f32; 2])>,
 }
 
 impl BlendedSurfaces {
-    /// Declares what shading reads.
+    /// Declares the inputs of shading.
     pub(super) fn inputs(&self, pass: &mut PassBuilder<'_>) -> Result<BlendedInputs, DeclareError> {
         let shadow = ShadowInput::declare(self.shadow, pass)?;
         Ok(BlendedInputs { shadow, scene: self.scene.map(|scene| pass.sampled(scene)).transpose()? })
     }
 
-    /// Draws a list of them.
+    /// Draws a list of blended surfaces.
     pub(super) fn draw(
         &self,
         list: &DrawList,
@@ -81,21 +81,21 @@ impl BlendedSurfaces {
     }
 }
 
-/// Fragments are added to what is there.
+/// Adds the fragment to the target.
 pub(super) const ADDED: Output = {
     let add =
         BlendComponent { src_factor: BlendFactor::One, dst_factor: BlendFactor::One, operation: BlendOperation::Add };
     Output { blend: Some(BlendState { color: add, alpha: add }), ..Output::REPLACE }
 };
 
-/// What is there is multiplied by the fragment.
+/// Multiplies the target by the fragment.
 pub(super) const MULTIPLIED: Output = {
     let through =
         BlendComponent { src_factor: BlendFactor::Dst, dst_factor: BlendFactor::Zero, operation: BlendOperation::Add };
     Output { blend: Some(BlendState { color: through, alpha: through }), ..Output::REPLACE }
 };
 
-/// Fragments lie behind what is there, whose alpha is what it lets through.
+/// Composites the fragment behind the target, whose alpha is its transmittance.
 pub(super) const BEHIND: Output = {
     let color = BlendComponent {
         src_factor: BlendFactor::DstAlpha,
@@ -110,5 +110,5 @@ pub(super) const BEHIND: Output = {
     Output { blend: Some(BlendState { color, alpha }), ..Output::REPLACE }
 };
 
-/// A surface hidden by what is opaque is not drawn, and hides nothing.
+/// Tests depth without writing it: opaque surfaces hide blended ones.
 pub(super) const TESTED: Depth = Depth { write: false, ..Depth::NEARER };

@@ -1,6 +1,7 @@
 //! Weighted blended transparency: one pass over the surfaces, in any order.
 //!
-//! Exact for one layer, and for layers of one color. Where colors differ, near ones count more (`shaders/wgsl/lib/weighted_blending.wgsl`).
+//! Exact for one layer, and for layers of the same color. Otherwise nearer colors have more weight; see
+//! `shaders/wgsl/lib/weighted_blending.wgsl`.
 
 use super::surfaces::{ADDED, BlendedDraw, BlendedInputs, BlendedSurfaces, MULTIPLIED, TESTED};
 use crate::effects::color::surface::{HDR_FORMAT, SurfaceWorld};
@@ -11,22 +12,22 @@ use crate::program::Programs;
 use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Texture, TextureDesc};
 use framegraph_wgpu::{Cx, Output, Record, RecordError};
 
-/// Adds up weighted colors, and multiplies what surfaces let through.
+/// Sums up weighted colors, and multiplies transmittances.
 #[derive(Clone, Copy, Debug)]
 pub struct Weighted {
-    /// What is drawn.
+    /// Surfaces to draw.
     pub surfaces: BlendedSurfaces,
-    /// Depth of what hides blended surfaces; the sums get its size and samples.
+    /// Depth of opaque surfaces; the sums have its size and samples.
     pub depth: Texture,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct WeightedIo {
     inputs: BlendedInputs,
-    /// Colors and alphas, both times their weights.
+    /// Colors and alphas, multiplied by their weights.
     pub accumulated: Texture,
-    /// What all surfaces together let through.
+    /// Product of the transmittances of all surfaces.
     pub transmittance: Texture,
 }
 
@@ -40,7 +41,7 @@ impl Pass for Weighted {
         let desc = |format| TextureDesc::new(depth.extent, format).samples(depth.samples);
         let accumulated = pass.texture("weighted_color", desc(HDR_FORMAT));
         let transmittance = pass.texture("transmittance", desc(Format::R16Float));
-        // Slot 0 has the radiance of the color pass: so both passes share a step.
+        // Slot 0 holds the radiance of the color pass, so both passes share a step.
         Ok(WeightedIo {
             inputs,
             accumulated: pass.color_at(1, accumulated, Intent::Clear(ClearValue::TRANSPARENT))?,

@@ -1,31 +1,31 @@
-//! How much smaller the next frame is drawn, by the times of those before, as Filament decides it.
+//! Dynamic resolution from measured frame times, with Filament's algorithm.
 
-/// Times that a frame is to keep, and how fast and how far its size follows.
+/// Frame-time target of dynamic resolution, and the speed and limits of its changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DynamicResolution {
-    /// The time that a frame is to take on the GPU, in ms.
+    /// Target GPU time of a frame, in ms.
     pub target_ms: f64,
-    /// The share of it that is kept free, 0 to less than 1.
+    /// Share of the target kept free, from 0 to below 1.
     pub headroom: f64,
-    /// How fast the size follows, above 0: 1 − e^−rate of what is wrong is made up for in a frame.
+    /// Speed of adaptation, above 0: each frame corrects 1 − e^−rate of the error.
     pub rate: f64,
-    /// How many frames' times count: their median, so that a single late one is none of its business.
+    /// Number of recent frame times whose median is used, so single outliers have no effect.
     pub history: usize,
-    /// The least share of the sides, in percent, 25 to 100.
+    /// Minimum width and height in percent, 25 to 100.
     pub least_percent: f64,
-    /// The most.
+    /// Maximum width and height in percent, 25 to 100.
     pub most_percent: f64,
 }
 
 impl Default for DynamicResolution {
-    /// [`DynamicResolution::DEFAULT`].
+    /// Returns [`DynamicResolution::DEFAULT`].
     fn default() -> Self {
         Self::DEFAULT
     }
 }
 
 impl DynamicResolution {
-    /// Filament's, for 60 frames a second.
+    /// Filament's defaults, for 60 frames per second.
     pub const DEFAULT: Self = Self {
         target_ms: 1000.0 / 60.0,
         headroom: 0.0,
@@ -35,9 +35,9 @@ impl DynamicResolution {
         most_percent: 100.0,
     };
 
-    /// The share of the sides in percent that the next frame is drawn with, where the last was drawn with `percent`, and the
-    /// frames so far took `times_ms`, the last at the end. Rounded, it is [`Upscale::percent`](super::Upscale::percent). Times
-    /// that are no numbers do not count, and without any the share stays.
+    /// Returns the width and height of the next frame in percent, for [`Upscale::percent`](super::Upscale::percent)
+    /// after rounding. `percent` is the value of the last frame; `times_ms` has recent GPU times, latest last. Invalid
+    /// times are ignored; without any, the percentage does not change.
     #[must_use]
     pub fn next_percent(&self, percent: f64, times_ms: &[f64]) -> f64 {
         let percent = if percent.is_finite() { percent } else { self.most_percent };
@@ -49,7 +49,7 @@ impl DynamicResolution {
             Some(median) => {
                 let wanted = (self.target_ms * (1.0 - self.headroom)).max(1e-6);
                 let wrong = (1.0 - (-self.rate).exp()) * (1.0 - median / wanted);
-                // Shares of the area that undo each other.
+                // Factors on the area; equal errors of opposite sign cancel.
                 if wrong < 0.0 { 1.0 / (1.0 - wrong) } else { 1.0 + wrong }
             }
         };

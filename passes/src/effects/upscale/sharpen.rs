@@ -1,4 +1,4 @@
-//! Sharpening by contrast: after upscaling, and after anti-aliasing over time.
+//! Contrast-adaptive sharpening, after upscaling and after temporal anti-aliasing.
 
 use crate::program::full_screen::FullScreen;
 use crate::program::{Interface, ProgramDesc, Programs};
@@ -11,21 +11,21 @@ static SHADER: Module<'static> = library::pass("pass/sharpen.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface { groups: &[&["sharpening", "picture"]], constants: &["DECODE"] };
 
-/// How many halvings of the strength no sharpness is; all of it is none. Filament's scale.
+/// Number of times that sharpness 0 halves the strength of sharpness 1, as in Filament.
 const MAX_STOPS: f32 = 2.0;
 
-/// Sharpens a picture by its own contrast (RCAS of FSR 1.0). Needs no more of the world than [`Programs`].
+/// Sharpens a picture depending on local contrast (RCAS of FSR 1.0). Uses [`Programs`] of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct Sharpen {
-    /// Radiance, or codes encoded as sRGB in a linear format.
+    /// Radiance, or sRGB encoded colors in a linear format.
     pub picture: Texture,
-    /// Where the result goes; a new one is as the picture. Codes that go into an sRGB format are decoded for it.
+    /// Target; a new texture has the size and format of the picture. Encoded colors are decoded for sRGB formats.
     pub into: Target,
-    /// How much, 0 to 1; even 0 sharpens by a quarter of what 1 does.
+    /// Strength, 0 to 1; at 0, sharpens a quarter as much as at 1.
     pub sharpness: f32,
 }
 
-/// What the pass reads and wrote.
+/// Handles of the pass.
 #[derive(Clone, Copy, Debug)]
 pub struct SharpenIo {
     picture: View,
