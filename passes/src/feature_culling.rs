@@ -54,7 +54,7 @@ pub use scene_summary::SceneSummary;
 
 use rule_input::RuleInput;
 
-/// Decides which effects the frame needs. `memory` is that of the frame before, or a new one.
+/// Decides which effects the frame needs. Pass the `memory` of the previous frame, or a new one.
 #[must_use]
 pub fn decide(input: &FactInput<'_>, memory: &mut FactMemory) -> Facts {
     let case = RuleInput::new(input, memory);
@@ -81,7 +81,7 @@ pub fn decide(input: &FactInput<'_>, memory: &mut FactMemory) -> Facts {
         row.decision = Decision::Kept;
         row.reason = format!("{}; it goes in {} frames", row.reason, memory.waits(row.effect));
     }
-    // What goes because another does stays while that stays.
+    // Effects that depend on another effect stay while that effect stays.
     for (effect, with) in [
         (Effect::OcclusionShading, Effect::Occlusion),
         (Effect::Cascades, Effect::SunShadows),

@@ -1,27 +1,31 @@
-//! The standard frame: which passes, composed into one graph.
+//! The standard frame: all effects as passes of one graph.
 //!
-//! [`stages`] is the frame as a value: named stages, in which an application inserts its own and replaces what it does
-//! otherwise. [`standard`] declares them as they are.
+//! [`stages`] returns the frame as named stages, which an application can extend and replace. [`standard`] declares
+//! them unchanged.
 //!
-//! | stage | passes | takes | hands on |
+//! | stage | passes | reads | provides |
 //! | --- | --- | --- | --- |
-//! | `shadow` | `shadow`, or a pass a layer of maps; `structure` for contact shadows | | shadow maps, structure |
+//! | `shadow` | `shadow`, or one pass for each layer; `structure` for contact shadows | | shadow maps, structure |
 //! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
-//! | `reflection` | `structure`, `reflection_depth`, `reflection`, `reflection_level`… | the radiance of the frame before | structure, reflections, where radiance goes |
-//! | `prepass` | `prepass`, `velocity`, where they are drawn | | depth, velocity |
-//! | `color` | `color` | depth if it was drawn, shadow maps, structure, ambient occlusion, reflections | radiance, depth |
-//! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
-//! | `transparent` | `transparent`; `blended/…` where blended surfaces need no order | all of these | radiance, depth |
-//! | `resolve` | `tone_resolve` | samples of radiance | radiance |
-//! | `taa` | `depth_resolve`, `taa`, `taa_sharpen` | radiance, depth, what the frames before came to | radiance |
-//! | `measure` | `measure/light`, `measure/depth`, `measure/smaller` | radiance, depth | what is read back of them |
+//! | `reflection` | `structure`, `reflection_depth`, `reflection`, `reflection_level`… | radiance of the previous frame | structure, reflections, target of the radiance |
+//! | `prepass` | `prepass`, `velocity`, if requested | | depth, motion vectors |
+//! | `color` | `color` | depth (with a prepass), shadow maps, structure, ambient occlusion, reflections | radiance, depth |
+//! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | picture behind refractive surfaces |
+//! | `transparent` | `transparent`; `blended/…` for order-independent transparency | all of the above | radiance, depth |
+//! | `resolve` | `tone_resolve` | multisampled radiance | radiance |
+//! | `taa` | `depth_resolve`, `taa`, `taa_sharpen` | radiance, depth, history | radiance |
+//! | `measure` | `measure/light`, `measure/depth`, `measure/smaller` | radiance, depth | readback of luminance and depth |
 //! | `dof` | `dof/coc`, `dof/level`…, `dof/tiles`, `dof/dilate`, `dof/gather`, `dof/median`, `dof/combine` | radiance, depth | radiance |
-//! | `bloom` | `bloom/half`…, `bloom/first`, `bloom/down`…, `bloom/flare`, `bloom/flare_blur` twice, `bloom/up`… | radiance | what glows, lens flare |
-//! | `post` | `post`, or one an effect | radiance, what glows, lens flare, dirt on the lens | picture |
+//! | `bloom` | `bloom/half`…, `bloom/first`, `bloom/down`…, `bloom/flare`, `bloom/flare_blur` twice, `bloom/up`… | radiance | bloom, lens flare |
+//! | `post` | `post`, or one pass for each effect | radiance, bloom, lens flare, lens dirt | picture |
 //! | `fxaa` | `fxaa` | picture | picture |
 //! | `upscale` | `upscale`, `upscale_sharpen` | picture | picture |
 //!
-//! All stages are there whatever the settings are; one that a frame does not need declares nothing.
+//! The *structure* is the depth pyramid of the visible surfaces. Every stage exists with every setting. A stage that a
+//! frame does not need declares no pass.
+//!
+//! This folder may use every other folder of the crate. Only [`feature_culling`](crate::feature_culling) and
+//! [`quality`](crate::quality) may use it.
 
 mod before;
 mod blended;
@@ -217,7 +221,7 @@ impl Settings {
         stored: None,
     };
 
-    /// The same frame with the passes that the scene's materials call for, in a picture of this size.
+    /// Returns the frame with the passes that the scene's materials need, for a picture of this size.
     #[must_use]
     pub fn for_scene(self, scene: &Scene, size_texels: [u32; 2]) -> Self {
         let transmits = scene.lobes().contains(Lobe::Transmission);
@@ -317,7 +321,7 @@ pub fn standard<W: StandardWorld + ?Sized>(
     Ok(FrameIo { hdr, output, measured: MeasuredTextures::of(&handles) })
 }
 
-/// The stages of the standard frame. See the [module](self).
+/// Returns the stages of the standard frame. See the [module](self).
 pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     let s = *settings;
     let fxaa = match s.fxaa {
@@ -335,7 +339,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     let glass = Glass { levels: scene_levels, layers: glass_layers, samples, shading, fog, transparency };
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, s.shadows, s.structure())),
-        // Before the prepass, so that nothing comes between that and the color pass: they share a step.
+        // Declared before the prepass, so that no pass separates prepass and color pass: they share a step.
         Stage::new("occlusion", move |frame, handles| {
             occlusion(frame, handles, s.occlusion, (s.structure_levels, s.shading.precision))
         }),
@@ -393,7 +397,7 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         sky,
         format: hdr_format,
         into: match handles.find(Slot::HDR_HISTORY) {
-            // The last pass over blended surfaces draws into it.
+            // The last pass that draws blended surfaces writes into it.
             Some(history) if !settings.draws_blended_apart() || settings.blends_after_blur() => history.into(),
             _ => Target::New,
         },
