@@ -129,14 +129,14 @@ pub struct Settings {
     /// radii keep their fraction of this size. [`Settings::for_scene`] sets it.
     #[cfg_attr(feature = "files", serde(skip))]
     pub size_texels: [u32; 2],
-    /// Whether a surface blends. The color pass then cannot be graded in place.
+    /// True if a surface blends. The color pass then cannot be graded in place.
     #[cfg_attr(feature = "files", serde(skip))]
     pub blended: bool,
-    /// Whether a material tests or writes stencil. The depth texture then has stencil, as with Filament's
+    /// True if a material tests or writes stencil. The depth texture then has stencil, as with Filament's
     /// `View::setStencilBufferEnabled`.
     #[cfg_attr(feature = "files", serde(skip))]
     pub stencil: bool,
-    /// Whether a blended surface writes depth
+    /// True if a blended surface writes depth
     /// ([`TransparencyMode::TwoPassesOneSide`](framegraph_scene::TransparencyMode)).
     #[cfg_attr(feature = "files", serde(skip))]
     pub blended_depth: bool,
@@ -157,7 +157,7 @@ pub struct Settings {
     /// Temporal anti-aliasing; `None` by default, as in Filament. The caller jitters the view
     /// ([`TaaSettings::jitter_px`]). Declare each view of a graph with TAA in its own scope.
     pub taa: Option<TaaSettings>,
-    /// Whether something moves. TAA then draws motion vectors.
+    /// True if something moves. TAA then draws motion vectors.
     #[cfg_attr(feature = "files", serde(skip))]
     pub moving: bool,
     /// Values measured in the frame for feature culling in later frames; set by [`Facts::apply`](crate::Facts::apply).

@@ -17,8 +17,9 @@
 //!
 //! This program renders a built-in scene to a texture without a window, and reads the texture back.
 //!
-#![cfg_attr(feature = "ibl", doc = "```no_run")]
-#![cfg_attr(not(feature = "ibl"), doc = "```ignore")]
+//! ```no_run
+//! # #[cfg(feature = "ibl")]
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
 //! use framegraph_passes::gpu_scene::view::Background;
 //! use framegraph_passes::light::ibl::cache::Cache;
@@ -29,7 +30,6 @@
 //! use framegraph_scene::{Scene, progress};
 //! use framegraph_wgpu::{AdapterRequest, Executor, Frame, Gpu, Imports, read_texture};
 //!
-//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let size_px = [640, 360];
 //! let gpu = Gpu::open(&AdapterRequest::from_env())?;
 //!
@@ -70,6 +70,8 @@
 //! # let _ = rgba;
 //! # Ok(())
 //! # }
+//! # #[cfg(not(feature = "ibl"))]
+//! # fn main() {}
 //! ```
 //!
 //! # Modules

@@ -26,7 +26,7 @@ pub(super) struct Blended {
     pub shading: Shading,
     /// Fog in front of the surfaces.
     pub fog: Option<FogSettings>,
-    /// Whether the surfaces are drawn after depth of field. The next frame does not read that picture.
+    /// True if the surfaces are drawn after depth of field. The next frame does not read that picture.
     pub after_blur: bool,
 }
 

@@ -15,7 +15,7 @@ use framegraph_wgpu::{Frame, StoreRounding};
 /// Options of declaring post-processing.
 #[derive(Clone, Copy)]
 pub(super) struct PostWay {
-    /// Whether an edge filter follows.
+    /// True if an edge filter follows.
     pub fxaa: bool,
     /// See [`Post::stored`].
     pub stored: Option<StoreRounding>,
